@@ -1,0 +1,50 @@
+#pragma once
+// frames/frame_NNNNN.h5, one file a frame, and particles.xdmf, their index for ParaView and VTK.
+
+#include <petscsys.h>
+
+#include <string>
+#include <vector>
+
+#include "mpm/config.hpp"
+#include "output/snapshot.hpp"
+
+namespace mpm {
+
+/// What the index says of one frame.
+struct FrameEntry {
+  struct Group {
+    std::string name;
+    long count = 0;     // particles
+    bool body = false;  // has stress, volume and plastic_strain
+  };
+  std::string file;  // relative to the output folder
+  double time = 0;   // s
+  std::vector<Group> groups;
+};
+
+/// The text of particles.xdmf: a temporal collection of spatial collections with one grid a body or rigid. Stress
+/// is an attribute of six components, which ParaView shows as XX YY ZZ XY YZ XZ, in our order.
+/// `real_bytes` is 8 or 4, the size of every field but position, which is always 8.
+std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes);
+
+/// Writes one frame as HDF5 to `path`: attributes time [s] and step; a group each body and rigid.
+/// Positions are float64; the other fields are float64, or float32 for a run in single precision.
+PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Precision precision);
+
+/// The frames of a run, numbered from 0. One rank calls it.
+class Frames {
+ public:
+  /// Says where they go; nothing is written yet. The folder was made by prepare_output_folder.
+  void open(const std::string& folder, Precision precision);
+  /// Writes the next frame, then the index anew; both are complete or as they were.
+  PetscErrorCode write(const Snapshot& snapshot);
+  int count() const { return static_cast<int>(entries_.size()); }
+
+ private:
+  std::string folder_;
+  Precision precision_ = Precision::double_;
+  std::vector<FrameEntry> entries_;
+};
+
+}  // namespace mpm
