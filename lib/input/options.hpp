@@ -1,0 +1,59 @@
+#pragma once
+// From the command line and the options files to a validated Config. Every mistake is collected, so that a user sees
+// all of them at once; nothing here prints but print_help and print_errors, and nothing here ends the program.
+//
+// The order in a program:
+//   MPI_Init, Kokkos::initialize
+//   prepare_arguments(...)     before PetscInitialize, which ends the program over a file that it cannot read
+//   PetscInitialize(&argc, &argv, nullptr, nullptr)
+//   read_options(...)
+//   report.help: print_help, exit status 0;  report.errors not empty: print_errors, exit status 2
+
+#include <petscsys.h>
+
+#include <string>
+#include <vector>
+
+#include "mpm/config.hpp"
+
+namespace mpm {
+
+/// One option as it is in force.
+struct EffectiveOption {
+  std::string name;   // with its dash: -mesh_spacing
+  std::string value;  // as given, or the default; "none" where there is none
+  std::string unit;   // SI, "-" for a pure number, empty for words
+  bool standard;      // the default holds
+};
+
+/// What reading the input found.
+struct InputReport {
+  std::vector<std::string> errors;       // each a whole line without its end: mpm: -NAME: given "...", takes ...
+  std::vector<EffectiveOption> options;  // in the order of reading; for the log
+  std::string help_text;                 // every option, its unit, default and meaning (only where help was asked)
+  std::string options_file;              // the last -options_file, empty where there was none
+  bool help = false;                     // -help was given
+};
+
+/// Takes -help, and each -options_file that cannot be read, out of the arguments, and reports the latter, lines of
+/// options files that are not "-NAME VALUE", and words of the command line that belong to no option (PETSc would
+/// pass over both). Call it on every process of comm after MPI_Init and before PetscInitialize, which reads the files
+/// that are left; what is on the command line takes precedence over them.
+void prepare_arguments(MPI_Comm comm, int* argc, char** argv, InputReport& report);
+
+/// Reads every option with this prefix (null for none) from PETSc's database, which is the same on all processes, and
+/// checks them, also against each other. `backends` are those compiled in, the slowest first; the last is the default.
+/// Appends to report.errors; config is valid only where that stays empty. Where report.help holds, or -help is in the
+/// database, fills report.help_text instead.
+/// With a null prefix every option that is neither ours nor PETSc's is an error, so simulations that have a prefix
+/// must be read before the one that has none.
+PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& backends, Config& config,
+                            InputReport& report);
+
+/// Prints report.help_text on stdout of the first process.
+PetscErrorCode print_help(MPI_Comm comm, const InputReport& report);
+
+/// Prints report.errors on stderr of the first process, one line each.
+PetscErrorCode print_errors(MPI_Comm comm, const InputReport& report);
+
+}  // namespace mpm
