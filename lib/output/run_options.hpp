@@ -18,7 +18,7 @@ struct OptionLine {
 
 /// Every option of `config` as it is in force, in the order of the manual; `material_parameters` are the lines of
 /// the materials' own parameters (clay_su ...), which only the materials know. What else the user gave (also to
-/// PETSc) follows. `given` is looked up in PETSc's options database. Must be called after PetscInitialize.
+/// PETSc) follows. `given` is what PETSc's options database holds.
 PetscErrorCode options_in_force(const Config& config, const std::vector<OptionLine>& material_parameters,
                                 std::vector<OptionLine>* lines);
 

@@ -1,0 +1,126 @@
+#include "output/files.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+namespace mpm {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Is this a file that we write into an output folder (or its temporary form)?
+bool is_ours(const std::string& name, bool in_frames) {
+  const std::string suffix = ".tmp";
+  const std::string stem = name.ends_with(suffix) ? name.substr(0, name.size() - suffix.size()) : name;
+  if (in_frames) return stem.starts_with("frame_") && stem.ends_with(".h5");
+  return stem == "history.csv" || stem == "mpm.log" || stem == "options.json" || stem == "particles.xdmf";
+}
+
+/// Removes our files from one folder and adds their number to `removed`.
+PetscErrorCode remove_ours(const fs::path& folder, bool in_frames, int* removed) {
+  PetscFunctionBeginUser;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (!is_ours(it->path().filename().string(), in_frames)) continue;
+    std::error_code failed;
+    fs::remove(it->path(), failed);
+    PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot remove %s of an earlier run: %s",
+               it->path().c_str(), failed.message().c_str());
+    ++*removed;
+  }
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot read the folder %s: %s", folder.c_str(),
+             error.message().c_str());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Brings a file to the disk: some file systems report a full disk only here.
+PetscErrorCode sync_file(const std::string& path) {
+  PetscFunctionBeginUser;
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  PetscCheck(descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", path.c_str(),
+             std::strerror(errno));
+  const int reason = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;  // EINVAL: nothing to sync there
+  ::close(descriptor);
+  PetscCheck(reason == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path.c_str(),
+             std::strerror(reason));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace
+
+PetscErrorCode make_folder(const std::string& folder) {
+  PetscFunctionBeginUser;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot make the folder %s: %s", folder.c_str(),
+             error.message().c_str());
+  PetscCheck(fs::is_directory(folder, error), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
+             "Cannot make the folder %s: a file of that name stands there", folder.c_str());
+  PetscCheck(::access(folder.c_str(), W_OK | X_OK) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
+             "Cannot write into the folder %s: %s", folder.c_str(), std::strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode prepare_output_folder(const std::string& folder, int* removed) {
+  PetscFunctionBeginUser;
+  const fs::path frames = fs::path(folder) / "frames";
+  int count = 0;
+  PetscCall(make_folder(folder));
+  PetscCall(make_folder(frames.string()));
+  PetscCall(remove_ours(folder, false, &count));
+  PetscCall(remove_ours(frames, true, &count));
+  if (removed) *removed = count;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode replace_file(const std::string& path, const std::function<PetscErrorCode(const std::string&)>& write) {
+  PetscFunctionBeginUser;
+  const std::string temporary = path + ".tmp";
+  PetscErrorCode failed = write(temporary);
+  if (!failed) failed = sync_file(temporary);
+  if (failed) ::unlink(temporary.c_str());
+  PetscCall(failed);
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    const int reason = errno;
+    ::unlink(temporary.c_str());
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot rename %s to %s: %s", temporary.c_str(), path.c_str(),
+            std::strerror(reason));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode replace_text_file(const std::string& path, const std::string& text) {
+  PetscFunctionBeginUser;
+  const auto write = [&](const std::string& temporary) -> PetscErrorCode {
+    PetscFunctionBeginUser;
+    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    PetscCheck(descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", temporary.c_str(),
+               std::strerror(errno));
+    const PetscErrorCode failed = write_all(descriptor, text, temporary);
+    ::close(descriptor);
+    PetscCall(failed);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  };
+  PetscCall(replace_file(path, write));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode write_all(int descriptor, const std::string& text, const std::string& path) {
+  PetscFunctionBeginUser;
+  for (size_t done = 0; done < text.size();) {
+    const ssize_t written = ::write(descriptor, text.data() + done, text.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    PetscCheck(written >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path.c_str(),
+               std::strerror(errno));
+    done += static_cast<size_t>(written);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm

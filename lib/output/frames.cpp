@@ -1,0 +1,211 @@
+#include "output/frames.hpp"
+
+#include <hdf5.h>
+
+#include <cstdio>
+
+#include "output/files.hpp"
+#include "output/numbers.hpp"
+
+namespace mpm {
+namespace {
+
+/// One field of a particle group. A new field is a line of k_fields.
+struct Field {
+  const char* name;
+  const char* unit;
+  int components;
+  bool bodies_only;
+  std::vector<double> ParticleSnapshot::* values;  // [components N]
+};
+
+constexpr Field k_fields[] = {
+    {"position", "m", 3, false, &ParticleSnapshot::position},  // first: the geometry, always float64
+    {"velocity", "m/s", 3, false, &ParticleSnapshot::velocity},
+    {"stress", "Pa", 6, true, &ParticleSnapshot::stress},
+    {"volume", "m3", 1, true, &ParticleSnapshot::volume},
+    {"plastic_strain", "-", 1, true, &ParticleSnapshot::plastic_strain},
+};
+
+/// An HDF5 identifier that is released with its scope.
+struct Handle {
+  hid_t id;
+  herr_t (*release)(hid_t);
+  Handle(hid_t id_, herr_t (*release_)(hid_t)) : id(id_), release(release_) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() {
+    if (id >= 0) release(id);
+  }
+};
+
+/// Keeps HDF5's own error report, which runs to many lines, off the terminal: `check` says it in one.
+struct QuietErrors {
+  H5E_auto2_t report = nullptr;
+  void* data = nullptr;
+  QuietErrors() {
+    H5Eget_auto2(H5E_DEFAULT, &report, &data);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, report, data); }
+};
+
+/// The innermost description of HDF5's error stack, where the system's reason stands.
+herr_t keep_first(unsigned, const H5E_error2_t* error, void* text) {
+  auto& reason = *static_cast<std::string*>(text);
+  if (reason.empty() && error->desc) reason = error->desc;
+  return 0;
+}
+
+/// Every HDF5 call passes here: a negative result is an error that names the file.
+PetscErrorCode check(hid_t result, const std::string& path, const char* what) {
+  PetscFunctionBeginUser;
+  if (result >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s (%s): %s", path.c_str(), what, reason.c_str());
+}
+
+PetscErrorCode write_attribute(hid_t where, const std::string& path, const char* name, hid_t type, const void* value) {
+  PetscFunctionBeginUser;
+  Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  PetscCall(check(space.id, path, name));
+  Handle attribute(H5Acreate2(where, name, type, space.id, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  PetscCall(check(attribute.id, path, name));
+  PetscCall(check(H5Awrite(attribute.id, type, value), path, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The unit of a dataset, as the text attribute `unit`.
+PetscErrorCode write_unit(hid_t dataset, const std::string& path, const std::string& unit) {
+  PetscFunctionBeginUser;
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  PetscCall(check(type.id, path, "unit"));
+  PetscCall(check(H5Tset_size(type.id, unit.size()), path, "unit"));
+  PetscCall(write_attribute(dataset, path, "unit", type.id, unit.data()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// One dataset, N x components, or N where there is one component.
+PetscErrorCode write_field(hid_t group, const std::string& path, const Field& field, const ParticleSnapshot& particles,
+                           hid_t type) {
+  PetscFunctionBeginUser;
+  const std::vector<double>& values = particles.*field.values;
+  const size_t count = particles.position.size() / 3;
+  PetscCheck(values.size() == count * field.components, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+             "%s of %s holds %zu numbers for %zu particles", field.name, particles.name.c_str(), values.size(), count);
+  const hsize_t sizes[2] = {count, static_cast<hsize_t>(field.components)};
+  Handle space(H5Screate_simple(field.components == 1 ? 1 : 2, sizes, nullptr), H5Sclose);
+  PetscCall(check(space.id, path, field.name));
+  Handle data(H5Dcreate2(group, field.name, type, space.id, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  PetscCall(check(data.id, path, field.name));
+  if (count > 0)
+    PetscCall(check(H5Dwrite(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path, field.name));
+  PetscCall(write_unit(data.id, path, field.unit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSnapshot& particles, bool body,
+                           Precision precision) {
+  PetscFunctionBeginUser;
+  const char* name = particles.name.c_str();
+  Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  PetscCall(check(group.id, path, name));
+  const hid_t real = precision == Precision::single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
+  for (const Field& field : k_fields)
+    if (body || !field.bodies_only)
+      PetscCall(write_field(group.id, path, field, particles, &field == k_fields ? H5T_IEEE_F64LE : real));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode write_contents(hid_t file, const std::string& path, const Snapshot& snapshot, Precision precision) {
+  PetscFunctionBeginUser;
+  const long long step = snapshot.step;
+  PetscCall(write_attribute(file, path, "time", H5T_NATIVE_DOUBLE, &snapshot.time));
+  PetscCall(write_attribute(file, path, "step", H5T_NATIVE_LLONG, &step));
+  for (const ParticleSnapshot& body : snapshot.bodies) PetscCall(write_group(file, path, body, true, precision));
+  for (const ParticleSnapshot& rigid : snapshot.rigids) PetscCall(write_group(file, path, rigid, false, precision));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// `<DataItem>` that points at one dataset of a frame.
+std::string data_item(const FrameEntry& frame, const FrameEntry::Group& group, const Field& field, int real_bytes) {
+  const int bytes = &field == k_fields ? 8 : real_bytes;
+  std::string size = std::to_string(group.count);
+  if (field.components > 1) size += " " + std::to_string(field.components);
+  return "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"" + std::to_string(bytes) + "\" Dimensions=\"" +
+         size + "\">" + frame.file + ":/" + group.name + "/" + field.name + "</DataItem>";
+}
+
+/// The grid of one body or rigid: a point a particle.
+std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group, int real_bytes) {
+  const std::string count = std::to_string(group.count);
+  std::string text = "        <Grid Name=\"" + group.name + "\" GridType=\"Uniform\">\n";
+  text += "          <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + count + "\" NodesPerElement=\"1\"/>\n";
+  text += "          <Geometry GeometryType=\"XYZ\">" + data_item(frame, group, k_fields[0], real_bytes) + "</Geometry>\n";
+  for (const Field& field : k_fields) {
+    if (&field == k_fields || (field.bodies_only && !group.body)) continue;
+    const char* kind = field.components == 1 ? "Scalar" : field.components == 3 ? "Vector" : "Matrix";
+    text += std::string("          <Attribute Name=\"") + field.name + "\" AttributeType=\"" + kind +
+            "\" Center=\"Node\">" + data_item(frame, group, field, real_bytes) + "</Attribute>\n";
+  }
+  return text + "        </Grid>\n";
+}
+
+}  // namespace
+
+std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
+      "    <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (const FrameEntry& frame : frames) {
+    text += "      <Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n        <Time Value=\"" +
+            text_of(frame.time) + "\"/>\n";
+    for (const FrameEntry::Group& group : frame.groups)
+      if (group.count > 0) text += format_grid(frame, group, real_bytes);
+    text += "      </Grid>\n";
+  }
+  return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
+}
+
+PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Precision precision) {
+  PetscFunctionBeginUser;
+  const auto write = [&](const std::string& temporary) -> PetscErrorCode {
+    PetscFunctionBeginUser;
+    const QuietErrors quiet;
+    Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    PetscCall(check(file.id, temporary, "open"));
+    PetscCall(write_contents(file.id, temporary, snapshot, precision));
+    const herr_t closed = H5Fclose(file.id);
+    file.id = -1;
+    PetscCall(check(closed, temporary, "close"));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  };
+  PetscCall(replace_file(path, write));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void Frames::open(const std::string& folder, Precision precision) {
+  folder_ = folder;
+  precision_ = precision;
+  entries_.clear();
+}
+
+PetscErrorCode Frames::write(const Snapshot& snapshot) {
+  PetscFunctionBeginUser;
+  char file[40];
+  std::snprintf(file, sizeof file, "frames/frame_%05d.h5", count());
+  PetscCall(write_frame(folder_ + "/" + file, snapshot, precision_));
+
+  FrameEntry entry{file, snapshot.time, {}};
+  for (const auto& body : snapshot.bodies)
+    entry.groups.push_back({body.name, static_cast<long>(body.position.size() / 3), true});
+  for (const auto& rigid : snapshot.rigids)
+    entry.groups.push_back({rigid.name, static_cast<long>(rigid.position.size() / 3), false});
+  entries_.push_back(std::move(entry));
+  PetscCall(replace_text_file(folder_ + "/particles.xdmf",
+                              format_xdmf(entries_, precision_ == Precision::single ? 4 : 8)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm

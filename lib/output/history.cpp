@@ -1,0 +1,91 @@
+#include "output/history.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "output/files.hpp"
+#include "output/numbers.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr const char* k_axis[3] = {"x", "y", "z"};
+
+/// Appends ",a,b[,c]".
+void append(std::string& row, const Vec3& vector, int dim) {
+  for (int d = 0; d < dim; ++d) row += "," + text_of(vector[d]);
+}
+
+/// Appends ",NAMEx,NAMEy[,NAMEz]".
+void append(std::string& header, const std::string& name, int dim) {
+  for (int d = 0; d < dim; ++d) header += "," + name + k_axis[d];
+}
+
+}  // namespace
+
+std::string history_header(const Config& config) {
+  std::string header = "step,time,dt,wall_time";
+  for (const BodyConfig& body : config.bodies) {
+    for (int d = 0; d < config.dim; ++d)
+      for (const char* side : {"min", "max"}) header += "," + body.name + "_" + k_axis[d] + side;
+    header += "," + body.name + "_kinetic_energy";
+    append(header, body.name + "_momentum_", config.dim);
+  }
+  for (const RigidConfig& rigid : config.rigids)
+    for (const char* quantity : {"_", "_velocity_", "_force_"}) append(header, rigid.name + quantity, config.dim);
+  return header;
+}
+
+std::string format_history_row(const HistoryRow& row, int dim) {
+  std::string text = std::to_string(row.step);
+  for (double value : {row.time, row.dt, row.wall_time}) text += "," + text_of(value);
+  for (const BodyRow& body : row.bodies) {
+    for (int d = 0; d < dim; ++d) text += "," + text_of(body.lower[d]) + "," + text_of(body.upper[d]);
+    text += "," + text_of(body.kinetic_energy);
+    append(text, body.momentum, dim);
+  }
+  for (const RigidRow& rigid : row.rigids)
+    for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force}) append(text, *vector, dim);
+  return text;
+}
+
+History::~History() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+PetscErrorCode History::open(const Config& config) {
+  PetscFunctionBeginUser;
+  PetscCall(close());
+  dim_ = config.dim;
+  path_ = config.output.directory + "/history.csv";
+  PetscCall(replace_text_file(path_, history_header(config) + "\n"));
+  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  PetscCheck(descriptor_ >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", path_.c_str(),
+             std::strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode History::write(const HistoryRow& row) {
+  PetscFunctionBeginUser;
+  PetscCheck(descriptor_ >= 0, PETSC_COMM_SELF, PETSC_ERR_ORDER, "history.csv is not open");
+  const off_t whole = ::lseek(descriptor_, 0, SEEK_END);
+  const PetscErrorCode failed = write_all(descriptor_, format_history_row(row, dim_) + "\n", path_);
+  // Should the cut fail too, there is nothing better to do than to report the write that failed first.
+  if (failed && ::ftruncate(descriptor_, whole) != 0) errno = 0;
+  PetscCall(failed);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode History::close() {
+  PetscFunctionBeginUser;
+  const int descriptor = descriptor_;
+  descriptor_ = -1;
+  PetscCheck(descriptor < 0 || ::close(descriptor) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s",
+             path_.c_str(), std::strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm
