@@ -1,0 +1,16 @@
+#pragma once
+// What a user chooses at run time and the kernels obey: plain enumerations, whose words are the options' words.
+
+namespace mpm {
+
+/// Where the time step runs (-backend).
+enum class Backend { serial, openmp, cuda };
+
+/// Particle-to-node strategy (-p2g). `automatic` is the word `auto`: the fastest known for the backend.
+enum class P2G { sequential, atomic, mosaic, gather, tile, automatic };
+
+/// What holds at one side of the mesh (-mesh_xmin ...): roller, no velocity normal to the side; fixed, no
+/// velocity; free, nothing.
+enum class Wall { roller, fixed, free };
+
+}  // namespace mpm

@@ -1,0 +1,35 @@
+#pragma once
+#include <array>
+#include <limits>
+
+#include "materials/material.hpp"
+
+namespace mpm {
+
+/// Isotropic linear elasticity with the Jaumann rate of the Cauchy stress (hypoelastic).
+template <class T>
+struct LinearElastic {
+  using real = T;
+  static constexpr const char* k_name = "linear_elastic";
+  T young, poisson;
+
+  static constexpr auto parameters() {
+    constexpr double required = std::numeric_limits<double>::quiet_NaN();
+    return std::array<Parameter<LinearElastic>, 2>{
+        {{"young", &LinearElastic::young, "Pa", "Young's modulus", 1e-3, 1e15, required},
+         {"poisson", &LinearElastic::poisson, "-", "Poisson's ratio", -0.99, 0.4999, required}}};
+  }
+  /// lambda + 2 G [Pa], which gives the speed of the fastest wave (Eq. 14).
+  double wave_modulus() const { return lame_of<double>(young, poisson) + 2 * shear_modulus_of<double>(young, poisson); }
+  /// Undrained shear strength at a height [m]; none here.
+  double strength_at(double) const { return 0; }
+
+  template <int Dim>
+  KOKKOS_FUNCTION void update(MaterialState<T, Dim>& state, const SymTensor<T, Dim>& d_strain, const Spin<T, Dim>& d_spin,
+                              T /*dt*/) const {
+    state.stress = rotated(state.stress, d_spin);
+    add_elastic(state.stress, d_strain, lame_of(young, poisson), shear_modulus_of(young, poisson));
+  }
+};
+
+}  // namespace mpm

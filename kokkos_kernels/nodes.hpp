@@ -1,0 +1,83 @@
+#pragma once
+// Nodal fields, the rigid bodies' state, and the control block that lives on the device.
+
+#include "patches.hpp"
+#include "types.hpp"
+
+namespace mpm {
+
+/// A nodal field of N values a node, together in memory.
+template <class Space, class T, int N>
+using NodeField = Kokkos::View<T* [N], Kokkos::LayoutRight, typename Space::memory_space>;
+
+/// Values that soil gives a node: mass [kg], momentum [kg m/s], internal force [N].
+template <int Dim>
+struct SoilShare {
+  static constexpr int mass = 0, momentum = 1, force = 1 + Dim, size = 1 + 2 * Dim;
+};
+/// Values that a rigid gives a node: mass [kg], mass gradient times the cell's edge [kg] (Eq. 3).
+template <int Dim>
+struct RigidShare {
+  static constexpr int mass = 0, normal = 1, size = 1 + Dim;
+};
+/// Values that a node gives the soil: velocity at the end of the step [m/s], acceleration [m/s2].
+template <int Dim>
+struct NodeMotion {
+  static constexpr int velocity = 0, acceleration = Dim, size = 2 * Dim;
+};
+
+template <class Space, class T, int Dim>
+struct Nodes {
+  NodeField<Space, T, SoilShare<Dim>::size> soil;
+  NodeField<Space, T, NodeMotion<Dim>::size> motion;
+  NodeField<Space, T, 1> volume;  // m3, of the soil; allocated where an interface carries shear
+  Kokkos::View<T** [RigidShare<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space> rigid;  // [rigid][node]
+};
+
+/// A rigid body on the device.
+template <int Dim>
+struct Rigid {
+  Vector<double, Dim> displacement;  // m, since the start
+  Vector<double, Dim> velocity;      // m/s
+  Vector<double, Dim> impulse;       // N s, of the soil on it since the host last took it
+  Vector<double, Dim> force;         // N, external and weight
+  double mass;                       // kg
+  bool dynamic;
+  double shear_limit;  // Pa, infinite where only the friction limits
+  double friction;     // -, negative: none
+  double mass_cut;     // kg, nodes below it are not touched
+};
+
+/// Why a run cannot go on.
+enum class FaultKind : int { none, not_finite, too_fast, outside };
+
+/// The first fault that a kernel met.
+struct Fault {
+  FaultKind kind;
+  int particle;        // id
+  double position[3];  // m from the mesh's lower corner
+};
+
+/// What steers the steps between two looks of the host. A step does nothing while `paused`.
+struct Control {
+  double bound;      // cells that any point can have moved since the last rebuild
+  double increment;  // of the last step
+  int paused;        // the bound passed the margin, or a fault
+  int steps;         // steps done since the host last looked
+  int fault_count;
+  Fault fault;
+};
+
+template <class Space>
+using ControlView = Kokkos::View<Control, typename Space::memory_space>;
+
+/// Notes a fault; the first one is kept.
+template <class ControlView_>
+KOKKOS_INLINE_FUNCTION void report(const ControlView_& control, FaultKind kind, int particle, const double* position, int dim) {
+  if (Kokkos::atomic_fetch_add(&control().fault_count, 1) != 0) return;
+  control().fault.kind = kind;
+  control().fault.particle = particle;
+  for (int d = 0; d < dim; ++d) control().fault.position[d] = position[d];
+}
+
+}  // namespace mpm

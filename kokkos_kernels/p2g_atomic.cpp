@@ -1,0 +1,22 @@
+#include "particle_to_node.hpp"
+
+namespace mpm {
+
+template <class Source>
+void scatter_atomic(const Interpolation<Source>& it) {
+  using T = typename Source::real;
+  const auto source = it.source;
+  const auto around = it.patches.around;
+  const auto out = it.out;
+  const auto control = it.control;
+  Kokkos::parallel_for("mpm::scatter_atomic", Kokkos::RangePolicy<typename Source::Space>(it.space, 0, source.points.count),
+                       KOKKOS_LAMBDA(int p) {
+                         if (control().paused) return;
+                         give_to_nodes(source, around, p, [&](int i, int k, T v) { Kokkos::atomic_add(&out(i, k), v); });
+                       });
+}
+
+#define MPM_STRATEGY scatter_atomic
+MPM_FOR_EACH(MPM_INSTANTIATE_STRATEGY)
+
+}  // namespace mpm

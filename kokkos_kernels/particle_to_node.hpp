@@ -1,0 +1,125 @@
+#pragma once
+// Interpolation from particles to nodes (functions 2 and 3 of the paper): one source, five loop shapes.
+
+#include "choices.hpp"
+#include "share.hpp"
+#include "spaces.hpp"
+
+namespace mpm {
+
+/// Everything that an interpolation needs. `out` is added to; it is what `reset_nodes` cleared.
+template <class Source>
+struct Interpolation {
+  using Space = typename Source::Space;
+  using T = typename Source::real;
+  static constexpr int Dim = Source::dim;
+
+  Space space;
+  Grid<T, Dim> grid;
+  Patches<Space, Dim> patches;
+  Bins<Space> bins;
+  Source source;
+  NodeField<Space, T, Source::size> out;
+  ControlView<Space> control;
+  int mosaic_cells = 3;
+};
+
+/// The strategy that `auto` stands for on a backend.
+constexpr P2G chosen(P2G how, Backend) { return how == P2G::automatic ? P2G::tile : how; }
+
+template <class Source>
+void scatter_sequential(const Interpolation<Source>&);  // one thread, particle by particle
+template <class Source>
+void scatter_atomic(const Interpolation<Source>&);      // a thread a particle, atomic additions
+template <class Source>
+void scatter_mosaic(const Interpolation<Source>&);      // a thread a block of cells, colour by colour
+template <class Source>
+void gather_by_node(const Interpolation<Source>&);      // a thread a node, over its expanded list of particles
+template <class Source>
+void reduce_by_tile(const Interpolation<Source>&);      // a team a patch, in scratch memory
+
+/// The switch of -p2g.
+template <class Source>
+void particle_to_node(P2G how, const Interpolation<Source>& it) {
+  if (it.source.points.count == 0) return;
+  switch (chosen(how, backend_of<typename Source::Space>)) {
+    case P2G::sequential: return scatter_sequential(it);
+    case P2G::atomic:     return scatter_atomic(it);
+    case P2G::mosaic:     return scatter_mosaic(it);
+    case P2G::gather:     return gather_by_node(it);
+    default:              return reduce_by_tile(it);
+  }
+}
+
+/// Number of blocks of `edge` cells along direction d.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION int blocks_along(const Grid<T, Dim>& grid, int d, int edge) {
+  return (grid.cells[d] + edge - 1) / edge;
+}
+
+/// Calls f(cell) for every cell of the mosaic's block number b; blocks are numbered first direction fastest.
+template <class T, int Dim, class F>
+KOKKOS_INLINE_FUNCTION void for_each_cell_of_block(const Grid<T, Dim>& grid, long b, int edge, F&& f) {
+  Coord<Dim> low{}, high{};
+  for (int d = 0; d < Dim; ++d) {
+    const int along = blocks_along(grid, d, edge);
+    low[d] = static_cast<int>(b % along) * edge;
+    high[d] = Kokkos::min(low[d] + edge, grid.cells[d]);
+    b /= along;
+  }
+  Coord<Dim> c = low;
+  for (int z = Dim == 3 ? low[Dim - 1] : 0; z < (Dim == 3 ? high[Dim - 1] : 1); ++z)
+    for (c[1] = low[1]; c[1] < high[1]; ++c[1])
+      for (c[0] = low[0]; c[0] < high[0]; ++c[0]) {
+        if constexpr (Dim == 3) c[2] = z;
+        f(c);
+      }
+}
+
+/// Numbers of the nodes that a particle reaches from the cell where it was binned.
+template <int Dim>
+struct Stencil {
+  int slot;
+  int which[Dim][3];  // share of each axis in the number of the patch around
+  int place[Dim][3];  // share of each axis in the place in that patch
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION Stencil(int cell, const AxisWeights<T> (&a)[Dim]) : slot(cell / Patch<Dim>::cells) {
+    const Coord<Dim> c = coord_of<Dim>(cell);
+    for (int d = 0, step = 1; d < Dim; ++d, step *= 3)
+      for (int k = 0; k < 3; ++k) {
+        const int n = c[d] + a[d].first + k;
+        which[d][k] = ((n >> Patch<Dim>::log_edge) + 1) * step;
+        place[d][k] = (n & (Patch<Dim>::edge - 1)) << (d * Patch<Dim>::log_edge);
+      }
+  }
+  template <class Around>
+  KOKKOS_INLINE_FUNCTION int node(const Around& around, const Vector<int, Dim>& k) const {
+    int w = which[0][k[0]], p = place[0][k[0]];
+    for (int d = 1; d < Dim; ++d) w += which[d][k[d]], p += place[d][k[d]];
+    return around(slot, w) * Patch<Dim>::cells + p;
+  }
+};
+
+/// Gives the share of particle p to its nodes by add(node, value index, value). Nodes of no weight are left alone,
+/// which keeps the blocks of one colour apart.
+template <class Source, class Around, class Add>
+KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const Around& around, int p, Add&& add) {
+  using T = typename Source::real;
+  constexpr int Dim = Source::dim;
+  const typename Source::Point q = source.load(p);
+  with_weights(source.points.coordinate(p), q.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+    const Stencil<Dim> stencil(source.points.cell(p), a);
+    for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
+      if (!(w > 0)) return;
+      const int i = stencil.node(around, k);
+      Source::give(q, w, grad, [&](int value, T v) { add(i, value, v); });
+    });
+  });
+}
+
+}  // namespace mpm
+
+/// Instantiates a strategy for every source, space, real type and dimension.
+#define MPM_INSTANTIATE_SOURCE(Source, Space, T, Dim) template void MPM_STRATEGY(const Interpolation<Source<Space, T, Dim>>&);
+#define MPM_INSTANTIATE_STRATEGY(Space, T, Dim) MPM_FOR_EACH_SOURCE(MPM_INSTANTIATE_SOURCE, Space, T, Dim)

@@ -1,0 +1,80 @@
+#pragma once
+// Material points, as plain structs of views. A position is a cell and a coordinate in that cell: [0, 1) when the
+// particles are binned, and up to the margin beyond while they drift between two rebuilds.
+
+#include <cstdint>
+
+#include "materials/any.hpp"
+#include "patches.hpp"
+#include "types.hpp"
+
+namespace mpm {
+
+/// Where points are, and in which order: by slot, by cell in it, and by id in the cell.
+template <class Space, class T, int Dim>
+struct Points {
+  using Memory = typename Space::memory_space;
+  int count = 0;
+  Kokkos::View<Vector<T, Dim>*, Memory> coordinate;  // cells, from the lower corner of `cell`
+  Kokkos::View<int*, Memory> cell;                   // number of the cell where the point was binned
+  Kokkos::View<int*, Memory> id;                     // order of creation
+};
+
+/// What all particles of a body share.
+template <class T>
+struct BodyProperties {
+  T mass;         // kg, of one particle
+  T half_length;  // cells, of one particle
+  int material;   // index into Soil::materials
+};
+
+/// The soil: the particles of all deformable bodies.
+template <class Space, class T, int Dim>
+struct Soil : Points<Space, T, Dim> {
+  using Memory = typename Space::memory_space;
+  Kokkos::View<Vector<T, Dim>*, Memory> velocity;  // m/s
+  Kokkos::View<SymTensor<T, Dim>*, Memory> stress; // Pa, Cauchy, tension positive
+  Kokkos::View<T*, Memory> volume;                 // m3, current
+  Kokkos::View<T*, Memory> plastic_strain;         // -, engineering plastic shear strain
+  Kokkos::View<T*, Memory> strength;               // Pa, undrained shear strength
+  Kokkos::View<std::uint16_t*, Memory> body;       // index into bodies
+
+  Kokkos::View<BodyProperties<T>*, Memory> bodies;
+  Kokkos::View<AnyMaterial<T>*, Memory> materials;
+};
+
+/// The particles of one rigid body. They keep their place in the body, so that their motion gathers no round-off.
+template <class Space, class T, int Dim>
+struct RigidPoints : Points<Space, T, Dim> {
+  using Memory = typename Space::memory_space;
+  Kokkos::View<Vector<double, Dim>*, Memory> home;  // cells from the mesh's lower corner, at the start
+  T mass = 0;         // kg, of one particle
+  T half_length = 0;  // cells
+};
+
+/// Applies f to every view that holds one entry a particle, but coordinate, cell and id. The one list of fields:
+/// sorting, output and checkpoints follow it.
+template <class Space, class T, int Dim, class F>
+void for_each_field(Soil<Space, T, Dim>& s, F&& f) {
+  f(s.velocity), f(s.stress), f(s.volume), f(s.plastic_strain), f(s.strength), f(s.body);
+}
+template <class Space, class T, int Dim, class F>
+void for_each_field(RigidPoints<Space, T, Dim>& s, F&& f) {
+  f(s.home);
+}
+
+/// Ranges of points by cell, and the lists of the strategies that need them. Valid while no point has moved
+/// further than the margin that they were built with.
+template <class Space>
+struct Bins {
+  using Memory = typename Space::memory_space;
+  Kokkos::View<int*, Memory> begin;         // first point of a cell [cells + 1]
+  Kokkos::View<int*, Memory> by_colour;     // slots that hold points, ordered by colour
+  int colour_begin[8 + 1] = {};             // ranges of by_colour
+  Kokkos::View<int*, Memory> list_begin;    // gather: first entry of a node's list [nodes + 1]
+  Kokkos::View<int*, Memory> list;          // gather: points that may reach the node, in order
+  Kokkos::View<long*, Memory> blocks;       // mosaic: blocks that hold points, ordered by colour
+  int block_begin[8 + 1] = {};              // mosaic: ranges of blocks by colour
+};
+
+}  // namespace mpm

@@ -1,0 +1,43 @@
+#pragma once
+// Function 7: bins, patch table and lists anew, before a particle can have moved further than the margin.
+
+#include "spaces.hpp"
+#include "state.hpp"
+
+namespace mpm {
+
+/// Finds the cell of every point (Sorted::address) from where it is now, and brings the soil's coordinates back to
+/// [0, 1). A point outside the mesh is a fault in s.control.
+template <class Space, class T, int Dim>
+void locate(State<Space, T, Dim>& s);
+
+/// Makes the patch table, the order of the points, their bins and the strategy's lists from the points' addresses,
+/// and resets the movement bound. Nodal fields are laid out anew and hold nothing.
+template <class Space, class T, int Dim>
+void sort_and_list(State<Space, T, Dim>& s);
+
+/// Both of them.
+template <class Space, class T, int Dim>
+void rebuild(State<Space, T, Dim>& s) {
+  locate(s);
+  sort_and_list(s);
+}
+
+// Parts of sort_and_list.
+template <class Space, class T, int Dim>
+void activate_patches(State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void sort_points(State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void build_lists(State<Space, T, Dim>& s);
+
+/// Makes a view hold at least n entries; its content is lost when it grows.
+template <class View>
+void ensure(View& view, std::size_t n) {
+  if (view.extent(0) >= n) return;
+  const std::string label = view.label();
+  view = View();  // the old memory goes before the new one comes
+  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), n + n / 8);
+}
+
+}  // namespace mpm

@@ -1,0 +1,72 @@
+#pragma once
+// uGIMP shape functions (Bardenhagen & Kober 2004), in units of the cell's edge.
+
+#include "types.hpp"
+
+namespace mpm {
+
+/// Weights of the three nodes that a particle reaches along one axis.
+///   x [cells] particle's coordinate, in the frame of some cell;  l [cells] half length, 0 < l <= 1/2
+///   first     lowest node reached, in the same frame
+///   w[k] [-] weight of node first + k, all >= 0, sum 1;  g[k] [1/cell] its derivative by x, sum 0
+/// The weight of the third node is exactly zero where the particle does not reach it.
+template <class T>
+struct AxisWeights {
+  int first;
+  T w[3], g[3];
+};
+
+template <class T>
+KOKKOS_INLINE_FUNCTION AxisWeights<T> axis_weights(T x, T l) {
+  AxisWeights<T> a;
+  const T low = Kokkos::floor(x - l);
+  a.first = static_cast<int>(low);
+  const T r = x - low;                           // distance from the first node, l <= r < 1 + l
+  const T over = Kokkos::fmax(T(0), r - 1 + l);  // how far the particle reaches beyond the second node
+  a.g[2] = over / (2 * l);
+  a.g[0] = a.g[2] - 1;
+  a.g[1] = 1 - 2 * a.g[2];
+  a.w[2] = over * a.g[2] / 2;
+  a.w[0] = 1 - r + a.w[2];
+  a.w[1] = 1 - a.w[0] - a.w[2];
+  return a;
+}
+
+/// Calls f(k, w, grad) for each of the 3^Dim nodes that a particle reaches: k the steps from the first node, w [-]
+/// the weight, grad [1/cell] its gradient. The one place where weights of axes are multiplied.
+template <class T, int Dim, class F>
+KOKKOS_INLINE_FUNCTION void for_each_weight(const AxisWeights<T> (&a)[Dim], F&& f) {
+  if constexpr (Dim == 2) {
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i)
+        f(Vector<int, 2>{i, j}, a[0].w[i] * a[1].w[j], Vector<T, 2>{a[0].g[i] * a[1].w[j], a[0].w[i] * a[1].g[j]});
+  } else {
+    for (int k = 0; k < 3; ++k)
+      for (int j = 0; j < 3; ++j) {
+        const T w_jk = a[1].w[j] * a[2].w[k], gy = a[1].g[j] * a[2].w[k], gz = a[1].w[j] * a[2].g[k];
+        for (int i = 0; i < 3; ++i)
+          f(Vector<int, 3>{i, j, k}, a[0].w[i] * w_jk, Vector<T, 3>{a[0].g[i] * w_jk, a[0].w[i] * gy, a[0].w[i] * gz});
+      }
+  }
+}
+
+/// The weights of a particle along every axis. x [cells], l [cells] half length.
+template <class T, int Dim, class F>
+KOKKOS_INLINE_FUNCTION void with_weights(const Vector<T, Dim>& x, T l, F&& f) {
+  AxisWeights<T> a[Dim];
+  for (int d = 0; d < Dim; ++d) a[d] = axis_weights(x[d], l);
+  f(a);
+}
+
+/// Weight S [-] of one node along one axis and its derivative dS [1/cell].
+///   r [cells] particle minus node;  l [cells] half length
+template <class T>
+KOKKOS_INLINE_FUNCTION void node_weight(T r, T l, T& s, T& ds) {
+  const T a = Kokkos::fabs(r);
+  const T far = Kokkos::fmax(T(0), a - (1 - l)), near = Kokkos::fmax(T(0), l - a);
+  const bool reached = a < 1 + l;
+  s = reached ? 1 - a + far * far / (4 * l) - near * near / (2 * l) : T(0);
+  ds = reached ? Kokkos::copysign(T(1), r) * (far / (2 * l) + near / l - 1) : T(0);
+}
+
+}  // namespace mpm

@@ -1,0 +1,88 @@
+#pragma once
+// What one particle gives one node. Physics is written here once; the strategies are loop shapes around it.
+
+#include "nodes.hpp"
+#include "particles.hpp"
+#include "shape_gimp.hpp"
+
+namespace mpm {
+
+/// Soil to nodes, Eqs (1), (2), (4): m_i = sum S m_p, p_i = sum S m_p v_p, f_i = - sum V_p sigma_p grad S.
+/// The weight, Eq. (5), is m_i g and is added at the node.
+template <class Space_, class T, int Dim>
+struct SoilSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = SoilShare<Dim>::size;
+  struct Point {
+    T half_length, mass;
+    Vector<T, Dim> momentum;
+    SymTensor<T, Dim> stress_volume;  // - V_p sigma_p / d
+  };
+  Soil<Space, T, Dim> points;
+  T inv_spacing;
+
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const BodyProperties<T> body = points.bodies(points.body(p));
+    Point q{body.half_length, body.mass, points.velocity(p), points.stress(p)};
+    const T scale = -points.volume(p) * inv_spacing;
+    for (int d = 0; d < Dim; ++d) q.momentum[d] *= q.mass;
+    for (int k = 0; k < sym_size<Dim>; ++k) q.stress_volume[k] *= scale;
+    return q;
+  }
+  template <class Add>
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>& grad, Add&& add) {
+    add(SoilShare<Dim>::mass, w * q.mass);
+    for (int d = 0; d < Dim; ++d) add(SoilShare<Dim>::momentum + d, w * q.momentum[d]);
+    for (int d = 0; d < Dim; ++d) {
+      T f = q.stress_volume[sym_index<Dim>(d, 0)] * grad[0];
+      for (int e = 1; e < Dim; ++e) f += q.stress_volume[sym_index<Dim>(d, e)] * grad[e];
+      add(SoilShare<Dim>::force + d, f);
+    }
+  }
+};
+
+/// Volume of soil at a node, V_i = sum S V_p, for the area of an interface that carries shear.
+template <class Space_, class T, int Dim>
+struct VolumeSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = 1;
+  struct Point {
+    T half_length, volume;
+  };
+  Soil<Space, T, Dim> points;
+
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    return {points.bodies(points.body(p)).half_length, points.volume(p)};
+  }
+  template <class Add>
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>&, Add&& add) {
+    add(0, w * q.volume);
+  }
+};
+
+/// Rigid body to nodes: m_i^R = sum S m_p and the mass gradient n_i^R = sum grad S m_p (Eq. 3; it points out of
+/// the body).
+template <class Space_, class T, int Dim>
+struct RigidSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = RigidShare<Dim>::size;
+  struct Point {
+    T half_length, mass;
+  };
+  RigidPoints<Space, T, Dim> points;
+
+  KOKKOS_INLINE_FUNCTION Point load(int) const { return {points.half_length, points.mass}; }
+  template <class Add>
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>& grad, Add&& add) {
+    add(RigidShare<Dim>::mass, w * q.mass);
+    for (int d = 0; d < Dim; ++d) add(RigidShare<Dim>::normal + d, grad[d] * q.mass);
+  }
+};
+
+/// Applies X(Source) to every source of a space, real type and dimension.
+#define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) X(SoilSource, Space, T, Dim) X(VolumeSource, Space, T, Dim) X(RigidSource, Space, T, Dim)
+
+}  // namespace mpm

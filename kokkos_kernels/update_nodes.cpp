@@ -1,0 +1,119 @@
+#include <limits>
+
+#include "contact.hpp"
+#include "step_kernels.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+void reset_nodes(State<Space, T, Dim>& s) {
+  const auto soil = s.nodes.soil;
+  const auto volume = s.nodes.volume;
+  const auto rigid = s.nodes.rigid;
+  const auto control = s.control;
+  const int rigids = static_cast<int>(s.rigid_points.size());
+  const bool has_volume = s.interface_shear;
+  Kokkos::parallel_for("mpm::reset_nodes", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()), KOKKOS_LAMBDA(int i) {
+    if (control().paused) return;
+    for (int k = 0; k < SoilShare<Dim>::size; ++k) soil(i, k) = 0;
+    if (has_volume) volume(i, 0) = 0;
+    for (int r = 0; r < rigids; ++r)
+      for (int k = 0; k < RigidShare<Dim>::size; ++k) rigid(r, i, k) = 0;
+  });
+}
+
+/// The node's part of the step. A functor, as its sums are an array of run-time length: the largest speed, then
+/// Dim components of force for each rigid.
+template <class Space, class T, int Dim>
+struct UpdateNodes {
+  using value_type = double[];
+  int value_count;
+  Grid<T, Dim> grid;
+  Nodes<Space, T, Dim> nodes;
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
+  ControlView<Space> control;
+  Vector<T, Dim> g;
+  T dt, damping, mass_cut;
+  bool has_volume;
+
+  KOKKOS_INLINE_FUNCTION void init(double* sum) const {
+    for (int k = 0; k < value_count; ++k) sum[k] = 0;
+  }
+  KOKKOS_INLINE_FUNCTION void join(double* into, const double* from) const {
+    into[0] = Kokkos::fmax(into[0], from[0]);
+    for (int k = 1; k < value_count; ++k) into[k] += from[k];
+  }
+
+  KOKKOS_INLINE_FUNCTION void operator()(int i, double* sum) const {
+    if (control().paused) return;
+    using S = SoilShare<Dim>;
+    const T m_i = nodes.soil(i, S::mass);
+    Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
+    if (m_i > mass_cut) {
+      const T inv_m = 1 / m_i;
+      for (int d = 0; d < Dim; ++d) {
+        v_old[d] = nodes.soil(i, S::momentum + d) * inv_m;                           // Eq. (6)
+        T a = nodes.soil(i, S::force + d) * inv_m + g[d];                            // Eq. (8)
+        a -= damping * Kokkos::fabs(a) * (v_old[d] > 0 ? T(1) : (v_old[d] < 0 ? T(-1) : T(0)));
+        v[d] = v_old[d] + a * dt;                                                    // Eq. (9)
+      }
+      Coord<Dim> at = coord_of<Dim>(i);
+      const Coord<Dim> from = origin(i / Patch<Dim>::cells);
+      for (int d = 0; d < Dim; ++d) at[d] += from[d];
+      const unsigned sides = sides_of(grid, at);
+      apply_walls(grid, sides, v);
+      for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) touch(i, r, sides, m_i, v, sum + 1 + r * Dim);
+      apply_walls(grid, sides, v);
+    }
+    for (int d = 0; d < Dim; ++d) {
+      nodes.motion(i, NodeMotion<Dim>::velocity + d) = v[d];
+      nodes.motion(i, NodeMotion<Dim>::acceleration + d) = (v[d] - v_old[d]) / dt;   // feels contact and walls
+      sum[0] = Kokkos::fmax(sum[0], static_cast<double>(Kokkos::fabs(v[d])));
+    }
+  }
+
+  /// Contact with rigid r; adds the force of the soil on it (Eq. 10).
+  KOKKOS_INLINE_FUNCTION void touch(int i, int r, unsigned sides, T m_i, Vector<T, Dim>& v, double* force) const {
+    using R = RigidShare<Dim>;
+    const Rigid<Dim>& rigid = rigids(r);
+    const T m_r = nodes.rigid(r, i, R::mass);
+    if (!(m_r > rigid.mass_cut)) return;
+    Vector<T, Dim> n, v_r;
+    for (int d = 0; d < Dim; ++d) {
+      n[d] = nodes.rigid(r, i, R::normal + d);
+      v_r[d] = static_cast<T>(rigid.velocity[d]);
+    }
+    if (!inward_normal(grid, sides, m_r, n)) return;
+    Interface<T> interface{Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction)};
+    if (rigid.shear_limit < Kokkos::Experimental::infinity<double>::value)
+      interface.shear_speed = rigid.shear_limit > 0 ? static_cast<T>(rigid.shear_limit) * area(i) * dt / m_i : T(0);
+    const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
+    for (int d = 0; d < Dim; ++d) {
+      v[d] += change[d];
+      force[d] -= static_cast<double>(m_i) * change[d] / dt;
+    }
+  }
+
+  /// Area of the interface at a node [m2]: of a base that lies on a grid line, the share that the soil covers.
+  KOKKOS_INLINE_FUNCTION T area(int i) const {
+    const T cell = power(grid.spacing, Dim);
+    return power(grid.spacing, Dim - 1) * Kokkos::fmin(T(1), 2 * nodes.volume(i, 0) / cell);
+  }
+};
+
+template <class Space, class T, int Dim>
+void update_nodes(State<Space, T, Dim>& s, double dt) {
+  const int values = 1 + Dim * static_cast<int>(s.rigid_points.size());
+  UpdateNodes<Space, T, Dim> update{values,    s.grid,    s.nodes,   s.patches.origin, s.rigids,
+                                    s.control, {},        T(dt),     T(s.damping),     T(s.mass_cut), s.interface_shear};
+  for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
+  Kokkos::parallel_reduce("mpm::update_nodes", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()), update, s.sums);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)              \
+  template void reset_nodes(State<Space, T, Dim>&); \
+  template void update_nodes(State<Space, T, Dim>&, double);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

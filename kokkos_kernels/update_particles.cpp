@@ -1,0 +1,135 @@
+#include "step_kernels.hpp"
+#include "window.hpp"
+
+namespace mpm {
+namespace {
+
+/// What a particle takes from the nodes.
+template <class T, int Dim>
+struct Taken {
+  Vector<T, Dim> velocity, acceleration;  // m/s, m/s2
+  T gradient[Dim][Dim];                   // 1/s, L_ij = dv_i/dx_j
+};
+
+template <class T, int Dim, class Motion>
+KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const Motion* window, const Coord<Dim>& cell,
+                                                     const AxisWeights<T> (&a)[Dim], T inv_spacing) {
+  Taken<T, Dim> t{};
+  for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
+    const Motion* const node = window + window_place(cell, a, k) * NodeMotion<Dim>::size;
+    for (int d = 0; d < Dim; ++d) {
+      const T v_i = node[NodeMotion<Dim>::velocity + d];
+      t.velocity[d] += w * v_i;
+      t.acceleration[d] += w * node[NodeMotion<Dim>::acceleration + d];
+      for (int e = 0; e < Dim; ++e) t.gradient[d][e] += v_i * grad[e];
+    }
+  });
+  for (int d = 0; d < Dim; ++d)
+    for (int e = 0; e < Dim; ++e) t.gradient[d][e] *= inv_spacing;
+  return t;
+}
+
+/// Strain increment (symmetric part of L dt, tensor shear strains) and spin increment (skew part).
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void increments(const T (&L)[Dim][Dim], T dt, SymTensor<T, Dim>& strain, Spin<T, Dim>& spin) {
+  for (int k = 0; k < sym_size<Dim>; ++k) strain[k] = 0;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = i; j < Dim; ++j) strain[sym_index<Dim>(i, j)] = dt * (L[i][j] + L[j][i]) / 2;
+  spin.c[0] = dt * (L[0][1] - L[1][0]) / 2;
+  if constexpr (Dim == 3) {
+    spin.c[1] = dt * (L[1][2] - L[2][1]) / 2;
+    spin.c[2] = dt * (L[2][0] - L[0][2]) / 2;
+  }
+}
+
+/// Scalars of the particle update.
+template <class T>
+struct UpdateScalars {
+  T dt, inv_spacing, flip, pic;
+};
+
+/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void advance(const Soil<Space, T, Dim>& soil, int p, const Taken<T, Dim>& t, const UpdateScalars<T>& by) {
+  SymTensor<T, Dim> d_strain;
+  Spin<T, Dim> d_spin;
+  increments(t.gradient, by.dt, d_strain, d_spin);
+  MaterialState<T, Dim> state{soil.stress(p), soil.plastic_strain(p), soil.strength(p)};
+  soil.materials(soil.bodies(soil.body(p)).material).visit([&](const auto& law) { law.update(state, d_strain, d_spin, by.dt); });
+  soil.stress(p) = state.stress;
+  soil.plastic_strain(p) = state.plastic_strain;
+
+  T trace = 0;
+  for (int d = 0; d < Dim; ++d) trace += d_strain[d];
+  soil.volume(p) *= (2 + trace) / (2 - trace);  // exp(trace) to second order: no drift in rotation
+
+  Vector<T, Dim> v_p = soil.velocity(p), x_p = soil.coordinate(p);
+  for (int d = 0; d < Dim; ++d) {
+    v_p[d] = by.flip * (v_p[d] + by.dt * t.acceleration[d]) + by.pic * t.velocity[d];
+    x_p[d] += by.dt * t.velocity[d] * by.inv_spacing;
+  }
+  soil.velocity(p) = v_p;
+  soil.coordinate(p) = x_p;
+}
+
+/// Reports a particle that is not finite or went so far in a step that the computation cannot be trusted.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void check(const Soil<Space, T, Dim>& soil, int p, const Coord<Dim>& origin, const Coord<Dim>& cell,
+                                  T spacing, const ControlView<Space>& control) {
+  const Vector<T, Dim> x = soil.coordinate(p), v = soil.velocity(p);
+  const SymTensor<T, Dim> s = soil.stress(p);
+  T sum = 0, far = 0;
+  for (int d = 0; d < Dim; ++d) sum += 0 * (x[d] + v[d]), far = Kokkos::fmax(far, Kokkos::fabs(x[d] - T(0.5)));
+  for (int k = 0; k < sym_size<Dim>; ++k) sum += 0 * s[k];
+  if (sum == 0 && far <= T(2)) return;  // 0 times what is not finite is not zero
+  double position[3] = {};
+  for (int d = 0; d < Dim; ++d) position[d] = (double(origin[d]) + cell[d] + x[d]) * spacing;
+  report(control, sum == 0 ? FaultKind::too_fast : FaultKind::not_finite, soil.id(p), position, Dim);
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void update_particles(State<Space, T, Dim>& s, double dt_) {
+  using Team = Kokkos::TeamPolicy<Space>;
+  constexpr int size = NodeMotion<Dim>::size, window = Patch<Dim>::window;
+  using Window = Kokkos::View<T*, typename Space::scratch_memory_space, Kokkos::MemoryUnmanaged>;
+  const auto soil = s.soil.points;
+  const auto begin = s.soil.bins.begin;
+  const auto by_colour = s.soil.bins.by_colour;
+  const auto around = s.patches.around;
+  const auto origin = s.patches.origin;
+  const auto motion = s.nodes.motion;
+  const auto control = s.control;
+  const T spacing = s.grid.spacing;
+  const UpdateScalars<T> by{T(dt_), s.grid.inv_spacing, T(s.flip_share), T(1 - s.flip_share)};
+  const int slots = s.soil.bins.colour_begin[Patch<Dim>::colours];
+  if (slots == 0) return;
+
+  Kokkos::parallel_for(
+      "mpm::update_particles",
+      Team(s.space, slots, team_threads<Space>).set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size))),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (control().paused) return;
+        const int slot = by_colour(team.league_rank());
+        const Window nodes(team.team_scratch(0), window * size);
+        Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
+          const int i = number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n));
+          for (int k = 0; k < size; ++k) nodes(n * size + k) = motion(i, k);
+        });
+        team.team_barrier();
+        const int from = begin(slot * Patch<Dim>::cells), to = begin((slot + 1) * Patch<Dim>::cells);
+        Kokkos::parallel_for(Kokkos::TeamThreadRange(team, from, to), [&](int p) {
+          const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
+          with_weights(soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+            advance(soil, p, take_from_nodes<T, Dim>(nodes.data(), cell, a, by.inv_spacing), by);
+          });
+          check(soil, p, origin(slot), cell, spacing, control);
+        });
+      });
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim) template void update_particles(State<Space, T, Dim>&, double);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

@@ -1,0 +1,112 @@
+#pragma once
+// Every input of a run as plain structs, validated, in SI units. In 2D (plane strain) every force and mass is per
+// metre of width and the third component of a vector is zero and unused.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "choices.hpp"
+
+namespace mpm {
+
+using Vec3 = std::array<double, 3>;
+
+/// Arithmetic of the fields (-precision).
+enum class Precision { double_, single };
+
+/// The background mesh of square (cubic) cells.
+struct MeshConfig {
+  Vec3 lower{}, upper{};        // m, corners
+  double spacing = 0;           // m, edge of a cell
+  std::array<int, 3> cells{};   // whole cells in each direction (third is 1 in 2D)
+  std::array<std::array<Wall, 2>, 3> walls{};  // [direction][0 lower, 1 upper side]; default roller
+};
+
+enum class ShapeKind { box, polygon, disc };
+enum class Fill { centre, cell };
+
+/// A region of space and the lattice of particles that fills it.
+struct Shape {
+  ShapeKind kind = ShapeKind::box;
+  Vec3 lower{}, upper{};                        // m, box
+  double fillet = 0;                            // m, box: radius of its corners
+  std::vector<std::array<double, 2>> polygon;   // m, vertices in order (2D; in 3D a prism, see input/shapes.hpp)
+  Vec3 centre{};                                // m, disc (ball in 3D)
+  double radius = 0;                            // m, disc
+  int particles_per_cell = 2;                   // in each direction
+  Fill fill = Fill::centre;
+};
+
+/// A material: its model's name, density, and the model's parameters in the order of the model's own table.
+struct MaterialConfig {
+  std::string name, model;
+  double density = 0;              // kg/m3
+  std::vector<double> parameters;  // as Model::parameters() lists them
+};
+
+/// A deformable body.
+struct BodyConfig {
+  std::string name;
+  Shape shape;
+  int material = 0;   // index into Config::materials
+  Vec3 velocity{};    // m/s, initial
+};
+
+enum class Motion { fixed, prescribed, dynamic };
+
+/// A rigid body: it translates.
+struct RigidConfig {
+  std::string name;
+  Shape shape;
+  Motion motion = Motion::fixed;
+  Vec3 velocity{};                 // m/s: the velocity (prescribed) or the initial velocity (dynamic)
+  double density = 0;              // kg/m3 (dynamic)
+  Vec3 force{};                    // N, external (dynamic), beside gravity
+  double shear_limit = 0;          // Pa, largest shear stress of the interface; 0 is smooth
+  std::optional<double> friction;  // -, Coulomb coefficient
+  bool has_shear_limit = false;    // -NAME_shear_limit was given (it then bounds the friction too)
+};
+
+struct TimeConfig {
+  double end = 0;                     // s
+  double courant = 0.5;               // -, Eq. 14
+  std::optional<double> step;         // s, instead of the Courant number
+  std::optional<long> max_steps;
+};
+
+struct P2GConfig {
+  P2G strategy = P2G::automatic;
+  double margin = 0.5;                   // cells, 0 < margin <= 0.5
+  int mosaic_cells = 3;                  // >= 3
+  std::optional<int> rebuild_interval;   // steps
+};
+
+enum class Progress { automatic, on, off };
+
+struct OutputConfig {
+  std::string directory;
+  double interval = 0;           // s between frames
+  double history_interval = 0;   // s between rows of the history
+  Progress progress = Progress::automatic;
+};
+
+/// Everything that a run needs to know.
+struct Config {
+  int dim = 2;
+  Backend backend = Backend::serial;
+  Precision precision = Precision::double_;
+  P2GConfig p2g;
+  MeshConfig mesh;
+  Vec3 gravity{};           // m/s2
+  TimeConfig time;
+  double damping = 0;       // -, local (non-viscous) damping factor, 0 <= damping < 1
+  double flip_share = 1;    // -, share of FLIP in the velocity update, the rest PIC
+  std::vector<MaterialConfig> materials;
+  std::vector<BodyConfig> bodies;
+  std::vector<RigidConfig> rigids;
+  OutputConfig output;
+};
+
+}  // namespace mpm

@@ -1,0 +1,51 @@
+#pragma once
+// What the run hands to its outputs, on the host, whatever the backend, precision and dimension.
+
+#include <string>
+#include <vector>
+
+#include "mpm/config.hpp"
+
+namespace mpm {
+
+/// The particles of one body or rigid at one time, in the order of their creation. Vectors are padded to three
+/// components, symmetric tensors to six (xx, yy, zz, xy, yz, zx). The last three are empty for rigids.
+struct ParticleSnapshot {
+  std::string name;
+  std::vector<double> position;        // m     [3 N]
+  std::vector<double> velocity;        // m/s   [3 N]
+  std::vector<double> stress;          // Pa    [6 N], Cauchy, tension positive
+  std::vector<double> volume;          // m3    [N]
+  std::vector<double> plastic_strain;  // -     [N], engineering plastic shear strain
+};
+
+/// One frame: bodies first, then rigids, in the order of the options.
+struct Snapshot {
+  double time = 0;  // s
+  long step = 0;
+  std::vector<ParticleSnapshot> bodies, rigids;
+};
+
+/// One row of the history for one body.
+struct BodyRow {
+  Vec3 lower{}, upper{};      // m, extent of its particles
+  double kinetic_energy = 0;  // J
+  Vec3 momentum{};            // kg m/s
+};
+
+/// One row of the history for one rigid.
+struct RigidRow {
+  Vec3 displacement{};  // m, since the start
+  Vec3 velocity{};      // m/s
+  Vec3 force{};         // N, of the soil on it, mean over the interval since the last row
+};
+
+/// One row of history.csv.
+struct HistoryRow {
+  long step = 0;
+  double time = 0, dt = 0, wall_time = 0;  // s
+  std::vector<BodyRow> bodies;
+  std::vector<RigidRow> rigids;
+};
+
+}  // namespace mpm
