@@ -137,6 +137,27 @@ std::string data_item(const FrameEntry& frame, const FrameEntry::Group& group, c
          size + "\">" + frame.file + ":/" + group.name + "/" + field.name + "</DataItem>";
 }
 
+std::string format_attribute(const std::string& name, const char* kind, const std::string& item) {
+  return "          <Attribute Name=\"" + name + "\" AttributeType=\"" + kind + "\" Center=\"Node\">" + item +
+         "</Attribute>\n";
+}
+
+/// A symmetric tensor as six scalars, each a column of the dataset: XDMF's own Tensor6 has another order, and VTK
+/// misreads the size of a Matrix.
+std::string format_tensor(const std::string& name, const std::string& item, long particles) {
+  constexpr const char* components[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+  const std::string count = std::to_string(particles);
+  std::string text;
+  for (int k = 0; k < 6; ++k) {
+    const std::string column = "<DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"3 2\">0 " + std::to_string(k) +
+                               " 1 1 " + count + " 1</DataItem>";
+    text += format_attribute(name + "_" + components[k], "Scalar",
+                             "<DataItem ItemType=\"HyperSlab\" Dimensions=\"" + count + " 1\">" + column + item +
+                                 "</DataItem>");
+  }
+  return text;
+}
+
 /// The grid of one body or rigid: a point a particle.
 std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group, int real_bytes) {
   const std::string count = std::to_string(group.count);
@@ -145,9 +166,9 @@ std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group,
   text += "          <Geometry GeometryType=\"XYZ\">" + data_item(frame, group, k_fields[0], real_bytes) + "</Geometry>\n";
   for (const Field& field : k_fields) {
     if (&field == k_fields || (field.bodies_only && !group.body)) continue;
-    const char* kind = field.components == 1 ? "Scalar" : field.components == 3 ? "Vector" : "Matrix";
-    text += std::string("          <Attribute Name=\"") + field.name + "\" AttributeType=\"" + kind +
-            "\" Center=\"Node\">" + data_item(frame, group, field, real_bytes) + "</Attribute>\n";
+    const std::string item = data_item(frame, group, field, real_bytes);
+    if (field.components == 6) text += format_tensor(field.name, item, group.count);
+    else text += format_attribute(field.name, field.components == 3 ? "Vector" : "Scalar", item);
   }
   return text + "        </Grid>\n";
 }

@@ -23,8 +23,8 @@ struct FrameEntry {
   std::vector<Group> groups;
 };
 
-/// The text of particles.xdmf: a temporal collection of spatial collections with one grid a body or rigid. Stress
-/// is an attribute of six components, which ParaView shows as XX YY ZZ XY YZ XZ, in our order.
+/// The text of particles.xdmf: a temporal collection of spatial collections with one grid a body or rigid. The
+/// index shows stress as six scalars, stress_xx to stress_zx.
 /// `real_bytes` is 8 or 4, the size of every field but position, which is always 8.
 std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes);
 

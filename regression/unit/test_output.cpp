@@ -1,0 +1,326 @@
+// What a run writes: the history, the frames and their index, the log; and what it leaves when the disk is full.
+
+#include <hdf5.h>
+#include <petscsys.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "output/files.hpp"
+#include "output/frames.hpp"
+#include "output/history.hpp"
+#include "output/log.hpp"
+#include "output/run_options.hpp"
+
+using namespace mpm;
+using Catch::Matchers::ContainsSubstring;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A folder that goes with its scope.
+struct Folder {
+  std::string path = (fs::temp_directory_path() / ("mpm_output_" + std::to_string(::getpid()))).string();
+  Folder() {
+    fs::remove_all(path);
+    REQUIRE(prepare_output_folder(path, nullptr) == PETSC_SUCCESS);
+  }
+  ~Folder() { fs::remove_all(path); }
+  std::string operator/(const std::string& name) const { return path + "/" + name; }
+};
+
+/// Files may not grow beyond `bytes` while this lives: the nearest thing to a full disk. Errors are not printed.
+struct FullDisk {
+  rlimit before{};
+  explicit FullDisk(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit small{bytes, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    (void)PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+  }
+  ~FullDisk() {
+    (void)PetscPopErrorHandler();
+    setrlimit(RLIMIT_FSIZE, &before);
+  }
+};
+
+std::string contents(const std::string& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> split(const std::string& row, char separator) {
+  std::vector<std::string> words;
+  std::istringstream stream(row);
+  for (std::string word; std::getline(stream, word, separator);) words.push_back(word);
+  return words;
+}
+
+Config footing_like(const std::string& folder, int dim) {
+  Config config;
+  config.dim = dim;
+  config.bodies.resize(1);
+  config.bodies[0].name = "soil";
+  config.rigids.resize(1);
+  config.rigids[0].name = "plate";
+  config.materials.push_back({"clay", "von_mises", 500, {}});
+  config.output.directory = folder;
+  return config;
+}
+
+HistoryRow some_row() {
+  HistoryRow row{12, 1.0 / 3, 6e-5, 0.1, {BodyRow{}}, {RigidRow{}}};
+  row.bodies[0] = {{0, -1e-300, 0}, {3, 4.1, 0}, 2.0 / 7, {1e-17, -0.25, 0}};
+  row.rigids[0] = {{0, -0.02, 0}, {0, -0.1, 0}, {1.5, 8765.4321, 0}};
+  return row;
+}
+
+/// `count` particles with numbers that tell them apart.
+ParticleSnapshot some_particles(const std::string& name, int count, bool body) {
+  ParticleSnapshot p;
+  p.name = name;
+  for (int k = 0; k < 3 * count; ++k) p.position.push_back(200 + k / 7.0), p.velocity.push_back(-k / 3.0);
+  for (int k = 0; body && k < 6 * count; ++k) p.stress.push_back(1000.0 * k);
+  for (int k = 0; body && k < count; ++k) p.volume.push_back(0.25), p.plastic_strain.push_back(0.1 * k);
+  return p;
+}
+
+Snapshot some_snapshot() { return {0.5, 42, {some_particles("soil", 5, true)}, {some_particles("plate", 2, false)}}; }
+
+/// A dataset as doubles, with its shape and the bytes of a number in the file.
+struct Dataset {
+  std::vector<double> values;
+  std::vector<hsize_t> shape;
+  size_t bytes = 0;
+};
+
+Dataset read_dataset(const std::string& path, const char* name) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  REQUIRE(file >= 0);
+  const hid_t data = H5Dopen2(file, name, H5P_DEFAULT);
+  REQUIRE(data >= 0);
+  const hid_t space = H5Dget_space(data), type = H5Dget_type(data);
+  Dataset out;
+  out.shape.resize(H5Sget_simple_extent_ndims(space));
+  H5Sget_simple_extent_dims(space, out.shape.data(), nullptr);
+  out.values.resize(H5Sget_simple_extent_npoints(space));
+  out.bytes = H5Tget_size(type);
+  CHECK(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, out.values.data()) >= 0);
+  H5Tclose(type), H5Sclose(space), H5Dclose(data), H5Fclose(file);
+  return out;
+}
+
+double read_attribute(const std::string& path, const char* name) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT);
+  double value = NAN;
+  CHECK(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) >= 0);
+  H5Aclose(attribute), H5Fclose(file);
+  return value;
+}
+
+/// Does every tag of the text close in order?
+bool is_well_formed(const std::string& xml) {
+  std::vector<std::string> open;
+  for (size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {
+    const size_t end = xml.find('>', at);
+    if (end == std::string::npos) return false;
+    const std::string tag = xml.substr(at + 1, end - at - 1), name = tag.substr(0, tag.find(' '));
+    if (tag.starts_with("?") || tag.ends_with("/")) continue;
+    if (!tag.starts_with("/")) open.push_back(name);
+    else if (open.empty() || "/" + open.back() != name) return false;
+    else open.pop_back();
+  }
+  return open.empty();
+}
+
+int temporary_files(const std::string& folder) {
+  int count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) count += entry.path().extension() == ".tmp";
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("the history's columns are those of the manual", "[output]") {
+  CHECK(history_header(footing_like("", 2)) ==
+        "step,time,dt,wall_time,soil_xmin,soil_xmax,soil_ymin,soil_ymax,soil_kinetic_energy,soil_momentum_x,"
+        "soil_momentum_y,plate_x,plate_y,plate_velocity_x,plate_velocity_y,plate_force_x,plate_force_y");
+  CHECK_THAT(history_header(footing_like("", 3)), ContainsSubstring("soil_ymax,soil_zmin,soil_zmax,soil_kinetic_energy"));
+  CHECK_THAT(history_header(footing_like("", 3)), ContainsSubstring("plate_x,plate_y,plate_z,plate_velocity_x"));
+}
+
+TEST_CASE("a row of the history reads back to the same numbers", "[output]") {
+  const HistoryRow row = some_row();
+  const auto words = split(format_history_row(row, 2), ',');
+  const double expected[] = {12,      row.time, row.dt, row.wall_time, 0,     3,   -1e-300, 4.1,      2.0 / 7,
+                             1e-17,   -0.25,    0,      -0.02,         0,     -0.1, 1.5,     8765.4321};
+  REQUIRE(words.size() == std::size(expected));
+  for (size_t k = 0; k < words.size(); ++k) CHECK(std::strtod(words[k].c_str(), nullptr) == expected[k]);
+  CHECK(split(format_history_row(row, 3), ',').size() == split(history_header(footing_like("", 3)), ',').size());
+}
+
+TEST_CASE("history.csv holds its header and whole rows, whatever the disk does", "[output]") {
+  const Folder folder;
+  History history;
+  REQUIRE(history.open(footing_like(folder.path, 2)) == PETSC_SUCCESS);
+  REQUIRE(history.write(some_row()) == PETSC_SUCCESS);
+  const std::string whole = contents(folder / "history.csv");
+  CHECK(split(whole, '\n').size() == 2);
+  CHECK(whole.ends_with('\n'));
+  {
+    const FullDisk full(whole.size() + 20);
+    CHECK(history.write(some_row()) == PETSC_ERR_FILE_WRITE);
+  }
+  CHECK(contents(folder / "history.csv") == whole);
+  CHECK(history.close() == PETSC_SUCCESS);
+}
+
+TEST_CASE("a frame reads back", "[output]") {
+  const Folder folder;
+  const Snapshot snapshot = some_snapshot();
+  const bool single = GENERATE(false, true);
+  const std::string path = folder / "frames/frame_00000.h5";
+  REQUIRE(write_frame(path, snapshot, single ? Precision::single : Precision::double_) == PETSC_SUCCESS);
+
+  CHECK(read_attribute(path, "time") == 0.5);
+  CHECK(read_attribute(path, "step") == 42);
+  const Dataset position = read_dataset(path, "soil/position");
+  CHECK(position.bytes == 8);
+  CHECK(position.shape == std::vector<hsize_t>{5, 3});
+  CHECK(position.values == snapshot.bodies[0].position);
+  const Dataset stress = read_dataset(path, "soil/stress");
+  CHECK(stress.bytes == (single ? 4 : 8));
+  CHECK(stress.shape == std::vector<hsize_t>{5, 6});
+  CHECK(stress.values == snapshot.bodies[0].stress);
+  CHECK(read_dataset(path, "soil/volume").shape == std::vector<hsize_t>{5});
+  CHECK(read_dataset(path, "soil/plastic_strain").values.size() == 5);
+  CHECK(read_dataset(path, "plate/velocity").shape == std::vector<hsize_t>{2, 3});
+  CHECK(temporary_files(folder.path) == 0);
+}
+
+TEST_CASE("the index names every frame and every field", "[output]") {
+  const Folder folder;
+  Frames frames;
+  frames.open(folder.path, Precision::single);
+  for (int k = 0; k < 3; ++k) REQUIRE(frames.write(some_snapshot()) == PETSC_SUCCESS);
+
+  const std::string index = contents(folder / "particles.xdmf");
+  CHECK(frames.count() == 3);
+  CHECK(is_well_formed(index));
+  for (const char* item : {"frames/frame_00002.h5:/soil/stress", "frames/frame_00000.h5:/plate/velocity",
+                           "Name=\"stress_zx\"", "0 5 1 1 5 1", "Dimensions=\"5 6\"", "Time Value=\"0.5\"", "Precision=\"4\"", "Precision=\"8\""})
+    CHECK_THAT(index, ContainsSubstring(item));
+  CHECK_THAT(index, !ContainsSubstring("plate/stress"));
+  CHECK(temporary_files(folder.path) == 0);
+}
+
+TEST_CASE("a frame that does not fit leaves nothing, and the frames before it stay", "[output]") {
+  const Folder folder;
+  Frames frames;
+  frames.open(folder.path, Precision::double_);
+  REQUIRE(frames.write(some_snapshot()) == PETSC_SUCCESS);
+  const std::string index = contents(folder / "particles.xdmf");
+  {
+    const FullDisk full(4000);
+    Snapshot large = some_snapshot();
+    large.bodies[0] = some_particles("soil", 1000, true);
+    CHECK(frames.write(large) == PETSC_ERR_FILE_WRITE);
+  }
+  CHECK(frames.count() == 1);
+  CHECK(temporary_files(folder.path) == 0);
+  CHECK(!fs::exists(folder / "frames/frame_00001.h5"));
+  CHECK(contents(folder / "particles.xdmf") == index);
+  REQUIRE(frames.write(some_snapshot()) == PETSC_SUCCESS);
+}
+
+TEST_CASE("an earlier run's files go, others stay", "[output]") {
+  const Folder folder;
+  for (const char* name : {"history.csv", "mpm.log", "frames/frame_00007.h5", "frames/frame_00008.h5.tmp", "notes.txt",
+                           "checkpoint_100.h5"})
+    std::ofstream(folder / name) << "old";
+  int removed = 0;
+  REQUIRE(prepare_output_folder(folder.path, &removed) == PETSC_SUCCESS);
+  CHECK(removed == 4);
+  CHECK(fs::exists(folder / "notes.txt"));
+  CHECK(fs::exists(folder / "checkpoint_100.h5"));
+}
+
+TEST_CASE("a folder that cannot be made is an error", "[output]") {
+  const Folder folder;
+  std::ofstream(folder / "file") << "in the way";
+  REQUIRE(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr) == PETSC_SUCCESS);
+  CHECK(prepare_output_folder(folder / "file/out", nullptr) == PETSC_ERR_FILE_OPEN);
+  REQUIRE(PetscPopErrorHandler() == PETSC_SUCCESS);
+}
+
+TEST_CASE("progress says how far and how long", "[output]") {
+  CHECK(format_progress({500, 0.5, 0, 2, 10, 5e7}) ==
+        "step 500  t = 0.5 s  25.0 %  5.0 M/s particle updates  30 s left");
+  CHECK(format_progress({500, 1.5, 1, 2, 10, 5e4}) ==
+        "step 500  t = 1.5 s  50.0 %  5.0 k/s particle updates  10 s left");
+  CHECK(format_progress({900, 2, 0, 2, 125, 2.5e11}) ==
+        "step 900  t = 2 s  100.0 %  2.00 G/s particle updates  in 2 min 05 s");
+  CHECK(format_progress({0, 0, 0, 2, 0, 0}) == "step 0  t = 0 s  0.0 %");
+  CHECK(format_duration(2 * 3600 + 7 * 60) == "2 h 07 min");
+}
+
+TEST_CASE("the closing table adds up", "[output]") {
+  const std::string table = format_times({{"interpolate", 100, 6.0, 3e11}, {"move", 100, 3.0, 0}}, 10, 2e7, 1e11);
+  for (const char* part : {"60.0 %", "30.0 %", "everything else", "10.0 %", "2.0 M/s", "50.0 (50 %)", "30 % of the 100.0 GB/s"})
+    CHECK_THAT(table, ContainsSubstring(part));
+}
+
+TEST_CASE("the log's file holds what was said before it was opened and each tenth of the run", "[output]") {
+  const Folder folder;
+  Log log;
+  REQUIRE(log.start(PETSC_COMM_SELF, Progress::automatic) == PETSC_SUCCESS);
+  REQUIRE(log.line("before") == PETSC_SUCCESS);
+  REQUIRE(log.open(folder.path) == PETSC_SUCCESS);
+  REQUIRE(log.print("%s %d", "after", 1) == PETSC_SUCCESS);
+  for (int k = 0; k <= 100; ++k) REQUIRE(log.progress({k, 0.02 * k, 0, 2, 0.01 * k, 1e4 * k}) == PETSC_SUCCESS);
+  REQUIRE(log.close() == PETSC_SUCCESS);
+  const auto lines = split(contents(folder / "mpm.log"), '\n');
+  REQUIRE(lines.size() == 12);
+  CHECK(lines[0] == "before");
+  CHECK(lines[1] == "after 1");
+  CHECK_THAT(lines[2], ContainsSubstring("10.0 %"));
+}
+
+TEST_CASE("the options in force tell given from default", "[output]") {
+  const Folder folder;
+  REQUIRE(PetscOptionsSetValue(nullptr, "-test_output_word", "a,b") == PETSC_SUCCESS);
+  REQUIRE(PetscOptionsSetValue(nullptr, "-mesh_spacing", "0.05") == PETSC_SUCCESS);
+  Config config = footing_like(folder.path, 2);
+  config.mesh.spacing = 0.05;
+  std::vector<OptionLine> lines;
+  REQUIRE(options_in_force(config, {{"clay_su", "3000", "Pa", false}}, &lines) == PETSC_SUCCESS);
+  REQUIRE(PetscOptionsClearValue(nullptr, "-test_output_word") == PETSC_SUCCESS);
+  REQUIRE(PetscOptionsClearValue(nullptr, "-mesh_spacing") == PETSC_SUCCESS);
+
+  const auto line = [&](const std::string& name) {
+    for (const OptionLine& l : lines)
+      if (l.name == name) return l.value + " " + l.unit + (l.given ? " given" : " default");
+    return std::string("none");
+  };
+  CHECK(line("mesh_spacing") == "0.05 m given");
+  CHECK(line("damping") == "0 - default");
+  CHECK(line("clay_su") == "3000 Pa default");
+  CHECK(line("plate_motion") == "fixed  default");
+  CHECK(line("test_output_word") == "a,b  given");
+
+  REQUIRE(write_options_json(folder.path, "1.0 \"x\"", lines) == PETSC_SUCCESS);
+  CHECK_THAT(contents(folder / "options.json"), ContainsSubstring("\"mesh_spacing\": \"0.05\""));
+  CHECK_THAT(contents(folder / "options.json"), ContainsSubstring("1.0 \\\"x\\\""));
+}
