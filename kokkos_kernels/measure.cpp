@@ -40,7 +40,7 @@ template <class Space, class T, int Dim>
 BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   const auto soil = s.soil.points;
   const auto origin = s.patches.origin;
-  const double spacing = s.grid.spacing;
+  const double spacing = s.spacing;
   Sum<Dim> total;
   Kokkos::parallel_reduce("mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
                           KOKKOS_LAMBDA(int p, Sum<Dim>& sum) {

@@ -8,7 +8,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
   const auto sums = s.sums;
   const auto rigids = s.rigids;
   const auto origin = s.patches.origin;
-  const double spacing = s.grid.spacing, margin = s.p2g.margin;
+  const double spacing = s.spacing, margin = s.p2g.margin;
 
   if (s.rigid_moves)
     for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {

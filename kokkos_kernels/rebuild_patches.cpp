@@ -31,6 +31,7 @@ void locate(State<Space, T, Dim>& s) {
   const auto grid = s.grid;
   const auto origin = s.patches.origin;
   const auto control = s.control;
+  const double spacing = s.spacing;
   {
     const auto x_p = s.soil.points.coordinate;
     const auto cell = s.soil.points.cell, id = s.soil.points.id;
@@ -46,7 +47,7 @@ void locate(State<Space, T, Dim>& s) {
                              c[d] += from[d] + static_cast<int>(whole);
                              x[d] -= whole;
                              if (x[d] >= 1) x[d] = 0, ++c[d];  // -tiny + 1 rounds to 1
-                             position[d] = (c[d] + double(x[d])) * grid.spacing;
+                             position[d] = (c[d] + double(x[d])) * spacing;
                            }
                            if (!grid.holds(c)) return report(control, FaultKind::outside, id(p), position, Dim);
                            x_p(p) = x;
@@ -64,10 +65,10 @@ void locate(State<Space, T, Dim>& s) {
       Coord<Dim> c{};
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) {
-        const double x = home(p)[d] + rigids(r).displacement[d] / grid.spacing;
+        const double x = home(p)[d] + rigids(r).displacement[d] / spacing;
         c[d] = static_cast<int>(Kokkos::floor(x));
         x_p(p)[d] = static_cast<T>(x - Kokkos::floor(x));
-        position[d] = x * grid.spacing;
+        position[d] = x * spacing;
       }
       if (!grid.holds(c)) return report(control, FaultKind::outside, -1 - static_cast<int>(r), position, Dim);
       address(p) = grid.address_of(c);

@@ -40,7 +40,8 @@ struct State {
   Kokkos::View<char*, Memory> spare;     // scratch of a rebuild: one field in its new order
   Kokkos::View<int*, Memory> marks;      // scratch of a rebuild: which patches hold points
 
-  Vector<double, Dim> gravity;           // m/s2
+  double spacing = 0;                    // m, edge of a cell, whatever T is
+  Vector<double, Dim> gravity{};         // m/s2
   double damping = 0;                    // -
   double flip_share = 1;                 // -
   double mass_cut = 0;                   // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)

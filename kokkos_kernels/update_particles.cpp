@@ -75,7 +75,7 @@ KOKKOS_INLINE_FUNCTION void advance(const Soil<Space, T, Dim>& soil, int p, cons
 /// Reports a particle that is not finite or went so far in a step that the computation cannot be trusted.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION void check(const Soil<Space, T, Dim>& soil, int p, const Coord<Dim>& origin, const Coord<Dim>& cell,
-                                  T spacing, const ControlView<Space>& control) {
+                                  double spacing, const ControlView<Space>& control) {
   const Vector<T, Dim> x = soil.coordinate(p), v = soil.velocity(p);
   const SymTensor<T, Dim> s = soil.stress(p);
   T sum = 0, far = 0;
@@ -101,7 +101,7 @@ void update_particles(State<Space, T, Dim>& s, double dt_) {
   const auto origin = s.patches.origin;
   const auto motion = s.nodes.motion;
   const auto control = s.control;
-  const T spacing = s.grid.spacing;
+  const double spacing = s.spacing;
   const UpdateScalars<T> by{T(dt_), s.grid.inv_spacing, T(s.flip_share), T(1 - s.flip_share)};
   const int slots = s.soil.bins.colour_begin[Patch<Dim>::colours];
   if (slots == 0) return;

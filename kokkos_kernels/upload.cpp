@@ -1,0 +1,228 @@
+#include "upload.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace mpm {
+namespace {
+
+/// A view filled from the host.
+template <class View, class Get>
+void fill_view(View& view, const std::string& label, int count, Get&& get) {
+  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), count);
+  auto host = Kokkos::create_mirror_view(view);
+  for (int p = 0; p < count; ++p) host(p) = get(p);
+  Kokkos::deep_copy(view, host);
+}
+
+/// Cell and coordinate in it of positions [m from the mesh's lower corner]; those outside the mesh are a fault.
+template <class Space, class T, int Dim, class Points_>
+void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<double>& position, Sorted<Space, Points_>& set,
+                  Fault& fault) {
+  const int count = set.points.count;
+  std::vector<long> address(count);
+  std::vector<Vector<T, Dim>> coordinate(count);
+  for (int p = 0; p < count; ++p) {
+    Coord<Dim> c{};
+    for (int d = 0; d < Dim; ++d) {
+      const double x = position[std::size_t(p) * Dim + d] / spacing;
+      c[d] = static_cast<int>(std::floor(x));
+      coordinate[p][d] = static_cast<T>(x - c[d]);
+      if (coordinate[p][d] >= 1) coordinate[p][d] = 0, ++c[d];  // 1 - tiny rounds to 1 in T
+    }
+    if (!grid.holds(c) && fault.kind == FaultKind::none) {
+      fault.kind = FaultKind::outside;
+      fault.particle = p;
+      for (int d = 0; d < Dim; ++d) fault.position[d] = position[std::size_t(p) * Dim + d];
+    }
+    address[p] = grid.holds(c) ? grid.address_of(c) : 0;
+  }
+  fill_view(set.address, "mpm::address", count, [&](int p) { return address[p]; });
+  fill_view(set.points.coordinate, "mpm::coordinate", count, [&](int p) { return coordinate[p]; });
+  fill_view(set.points.id, "mpm::id", count, [](int p) { return p; });
+  fill_view(set.points.cell, "mpm::cell", count, [](int) { return 0; });
+}
+
+template <class Space, class T, int Dim>
+void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& materials, const std::vector<BodyInput>& bodies, Fault& fault) {
+  auto& soil = s.soil.points;
+  std::vector<int> body_of, first;
+  std::vector<double> position;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    first.push_back(static_cast<int>(body_of.size()));
+    body_of.insert(body_of.end(), bodies[b].position.size() / Dim, static_cast<int>(b));
+    position.insert(position.end(), bodies[b].position.begin(), bodies[b].position.end());
+  }
+  soil.count = static_cast<int>(body_of.size());
+  place_points(s.grid, s.spacing, position, s.soil, fault);
+
+  const auto in_body = [&](int p) { return p - first[body_of[p]]; };
+  fill_view(soil.body, "mpm::body", soil.count, [&](int p) { return static_cast<std::uint16_t>(body_of[p]); });
+  fill_view(soil.velocity, "mpm::velocity", soil.count, [&](int p) {
+    const BodyInput& body = bodies[body_of[p]];
+    Vector<T, Dim> v;
+    for (int d = 0; d < Dim; ++d)
+      v[d] = static_cast<T>(body.particle_velocity.empty() ? body.velocity[d] : body.particle_velocity[in_body(p) * Dim + d]);
+    return v;
+  });
+  fill_view(soil.stress, "mpm::stress", soil.count, [&](int p) {
+    const BodyInput& body = bodies[body_of[p]];
+    SymTensor<T, Dim> stress{};
+    for (int k = 0; k < sym_size<Dim> && !body.stress.empty(); ++k)
+      stress[k] = static_cast<T>(body.stress[in_body(p) * sym_size<Dim> + k]);
+    return stress;
+  });
+  fill_view(soil.volume, "mpm::volume", soil.count, [&](int p) { return static_cast<T>(bodies[body_of[p]].particle_volume); });
+  fill_view(soil.plastic_strain, "mpm::plastic_strain", soil.count, [](int) { return T(0); });
+  fill_view(soil.strength, "mpm::strength", soil.count, [&](int p) {
+    const BodyInput& body = bodies[body_of[p]];
+    return static_cast<T>(body.strength.empty() ? 0 : body.strength[in_body(p)]);
+  });
+  fill_view(soil.bodies, "mpm::bodies", static_cast<int>(bodies.size()), [&](int b) {
+    return BodyProperties<T>{static_cast<T>(bodies[b].density * bodies[b].particle_volume), static_cast<T>(bodies[b].half_length),
+                             bodies[b].material};
+  });
+  fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()),
+            [&](int m) { return make_material<T>(materials[m].model, materials[m].parameters); });
+}
+
+template <class Space, class T, int Dim>
+void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut, Fault& fault) {
+  const double spacing = s.spacing;
+  s.rigid_points.resize(rigids.size());
+  for (std::size_t r = 0; r < rigids.size(); ++r) {
+    auto& points = s.rigid_points[r].points;
+    points.count = static_cast<int>(rigids[r].position.size() / Dim);
+    points.mass = static_cast<T>(rigids[r].density * rigids[r].particle_volume);
+    points.half_length = static_cast<T>(rigids[r].half_length);
+    place_points(s.grid, spacing, rigids[r].position, s.rigid_points[r], fault);
+    fill_view(points.home, "mpm::home", points.count, [&](int p) {
+      Vector<double, Dim> x;
+      for (int d = 0; d < Dim; ++d) x[d] = rigids[r].position[std::size_t(p) * Dim + d] / spacing;
+      return x;
+    });
+  }
+  fill_view(s.rigids, "mpm::rigids", static_cast<int>(rigids.size()), [&](int r) {
+    Rigid<Dim> rigid{};
+    for (int d = 0; d < Dim; ++d) {
+      rigid.velocity[d] = rigids[r].velocity[d];
+      rigid.force[d] = rigids[r].force[d];
+    }
+    const double particle_mass = rigids[r].density * rigids[r].particle_volume;
+    rigid.mass = particle_mass * (rigids[r].position.size() / Dim);
+    rigid.dynamic = rigids[r].dynamic;
+    rigid.shear_limit = rigids[r].shear_limit;
+    rigid.friction = rigids[r].friction;
+    rigid.mass_cut = cut * particle_mass;
+    return rigid;
+  });
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
+             const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids) {
+  constexpr double k_cut = 1e-6;  // of a particle's mass: below it a node's mass is round-off
+  s.grid.spacing = static_cast<T>(grid.spacing);
+  s.grid.inv_spacing = static_cast<T>(1 / grid.spacing);
+  for (int d = 0; d < Dim; ++d) {
+    s.grid.cells[d] = grid.cells[d];
+    s.grid.patches[d] = grid.patches[d];
+    for (int side = 0; side < 2; ++side) s.grid.wall[d][side] = grid.walls[d][side];
+  }
+  s.spacing = grid.spacing;
+  Fault fault{};
+  s.mass_cut = std::numeric_limits<double>::max();
+  for (const BodyInput& body : bodies) s.mass_cut = std::min(s.mass_cut, k_cut * body.density * body.particle_volume);
+  s.rigid_moves = s.interface_shear = false;
+  for (const RigidInput& rigid : rigids) {
+    s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.velocity != std::array<double, 3>{};
+    s.interface_shear = s.interface_shear || (rigid.shear_limit > 0 && std::isfinite(rigid.shear_limit));
+  }
+  s.control = ControlView<Space>("mpm::control");
+  s.sums = decltype(s.sums)("mpm::sums", 1 + Dim * rigids.size());
+  upload_soil(s, materials, bodies, fault);
+  upload_rigids(s, rigids, k_cut, fault);
+  if (fault.kind == FaultKind::none) sort_and_list(s);
+  return fault;
+}
+
+template <class Space, class T, int Dim, class Points_>
+std::vector<double> positions_of(const State<Space, T, Dim>& s, const Points_& points) {
+  const auto x_p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.coordinate);
+  const auto cell = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.cell);
+  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
+  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
+  std::vector<double> position(std::size_t(points.count) * Dim);
+  for (int p = 0; p < points.count; ++p) {
+    const Coord<Dim> from = origin(cell(p) / Patch<Dim>::cells), in = coord_of<Dim>(cell(p));
+    for (int d = 0; d < Dim; ++d)
+      position[std::size_t(id(p)) * Dim + d] = (double(from[d] + in[d]) + double(x_p(p)[d])) * s.spacing;
+  }
+  return position;
+}
+
+template <class Space, class T, int Dim>
+SoilFields download_soil(const State<Space, T, Dim>& s) {
+  const auto& soil = s.soil.points;
+  SoilFields fields;
+  fields.position = positions_of(s, soil);
+  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), soil.id);
+  const auto spread = [&](const auto& view, int width, std::vector<double>& out, auto&& component) {
+    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+    out.resize(std::size_t(soil.count) * width);
+    for (int p = 0; p < soil.count; ++p)
+      for (int k = 0; k < width; ++k) out[std::size_t(id(p)) * width + k] = component(host(p), k);
+  };
+  const auto part = [](const auto& value, int k) { return double(value[k]); };
+  const auto whole = [](const auto& value, int) { return double(value); };
+  spread(soil.velocity, Dim, fields.velocity, part);
+  spread(soil.stress, sym_size<Dim>, fields.stress, part);
+  spread(soil.volume, 1, fields.volume, whole);
+  spread(soil.plastic_strain, 1, fields.plastic_strain, whole);
+  return fields;
+}
+
+template <class Space, class T, int Dim>
+std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int rigid) {
+  return positions_of(s, s.rigid_points[rigid].points);
+}
+
+template <class Space, class T, int Dim>
+std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s) {
+  auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  std::vector<Rigid<Dim>> rigids(host.data(), host.data() + host.extent(0));
+  const auto view = s.rigids;
+  Kokkos::parallel_for("mpm::take_impulse", Kokkos::RangePolicy<Space>(s.space, 0, view.extent(0)),
+                       KOKKOS_LAMBDA(int r) { view(r).impulse = filled<double, Dim>(0); });
+  return rigids;
+}
+
+template <class Space, class T, int Dim>
+std::size_t memory_of(const State<Space, T, Dim>& s) {
+  std::size_t bytes = 0;
+  const auto add = [&](const auto& view) { bytes += view.span() * sizeof(*view.data()); };
+  const auto add_set = [&](const auto& set) {
+    add(set.points.coordinate), add(set.points.cell), add(set.points.id), add(set.address), add(set.order);
+    add(set.bins.begin), add(set.bins.by_colour), add(set.bins.list_begin), add(set.bins.list), add(set.bins.blocks);
+    auto points = set.points;
+    for_each_field(points, add);
+  };
+  add_set(s.soil);
+  for (const auto& set : s.rigid_points) add_set(set);
+  add(s.patches.slot_of), add(s.patches.origin), add(s.patches.around), add(s.marks), add(s.spare);
+  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.volume), add(s.nodes.rigid);
+  return bytes;
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                              \
+  template Fault upload(State<Space, T, Dim>&, const GridInput&, const std::vector<MaterialInput>&,                 \
+                        const std::vector<BodyInput>&, const std::vector<RigidInput>&);                             \
+  template SoilFields download_soil(const State<Space, T, Dim>&);                                                   \
+  template std::vector<double> download_rigid_positions(const State<Space, T, Dim>&, int);                          \
+  template std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>&);                                              \
+  template std::size_t memory_of(const State<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm
