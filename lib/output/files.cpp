@@ -39,14 +39,16 @@ PetscErrorCode remove_ours(const fs::path& folder, bool in_frames, int* removed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Brings a file to the disk: some file systems report a full disk only here.
-PetscErrorCode sync_file(const std::string& path) {
+/// Writes a new file and brings it to the disk: some file systems report a full disk only then.
+PetscErrorCode write_new_file(const std::string& path, std::string_view contents) {
   PetscFunctionBeginUser;
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   PetscCheck(descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", path.c_str(),
              std::strerror(errno));
-  const int reason = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;  // EINVAL: nothing to sync there
-  ::close(descriptor);
+  const PetscErrorCode failed = write_all(descriptor, contents, path);
+  int reason = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;  // EINVAL: nothing to bring there
+  if (::close(descriptor) != 0 && reason == 0) reason = errno;
+  PetscCall(failed);
   PetscCheck(reason == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path.c_str(),
              std::strerror(reason));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -79,42 +81,25 @@ PetscErrorCode prepare_output_folder(const std::string& folder, int* removed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode replace_file(const std::string& path, const std::function<PetscErrorCode(const std::string&)>& write) {
+PetscErrorCode replace_file(const std::string& path, std::string_view contents) {
   PetscFunctionBeginUser;
   const std::string temporary = path + ".tmp";
-  PetscErrorCode failed = write(temporary);
-  if (!failed) failed = sync_file(temporary);
+  const PetscErrorCode failed = write_new_file(temporary, contents);
   if (failed) ::unlink(temporary.c_str());
   PetscCall(failed);
   if (std::rename(temporary.c_str(), path.c_str()) != 0) {
     const int reason = errno;
     ::unlink(temporary.c_str());
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot rename %s to %s: %s", temporary.c_str(), path.c_str(),
-            std::strerror(reason));
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot rename %s to %s: %s", temporary.c_str(),
+            path.c_str(), std::strerror(reason));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode replace_text_file(const std::string& path, const std::string& text) {
+PetscErrorCode write_all(int descriptor, std::string_view contents, const std::string& path) {
   PetscFunctionBeginUser;
-  const auto write = [&](const std::string& temporary) -> PetscErrorCode {
-    PetscFunctionBeginUser;
-    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    PetscCheck(descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", temporary.c_str(),
-               std::strerror(errno));
-    const PetscErrorCode failed = write_all(descriptor, text, temporary);
-    ::close(descriptor);
-    PetscCall(failed);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  };
-  PetscCall(replace_file(path, write));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode write_all(int descriptor, const std::string& text, const std::string& path) {
-  PetscFunctionBeginUser;
-  for (size_t done = 0; done < text.size();) {
-    const ssize_t written = ::write(descriptor, text.data() + done, text.size() - done);
+  for (size_t done = 0; done < contents.size();) {
+    const ssize_t written = ::write(descriptor, contents.data() + done, contents.size() - done);
     if (written < 0 && errno == EINTR) continue;
     PetscCheck(written >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path.c_str(),
                std::strerror(errno));

@@ -1,11 +1,11 @@
 #pragma once
-// Files of the output folder: each is complete or absent, for it is written under a temporary name and renamed.
-// Everything here is called on one rank. Errors name the file and the system's reason.
+// Files of the output folder: each is complete or absent, for it is written under a temporary name and
+// renamed. Everything here is called on one rank. Errors name the file and the system's reason.
 
 #include <petscsys.h>
 
-#include <functional>
 #include <string>
+#include <string_view>
 
 namespace mpm {
 
@@ -17,14 +17,12 @@ PetscErrorCode make_folder(const std::string& folder);
 /// Call it once the input is known to be valid. `removed` [number of files] is for the log; it may be null.
 PetscErrorCode prepare_output_folder(const std::string& folder, int* removed);
 
-/// Lets `write` make the file under the temporary name that it is given, then renames it to `path`. If either
+/// Writes `contents` under a temporary name, brings it to the disk and renames it to `path`. If any of this
 /// fails the temporary file is removed and a former `path` stays as it was.
-PetscErrorCode replace_file(const std::string& path, const std::function<PetscErrorCode(const std::string&)>& write);
+PetscErrorCode replace_file(const std::string& path, std::string_view contents);
 
-/// The same for a text.
-PetscErrorCode replace_text_file(const std::string& path, const std::string& text);
-
-/// Writes the whole text to a file descriptor in one call where the system lets it; `path` is for the message.
-PetscErrorCode write_all(int descriptor, const std::string& text, const std::string& path);
+/// Writes all of `contents` to a file descriptor, in one call where the system lets it; `path` is for the
+/// message.
+PetscErrorCode write_all(int descriptor, std::string_view contents, const std::string& path);
 
 }  // namespace mpm

@@ -16,7 +16,7 @@ struct Field {
   const char* unit;
   int components;
   bool bodies_only;
-  std::vector<double> ParticleSnapshot::* values;  // [components N]
+  std::vector<double> ParticleSnapshot::*values;  // [components N]
 };
 
 constexpr Field k_fields[] = {
@@ -39,34 +39,15 @@ struct Handle {
   }
 };
 
-/// Keeps HDF5's own error report, which runs to many lines, off the terminal: `check` says it in one.
-struct QuietErrors {
-  H5E_auto2_t report = nullptr;
-  void* data = nullptr;
-  QuietErrors() {
-    H5Eget_auto2(H5E_DEFAULT, &report, &data);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, report, data); }
-};
-
-/// The innermost description of HDF5's error stack, where the system's reason stands.
-herr_t keep_first(unsigned, const H5E_error2_t* error, void* text) {
-  auto& reason = *static_cast<std::string*>(text);
-  if (reason.empty() && error->desc) reason = error->desc;
-  return 0;
-}
-
 /// Every HDF5 call passes here: a negative result is an error that names the file.
 PetscErrorCode check(hid_t result, const std::string& path, const char* what) {
   PetscFunctionBeginUser;
-  if (result >= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  std::string reason;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s (%s): %s", path.c_str(), what, reason.c_str());
+  PetscCheck(result >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s of %s", what, path.c_str());
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode write_attribute(hid_t where, const std::string& path, const char* name, hid_t type, const void* value) {
+PetscErrorCode write_attribute(hid_t where, const std::string& path, const char* name, hid_t type,
+                               const void* value) {
   PetscFunctionBeginUser;
   Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   PetscCall(check(space.id, path, name));
@@ -87,20 +68,22 @@ PetscErrorCode write_unit(hid_t dataset, const std::string& path, const std::str
 }
 
 /// One dataset, N x components, or N where there is one component.
-PetscErrorCode write_field(hid_t group, const std::string& path, const Field& field, const ParticleSnapshot& particles,
-                           hid_t type) {
+PetscErrorCode write_field(hid_t group, const std::string& path, const Field& field,
+                           const ParticleSnapshot& particles, hid_t type) {
   PetscFunctionBeginUser;
   const std::vector<double>& values = particles.*field.values;
   const size_t count = particles.position.size() / 3;
   PetscCheck(values.size() == count * field.components, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
-             "%s of %s holds %zu numbers for %zu particles", field.name, particles.name.c_str(), values.size(), count);
+             "%s of %s holds %zu numbers for %zu particles", field.name, particles.name.c_str(),
+             values.size(), count);
   const hsize_t sizes[2] = {count, static_cast<hsize_t>(field.components)};
   Handle space(H5Screate_simple(field.components == 1 ? 1 : 2, sizes, nullptr), H5Sclose);
   PetscCall(check(space.id, path, field.name));
   Handle data(H5Dcreate2(group, field.name, type, space.id, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
   PetscCall(check(data.id, path, field.name));
   if (count > 0)
-    PetscCall(check(H5Dwrite(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path, field.name));
+    PetscCall(check(H5Dwrite(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path,
+                    field.name));
   PetscCall(write_unit(data.id, path, field.unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -118,23 +101,48 @@ PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode write_contents(hid_t file, const std::string& path, const Snapshot& snapshot, Precision precision) {
+PetscErrorCode write_groups(hid_t file, const std::string& path, const Snapshot& snapshot,
+                            Precision precision) {
   PetscFunctionBeginUser;
   const long long step = snapshot.step;
   PetscCall(write_attribute(file, path, "time", H5T_NATIVE_DOUBLE, &snapshot.time));
   PetscCall(write_attribute(file, path, "step", H5T_NATIVE_LLONG, &step));
-  for (const ParticleSnapshot& body : snapshot.bodies) PetscCall(write_group(file, path, body, true, precision));
-  for (const ParticleSnapshot& rigid : snapshot.rigids) PetscCall(write_group(file, path, rigid, false, precision));
+  for (const ParticleSnapshot& body : snapshot.bodies)
+    PetscCall(write_group(file, path, body, true, precision));
+  for (const ParticleSnapshot& rigid : snapshot.rigids)
+    PetscCall(write_group(file, path, rigid, false, precision));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The bytes of the frame as a file. HDF5 makes them in memory, for it does not survive a disk that fills
+/// while it writes: its close fails, and its clean-up at the end of the program then crashes.
+PetscErrorCode frame_image(const std::string& path, const Snapshot& snapshot, Precision precision,
+                           std::string* image) {
+  constexpr size_t k_growth = 4 << 20;  // bytes
+  PetscFunctionBeginUser;
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  PetscCall(check(access.id, path, "access"));
+  PetscCall(check(H5Pset_fapl_core(access.id, k_growth, /*backing_store*/ false), path, "access"));
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id), H5Fclose);
+  PetscCall(check(file.id, path, "creation"));
+  PetscCall(write_groups(file.id, path, snapshot, precision));
+  PetscCall(check(H5Fflush(file.id, H5F_SCOPE_GLOBAL), path, "flush"));
+  const ssize_t size = H5Fget_file_image(file.id, nullptr, 0);
+  PetscCall(check(size, path, "size"));
+  image->resize(static_cast<size_t>(size));
+  PetscCall(check(H5Fget_file_image(file.id, image->data(), image->size()), path, "image"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// `<DataItem>` that points at one dataset of a frame.
-std::string data_item(const FrameEntry& frame, const FrameEntry::Group& group, const Field& field, int real_bytes) {
+std::string data_item(const FrameEntry& frame, const FrameEntry::Group& group, const Field& field,
+                      int real_bytes) {
   const int bytes = &field == k_fields ? 8 : real_bytes;
   std::string size = std::to_string(group.count);
   if (field.components > 1) size += " " + std::to_string(field.components);
-  return "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"" + std::to_string(bytes) + "\" Dimensions=\"" +
-         size + "\">" + frame.file + ":/" + group.name + "/" + field.name + "</DataItem>";
+  return "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"" + std::to_string(bytes) +
+         "\" Dimensions=\"" + size + "\">" + frame.file + ":/" + group.name + "/" + field.name +
+         "</DataItem>";
 }
 
 std::string format_attribute(const std::string& name, const char* kind, const std::string& item) {
@@ -142,18 +150,18 @@ std::string format_attribute(const std::string& name, const char* kind, const st
          "</Attribute>\n";
 }
 
-/// A symmetric tensor as six scalars, each a column of the dataset: XDMF's own Tensor6 has another order, and VTK
-/// misreads the size of a Matrix.
+/// A symmetric tensor as six scalars, each a column of the dataset: XDMF's own Tensor6 has another order, and
+/// VTK misreads the size of a Matrix.
 std::string format_tensor(const std::string& name, const std::string& item, long particles) {
   constexpr const char* components[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
   const std::string count = std::to_string(particles);
   std::string text;
   for (int k = 0; k < 6; ++k) {
-    const std::string column = "<DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"3 2\">0 " + std::to_string(k) +
-                               " 1 1 " + count + " 1</DataItem>";
-    text += format_attribute(name + "_" + components[k], "Scalar",
-                             "<DataItem ItemType=\"HyperSlab\" Dimensions=\"" + count + " 1\">" + column + item +
-                                 "</DataItem>");
+    const std::string column = "<DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"3 2\">0 " +
+                               std::to_string(k) + " 1 1 " + count + " 1</DataItem>";
+    text += format_attribute(
+        name + "_" + components[k], "Scalar",
+        "<DataItem ItemType=\"HyperSlab\" Dimensions=\"" + count + " 1\">" + column + item + "</DataItem>");
   }
   return text;
 }
@@ -162,13 +170,17 @@ std::string format_tensor(const std::string& name, const std::string& item, long
 std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group, int real_bytes) {
   const std::string count = std::to_string(group.count);
   std::string text = "        <Grid Name=\"" + group.name + "\" GridType=\"Uniform\">\n";
-  text += "          <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + count + "\" NodesPerElement=\"1\"/>\n";
-  text += "          <Geometry GeometryType=\"XYZ\">" + data_item(frame, group, k_fields[0], real_bytes) + "</Geometry>\n";
+  text += "          <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + count +
+          "\" NodesPerElement=\"1\"/>\n";
+  text += "          <Geometry GeometryType=\"XYZ\">" + data_item(frame, group, k_fields[0], real_bytes) +
+          "</Geometry>\n";
   for (const Field& field : k_fields) {
     if (&field == k_fields || (field.bodies_only && !group.body)) continue;
     const std::string item = data_item(frame, group, field, real_bytes);
-    if (field.components == 6) text += format_tensor(field.name, item, group.count);
-    else text += format_attribute(field.name, field.components == 3 ? "Vector" : "Scalar", item);
+    if (field.components == 6)
+      text += format_tensor(field.name, item, group.count);
+    else
+      text += format_attribute(field.name, field.components == 3 ? "Vector" : "Scalar", item);
   }
   return text + "        </Grid>\n";
 }
@@ -180,8 +192,10 @@ std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes) {
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
       "    <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (const FrameEntry& frame : frames) {
-    text += "      <Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n        <Time Value=\"" +
-            text_of(frame.time) + "\"/>\n";
+    text +=
+        "      <Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n        <Time "
+        "Value=\"" +
+        text_of(frame.time) + "\"/>\n";
     for (const FrameEntry::Group& group : frame.groups)
       if (group.count > 0) text += format_grid(frame, group, real_bytes);
     text += "      </Grid>\n";
@@ -191,18 +205,9 @@ std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes) {
 
 PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Precision precision) {
   PetscFunctionBeginUser;
-  const auto write = [&](const std::string& temporary) -> PetscErrorCode {
-    PetscFunctionBeginUser;
-    const QuietErrors quiet;
-    Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-    PetscCall(check(file.id, temporary, "open"));
-    PetscCall(write_contents(file.id, temporary, snapshot, precision));
-    const herr_t closed = H5Fclose(file.id);
-    file.id = -1;
-    PetscCall(check(closed, temporary, "close"));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  };
-  PetscCall(replace_file(path, write));
+  std::string image;
+  PetscCall(frame_image(path, snapshot, precision, &image));
+  PetscCall(replace_file(path, image));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -224,8 +229,8 @@ PetscErrorCode Frames::write(const Snapshot& snapshot) {
   for (const auto& rigid : snapshot.rigids)
     entry.groups.push_back({rigid.name, static_cast<long>(rigid.position.size() / 3), false});
   entries_.push_back(std::move(entry));
-  PetscCall(replace_text_file(folder_ + "/particles.xdmf",
-                              format_xdmf(entries_, precision_ == Precision::single ? 4 : 8)));
+  PetscCall(replace_file(folder_ + "/particles.xdmf",
+                         format_xdmf(entries_, precision_ == Precision::single ? 4 : 8)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -23,9 +23,9 @@ struct FrameEntry {
   std::vector<Group> groups;
 };
 
-/// The text of particles.xdmf: a temporal collection of spatial collections with one grid a body or rigid. The
-/// index shows stress as six scalars, stress_xx to stress_zx.
-/// `real_bytes` is 8 or 4, the size of every field but position, which is always 8.
+/// The text of particles.xdmf: a temporal collection of spatial collections with one grid a body or rigid.
+/// The index shows stress as six scalars, stress_xx to stress_zx. `real_bytes` is 8 or 4, the size of every
+/// field but position, which is always 8.
 std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes);
 
 /// Writes one frame as HDF5 to `path`: attributes time [s] and step; a group each body and rigid.

@@ -35,7 +35,8 @@ std::string history_header(const Config& config) {
     append(header, body.name + "_momentum_", config.dim);
   }
   for (const RigidConfig& rigid : config.rigids)
-    for (const char* quantity : {"_", "_velocity_", "_force_"}) append(header, rigid.name + quantity, config.dim);
+    for (const char* quantity : {"_", "_velocity_", "_force_"})
+      append(header, rigid.name + quantity, config.dim);
   return header;
 }
 
@@ -48,7 +49,8 @@ std::string format_history_row(const HistoryRow& row, int dim) {
     append(text, body.momentum, dim);
   }
   for (const RigidRow& rigid : row.rigids)
-    for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force}) append(text, *vector, dim);
+    for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})
+      append(text, *vector, dim);
   return text;
 }
 
@@ -61,7 +63,7 @@ PetscErrorCode History::open(const Config& config) {
   PetscCall(close());
   dim_ = config.dim;
   path_ = config.output.directory + "/history.csv";
-  PetscCall(replace_text_file(path_, history_header(config) + "\n"));
+  PetscCall(replace_file(path_, history_header(config) + "\n"));
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   PetscCheck(descriptor_ >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", path_.c_str(),
              std::strerror(errno));
@@ -83,8 +85,8 @@ PetscErrorCode History::close() {
   PetscFunctionBeginUser;
   const int descriptor = descriptor_;
   descriptor_ = -1;
-  PetscCheck(descriptor < 0 || ::close(descriptor) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s",
-             path_.c_str(), std::strerror(errno));
+  PetscCheck(descriptor < 0 || ::close(descriptor) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
+             "Cannot write %s: %s", path_.c_str(), std::strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

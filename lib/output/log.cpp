@@ -76,8 +76,8 @@ std::string format_duration(double seconds) {
 }
 
 std::string format_rate(double per_second) {
-  if (per_second >= 1e9) return formatted("%.2f G/s", per_second / 1e9);
-  if (per_second >= 1e6) return formatted("%.1f M/s", per_second / 1e6);
+  if (per_second >= 999.95e6) return formatted("%.2f G/s", per_second / 1e9);
+  if (per_second >= 999.95e3) return formatted("%.1f M/s", per_second / 1e6);
   return formatted("%.1f k/s", per_second / 1e3);
 }
 
@@ -99,17 +99,19 @@ std::string format_times(const std::vector<FunctionTime>& times, double wall, do
     rest -= f.seconds;
     bytes += f.bytes;
   }
-  if (rest > 0) text += formatted("  %-44s %9s %11.3f %6.1f %%\n", "everything else", "", rest, 100 * rest / wall);
+  if (rest > 0)
+    text += formatted("  %-44s %9s %11.3f %6.1f %%\n", "everything else", "", rest, 100 * rest / wall);
   text += formatted("  %-44s %9s %11.3f  100.0 %%\n", "wall time", "", wall);
   if (wall > 0) text += "  particle updates per second: " + format_rate(particle_updates / wall) + "\n";
   if (bytes > 0 && wall > 0) text += formatted("  bytes per second: %.1f GB/s", bytes / wall / 1e9);
   if (bytes > 0 && wall > 0 && bandwidth > 0)
-    text += formatted(", %.0f %% of the %.1f GB/s measured on this device", 100 * bytes / wall / bandwidth, bandwidth / 1e9);
+    text += formatted(", %.0f %% of the %.1f GB/s measured on this device", 100 * bytes / wall / bandwidth,
+                      bandwidth / 1e9);
   return bytes > 0 && wall > 0 ? text + "\n" : text;
 }
 
-std::string format_header(const std::string& version, const std::string& kokkos_version, const std::string& device,
-                          int ranks) {
+std::string format_header(const std::string& version, const std::string& kokkos_version,
+                          const std::string& device, int ranks) {
   char host[256] = "unknown host", date[64] = "";
   const std::time_t now = std::time(nullptr);
   std::tm local{};
@@ -121,11 +123,11 @@ std::string format_header(const std::string& version, const std::string& kokkos_
   unsigned h5[3] = {0, 0, 0};
   H5get_libversion(&h5[0], &h5[1], &h5[2]);
   std::string text = "mpm " + version + "  " + date + "\n";
-  text += formatted("  machine    %s, %s, %d cores, %d rank%s\n", host, processor_name().c_str(), usable_cores(), ranks,
-                    ranks == 1 ? "" : "s");
+  text += formatted("  machine    %s, %s, %d cores, %d rank%s\n", host, processor_name().c_str(),
+                    usable_cores(), ranks, ranks == 1 ? "" : "s");
   text += "  device     " + device + "\n";
-  text += formatted("  libraries  PETSc %d.%d.%d, Kokkos %s, %s, HDF5 %u.%u.%u\n", int(major), int(minor), int(subminor),
-                    kokkos_version.c_str(), mpi_version().c_str(), h5[0], h5[1], h5[2]);
+  text += formatted("  libraries  PETSc %d.%d.%d, Kokkos %s, %s, HDF5 %u.%u.%u\n", int(major), int(minor),
+                    int(subminor), kokkos_version.c_str(), mpi_version().c_str(), h5[0], h5[1], h5[2]);
   return text;
 }
 
@@ -158,8 +160,10 @@ PetscErrorCode Log::open(const std::string& folder) {
 
 PetscErrorCode Log::write_file(const std::string& text) {
   PetscFunctionBeginUser;
-  if (descriptor_ >= 0) PetscCall(write_all(descriptor_, text, path_));
-  else pending_ += text;
+  if (descriptor_ >= 0)
+    PetscCall(write_all(descriptor_, text, path_));
+  else
+    pending_ += text;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,8 +202,10 @@ PetscErrorCode Log::progress(const ProgressState& state) {
   if (tenths > tenths_) {
     tenths_ = tenths;
     // A live line shows this already: only the file gets it, but for the last, which stays on the terminal.
-    if (live_ && tenths < 10) PetscCall(write_file(format_progress(state) + "\n"));
-    else PetscCall(line(format_progress(state)));
+    if (live_ && tenths < 10)
+      PetscCall(write_file(format_progress(state) + "\n"));
+    else
+      PetscCall(line(format_progress(state)));
   } else if (live_ && state.wall - last_live_ >= k_live_interval) {
     last_live_ = state.wall;
     std::fputs(("\r" + format_progress(state) + "\033[K").c_str(), stdout);
@@ -214,8 +220,8 @@ PetscErrorCode Log::close() {
   if (speaks_) clear_live_line();
   const int descriptor = descriptor_;
   descriptor_ = -1;
-  PetscCheck(descriptor < 0 || ::close(descriptor) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s",
-             path_.c_str(), std::strerror(errno));
+  PetscCheck(descriptor < 0 || ::close(descriptor) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
+             "Cannot write %s: %s", path_.c_str(), std::strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "mpm/config.hpp"
-#include "output/run_options.hpp"
 
 namespace mpm {
 
@@ -27,18 +26,21 @@ struct FunctionTime {
   double bytes = 0;  // moved to and from memory in all calls; 0 if not known
 };
 
-std::string format_duration(double seconds);          // "42 s", "3 min 05 s", "2 h 07 min"
-std::string format_rate(double per_second);           // "12.3 M/s"
-std::string format_progress(const ProgressState& s);  // "step 1200  t = 0.072 s  3.6 %  12.3 M/s  2 min 05 s left"
+std::string format_duration(double seconds);  // "42 s", "3 min 05 s", "2 h 07 min"
+std::string format_rate(double per_second);   // "12.3 M/s"
+std::string format_progress(
+    const ProgressState& s);  // "step 1200  t = 0.072 s  3.6 %  12.3 M/s  2 min 05 s left"
 
 /// The closing table: each function with calls, seconds, share of `wall` [s], and GB/s where bytes are known
 /// (beside the share of `bandwidth` [bytes/s] where that is not 0); the rest; particle updates per second.
-std::string format_times(const std::vector<FunctionTime>& times, double wall, double particle_updates, double bandwidth);
+std::string format_times(const std::vector<FunctionTime>& times, double wall, double particle_updates,
+                         double bandwidth);
 
-/// Program, date, machine (host, processor, cores, ranks) and versions of the libraries (this text knows PETSc, MPI
-/// and HDF5; the version of Kokkos is given, as is the device's name). Collective on nothing; one rank calls it.
-std::string format_header(const std::string& version, const std::string& kokkos_version, const std::string& device,
-                          int ranks);
+/// Program, date, machine (host, processor, cores, ranks) and versions of the libraries (this text knows
+/// PETSc, MPI and HDF5; the version of Kokkos is given, as is the device's name). Collective on nothing; one
+/// rank calls it.
+std::string format_header(const std::string& version, const std::string& kokkos_version,
+                          const std::string& device, int ranks);
 
 /// Lines to the terminal and to the file, from rank 0 of the communicator; other ranks are silent.
 class Log {
@@ -67,8 +69,8 @@ class Log {
   std::string path_, pending_;
   int descriptor_ = -1;
   bool speaks_ = false, lines_ = true, live_ = false, live_line_shown_ = false;
-  int tenths_ = 0;            // last tenth of the run that was reported
-  double last_live_ = -1;     // s of wall time at the last live line
+  int tenths_ = 0;         // last tenth of the run that was reported
+  double last_live_ = -1;  // s of wall time at the last live line
 };
 
 }  // namespace mpm

@@ -1,4 +1,5 @@
-// What a run writes: the history, the frames and their index, the log; and what it leaves when the disk is full.
+// What a run writes: the history, the frames and their index, the log; and what it leaves when the disk is
+// full.
 
 #include <hdf5.h>
 #include <petscsys.h>
@@ -37,7 +38,8 @@ struct Folder {
   std::string operator/(const std::string& name) const { return path + "/" + name; }
 };
 
-/// Files may not grow beyond `bytes` while this lives: the nearest thing to a full disk. Errors are not printed.
+/// Files may not grow beyond `bytes` while this lives: the nearest thing to a full disk. Errors are not
+/// printed.
 struct FullDisk {
   rlimit before{};
   explicit FullDisk(rlim_t bytes) {
@@ -96,7 +98,9 @@ ParticleSnapshot some_particles(const std::string& name, int count, bool body) {
   return p;
 }
 
-Snapshot some_snapshot() { return {0.5, 42, {some_particles("soil", 5, true)}, {some_particles("plate", 2, false)}}; }
+Snapshot some_snapshot() {
+  return {0.5, 42, {some_particles("soil", 5, true)}, {some_particles("plate", 2, false)}};
+}
 
 /// A dataset as doubles, with its shape and the bytes of a number in the file.
 struct Dataset {
@@ -138,16 +142,20 @@ bool is_well_formed(const std::string& xml) {
     if (end == std::string::npos) return false;
     const std::string tag = xml.substr(at + 1, end - at - 1), name = tag.substr(0, tag.find(' '));
     if (tag.starts_with("?") || tag.ends_with("/")) continue;
-    if (!tag.starts_with("/")) open.push_back(name);
-    else if (open.empty() || "/" + open.back() != name) return false;
-    else open.pop_back();
+    if (!tag.starts_with("/"))
+      open.push_back(name);
+    else if (open.empty() || "/" + open.back() != name)
+      return false;
+    else
+      open.pop_back();
   }
   return open.empty();
 }
 
 int temporary_files(const std::string& folder) {
   int count = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) count += entry.path().extension() == ".tmp";
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    count += entry.path().extension() == ".tmp";
   return count;
 }
 
@@ -157,18 +165,21 @@ TEST_CASE("the history's columns are those of the manual", "[output]") {
   CHECK(history_header(footing_like("", 2)) ==
         "step,time,dt,wall_time,soil_xmin,soil_xmax,soil_ymin,soil_ymax,soil_kinetic_energy,soil_momentum_x,"
         "soil_momentum_y,plate_x,plate_y,plate_velocity_x,plate_velocity_y,plate_force_x,plate_force_y");
-  CHECK_THAT(history_header(footing_like("", 3)), ContainsSubstring("soil_ymax,soil_zmin,soil_zmax,soil_kinetic_energy"));
-  CHECK_THAT(history_header(footing_like("", 3)), ContainsSubstring("plate_x,plate_y,plate_z,plate_velocity_x"));
+  CHECK_THAT(history_header(footing_like("", 3)),
+             ContainsSubstring("soil_ymax,soil_zmin,soil_zmax,soil_kinetic_energy"));
+  CHECK_THAT(history_header(footing_like("", 3)),
+             ContainsSubstring("plate_x,plate_y,plate_z,plate_velocity_x"));
 }
 
 TEST_CASE("a row of the history reads back to the same numbers", "[output]") {
   const HistoryRow row = some_row();
   const auto words = split(format_history_row(row, 2), ',');
-  const double expected[] = {12,      row.time, row.dt, row.wall_time, 0,     3,   -1e-300, 4.1,      2.0 / 7,
-                             1e-17,   -0.25,    0,      -0.02,         0,     -0.1, 1.5,     8765.4321};
+  const double expected[] = {12,    row.time, row.dt, row.wall_time, 0, 3,    -1e-300, 4.1,      2.0 / 7,
+                             1e-17, -0.25,    0,      -0.02,         0, -0.1, 1.5,     8765.4321};
   REQUIRE(words.size() == std::size(expected));
   for (size_t k = 0; k < words.size(); ++k) CHECK(std::strtod(words[k].c_str(), nullptr) == expected[k]);
-  CHECK(split(format_history_row(row, 3), ',').size() == split(history_header(footing_like("", 3)), ',').size());
+  CHECK(split(format_history_row(row, 3), ',').size() ==
+        split(history_header(footing_like("", 3)), ',').size());
 }
 
 TEST_CASE("history.csv holds its header and whole rows, whatever the disk does", "[output]") {
@@ -219,8 +230,9 @@ TEST_CASE("the index names every frame and every field", "[output]") {
   const std::string index = contents(folder / "particles.xdmf");
   CHECK(frames.count() == 3);
   CHECK(is_well_formed(index));
-  for (const char* item : {"frames/frame_00002.h5:/soil/stress", "frames/frame_00000.h5:/plate/velocity",
-                           "Name=\"stress_zx\"", "0 5 1 1 5 1", "Dimensions=\"5 6\"", "Time Value=\"0.5\"", "Precision=\"4\"", "Precision=\"8\""})
+  for (const char* item :
+       {"frames/frame_00002.h5:/soil/stress", "frames/frame_00000.h5:/plate/velocity", "Name=\"stress_zx\"",
+        "0 5 1 1 5 1", "Dimensions=\"5 6\"", "Time Value=\"0.5\"", "Precision=\"4\"", "Precision=\"8\""})
     CHECK_THAT(index, ContainsSubstring(item));
   CHECK_THAT(index, !ContainsSubstring("plate/stress"));
   CHECK(temporary_files(folder.path) == 0);
@@ -247,8 +259,8 @@ TEST_CASE("a frame that does not fit leaves nothing, and the frames before it st
 
 TEST_CASE("an earlier run's files go, others stay", "[output]") {
   const Folder folder;
-  for (const char* name : {"history.csv", "mpm.log", "frames/frame_00007.h5", "frames/frame_00008.h5.tmp", "notes.txt",
-                           "checkpoint_100.h5"})
+  for (const char* name : {"history.csv", "mpm.log", "frames/frame_00007.h5", "frames/frame_00008.h5.tmp",
+                           "notes.txt", "checkpoint_100.h5"})
     std::ofstream(folder / name) << "old";
   int removed = 0;
   REQUIRE(prepare_output_folder(folder.path, &removed) == PETSC_SUCCESS);
@@ -277,8 +289,10 @@ TEST_CASE("progress says how far and how long", "[output]") {
 }
 
 TEST_CASE("the closing table adds up", "[output]") {
-  const std::string table = format_times({{"interpolate", 100, 6.0, 3e11}, {"move", 100, 3.0, 0}}, 10, 2e7, 1e11);
-  for (const char* part : {"60.0 %", "30.0 %", "everything else", "10.0 %", "2.0 M/s", "50.0 (50 %)", "30 % of the 100.0 GB/s"})
+  const std::string table =
+      format_times({{"interpolate", 100, 6.0, 3e11}, {"move", 100, 3.0, 0}}, 10, 2e7, 1e11);
+  for (const char* part :
+       {"60.0 %", "30.0 %", "everything else", "10.0 %", "2.0 M/s", "50.0 (50 %)", "30 % of the 100.0 GB/s"})
     CHECK_THAT(table, ContainsSubstring(part));
 }
 
@@ -289,7 +303,8 @@ TEST_CASE("the log's file holds what was said before it was opened and each tent
   REQUIRE(log.line("before") == PETSC_SUCCESS);
   REQUIRE(log.open(folder.path) == PETSC_SUCCESS);
   REQUIRE(log.print("%s %d", "after", 1) == PETSC_SUCCESS);
-  for (int k = 0; k <= 100; ++k) REQUIRE(log.progress({k, 0.02 * k, 0, 2, 0.01 * k, 1e4 * k}) == PETSC_SUCCESS);
+  for (int k = 0; k <= 100; ++k)
+    REQUIRE(log.progress({k, 0.02 * k, 0, 2, 0.01 * k, 1e4 * k}) == PETSC_SUCCESS);
   REQUIRE(log.close() == PETSC_SUCCESS);
   const auto lines = split(contents(folder / "mpm.log"), '\n');
   REQUIRE(lines.size() == 12);
@@ -300,27 +315,13 @@ TEST_CASE("the log's file holds what was said before it was opened and each tent
 
 TEST_CASE("the options in force tell given from default", "[output]") {
   const Folder folder;
-  REQUIRE(PetscOptionsSetValue(nullptr, "-test_output_word", "a,b") == PETSC_SUCCESS);
-  REQUIRE(PetscOptionsSetValue(nullptr, "-mesh_spacing", "0.05") == PETSC_SUCCESS);
-  Config config = footing_like(folder.path, 2);
-  config.mesh.spacing = 0.05;
-  std::vector<OptionLine> lines;
-  REQUIRE(options_in_force(config, {{"clay_su", "3000", "Pa", false}}, &lines) == PETSC_SUCCESS);
-  REQUIRE(PetscOptionsClearValue(nullptr, "-test_output_word") == PETSC_SUCCESS);
-  REQUIRE(PetscOptionsClearValue(nullptr, "-mesh_spacing") == PETSC_SUCCESS);
-
-  const auto line = [&](const std::string& name) {
-    for (const OptionLine& l : lines)
-      if (l.name == name) return l.value + " " + l.unit + (l.given ? " given" : " default");
-    return std::string("none");
-  };
-  CHECK(line("mesh_spacing") == "0.05 m given");
-  CHECK(line("damping") == "0 - default");
-  CHECK(line("clay_su") == "3000 Pa default");
-  CHECK(line("plate_motion") == "fixed  default");
-  CHECK(line("test_output_word") == "a,b  given");
-
-  REQUIRE(write_options_json(folder.path, "1.0 \"x\"", lines) == PETSC_SUCCESS);
-  CHECK_THAT(contents(folder / "options.json"), ContainsSubstring("\"mesh_spacing\": \"0.05\""));
-  CHECK_THAT(contents(folder / "options.json"), ContainsSubstring("1.0 \\\"x\\\""));
+  const std::vector<EffectiveOption> options = {{"-mesh_spacing", "0.05", "m", false},
+                                                {"-p2g", "auto", "", true}};
+  CHECK(format_options(options) ==
+        "  -mesh_spacing  0.05 m      given\n"
+        "  -p2g           auto        default\n");
+  REQUIRE(write_options_json(folder.path, "1.0 \"x\"", options) == PETSC_SUCCESS);
+  CHECK(contents(folder / "options.json") ==
+        "{\n  \"version\": \"1.0 \\\"x\\\"\",\n  \"options\": {\n"
+        "    \"mesh_spacing\": \"0.05\",\n    \"p2g\": \"auto\"\n  }\n}\n");
 }
