@@ -1,6 +1,7 @@
 #pragma once
-// From the command line and the options files to a validated Config. Every mistake is collected, so that a user sees
-// all of them at once; nothing here prints but print_help and print_errors, and nothing here ends the program.
+// From the command line and the options files to a validated Config. Every mistake is collected, so that a
+// user sees all of them at once; nothing here prints but print_help and print_errors, and nothing here ends
+// the program.
 //
 // The order in a program:
 //   MPI_Init, Kokkos::initialize
@@ -28,25 +29,26 @@ struct EffectiveOption {
 
 /// What reading the input found.
 struct InputReport {
-  std::vector<std::string> errors;       // each a whole line without its end: mpm: -NAME: given "...", takes ...
+  std::vector<std::string> errors;  // each a whole line without its end: mpm: -NAME: given "...", takes ...
   std::vector<EffectiveOption> options;  // in the order of reading; for the log
-  std::string help_text;                 // every option, its unit, default and meaning (only where help was asked)
-  std::string options_file;              // the last -options_file, empty where there was none
-  bool help = false;                     // -help was given
+  std::string help_text;     // every option, its unit, default and meaning (only where help was asked)
+  std::string options_file;  // the last -options_file, empty where there was none
+  bool help = false;         // -help was given
+  bool file_unread = false;  // an options file was left out for its mistakes
 };
 
-/// Takes -help, and each -options_file that cannot be read, out of the arguments, and reports the latter, lines of
-/// options files that are not "-NAME VALUE", and words of the command line that belong to no option (PETSc would
-/// pass over both). Call it on every process of comm after MPI_Init and before PetscInitialize, which reads the files
-/// that are left; what is on the command line takes precedence over them.
+/// Takes -help, and each -options_file that cannot be read, out of the arguments, and reports the latter,
+/// lines of options files that are not "-NAME VALUE", and words of the command line that belong to no option
+/// (PETSc would pass over both). Call it on every process of comm after MPI_Init and before PetscInitialize,
+/// which reads the files that are left; what is on the command line takes precedence over them.
 void prepare_arguments(MPI_Comm comm, int* argc, char** argv, InputReport& report);
 
-/// Reads every option with this prefix (null for none) from PETSc's database, which is the same on all processes, and
-/// checks them, also against each other. `backends` are those compiled in, the slowest first; the last is the default.
-/// Appends to report.errors; config is valid only where that stays empty. Where report.help holds, or -help is in the
-/// database, fills report.help_text instead.
-/// With a null prefix every option that is neither ours nor PETSc's is an error, so simulations that have a prefix
-/// must be read before the one that has none.
+/// Reads every option with this prefix (null for none) from PETSc's database, which is the same on all
+/// processes, and checks them, also against each other. `backends` are those compiled in, the slowest first;
+/// the last is the default. Appends to report.errors; config is valid only where that is empty at the end.
+/// Where report.help holds, fills report.help_text instead; where report.file_unread holds, reads nothing,
+/// since all that is in the file would seem to be missing. With a null prefix every option that is neither
+/// ours nor PETSc's is an error, so simulations that have a prefix must be read before the one that has none.
 PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& backends, Config& config,
                             InputReport& report);
 

@@ -1,0 +1,68 @@
+#include <cmath>
+
+#include "input/groups.hpp"
+#include "input/text.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double k_most_cells = 1 << 30;  // in a direction, so that cells and nodes count in an int
+
+void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
+  static const std::vector<std::pair<std::string, Wall>> words = {
+      {"roller", Wall::roller}, {"fixed", Wall::fixed}, {"free", Wall::free}};
+  for (int d = 0; d < 3; ++d)
+    for (int side = 0; side < 2; ++side) {
+      const std::string name = std::string("mesh_") + "xyz"[d] + (side == 0 ? "min" : "max");
+      if (d >= dim && !in.listing()) {
+        in.not_taken(name, "a mesh in 2D has no such side");
+        continue;
+      }
+      in.word({.name = name, .meaning = "what holds at that side: no normal velocity, no velocity, nothing"},
+              words, mesh.walls[d][side]);
+    }
+}
+
+bool count_cells(OptionReader& in, int dim, MeshConfig& mesh) {
+  for (int d = 0; d < dim; ++d)
+    if (!(mesh.upper[d] > mesh.lower[d])) {
+      in.reject("mesh_upper", std::to_string(dim) + " numbers in m, each greater than that of -mesh_lower, " +
+                                  text_of(mesh.lower, dim));
+      return false;
+    }
+  mesh.cells = {1, 1, 1};
+  for (int d = 0; d < dim; ++d) {
+    const double extent = mesh.upper[d] - mesh.lower[d], cells = std::round(extent / mesh.spacing);
+    if (std::abs(extent - cells * mesh.spacing) > 1e-9 * extent || cells > k_most_cells) {
+      const std::string most = cells > k_most_cells ? text_of(k_most_cells) + " at most" : "";
+      in.reject("mesh_spacing", "a length in m that cuts the mesh's extent in " + std::string(1, "xyz"[d]) +
+                                    ", " + text_of(extent) + ", into a whole number of cells" +
+                                    (most.empty() ? "" : ", " + most));
+      return false;
+    }
+    mesh.cells[d] = static_cast<int>(cells);
+  }
+  return true;
+}
+
+}  // namespace
+
+bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh) {
+  in.section("Mesh");
+  const auto errors = in.errors();
+  in.vector({.name = "mesh_lower", .meaning = "lower corner of the mesh", .unit = "m", .required = true}, dim,
+            mesh.lower);
+  in.vector({.name = "mesh_upper", .meaning = "upper corner of the mesh", .unit = "m", .required = true}, dim,
+            mesh.upper);
+  in.number({.name = "mesh_spacing",
+             .meaning = "edge of the square cells; the extent is a whole number of them",
+             .unit = "m",
+             .range = k_positive,
+             .required = true},
+            mesh.spacing);
+  const bool sound = !in.listing() && in.errors() == errors && count_cells(in, dim, mesh);
+  read_walls(in, dim, mesh);
+  return sound;
+}
+
+}  // namespace mpm

@@ -1,0 +1,159 @@
+// -materials, -bodies, -rigids, and what each named thing owns.
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "input/groups.hpp"
+#include "input/petsc_names.hpp"
+#include "input/text.hpp"
+
+namespace mpm {
+namespace {
+
+bool is_name(const std::string& word) {
+  const auto plain = [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_'); };
+  return !word.empty() && static_cast<unsigned char>(word[0]) < 128 &&
+         std::isalpha(static_cast<unsigned char>(word[0])) && std::all_of(word.begin(), word.end(), plain);
+}
+
+/// The names in use so far (lower case, since options know no case), and the words that no name may be.
+struct Names {
+  std::set<std::string> used, reserved;
+
+  explicit Names(const OptionReader& in) {
+    for (const auto& option : in.known()) reserved.insert(split(option, '_')[0]);
+    for (const auto& option : petsc_names()) reserved.insert(split(option, '_')[0]);
+  }
+  /// What is wrong with a name; empty where nothing is.
+  std::string fault(const std::string& name) const {
+    const std::string key = lower_case(name);
+    if (!is_name(name)) return "names of letters, digits and _ that begin with a letter, as sand,clay";
+    if (reserved.count(key) || is_petsc_name(key + "_"))
+      return "names other than " + name + ", which begins other options";
+    if (used.count(key)) return "names that no other material, body or rigid has; " + name + " is taken";
+    return "";
+  }
+};
+
+/// The good names of a list. A bad one is reported, and its own options are left unread.
+std::vector<std::string> read_names(OptionReader& in, const Option& option, Names& names) {
+  std::vector<std::string> given, good;
+  const bool sound = in.list_of(option, "names, as sand,clay", given);
+  if (in.listing()) return {"NAME"};
+  for (const auto& name : given) {
+    const std::string fault = sound ? names.fault(name) : "";
+    if (fault.empty()) {
+      names.used.insert(lower_case(name));
+      good.push_back(name);
+    } else {
+      in.reject(option.name, fault);
+      if (!names.used.count(lower_case(name))) in.ignore(name + "_");
+    }
+  }
+  return good;
+}
+
+void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, BodyConfig& body) {
+  in.section("Each body or rigid NAME: its shape and particles");
+  const bool sound = read_shape(in, body.name, config.dim, body.shape);
+  if (sound && mesh) check_shape(in, body.name, body.shape, *mesh, config.dim);
+
+  in.section("Each body NAME");
+  std::string material;
+  const std::string option = body.name + "_material";
+  in.text({.name = option, .meaning = "its material, one of -materials", .required = true}, material);
+  const auto found = std::find_if(config.materials.begin(), config.materials.end(),
+                                  [&](const MaterialConfig& m) { return m.name == material; });
+  std::vector<std::string> names;
+  for (const auto& m : config.materials) names.push_back(m.name);
+  if (found != config.materials.end())
+    body.material = static_cast<int>(found - config.materials.begin());
+  else if (!material.empty())
+    in.reject(option,
+              names.empty() ? "one of -materials, which names none" : "one of -materials: " + one_of(names));
+  in.vector({.name = body.name + "_velocity", .meaning = "initial velocity", .unit = "m/s"}, config.dim,
+            body.velocity);
+}
+
+/// What moves a rigid: each motion takes its own options.
+void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
+  static const std::vector<std::pair<std::string, Motion>> motions = {
+      {"fixed", Motion::fixed}, {"prescribed", Motion::prescribed}, {"dynamic", Motion::dynamic}};
+  const auto errors = in.errors();
+  in.word({.name = rigid.name + "_motion",
+           .meaning = "none, by its velocity, or by its density, force and gravity"},
+          motions, rigid.motion);
+  if (in.errors() != errors) {
+    for (const char* key : {"velocity", "density", "force"}) in.ignore(rigid.name + "_" + key);
+    return;
+  }
+  const bool prescribed = rigid.motion == Motion::prescribed, dynamic = rigid.motion == Motion::dynamic;
+  const std::string why = rigid.name + "_motion is " + motions[static_cast<int>(rigid.motion)].first;
+  if (prescribed || dynamic || in.listing())
+    in.vector({.name = rigid.name + "_velocity",
+               .meaning = "prescribed: its velocity (required); dynamic: its initial velocity",
+               .unit = "m/s",
+               .required = prescribed},
+              dim, rigid.velocity);
+  else
+    in.not_taken(rigid.name + "_velocity", why);
+  if (dynamic || in.listing()) {
+    in.number({.name = rigid.name + "_density",
+               .meaning = "dynamic: its density",
+               .unit = "kg/m3",
+               .range = k_positive,
+               .required = true},
+              rigid.density);
+    in.vector({.name = rigid.name + "_force",
+               .meaning = "dynamic: external force on it, beside gravity",
+               .unit = "N"},
+              dim, rigid.force);
+  } else {
+    in.not_taken(rigid.name + "_density", why);
+    in.not_taken(rigid.name + "_force", why);
+  }
+}
+
+void read_rigid(OptionReader& in, const MeshConfig* mesh, int dim, RigidConfig& rigid) {
+  rigid.shape.particles_per_cell = 4;
+  if (!in.listing()) {  // listed with the bodies'
+    const bool sound = read_shape(in, rigid.name, dim, rigid.shape);
+    if (sound && mesh) check_shape(in, rigid.name, rigid.shape, *mesh, dim);
+  }
+  in.section("Each rigid NAME");
+  read_motion(in, dim, rigid);
+  rigid.has_shear_limit = in.number({.name = rigid.name + "_shear_limit",
+                                     .meaning = "largest shear stress of the interface; 0 is smooth",
+                                     .unit = "Pa",
+                                     .range = k_not_negative},
+                                    rigid.shear_limit);
+  in.number(
+      {.name = rigid.name + "_friction",
+       .meaning = "Coulomb coefficient of the interface; the shear limit, where given, bounds the shear too",
+       .unit = "-",
+       .range = {.lowest = 0, .highest = 10}},
+      rigid.friction);
+}
+
+}  // namespace
+
+void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
+  Names names(in);
+  in.section("Names");
+  const auto materials = read_names(in, {.name = "materials", .meaning = "names of the materials"}, names);
+  const auto bodies = read_names(
+      in, {.name = "bodies", .meaning = "names of the deformable bodies", .required = true}, names);
+  const auto rigids = read_names(in, {.name = "rigids", .meaning = "names of the rigid bodies"}, names);
+  for (const auto& name : materials) read_material(in, name, config.materials.emplace_back());
+  for (const auto& name : bodies) {
+    config.bodies.emplace_back().name = name;
+    read_body(in, mesh, config, config.bodies.back());
+  }
+  for (const auto& name : rigids) {
+    config.rigids.emplace_back().name = name;
+    read_rigid(in, mesh, config.dim, config.rigids.back());
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,191 @@
+#include "input/options.hpp"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "input/groups.hpp"
+#include "input/reader.hpp"
+#include "input/text.hpp"
+
+namespace mpm {
+namespace {
+
+template <class Enum>
+using Words = std::vector<std::pair<std::string, Enum>>;
+
+void read_run(OptionReader& in, const std::vector<Backend>& backends, Config& config) {
+  static const Words<Backend> all = {
+      {"serial", Backend::serial}, {"openmp", Backend::openmp}, {"cuda", Backend::cuda}};
+  Words<Backend> compiled;
+  for (const Backend backend : backends) compiled.push_back(all[static_cast<int>(backend)]);
+  config.backend = backends.back();
+  in.word({.name = "backend",
+           .meaning = "where the time step runs",
+           .standard = "the fastest compiled in",
+           .aside = in.listing() ? "" : ", which are compiled in"},
+          in.listing() ? all : compiled, config.backend);
+  in.word({.name = "precision", .meaning = "arithmetic of the fields"},
+          Words<Precision>{{"double", Precision::double_}, {"single", Precision::single}}, config.precision);
+}
+
+void read_p2g(OptionReader& in, P2GConfig& p2g) {
+  static const Words<P2G> words = {
+      {"sequential", P2G::sequential}, {"atomic", P2G::atomic}, {"mosaic", P2G::mosaic},
+      {"gather", P2G::gather},         {"tile", P2G::tile},     {"auto", P2G::automatic}};
+  in.section("Particle-to-node interpolation");
+  in.word({.name = "p2g", .meaning = "strategy; auto is the fastest for the backend"}, words, p2g.strategy);
+  in.number({.name = "p2g_margin",
+             .meaning = "how far a particle may move before lists and bins are rebuilt",
+             .unit = "cells",
+             .range = {.lowest = 0, .highest = 0.5, .open_lowest = true}},
+            p2g.margin);
+  in.integer({.name = "p2g_mosaic_cells",
+              .meaning = "edge of the blocks of the mosaic",
+              .unit = "cells",
+              .range = {.lowest = 3}},
+             p2g.mosaic_cells);
+  in.integer({.name = "p2g_rebuild_interval",
+              .meaning = "forces the interval of rebuilding instead of the bound on the movement",
+              .unit = "steps",
+              .range = {.lowest = 1}},
+             p2g.rebuild_interval);
+}
+
+void read_time(OptionReader& in, TimeConfig& time) {
+  in.section("Time");
+  in.number(
+      {.name = "time_end", .meaning = "time to simulate", .unit = "s", .range = k_positive, .required = true},
+      time.end);
+  in.number({.name = "time_step",
+             .meaning = "the time step itself, instead of the Courant number",
+             .unit = "s",
+             .range = k_positive},
+            time.step);
+  in.number({.name = "time_courant",
+             .meaning = "Courant number that gives the time step",
+             .unit = "-",
+             .range = {.lowest = 0, .highest = 1, .open_lowest = true},
+             .standard = time.step ? "none" : ""},
+            time.courant);
+  if (!in.listing() && in.given("time_step") && in.given("time_courant"))
+    in.reject("time_step", "the place of -time_courant, which is given too; give one of them");
+  in.integer({.name = "time_max_steps",
+              .meaning = "stop after so many steps",
+              .unit = "steps",
+              .range = {.lowest = 1}},
+             time.max_steps);
+}
+
+void read_physics(OptionReader& in, Config& config) {
+  in.section("Physics");
+  in.vector({.name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2"}, config.dim,
+            config.gravity);
+  in.number({.name = "damping",
+             .meaning = "local (non-viscous) damping factor",
+             .unit = "-",
+             .range = {.lowest = 0, .highest = 1, .open_highest = true}},
+            config.damping);
+  int update = 0;
+  in.word({.name = "velocity_update", .meaning = "how particles take their velocity from the nodes"},
+          std::vector<std::string>{"flip", "pic"}, update);
+  if (update == 1) {
+    config.flip_share = 0;
+    in.not_taken("flip_share", "-velocity_update is pic");
+  } else {
+    in.number({.name = "flip_share",
+               .meaning = "share of FLIP in the velocity update, the rest PIC",
+               .unit = "-",
+               .range = {.lowest = 0, .highest = 1}},
+              config.flip_share);
+  }
+}
+
+void read_output(OptionReader& in, const std::string& options_file, double time_end, OutputConfig& output) {
+  in.section("Output");
+  const std::string stem = std::filesystem::path(options_file).stem().string();
+  output.directory = "out/" + (stem.empty() ? "mpm" : stem);
+  output.interval = time_end / 50;
+  output.history_interval = time_end / 500;
+  const bool listing = in.listing();
+  in.text({.name = "output_dir",
+           .meaning = "folder of the results",
+           .standard = listing ? "out/ and the stem of the options file" : ""},
+          output.directory);
+  in.number({.name = "output_interval",
+             .meaning = "time between frames",
+             .unit = "s",
+             .range = k_positive,
+             .standard = listing ? "a fiftieth of time_end" : ""},
+            output.interval);
+  in.number({.name = "history_interval",
+             .meaning = "time between rows of the history",
+             .unit = "s",
+             .range = k_positive,
+             .standard = listing ? "a five-hundredth of time_end" : ""},
+            output.history_interval);
+  in.word({.name = "progress", .meaning = "auto: a live line on a terminal, else a line each 10 %"},
+          Words<Progress>{{"auto", Progress::automatic}, {"on", Progress::on}, {"off", Progress::off}},
+          output.progress);
+}
+
+void read_all(OptionReader& in, const std::vector<Backend>& backends, const std::string& options_file,
+              Config& config) {
+  const auto errors = in.errors();
+  in.section("Run");
+  in.integer(
+      {.name = "dim", .meaning = "2 (plane strain) or 3", .unit = "-", .range = {.lowest = 2, .highest = 3}},
+      config.dim);
+  if (in.errors() != errors) return;  // it decides what all others take
+  read_run(in, backends, config);
+  read_p2g(in, config.p2g);
+  const bool sound = read_mesh(in, config.dim, config.mesh);
+  read_time(in, config.time);
+  read_physics(in, config);
+  read_output(in, options_file, config.time.end, config.output);
+  read_named(in, sound ? &config.mesh : nullptr, config);
+  in.report_unknown();
+}
+
+PetscErrorCode print_lines(MPI_Comm comm, FILE* file, const std::string& text) {
+  PetscFunctionBeginUser;
+  PetscMPIInt rank = 0;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) {
+    PetscCheck(std::fputs(text.c_str(), file) >= 0 && std::fflush(file) == 0, PETSC_COMM_SELF,
+               PETSC_ERR_FILE_WRITE, "Cannot write to the terminal");
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace
+
+PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& backends, Config& config,
+                            InputReport& report) {
+  PetscFunctionBeginUser;
+  PetscCheck(!backends.empty(), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "No backend is compiled in");
+  OptionReader in;
+  config = {};
+  if (report.help) {
+    report.help_text =
+        "mpm -options_file DECK [-NAME VALUE] ...\n"
+        "What the command line gives takes precedence over the deck. Units are SI; a list has commas and no "
+        "spaces.\n"
+        "PETSc's own options, as -log_view, are taken too.\n";
+    in.list(report);
+    PetscCallCXX(read_all(in, backends, "", config));
+  } else if (!report.file_unread) {
+    PetscCall(in.load(prefix, report));
+    PetscCallCXX(read_all(in, backends, report.options_file, config));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode print_help(MPI_Comm comm, const InputReport& report) {
+  return print_lines(comm, stdout, report.help_text);
+}
+
+PetscErrorCode print_errors(MPI_Comm comm, const InputReport& report) {
+  return print_lines(comm, stderr, report.errors.empty() ? "" : join(report.errors, "\n") + "\n");
+}
+
+}  // namespace mpm

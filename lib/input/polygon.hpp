@@ -1,0 +1,34 @@
+#pragma once
+// Plane polygons: given by their vertices in order, either way round, closed by the edge from the last to the
+// first.
+
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace mpm {
+
+using Point2 = std::array<double, 2>;  // m
+using Polygon = std::vector<Point2>;
+struct Edge {
+  Point2 from, to;
+};
+
+/// Enclosed area [m2] (shoelace formula).
+double area_of(const Polygon& polygon);
+
+/// The edges that reach into low <= y <= high [m]: all that matters for points and cells of that row.
+std::vector<Edge> edges_in_row(const Polygon& polygon, double low, double high);
+
+/// Whether a point is inside or within `slack` [m] of an edge; edges are those of a row that holds the point.
+bool is_inside(const std::vector<Edge>& edges, const Point2& point, double slack);
+
+/// Whether an edge passes through the inside of the square [lower, upper] made smaller by `slack` [m].
+bool enters_square(const Edge& edge, const Point2& lower, const Point2& upper, double slack);
+
+/// Two edges that cross or touch other than as neighbours do (also neighbours that fold back), counted from
+/// 0.
+std::optional<std::pair<int, int>> first_crossing(const Polygon& polygon);
+
+}  // namespace mpm

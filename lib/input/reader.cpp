@@ -1,0 +1,237 @@
+#include "input/reader.hpp"
+
+#include <algorithm>
+
+#include "input/petsc_names.hpp"
+#include "input/text.hpp"
+
+namespace mpm {
+namespace {
+
+/// "a length in m greater than 0".
+std::string takes_number(const Option& option) {
+  const std::string noun = option.unit == "m" ? "a length" : option.unit == "s" ? "a time" : "a number";
+  const std::string unit = option.unit == "-" || option.unit.empty() ? "" : " in " + option.unit;
+  return noun + unit + option.range.text();
+}
+
+std::string quoted(const std::string& text) { return "\"" + text + "\""; }
+
+}  // namespace
+
+bool Range::holds(double value) const {
+  return (open_lowest ? value > lowest : value >= lowest) &&
+         (open_highest ? value < highest : value <= highest);
+}
+
+std::string Range::text() const {
+  constexpr double k_all = std::numeric_limits<double>::infinity();
+  if (lowest == -k_all && highest == k_all) return "";
+  if (lowest > -k_all && highest < k_all && !open_lowest && !open_highest)
+    return " from " + text_of(lowest) + " to " + text_of(highest);
+  std::string low, high;
+  if (lowest > -k_all)
+    low = open_lowest ? " greater than " + text_of(lowest) : " of " + text_of(lowest) + " or more";
+  if (highest < k_all) high = (open_highest ? " less than " : " at most ") + text_of(highest);
+  return low + (low.empty() || high.empty() ? "" : " and") + high;
+}
+
+PetscErrorCode OptionReader::load(const char* prefix, InputReport& report) {
+  PetscFunctionBeginUser;
+  report_ = &report;
+  prefix_ = prefix ? prefix : "";
+  PetscInt count = 0;
+  char **names = nullptr, **values = nullptr, *all = nullptr;
+  PetscCall(PetscOptionsLeftGet(nullptr, &count, &names, &values));
+  std::set<std::string> unused;
+  for (PetscInt k = 0; k < count; ++k) unused.insert(lower_case(names[k]));
+  PetscCall(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
+
+  // Exact names: PetscOptionsFindPair alone would also find -pile_shape in lieu of -pile_1_shape.
+  PetscCall(PetscOptionsGetAll(nullptr, &all));
+  for (const auto& piece : split(all, ' ')) {
+    PetscBool is_key = PETSC_FALSE, set = PETSC_FALSE;
+    const char* value = nullptr;
+    PetscCall(PetscOptionsValidKey(piece.c_str(), &is_key));
+    const std::string name = is_key ? piece.substr(1) : "";
+    if (name.empty() || lower_case(name).rfind(lower_case(prefix_), 0) != 0) continue;
+    PetscCall(PetscOptionsFindPair(nullptr, nullptr, piece.c_str(), &value, &set));
+    if (set)
+      given_[lower_case(name.substr(prefix_.size()))] = {name, value ? value : "",
+                                                         unused.count(lower_case(name)) > 0};
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void OptionReader::list(InputReport& report) {
+  report_ = &report;
+  listing_ = true;
+}
+
+bool OptionReader::given(const std::string& name) const { return given_.count(lower_case(name)) > 0; }
+
+void OptionReader::ignore(const std::string& beginning) { ignored_.push_back(lower_case(beginning)); }
+
+void OptionReader::section(const std::string& title) {
+  if (listing_) report_->help_text += "\n" + title + "\n";
+}
+
+const std::string* OptionReader::find(const Option& option, const std::string& takes,
+                                      const std::string& standard) {
+  if (listing_) {
+    const std::string otherwise = !option.standard.empty() ? option.standard
+                                  : standard.empty()       ? "none"
+                                                           : standard;
+    report_->help_text += "  -" + option.name + "\n      " + option.meaning + "\n      takes " + takes +
+                          "; " + (option.required ? "required" : "default " + otherwise) + "\n";
+    return nullptr;
+  }
+  read_.insert(lower_case(option.name));
+  known_.push_back(option.name);
+  const auto found = given_.find(lower_case(option.name));
+  if (found != given_.end()) return &found->second.value;
+  if (option.required)
+    report_->errors.push_back("mpm: -" + prefix_ + option.name + ": not given, takes " + takes);
+  else
+    keep(option, standard.empty() ? (option.standard.empty() ? "none" : option.standard) : standard, true);
+  return nullptr;
+}
+
+void OptionReader::keep(const Option& option, const std::string& value, bool standard) {
+  report_->options.push_back({"-" + prefix_ + option.name, value, option.unit, standard});
+}
+
+bool OptionReader::fail(const Option& option, const std::string& takes) {
+  reject(option.name, takes);
+  return false;
+}
+
+std::string OptionReader::given_text(const std::string& name) const {
+  const auto found = given_.find(lower_case(name));
+  return found == given_.end() ? "" : found->second.value;
+}
+
+void OptionReader::reject(const std::string& name, const std::string& takes) {
+  const std::string what = given(name) ? "given " + quoted(given_text(name)) : "not given";
+  report_->errors.push_back("mpm: -" + prefix_ + name + ": " + what + ", takes " + takes);
+}
+
+void OptionReader::not_taken(const std::string& name, const std::string& why) {
+  if (listing_) return;
+  read_.insert(lower_case(name));
+  if (given(name)) reject(name, "nothing here: " + why);
+}
+
+bool OptionReader::number(const Option& option, double& value) {
+  std::optional<double> read = value;
+  const bool found = number(option, read);
+  value = *read;
+  return found;
+}
+
+bool OptionReader::number(const Option& option, std::optional<double>& value) {
+  const std::string takes = takes_number(option);
+  const bool fixed = value && option.standard.empty();
+  const std::string* given = find(option, takes, fixed ? text_of(*value) : "");
+  if (!given) return false;
+  const auto read = parse_number(*given);
+  if (!read || !option.range.holds(*read)) return fail(option, takes);
+  keep(option, *given, false);
+  value = read;
+  return true;
+}
+
+template <class Value>
+bool OptionReader::whole(const Option& option, const std::string& standard, Value& value) {
+  Range range = option.range;
+  if (range.highest > std::numeric_limits<int>::max()) range.highest = std::numeric_limits<int>::max();
+  const bool bounded = option.range.highest < std::numeric_limits<int>::max();
+  const std::string takes = "a whole number" + (bounded ? range : option.range).text();
+  const std::string* given = find(option, takes, standard);
+  if (!given) return false;
+  const auto read = parse_integer(*given);
+  if (!read || !range.holds(static_cast<double>(*read))) return fail(option, takes);
+  keep(option, *given, false);
+  value = static_cast<int>(*read);
+  return true;
+}
+
+bool OptionReader::integer(const Option& option, int& value) {
+  return whole(option, std::to_string(value), value);
+}
+bool OptionReader::integer(const Option& option, std::optional<int>& value) {
+  return whole(option, "", value);
+}
+bool OptionReader::integer(const Option& option, std::optional<long>& value) {
+  return whole(option, "", value);
+}
+
+bool OptionReader::vector(const Option& option, int dim, Vec3& value) {
+  const std::string unit = option.unit.empty() || option.unit == "-" ? "" : " in " + option.unit;
+  const std::string takes =
+      listing_ ? "2 numbers" + unit + ", as x,y (3 in 3D, as x,y,z)"
+               : std::to_string(dim) + " numbers" + unit + (dim == 2 ? ", as x,y" : ", as x,y,z");
+  const std::string* given = find(option, takes, text_of(value, dim));
+  if (!given) return false;
+  const auto pieces = split(*given);
+  if (static_cast<int>(pieces.size()) != dim) return fail(option, takes);
+  Vec3 read = value;
+  for (int d = 0; d < dim; ++d) {
+    const auto component = parse_number(pieces[d]);
+    if (!component || !option.range.holds(*component)) return fail(option, takes);
+    read[d] = *component;
+  }
+  keep(option, *given, false);
+  value = read;
+  return true;
+}
+
+bool OptionReader::text(const Option& option, std::string& value) {
+  const std::string takes = "a text that is not empty";
+  const std::string* given = find(option, takes, option.standard.empty() || !listing_ ? value : "");
+  if (!given) return false;
+  if (given->empty()) return fail(option, takes);
+  keep(option, *given, false);
+  value = *given;
+  return true;
+}
+
+bool OptionReader::list_of(const Option& option, const std::string& takes, std::vector<std::string>& value) {
+  const std::string* given = find(option, takes, "");
+  if (!given) return false;
+  value = split(*given);
+  if (std::any_of(value.begin(), value.end(), [](const std::string& piece) { return piece.empty(); }))
+    return fail(option, takes);
+  keep(option, *given, false);
+  return true;
+}
+
+bool OptionReader::word(const Option& option, const std::vector<std::string>& words, int& index) {
+  const std::string takes = one_of(words) + option.aside;
+  const std::string* given = find(option, takes, option.required ? "" : words.at(index));
+  if (!given) return false;
+  const auto found = std::find(words.begin(), words.end(), *given);
+  if (found == words.end()) return fail(option, takes);
+  index = static_cast<int>(found - words.begin());
+  keep(option, *given, false);
+  return true;
+}
+
+void OptionReader::report_unknown() {
+  std::vector<std::string> known = known_;
+  if (prefix_.empty()) known.insert(known.end(), petsc_names().begin(), petsc_names().end());
+  for (const auto& [name, option] : given_) {
+    const auto begins_name = [&name = name](const std::string& beginning) {
+      return name.rfind(beginning, 0) == 0;
+    };
+    if (!option.unused || read_.count(name) || is_petsc_name(name)) continue;
+    if (std::any_of(ignored_.begin(), ignored_.end(), begins_name)) continue;
+    const auto meant = nearest(name, known);
+    report_->errors.push_back("mpm: -" + option.name + ": given " + quoted(option.value) +
+                              ", takes nothing: no such option" +
+                              (meant ? ", the nearest is -" + prefix_ + *meant : "; -help lists all"));
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,119 @@
+#pragma once
+// The one reader of options: one call per option gives its help, default, parsing, checks and errors.
+
+#include <petscsys.h>
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "input/options.hpp"
+
+namespace mpm {
+
+/// Accepted values; an open end is itself not accepted.
+struct Range {
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  bool open_lowest = false, open_highest = false;
+
+  bool holds(double value) const;
+  std::string text() const;  // " greater than 0"; empty where everything is accepted
+};
+inline constexpr Range k_positive{.lowest = 0, .open_lowest = true};
+inline constexpr Range k_not_negative{.lowest = 0};
+
+/// All that is to be known of an option but its value. The default is what the variable holds before it is
+/// read.
+struct Option {
+  std::string name;     // without its dash
+  std::string meaning;  // for -help
+  std::string unit{};   // SI, "-" for a pure number, empty for words
+  Range range{};
+  bool required = false;
+  std::string standard{};  // the default in words, where it is not a fixed value
+  std::string aside{};     // the end of "takes ...", beside what the type and the range say
+};
+
+/// Reads options from a copy of PETSc's database. Each reading function leaves the value as it was and
+/// returns false where the option was not given, or was wrong (which it reports).
+class OptionReader {
+ public:
+  /// Takes the options with this prefix (null for none) out of PETSc's database and marks them as used.
+  PetscErrorCode load(const char* prefix, InputReport& report);
+  /// Reads nothing and writes the help text instead: every option is listed once.
+  void list(InputReport& report);
+  bool listing() const { return listing_; }
+
+  bool number(const Option& option, double& value);
+  bool number(const Option& option, std::optional<double>& value);
+  bool integer(const Option& option, int& value);
+  bool integer(const Option& option, std::optional<int>& value);
+  bool integer(const Option& option, std::optional<long>& value);
+  /// `dim` numbers; the others stay.
+  bool vector(const Option& option, int dim, Vec3& value);
+  bool text(const Option& option, std::string& value);
+  /// A list of any length; `takes` says of what, since only the caller can check it.
+  bool list_of(const Option& option, const std::string& takes, std::vector<std::string>& value);
+  /// An index into the words.
+  bool word(const Option& option, const std::vector<std::string>& words, int& index);
+  template <class Enum>
+  bool word(const Option& option, const std::vector<std::pair<std::string, Enum>>& words, Enum& value);
+
+  bool given(const std::string& name) const;
+  /// The text given, in lieu of a value.
+  std::string given_text(const std::string& name) const;
+  /// Reports the option, if given, as one that has no place here.
+  void not_taken(const std::string& name, const std::string& why);
+  /// Reports an option that parsed but does not fit the others.
+  void reject(const std::string& name, const std::string& takes);
+  /// No unknown option that begins so is reported: what it belongs to was wrong itself.
+  void ignore(const std::string& beginning);
+  /// Reports every option that nobody asked for and that is not PETSc's.
+  void report_unknown();
+  /// A heading of the help.
+  void section(const std::string& title);
+
+  std::size_t errors() const { return report_->errors.size(); }
+  /// The names asked for so far.
+  const std::vector<std::string>& known() const { return known_; }
+
+ private:
+  struct Given {
+    std::string name, value;  // as the user wrote them
+    bool unused;              // nobody (PETSc itself) had read it before
+  };
+  /// The text given, if any. Reports a required option that is missing, and writes the help.
+  const std::string* find(const Option& option, const std::string& takes, const std::string& standard);
+  bool fail(const Option& option, const std::string& takes);
+  void keep(const Option& option, const std::string& value, bool standard);
+  template <class Value>
+  bool whole(const Option& option, const std::string& standard, Value& value);
+
+  std::string prefix_;
+  bool listing_ = false;
+  InputReport* report_ = nullptr;
+  std::map<std::string, Given> given_;  // by lower-case name without prefix
+  std::set<std::string> read_;
+  std::vector<std::string> known_, ignored_;
+};
+
+template <class Enum>
+bool OptionReader::word(const Option& option, const std::vector<std::pair<std::string, Enum>>& words,
+                        Enum& value) {
+  std::vector<std::string> names;
+  int index = 0;
+  for (const auto& [name, enumerator] : words) {
+    if (enumerator == value) index = static_cast<int>(names.size());
+    names.push_back(name);
+  }
+  const bool found = word(option, names, index);
+  value = words[index].second;
+  return found;
+}
+
+}  // namespace mpm

@@ -1,0 +1,95 @@
+#include "input/text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace mpm {
+namespace {
+
+template <class Value>
+std::optional<Value> parse_whole(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  Value value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view text) {
+  const auto value = parse_whole<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<long> parse_integer(std::string_view text) { return parse_whole<long>(text); }
+
+std::string text_of(double value) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+}
+
+std::string text_of(const std::array<double, 3>& x, int dim) {
+  std::string text = text_of(x[0]);
+  for (int d = 1; d < dim; ++d) text += "," + text_of(x[d]);
+  return text;
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> pieces;
+  for (;;) {
+    const auto end = text.find(separator);
+    pieces.emplace_back(text.substr(0, end));
+    if (end == std::string_view::npos) return pieces;
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::string join(const std::vector<std::string>& pieces, std::string_view separator) {
+  std::string all;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (k > 0) all += separator;
+    all += pieces[k];
+  }
+  return all;
+}
+
+std::string one_of(const std::vector<std::string>& words) {
+  if (words.size() < 2) return join(words);
+  return join({words.begin(), words.end() - 1}, ", ") + " or " + words.back();
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+int edit_distance(std::string_view a, std::string_view b) {
+  const int rows = static_cast<int>(a.size()), columns = static_cast<int>(b.size());
+  std::vector<std::vector<int>> d(rows + 1, std::vector<int>(columns + 1));  // of the first i and j letters
+  for (int i = 0; i <= rows; ++i) d[i][0] = i;
+  for (int j = 0; j <= columns; ++j) d[0][j] = j;
+  for (int i = 1; i <= rows; ++i)
+    for (int j = 1; j <= columns; ++j) {
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[rows][columns];
+}
+
+std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& words) {
+  const int furthest = std::max(2, static_cast<int>(word.size()) / 3);
+  std::optional<std::string> best;
+  int best_distance = furthest + 1;
+  for (const auto& candidate : words) {
+    const int distance = edit_distance(lower_case(word), lower_case(candidate));
+    if (distance < best_distance) best = candidate, best_distance = distance;
+  }
+  return best;
+}
+
+}  // namespace mpm
