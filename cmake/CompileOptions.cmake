@@ -1,0 +1,23 @@
+# How everything is compiled, for the processor MPM_ARCH.
+
+# errno after sqrt() is read by no one, and keeps loops from being vectorised.
+set(host_options -fno-math-errno -Wall)
+if(MPM_ARCH)
+  list(APPEND host_options -march=${MPM_ARCH})
+endif()
+string(REPLACE ";" "," host_options_of_nvcc "${host_options}")
+add_compile_options(
+  "$<$<COMPILE_LANGUAGE:CXX>:${host_options};-Wextra>"
+  # No -Wextra for nvcc: it would speak of the code that nvcc generates.
+  "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${host_options_of_nvcc}>")
+# No C++ bindings of MPI: they would have to be linked.
+add_compile_definitions(OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
+# Only what is used is loaded at run time.
+add_link_options(LINKER:--as-needed)
+
+if(NOT "float" IN_LIST MPM_REALS)
+  add_compile_definitions(MPM_ONLY_DOUBLE)
+endif()
+if(NOT "3" IN_LIST MPM_DIMS)
+  add_compile_definitions(MPM_ONLY_2D)
+endif()
