@@ -1,7 +1,8 @@
 # How everything is compiled, for the processor MPM_ARCH.
 
 # errno after sqrt() is read by no one, and keeps loops from being vectorised.
-set(host_options -fno-math-errno -Wall)
+# Contraction to fused multiply-adds is off in strict C++ mode by default.
+set(host_options -fno-math-errno -ffp-contract=fast -Wall)
 if(MPM_ARCH)
   list(APPEND host_options -march=${MPM_ARCH})
 endif()

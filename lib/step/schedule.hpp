@@ -1,0 +1,55 @@
+#pragma once
+// Which step ends when, and at which steps rows and frames are due.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mpm/config.hpp"
+
+namespace mpm {
+
+/// Courant numbers above this are known to be unstable (the energy of an elastic bar grows at 0.7).
+inline constexpr double k_largest_courant = 0.6;
+
+/// The steps of a run: all of dt but the last, which ends at time_end.
+class Schedule {
+ public:
+  Schedule() = default;
+  Schedule(const TimeConfig& time, const OutputConfig& output, double dt) : dt_(dt), end_(time.end), output_(output) {
+    whole_ = static_cast<long>(std::floor(time.end / dt * (1 + 1e-12)));
+    all_ = whole_ + (time.end - whole_ * dt > 1e-9 * dt ? 1 : 0);
+    last_ = time.max_steps ? std::min(*time.max_steps, all_) : all_;
+  }
+
+  long last_step() const { return last_; }
+  /// The last step of full length.
+  long last_whole_step() const { return whole_; }
+  /// Length of the step that starts after `step` steps [s].
+  double step_size(long step) const { return step < whole_ ? dt_ : end_ - whole_ * dt_; }
+  /// Time after `step` steps [s].
+  double time_of(long step) const { return step >= all_ ? end_ : step * dt_; }
+
+  bool row_due(long step) const { return step == last_ || due(step, output_.history_interval); }
+  bool frame_due(long step) const { return step == last_ || due(step, output_.interval); }
+  /// The next step after `step` at which a row or a frame is due.
+  long next_stop(long step) const {
+    return std::min({last_, next(step, output_.history_interval), next(step, output_.interval)});
+  }
+
+ private:
+  /// The first step at or after each multiple of the interval.
+  long step_at(double time) const { return static_cast<long>(std::ceil(time / dt_ - 1e-9)); }
+  long next(long step, double interval) const {
+    const double k = std::floor(step * dt_ / interval + 1e-9);
+    for (double n = std::max(0.0, k - 1);; ++n)
+      if (step_at(n * interval) > step) return step_at(n * interval);
+  }
+  bool due(long step, double interval) const { return step > 0 && next(step - 1, interval) == step; }
+
+  double dt_ = 1, end_ = 0;
+  OutputConfig output_;
+  long whole_ = 0, all_ = 0, last_ = 0;
+};
+
+}  // namespace mpm

@@ -1,0 +1,77 @@
+#pragma once
+// The time step behind one interface, whatever the backend, precision and dimension: the one place where what a user
+// chose at run time becomes a template.
+
+#include <petscsys.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mpm/config.hpp"
+#include "output/log.hpp"
+#include "output/snapshot.hpp"
+
+namespace mpm {
+
+/// The particles of a body or rigid before the run.
+struct BodyParticles {
+  std::vector<double> position;  // m from the mesh's lower corner, dim components each
+  double spacing = 0;            // m, between particles
+  double particle_volume = 0;    // m3
+};
+
+/// Everything that a stepper starts from.
+struct Model {
+  std::array<int, 3> patches{};  // with the ring outside the mesh
+  std::vector<BodyParticles> bodies, rigids;
+};
+
+/// Why the run cannot go on.
+struct Failure {
+  std::string what;  // a sentence: which particle, where, what happened; empty if all is well
+};
+
+/// What a batch of steps came to.
+struct Batch {
+  long steps = 0;          // done
+  bool rebuild = false;    // the movement bound passed the margin: rebuild before the next step
+  long estimate = 1;       // steps that the bound will probably still allow
+  double bound = 0;        // cells
+  Failure failure;
+};
+
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  /// Puts the particles on the device and orders them.
+  virtual PetscErrorCode set_up(Model&& model, Failure* failure) = 0;
+  /// Does up to `steps` steps of dt [s], and fewer if a rebuild or a failure comes first.
+  virtual PetscErrorCode advance(long steps, double dt, Batch* batch) = 0;
+  /// Bins, patches and lists anew.
+  virtual PetscErrorCode rebuild(Failure* failure) = 0;
+  /// Rows of the history; `interval` [s] is the time since the last call, over which the forces are a mean.
+  virtual void measure(double interval, HistoryRow* row) = 0;
+  virtual void snapshot(Snapshot* snapshot) = 0;
+  virtual std::vector<FunctionTime> times() const = 0;
+  virtual long particles() const = 0;        // of the soil
+  virtual int patches() const = 0;           // active ones
+  virtual std::size_t memory() const = 0;    // bytes on the device
+  virtual std::string strategy() const = 0;  // the word of -p2g that runs
+};
+
+/// The stepper for config.backend, precision and dim; null where that is not compiled in.
+std::unique_ptr<Stepper> make_stepper(const Config& config);
+
+/// The backends compiled in, the slowest first.
+std::vector<Backend> available_backends();
+const char* word_of(Backend backend);
+
+/// Largest stable step over the Courant number: spacing / fastest wave [s] (Eq. 14).
+double critical_time_step(const Config& config);
+
+/// Version of Kokkos, and the name of the device that the backend runs on.
+std::string kokkos_version();
+std::string device_name(Backend backend);
+
+}  // namespace mpm

@@ -1,0 +1,220 @@
+#include "step/typed_stepper.hpp"
+
+#include <cstdio>
+
+namespace mpm {
+namespace {
+
+constexpr long k_sample_every = 200;  // steps between two timed ones on a device
+
+/// Absolute height of a particle [m]: the last direction is the vertical one.
+template <int Dim>
+double height_of(const std::vector<double>& position, std::size_t p, const MeshConfig& mesh) {
+  return position[p * Dim + Dim - 1] + mesh.lower[Dim - 1];
+}
+
+template <int Dim>
+BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles&& particles) {
+  const MaterialConfig& material = config.materials[body.material];
+  const AnyMaterial<double> law = make_material<double>(model_index(material.model), material.parameters);
+  BodyInput in;
+  in.position = std::move(particles.position);
+  in.strength.resize(in.position.size() / Dim);
+  for (std::size_t p = 0; p < in.strength.size(); ++p) in.strength[p] = strength_at(law, height_of<Dim>(in.position, p, config.mesh));
+  in.particle_volume = particles.particle_volume;
+  in.half_length = particles.spacing / config.mesh.spacing / 2;
+  in.density = material.density;
+  in.velocity = body.velocity;
+  in.material = body.material;
+  return in;
+}
+
+RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParticles&& particles) {
+  RigidInput in;
+  in.position = std::move(particles.position);
+  in.particle_volume = particles.particle_volume;
+  in.half_length = particles.spacing / config.mesh.spacing / 2;
+  in.dynamic = rigid.motion == Motion::dynamic;
+  if (in.dynamic) in.density = rigid.density;
+  if (rigid.motion != Motion::fixed) in.velocity = rigid.velocity;
+  const double mass = in.density * in.particle_volume * (in.position.size() / config.dim);
+  for (int d = 0; d < 3; ++d) in.force[d] = rigid.force[d] + mass * config.gravity[d];
+  const bool only_friction = rigid.friction && !rigid.has_shear_limit;
+  in.shear_limit = only_friction ? std::numeric_limits<double>::infinity() : rigid.shear_limit;
+  in.friction = rigid.friction.value_or(-1);
+  return in;
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failure) {
+  PetscFunctionBeginUser;
+  PetscCall(timers_.create());
+  timers_.sample(!is_device<Space>);
+  GridInput grid{config_.mesh.spacing, config_.mesh.cells, model.patches, config_.mesh.walls};
+  std::vector<MaterialInput> materials;
+  for (const auto& m : config_.materials) materials.push_back({model_index(m.model), m.parameters});
+  std::vector<BodyInput> bodies;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    first_.push_back(b == 0 ? 0 : first_.back() + static_cast<long>(bodies.back().strength.size()));
+    bodies.push_back(body_input<Dim>(config_, config_.bodies[b], std::move(model.bodies[b])));
+  }
+  std::vector<RigidInput> rigids;
+  for (std::size_t r = 0; r < model.rigids.size(); ++r)
+    rigids.push_back(rigid_input(config_, config_.rigids[r], std::move(model.rigids[r])));
+
+  state_.p2g = {config_.p2g.strategy, config_.p2g.margin, config_.p2g.mosaic_cells};
+  for (int d = 0; d < Dim; ++d) state_.gravity[d] = config_.gravity[d];
+  state_.damping = config_.damping;
+  state_.flip_share = config_.flip_share;
+  Fault fault{};
+  PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
+  *failure = describe(fault);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch* batch) {
+  PetscFunctionBeginUser;
+  restart_count(state_);
+  for (long n = 0; n < steps; ++n) {
+    if (is_device<Space>) timers_.sample(steps_enqueued_++ % k_sample_every == 0);
+    PetscCall(step(state_, timers_, dt));
+  }
+  const Control control = look(state_);
+  batch->steps = control.steps;
+  batch->bound = control.bound;
+  batch->failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
+  batch->rebuild = control.paused != 0 && control.fault_count == 0;
+  const double left = (config_.p2g.margin - control.bound) / std::max(control.increment, 1e-300);
+  batch->estimate = static_cast<long>(std::min(left, 1e9)) + 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
+  PetscFunctionBeginUser;
+  const bool sampling = timers_.sampling();
+  timers_.sample(true);
+  Control control{};
+  const auto work = [&] {
+    locate(state_);
+    control = look(state_);
+    if (control.fault_count == 0) sort_and_list(state_);
+  };
+  PetscCallCXX(PetscCall(timers_.run(Function::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
+  timers_.sample(sampling);
+  *failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+void TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
+  row->bodies.clear(), row->rigids.clear();
+  for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
+    const BodyMeasure m = mpm::measure(state_, static_cast<int>(b));
+    BodyRow body;
+    for (int d = 0; d < Dim; ++d) {
+      body.lower[d] = m.lower[d] + config_.mesh.lower[d];
+      body.upper[d] = m.upper[d] + config_.mesh.lower[d];
+      body.momentum[d] = m.momentum[d];
+    }
+    body.kinetic_energy = m.kinetic_energy;
+    row->bodies.push_back(body);
+  }
+  for (const Rigid<Dim>& r : take_rigids(state_)) {
+    RigidRow rigid;
+    for (int d = 0; d < Dim; ++d) {
+      rigid.displacement[d] = r.displacement[d];
+      rigid.velocity[d] = r.velocity[d];
+      rigid.force[d] = interval > 0 ? r.impulse[d] / interval : 0;
+    }
+    row->rigids.push_back(rigid);
+  }
+}
+
+template <class Space, class T, int Dim>
+void TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
+  const SoilFields soil = download_soil(state_);
+  out->bodies.clear(), out->rigids.clear();
+  for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
+    const std::size_t from = first_[b];
+    const std::size_t to = b + 1 < first_.size() ? first_[b + 1] : static_cast<std::size_t>(state_.soil.points.count);
+    ParticleSnapshot body;
+    body.name = config_.bodies[b].name;
+    body.position.assign(3 * (to - from), 0), body.velocity.assign(3 * (to - from), 0), body.stress.assign(6 * (to - from), 0);
+    for (std::size_t p = from; p < to; ++p) {
+      for (int d = 0; d < Dim; ++d) {
+        body.position[3 * (p - from) + d] = soil.position[p * Dim + d] + config_.mesh.lower[d];
+        body.velocity[3 * (p - from) + d] = soil.velocity[p * Dim + d];
+      }
+      for (int k = 0; k < sym_size<Dim>; ++k) body.stress[6 * (p - from) + k] = soil.stress[p * sym_size<Dim> + k];
+    }
+    body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
+    body.plastic_strain.assign(soil.plastic_strain.begin() + from, soil.plastic_strain.begin() + to);
+    out->bodies.push_back(std::move(body));
+  }
+  const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.rigids);
+  for (std::size_t r = 0; r < config_.rigids.size(); ++r) {
+    const std::vector<double> position = download_rigid_positions(state_, static_cast<int>(r));
+    ParticleSnapshot rigid;
+    rigid.name = config_.rigids[r].name;
+    rigid.position.assign(3 * (position.size() / Dim), 0);
+    rigid.velocity = rigid.position;
+    for (std::size_t p = 0; p < position.size() / Dim; ++p)
+      for (int d = 0; d < Dim; ++d) {
+        rigid.position[3 * p + d] = position[p * Dim + d] + config_.mesh.lower[d];
+        rigid.velocity[3 * p + d] = rigids(r).velocity[d];
+      }
+    out->rigids.push_back(std::move(rigid));
+  }
+}
+
+template <class Space, class T, int Dim>
+std::vector<FunctionTime> TypedStepper<Space, T, Dim>::times() const {
+  std::vector<FunctionTime> times;
+  for (int n = 0; n < k_functions; ++n) {
+    const Function f = static_cast<Function>(n);
+    times.push_back({name_of(f), timers_.calls(f), timers_.seconds(f), 0});
+  }
+  return times;
+}
+
+template <class Space, class T, int Dim>
+std::string TypedStepper<Space, T, Dim>::strategy() const {
+  switch (chosen(config_.p2g.strategy, backend_of<Space>)) {
+    case P2G::sequential: return "sequential";
+    case P2G::atomic:     return "atomic";
+    case P2G::mosaic:     return "mosaic";
+    case P2G::gather:     return "gather";
+    default:              return "tile";
+  }
+}
+
+template <class Space, class T, int Dim>
+Failure TypedStepper<Space, T, Dim>::describe(const Fault& fault) const {
+  if (fault.kind == FaultKind::none) return {};
+  std::string who;
+  if (fault.particle < 0) {
+    who = "rigid " + config_.rigids[-1 - fault.particle].name;
+  } else {
+    std::size_t b = first_.size() - 1;
+    while (b > 0 && first_[b] > fault.particle) --b;
+    who = "particle " + std::to_string(fault.particle - first_[b]) + " of body " + config_.bodies[b].name;
+  }
+  char where[120];
+  const double* x = fault.position;
+  const Vec3& low = config_.mesh.lower;
+  if (Dim == 2) std::snprintf(where, sizeof where, " at (%.9g, %.9g) m ", x[0] + low[0], x[1] + low[1]);
+  else std::snprintf(where, sizeof where, " at (%.9g, %.9g, %.9g) m ", x[0] + low[0], x[1] + low[1], x[2] + low[2]);
+  const char* what = fault.kind == FaultKind::outside      ? "is outside the mesh"
+                     : fault.kind == FaultKind::not_finite ? "has a position, velocity or stress that is not finite"
+                                                           : "moved more than a cell in one step";
+  return {who + where + what};
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim) template class TypedStepper<Space, T, Dim>;
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm
