@@ -172,14 +172,27 @@ void Log::clear_live_line() {
   live_line_shown_ = false;
 }
 
-PetscErrorCode Log::line(const std::string& text) {
+PetscErrorCode Log::say(const std::string& text, std::FILE* terminal) {
   PetscFunctionBeginUser;
   if (!speaks_) PetscFunctionReturn(PETSC_SUCCESS);
   const std::string whole = text.ends_with('\n') ? text : text + "\n";
   clear_live_line();
-  std::fputs(whole.c_str(), stdout);
   std::fflush(stdout);
+  std::fputs(whole.c_str(), terminal);
+  std::fflush(terminal);
   PetscCall(write_file(whole));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Log::line(const std::string& text) {
+  PetscFunctionBeginUser;
+  PetscCall(say(text, stdout));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Log::error(const std::string& text) {
+  PetscFunctionBeginUser;
+  PetscCall(say(text, stderr));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,6 +3,7 @@
 
 #include <petscsys.h>
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -58,11 +59,14 @@ class Log {
   PetscErrorCode line(const std::string& text);
   /// The same by a format as of printf.
   PetscErrorCode print(const char* format, ...) __attribute__((format(printf, 2, 3)));
+  /// Text of a line that says why the run failed: to stderr instead of stdout, and to the file.
+  PetscErrorCode error(const std::string& text);
   /// Call it after every batch of steps: it rewrites the live line a few times a second, or prints each 10 %.
   PetscErrorCode progress(const ProgressState& state);
   PetscErrorCode close();
 
  private:
+  PetscErrorCode say(const std::string& text, std::FILE* terminal);
   PetscErrorCode write_file(const std::string& text);
   void clear_live_line();
 
