@@ -221,7 +221,8 @@ PetscErrorCode Log::progress(const ProgressState& state) {
       PetscCall(line(format_progress(state)));
   } else if (live_ && state.wall - last_live_ >= k_live_interval) {
     last_live_ = state.wall;
-    std::fputs(("\r" + format_progress(state) + "\033[K").c_str(), stdout);
+    // Without line wrap, so that a narrow terminal cuts the line and the next one still overwrites it.
+    std::fputs(("\r\033[?7l" + format_progress(state) + "\033[K\033[?7h").c_str(), stdout);
     std::fflush(stdout);
     live_line_shown_ = true;
   }
