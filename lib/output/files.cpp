@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -14,12 +15,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Is this a file that we write into an output folder (or its temporary form)?
+/// Is this a file that we (or scripts/plot) write into an output folder (or its temporary form)?
 bool is_ours(const std::string& name, bool in_frames) {
+  constexpr const char* names[] = {"history.csv",    "mpm.log",   "options.json",
+                                   "particles.xdmf", "curve.png", "field.png"};
   const std::string suffix = ".tmp";
   const std::string stem = name.ends_with(suffix) ? name.substr(0, name.size() - suffix.size()) : name;
   if (in_frames) return stem.starts_with("frame_") && stem.ends_with(".h5");
-  return stem == "history.csv" || stem == "mpm.log" || stem == "options.json" || stem == "particles.xdmf";
+  return std::find(std::begin(names), std::end(names), stem) != std::end(names);
 }
 
 /// Removes our files from one folder and adds their number to `removed`.

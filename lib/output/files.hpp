@@ -13,8 +13,9 @@ namespace mpm {
 PetscErrorCode make_folder(const std::string& folder);
 
 /// Makes the output folder and its `frames`, and removes what an earlier run left there under our names
-/// (history.csv, mpm.log, options.json, particles.xdmf, frames/frame_*.h5 and temporary files), nothing else.
-/// Call it once the input is known to be valid. `removed` [number of files] is for the log; it may be null.
+/// (history.csv, mpm.log, options.json, particles.xdmf, frames/frame_*.h5, the plots' pictures and temporary
+/// files), nothing else. Call it once the input is known to be valid. `removed` [number of files] is for the
+/// log; it may be null.
 PetscErrorCode prepare_output_folder(const std::string& folder, int* removed);
 
 /// Writes `contents` under a temporary name, brings it to the disk and renames it to `path`. If any of this
