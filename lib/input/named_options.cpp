@@ -39,10 +39,11 @@ struct Names {
 /// The good names of a list. A bad one is reported, and its own options are left unread.
 std::vector<std::string> read_names(OptionReader& in, const Option& option, Names& names) {
   std::vector<std::string> given, good;
-  const bool sound = in.list_of(option, "names, as sand,clay", given);
+  in.list_of(option, "names, as sand,clay", given);
   if (in.listing()) return {"NAME"};
   for (const auto& name : given) {
-    const std::string fault = sound ? names.fault(name) : "";
+    if (name.empty()) continue;  // reported
+    const std::string fault = names.fault(name);
     if (fault.empty()) {
       names.used.insert(lower_case(name));
       good.push_back(name);

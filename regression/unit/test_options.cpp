@@ -1,0 +1,217 @@
+// Options to Config. What wrong input is answered is in ../wrong_input.
+
+#include <catch2/catch_test_macros.hpp>
+#include <string>
+
+#include "input/options.hpp"
+#include "input/text.hpp"
+
+using namespace mpm;
+
+namespace {
+
+const std::string k_deck =
+    "-mesh_lower 0,0 -mesh_upper 8,6 -mesh_spacing 0.5 -time_end 10 -materials clay -clay_model von_mises "
+    "-clay_density 1500 -clay_young 1e6 -clay_poisson 0.3 -clay_su 1000 -bodies soil -soil_material clay "
+    "-soil_shape box "
+    "-soil_lower 0,0 -soil_upper 8,2 ";
+
+struct Read {
+  Config config;
+  InputReport report;
+};
+
+/// Reads these options alone.
+Read read(const std::string& options, const char* prefix = nullptr) {
+  Read result;
+  REQUIRE(PetscOptionsClear(nullptr) == PETSC_SUCCESS);
+  REQUIRE(PetscOptionsInsertString(nullptr, options.c_str()) == PETSC_SUCCESS);
+  REQUIRE(read_options(prefix, {Backend::serial, Backend::openmp}, result.config, result.report) ==
+          PETSC_SUCCESS);
+  REQUIRE(PetscOptionsClear(nullptr) == PETSC_SUCCESS);
+  return result;
+}
+
+Config config_of(const std::string& options) {
+  const Read result = read(options);
+  INFO(join(result.report.errors, "\n"));
+  REQUIRE(result.report.errors.empty());
+  return result.config;
+}
+
+}  // namespace
+
+TEST_CASE("the least deck gives the documented defaults", "[options]") {
+  const Config config = config_of(k_deck);
+  CHECK(config.dim == 2);
+  CHECK(config.backend == Backend::openmp);  // the fastest of those compiled in
+  CHECK(config.precision == Precision::double_);
+  CHECK(config.p2g.strategy == P2G::automatic);
+  CHECK(config.p2g.margin == 0.5);
+  CHECK(config.p2g.mosaic_cells == 3);
+  CHECK_FALSE(config.p2g.rebuild_interval);
+  CHECK(config.mesh.cells == std::array{16, 12, 1});
+  for (const auto& sides : config.mesh.walls) CHECK((sides[0] == Wall::roller && sides[1] == Wall::roller));
+  CHECK(config.gravity == Vec3{});
+  CHECK(config.time.courant == 0.5);
+  CHECK_FALSE(config.time.step);
+  CHECK(config.flip_share == 1);
+  CHECK(config.damping == 0);
+  CHECK(config.output.directory == "out/mpm");
+  CHECK(config.output.interval == 10.0 / 50);
+  CHECK(config.output.history_interval == 10.0 / 500);
+  CHECK(config.bodies.at(0).shape.particles_per_cell == 2);
+  CHECK(config.rigids.empty());
+}
+
+TEST_CASE("a material has its model's parameters in the order of the model's table", "[options]") {
+  const Config config = config_of(k_deck + "-clay_su_gradient 2000 -clay_su_datum 1.5");
+  const auto& clay = config.materials.at(0);
+  CHECK(clay.name == "clay");
+  CHECK(clay.model == "von_mises");
+  CHECK(clay.density == 1500);
+  CHECK(clay.parameters == std::vector<double>{1e6, 0.3, 1000, 2000, 1.5});
+}
+
+TEST_CASE("a rigid body has its motion and interface", "[options]") {
+  const Config config =
+      config_of(k_deck +
+                "-rigids pipe,wall -pipe_shape disc -pipe_centre 4,3.5 -pipe_radius 0.5 -pipe_motion dynamic "
+                "-pipe_density 3000 -pipe_force 10,0 -pipe_shear_limit 500 -wall_shape box -wall_lower 0,2 "
+                "-wall_upper 1,5 "
+                "-wall_friction 0.3 -wall_particles_per_cell 2");
+  const auto &pipe = config.rigids.at(0), &wall = config.rigids.at(1);
+  CHECK(pipe.motion == Motion::dynamic);
+  CHECK(pipe.force == Vec3{10, 0, 0});
+  CHECK(pipe.shape.particles_per_cell == 4);
+  CHECK((pipe.has_shear_limit && pipe.shear_limit == 500 && !pipe.friction));
+  CHECK(wall.motion == Motion::fixed);
+  CHECK((!wall.has_shear_limit && wall.friction == 0.3));
+  CHECK(wall.shape.particles_per_cell == 2);
+}
+
+TEST_CASE("3D takes three components and a ball", "[options]") {
+  const Config config = config_of(
+      "-dim 3 -mesh_lower 0,0,-1 -mesh_upper 2,2,1 -mesh_spacing 0.25 -mesh_zmin fixed -gravity 0,0,-9.81 "
+      "-time_end 1 "
+      "-materials rock -rock_model linear_elastic -rock_density 2500 -rock_young 1e7 -rock_poisson 0.2 "
+      "-bodies stone "
+      "-stone_material rock -stone_shape ball -stone_centre 1,1,0 -stone_radius 0.5 -stone_velocity 0,0,-2");
+  CHECK(config.mesh.cells == std::array{8, 8, 8});
+  CHECK(config.mesh.walls[2][0] == Wall::fixed);
+  CHECK(config.gravity[2] == -9.81);
+  CHECK(config.bodies.at(0).shape.kind == ShapeKind::disc);
+  CHECK(config.bodies.at(0).velocity == Vec3{0, 0, -2});
+}
+
+TEST_CASE("pic is a FLIP share of 0", "[options]") {
+  CHECK(config_of(k_deck + "-velocity_update pic").flip_share == 0);
+  CHECK(config_of(k_deck + "-flip_share 0.99").flip_share == 0.99);
+}
+
+TEST_CASE("the last of an option given twice holds", "[options]") {
+  CHECK(config_of(k_deck + "-mesh_spacing 1").mesh.spacing == 1);
+}
+
+TEST_CASE("all mistakes are reported together, each in a line of one form", "[options]") {
+  const auto errors = read(k_deck + "-time_end -1 -soil_upper 9,2 -claz_su 1 -damping x").report.errors;
+  REQUIRE(errors.size() == 4);
+  CHECK(errors[0] == "mpm: -time_end: given \"-1\", takes a time in s greater than 0");
+  CHECK(errors[1] == "mpm: -damping: given \"x\", takes a number of 0 or more and less than 1");
+  CHECK(errors[2] == "mpm: -soil_upper: given \"9,2\", takes a shape wholly inside the mesh, 0,0 to 8,6");
+  CHECK(errors[3] == "mpm: -claz_su: given \"1\", takes nothing: no such option, the nearest is -clay_su");
+}
+
+TEST_CASE("a backend that is not compiled in is refused with those that are", "[options]") {
+  const auto errors = read(k_deck + "-backend cuda").report.errors;
+  REQUIRE(errors.size() == 1);
+  CHECK(errors[0] == "mpm: -backend: given \"cuda\", takes serial or openmp, which are compiled in");
+}
+
+TEST_CASE("a name's number does not make it inherit the options of the name without", "[options]") {
+  const auto errors =
+      read(k_deck + "-rigids pile,pile_1 -pile_shape box -pile_lower 0,4 -pile_upper 1,5").report.errors;
+  REQUIRE(errors.size() == 1);
+  CHECK(errors[0] == "mpm: -pile_1_shape: not given, takes box, polygon, disc or ball");
+}
+
+TEST_CASE("a prefix keeps two simulations apart", "[options]") {
+  std::string deck;
+  for (const auto& word : split(k_deck, ' '))
+    deck += (word.rfind('-', 0) == 0 ? "-a_" + word.substr(1) : word) + " ";
+  const Read result = read(deck + " -time_end 3 -b_time_end 4", "a_");
+  CHECK(result.report.errors.empty());
+  CHECK(result.config.time.end == 10);
+  CHECK(read(deck + " -a_time_ned 3", "a_").report.errors.at(0) ==
+        "mpm: -a_time_ned: given \"3\", takes nothing: no such option, the nearest is -a_time_end");
+}
+
+TEST_CASE("every option in force is listed with its unit and whether it is the default", "[options]") {
+  const Read result = read(k_deck);
+  const auto find = [&](const std::string& name) {
+    for (const auto& option : result.report.options)
+      if (option.name == name) return option;
+    return EffectiveOption{};
+  };
+  const auto spacing = find("-mesh_spacing"), share = find("-flip_share"), step = find("-time_step");
+  CHECK((spacing.value == "0.5" && spacing.unit == "m" && !spacing.standard));
+  CHECK((share.value == "1" && share.unit == "-" && share.standard));
+  CHECK((step.value == "none" && step.unit == "s" && step.standard));
+}
+
+TEST_CASE("help lists every option that a deck may give", "[options]") {
+  Config config;
+  InputReport report, listed;
+  listed.help = true;
+  REQUIRE(read_options(nullptr, {Backend::serial}, config, listed) == PETSC_SUCCESS);
+  report = read(k_deck +
+                "-rigids plate -plate_shape box -plate_lower 0,4 -plate_upper 1,5 -plate_motion dynamic "
+                "-plate_density 1")
+               .report;
+  CHECK(report.options.size() > 50);
+  for (const auto& option : report.options) {
+    std::string name = option.name;
+    for (const char* owner : {"clay", "soil", "plate"})
+      if (name.rfind(std::string("-") + owner + "_", 0) == 0)
+        name = "-NAME" + name.substr(1 + std::string(owner).size());
+    INFO(name);
+    CHECK(listed.help_text.find("  " + name + "\n") != std::string::npos);
+  }
+}
+
+TEST_CASE("numbers are read strictly", "[options]") {
+  CHECK(parse_number("1e-3") == 1e-3);
+  CHECK(parse_number("+2.5") == 2.5);
+  for (const char* text :
+       {"", " 1", "1 ", "0.5x", "nan", "inf", "-inf", "1e999", "0x1p3", "1,5", "+-1", "--1"})
+    CHECK_FALSE(parse_number(text));
+  CHECK(parse_integer("12") == 12);
+  for (const char* text : {"", "1.0", "1e3", "99999999999999999999"}) CHECK_FALSE(parse_integer(text));
+  for (const double value : {0.1, 6e-5, 1.0 / 3, 1e300}) CHECK(parse_number(text_of(value)) == value);
+}
+
+TEST_CASE("the nearest word is the one meant", "[options]") {
+  const std::vector<std::string> words = {"mesh_lower", "mesh_upper", "mesh_spacing", "soil_velocity"};
+  CHECK(edit_distance("kitten", "sitting") == 3);
+  CHECK(edit_distance("form", "from") == 1);
+  CHECK(nearest("mesh_spaceing", words) == "mesh_spacing");
+  CHECK(nearest("Soli_velocity", words) == "soil_velocity");
+  CHECK_FALSE(nearest("zzz", words));
+}
+
+TEST_CASE("arguments that PETSc would pass over or die of are taken out and reported", "[options]") {
+  std::string words[] = {"mpm",  "-help", "-time_end", "2", "s", "-options_file", "/nowhere/none.opts",
+                         "-dim", "2"};
+  char* argv[10] = {};
+  int argc = 9;
+  for (int k = 0; k < argc; ++k) argv[k] = words[k].data();
+  InputReport report;
+  prepare_arguments(PETSC_COMM_WORLD, &argc, argv, report);
+  REQUIRE(argc == 5);
+  CHECK(std::string(argv[1]) == "-time_end");
+  CHECK(std::string(argv[4]) == "2");
+  CHECK(argv[5] == nullptr);
+  CHECK(report.help);
+  CHECK(report.file_unread);
+  CHECK(report.errors.size() == 2);
+}

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""Checks that wrong input is refused, with the right words and before anything is written.
+
+Usage: check.py PATH_TO_mpm [WORD ...]   (WORD: only rows whose options hold it)
+
+Each row of wrong_input.tsv is run by itself in an empty folder with base.opts, a deck that is right. Checked are the
+exit status, that stderr has exactly the lines expected, each of which names what was given and what is taken, and that
+a refused run left no file behind.
+"""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def read_rows(path):
+    """(status, options, fragments) of each row."""
+    for line in path.read_text().splitlines():
+        if line and not line.startswith("#"):
+            status, options, *fragments = line.split("\t")
+            yield int(status), options.replace("{here}", str(HERE)), fragments
+
+
+def write_deck(folder, left_out):
+    lines = (HERE / "base.opts").read_text().splitlines()
+    kept = [line for line in lines if line.split()[0].lstrip("-") not in left_out]
+    deck = folder / "base.opts"
+    deck.write_text("\n".join(kept) + "\n")
+    return deck
+
+
+def run(binary, options, folder):
+    words = options.split()
+    deck = write_deck(folder, [word[1:] for word in words if word.startswith("!")])
+    command = [binary, "-options_file", str(deck)] + [word for word in words if not word.startswith("!")]
+    environment = dict(os.environ, OMP_PROC_BIND="false", OMP_NUM_THREADS="1")
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
+
+
+def match(lines, fragments):
+    """What differs between the lines of stderr and the fragments expected, each in a line of its own."""
+    left = list(lines)
+    faults = []
+    for fragment in fragments:
+        found = next((line for line in left if fragment in line), None)
+        if found is None:
+            faults.append(f"no line has: {fragment}")
+        else:
+            left.remove(found)
+    faults += [f"not expected: {line}" for line in left]
+    faults += [f"not of our form: {line}" for line in lines
+               if not (line.startswith("mpm: ") and "given" in line and ", takes " in line)]
+    return faults
+
+
+def check(binary, status, options, fragments):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        result = run(binary, options, folder)
+        written = sorted(path.name for path in folder.iterdir() if path.name != "base.opts")
+    faults = [] if result.returncode == status else [f"status {result.returncode}, expected {status}"]
+    if status == 0:
+        faults += [f"stderr: {line}" for line in result.stderr.splitlines() if line.startswith("mpm: -")]
+        if "-help" in options and "-mesh_spacing\n" not in result.stdout:
+            faults.append("-help does not list -mesh_spacing")
+    else:
+        faults += match(result.stderr.splitlines(), fragments)
+        faults += [f"left behind: {path}" for path in written]
+    return faults
+
+
+def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    binary, words = str(pathlib.Path(sys.argv[1]).resolve()), sys.argv[2:]
+    passed = failed = 0
+    for status, options, fragments in read_rows(HERE / "wrong_input.tsv"):
+        if not all(word in options for word in words):
+            continue
+        faults = check(binary, status, options, fragments)
+        passed, failed = passed + (not faults), failed + bool(faults)
+        for fault in faults:
+            print(f"{options or '(base.opts)'}\n    {fault}")
+    print(f"{passed} passed, {failed} failed")
+    sys.exit(1 if failed or not passed else 0)
+
+
+main()
