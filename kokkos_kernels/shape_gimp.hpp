@@ -26,8 +26,8 @@ KOKKOS_INLINE_FUNCTION AxisWeights<T> axis_weights(T x, T l) {
   a.g[2] = over / (2 * l);
   a.g[0] = a.g[2] - 1;
   a.g[1] = 1 - 2 * a.g[2];
-  a.w[2] = over * a.g[2] / 2;
-  a.w[0] = 1 - r + a.w[2];
+  a.w[2] = l * a.g[2] * a.g[2];
+  a.w[0] = Kokkos::fmax(T(0), 1 - l - r) + l * a.g[0] * a.g[0];  // no cancellation: positive wherever g[0] is not 0
   a.w[1] = 1 - a.w[0] - a.w[2];
   return a;
 }
@@ -62,11 +62,10 @@ KOKKOS_INLINE_FUNCTION void with_weights(const Vector<T, Dim>& x, T l, F&& f) {
 ///   r [cells] particle minus node;  l [cells] half length
 template <class T>
 KOKKOS_INLINE_FUNCTION void node_weight(T r, T l, T& s, T& ds) {
-  const T a = Kokkos::fabs(r);
-  const T far = Kokkos::fmax(T(0), a - (1 - l)), near = Kokkos::fmax(T(0), l - a);
-  const bool reached = a < 1 + l;
-  s = reached ? 1 - a + far * far / (4 * l) - near * near / (2 * l) : T(0);
-  ds = reached ? Kokkos::copysign(T(1), r) * (far / (2 * l) + near / l - 1) : T(0);
+  const T a = Kokkos::fabs(r), near = Kokkos::fmax(T(0), l - a);
+  const T u = Kokkos::fmin(T(1), Kokkos::fmax(T(0), (1 + l - a) / (2 * l)));  // share of the particle this side of 1
+  s = Kokkos::fmax(T(0), 1 - l - a) + l * u * u - near * near / (2 * l);
+  ds = Kokkos::copysign(T(1), r) * (near / l - u);
 }
 
 }  // namespace mpm
