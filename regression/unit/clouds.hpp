@@ -1,0 +1,186 @@
+#pragma once
+// Particles for tests, described once and put on every execution space, real type and dimension.
+
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "step_kernels.hpp"
+#include "upload.hpp"
+
+namespace mpm::test {
+
+/// One of the builds of the kernels.
+template <class Space_, class T, int Dim>
+struct Build {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim;
+  static constexpr bool is_double = sizeof(T) == sizeof(double);
+  /// The tolerance that belongs to the real type.
+  static constexpr double of(double for_double, double for_single) { return is_double ? for_double : for_single; }
+  static std::string name() {
+    return std::string(Space::name()) + (is_double ? " double " : " single ") + std::to_string(Dim) + "D";
+  }
+};
+template <int Dim>
+using Reference = Build<Kokkos::Serial, double, Dim>;
+template <class B>
+using StateOf = State<typename B::Space, typename B::real, B::dim>;
+
+/// Calls f(Build) for everything that the kernels are built for.
+template <class F>
+void for_each_build(F&& f) {
+#define MPM_TEST_BUILD(Space, T, Dim) f(Build<Space, T, Dim>{});
+  MPM_FOR_EACH(MPM_TEST_BUILD)
+#undef MPM_TEST_BUILD
+}
+/// Calls f(Build) for each dimension of the reference.
+template <class F>
+void for_each_reference(F&& f) {
+#define MPM_TEST_BUILD(Space, T, Dim) f(Build<Space, T, Dim>{});
+  MPM_FOR_EACH_DIM(MPM_TEST_BUILD, Kokkos::Serial, double)
+#undef MPM_TEST_BUILD
+}
+
+inline constexpr P2G k_strategies[] = {P2G::sequential, P2G::atomic, P2G::mosaic, P2G::gather, P2G::tile};
+inline const char* name_of(P2G how) {
+  const char* const words[] = {"sequential", "atomic", "mosaic", "gather", "tile", "auto"};
+  return words[static_cast<int>(how)];
+}
+
+/// Everything that a State is made of, on the host.
+struct Cloud {
+  GridInput grid;
+  std::vector<MaterialInput> materials;
+  std::vector<BodyInput> bodies;
+  std::vector<RigidInput> rigids;
+  P2GPlan p2g{P2G::sequential, 0.5, 3};
+  std::array<double, 3> gravity{};
+  double flip_share = 1, damping = 0;
+};
+
+template <class B>
+StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typename B::Space& space = {}) {
+  StateOf<B> s;
+  s.space = space;
+  s.p2g = cloud.p2g;
+  s.p2g.strategy = how;
+  for (int d = 0; d < B::dim; ++d) s.gravity[d] = cloud.gravity[d];
+  s.flip_share = cloud.flip_share;
+  s.damping = cloud.damping;
+  if (upload(s, cloud.grid, cloud.materials, cloud.bodies, cloud.rigids).kind != FaultKind::none)
+    throw std::runtime_error("a particle of the test lies outside the mesh");
+  return s;
+}
+
+/// A mesh with the same wall on every side.
+template <int Dim>
+GridInput grid_of(std::array<int, 3> cells, double spacing, Wall wall) {
+  GridInput grid;
+  grid.spacing = spacing;
+  grid.cells = cells;
+  for (int d = 0; d < 3; ++d) {
+    grid.patches[d] = d < Dim ? (cells[d] + Patch<Dim>::edge - 1) / Patch<Dim>::edge + 2 : 1;
+    grid.walls[d] = {wall, wall};
+  }
+  return grid;
+}
+
+/// Model 0 linear_elastic, model 1 von_mises, of the footing's clay.
+inline std::vector<MaterialInput> clays() { return {{0, {1.5e6, 0.49}}, {1, {1.5e6, 0.49, 3000, 0, 0}}}; }
+inline constexpr double k_density = 500;
+
+/// A lattice of n particles along each edge of a cell in the box [low, high), in cells.
+template <int Dim>
+std::vector<double> lattice(std::array<double, 3> low, std::array<double, 3> high, int n, double spacing) {
+  std::vector<double> position;
+  std::array<int, 3> count{1, 1, 1};
+  for (int d = 0; d < Dim; ++d) count[d] = static_cast<int>(std::lround((high[d] - low[d]) * n));
+  for (int k = 0; k < count[2]; ++k)
+    for (int j = 0; j < count[1]; ++j)
+      for (int i = 0; i < count[0]; ++i) {
+        const int at[3] = {i, j, k};
+        for (int d = 0; d < Dim; ++d) position.push_back((low[d] + (at[d] + 0.5) / n) * spacing);
+      }
+  return position;
+}
+
+template <int Dim>
+BodyInput body_of(std::vector<double> position, int per_cell, double spacing, int material) {
+  BodyInput body;
+  body.strength.assign(position.size() / Dim, 3000.0);
+  body.position = std::move(position);
+  body.particle_volume = std::pow(spacing / per_cell, Dim);
+  body.half_length = 0.5 / per_cell;
+  body.density = k_density;
+  body.material = material;
+  return body;
+}
+template <int Dim>
+RigidInput rigid_of(std::vector<double> position, int per_cell, double spacing) {
+  RigidInput rigid;
+  rigid.position = std::move(position);
+  rigid.particle_volume = std::pow(spacing / per_cell, Dim);
+  rigid.half_length = 0.5 / per_cell;
+  rigid.density = 2 * k_density;
+  return rigid;
+}
+
+/// Random numbers that are the same everywhere.
+struct Dice {
+  std::mt19937_64 engine;
+  double uniform(double low, double high) { return low + (high - low) * ((engine() >> 11) * 0x1p-53); }
+  int below(int n) { return static_cast<int>(engine() % n); }
+};
+
+/// Random particles in a share of the cells of [low, high). Some lie exactly on a node, in the middle of a cell,
+/// or where the shape function changes its branch.
+template <int Dim>
+BodyInput random_body(Dice& dice, std::array<int, 3> low, std::array<int, 3> high, double share, int per_cell, double spacing) {
+  std::vector<double> position;
+  const double l = 0.5 / per_cell, special[] = {0, l, 1 - l, 0.5};
+  for (int k = low[2]; k < (Dim == 3 ? high[2] : low[2] + 1); ++k)
+    for (int j = low[1]; j < high[1]; ++j)
+      for (int i = low[0]; i < high[0]; ++i) {
+        if (dice.uniform(0, 1) > share) continue;
+        const int cell[3] = {i, j, k};
+        for (int n = 1 + dice.below(5); n > 0; --n)
+          for (int d = 0; d < Dim; ++d)
+            position.push_back((cell[d] + (dice.below(4) == 0 ? special[dice.below(4)] : dice.uniform(0, 1))) * spacing);
+      }
+  BodyInput body = body_of<Dim>(std::move(position), per_cell, spacing, per_cell % 2);
+  for (double& strength : body.strength) strength = dice.uniform(1000, 3000);
+  for (std::size_t n = 0; n < body.position.size(); ++n) body.particle_velocity.push_back(dice.uniform(-1, 1));
+  for (std::size_t n = 0; n < body.strength.size() * sym_size<Dim>; ++n) body.stress.push_back(dice.uniform(-3000, 3000));
+  return body;
+}
+
+/// Bodies of 1 to 4 particles a cell edge: in the first and the last cells of the mesh, dense in the middle, and
+/// sparse with empty patches between; two rigids, one with a limited shear, one dynamic with friction.
+template <int Dim>
+Cloud random_cloud(int seed, Wall wall = Wall::free) {
+  Dice dice{std::mt19937_64(seed)};
+  const double spacing = seed % 2 ? 0.125 : 0.1;
+  const std::array<int, 3> cells = Dim == 2 ? std::array<int, 3>{45, 37, 0} : std::array<int, 3>{22, 13, 10};
+  const auto from_end = [&](int n) { return std::array<int, 3>{cells[0] - n, cells[1] - n, cells[2] - n}; };
+  Cloud cloud;
+  cloud.grid = grid_of<Dim>(cells, spacing, wall);
+  cloud.materials = clays();
+  cloud.bodies = {random_body<Dim>(dice, {0, 0, 0}, {4, 4, 3}, 0.7, 1, spacing),
+                  random_body<Dim>(dice, from_end(3), cells, 0.7, 2, spacing),
+                  random_body<Dim>(dice, {2, 2, 1}, Dim == 2 ? std::array<int, 3>{14, 12, 0} : std::array<int, 3>{7, 6, 5}, 0.5, 3, spacing),
+                  random_body<Dim>(dice, {0, 0, 0}, cells, Dim == 2 ? 0.02 : 0.01, 4, spacing)};
+  const double x = 3 + dice.uniform(0, 1), y = 4 + dice.uniform(0, 1);
+  cloud.rigids = {rigid_of<Dim>(lattice<Dim>({x, y, 2.3}, {x + 4, y + 2, 4.3}, 4, spacing), 4, spacing),
+                  rigid_of<Dim>(lattice<Dim>({0, 0, 0}, {3, 1, 2}, 2, spacing), 2, spacing)};
+  cloud.rigids[0].velocity = {0.3, -0.5, 0.1};
+  cloud.rigids[0].shear_limit = 2000;
+  cloud.rigids[1].dynamic = true;
+  cloud.rigids[1].shear_limit = std::numeric_limits<double>::infinity();
+  cloud.rigids[1].friction = 0.3;
+  return cloud;
+}
+
+}  // namespace mpm::test

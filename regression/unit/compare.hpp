@@ -1,0 +1,181 @@
+#pragma once
+// Steps of a State in tests, and its fields on the host in an order that no backend or strategy changes.
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "clouds.hpp"
+#include "particle_to_node.hpp"
+
+namespace mpm::test {
+
+template <class View>
+auto on_host(const View& view) {
+  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+}
+
+/// The nodal field of one rigid.
+template <class Space, class T, int Dim>
+NodeField<Space, T, RigidShare<Dim>::size> rigid_field(const State<Space, T, Dim>& s, std::size_t r) {
+  return Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL);
+}
+
+/// Functions 1 to 3 of a step.
+template <class Space, class T, int Dim>
+void interpolate(State<Space, T, Dim>& s) {
+  reset_nodes(s);
+  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
+    auto& set = s.rigid_points[r];
+    particle_to_node(s.p2g.strategy, Interpolation<RigidSource<Space, T, Dim>>{s.space, s.grid, s.patches, set.bins, {set.points},
+                                                                               rigid_field(s, r), s.control, s.p2g.mosaic_cells});
+  }
+  const auto& soil = s.soil.points;
+  particle_to_node(s.p2g.strategy, Interpolation<SoilSource<Space, T, Dim>>{s.space, s.grid, s.patches, s.soil.bins,
+                                                                            {soil, s.grid.inv_spacing}, s.nodes.soil, s.control,
+                                                                            s.p2g.mosaic_cells});
+  if (s.interface_shear)
+    particle_to_node(s.p2g.strategy, Interpolation<VolumeSource<Space, T, Dim>>{s.space, s.grid, s.patches, s.soil.bins, {soil},
+                                                                                s.nodes.volume, s.control, s.p2g.mosaic_cells});
+}
+
+template <class Space, class T, int Dim>
+void step(State<Space, T, Dim>& s, double dt) {
+  interpolate(s);
+  update_nodes(s, dt);
+  update_particles(s, dt);
+  move_rigids(s, dt);
+}
+
+/// n steps, with a rebuild whenever the movement bound asks for it. Stops at a fault. Returns the rebuilds.
+template <class Space, class T, int Dim>
+int run_steps(State<Space, T, Dim>& s, double dt, int n) {
+  int rebuilds = 0;
+  for (; n > 0; --n) {
+    step(s, dt);
+    const Control control = look(s);
+    if (control.fault_count > 0) return rebuilds;
+    if (control.paused) rebuild(s), ++rebuilds;
+  }
+  return rebuilds;
+}
+
+/// Values by place: of node i of the whole grid of patches, or of particle id.
+struct Table {
+  int width = 0;
+  std::vector<double> value;
+  friend bool operator==(const Table&, const Table&) = default;
+};
+
+/// A nodal field by the node's address in the whole grid; zero where no patch is active.
+template <class Space, class T, int Dim, class Field>
+Table nodes_of(const State<Space, T, Dim>& s, const Field& field) {
+  const auto host = on_host(field);
+  const auto origin = on_host(s.patches.origin);
+  Table table{static_cast<int>(field.extent(1)), {}};
+  table.value.resize(s.grid.patch_count() * Patch<Dim>::cells * table.width);
+  for (int i = 0; i < s.patches.node_count(); ++i) {
+    const long at = s.grid.patch_of(origin(i / Patch<Dim>::cells)) * Patch<Dim>::cells + i % Patch<Dim>::cells;
+    for (int k = 0; k < table.width; ++k) table.value[at * table.width + k] = host(i, k);
+  }
+  return table;
+}
+
+/// Every nodal field that particles give: the soil's, each rigid's, the volume.
+template <class Space, class T, int Dim>
+std::vector<Table> nodal_fields(const State<Space, T, Dim>& s) {
+  std::vector<Table> fields{nodes_of(s, s.nodes.soil)};
+  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) fields.push_back(nodes_of(s, rigid_field(s, r)));
+  if (s.interface_shear) fields.push_back(nodes_of(s, s.nodes.volume));
+  return fields;
+}
+
+inline double component(double value, int) { return value; }
+template <class T, int Dim>
+double component(const Vector<T, Dim>& value, int k) {
+  return value[k];
+}
+template <class T, int Dim>
+double component(const SymTensor<T, Dim>& value, int k) {
+  return value[k];
+}
+
+/// A field of points by id.
+template <class Points_, class Field>
+Table by_id(const Points_& points, const Field& field) {
+  using Value = typename Field::value_type;
+  const auto host = on_host(field);
+  const auto id = on_host(points.id);
+  Table table{1, {}};
+  if constexpr (!std::is_arithmetic_v<Value>) table.width = sizeof(Value) / sizeof(std::declval<Value>()[0]);
+  table.value.resize(std::size_t(points.count) * table.width);
+  for (int p = 0; p < points.count; ++p)
+    for (int k = 0; k < table.width; ++k) table.value[std::size_t(id(p)) * table.width + k] = component(host(p), k);
+  return table;
+}
+
+/// Every field of for_each_field, by id.
+template <class Points_>
+std::vector<Table> carried_fields(Points_ points) {
+  std::vector<Table> fields;
+  for_each_field(points, [&](const auto& field) { fields.push_back(by_id(points, field)); });
+  return fields;
+}
+
+/// Positions [cells], velocities and stresses of the soil, by id.
+template <class Space, class T, int Dim>
+std::vector<Table> soil_fields(const State<Space, T, Dim>& s) {
+  SoilFields soil = download_soil(s);
+  for (double& x : soil.position) x /= s.spacing;
+  return {{Dim, soil.position}, {Dim, soil.velocity}, {sym_size<Dim>, soil.stress}, {1, soil.volume}};
+}
+
+/// Largest difference of two tables over the largest value of its column; infinite where either is not finite.
+inline double largest_difference(const Table& got, const Table& expected) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  if (got.width != expected.width || got.value.size() != expected.value.size()) return infinite;
+  double largest = 0;
+  for (int k = 0; k < expected.width; ++k) {
+    double difference = 0, scale = 0;
+    for (std::size_t n = k; n < expected.value.size(); n += expected.width) {
+      if (!std::isfinite(got.value[n]) || !std::isfinite(expected.value[n])) return infinite;
+      difference = std::max(difference, std::fabs(got.value[n] - expected.value[n]));
+      scale = std::max(scale, std::fabs(expected.value[n]));
+    }
+    if (difference > 0) largest = std::max(largest, difference / scale);
+  }
+  return largest;
+}
+inline double largest_difference(const std::vector<Table>& got, const std::vector<Table>& expected) {
+  double largest = got.size() == expected.size() ? 0 : std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < std::min(got.size(), expected.size()); ++n)
+    largest = std::max(largest, largest_difference(got[n], expected[n]));
+  return largest;
+}
+
+/// Displacement [cells] of point `id` along d, any within the margin; for many points exactly it, up or down.
+inline double drift_of(int id, int d, double margin) {
+  std::uint32_t h = (id * 3u + d) * 2654435761u;
+  h = (h ^ (h >> 15)) * 2246822519u;
+  h ^= h >> 13;
+  if (h % 4 == 0) return margin;
+  if (h % 4 == 1) return -margin;
+  return margin * ((h >> 8) * 0x1p-23 - 1);
+}
+template <class T, int Dim, class Points_>
+void drift(const Points_& points, double margin) {
+  const auto x = on_host(points.coordinate);
+  const auto id = on_host(points.id);
+  for (int p = 0; p < points.count; ++p)
+    for (int d = 0; d < Dim; ++d) x(p)[d] += static_cast<T>(drift_of(id(p), d, margin));
+  Kokkos::deep_copy(points.coordinate, x);
+}
+
+/// Moves every point, soil and rigid, by drift_of. Bins and lists stay as they are.
+template <class Space, class T, int Dim>
+void drift_within_margin(State<Space, T, Dim>& s) {
+  drift<T, Dim>(s.soil.points, s.p2g.margin);
+  for (auto& set : s.rigid_points) drift<T, Dim>(set.points, s.p2g.margin);
+}
+
+}  // namespace mpm::test
