@@ -18,7 +18,8 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
         in.not_taken(name, "a mesh in 2D has no such side");
         continue;
       }
-      in.word({.name = name, .meaning = "what holds at that side: no normal velocity, no velocity, nothing"},
+      in.word({.name = name,
+               .meaning = "what holds at that side: no normal velocity, no velocity at all, nothing"},
               words, mesh.walls[d][side]);
     }
 }

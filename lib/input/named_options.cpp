@@ -61,18 +61,13 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, B
   if (sound && mesh) check_shape(in, body.name, body.shape, *mesh, config.dim);
 
   in.section("Each body NAME");
-  std::string material;
-  const std::string option = body.name + "_material";
-  in.text({.name = option, .meaning = "its material, one of -materials", .required = true}, material);
-  const auto found = std::find_if(config.materials.begin(), config.materials.end(),
-                                  [&](const MaterialConfig& m) { return m.name == material; });
-  std::vector<std::string> names;
-  for (const auto& m : config.materials) names.push_back(m.name);
-  if (found != config.materials.end())
-    body.material = static_cast<int>(found - config.materials.begin());
-  else if (!material.empty())
-    in.reject(option,
-              names.empty() ? "one of -materials, which names none" : "one of -materials: " + one_of(names));
+  std::vector<std::string> materials;
+  for (const auto& material : config.materials) materials.push_back(material.name);
+  in.word({.name = body.name + "_material",
+           .meaning = "its material",
+           .required = true,
+           .aside = materials.empty() ? "a name of -materials, which lists none" : ", of -materials"},
+          materials, body.material);
   in.vector({.name = body.name + "_velocity", .meaning = "initial velocity", .unit = "m/s"}, config.dim,
             body.velocity);
 }

@@ -57,8 +57,8 @@ class OptionReader {
   /// `dim` numbers; the others stay.
   bool vector(const Option& option, int dim, Vec3& value);
   bool text(const Option& option, std::string& value);
-  /// A list of any length; `takes` says of what, since only the caller can check it. Where a piece is empty, which is
-  /// reported, the value still holds all pieces.
+  /// A list of any length; `takes` says of what, since only the caller can check it. Where a piece is empty,
+  /// which is reported, the value still holds all pieces.
   bool list_of(const Option& option, const std::string& takes, std::vector<std::string>& value);
   /// An index into the words.
   bool word(const Option& option, const std::vector<std::string>& words, int& index);
