@@ -69,7 +69,7 @@ class Plot(unittest.TestCase):
     def test_reference_curves(self):
         for spacing, fillet, mean in ((0.1, False, 6.97), (0.05, False, 6.10), (0.025, False, 5.72), (0.025, True, 5.66)):
             w, nc = plot.reference_curve(spacing, fillet)
-            self.assertLess(abs(plot.mean_over(w, nc, np.ones(len(w))) - mean), 0.05)
+            self.assertLess(abs(plot.mean_over(w, nc, np.ones(len(w))) - mean), 0.01)
         self.assertIsNone(plot.reference_curve(0.07, False))
 
     def test_pictures(self):
