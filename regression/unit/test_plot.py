@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What scripts/plot computes and draws, on a made-up footing: run with python3, needs numpy, h5py and matplotlib."""
+"""What scripts/results.py computes and scripts/plot draws, on a made-up footing. Needs numpy, h5py and matplotlib."""
 
 import importlib.machinery
 import importlib.util
@@ -13,8 +13,11 @@ import h5py
 import numpy as np
 
 sys.dont_write_bytecode = True
-SCRIPT = str(pathlib.Path(__file__).resolve().parents[2] / "scripts" / "plot")
-loader = importlib.machinery.SourceFileLoader("plot", SCRIPT)
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+sys.path.insert(0, str(SCRIPTS))
+import results  # noqa: E402
+
+loader = importlib.machinery.SourceFileLoader("plot", str(SCRIPTS / "plot"))
 plot = importlib.util.module_from_spec(importlib.util.spec_from_loader("plot", loader))
 loader.exec_module(plot)
 
@@ -48,38 +51,39 @@ class Plot(unittest.TestCase):
 
     def test_half_model_doubles_width_and_force(self):
         write_run(self.folder, nc=5.5)
-        run = plot.Run(self.folder)
-        width, unit_force = plot.footing(run, "plate")
+        run = results.Run(self.folder)
+        width, unit_force = results.footing(run, "plate")
         self.assertAlmostEqual(width, 1.0)
         self.assertAlmostEqual(unit_force, 1500.0)
-        w, nc, weight = plot.bearing_curve(run, "plate")
-        self.assertAlmostEqual(plot.mean_over(w, nc, weight), 5.5)
-        centres, means = plot.window_means(w, nc, weight)
+        w, nc, weight = results.bearing_curve(run, "plate")
+        self.assertAlmostEqual(results.mean_over(w, nc, weight), 5.5)
+        centres, means = results.window_means(w, nc, weight)
         self.assertEqual(len(centres), 20)
         np.testing.assert_allclose(means, 5.5)
 
     def test_a_plate_off_the_symmetry_plane_is_whole(self):
         write_run(self.folder, nc=5.5, plate_lower="1,4", plate_upper="1.5,4.05")
-        self.assertAlmostEqual(plot.footing(plot.Run(self.folder), "plate")[0], 0.5)
+        self.assertAlmostEqual(results.footing(results.Run(self.folder), "plate")[0], 0.5)
 
     def test_a_sideways_or_free_rigid_is_no_footing(self):
         write_run(self.folder, nc=5.5, plate_velocity="0.1,-0.1")
-        self.assertIsNone(plot.footing(plot.Run(self.folder), "plate"))
+        self.assertIsNone(results.footing(results.Run(self.folder), "plate"))
 
     def test_reference_curves(self):
-        for spacing, fillet, mean in ((0.1, False, 6.97), (0.05, False, 6.10), (0.025, False, 5.72), (0.025, True, 5.66)):
-            w, nc = plot.reference_curve(spacing, fillet)
-            self.assertLess(abs(plot.mean_over(w, nc, np.ones(len(w))) - mean), 0.01)
-        self.assertIsNone(plot.reference_curve(0.07, False))
+        known = ((0.1, False, 6.97), (0.05, False, 6.10), (0.025, False, 5.72), (0.025, True, 5.66))
+        for spacing, fillet, mean in known:
+            w, nc = results.reference_curve(spacing, fillet)
+            self.assertLess(abs(results.mean_over(w, nc, np.ones(len(w))) - mean), 0.01)
+        self.assertIsNone(results.reference_curve(0.07, False))
 
     def test_pictures(self):
         write_run(self.folder, nc=5.5)
-        run = plot.Run(self.folder)
+        run = results.Run(self.folder)
         for path in (plot.draw_curves(run, []), plot.draw_field(run)):
             self.assertGreater(path.stat().st_size, 10000)
 
     def test_an_empty_folder_gives_no_picture(self):
-        run = plot.Run(self.folder)
+        run = results.Run(self.folder)
         self.assertIsNone(plot.draw_curves(run, []))
         self.assertIsNone(plot.draw_field(run))
 

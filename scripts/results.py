@@ -1,0 +1,154 @@
+"""What a run wrote, as arrays, and what follows from it: the bearing capacity of a footing. Needs numpy and h5py."""
+
+import csv
+import json
+import re
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+CASES = Path(__file__).resolve().parent.parent / "regression" / "cases"
+WINDOW = 0.01  # B, width of the windows over which Nc is averaged
+MEAN_FROM, MEAN_TO = 0.03, 0.20  # B, range of the mean that is reported
+
+
+class Run:
+    """A run's output: options {name: text}, history {column: array [rows]}, and its last frame's path or None."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        self.options = read_options(self.folder)
+        self.history = read_history(self.folder / "history.csv")
+        self.frame = max(self.folder.glob("frames/frame_*.h5"), default=None)
+
+    def text(self, name, default=""):
+        return self.options.get(name, default)
+
+    def words(self, name):
+        return [word for word in self.text(name).split(",") if word]
+
+    def numbers(self, name, default=()):
+        return [float(word) for word in self.words(name)] or list(default)
+
+    def number(self, name, default=0.0):
+        return self.numbers(name, [default])[0]
+
+    def columns(self, name):
+        """History columns NAMEx, NAMEy [, NAMEz] as an array [rows, dim]."""
+        return np.column_stack([self.history[name + axis] for axis in "xyz" if name + axis in self.history])
+
+    def moving_rigids(self):
+        return [name for name in self.words("rigids") if self.text(f"{name}_motion", "fixed") != "fixed"]
+
+
+def read_options(folder):
+    path = folder / "options.json"
+    if not path.exists():
+        print(f"plot: {path} is missing: nothing is known of bodies and rigids", file=sys.stderr)
+        return {}
+    return {name: text for name, text in json.loads(path.read_text())["options"].items() if text != "none"}
+
+
+def read_history(path):
+    """Columns of history.csv as arrays [rows]; empty if the file or its rows are missing."""
+    if not path.exists():
+        print(f"plot: {path} is missing: no curve", file=sys.stderr)
+        return {}
+    with open(path, newline="") as file:
+        header, *rows = csv.reader(file)
+    if not rows:
+        print(f"plot: {path} has no rows: no curve", file=sys.stderr)
+        return {}
+    return dict(zip(header, np.array(rows, dtype=float).T))
+
+
+def read_frame(path):
+    """Time [s] and {group: {field: array}} of one frame."""
+    with h5py.File(path) as file:
+        groups = {name: {key: data[()] for key, data in group.items()} for name, group in file.items()}
+        return float(file.attrs["time"]), groups
+
+
+# ---------------------------------------------------------------------------------------------- bearing capacity
+
+
+def extent(run, name):
+    """Lower and upper x of a rigid's or body's shape, m."""
+    shape = run.text(f"{name}_shape", "box")
+    if shape == "polygon":
+        x = run.numbers(f"{name}_polygon")[::2]
+        return min(x), max(x)
+    if shape == "disc":
+        centre, radius = run.number(f"{name}_centre"), run.number(f"{name}_radius")
+        return centre - radius, centre + radius
+    return run.number(f"{name}_lower"), run.number(f"{name}_upper")
+
+
+def is_half_model(run, name):
+    """Does the rigid touch a roller side of the mesh, a plane of symmetry?"""
+    left, right = extent(run, name)
+    near = 1e-6 * max(run.number("mesh_spacing"), 1e-12)
+    return (abs(left - run.number("mesh_lower")) < near and run.text("mesh_xmin") == "roller") or (
+        abs(right - run.number("mesh_upper")) < near and run.text("mesh_xmax") == "roller")
+
+
+def strength_below(run, name):
+    """Undrained strength [Pa] of the first von_mises material, at the level of the rigid's underside; 0 if none."""
+    for material in run.words("materials"):
+        if run.text(f"{material}_model") == "von_mises":
+            level = run.numbers(f"{name}_lower", [0, 0])[1]
+            depth = max(run.number(f"{material}_su_datum") - level, 0)
+            return run.number(f"{material}_su") + depth * run.number(f"{material}_su_gradient")
+    return 0.0
+
+
+def footing(run, name):
+    """Width B [m] and the force on the modelled part at Nc = 1 [N/m], if `name` is pushed straight down into clay in
+    2D, else None."""
+    velocity = run.numbers(f"{name}_velocity", [0, 0])
+    strength = strength_below(run, name)
+    vertical = run.text(f"{name}_motion") == "prescribed" and velocity[0] == 0 and velocity[1] < 0
+    if run.text("dim", "2") != "2" or not vertical or strength == 0:
+        return None
+    left, right = extent(run, name)
+    return (2 if is_half_model(run, name) else 1) * (right - left), strength * (right - left)
+
+
+def bearing_curve(run, name):
+    """Penetration w/B and Nc of each row of the history, and the weight (advance) of the row. The force is the mean
+    over the interval that ends at the row, so it belongs to the middle of the interval."""
+    width, unit_force = footing(run, name)
+    w = -run.history[f"{name}_y"] / width
+    return (w[1:] + w[:-1]) / 2, run.history[f"{name}_force_y"][1:] / unit_force, np.diff(w)
+
+
+def window_means(w, nc, weight, window=WINDOW):
+    """Means of nc over the windows [k, k + 1] * window, k = 0, 1, ...: middles and means of those that are filled."""
+    weight = np.where(w > 0, np.maximum(weight, 0), 0)
+    place = np.maximum(w / window, 0).astype(int)
+    total = np.bincount(place, weight)
+    sums = np.bincount(place, weight * nc)
+    full = np.flatnonzero(total > 0.8 * window)
+    return (full + 0.5) * window, sums[full] / total[full]
+
+
+def mean_over(w, nc, weight, lower=MEAN_FROM, upper=MEAN_TO):
+    """Mean of nc over lower <= w <= upper, NaN where the run has nothing there."""
+    inside = (w >= lower) & (w <= upper)
+    return np.average(nc[inside], weights=weight[inside]) if weight[inside].sum() > 0 else np.nan
+
+
+def reference_curve(relative_spacing, fillet):
+    """Middles of the windows w/B and Nc of the stored curve for cells of d/B, or None. Columns are named Nc_d=0.05B or
+    Nc_d=0.05B_fillet, and w_over_B is the end of each window."""
+    for path in sorted(CASES.glob("footing*/reference.csv")):
+        with open(path, newline="") as file:
+            header, *rows = csv.reader(line for line in file if not line.startswith("#"))
+        for k, column in enumerate(header):
+            match = re.fullmatch(r"Nc_d=([0-9.]+)B(_fillet)?", column)
+            if match and bool(match[2]) == fillet and abs(float(match[1]) / relative_spacing - 1) < 1e-3:
+                values = np.array(rows, dtype=float)
+                return values[:, 0] - (values[1, 0] - values[0, 0]) / 2, values[:, k]
+    return None
