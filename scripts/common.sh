@@ -15,15 +15,16 @@ export OMP_PROC_BIND=${OMP_PROC_BIND:-false}
 has_cuda() { [ -n "$MPM_KOKKOS_CUDA" ]; }
 has_gpu() { has_cuda && nvidia-smi -L >/dev/null 2>&1; }
 
-# build PRESET: its output goes to a log, of which the end is shown if it fails
+# build PRESET [cmake's options]: its output goes to a log, of which the end is shown if it fails
 build() {
-  local dir=$source_dir/build/$1 log=$source_dir/build/$1.log fresh=
+  local preset=$1 dir=$source_dir/build/$1 log=$source_dir/build/$1.log fresh=
+  shift
   mkdir -p "$dir"
   # CMake remembers where it found things: with other dependencies it has to start afresh.
   if ! echo "$environment" | cmp -s - "$dir/dependencies"; then fresh=--fresh; fi
-  echo "Building $1 (output in $log)"
-  if ! { cmake $fresh -S "$source_dir" --preset "$1" && echo "$environment" >"$dir/dependencies" &&
-         cmake --build "$dir"; } >"$log" 2>&1; then
+  echo "Building $preset (output in $log)"
+  if ! { cmake $fresh -S "$source_dir" --preset "$preset" && echo "$environment" >"$dir/dependencies" &&
+         cmake --build "$dir" "$@"; } >"$log" 2>&1; then
     tail -n 40 "$log" >&2
     echo "The build failed; all of its output is in $log" >&2
     exit 1
