@@ -4,9 +4,21 @@
 #include <mpi.h>
 #include <petscsys.h>
 
+#include <cstdio>
+#include <cstdlib>
+
 #include "mpm/simulation.hpp"
 
 namespace {
+
+constexpr int k_system_failure = 1;  // exit status of what neither the input nor the computation explains
+
+/// One line instead of PETSc's page, where an error is met first.
+PetscErrorCode tell_in_one_line(MPI_Comm, int, const char*, const char*, PetscErrorCode error, PetscErrorType type,
+                                const char* message, void*) {
+  if (type == PETSC_ERROR_INITIAL) std::fprintf(stderr, "mpm: %s\n", message != nullptr ? message : "the system failed");
+  return error;
+}
 
 PetscErrorCode run(const mpm::InputReport& arguments, mpm::Outcome* outcome) {
   PetscFunctionBeginUser;
@@ -20,14 +32,17 @@ PetscErrorCode run(const mpm::InputReport& arguments, mpm::Outcome* outcome) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  setenv("OMP_PROC_BIND", "false", 0);  // what an unset variable means; Kokkos would warn of it
   MPI_Init(&argc, &argv);
   Kokkos::initialize(argc, argv);  // first: takes its --kokkos-* words out of argv
   const auto arguments = mpm::prepare_arguments(MPI_COMM_WORLD, &argc, argv);
   PetscCall(PetscInitialize(&argc, &argv, nullptr, nullptr));
+  PetscCall(PetscPushErrorHandler(tell_in_one_line, nullptr));
   mpm::Outcome outcome{};
-  PetscCall(run(*arguments, &outcome));
+  const bool whole = run(*arguments, &outcome) == PETSC_SUCCESS;
+  PetscCall(PetscPopErrorHandler());
   PetscCall(PetscFinalize());
   Kokkos::finalize();
   MPI_Finalize();
-  return static_cast<int>(outcome);
+  return whole ? static_cast<int>(outcome) : k_system_failure;
 }

@@ -23,7 +23,7 @@ KOKKOS_INLINE_FUNCTION AxisWeights<T> axis_weights(T x, T l) {
   a.first = static_cast<int>(low);
   const T r = x - low;                           // distance from the first node, l <= r < 1 + l
   const T over = Kokkos::fmax(T(0), r - 1 + l);  // how far the particle reaches beyond the second node
-  a.g[2] = over / (2 * l);
+  a.g[2] = over * (T(0.5) / l);
   a.g[0] = a.g[2] - 1;
   a.g[1] = 1 - 2 * a.g[2];
   a.w[2] = l * a.g[2] * a.g[2];

@@ -16,6 +16,7 @@ AnyMaterial<T> make(ModelList<Models...>, int which, const std::vector<double>& 
     int n = 0;
     for (const auto& parameter : Model::parameters())
       reinterpret_cast<Model*>(any.bytes)->*parameter.member = static_cast<T>(values.at(n++));
+    reinterpret_cast<Model*>(any.bytes)->prepare();
   };
   (void)((which == k++ ? (fill(static_cast<Models<T>*>(nullptr)), true) : false) || ...);
   return any;

@@ -12,6 +12,7 @@ struct LinearElastic {
   using real = T;
   static constexpr const char* k_name = "linear_elastic";
   T young, poisson;
+  T lambda, shear_modulus;  // Pa, of young and poisson
 
   static constexpr auto parameters() {
     constexpr double required = std::numeric_limits<double>::quiet_NaN();
@@ -19,8 +20,13 @@ struct LinearElastic {
         {{"young", &LinearElastic::young, "Pa", "Young's modulus", 1e-3, 1e15, required},
          {"poisson", &LinearElastic::poisson, "-", "Poisson's ratio", -0.99, 0.4999, required}}};
   }
+  /// Called once the parameters are set.
+  void prepare() {
+    lambda = static_cast<T>(lame_of<double>(young, poisson));
+    shear_modulus = static_cast<T>(shear_modulus_of<double>(young, poisson));
+  }
   /// lambda + 2 G [Pa], which gives the speed of the fastest wave (Eq. 14).
-  double wave_modulus() const { return lame_of<double>(young, poisson) + 2 * shear_modulus_of<double>(young, poisson); }
+  double wave_modulus() const { return lambda + 2 * shear_modulus; }
   /// Undrained shear strength at a height [m]; none here.
   double strength_at(double) const { return 0; }
 
@@ -28,7 +34,7 @@ struct LinearElastic {
   KOKKOS_FUNCTION void update(MaterialState<T, Dim>& state, const SymTensor<T, Dim>& d_strain, const Spin<T, Dim>& d_spin,
                               T /*dt*/) const {
     state.stress = rotated(state.stress, d_spin);
-    add_elastic(state.stress, d_strain, lame_of(young, poisson), shear_modulus_of(young, poisson));
+    add_elastic(state.stress, d_strain, lambda, shear_modulus);
   }
 };
 

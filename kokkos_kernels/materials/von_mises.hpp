@@ -14,6 +14,7 @@ struct VonMises {
   using real = T;
   static constexpr const char* k_name = "von_mises";
   T young, poisson, su, su_gradient, su_datum;
+  T lambda, shear_modulus;  // Pa, of young and poisson
 
   static constexpr auto parameters() {
     constexpr double required = std::numeric_limits<double>::quiet_NaN();
@@ -24,8 +25,13 @@ struct VonMises {
          {"su_gradient", &VonMises::su_gradient, "Pa/m", "growth of the strength with depth", 0, 1e12, 0},
          {"su_datum", &VonMises::su_datum, "m", "level below which the strength grows", -1e9, 1e9, 0}}};
   }
+  /// Called once the parameters are set.
+  void prepare() {
+    lambda = static_cast<T>(lame_of<double>(young, poisson));
+    shear_modulus = static_cast<T>(shear_modulus_of<double>(young, poisson));
+  }
   /// lambda + 2 G [Pa], which gives the speed of the fastest wave (Eq. 14).
-  double wave_modulus() const { return lame_of<double>(young, poisson) + 2 * shear_modulus_of<double>(young, poisson); }
+  double wave_modulus() const { return lambda + 2 * shear_modulus; }
   /// Undrained shear strength at a height [m].
   double strength_at(double height) const {
     return su + (height < su_datum ? su_gradient * (su_datum - height) : 0.0);
@@ -34,12 +40,11 @@ struct VonMises {
   template <int Dim>
   KOKKOS_FUNCTION void update(MaterialState<T, Dim>& state, const SymTensor<T, Dim>& d_strain, const Spin<T, Dim>& d_spin,
                               T /*dt*/) const {
-    const T shear_modulus = shear_modulus_of(young, poisson);
     SymTensor<T, Dim>& s = state.stress;
     s = rotated(s, d_spin);
-    add_elastic(s, d_strain, lame_of(young, poisson), shear_modulus);
+    add_elastic(s, d_strain, lambda, shear_modulus);
 
-    const T mean = (s[0] + s[1] + s[2]) / 3;
+    const T mean = (s[0] + s[1] + s[2]) * T(1.0 / 3);
     T j2 = 0;
     for (int k = 0; k < sym_size<Dim>; ++k) {
       const T deviator = k < 3 ? s[k] - mean : s[k];
