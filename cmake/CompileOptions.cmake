@@ -10,7 +10,8 @@ string(REPLACE ";" "," host_options_of_nvcc "${host_options}")
 add_compile_options(
   "$<$<COMPILE_LANGUAGE:CXX>:${host_options};-Wextra>"
   # No -Wextra for nvcc: it would speak of the code that nvcc generates.
-  "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${host_options_of_nvcc}>")
+  # Relaxed: constexpr lambdas of the host may be called by functions of host and device.
+  "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;-Xcompiler=${host_options_of_nvcc}>")
 # No C++ bindings of MPI: they would have to be linked.
 add_compile_definitions(OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
 # Only what is used is loaded at run time.
