@@ -6,7 +6,8 @@ set(host_options -fno-math-errno -ffp-contract=fast -Wall)
 if(MPM_ARCH)
   list(APPEND host_options -march=${MPM_ARCH})
 endif()
-string(REPLACE ";" "," host_options_of_nvcc "${host_options}")
+# nvcc writes parentheses into the code that it hands to the host compiler.
+string(REPLACE ";" "," host_options_of_nvcc "${host_options};-Wno-parentheses")
 add_compile_options(
   "$<$<COMPILE_LANGUAGE:CXX>:${host_options};-Wextra>"
   # No -Wextra for nvcc: it would speak of the code that nvcc generates.
