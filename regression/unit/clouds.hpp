@@ -1,9 +1,11 @@
 #pragma once
 // Particles for tests, described once and put on every execution space, real type and dimension.
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <stdexcept>
 #include <string>
 
 #include "step_kernels.hpp"
@@ -44,8 +46,17 @@ void for_each_reference(F&& f) {
 #undef MPM_TEST_BUILD
 }
 
+/// The same space with another number of threads, where it has threads to number.
+template <class Space>
+Space with_other_threads() {
+#ifdef KOKKOS_ENABLE_OPENMP
+  if constexpr (std::is_same_v<Space, Kokkos::OpenMP>) return Space(Space().concurrency() > 1 ? 1 : 2);
+#endif
+  return Space();
+}
+
 inline constexpr P2G k_strategies[] = {P2G::sequential, P2G::atomic, P2G::mosaic, P2G::gather, P2G::tile};
-inline const char* name_of(P2G how) {
+inline const char* strategy_name(P2G how) {
   const char* const words[] = {"sequential", "atomic", "mosaic", "gather", "tile", "auto"};
   return words[static_cast<int>(how)];
 }

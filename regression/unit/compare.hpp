@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <stdexcept>
 
 #include "clouds.hpp"
-#include "particle_to_node.hpp"
+#include "step/step.hpp"
 
 namespace mpm::test {
 
@@ -18,33 +18,23 @@ auto on_host(const View& view) {
 /// The nodal field of one rigid.
 template <class Space, class T, int Dim>
 NodeField<Space, T, RigidShare<Dim>::size> rigid_field(const State<Space, T, Dim>& s, std::size_t r) {
-  return Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL);
+  return Kokkos::subview(s.nodes.rigid, static_cast<int>(r), Kokkos::ALL, Kokkos::ALL);
 }
 
 /// Functions 1 to 3 of a step.
 template <class Space, class T, int Dim>
 void interpolate(State<Space, T, Dim>& s) {
   reset_nodes(s);
-  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
-    auto& set = s.rigid_points[r];
-    particle_to_node(s.p2g.strategy, Interpolation<RigidSource<Space, T, Dim>>{s.space, s.grid, s.patches, set.bins, {set.points},
-                                                                               rigid_field(s, r), s.control, s.p2g.mosaic_cells});
-  }
-  const auto& soil = s.soil.points;
-  particle_to_node(s.p2g.strategy, Interpolation<SoilSource<Space, T, Dim>>{s.space, s.grid, s.patches, s.soil.bins,
-                                                                            {soil, s.grid.inv_spacing}, s.nodes.soil, s.control,
-                                                                            s.p2g.mosaic_cells});
-  if (s.interface_shear)
-    particle_to_node(s.p2g.strategy, Interpolation<VolumeSource<Space, T, Dim>>{s.space, s.grid, s.patches, s.soil.bins, {soil},
-                                                                                s.nodes.volume, s.control, s.p2g.mosaic_cells});
+  rigids_to_nodes(s);
+  soil_to_nodes(s);
 }
 
+/// One step, without timing it.
 template <class Space, class T, int Dim>
-void step(State<Space, T, Dim>& s, double dt) {
-  interpolate(s);
-  update_nodes(s, dt);
-  update_particles(s, dt);
-  move_rigids(s, dt);
+void one_step(State<Space, T, Dim>& s, double dt) {
+  Timers timers;
+  timers.sample(false);
+  if (timers.create() != PETSC_SUCCESS || step(s, timers, dt) != PETSC_SUCCESS) throw std::runtime_error("a step failed");
 }
 
 /// n steps, with a rebuild whenever the movement bound asks for it. Stops at a fault. Returns the rebuilds.
@@ -52,7 +42,7 @@ template <class Space, class T, int Dim>
 int run_steps(State<Space, T, Dim>& s, double dt, int n) {
   int rebuilds = 0;
   for (; n > 0; --n) {
-    step(s, dt);
+    one_step(s, dt);
     const Control control = look(s);
     if (control.fault_count > 0) return rebuilds;
     if (control.paused) rebuild(s), ++rebuilds;

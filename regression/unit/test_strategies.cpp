@@ -35,15 +35,6 @@ Total total_of(const Table& table, int column) {
   return t;
 }
 
-/// The same space with another number of threads, where it has threads to number.
-template <class Space>
-Space with_other_threads() {
-#ifdef KOKKOS_ENABLE_OPENMP
-  if constexpr (std::is_same_v<Space, Kokkos::OpenMP>) return Space(Space().concurrency() > 1 ? 1 : 2);
-#endif
-  return Space();
-}
-
 /// Notes which of the mosaic's blocks give to a node; the number of nodes that two blocks of one colour share.
 template <int Dim>
 int shared_nodes(const StateOf<Reference<Dim>>& s) {
@@ -80,7 +71,7 @@ TEST_CASE("every strategy gives the nodal fields of the plain loop in double on 
           using B = decltype(build);
           if constexpr (B::dim == Dim)
             for (P2G how : k_strategies) {
-              INFO(build.name() << ' ' << name_of(how) << " seed " << seed << " margin " << margin);
+              INFO(build.name() << ' ' << strategy_name(how) << " seed " << seed << " margin " << margin);
               CHECK(largest_difference(drifted_fields<B>(cloud, how), expected) < B::of(1e-12, 1e-5));
             }
         });
@@ -137,7 +128,7 @@ TEST_CASE("every strategy keeps the total mass and momentum, at walls too, and i
       }
     }
     for (P2G how : k_strategies) {
-      INFO(build.name() << ' ' << name_of(how));
+      INFO(build.name() << ' ' << strategy_name(how));
       const auto fields = drifted_fields<B>(cloud, how);
       CHECK(std::fabs(total_of(fields[0], S::mass).sum / mass - 1) < tolerance);
       for (int d = 0; d < Dim; ++d) {
@@ -160,7 +151,7 @@ TEST_CASE("gather and the plain loop give the same bits on every run and number 
     using B = decltype(build);
     const Cloud cloud = random_cloud<B::dim>(4);
     for (P2G how : {P2G::sequential, P2G::gather}) {
-      INFO(build.name() << ' ' << name_of(how));
+      INFO(build.name() << ' ' << strategy_name(how));
       const auto first = drifted_fields<B>(cloud, how);
       for (int run = 0; run < 3; ++run) CHECK(drifted_fields<B>(cloud, how) == first);
       if (B::is_double) CHECK(drifted_fields<B>(cloud, how, with_other_threads<typename B::Space>()) == first);
@@ -172,7 +163,7 @@ TEST_CASE("no strategy touches a node while the steps are paused", "[strategies]
   for_each_build([](auto build) {
     using B = decltype(build);
     for (P2G how : k_strategies) {
-      INFO(build.name() << ' ' << name_of(how));
+      INFO(build.name() << ' ' << strategy_name(how));
       auto s = state_of<B>(random_cloud<B::dim>(2), how);
       interpolate(s);
       const auto before = nodal_fields(s);
