@@ -26,7 +26,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
   Kokkos::parallel_for("mpm::move_rigids", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
     Control& c = control();
     if (c.paused) return;
-    double speed = sums(0);
+    double speed = 0;
     for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) {
       Rigid<Dim>& rigid = rigids(r);
       for (int d = 0; d < Dim; ++d) {
@@ -37,9 +37,9 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
         if (rigid.dynamic) rigid.velocity[d] += dt * (rigid.force[d] + contact) / rigid.mass;  // Eq. (7)
       }
     }
-    // a sum of weights and a sum of steps in T may be off by their round-off
-    constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;
-    c.increment = speed * dt / spacing * (1 + 16 * epsilon) + epsilon;
+    constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
+    c.increment = Kokkos::fmax(c.moved, speed * dt / spacing) + epsilon;
+    c.moved = 0;
     c.bound += c.increment;
     ++c.steps;
     if (!(c.bound <= margin) || c.fault_count > 0) c.paused = 1;

@@ -62,6 +62,7 @@ struct Fault {
 struct Control {
   double bound;      // cells that any point can have moved since the last rebuild
   double increment;  // of the last step
+  double moved;      // cells, the largest movement of a particle in this step
   int paused;        // the bound passed the margin, or a fault
   int steps;         // steps done since the host last looked
   int fault_count;

@@ -15,7 +15,8 @@ void reset_nodes(State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt);
 
-/// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). dt [s].
+/// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves the
+/// furthest movement of a particle in s.control. dt [s].
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt);
 

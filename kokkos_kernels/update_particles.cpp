@@ -48,9 +48,10 @@ struct UpdateScalars {
   T dt, inv_spacing, flip, pic;
 };
 
-/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position.
+/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. Returns the largest component
+/// of its movement [cells].
 template <class Space, class T, int Dim>
-KOKKOS_INLINE_FUNCTION void advance(const Soil<Space, T, Dim>& soil, int p, const Taken<T, Dim>& t, const UpdateScalars<T>& by) {
+KOKKOS_INLINE_FUNCTION T advance(const Soil<Space, T, Dim>& soil, int p, const Taken<T, Dim>& t, const UpdateScalars<T>& by) {
   SymTensor<T, Dim> d_strain;
   Spin<T, Dim> d_spin;
   increments(t.gradient, by.dt, d_strain, d_spin);
@@ -64,12 +65,16 @@ KOKKOS_INLINE_FUNCTION void advance(const Soil<Space, T, Dim>& soil, int p, cons
   soil.volume(p) *= (2 + trace) / (2 - trace);  // exp(trace) to second order: no drift in rotation
 
   Vector<T, Dim> v_p = soil.velocity(p), x_p = soil.coordinate(p);
+  T moved = 0;
   for (int d = 0; d < Dim; ++d) {
     v_p[d] = by.flip * (v_p[d] + by.dt * t.acceleration[d]) + by.pic * t.velocity[d];
-    x_p[d] += by.dt * t.velocity[d] * by.inv_spacing;
+    const T movement = by.dt * t.velocity[d] * by.inv_spacing;
+    x_p[d] += movement;
+    moved = Kokkos::fmax(moved, Kokkos::fabs(movement));
   }
   soil.velocity(p) = v_p;
   soil.coordinate(p) = x_p;
+  return moved;
 }
 
 /// Reports a particle that is not finite or went so far in a step that the computation cannot be trusted.
@@ -119,12 +124,18 @@ void update_particles(State<Space, T, Dim>& s, double dt_) {
         });
         team.team_barrier();
         const int from = begin(slot * Patch<Dim>::cells), to = begin((slot + 1) * Patch<Dim>::cells);
-        Kokkos::parallel_for(Kokkos::TeamThreadRange(team, from, to), [&](int p) {
+        T moved = 0;
+        const auto particle = [&](int p, T& furthest) {
           const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
           with_weights(soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-            advance(soil, p, take_from_nodes<T, Dim>(nodes.data(), cell, a, by.inv_spacing), by);
+            const T own = advance(soil, p, take_from_nodes<T, Dim>(nodes.data(), cell, a, by.inv_spacing), by);
+            furthest = Kokkos::fmax(furthest, own);
           });
           check(soil, p, origin(slot), cell, spacing, control);
+        };
+        Kokkos::parallel_reduce(Kokkos::TeamThreadRange(team, from, to), particle, Kokkos::Max<T>(moved));
+        Kokkos::single(Kokkos::PerTeam(team), [&] {
+          if (moved > control().moved) Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
         });
       });
 }
