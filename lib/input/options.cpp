@@ -64,7 +64,7 @@ void read_time(OptionReader& in, TimeConfig& time) {
   in.number({.name = "time_courant",
              .meaning = "Courant number that gives the time step",
              .unit = "-",
-             .range = {.lowest = 0, .highest = 1, .open_lowest = true},
+             .range = {.lowest = 0, .highest = k_largest_courant, .open_lowest = true},
              .standard = time.step ? "none" : ""},
             time.courant);
   if (!in.listing() && in.given("time_step") && in.given("time_courant"))

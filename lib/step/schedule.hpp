@@ -9,9 +9,6 @@
 
 namespace mpm {
 
-/// Courant numbers above this are known to be unstable (the energy of an elastic bar grows at 0.7).
-inline constexpr double k_largest_courant = 0.6;
-
 /// The steps of a run: all of dt but the last, which ends at time_end.
 class Schedule {
  public:

@@ -69,6 +69,9 @@ struct RigidConfig {
   bool has_shear_limit = false;    // -NAME_shear_limit was given (it then bounds the friction too)
 };
 
+/// Courant numbers above this are known to be unstable (the energy of an elastic bar grows at 0.7).
+inline constexpr double k_largest_courant = 0.6;
+
 struct TimeConfig {
   double end = 0;                     // s
   double courant = 0.5;               // -, Eq. 14
