@@ -64,7 +64,7 @@ TEST_CASE("steps go on until the bound has passed the margin, and not one step l
         for (int n = 1; n <= last; ++n) {
           REQUIRE(look(s).paused == 0);
           one_step(s, time_to_move(cells, 2));
-          CHECK(std::fabs(look(s).bound - n * cells) < B::of(1e-12, 1e-5));
+          CHECK(std::fabs(look(s).bound - n * cells) < B::of(1e-11, 1e-5));
           CHECK(look(s).bound >= n * cells * (1 - 1e-15));
         }
         CHECK(look(s).paused == 1);

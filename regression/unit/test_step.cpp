@@ -1,0 +1,191 @@
+// Whole steps: free flight, and the same step on every backend, strategy and real type.
+
+#include <catch2/catch_test_macros.hpp>
+
+#include "compare.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+constexpr double k_spacing = 0.1;
+
+/// Positions [cells], velocities, stresses and volumes after n steps.
+template <class B>
+std::vector<Table> fields_after(const Cloud& cloud, P2G how, double dt, int n) {
+  auto s = state_of<B>(cloud, how);
+  run_steps(s, dt, n);
+  if (look(s).fault_count > 0) throw std::runtime_error("a step failed");
+  return soil_fields(s);
+}
+
+/// Half a footing: a smooth plate pressed into clay between rollers, on a fixed base.
+template <int Dim>
+Cloud footing() {
+  const int width = Dim == 2 ? 12 : 6, depth = Dim == 2 ? 9 : 5;
+  Cloud cloud;
+  cloud.grid = grid_of<Dim>({width, depth + 4, 4}, k_spacing, Wall::roller);
+  cloud.grid.walls[1] = {Wall::fixed, Wall::free};
+  cloud.materials = clays();
+  cloud.bodies = {body_of<Dim>(lattice<Dim>({0, 0, 0}, {double(width), double(depth), 4}, 2, k_spacing), 2, k_spacing, 1)};
+  cloud.rigids = {rigid_of<Dim>(lattice<Dim>({0, double(depth), 0}, {3, depth + 1., 2}, 4, k_spacing), 4, k_spacing)};
+  cloud.rigids[0].velocity = {0, -2, 0};
+  cloud.p2g.margin = 0.2;  // rebuilds come sooner
+  return cloud;
+}
+constexpr double k_footing_step = 2e-4;
+
+}  // namespace
+
+TEST_CASE("a body in free flight moves by v t, across rebuilds", "[step]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    const std::array<double, 3> v{20, -12.5, 5};
+    Dice dice{std::mt19937_64(41)};
+    Cloud cloud;
+    cloud.grid = grid_of<Dim>({24, 20, 12}, k_spacing, Wall::free);
+    cloud.materials = clays();
+    cloud.bodies = {random_body<Dim>(dice, {6, 12, 5}, {10, 16, 7}, 0.8, 2, k_spacing),
+                    random_body<Dim>(dice, {9, 10, 4}, {12, 14, 6}, 0.5, 3, k_spacing)};
+    for (auto& body : cloud.bodies) body.velocity = v, body.particle_velocity.clear(), body.stress.clear();
+    const double dt = 1e-4;
+    const int steps = 200;  // 4 cells
+    for (P2G how : {P2G::tile, P2G::gather}) {
+      auto s = state_of<B>(cloud, how);
+      s.mass_cut = 0;  // nodes that are left at rest for their small mass would slow their particles
+      Table expected = soil_fields(s)[0];
+      for (std::size_t n = 0; n < expected.value.size(); ++n) expected.value[n] += v[n % Dim] * dt * steps / k_spacing;
+      const int rebuilds = run_steps(s, dt, steps);
+      INFO(build.name() << ' ' << strategy_name(how));
+      CHECK(rebuilds >= 7);
+      CHECK(look(s).fault_count == 0);
+      CHECK(largest_difference(soil_fields(s)[0], expected) < B::of(1e-12, 1e-5));
+    }
+  });
+}
+
+TEST_CASE("one step of a random cloud is the plain loop's in double on one thread", "[step]") {
+  for_each_reference([](auto reference) {
+    constexpr int Dim = decltype(reference)::dim;
+    for (int seed : {1, 2, 3}) {
+      Cloud cloud = random_cloud<Dim>(seed, seed == 1 ? Wall::roller : Wall::fixed);
+      cloud.gravity = {1, -9.81, 0.5};
+      cloud.flip_share = seed == 2 ? 0.9 : 1;
+      cloud.damping = seed == 3 ? 0.05 : 0;
+      const auto expected = fields_after<Reference<Dim>>(cloud, P2G::sequential, 1e-5, 1);
+      for_each_build([&](auto build) {
+        using B = decltype(build);
+        if constexpr (B::dim == Dim)
+          for (P2G how : k_strategies) {
+            INFO(build.name() << ' ' << strategy_name(how) << " seed " << seed);
+            CHECK(largest_difference(fields_after<B>(cloud, how, 1e-5, 1), expected) < B::of(1e-12, 1e-5));
+          }
+      });
+    }
+  });
+}
+
+TEST_CASE("one step of a footing under way is the plain loop's in double on one thread", "[step]") {
+  for_each_reference([](auto reference) {
+    constexpr int Dim = decltype(reference)::dim;
+    // The state after some steps, with stresses and velocities as they are then.
+    Cloud cloud = footing<Dim>();
+    const auto start = fields_after<Reference<Dim>>(cloud, P2G::sequential, k_footing_step, 40);
+    BodyInput& soil = cloud.bodies[0];
+    for (std::size_t n = 0; n < soil.position.size(); ++n) soil.position[n] = start[0].value[n] * k_spacing;
+    soil.particle_velocity = start[1].value;
+    soil.stress = start[2].value;
+    const auto expected = fields_after<Reference<Dim>>(cloud, P2G::sequential, k_footing_step, 1);
+    for_each_build([&](auto build) {
+      using B = decltype(build);
+      if constexpr (B::dim == Dim)
+        for (P2G how : k_strategies) {
+          INFO(build.name() << ' ' << strategy_name(how));
+          CHECK(largest_difference(fields_after<B>(cloud, how, k_footing_step, 1), expected) < B::of(1e-12, 1e-5));
+        }
+    });
+  });
+}
+
+TEST_CASE("100 steps of a small footing are the plain loop's in double on one thread", "[step]") {
+  for_each_reference([](auto reference) {
+    constexpr int Dim = decltype(reference)::dim;
+    const Cloud cloud = footing<Dim>();
+    const int steps = 100;
+    const auto expected = fields_after<Reference<Dim>>(cloud, P2G::sequential, k_footing_step, steps);
+    for_each_build([&](auto build) {
+      using B = decltype(build);
+      if constexpr (B::dim == Dim && B::is_double)
+        for (P2G how : k_strategies) {
+          INFO(build.name() << ' ' << strategy_name(how));
+          CHECK(largest_difference(fields_after<B>(cloud, how, k_footing_step, steps), expected) < 1e-9);
+        }
+    });
+  });
+}
+
+TEST_CASE("a margin or an interval of rebuilds does not change the solution", "[step]") {
+  for_each_reference([](auto reference) {
+    constexpr int Dim = decltype(reference)::dim;
+    Cloud cloud = footing<Dim>();
+    const auto expected = fields_after<Reference<Dim>>(cloud, P2G::gather, k_footing_step, 50);
+    for (double margin : {0.05, 0.5}) {
+      cloud.p2g.margin = margin;
+      for (P2G how : {P2G::gather, P2G::mosaic, P2G::tile}) {
+        INFO(Dim << "D " << strategy_name(how) << " margin " << margin);
+        CHECK(largest_difference(fields_after<Reference<Dim>>(cloud, how, k_footing_step, 50), expected) < 1e-9);
+      }
+    }
+  });
+}
+
+TEST_CASE("a rigid that moves with a set velocity gathers no round-off", "[step]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    INFO(build.name());
+    Cloud cloud;
+    cloud.grid = grid_of<Dim>({40, 32, 16}, k_spacing, Wall::free);
+    cloud.materials = clays();
+    cloud.rigids = {rigid_of<Dim>(lattice<Dim>({20, 20, 5}, {22, 21, 7}, 4, k_spacing), 4, k_spacing)};
+    cloud.rigids[0].velocity = {0.3, -0.7, 0.1};
+    auto s = state_of<B>(cloud);
+    const auto start = download_rigid_positions(s, 0);
+    run_steps(s, 4e-3, 250);
+    const auto end = download_rigid_positions(s, 0);
+    double largest = 0;
+    for (std::size_t n = 0; n < end.size(); ++n)
+      largest = std::max(largest, std::fabs(end[n] - start[n] - cloud.rigids[0].velocity[n % Dim]) / k_spacing);
+    CHECK(largest < B::of(1e-11, 2e-7));
+  });
+}
+
+TEST_CASE("gravity alone gives free fall", "[step]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    INFO(build.name());
+    Cloud cloud;
+    cloud.grid = grid_of<Dim>({16, 32, 12}, k_spacing, Wall::free);
+    cloud.materials = clays();
+    cloud.bodies = {body_of<Dim>(lattice<Dim>({4, 24, 4}, {8, 28, 7}, 2, k_spacing), 2, k_spacing, 1)};
+    cloud.gravity = {0, -10, 0};
+    auto s = state_of<B>(cloud);
+    s.mass_cut = 0;
+    const auto start = soil_fields(s)[0].value;
+    const double dt = 2e-4;
+    const int steps = 300;
+    run_steps(s, dt, steps);
+    const auto end = soil_fields(s);
+    const double fall = -10 * dt * dt * steps * (steps + 1) / 2 / k_spacing;  // of the symplectic Euler step
+    double position = 0, velocity = 0;
+    for (std::size_t n = 0; n < start.size(); ++n) {
+      position = std::max(position, std::fabs(end[0].value[n] - start[n] - (n % Dim == 1 ? fall : 0)));
+      velocity = std::max(velocity, std::fabs(end[1].value[n] - (n % Dim == 1 ? -10 * dt * steps : 0)));
+    }
+    CHECK(position < B::of(1e-11, 1e-5));
+    CHECK(velocity < B::of(1e-11, 1e-5));
+  });
+}
