@@ -202,8 +202,9 @@ TEST_CASE("the order of the points does not depend on the backend, the number of
     rebuild(expected);
     for_each_build([&](auto build) {
       using B = decltype(build);
-      if constexpr (B::dim == Dim && B::is_double)
-        for (const auto& space : {typename B::Space(), with_other_threads<typename B::Space>()}) {
+      if constexpr (B::dim == Dim && B::is_double) {
+        const std::vector<typename B::Space> spaces{typename B::Space(), with_other_threads<typename B::Space>()};
+        for (const auto& space : spaces) {
           INFO(build.name() << ' ' << space.concurrency() << " threads");
           auto s = state_of<B>(cloud, P2G::sequential, space);
           CHECK(order_of(s) == uploaded);
@@ -213,6 +214,7 @@ TEST_CASE("the order of the points does not depend on the backend, the number of
           rebuild(s);
           CHECK(order_of(s) == order_of(expected));
         }
+      }
     });
   });
 }

@@ -86,6 +86,32 @@ TEST_CASE("the bound counts the fastest of soil and rigids", "[movement_bound]")
   });
 }
 
+TEST_CASE("the bound is the sum of the furthest movements of each step, and no particle has gone further", "[movement_bound]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    INFO(build.name());
+    Cloud cloud = random_cloud<B::dim>(3);
+    cloud.rigids.resize(1);  // moves by less than the soil
+    auto s = state_of<B>(cloud, P2G::tile);
+    const Table start = soil_fields(s)[0];
+    Table before = start;
+    double sum = 0;
+    for (int n = 0; n < 5; ++n) {
+      one_step(s, 2e-5);
+      const Table now = soil_fields(s)[0];
+      double step = 0, far = 0;
+      for (std::size_t k = 0; k < now.value.size(); ++k) {
+        step = std::max(step, std::fabs(now.value[k] - before.value[k]));
+        far = std::max(far, std::fabs(now.value[k] - start.value[k]));
+      }
+      sum += step;
+      before = now;
+      CHECK(look(s).bound >= far - B::of(1e-13, 0));
+      CHECK(std::fabs(look(s).bound - sum) < (n + 1) * B::of(1e-13, 3e-7));
+    }
+  });
+}
+
 TEST_CASE("no step after the bound has passed the margin changes a bit, and a rebuild lets them go on", "[movement_bound]") {
   for_each_build([](auto build) {
     using B = decltype(build);

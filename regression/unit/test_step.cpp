@@ -77,11 +77,12 @@ TEST_CASE("one step of a random cloud is the plain loop's in double on one threa
       const auto expected = fields_after<Reference<Dim>>(cloud, P2G::sequential, 1e-5, 1);
       for_each_build([&](auto build) {
         using B = decltype(build);
-        if constexpr (B::dim == Dim)
+        if constexpr (B::dim == Dim) {
           for (P2G how : k_strategies) {
             INFO(build.name() << ' ' << strategy_name(how) << " seed " << seed);
             CHECK(largest_difference(fields_after<B>(cloud, how, 1e-5, 1), expected) < B::of(1e-12, 1e-5));
           }
+        }
       });
     }
   });
@@ -100,11 +101,12 @@ TEST_CASE("one step of a footing under way is the plain loop's in double on one 
     const auto expected = fields_after<Reference<Dim>>(cloud, P2G::sequential, k_footing_step, 1);
     for_each_build([&](auto build) {
       using B = decltype(build);
-      if constexpr (B::dim == Dim)
+      if constexpr (B::dim == Dim) {
         for (P2G how : k_strategies) {
           INFO(build.name() << ' ' << strategy_name(how));
           CHECK(largest_difference(fields_after<B>(cloud, how, k_footing_step, 1), expected) < B::of(1e-12, 1e-5));
         }
+      }
     });
   });
 }
@@ -117,11 +119,12 @@ TEST_CASE("100 steps of a small footing are the plain loop's in double on one th
     const auto expected = fields_after<Reference<Dim>>(cloud, P2G::sequential, k_footing_step, steps);
     for_each_build([&](auto build) {
       using B = decltype(build);
-      if constexpr (B::dim == Dim && B::is_double)
+      if constexpr (B::dim == Dim && B::is_double) {
         for (P2G how : k_strategies) {
           INFO(build.name() << ' ' << strategy_name(how));
           CHECK(largest_difference(fields_after<B>(cloud, how, k_footing_step, steps), expected) < 1e-9);
         }
+      }
     });
   });
 }

@@ -69,11 +69,12 @@ TEST_CASE("every strategy gives the nodal fields of the plain loop in double on 
         REQUIRE(expected.size() == 4);
         for_each_build([&](auto build) {
           using B = decltype(build);
-          if constexpr (B::dim == Dim)
+          if constexpr (B::dim == Dim) {
             for (P2G how : k_strategies) {
               INFO(build.name() << ' ' << strategy_name(how) << " seed " << seed << " margin " << margin);
               CHECK(largest_difference(drifted_fields<B>(cloud, how), expected) < B::of(1e-12, 1e-5));
             }
+          }
         });
       }
   });
