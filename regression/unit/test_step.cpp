@@ -20,6 +20,13 @@ std::vector<Table> fields_after(const Cloud& cloud, P2G how, double dt, int n) {
   return soil_fields(s);
 }
 
+/// The law at a point, on the host.
+template <int Dim>
+void update_elastic(const MaterialInput& material, MaterialState<double, Dim>& state, const SymTensor<double, Dim>& strain,
+                    const Spin<double, Dim>& spin) {
+  make_material<double>(material.model, material.parameters).visit([&](const auto& law) { law.update(state, strain, spin, 1.0); });
+}
+
 /// Half a footing: a smooth plate pressed into clay between rollers, on a fixed base.
 template <int Dim>
 Cloud footing() {
@@ -63,6 +70,84 @@ TEST_CASE("a body in free flight moves by v t, across rebuilds", "[step]") {
       CHECK(look(s).fault_count == 0);
       CHECK(largest_difference(soil_fields(s)[0], expected) < B::of(1e-12, 1e-5));
     }
+  });
+}
+
+TEST_CASE("in a linear velocity field every particle strains and turns by its gradient", "[step]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    INFO(build.name());
+    const double A[3][3] = {{30, -80, 50}, {20, -70, 40}, {-60, 10, 90}}, dt = 1e-4;  // 1/s
+    const std::array<double, 3> end{12, 10, 9};
+    Cloud cloud;
+    cloud.grid = grid_of<Dim>({12, 10, 9}, k_spacing, Wall::free);
+    cloud.materials = clays();
+    cloud.bodies = {body_of<Dim>(lattice<Dim>({0, 0, 0}, end, 2, k_spacing), 2, k_spacing, 0)};
+    BodyInput& body = cloud.bodies[0];
+    MaterialState<double, Dim> expected{{}, 0, 0};
+    for (int k = 0; k < sym_size<Dim>; ++k) expected.stress[k] = 1000 * (k + 1);
+    for (std::size_t p = 0; p < body.strength.size(); ++p) {
+      for (int d = 0; d < Dim; ++d) {
+        double v = 0;
+        for (int e = 0; e < Dim; ++e) v += A[d][e] * body.position[p * Dim + e];
+        body.particle_velocity.push_back(v);
+      }
+      body.stress.insert(body.stress.end(), expected.stress.c, expected.stress.c + sym_size<Dim>);
+    }
+    SymTensor<double, Dim> strain{};
+    Spin<double, Dim> spin{};
+    double trace = 0;
+    for (int i = 0; i < Dim; ++i) {
+      trace += A[i][i] * dt;
+      for (int j = i; j < Dim; ++j) strain[sym_index<Dim>(i, j)] = (A[i][j] + A[j][i]) * dt / 2;
+    }
+    spin.c[0] = (A[0][1] - A[1][0]) * dt / 2;
+    if constexpr (Dim == 3) spin.c[1] = (A[1][2] - A[2][1]) * dt / 2, spin.c[2] = (A[2][0] - A[0][2]) * dt / 2;
+    update_elastic(cloud.materials[0], expected, strain, spin);
+
+    const auto got = fields_after<B>(cloud, P2G::tile, dt, 1);
+    double stress = 0, volume = 0;
+    int inner = 0;
+    for (std::size_t p = 0; p < body.strength.size(); ++p) {
+      bool inside = true;  // where every node has all of its particles
+      for (int d = 0; d < Dim; ++d) {
+        const double x = body.position[p * Dim + d] / k_spacing;
+        inside = inside && x > 3 && x < end[d] - 3;
+      }
+      if (!inside) continue;
+      ++inner;
+      for (int k = 0; k < sym_size<Dim>; ++k)
+        stress = std::max(stress, std::fabs(got[2].value[p * sym_size<Dim> + k] - expected.stress[k]));
+      volume = std::max(volume, std::fabs(got[3].value[p] / body.particle_volume - std::exp(trace)));
+    }
+    CHECK(inner > 50);
+    CHECK(stress < B::of(1e-12, 1e-4) * 1e5);  // of the largest stress; in single, round-off of velocities gives strain
+    CHECK(volume < B::of(std::fabs(trace * trace * trace), 1e-5));
+  });
+}
+
+TEST_CASE("FLIP and PIC mix by their share, and PIC's velocity is the one that moved the particle", "[step]") {
+  for_each_reference([](auto reference) {
+    using B = decltype(reference);
+    const double dt = 1e-5;
+    Cloud cloud = random_cloud<B::dim>(4);
+    const auto after_one = [&](double flip_share) {
+      cloud.flip_share = flip_share;
+      return fields_after<B>(cloud, P2G::sequential, dt, 1);
+    };
+    const auto start = fields_after<B>(cloud, P2G::sequential, dt, 0);
+    const auto flip = after_one(1), pic = after_one(0), both = after_one(0.75);
+    double mixed = 0, moved = 0;
+    for (std::size_t n = 0; n < both[1].value.size(); ++n) {
+      mixed = std::max(mixed, std::fabs(both[1].value[n] - 0.75 * flip[1].value[n] - 0.25 * pic[1].value[n]));
+      moved = std::max(moved, std::fabs((pic[0].value[n] - start[0].value[n]) * cloud.grid.spacing / dt - pic[1].value[n]));
+    }
+    INFO(B::name());
+    CHECK(mixed < 1e-13);
+    CHECK(moved < 1e-9);  // a difference of positions, over dt
+    CHECK(largest_difference(flip[1], pic[1]) > 1e-2);
+    CHECK(flip[0] == pic[0]);
   });
 }
 
