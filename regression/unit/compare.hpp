@@ -80,6 +80,18 @@ std::vector<Table> nodal_fields(const State<Space, T, Dim>& s) {
   return fields;
 }
 
+/// A mesh of 6 cells of 1 m in each direction.
+template <int Dim>
+Grid<double, Dim> small_grid(Wall wall) {
+  Grid<double, Dim> grid{};
+  grid.spacing = grid.inv_spacing = 1;
+  for (int d = 0; d < Dim; ++d) {
+    grid.cells[d] = 6;
+    grid.wall[d][0] = grid.wall[d][1] = wall;
+  }
+  return grid;
+}
+
 inline double component(double value, int) { return value; }
 template <class T, int Dim>
 double component(const Vector<T, Dim>& value, int k) {

@@ -1,4 +1,4 @@
-// At the nodes: walls, contact with rigids, and what their forces sum to.
+// At the nodes: velocities, accelerations and walls.
 
 #include <catch2/catch_test_macros.hpp>
 
@@ -10,19 +10,6 @@ using namespace mpm::test;
 
 namespace {
 
-constexpr double k_infinite = std::numeric_limits<double>::infinity();
-
-template <int Dim>
-Grid<double, Dim> small_grid(Wall wall) {
-  Grid<double, Dim> grid{};
-  grid.spacing = grid.inv_spacing = 1;
-  for (int d = 0; d < Dim; ++d) {
-    grid.cells[d] = 6;
-    grid.wall[d][0] = grid.wall[d][1] = wall;
-  }
-  return grid;
-}
-
 /// Velocity after the walls of a node that moves with (1, 2, 3).
 template <int Dim>
 Vector<double, Dim> walled(const Grid<double, Dim>& grid, Coord<Dim> node) {
@@ -33,7 +20,6 @@ Vector<double, Dim> walled(const Grid<double, Dim>& grid, Coord<Dim> node) {
 }
 bool equal(const Vector<double, 2>& v, double x, double y) { return v[0] == x && v[1] == y; }
 bool equal(const Vector<double, 3>& v, double x, double y, double z) { return v[0] == x && v[1] == y && v[2] == z; }
-bool near(const Vector<double, 2>& v, double x, double y) { return std::fabs(v[0] - x) + std::fabs(v[1] - y) < 1e-15; }
 
 /// The state with mass 1, momentum (1, 2, 3) and no force at every node.
 template <class B>
@@ -68,48 +54,6 @@ int wrong_nodes(const State<Space, T, Dim>& s, F&& right) {
     wrong += !right(at, v, a);
   }
   return wrong;
-}
-
-/// Soil and a rigid plate in one another, with velocities that press them together.
-template <int Dim>
-Cloud pressed() {
-  const double spacing = 0.1;
-  Cloud cloud;
-  cloud.grid = grid_of<Dim>({20, 18, 12}, spacing, Wall::free);
-  cloud.materials = clays();
-  cloud.bodies = {body_of<Dim>(lattice<Dim>({6, 5, 3}, {14, 9, 8}, 2, spacing), 2, spacing, 1)};
-  cloud.bodies[0].velocity = {0.05, 0.2, -0.03};
-  cloud.rigids = {rigid_of<Dim>(lattice<Dim>({8, 9, 4}, {12, 11, 7}, 4, spacing), 4, spacing)};
-  cloud.rigids[0].velocity = {0.3, -0.5, 0.1};
-  cloud.rigids[0].dynamic = true;
-  cloud.rigids[0].shear_limit = 500;
-  return cloud;
-}
-
-/// Momentum of the nodes' mass at their new velocity.
-template <class Space, class T, int Dim>
-Vector<double, Dim> nodal_momentum(const State<Space, T, Dim>& s) {
-  const auto soil = on_host(s.nodes.soil);
-  const auto motion = on_host(s.nodes.motion);
-  auto sum = filled<double, Dim>(0);
-  for (int i = 0; i < s.patches.node_count(); ++i)
-    for (int d = 0; d < Dim; ++d) sum[d] += double(soil(i, 0)) * motion(i, d);
-  return sum;
-}
-
-/// Momentum of soil particles and rigids.
-template <class Space, class T, int Dim>
-Vector<double, Dim> total_momentum(const State<Space, T, Dim>& s) {
-  const auto velocity = on_host(s.soil.points.velocity);
-  const auto body = on_host(s.soil.points.body);
-  const auto bodies = on_host(s.soil.points.bodies);
-  const auto rigids = on_host(s.rigids);
-  auto sum = filled<double, Dim>(0);
-  for (int d = 0; d < Dim; ++d) {
-    for (int p = 0; p < s.soil.points.count; ++p) sum[d] += double(bodies(body(p)).mass) * velocity(p)[d];
-    for (std::size_t r = 0; r < rigids.extent(0); ++r) sum[d] += rigids(r).mass * rigids(r).velocity[d];
-  }
-  return sum;
 }
 
 }  // namespace
@@ -217,116 +161,5 @@ TEST_CASE("damping takes a share of the acceleration, against the velocity", "[n
     const auto motion = on_host(s.nodes.motion);
     CHECK(motion(0, Dim) == 3);       // speeding up: 4 - 1
     CHECK(motion(0, Dim + 1) == -5);  // slowing down: -4 - 1
-  });
-}
-
-TEST_CASE("contact: no pull, no penetration, and shear up to the lesser of its bounds", "[nodes]") {
-  const Vector<double, 2> v{1, -2}, v_r{0, -0.5}, n{0, -1};  // relative (1, -1.5): approach 1.5, slip 1
-  const auto change = [&](double shear_speed, double friction) {
-    return contact_correction<double, 2>(v, v_r, n, {shear_speed, friction});
-  };
-  CHECK(near(change(0, -1), 0, 1.5));                // smooth
-  CHECK(near(change(0.25, -1), -0.25, 1.5));         // limited
-  CHECK(near(change(k_infinite, -1), -1, 1.5));      // rough: it sticks
-  CHECK(near(change(3, -1), -1, 1.5));               // a limit above the slip does not reverse it
-  CHECK(near(change(k_infinite, 0.4), -0.6, 1.5));   // friction
-  CHECK(near(change(k_infinite, 0), 0, 1.5));
-  CHECK(near(change(0.25, 0.4), -0.25, 1.5));        // both: the limit is less
-  CHECK(near(change(0.8, 0.4), -0.6, 1.5));          // both: friction is less
-  const Vector<double, 2> away{0, 1};
-  CHECK(near(contact_correction<double, 2>(v, v_r, away, {k_infinite, -1}), 0, 0));             // they part
-  CHECK(near(contact_correction<double, 2>({1, -0.5}, v_r, n, {k_infinite, -1}), 0, 0));        // they touch
-  CHECK(near(contact_correction<double, 2>({0, -2}, v_r, n, {0.1, -1}), 0, 1.5));               // no slip
-  const double r = std::sqrt(0.5);
-  CHECK(near(contact_correction<double, 2>({2, 0}, {0, 0}, {r, r}, {0, -1}), -1, -1));           // an inclined face
-  const auto in_3d = contact_correction<double, 3>({3, 4, 2}, {0, 0, 0}, {0, 0, 1}, {1, -1});   // slip (3, 4, 0)
-  CHECK(std::fabs(in_3d[0] + 0.6) + std::fabs(in_3d[1] + 0.8) + std::fabs(in_3d[2] + 2) < 1e-15);
-}
-
-TEST_CASE("the inward normal is against the mass gradient, in a roller's plane, and none in the body", "[nodes]") {
-  const auto grid = small_grid<2>(Wall::roller);
-  Vector<double, 2> n{3, 4};
-  REQUIRE(inward_normal(grid, 0u, 10.0, n));
-  CHECK(near(n, -0.6, -0.8));
-  n = {3, 4};  // on the plane x = 0 the mirrored half is missing
-  REQUIRE(inward_normal(grid, sides_of<double, 2>(grid, {0, 3}), 10.0, n));
-  CHECK(near(n, 0, -1));
-  n = {3, 4};  // a fixed wall is no plane of symmetry
-  REQUIRE(inward_normal(small_grid<2>(Wall::fixed), sides_of<double, 2>(grid, {0, 3}), 10.0, n));
-  CHECK(near(n, -0.6, -0.8));
-  n = {0.03, 0.03};  // less than a twentieth of the mass a cell's edge
-  CHECK_FALSE(inward_normal(grid, 0u, 1.0, n));
-  n = {0, 0.06};
-  CHECK(inward_normal(grid, 0u, 1.0, n));
-  n = {0, 0};
-  CHECK_FALSE(inward_normal(grid, 0u, 0.0, n));
-}
-
-TEST_CASE("below a plate the mass gradient points down, out of it, and none counts in its middle", "[nodes]") {
-  for_each_build([](auto build) {
-    using B = decltype(build);
-    constexpr int Dim = B::dim;
-    Cloud cloud = pressed<Dim>();
-    cloud.rigids = {rigid_of<Dim>(lattice<Dim>({4, 9, 2}, {14, 13, 9}, 4, 0.1), 4, 0.1)};
-    auto s = state_of<B>(cloud);
-    interpolate(s);
-    const Table field = nodes_of(s, rigid_field(s, 0));
-    const auto at = [&](Coord<Dim> node, int k) { return field.value[s.grid.address_of(node) * field.width + k]; };
-    const auto node = [](int y) {
-      Coord<Dim> c{9, y};
-      if constexpr (Dim == 3) c[2] = 5;
-      return c;
-    };
-    INFO(build.name());
-    CHECK(at(node(9), 2) < -0.5 * at(node(9), 0));
-    CHECK(std::fabs(at(node(9), 1)) < 1e-5 * at(node(9), 0));            // and not along it
-    CHECK(std::fabs(at(node(11), 2)) < 1e-5 * at(node(11), 0));          // in its middle there is none
-    CHECK(at(node(13), 2) > 0.5 * at(node(13), 0));                      // and up at its far face
-  });
-}
-
-TEST_CASE("the force on a rigid is what the soil's momentum lost in the step", "[nodes]") {
-  for_each_build([](auto build) {
-    using B = decltype(build);
-    constexpr int Dim = B::dim;
-    const double dt = 1e-4;
-    for (double shear_limit : {0., 500., k_infinite}) {
-      Cloud cloud = pressed<Dim>();
-      cloud.rigids[0].shear_limit = shear_limit;
-      auto touching = state_of<B>(cloud);
-      cloud.rigids.clear();
-      auto alone = state_of<B>(cloud);
-      for (auto* s : {&touching, &alone}) {
-        interpolate(*s);
-        update_nodes(*s, dt);
-      }
-      const auto with = nodal_momentum(touching), without = nodal_momentum(alone);
-      const auto sums = on_host(touching.sums);
-      INFO(build.name() << " shear limit " << shear_limit);
-      CHECK(sums(2) > 0);                                         // the soil pushes the plate up
-      CHECK(sums(1) < 0);                                         // and holds it back
-      for (int d = 0; d < Dim; ++d)
-        CHECK(std::fabs((without[d] - with[d]) / dt - sums(1 + d)) < B::of(1e-10, 1e-4) * sums(2));
-    }
-  });
-}
-
-TEST_CASE("soil and a rigid that hits it keep their momentum", "[nodes]") {
-  for_each_build([](auto build) {
-    using B = decltype(build);
-    for (double shear_limit : {0., 500.}) {
-      Cloud cloud = pressed<B::dim>();
-      cloud.rigids[0].shear_limit = shear_limit;
-      auto s = state_of<B>(cloud, P2G::tile);
-      s.mass_cut = 0;  // a node that is left at rest for its small mass drops its force
-      const auto before = total_momentum(s);
-      const double rigid_before = on_host(s.rigids)(0).velocity[1];
-      run_steps(s, 2e-4, 50);
-      const auto after = total_momentum(s);
-      INFO(build.name() << " shear limit " << shear_limit);
-      CHECK(look(s).fault_count == 0);
-      CHECK(on_host(s.rigids)(0).velocity[1] > rigid_before + 0.1);  // it was slowed down
-      for (int d = 0; d < B::dim; ++d) CHECK(std::fabs(after[d] - before[d]) < B::of(1e-12, 1e-5) * std::fabs(before[1]));
-    }
   });
 }
