@@ -30,7 +30,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
     for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) {
       Rigid<Dim>& rigid = rigids(r);
       for (int d = 0; d < Dim; ++d) {
-        const double contact = sums(1 + r * Dim + d);
+        const double contact = sums(r * Dim + d);
         speed = Kokkos::fmax(speed, Kokkos::fabs(rigid.velocity[d]));
         rigid.displacement[d] += dt * rigid.velocity[d];
         rigid.impulse[d] += dt * contact;

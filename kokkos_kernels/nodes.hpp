@@ -49,7 +49,7 @@ struct Rigid {
 };
 
 /// Why a run cannot go on.
-enum class FaultKind : int { none, not_finite, too_fast, outside };
+enum class FaultKind : int { none, not_finite, inverted, too_fast, outside };
 
 /// The first fault that a kernel met.
 struct Fault {

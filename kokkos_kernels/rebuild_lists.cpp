@@ -1,5 +1,9 @@
 // What the strategies of the paper need beside the bins: expanded lists of particles by node, and blocks by colour.
 
+#include <limits>
+#include <stdexcept>
+#include <string>
+
 #include "particle_to_node.hpp"
 #include "rebuild.hpp"
 
@@ -43,12 +47,15 @@ void build_node_lists(const Space& space, const Source& source, const Patches<Sp
     for_each_near(source, patches, begin, margin, i, [&](int) { ++n; });
     list_begin(i) = n;
   });
-  int entries = 0;
-  Kokkos::parallel_scan("mpm::begin_of_lists", Range(space, 0, nodes + 1), KOKKOS_LAMBDA(int i, int& sum, bool last) {
+  long entries = 0;
+  Kokkos::parallel_scan("mpm::begin_of_lists", Range(space, 0, nodes + 1), KOKKOS_LAMBDA(int i, long& sum, bool last) {
     const int n = i < nodes ? list_begin(i) : 0;
-    if (last) list_begin(i) = sum;
+    if (last) list_begin(i) = static_cast<int>(sum);
     sum += n;
   }, entries);
+  if (entries > std::numeric_limits<int>::max())
+    throw std::length_error("-p2g gather: the lists of particles would have " + std::to_string(entries) +
+                            " entries, 2147483647 is the most; take another strategy");
   ensure(bins.list, entries);
   const auto list = bins.list;
   Kokkos::parallel_for("mpm::fill_lists", Range(space, 0, nodes), KOKKOS_LAMBDA(int i) {

@@ -36,7 +36,7 @@ struct State {
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   Nodes<Space, T, Dim> nodes;
   ControlView<Space> control;
-  Kokkos::View<double*, Memory> sums;    // of a step: largest nodal speed, then the force on each rigid
+  Kokkos::View<double*, Memory> sums;    // N, force of the soil on each rigid in this step
   Kokkos::View<char*, Memory> spare;     // scratch of a rebuild: one field in its new order
   Kokkos::View<int*, Memory> marks;      // scratch of a rebuild: which patches hold points
 

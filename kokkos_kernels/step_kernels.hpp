@@ -10,8 +10,8 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s);
 
-/// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the largest
-/// nodal speed and the contact forces in s.sums. dt [s].
+/// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the contact
+/// forces in s.sums. dt [s].
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt);
 

@@ -22,8 +22,8 @@ void reset_nodes(State<Space, T, Dim>& s) {
   });
 }
 
-/// The node's part of the step. A functor, as its sums are an array of run-time length: the largest speed, then
-/// Dim components of force for each rigid.
+/// The node's part of the step. A functor, as its sums are an array of run-time length: Dim components of force for
+/// each rigid.
 template <class Space, class T, int Dim>
 struct UpdateNodes {
   using value_type = double[];
@@ -41,8 +41,7 @@ struct UpdateNodes {
     for (int k = 0; k < value_count; ++k) sum[k] = 0;
   }
   KOKKOS_INLINE_FUNCTION void join(double* into, const double* from) const {
-    into[0] = Kokkos::fmax(into[0], from[0]);
-    for (int k = 1; k < value_count; ++k) into[k] += from[k];
+    for (int k = 0; k < value_count; ++k) into[k] += from[k];
   }
 
   KOKKOS_INLINE_FUNCTION void operator()(int i, double* sum) const {
@@ -50,11 +49,12 @@ struct UpdateNodes {
     using S = SoilShare<Dim>;
     const T m_i = nodes.soil(i, S::mass);
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
-    if (m_i > mass_cut) {
+    if (m_i > 0) {
       const T inv_m = 1 / m_i;
+      const T inv_m_force = m_i > mass_cut ? inv_m : T(0);  // the force on less mass is round-off
       for (int d = 0; d < Dim; ++d) {
         v_old[d] = nodes.soil(i, S::momentum + d) * inv_m;                           // Eq. (6)
-        T a = nodes.soil(i, S::force + d) * inv_m + g[d];                            // Eq. (8)
+        T a = nodes.soil(i, S::force + d) * inv_m_force + g[d];                      // Eq. (8)
         a -= damping * Kokkos::fabs(a) * (v_old[d] > 0 ? T(1) : (v_old[d] < 0 ? T(-1) : T(0)));
         v[d] = v_old[d] + a * dt;                                                    // Eq. (9)
       }
@@ -63,13 +63,13 @@ struct UpdateNodes {
       for (int d = 0; d < Dim; ++d) at[d] += from[d];
       const unsigned sides = sides_of(grid, at);
       apply_walls(grid, sides, v);
-      for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) touch(i, r, sides, m_i, v, sum + 1 + r * Dim);
+      if (m_i > mass_cut)
+        for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) touch(i, r, sides, m_i, v, sum + r * Dim);
       apply_walls(grid, sides, v);
     }
     for (int d = 0; d < Dim; ++d) {
       nodes.motion(i, NodeMotion<Dim>::velocity + d) = v[d];
       nodes.motion(i, NodeMotion<Dim>::acceleration + d) = (v[d] - v_old[d]) / dt;   // feels contact and walls
-      sum[0] = Kokkos::fmax(sum[0], static_cast<double>(Kokkos::fabs(v[d])));
     }
   }
 
@@ -104,11 +104,15 @@ struct UpdateNodes {
 
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt) {
-  const int values = 1 + Dim * static_cast<int>(s.rigid_points.size());
+  const int values = Dim * static_cast<int>(s.rigid_points.size());
   UpdateNodes<Space, T, Dim> update{values,    s.grid,    s.nodes,   s.patches.origin, s.rigids,
                                     s.control, {},        T(dt),     T(s.damping),     T(s.mass_cut), s.interface_shear};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
-  Kokkos::parallel_reduce("mpm::update_nodes", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()), update, s.sums);
+  const Kokkos::RangePolicy<Space> range(s.space, 0, s.patches.node_count());
+  if (values > 0)
+    Kokkos::parallel_reduce("mpm::update_nodes", range, update, s.sums);
+  else
+    Kokkos::parallel_for("mpm::update_nodes", range, KOKKOS_LAMBDA(int i) { update(i, nullptr); });
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)              \

@@ -77,19 +77,22 @@ KOKKOS_INLINE_FUNCTION T advance(const Soil<Space, T, Dim>& soil, int p, const T
   return moved;
 }
 
-/// Reports a particle that is not finite or went so far in a step that the computation cannot be trusted.
+/// Reports a particle that is not finite, has no volume, or moved so far in a step that the computation cannot be
+/// trusted. `moved` [cells].
 template <class Space, class T, int Dim>
-KOKKOS_INLINE_FUNCTION void check(const Soil<Space, T, Dim>& soil, int p, const Coord<Dim>& origin, const Coord<Dim>& cell,
-                                  double spacing, const ControlView<Space>& control) {
+KOKKOS_INLINE_FUNCTION void check(const Soil<Space, T, Dim>& soil, int p, T moved, const Coord<Dim>& origin,
+                                  const Coord<Dim>& cell, double spacing, const ControlView<Space>& control) {
   const Vector<T, Dim> x = soil.coordinate(p), v = soil.velocity(p);
   const SymTensor<T, Dim> s = soil.stress(p);
-  T sum = 0, far = 0;
-  for (int d = 0; d < Dim; ++d) sum += 0 * (x[d] + v[d]), far = Kokkos::fmax(far, Kokkos::fabs(x[d] - T(0.5)));
-  for (int k = 0; k < sym_size<Dim>; ++k) sum += 0 * s[k];
-  if (sum == 0 && far <= T(2)) return;  // 0 times what is not finite is not zero
+  T sum = soil.volume(p);
+  for (int d = 0; d < Dim; ++d) sum += x[d] + v[d];
+  for (int k = 0; k < sym_size<Dim>; ++k) sum += s[k];
+  const bool finite = 0 * sum == 0;  // 0 times what is not finite is not zero
+  if (finite && soil.volume(p) > 0 && moved <= 1) return;
   double position[3] = {};
   for (int d = 0; d < Dim; ++d) position[d] = (double(origin[d]) + cell[d] + x[d]) * spacing;
-  report(control, sum == 0 ? FaultKind::too_fast : FaultKind::not_finite, soil.id(p), position, Dim);
+  const FaultKind kind = !finite ? FaultKind::not_finite : (moved <= 1 ? FaultKind::inverted : FaultKind::too_fast);
+  report(control, kind, soil.id(p), position, Dim);
 }
 
 }  // namespace
@@ -129,13 +132,13 @@ void update_particles(State<Space, T, Dim>& s, double dt_) {
           const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
           with_weights(soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const AxisWeights<T>(&a)[Dim]) {
             const T own = advance(soil, p, take_from_nodes<T, Dim>(nodes.data(), cell, a, by.inv_spacing), by);
+            check(soil, p, own, origin(slot), cell, spacing, control);
             furthest = Kokkos::fmax(furthest, own);
           });
-          check(soil, p, origin(slot), cell, spacing, control);
         };
         Kokkos::parallel_reduce(Kokkos::TeamThreadRange(team, from, to), particle, Kokkos::Max<T>(moved));
         Kokkos::single(Kokkos::PerTeam(team), [&] {
-          if (moved > control().moved) Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
+          if (moved > Kokkos::atomic_load(&control().moved)) Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
         });
       });
 }

@@ -95,7 +95,9 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
     points.count = static_cast<int>(rigids[r].position.size() / Dim);
     points.mass = static_cast<T>(rigids[r].density * rigids[r].particle_volume);
     points.half_length = static_cast<T>(rigids[r].half_length);
+    const bool sound = fault.kind == FaultKind::none;
     place_points(s.grid, spacing, rigids[r].position, s.rigid_points[r], fault);
+    if (sound && fault.kind != FaultKind::none) fault.particle = -1 - static_cast<int>(r);
     fill_view(points.home, "mpm::home", points.count, [&](int p) {
       Vector<double, Dim> x;
       for (int d = 0; d < Dim; ++d) x[d] = rigids[r].position[std::size_t(p) * Dim + d] / spacing;
@@ -120,6 +122,24 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
 
 }  // namespace
 
+template <class Space>
+bool device_agrees(const Space& space) {
+  using Memory = typename Space::memory_space;
+  constexpr int count = 37;
+  const Kokkos::View<int* [3], Kokkos::LayoutRight, Memory> first("mpm::first", count);
+  const Kokkos::View<double*, Memory> second("mpm::second", count);
+  Kokkos::parallel_for("mpm::device_agrees", Kokkos::RangePolicy<Space>(space, 0, count), KOKKOS_LAMBDA(int n) {
+    for (int k = 0; k < static_cast<int>(first.extent(1)); ++k) first(n, k) = n + k;
+    second(n) = static_cast<double>(second.extent(0)) + n;
+  });
+  const auto a = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), first);
+  const auto b = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), second);
+  bool agrees = true;
+  for (int n = 0; n < count; ++n)
+    for (int k = 0; k < 3; ++k) agrees = agrees && a(n, k) == n + k && b(n) == count + n;
+  return agrees;
+}
+
 template <class Space, class T, int Dim>
 Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
              const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids) {
@@ -141,7 +161,7 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
     s.interface_shear = s.interface_shear || (rigid.shear_limit > 0 && std::isfinite(rigid.shear_limit));
   }
   s.control = ControlView<Space>("mpm::control");
-  s.sums = decltype(s.sums)("mpm::sums", 1 + Dim * rigids.size());
+  s.sums = decltype(s.sums)("mpm::sums", Dim * rigids.size());
   upload_soil(s, materials, bodies, fault);
   upload_rigids(s, rigids, k_cut, fault);
   if (fault.kind == FaultKind::none) sort_and_list(s);
@@ -215,6 +235,14 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.volume), add(s.nodes.rigid);
   return bytes;
 }
+
+template bool device_agrees(const Kokkos::Serial&);
+#ifdef KOKKOS_ENABLE_OPENMP
+template bool device_agrees(const Kokkos::OpenMP&);
+#endif
+#ifdef KOKKOS_ENABLE_CUDA
+template bool device_agrees(const Kokkos::Cuda&);
+#endif
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                                              \
   template Fault upload(State<Space, T, Dim>&, const GridInput&, const std::vector<MaterialInput>&,                 \

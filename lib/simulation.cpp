@@ -19,6 +19,8 @@
 namespace mpm {
 namespace {
 
+constexpr double k_most_steps = 1e12;
+
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -42,10 +44,12 @@ struct Simulation::Body {
   long step = 0;
   double last_row_time = 0;           // s
   double wall_start = 0;              // s
+  double stepping = 0;                // s of wall time in steps and rebuilds
   long since_rebuild = 0, rebuilds = 0, longest = 0, shortest = 0;  // steps between rebuilds
 
   double wall() const { return seconds_now() - wall_start; }
 
+  void check_mesh();
   PetscErrorCode choose_time_step();
   PetscErrorCode start();
   PetscErrorCode load(Model* model);
@@ -77,6 +81,7 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
   }
   if (ranks > 1)
     b.report.errors = {"mpm: started with " + std::to_string(ranks) + " ranks, takes 1: runs over several ranks are not there yet"};
+  if (b.report.errors.empty()) b.check_mesh();
   if (b.report.errors.empty()) PetscCall(b.choose_time_step());
   if (!b.report.errors.empty()) {
     PetscCall(print_errors(comm, b.report));
@@ -85,6 +90,17 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
   }
   b.ready = true;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The patch table is counted by int.
+void Simulation::Body::check_mesh() {
+  constexpr double k_most_patches = 2147483647;
+  const double patches = patch_count(config.mesh, config.dim);
+  if (patches <= k_most_patches) return;
+  char line[200];
+  std::snprintf(line, sizeof line, "mpm: -mesh_spacing: given \"%g\", takes an edge that gives at most %.0f patches of %d cells a side; this is %.4g",
+                config.mesh.spacing, k_most_patches, patch_edge(config.dim), patches);
+  report.errors.push_back(line);
 }
 
 /// The step from the Courant number (Eq. 14), or the user's where it is stable.
@@ -98,7 +114,10 @@ PetscErrorCode Simulation::Body::choose_time_step() {
                   k_largest_courant * critical);
     report.errors.push_back(line);
   }
-  schedule = Schedule(config.time, config.output, dt);
+  if (config.time.end / dt > k_most_steps)
+    report.errors.push_back("mpm: -time_end: with this time step it takes more than 1e12 steps");
+  else
+    schedule = Schedule(config.time, config.output, dt);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -203,6 +222,7 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     const double before = seconds_now();
     PetscCall(stepper->advance(steps, step_dt, &batch));
     const double took = seconds_now() - before;
+    stepping += took;
     batch_limit = std::max(16L, static_cast<long>(k_look_every * batch.steps / std::max(took, 1e-9)));
     estimate = batch.estimate;
     step += batch.steps;
@@ -213,7 +233,7 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     }
     if (batch.rebuild || (config.p2g.rebuild_interval && since_rebuild >= *config.p2g.rebuild_interval)) PetscCall(rebuild(batch));
     if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(log.progress({step, schedule.time_of(step), 0, schedule.time_of(schedule.last_step()), wall(),
+    PetscCall(log.progress({step, schedule.time_of(step), 0, schedule.time_of(schedule.last_step()), stepping,
                             double(step) * stepper->particles()}));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -236,7 +256,9 @@ PetscErrorCode Simulation::Body::rebuild(const Batch& batch) {
   ++rebuilds;
   since_rebuild = 0;
   Failure failure;
+  const double before = seconds_now();
   PetscCall(stepper->rebuild(&failure));
+  stepping += seconds_now() - before;
   if (!failure.what.empty()) PetscCall(fail(failure.what));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -246,7 +268,7 @@ PetscErrorCode Simulation::Body::write_row() {
   HistoryRow row;
   row.step = step;
   row.time = schedule.time_of(step);
-  row.dt = dt;
+  row.dt = step > 0 ? schedule.step_size(step - 1) : dt;
   row.wall_time = wall();
   stepper->measure(row.time - last_row_time, &row);
   last_row_time = row.time;
@@ -271,8 +293,9 @@ PetscErrorCode Simulation::Body::finish() {
     if (rebuilds > 0)
       PetscCall(log.print("bins and lists were rebuilt %ld times, after %ld to %ld steps, %.1f on average", rebuilds, shortest, longest,
                           double(step - since_rebuild) / rebuilds));
-    PetscCall(log.line("time of the functions\n" +
-                       format_times(stepper->times(), wall(), double(step) * stepper->particles(), 0)));
+    PetscCall(log.line("time of the functions\n" + format_times(stepper->times(), wall(), 0, 0)));
+    PetscCall(log.print("%.4g us a step without output; %s particle updates", 1e6 * stepping / step,
+                        format_rate(double(step) * stepper->particles() / stepping).c_str()));
   }
   PetscCall(log.print("%s after %ld steps at time %g s; results are in %s", outcome == Outcome::finished ? "finished" : "failed", step,
                       schedule.time_of(step), config.output.directory.c_str()));

@@ -25,11 +25,6 @@ std::optional<double> parse_number(std::string_view text) {
 
 std::optional<long> parse_integer(std::string_view text) { return parse_whole<long>(text); }
 
-std::string text_of(double value) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-}
-
 std::string text_of(const std::array<double, 3>& x, int dim) {
   std::string text = text_of(x[0]);
   for (int d = 1; d < dim; ++d) text += "," + text_of(x[d]);

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "numbers.hpp"
+
 namespace mpm {
 
 /// The whole text as a finite number; none where it is empty, has anything more, overflows, or is inf or nan.
@@ -15,8 +17,6 @@ std::optional<double> parse_number(std::string_view text);
 /// The whole text as a whole number; none as above.
 std::optional<long> parse_integer(std::string_view text);
 
-/// The shortest text that parses back to the same number.
-std::string text_of(double value);
 /// The first `dim` components, as on the command line.
 std::string text_of(const std::array<double, 3>& x, int dim);
 

@@ -2,6 +2,12 @@
 
 namespace mpm {
 
+double patch_count(const MeshConfig& mesh, int dim) {
+  double count = 1;
+  for (int d = 0; d < dim; ++d) count *= (mesh.cells[d] + patch_edge(dim) - 1) / patch_edge(dim) + 2;
+  return count;
+}
+
 BackgroundMesh::~BackgroundMesh() {
   PetscBool up = PETSC_FALSE;
   if (da_ != nullptr && PetscInitialized(&up) == PETSC_SUCCESS && up) (void)DMDestroy(&da_);

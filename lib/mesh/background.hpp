@@ -11,6 +11,9 @@ namespace mpm {
 /// Cells along the edge of a patch.
 constexpr int patch_edge(int dim) { return dim == 2 ? 8 : 4; }
 
+/// Patches that a mesh has, with the ring outside it.
+double patch_count(const MeshConfig& mesh, int dim);
+
 /// Owns a DMDA and tells what kernels need of it.
 class BackgroundMesh {
  public:

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "output/files.hpp"
-#include "output/numbers.hpp"
+#include "numbers.hpp"
 
 namespace mpm {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "output/files.hpp"
-#include "output/numbers.hpp"
+#include "numbers.hpp"
 
 namespace mpm {
 namespace {

@@ -36,11 +36,11 @@ class Schedule {
 
  private:
   /// The first step at or after each multiple of the interval.
-  long step_at(double time) const { return static_cast<long>(std::ceil(time / dt_ - 1e-9)); }
+  long step_at(double time) const { return static_cast<long>(std::ceil(std::min(time, 2 * end_) / dt_ - 1e-9)); }
+  /// The first of them after `step`.
   long next(long step, double interval) const {
-    const double k = std::floor(step * dt_ / interval + 1e-9);
-    for (double n = std::max(0.0, k - 1);; ++n)
-      if (step_at(n * interval) > step) return step_at(n * interval);
+    const double multiple = std::floor(step * dt_ / interval * (1 + 1e-12) + 1e-9) + 1;
+    return std::max(step_at(multiple * interval), step + 1);
   }
   bool due(long step, double interval) const { return step > 0 && next(step - 1, interval) == step; }
 

@@ -5,7 +5,7 @@
 namespace mpm {
 namespace {
 
-constexpr long k_sample_every = 200;  // steps between two timed ones on a device
+constexpr long k_sample_every = 50;  // steps between two timed ones on a device
 
 /// Absolute height of a particle [m]: the last direction is the vertical one.
 template <int Dim>
@@ -51,6 +51,9 @@ template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failure) {
   PetscFunctionBeginUser;
   PetscCall(timers_.create());
+  PetscCheck(device_agrees(state_.space), PETSC_COMM_SELF, PETSC_ERR_LIB,
+             "kernels do not see what the host sends them: this Kokkos was built so that nvcc and the host compiler lay out "
+             "views differently; build it with Kokkos_ENABLE_IMPL_MDSPAN=OFF");
   timers_.sample(!is_device<Space>);
   GridInput grid{config_.mesh.spacing, config_.mesh.cells, model.patches, config_.mesh.walls};
   std::vector<MaterialInput> materials;
@@ -79,7 +82,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch
   PetscFunctionBeginUser;
   restart_count(state_);
   for (long n = 0; n < steps; ++n) {
-    if (is_device<Space>) timers_.sample(steps_enqueued_++ % k_sample_every == 0);
+    if (is_device<Space>) timers_.sample(++steps_enqueued_ % k_sample_every == 0);
     PetscCall(step(state_, timers_, dt));
   }
   const Control control = look(state_);
@@ -209,7 +212,8 @@ Failure TypedStepper<Space, T, Dim>::describe(const Fault& fault) const {
   if (Dim == 2) std::snprintf(where, sizeof where, " at (%.9g, %.9g) m ", x[0] + low[0], x[1] + low[1]);
   else std::snprintf(where, sizeof where, " at (%.9g, %.9g, %.9g) m ", x[0] + low[0], x[1] + low[1], x[2] + low[2]);
   const char* what = fault.kind == FaultKind::outside      ? "is outside the mesh"
-                     : fault.kind == FaultKind::not_finite ? "has a position, velocity or stress that is not finite"
+                     : fault.kind == FaultKind::not_finite ? "has a position, velocity, stress or volume that is not finite"
+                     : fault.kind == FaultKind::inverted   ? "has no volume left"
                                                            : "moved more than a cell in one step";
   return {who + where + what};
 }

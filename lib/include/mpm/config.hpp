@@ -32,7 +32,7 @@ struct Shape {
   ShapeKind kind = ShapeKind::box;
   Vec3 lower{}, upper{};                        // m, box
   double fillet = 0;                            // m, box: radius of its corners
-  std::vector<std::array<double, 2>> polygon;   // m, vertices in order (2D; in 3D a prism, see input/shapes.hpp)
+  std::vector<std::array<double, 2>> polygon;   // m, vertices in order (2D only)
   Vec3 centre{};                                // m, disc (ball in 3D)
   double radius = 0;                            // m, disc
   int particles_per_cell = 2;                   // in each direction
