@@ -36,6 +36,8 @@ int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   Kokkos::initialize(argc, argv);  // first: takes its --kokkos-* words out of argv
   const auto arguments = mpm::prepare_arguments(MPI_COMM_WORLD, &argc, argv);
+  // The system's own way with signals: PETSc's is a page of text even where a reader closes a pipe.
+  PetscCall(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"));
   PetscCall(PetscInitialize(&argc, &argv, nullptr, nullptr));
   PetscCall(PetscPushErrorHandler(tell_in_one_line, nullptr));
   mpm::Outcome outcome{};

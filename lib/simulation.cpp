@@ -114,10 +114,14 @@ PetscErrorCode Simulation::Body::choose_time_step() {
                   k_largest_courant * critical);
     report.errors.push_back(line);
   }
-  if (config.time.end / dt > k_most_steps)
-    report.errors.push_back("mpm: -time_end: with this time step it takes more than 1e12 steps");
-  else
+  if (config.time.end / dt > k_most_steps) {
+    char line[200];
+    std::snprintf(line, sizeof line, "mpm: -time_end: given \"%g\", takes at most %g s with time steps of %g s (1e12 steps)", config.time.end,
+                  k_most_steps * dt, dt);
+    report.errors.push_back(line);
+  } else {
     schedule = Schedule(config.time, config.output, dt);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

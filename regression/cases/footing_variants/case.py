@@ -1,5 +1,9 @@
 """The footing of footing_coarse in other clothes: the whole of it instead of half, in single precision, 200 m away,
-and with every strategy. All must give the same curve."""
+and with every strategy. All must give the same curve.
+
+Positions count from the mesh's lower corner. So there are two runs 200 m away: one whose mesh moves with the footing,
+and one whose mesh begins 200 m before it. In the latter the footing is mirrored, with its plane of symmetry at the upper
+side of the mesh, and a smooth rigid bank stands where the far side was."""
 
 from footing_checks import distance, mean
 from row import Row
@@ -8,12 +12,16 @@ DECK = "-options_file inputs/footing_coarse.opts"
 FULL = " -mesh_lower -3,0 -soil_lower -3,0 -plate_lower -0.5,4"
 AWAY = (" -mesh_lower 200,0 -mesh_upper 203,4.45 -soil_lower 200,0 -soil_upper 203,4"
         " -plate_lower 200,4 -plate_upper 200.5,4.05")
+MIRROR = (" -precision single -mesh_upper 0,4.45 -soil_lower -3,0 -soil_upper 0,4 -plate_lower -0.5,4 -plate_upper 0,4.05"
+          " -rigids plate,bank -bank_shape box -bank_lower -3.2,0 -bank_upper -3,4.45")
 STRATEGIES = ("atomic", "mosaic", "gather", "tile")
 RUNS = {
     "half": DECK + " -p2g sequential",
     "full": DECK + FULL,
     "single": DECK + " -precision single",
     "single_away": DECK + " -precision single" + AWAY,
+    "mirrored": DECK + MIRROR + " -mesh_lower -3.2,0",
+    "mirrored_away": DECK + MIRROR + " -mesh_lower -203.2,0",
     **{how: f"{DECK} -p2g {how}" for how in STRATEGIES},
 }
 
@@ -24,6 +32,7 @@ def check(runs):
 
     yield same("full", "half", 1e-3, "whole footing")
     yield Row("single: mean Nc over that of double", mean(runs["single"]) / mean(runs["half"]), 1, 0.01, "double")
-    yield same("single_away", "single", 1e-3, "single, 200 m away")
+    yield same("single_away", "single", 1e-3, "single, mesh and footing 200 m away")
+    yield same("mirrored_away", "mirrored", 1e-3, "single, mesh begins 200 m away")
     for how in STRATEGIES:
         yield same(how, "half", 1e-3, how)
