@@ -14,7 +14,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
     for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
       const auto points = s.rigid_points[r].points;
       const auto home = points.home;
-      Kokkos::parallel_for("mpm::move_rigid_points", Kokkos::RangePolicy<Space>(s.space, 0, points.count), KOKKOS_LAMBDA(int p) {
+      Kokkos::parallel_for("mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(s.space, 0, points.count)), KOKKOS_LAMBDA(int p) {
         if (control().paused) return;
         const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(points.cell(p));
         for (int d = 0; d < Dim; ++d)
@@ -23,7 +23,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
       });
     }
 
-  Kokkos::parallel_for("mpm::move_rigids", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
+  Kokkos::parallel_for("mpm::move_rigids", light(Kokkos::RangePolicy<Space>(s.space, 0, 1)), KOKKOS_LAMBDA(int) {
     Control& c = control();
     if (c.paused) return;
     double speed = 0;

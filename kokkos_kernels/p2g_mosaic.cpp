@@ -21,7 +21,7 @@ void scatter_mosaic(const Interpolation<Source>& it) {
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
     const int first = it.bins.block_begin[colour], last = it.bins.block_begin[colour + 1];
     if (first == last) continue;
-    Kokkos::parallel_for("mpm::scatter_mosaic", Kokkos::RangePolicy<typename Source::Space>(it.space, first, last),
+    Kokkos::parallel_for("mpm::scatter_mosaic", light(Kokkos::RangePolicy<typename Source::Space>(it.space, first, last)),
                          KOKKOS_LAMBDA(int b) {
                            if (control().paused) return;
                            for_each_cell_of_block(grid, blocks(b), edge, [&](const Coord<Dim>& c) {

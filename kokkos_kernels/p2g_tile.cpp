@@ -38,7 +38,7 @@ void reduce_by_tile(const Interpolation<Source>& it) {
     if (first == last) continue;
     Kokkos::parallel_for(
         "mpm::reduce_by_tile",
-        Team(it.space, last - first, team_threads<Space>).set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size))),
+        light(Team(it.space, last - first, team_threads<Space>).set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size)))),
         KOKKOS_LAMBDA(const typename Team::member_type& team) {
           if (control().paused) return;
           const int slot = by_colour(first + team.league_rank());

@@ -22,6 +22,13 @@ template <>
 inline constexpr Backend backend_of<Kokkos::Cuda> = Backend::cuda;
 #endif
 
+/// The same policy, for a kernel of a time step: its functor travels as an argument of the launch. Without the hint
+/// Kokkos sends a large functor through constant memory on CUDA, where each launch waits for the one before it.
+template <class Policy>
+auto light(const Policy& policy) {
+  return Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight);
+}
+
 }  // namespace mpm
 
 #ifdef MPM_ONLY_2D

@@ -13,7 +13,7 @@ void reset_nodes(State<Space, T, Dim>& s) {
   const auto control = s.control;
   const int rigids = static_cast<int>(s.rigid_points.size());
   const bool has_volume = s.interface_shear;
-  Kokkos::parallel_for("mpm::reset_nodes", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()), KOKKOS_LAMBDA(int i) {
+  Kokkos::parallel_for("mpm::reset_nodes", light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())), KOKKOS_LAMBDA(int i) {
     if (control().paused) return;
     for (int k = 0; k < SoilShare<Dim>::size; ++k) soil(i, k) = 0;
     if (has_volume) volume(i, 0) = 0;
@@ -108,7 +108,7 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
   UpdateNodes<Space, T, Dim> update{values,    s.grid,    s.nodes,   s.patches.origin, s.rigids,
                                     s.control, {},        T(dt),     T(s.damping),     T(s.mass_cut), s.interface_shear};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
-  const Kokkos::RangePolicy<Space> range(s.space, 0, s.patches.node_count());
+  const auto range = light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()));
   if (values > 0)
     Kokkos::parallel_reduce("mpm::update_nodes", range, update, s.sums);
   else

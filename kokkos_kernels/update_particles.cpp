@@ -104,29 +104,26 @@ void update_particles(State<Space, T, Dim>& s, double dt_) {
   using Window = Kokkos::View<T*, typename Space::scratch_memory_space, Kokkos::MemoryUnmanaged>;
   const auto soil = s.soil.points;
   const auto begin = s.soil.bins.begin;
-  const auto by_colour = s.soil.bins.by_colour;
   const auto around = s.patches.around;
   const auto origin = s.patches.origin;
   const auto motion = s.nodes.motion;
   const auto control = s.control;
   const double spacing = s.spacing;
   const UpdateScalars<T> by{T(dt_), s.grid.inv_spacing, T(s.flip_share), T(1 - s.flip_share)};
-  const int slots = s.soil.bins.colour_begin[Patch<Dim>::colours];
-  if (slots == 0) return;
-
   Kokkos::parallel_for(
       "mpm::update_particles",
-      Team(s.space, slots, team_threads<Space>).set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size))),
+      light(Team(s.space, s.patches.slots, team_threads<Space>).set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size)))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (control().paused) return;
-        const int slot = by_colour(team.league_rank());
+        const int slot = team.league_rank();  // in the order of memory, so that threads of the host keep to their part
+        const int from = begin(slot * Patch<Dim>::cells), to = begin((slot + 1) * Patch<Dim>::cells);
+        if (from == to) return;
         const Window nodes(team.team_scratch(0), window * size);
         Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
           const int i = number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n));
           for (int k = 0; k < size; ++k) nodes(n * size + k) = motion(i, k);
         });
         team.team_barrier();
-        const int from = begin(slot * Patch<Dim>::cells), to = begin((slot + 1) * Patch<Dim>::cells);
         T moved = 0;
         const auto particle = [&](int p, T& furthest) {
           const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
