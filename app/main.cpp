@@ -1,8 +1,8 @@
 // mpirun ./mpm -options_file footing.opts
 
-#include <Kokkos_Core.hpp>
 #include <mpi.h>
 #include <petscsys.h>
+#include <Kokkos_Core.hpp>
 
 #include <cstdio>
 #include <cstdlib>
@@ -14,9 +14,10 @@ namespace {
 constexpr int k_system_failure = 1;  // exit status of what neither the input nor the computation explains
 
 /// One line instead of PETSc's page, where an error is met first.
-PetscErrorCode tell_in_one_line(MPI_Comm, int, const char*, const char*, PetscErrorCode error, PetscErrorType type,
-                                const char* message, void*) {
-  if (type == PETSC_ERROR_INITIAL) std::fprintf(stderr, "mpm: %s\n", message != nullptr ? message : "the system failed");
+PetscErrorCode tell_in_one_line(MPI_Comm, int, const char*, const char*, PetscErrorCode error,
+                                PetscErrorType type, const char* message, void*) {
+  if (type == PETSC_ERROR_INITIAL)
+    std::fprintf(stderr, "mpm: %s\n", message != nullptr ? message : "the system failed");
   return error;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// What a user chooses at run time and the kernels obey: plain enumerations, whose words are the options' words.
+// What a user chooses at run time and the kernels obey: plain enumerations, whose words are the options'
+// words.
 
 namespace mpm {
 

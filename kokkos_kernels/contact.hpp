@@ -28,11 +28,13 @@ KOKKOS_INLINE_FUNCTION void apply_walls(const Grid<T, Dim>& grid, unsigned sides
     }
 }
 
-/// Inward unit normal of a rigid body at a node from its mass gradient (Eq. 3), whose sign points out of the body.
-/// The mirrored half of a body at a roller is missing, so the gradient's component normal to it is left out.
-/// False where the gradient says nothing: in the interior of the body it is round-off, or points to its far face.
+/// Inward unit normal of a rigid body at a node from its mass gradient (Eq. 3), whose sign points out of the
+/// body. The mirrored half of a body at a roller is missing, so the gradient's component normal to it is left
+/// out. False where the gradient says nothing: in the interior of the body it is round-off, or points to its
+/// far face.
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION bool inward_normal(const Grid<T, Dim>& grid, unsigned sides, T mass, Vector<T, Dim>& n) {
+KOKKOS_INLINE_FUNCTION bool inward_normal(const Grid<T, Dim>& grid, unsigned sides, T mass,
+                                          Vector<T, Dim>& n) {
   for (int d = 0; d < Dim; ++d)
     for (int side = 0; side < 2; ++side)
       if ((sides >> (2 * d + side) & 1u) && grid.wall[d][side] == Wall::roller) n[d] = 0;
@@ -54,7 +56,8 @@ struct Interface {
 /// v_r velocity of the rigid, n inward unit normal.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v, const Vector<T, Dim>& v_r,
-                                                         const Vector<T, Dim>& n, const Interface<T>& interface) {
+                                                         const Vector<T, Dim>& n,
+                                                         const Interface<T>& interface) {
   Vector<T, Dim> relative, change = filled<T, Dim>(0);
   for (int d = 0; d < Dim; ++d) relative[d] = v[d] - v_r[d];
   const T approach = dot(relative, n);

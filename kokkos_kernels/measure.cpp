@@ -42,21 +42,22 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   const auto origin = s.patches.origin;
   const double spacing = s.spacing;
   Sum<Dim> total;
-  Kokkos::parallel_reduce("mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
-                          KOKKOS_LAMBDA(int p, Sum<Dim>& sum) {
-                            if (soil.body(p) != body) return;
-                            const Coord<Dim> from = origin(soil.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(soil.cell(p));
-                            const double mass = soil.bodies(body).mass;
-                            for (int d = 0; d < Dim; ++d) {
-                              const double x = (double(from[d]) + cell[d] + soil.coordinate(p)[d]) * spacing;
-                              const double v = soil.velocity(p)[d];
-                              sum.m.lower[d] = Kokkos::fmin(sum.m.lower[d], x);
-                              sum.m.upper[d] = Kokkos::fmax(sum.m.upper[d], x);
-                              sum.m.momentum[d] += mass * v;
-                              sum.m.kinetic_energy += mass * v * v / 2;
-                            }
-                          },
-                          Kokkos::Sum<Sum<Dim>>(total));
+  Kokkos::parallel_reduce(
+      "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
+      KOKKOS_LAMBDA(int p, Sum<Dim>& sum) {
+        if (soil.body(p) != body) return;
+        const Coord<Dim> from = origin(soil.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(soil.cell(p));
+        const double mass = soil.bodies(body).mass;
+        for (int d = 0; d < Dim; ++d) {
+          const double x = (double(from[d]) + cell[d] + soil.coordinate(p)[d]) * spacing;
+          const double v = soil.velocity(p)[d];
+          sum.m.lower[d] = Kokkos::fmin(sum.m.lower[d], x);
+          sum.m.upper[d] = Kokkos::fmax(sum.m.upper[d], x);
+          sum.m.momentum[d] += mass * v;
+          sum.m.kinetic_energy += mass * v * v / 2;
+        }
+      },
+      Kokkos::Sum<Sum<Dim>>(total));
   return total.m;
 }
 

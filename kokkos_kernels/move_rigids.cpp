@@ -14,36 +14,42 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
     for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
       const auto points = s.rigid_points[r].points;
       const auto home = points.home;
-      Kokkos::parallel_for("mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(s.space, 0, points.count)), KOKKOS_LAMBDA(int p) {
-        if (control().paused) return;
-        const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(points.cell(p));
-        for (int d = 0; d < Dim; ++d)
-          points.coordinate(p)[d] =
-              static_cast<T>(home(p)[d] + (rigids(r).displacement[d] + dt * rigids(r).velocity[d]) / spacing - from[d] - cell[d]);
-      });
+      Kokkos::parallel_for(
+          "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(s.space, 0, points.count)),
+          KOKKOS_LAMBDA(int p) {
+            if (control().paused) return;
+            const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells),
+                             cell = coord_of<Dim>(points.cell(p));
+            for (int d = 0; d < Dim; ++d)
+              points.coordinate(p)[d] = static_cast<T>(
+                  home(p)[d] + (rigids(r).displacement[d] + dt * rigids(r).velocity[d]) / spacing - from[d] -
+                  cell[d]);
+          });
     }
 
-  Kokkos::parallel_for("mpm::move_rigids", light(Kokkos::RangePolicy<Space>(s.space, 0, 1)), KOKKOS_LAMBDA(int) {
-    Control& c = control();
-    if (c.paused) return;
-    double speed = 0;
-    for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) {
-      Rigid<Dim>& rigid = rigids(r);
-      for (int d = 0; d < Dim; ++d) {
-        const double contact = sums(r * Dim + d);
-        speed = Kokkos::fmax(speed, Kokkos::fabs(rigid.velocity[d]));
-        rigid.displacement[d] += dt * rigid.velocity[d];
-        rigid.impulse[d] += dt * contact;
-        if (rigid.dynamic) rigid.velocity[d] += dt * (rigid.force[d] + contact) / rigid.mass;  // Eq. (7)
-      }
-    }
-    constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
-    c.increment = Kokkos::fmax(c.moved, speed * dt / spacing) + epsilon;
-    c.moved = 0;
-    c.bound += c.increment;
-    ++c.steps;
-    if (!(c.bound <= margin) || c.fault_count > 0) c.paused = 1;
-  });
+  Kokkos::parallel_for(
+      "mpm::move_rigids", light(Kokkos::RangePolicy<Space>(s.space, 0, 1)), KOKKOS_LAMBDA(int) {
+        Control& c = control();
+        if (c.paused) return;
+        double speed = 0;
+        for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) {
+          Rigid<Dim>& rigid = rigids(r);
+          for (int d = 0; d < Dim; ++d) {
+            const double contact = sums(r * Dim + d);
+            speed = Kokkos::fmax(speed, Kokkos::fabs(rigid.velocity[d]));
+            rigid.displacement[d] += dt * rigid.velocity[d];
+            rigid.impulse[d] += dt * contact;
+            if (rigid.dynamic) rigid.velocity[d] += dt * (rigid.force[d] + contact) / rigid.mass;  // Eq. (7)
+          }
+        }
+        constexpr double epsilon =
+            Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
+        c.increment = Kokkos::fmax(c.moved, speed * dt / spacing) + epsilon;
+        c.moved = 0;
+        c.bound += c.increment;
+        ++c.steps;
+        if (!(c.bound <= margin) || c.fault_count > 0) c.paused = 1;
+      });
 }
 
 template <class Space, class T, int Dim>
@@ -58,7 +64,9 @@ Control look(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void restart_count(State<Space, T, Dim>& s) {
   const auto control = s.control;
-  Kokkos::parallel_for("mpm::restart_count", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) { control().steps = 0; });
+  Kokkos::parallel_for(
+      "mpm::restart_count", Kokkos::RangePolicy<Space>(s.space, 0, 1),
+      KOKKOS_LAMBDA(int) { control().steps = 0; });
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                      \

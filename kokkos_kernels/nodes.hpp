@@ -31,7 +31,8 @@ struct Nodes {
   NodeField<Space, T, SoilShare<Dim>::size> soil;
   NodeField<Space, T, NodeMotion<Dim>::size> motion;
   NodeField<Space, T, 1> volume;  // m3, of the soil; allocated where an interface carries shear
-  Kokkos::View<T** [RigidShare<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space> rigid;  // [rigid][node]
+  Kokkos::View<T* * [RigidShare<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space>
+      rigid;  // [rigid][node]
 };
 
 /// A rigid body on the device.
@@ -74,7 +75,8 @@ using ControlView = Kokkos::View<Control, typename Space::memory_space>;
 
 /// Notes a fault; the first one is kept.
 template <class ControlView_>
-KOKKOS_INLINE_FUNCTION void report(const ControlView_& control, FaultKind kind, int particle, const double* position, int dim) {
+KOKKOS_INLINE_FUNCTION void report(const ControlView_& control, FaultKind kind, int particle,
+                                   const double* position, int dim) {
   if (Kokkos::atomic_fetch_add(&control().fault_count, 1) != 0) return;
   control().fault.kind = kind;
   control().fault.particle = particle;

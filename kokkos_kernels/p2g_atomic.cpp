@@ -9,11 +9,13 @@ void scatter_atomic(const Interpolation<Source>& it) {
   const auto around = it.patches.around;
   const auto out = it.out;
   const auto control = it.control;
-  Kokkos::parallel_for("mpm::scatter_atomic", light(Kokkos::RangePolicy<typename Source::Space>(it.space, 0, source.points.count)),
-                       KOKKOS_LAMBDA(int p) {
-                         if (control().paused) return;
-                         give_to_nodes(source, around, p, [&](int i, int k, T v) { Kokkos::atomic_add(&out(i, k), v); });
-                       });
+  Kokkos::parallel_for(
+      "mpm::scatter_atomic",
+      light(Kokkos::RangePolicy<typename Source::Space>(it.space, 0, source.points.count)),
+      KOKKOS_LAMBDA(int p) {
+        if (control().paused) return;
+        give_to_nodes(source, around, p, [&](int i, int k, T v) { Kokkos::atomic_add(&out(i, k), v); });
+      });
 }
 
 #define MPM_STRATEGY scatter_atomic

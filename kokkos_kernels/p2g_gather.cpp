@@ -14,7 +14,8 @@ void gather_by_node(const Interpolation<Source>& it) {
   const auto out = it.out;
   const auto control = it.control;
   Kokkos::parallel_for(
-      "mpm::gather_by_node", light(Kokkos::RangePolicy<typename Source::Space>(it.space, 0, it.patches.node_count())),
+      "mpm::gather_by_node",
+      light(Kokkos::RangePolicy<typename Source::Space>(it.space, 0, it.patches.node_count())),
       KOKKOS_LAMBDA(int i) {
         if (control().paused) return;
         const int first = list_begin(i), last = list_begin(i + 1);

@@ -2,8 +2,9 @@
 
 namespace mpm {
 
-// Blocks of one colour are at least mosaic_cells - 2 cells apart from each other's reach while no particle has moved
-// more than the margin, so their threads share no node and need no atomic additions (the paper's Fig. 3).
+// Blocks of one colour are at least mosaic_cells - 2 cells apart from each other's reach while no particle
+// has moved more than the margin, so their threads share no node and need no atomic additions (the paper's
+// Fig. 3).
 template <class Source>
 void scatter_mosaic(const Interpolation<Source>& it) {
   using T = typename Source::real;
@@ -21,17 +22,18 @@ void scatter_mosaic(const Interpolation<Source>& it) {
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
     const int first = it.bins.block_begin[colour], last = it.bins.block_begin[colour + 1];
     if (first == last) continue;
-    Kokkos::parallel_for("mpm::scatter_mosaic", light(Kokkos::RangePolicy<typename Source::Space>(it.space, first, last)),
-                         KOKKOS_LAMBDA(int b) {
-                           if (control().paused) return;
-                           for_each_cell_of_block(grid, blocks(b), edge, [&](const Coord<Dim>& c) {
-                             const int slot = slot_of(grid.patch_of(c));
-                             if (slot < 0) return;
-                             const int cell = slot * Patch<Dim>::cells + place_of<Dim>(c);
-                             for (int p = begin(cell); p < begin(cell + 1); ++p)
-                               give_to_nodes(source, around, p, [&](int i, int k, T v) { out(i, k) += v; });
-                           });
-                         });
+    Kokkos::parallel_for(
+        "mpm::scatter_mosaic", light(Kokkos::RangePolicy<typename Source::Space>(it.space, first, last)),
+        KOKKOS_LAMBDA(int b) {
+          if (control().paused) return;
+          for_each_cell_of_block(grid, blocks(b), edge, [&](const Coord<Dim>& c) {
+            const int slot = slot_of(grid.patch_of(c));
+            if (slot < 0) return;
+            const int cell = slot * Patch<Dim>::cells + place_of<Dim>(c);
+            for (int p = begin(cell); p < begin(cell + 1); ++p)
+              give_to_nodes(source, around, p, [&](int i, int k, T v) { out(i, k) += v; });
+          });
+        });
   }
 }
 

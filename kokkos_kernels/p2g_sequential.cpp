@@ -9,12 +9,13 @@ void scatter_sequential(const Interpolation<Source>& it) {
   const auto around = it.patches.around;
   const auto out = it.out;
   const auto control = it.control;
-  Kokkos::parallel_for("mpm::scatter_sequential", light(Kokkos::RangePolicy<typename Source::Space>(it.space, 0, 1)),
-                       KOKKOS_LAMBDA(int) {
-                         if (control().paused) return;
-                         for (int p = 0; p < source.points.count; ++p)
-                           give_to_nodes(source, around, p, [&](int i, int k, T v) { out(i, k) += v; });
-                       });
+  Kokkos::parallel_for(
+      "mpm::scatter_sequential", light(Kokkos::RangePolicy<typename Source::Space>(it.space, 0, 1)),
+      KOKKOS_LAMBDA(int) {
+        if (control().paused) return;
+        for (int p = 0; p < source.points.count; ++p)
+          give_to_nodes(source, around, p, [&](int i, int k, T v) { out(i, k) += v; });
+      });
 }
 
 #define MPM_STRATEGY scatter_sequential

@@ -14,8 +14,9 @@ KOKKOS_INLINE_FUNCTION void add_to(T& a, T v) {
 
 }  // namespace
 
-// A team sums the shares of its patch's particles in scratch memory and adds the window to the nodes. On the host
-// patches go colour by colour (windows of one colour share no node); on a device all at once, by atomic additions.
+// A team sums the shares of its patch's particles in scratch memory and adds the window to the nodes. On the
+// host patches go colour by colour (windows of one colour share no node); on a device all at once, by atomic
+// additions.
 template <class Source>
 void reduce_by_tile(const Interpolation<Source>& it) {
   using T = typename Source::real;
@@ -38,7 +39,8 @@ void reduce_by_tile(const Interpolation<Source>& it) {
     if (first == last) continue;
     Kokkos::parallel_for(
         "mpm::reduce_by_tile",
-        light(Team(it.space, last - first, team_threads<Space>).set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size)))),
+        light(Team(it.space, last - first, team_threads<Space>)
+                  .set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size)))),
         KOKKOS_LAMBDA(const typename Team::member_type& team) {
           if (control().paused) return;
           const int slot = by_colour(first + team.league_rank());

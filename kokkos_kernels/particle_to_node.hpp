@@ -30,13 +30,13 @@ constexpr P2G chosen(P2G how, Backend) { return how == P2G::automatic ? P2G::til
 template <class Source>
 void scatter_sequential(const Interpolation<Source>&);  // one thread, particle by particle
 template <class Source>
-void scatter_atomic(const Interpolation<Source>&);      // a thread a particle, atomic additions
+void scatter_atomic(const Interpolation<Source>&);  // a thread a particle, atomic additions
 template <class Source>
-void scatter_mosaic(const Interpolation<Source>&);      // a thread a block of cells, colour by colour
+void scatter_mosaic(const Interpolation<Source>&);  // a thread a block of cells, colour by colour
 template <class Source>
-void gather_by_node(const Interpolation<Source>&);      // a thread a node, over its expanded list of particles
+void gather_by_node(const Interpolation<Source>&);  // a thread a node, over its expanded list of particles
 template <class Source>
-void reduce_by_tile(const Interpolation<Source>&);      // a team a patch, in scratch memory
+void reduce_by_tile(const Interpolation<Source>&);  // a team a patch, in scratch memory
 
 /// The switch of -p2g.
 template <class Source>
@@ -44,10 +44,10 @@ void particle_to_node(P2G how, const Interpolation<Source>& it) {
   if (it.source.points.count == 0) return;
   switch (chosen(how, backend_of<typename Source::Space>)) {
     case P2G::sequential: return scatter_sequential(it);
-    case P2G::atomic:     return scatter_atomic(it);
-    case P2G::mosaic:     return scatter_mosaic(it);
-    case P2G::gather:     return gather_by_node(it);
-    default:              return reduce_by_tile(it);
+    case P2G::atomic: return scatter_atomic(it);
+    case P2G::mosaic: return scatter_mosaic(it);
+    case P2G::gather: return gather_by_node(it);
+    default: return reduce_by_tile(it);
   }
 }
 
@@ -101,8 +101,8 @@ struct Stencil {
   }
 };
 
-/// Gives the share of particle p to its nodes by add(node, value index, value). Nodes of no weight are left alone,
-/// which keeps the blocks of one colour apart.
+/// Gives the share of particle p to its nodes by add(node, value index, value). Nodes of no weight are left
+/// alone, which keeps the blocks of one colour apart.
 template <class Source, class Around, class Add>
 KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const Around& around, int p, Add&& add) {
   using T = typename Source::real;
@@ -121,5 +121,6 @@ KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const Around& ar
 }  // namespace mpm
 
 /// Instantiates a strategy for every source, space, real type and dimension.
-#define MPM_INSTANTIATE_SOURCE(Source, Space, T, Dim) template void MPM_STRATEGY(const Interpolation<Source<Space, T, Dim>>&);
+#define MPM_INSTANTIATE_SOURCE(Source, Space, T, Dim) \
+  template void MPM_STRATEGY(const Interpolation<Source<Space, T, Dim>>&);
 #define MPM_INSTANTIATE_STRATEGY(Space, T, Dim) MPM_FOR_EACH_SOURCE(MPM_INSTANTIATE_SOURCE, Space, T, Dim)

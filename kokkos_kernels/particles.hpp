@@ -1,6 +1,6 @@
 #pragma once
-// Material points, as plain structs of views. A position is a cell and a coordinate in that cell: [0, 1) when the
-// particles are binned, and up to the margin beyond while they drift between two rebuilds.
+// Material points, as plain structs of views. A position is a cell and a coordinate in that cell: [0, 1) when
+// the particles are binned, and up to the margin beyond while they drift between two rebuilds.
 
 #include <cstdint>
 
@@ -32,28 +32,29 @@ struct BodyProperties {
 template <class Space, class T, int Dim>
 struct Soil : Points<Space, T, Dim> {
   using Memory = typename Space::memory_space;
-  Kokkos::View<Vector<T, Dim>*, Memory> velocity;  // m/s
-  Kokkos::View<SymTensor<T, Dim>*, Memory> stress; // Pa, Cauchy, tension positive
-  Kokkos::View<T*, Memory> volume;                 // m3, current
-  Kokkos::View<T*, Memory> plastic_strain;         // -, engineering plastic shear strain
-  Kokkos::View<T*, Memory> strength;               // Pa, undrained shear strength
-  Kokkos::View<std::uint16_t*, Memory> body;       // index into bodies
+  Kokkos::View<Vector<T, Dim>*, Memory> velocity;   // m/s
+  Kokkos::View<SymTensor<T, Dim>*, Memory> stress;  // Pa, Cauchy, tension positive
+  Kokkos::View<T*, Memory> volume;                  // m3, current
+  Kokkos::View<T*, Memory> plastic_strain;          // -, engineering plastic shear strain
+  Kokkos::View<T*, Memory> strength;                // Pa, undrained shear strength
+  Kokkos::View<std::uint16_t*, Memory> body;        // index into bodies
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
   Kokkos::View<AnyMaterial<T>*, Memory> materials;
 };
 
-/// The particles of one rigid body. They keep their place in the body, so that their motion gathers no round-off.
+/// The particles of one rigid body. They keep their place in the body, so that their motion gathers no
+/// round-off.
 template <class Space, class T, int Dim>
 struct RigidPoints : Points<Space, T, Dim> {
   using Memory = typename Space::memory_space;
   Kokkos::View<Vector<double, Dim>*, Memory> home;  // cells from the mesh's lower corner, at the start
-  T mass = 0;         // kg, of one particle
-  T half_length = 0;  // cells
+  T mass = 0;                                       // kg, of one particle
+  T half_length = 0;                                // cells
 };
 
-/// Applies f to every view that holds one entry a particle, but coordinate, cell and id. The one list of fields:
-/// sorting, output and checkpoints follow it.
+/// Applies f to every view that holds one entry a particle, but coordinate, cell and id. The one list of
+/// fields: sorting, output and checkpoints follow it.
 template <class Space, class T, int Dim, class F>
 void for_each_field(Soil<Space, T, Dim>& s, F&& f) {
   f(s.velocity), f(s.stress), f(s.volume), f(s.plastic_strain), f(s.strength), f(s.body);
@@ -68,13 +69,13 @@ void for_each_field(RigidPoints<Space, T, Dim>& s, F&& f) {
 template <class Space>
 struct Bins {
   using Memory = typename Space::memory_space;
-  Kokkos::View<int*, Memory> begin;         // first point of a cell [cells + 1]
-  Kokkos::View<int*, Memory> by_colour;     // slots that hold points, ordered by colour
-  int colour_begin[8 + 1] = {};             // ranges of by_colour
-  Kokkos::View<int*, Memory> list_begin;    // gather: first entry of a node's list [nodes + 1]
-  Kokkos::View<int*, Memory> list;          // gather: points that may reach the node, in order
-  Kokkos::View<long*, Memory> blocks;       // mosaic: blocks that hold points, ordered by colour
-  int block_begin[8 + 1] = {};              // mosaic: ranges of blocks by colour
+  Kokkos::View<int*, Memory> begin;       // first point of a cell [cells + 1]
+  Kokkos::View<int*, Memory> by_colour;   // slots that hold points, ordered by colour
+  int colour_begin[8 + 1] = {};           // ranges of by_colour
+  Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]
+  Kokkos::View<int*, Memory> list;        // gather: points that may reach the node, in order
+  Kokkos::View<long*, Memory> blocks;     // mosaic: blocks that hold points, ordered by colour
+  int block_begin[8 + 1] = {};            // mosaic: ranges of blocks by colour
 };
 
 }  // namespace mpm

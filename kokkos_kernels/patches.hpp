@@ -1,7 +1,8 @@
 #pragma once
-// The patch: a square (cube) block of cells that carries storage, order and distribution. Nodal fields exist only
-// in active patches: those that hold particles, and the ring around them. An active patch has a slot; a node's
-// number is slot * cells + its place in the patch, and so is a cell's (a node is its cell's lower corner).
+// The patch: a square (cube) block of cells that carries storage, order and distribution. Nodal fields exist
+// only in active patches: those that hold particles, and the ring around them. An active patch has a slot; a
+// node's number is slot * cells + its place in the patch, and so is a cell's (a node is its cell's lower
+// corner).
 
 #include "choices.hpp"
 #include "types.hpp"
@@ -12,11 +13,11 @@ namespace mpm {
 template <int Dim>
 struct Patch {
   static constexpr int log_edge = Dim == 2 ? 3 : 2;
-  static constexpr int edge = 1 << log_edge;          // cells
-  static constexpr int cells = power(edge, Dim);      // 64 in both
-  static constexpr int around = power(3, Dim);        // patches round one, itself included
-  static constexpr int colours = power(2, Dim);       // patches of one colour do not touch
-  static constexpr int window_edge = edge + 4;        // nodes that its particles reach: -1 ... edge + 2
+  static constexpr int edge = 1 << log_edge;      // cells
+  static constexpr int cells = power(edge, Dim);  // 64 in both
+  static constexpr int around = power(3, Dim);    // patches round one, itself included
+  static constexpr int colours = power(2, Dim);   // patches of one colour do not touch
+  static constexpr int window_edge = edge + 4;    // nodes that its particles reach: -1 ... edge + 2
   static constexpr int window = power(window_edge, Dim);
 };
 
@@ -28,7 +29,8 @@ using Coord = Vector<int, Dim>;
 template <int Dim>
 KOKKOS_INLINE_FUNCTION constexpr int place_of(const Coord<Dim>& c) {
   int place = 0;
-  for (int d = Dim - 1; d >= 0; --d) place = (place << Patch<Dim>::log_edge) + (c[d] & (Patch<Dim>::edge - 1));
+  for (int d = Dim - 1; d >= 0; --d)
+    place = (place << Patch<Dim>::log_edge) + (c[d] & (Patch<Dim>::edge - 1));
   return place;
 }
 template <int Dim>
@@ -38,8 +40,8 @@ KOKKOS_INLINE_FUNCTION constexpr Coord<Dim> coord_of(int place) {
   return c;
 }
 
-/// The background mesh as kernels see it. One ring of patches lies outside the mesh on every side, for the nodes
-/// that a particle at a wall reaches.
+/// The background mesh as kernels see it. One ring of patches lies outside the mesh on every side, for the
+/// nodes that a particle at a wall reaches.
 template <class T, int Dim>
 struct Grid {
   T spacing, inv_spacing;  // m, 1/m
@@ -67,7 +69,8 @@ struct Grid {
     }
     return c;
   }
-  /// Address of a cell in the whole grid: patch_of * Patch::cells + place_of. Orders cells as the particles are.
+  /// Address of a cell in the whole grid: patch_of * Patch::cells + place_of. Orders cells as the particles
+  /// are.
   KOKKOS_INLINE_FUNCTION long address_of(const Coord<Dim>& cell) const {
     return patch_of(cell) * Patch<Dim>::cells + place_of<Dim>(cell);
   }
@@ -83,9 +86,10 @@ template <class Space, int Dim>
 struct Patches {
   using Memory = typename Space::memory_space;
   int slots = 0;
-  Kokkos::View<int*, Memory> slot_of;  // by Grid::patch_of; -1 where not active
+  Kokkos::View<int*, Memory> slot_of;        // by Grid::patch_of; -1 where not active
   Kokkos::View<Coord<Dim>*, Memory> origin;  // lower cell of a slot
-  Kokkos::View<int* [Patch<Dim>::around], Kokkos::LayoutRight, Memory> around;  // slots round a slot; -1 none
+  Kokkos::View<int * [Patch<Dim>::around], Kokkos::LayoutRight, Memory>
+      around;  // slots round a slot; -1 none
 
   int node_count() const { return slots * Patch<Dim>::cells; }
 };

@@ -6,13 +6,13 @@
 
 namespace mpm {
 
-/// Finds the cell of every point (Sorted::address) from where it is now, and brings the soil's coordinates back to
-/// [0, 1). A point outside the mesh is a fault in s.control.
+/// Finds the cell of every point (Sorted::address) from where it is now, and brings the soil's coordinates
+/// back to [0, 1). A point outside the mesh is a fault in s.control.
 template <class Space, class T, int Dim>
 void locate(State<Space, T, Dim>& s);
 
-/// Makes the patch table, the order of the points, their bins and the strategy's lists from the points' addresses,
-/// and resets the movement bound. Nodal fields are laid out anew and hold nothing.
+/// Makes the patch table, the order of the points, their bins and the strategy's lists from the points'
+/// addresses, and resets the movement bound. Nodal fields are laid out anew and hold nothing.
 template <class Space, class T, int Dim>
 void sort_and_list(State<Space, T, Dim>& s);
 

@@ -1,4 +1,5 @@
-// What the strategies of the paper need beside the bins: expanded lists of particles by node, and blocks by colour.
+// What the strategies of the paper need beside the bins: expanded lists of particles by node, and blocks by
+// colour.
 
 #include <limits>
 #include <stdexcept>
@@ -26,15 +27,16 @@ KOKKOS_INLINE_FUNCTION void for_each_near(const Source& source, const Patches_& 
     for (int p = begin(cell); p < begin(cell + 1); ++p) {
       const T reach = 1 + source.load(p).half_length + margin;
       bool near = true;
-      for (int d = 0; d < Dim; ++d) near = near && Kokkos::fabs(source.points.coordinate(p)[d] + from[d]) <= reach;
+      for (int d = 0; d < Dim; ++d)
+        near = near && Kokkos::fabs(source.points.coordinate(p)[d] + from[d]) <= reach;
       if (near) f(p);
     }
   }
 }
 
 template <class Source, class Space>
-void build_node_lists(const Space& space, const Source& source, const Patches<Space, Source::dim>& patches, Bins<Space>& bins,
-                      double margin_) {
+void build_node_lists(const Space& space, const Source& source, const Patches<Space, Source::dim>& patches,
+                      Bins<Space>& bins, double margin_) {
   using Range = Kokkos::RangePolicy<Space>;
   using T = typename Source::real;
   const int nodes = patches.node_count();
@@ -42,31 +44,37 @@ void build_node_lists(const Space& space, const Source& source, const Patches<Sp
   ensure(bins.list_begin, nodes + 1);
   const auto list_begin = bins.list_begin;
   const auto begin = bins.begin;
-  Kokkos::parallel_for("mpm::count_lists", Range(space, 0, nodes), KOKKOS_LAMBDA(int i) {
-    int n = 0;
-    for_each_near(source, patches, begin, margin, i, [&](int) { ++n; });
-    list_begin(i) = n;
-  });
+  Kokkos::parallel_for(
+      "mpm::count_lists", Range(space, 0, nodes), KOKKOS_LAMBDA(int i) {
+        int n = 0;
+        for_each_near(source, patches, begin, margin, i, [&](int) { ++n; });
+        list_begin(i) = n;
+      });
   long entries = 0;
-  Kokkos::parallel_scan("mpm::begin_of_lists", Range(space, 0, nodes + 1), KOKKOS_LAMBDA(int i, long& sum, bool last) {
-    const int n = i < nodes ? list_begin(i) : 0;
-    if (last) list_begin(i) = static_cast<int>(sum);
-    sum += n;
-  }, entries);
+  Kokkos::parallel_scan(
+      "mpm::begin_of_lists", Range(space, 0, nodes + 1),
+      KOKKOS_LAMBDA(int i, long& sum, bool last) {
+        const int n = i < nodes ? list_begin(i) : 0;
+        if (last) list_begin(i) = static_cast<int>(sum);
+        sum += n;
+      },
+      entries);
   if (entries > std::numeric_limits<int>::max())
     throw std::length_error("-p2g gather: the lists of particles would have " + std::to_string(entries) +
                             " entries, 2147483647 is the most; take another strategy");
   ensure(bins.list, entries);
   const auto list = bins.list;
-  Kokkos::parallel_for("mpm::fill_lists", Range(space, 0, nodes), KOKKOS_LAMBDA(int i) {
-    int n = list_begin(i);
-    for_each_near(source, patches, begin, margin, i, [&](int p) { list(n++) = p; });
-  });
+  Kokkos::parallel_for(
+      "mpm::fill_lists", Range(space, 0, nodes), KOKKOS_LAMBDA(int i) {
+        int n = list_begin(i);
+        for_each_near(source, patches, begin, margin, i, [&](int p) { list(n++) = p; });
+      });
 }
 
 /// Blocks of the mosaic that hold points, ordered by colour.
 template <class Space, class T, int Dim>
-void build_blocks(const Space& space, const Grid<T, Dim>& grid, const Patches<Space, Dim>& patches, Bins<Space>& bins, int edge) {
+void build_blocks(const Space& space, const Grid<T, Dim>& grid, const Patches<Space, Dim>& patches,
+                  Bins<Space>& bins, int edge) {
   long count = 1;
   for (int d = 0; d < Dim; ++d) count *= blocks_along(grid, d, edge);
   ensure(bins.blocks, count);
@@ -77,24 +85,25 @@ void build_blocks(const Space& space, const Grid<T, Dim>& grid, const Patches<Sp
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
     const int first = bins.block_begin[colour];
     int found = 0;
-    Kokkos::parallel_scan("mpm::blocks_by_colour", Kokkos::RangePolicy<Space, Kokkos::IndexType<long>>(space, 0, count),
-                          KOKKOS_LAMBDA(long b, int& n, bool last) {
-                            int own = 0;
-                            long rest = b;
-                            for (int d = 0; d < Dim; rest /= blocks_along(grid, d, edge), ++d)
-                              own |= static_cast<int>((rest % blocks_along(grid, d, edge)) & 1) << d;
-                            if (own != colour) return;
-                            bool holds = false;
-                            for_each_cell_of_block(grid, b, edge, [&](const Coord<Dim>& c) {
-                              const int slot = slot_of(grid.patch_of(c));
-                              if (slot < 0) return;
-                              const int cell = slot * Patch<Dim>::cells + place_of<Dim>(c);
-                              holds = holds || begin(cell) < begin(cell + 1);
-                            });
-                            if (last && holds) blocks(first + n) = b;
-                            n += holds;
-                          },
-                          found);
+    Kokkos::parallel_scan(
+        "mpm::blocks_by_colour", Kokkos::RangePolicy<Space, Kokkos::IndexType<long>>(space, 0, count),
+        KOKKOS_LAMBDA(long b, int& n, bool last) {
+          int own = 0;
+          long rest = b;
+          for (int d = 0; d < Dim; rest /= blocks_along(grid, d, edge), ++d)
+            own |= static_cast<int>((rest % blocks_along(grid, d, edge)) & 1) << d;
+          if (own != colour) return;
+          bool holds = false;
+          for_each_cell_of_block(grid, b, edge, [&](const Coord<Dim>& c) {
+            const int slot = slot_of(grid.patch_of(c));
+            if (slot < 0) return;
+            const int cell = slot * Patch<Dim>::cells + place_of<Dim>(c);
+            holds = holds || begin(cell) < begin(cell + 1);
+          });
+          if (last && holds) blocks(first + n) = b;
+          n += holds;
+        },
+        found);
     bins.block_begin[colour + 1] = first + found;
   }
 }

@@ -18,10 +18,12 @@ KOKKOS_INLINE_FUNCTION long patch_around(const Grid<T, Dim>& grid, Coord<Dim> at
 
 /// Marks the patches that hold points.
 template <class Space, class Points_, class Marks>
-void mark_patches(const Space& space, const Sorted<Space, Points_>& set, const Marks& marks, int cells_per_patch) {
+void mark_patches(const Space& space, const Sorted<Space, Points_>& set, const Marks& marks,
+                  int cells_per_patch) {
   const auto address = set.address;
-  Kokkos::parallel_for("mpm::mark_patches", Kokkos::RangePolicy<Space>(space, 0, set.points.count),
-                       KOKKOS_LAMBDA(int p) { marks(address(p) / cells_per_patch) = 1; });
+  Kokkos::parallel_for(
+      "mpm::mark_patches", Kokkos::RangePolicy<Space>(space, 0, set.points.count),
+      KOKKOS_LAMBDA(int p) { marks(address(p) / cells_per_patch) = 1; });
 }
 
 }  // namespace
@@ -36,23 +38,24 @@ void locate(State<Space, T, Dim>& s) {
     const auto x_p = s.soil.points.coordinate;
     const auto cell = s.soil.points.cell, id = s.soil.points.id;
     const auto address = s.soil.address;
-    Kokkos::parallel_for("mpm::locate_soil", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
-                         KOKKOS_LAMBDA(int p) {
-                           Coord<Dim> c = coord_of<Dim>(cell(p));
-                           const Coord<Dim> from = origin(cell(p) / Patch<Dim>::cells);
-                           Vector<T, Dim> x = x_p(p);
-                           double position[3] = {};
-                           for (int d = 0; d < Dim; ++d) {
-                             const T whole = Kokkos::floor(x[d]);
-                             c[d] += from[d] + static_cast<int>(whole);
-                             x[d] -= whole;
-                             if (x[d] >= 1) x[d] = 0, ++c[d];  // -tiny + 1 rounds to 1
-                             position[d] = (c[d] + double(x[d])) * spacing;
-                           }
-                           if (!grid.holds(c)) return report(control, FaultKind::outside, id(p), position, Dim);
-                           x_p(p) = x;
-                           address(p) = grid.address_of(c);
-                         });
+    Kokkos::parallel_for(
+        "mpm::locate_soil", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+        KOKKOS_LAMBDA(int p) {
+          Coord<Dim> c = coord_of<Dim>(cell(p));
+          const Coord<Dim> from = origin(cell(p) / Patch<Dim>::cells);
+          Vector<T, Dim> x = x_p(p);
+          double position[3] = {};
+          for (int d = 0; d < Dim; ++d) {
+            const T whole = Kokkos::floor(x[d]);
+            c[d] += from[d] + static_cast<int>(whole);
+            x[d] -= whole;
+            if (x[d] >= 1) x[d] = 0, ++c[d];  // -tiny + 1 rounds to 1
+            position[d] = (c[d] + double(x[d])) * spacing;
+          }
+          if (!grid.holds(c)) return report(control, FaultKind::outside, id(p), position, Dim);
+          x_p(p) = x;
+          address(p) = grid.address_of(c);
+        });
   }
   for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
     const auto& points = s.rigid_points[r].points;
@@ -61,18 +64,20 @@ void locate(State<Space, T, Dim>& s) {
     const auto id = points.id;
     const auto address = s.rigid_points[r].address;
     const auto rigids = s.rigids;
-    Kokkos::parallel_for("mpm::locate_rigid", Kokkos::RangePolicy<Space>(s.space, 0, points.count), KOKKOS_LAMBDA(int p) {
-      Coord<Dim> c{};
-      double position[3] = {};
-      for (int d = 0; d < Dim; ++d) {
-        const double x = home(p)[d] + rigids(r).displacement[d] / spacing;
-        c[d] = static_cast<int>(Kokkos::floor(x));
-        x_p(p)[d] = static_cast<T>(x - Kokkos::floor(x));
-        position[d] = x * spacing;
-      }
-      if (!grid.holds(c)) return report(control, FaultKind::outside, -1 - static_cast<int>(r), position, Dim);
-      address(p) = grid.address_of(c);
-    });
+    Kokkos::parallel_for(
+        "mpm::locate_rigid", Kokkos::RangePolicy<Space>(s.space, 0, points.count), KOKKOS_LAMBDA(int p) {
+          Coord<Dim> c{};
+          double position[3] = {};
+          for (int d = 0; d < Dim; ++d) {
+            const double x = home(p)[d] + rigids(r).displacement[d] / spacing;
+            c[d] = static_cast<int>(Kokkos::floor(x));
+            x_p(p)[d] = static_cast<T>(x - Kokkos::floor(x));
+            position[d] = x * spacing;
+          }
+          if (!grid.holds(c))
+            return report(control, FaultKind::outside, -1 - static_cast<int>(r), position, Dim);
+          address(p) = grid.address_of(c);
+        });
   }
 }
 
@@ -90,37 +95,39 @@ void activate_patches(State<Space, T, Dim>& s) {
   mark_patches(s.space, s.soil, marks, Patch<Dim>::cells);
   for (const auto& set : s.rigid_points) mark_patches(s.space, set, marks, Patch<Dim>::cells);
 
-  Kokkos::parallel_scan("mpm::number_patches", Range(s.space, 0, patch_count),
-                        KOKKOS_LAMBDA(int n, int& slot, bool last) {
-                          const Coord<Dim> at = grid.origin_of(n);
-                          bool active = false;
-                          for (int k = 0; k < Patch<Dim>::around && !active; ++k) {
-                            const long other = patch_around(grid, at, k);
-                            active = other >= 0 && marks(other) != 0;
-                          }
-                          if (last) slot_of(n) = active ? slot : -1;
-                          slot += active;
-                        },
-                        patches.slots);
+  Kokkos::parallel_scan(
+      "mpm::number_patches", Range(s.space, 0, patch_count),
+      KOKKOS_LAMBDA(int n, int& slot, bool last) {
+        const Coord<Dim> at = grid.origin_of(n);
+        bool active = false;
+        for (int k = 0; k < Patch<Dim>::around && !active; ++k) {
+          const long other = patch_around(grid, at, k);
+          active = other >= 0 && marks(other) != 0;
+        }
+        if (last) slot_of(n) = active ? slot : -1;
+        slot += active;
+      },
+      patches.slots);
 
   ensure(patches.origin, patches.slots);
   ensure(patches.around, patches.slots);
   const auto origin = patches.origin;
   const auto around = patches.around;
-  Kokkos::parallel_for("mpm::link_patches", Range(s.space, 0, patch_count), KOKKOS_LAMBDA(int n) {
-    const int slot = slot_of(n);
-    if (slot < 0) return;
-    const Coord<Dim> at = grid.origin_of(n);
-    origin(slot) = at;
-    for (int k = 0; k < Patch<Dim>::around; ++k) {
-      const long other = patch_around(grid, at, k);
-      around(slot, k) = other < 0 ? -1 : slot_of(other);
-    }
-  });
+  Kokkos::parallel_for(
+      "mpm::link_patches", Range(s.space, 0, patch_count), KOKKOS_LAMBDA(int n) {
+        const int slot = slot_of(n);
+        if (slot < 0) return;
+        const Coord<Dim> at = grid.origin_of(n);
+        origin(slot) = at;
+        for (int k = 0; k < Patch<Dim>::around; ++k) {
+          const long other = patch_around(grid, at, k);
+          around(slot, k) = other < 0 ? -1 : slot_of(other);
+        }
+      });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                  \
-  template void locate(State<Space, T, Dim>&);          \
+#define MPM_INSTANTIATE(Space, T, Dim)         \
+  template void locate(State<Space, T, Dim>&); \
   template void activate_patches(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -1,5 +1,5 @@
-// The order of the points: by slot, by cell in it, by id in the cell. A counting sort, then each cell's few points
-// are put in order of id, so that the result does not depend on how threads ran.
+// The order of the points: by slot, by cell in it, by id in the cell. A counting sort, then each cell's few
+// points are put in order of id, so that the result does not depend on how threads ran.
 
 #include "rebuild.hpp"
 
@@ -8,24 +8,29 @@ namespace {
 
 /// Cells of the points under the new patch table, counted and summed to ranges.
 template <class Space, class Points_, class Slots>
-void count_by_cell(const Space& space, Sorted<Space, Points_>& set, const Slots& slot_of, int cells, int cells_per_patch) {
+void count_by_cell(const Space& space, Sorted<Space, Points_>& set, const Slots& slot_of, int cells,
+                   int cells_per_patch) {
   using Range = Kokkos::RangePolicy<Space>;
   ensure(set.bins.begin, cells + 1);
   ensure(set.order, set.points.count);
   const auto begin = set.bins.begin, order = set.order;
   const auto cell = set.points.cell;
   const auto address = set.address;
-  Kokkos::parallel_for("mpm::clear_bins", Range(space, 0, cells + 1), KOKKOS_LAMBDA(int c) { begin(c) = 0; });
-  Kokkos::parallel_for("mpm::count_by_cell", Range(space, 0, set.points.count), KOKKOS_LAMBDA(int p) {
-    const int c = slot_of(address(p) / cells_per_patch) * cells_per_patch + static_cast<int>(address(p) % cells_per_patch);
-    cell(p) = c;
-    order(p) = Kokkos::atomic_fetch_add(&begin(c), 1);  // place in the cell, for now
-  });
-  Kokkos::parallel_scan("mpm::begin_of_cells", Range(space, 0, cells + 1), KOKKOS_LAMBDA(int c, int& sum, bool last) {
-    const int n = begin(c);
-    if (last) begin(c) = sum;
-    sum += n;
-  });
+  Kokkos::parallel_for(
+      "mpm::clear_bins", Range(space, 0, cells + 1), KOKKOS_LAMBDA(int c) { begin(c) = 0; });
+  Kokkos::parallel_for(
+      "mpm::count_by_cell", Range(space, 0, set.points.count), KOKKOS_LAMBDA(int p) {
+        const int c = slot_of(address(p) / cells_per_patch) * cells_per_patch +
+                      static_cast<int>(address(p) % cells_per_patch);
+        cell(p) = c;
+        order(p) = Kokkos::atomic_fetch_add(&begin(c), 1);  // place in the cell, for now
+      });
+  Kokkos::parallel_scan(
+      "mpm::begin_of_cells", Range(space, 0, cells + 1), KOKKOS_LAMBDA(int c, int& sum, bool last) {
+        const int n = begin(c);
+        if (last) begin(c) = sum;
+        sum += n;
+      });
 }
 
 /// set.order becomes the former place of each point of the new order. `spare` is scratch.
@@ -35,17 +40,22 @@ void order_points(const Space& space, Sorted<Space, Points_>& set, const Spare& 
   const int count = set.points.count;
   const auto begin = set.bins.begin, order = set.order;
   const auto cell = set.points.cell, id = set.points.id;
-  Kokkos::View<int*, typename Space::memory_space, Kokkos::MemoryUnmanaged> former(reinterpret_cast<int*>(spare.data()), count);
-  Kokkos::parallel_for("mpm::place_points", Range(space, 0, count), KOKKOS_LAMBDA(int p) { former(begin(cell(p)) + order(p)) = p; });
-  Kokkos::parallel_for("mpm::order_in_cell", Range(space, 0, cells), KOKKOS_LAMBDA(int c) {
-    for (int n = begin(c) + 1; n < begin(c + 1); ++n) {
-      const int p = former(n);
-      int m = n;
-      for (; m > begin(c) && id(former(m - 1)) > id(p); --m) former(m) = former(m - 1);
-      former(m) = p;
-    }
-  });
-  Kokkos::parallel_for("mpm::keep_order", Range(space, 0, count), KOKKOS_LAMBDA(int p) { order(p) = former(p); });
+  Kokkos::View<int*, typename Space::memory_space, Kokkos::MemoryUnmanaged> former(
+      reinterpret_cast<int*>(spare.data()), count);
+  Kokkos::parallel_for(
+      "mpm::place_points", Range(space, 0, count),
+      KOKKOS_LAMBDA(int p) { former(begin(cell(p)) + order(p)) = p; });
+  Kokkos::parallel_for(
+      "mpm::order_in_cell", Range(space, 0, cells), KOKKOS_LAMBDA(int c) {
+        for (int n = begin(c) + 1; n < begin(c + 1); ++n) {
+          const int p = former(n);
+          int m = n;
+          for (; m > begin(c) && id(former(m - 1)) > id(p); --m) former(m) = former(m - 1);
+          former(m) = p;
+        }
+      });
+  Kokkos::parallel_for(
+      "mpm::keep_order", Range(space, 0, count), KOKKOS_LAMBDA(int p) { order(p) = former(p); });
 }
 
 /// Puts one field into the new order.
@@ -53,9 +63,12 @@ template <class Space, class Field, class Order, class Spare>
 void permute(const Space& space, const Field& field, const Order& order, int count, const Spare& spare) {
   using Range = Kokkos::RangePolicy<Space>;
   using Value = typename Field::value_type;
-  Kokkos::View<Value*, typename Space::memory_space, Kokkos::MemoryUnmanaged> sorted(reinterpret_cast<Value*>(spare.data()), count);
-  Kokkos::parallel_for("mpm::permute", Range(space, 0, count), KOKKOS_LAMBDA(int p) { sorted(p) = field(order(p)); });
-  Kokkos::parallel_for("mpm::permute_back", Range(space, 0, count), KOKKOS_LAMBDA(int p) { field(p) = sorted(p); });
+  Kokkos::View<Value*, typename Space::memory_space, Kokkos::MemoryUnmanaged> sorted(
+      reinterpret_cast<Value*>(spare.data()), count);
+  Kokkos::parallel_for(
+      "mpm::permute", Range(space, 0, count), KOKKOS_LAMBDA(int p) { sorted(p) = field(order(p)); });
+  Kokkos::parallel_for(
+      "mpm::permute_back", Range(space, 0, count), KOKKOS_LAMBDA(int p) { field(p) = sorted(p); });
 }
 
 /// Slots that hold points, ordered by the colour of their patch.
@@ -69,21 +82,24 @@ void slots_by_colour(const Space& space, Sorted<Space, Points_>& set, const Patc
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
     const int first = set.bins.colour_begin[colour];
     int found = 0;
-    Kokkos::parallel_scan("mpm::slots_by_colour", Kokkos::RangePolicy<Space>(space, 0, patches.slots),
-                          KOKKOS_LAMBDA(int slot, int& n, bool last) {
-                            int own = 0;
-                            for (int d = 0; d < Dim; ++d) own |= ((origin(slot)[d] >> Patch<Dim>::log_edge) & 1) << d;
-                            if (own != colour || begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells)) return;
-                            if (last) by_colour(first + n) = slot;
-                            ++n;
-                          },
-                          found);
+    Kokkos::parallel_scan(
+        "mpm::slots_by_colour", Kokkos::RangePolicy<Space>(space, 0, patches.slots),
+        KOKKOS_LAMBDA(int slot, int& n, bool last) {
+          int own = 0;
+          for (int d = 0; d < Dim; ++d) own |= ((origin(slot)[d] >> Patch<Dim>::log_edge) & 1) << d;
+          if (own != colour || begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells))
+            return;
+          if (last) by_colour(first + n) = slot;
+          ++n;
+        },
+        found);
     set.bins.colour_begin[colour + 1] = first + found;
   }
 }
 
 template <class Space, class Points_, int Dim, class Spare>
-void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches, Spare& spare) {
+void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches,
+              Spare& spare) {
   const int cells = patches.node_count();
   auto& points = set.points;
   std::size_t widest = std::max(sizeof(int), sizeof(typename decltype(points.coordinate)::value_type));
@@ -118,13 +134,15 @@ void sort_and_list(State<Space, T, Dim>& s) {
   ensure(s.nodes.motion, nodes);
   if (s.interface_shear) ensure(s.nodes.volume, nodes);
   if (static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
-    s.nodes.rigid = decltype(s.nodes.rigid)(Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing),
-                                            s.rigid_points.size(), nodes + nodes / 8);
+    s.nodes.rigid =
+        decltype(s.nodes.rigid)(Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing),
+                                s.rigid_points.size(), nodes + nodes / 8);
   const auto control = s.control;
-  Kokkos::parallel_for("mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
-    control().bound = 0;
-    control().paused = control().fault_count > 0;
-  });
+  Kokkos::parallel_for(
+      "mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
+        control().bound = 0;
+        control().paused = control().fault_count > 0;
+      });
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)              \

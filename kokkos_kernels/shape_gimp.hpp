@@ -27,25 +27,28 @@ KOKKOS_INLINE_FUNCTION AxisWeights<T> axis_weights(T x, T l) {
   a.g[0] = a.g[2] - 1;
   a.g[1] = 1 - 2 * a.g[2];
   a.w[2] = l * a.g[2] * a.g[2];
-  a.w[0] = Kokkos::fmax(T(0), 1 - l - r) + l * a.g[0] * a.g[0];  // no cancellation: positive wherever g[0] is not 0
+  a.w[0] = Kokkos::fmax(T(0), 1 - l - r) +
+           l * a.g[0] * a.g[0];  // no cancellation: positive wherever g[0] is not 0
   a.w[1] = 1 - a.w[0] - a.w[2];
   return a;
 }
 
-/// Calls f(k, w, grad) for each of the 3^Dim nodes that a particle reaches: k the steps from the first node, w [-]
-/// the weight, grad [1/cell] its gradient. The one place where weights of axes are multiplied.
+/// Calls f(k, w, grad) for each of the 3^Dim nodes that a particle reaches: k the steps from the first node,
+/// w [-] the weight, grad [1/cell] its gradient. The one place where weights of axes are multiplied.
 template <class T, int Dim, class F>
 KOKKOS_INLINE_FUNCTION void for_each_weight(const AxisWeights<T> (&a)[Dim], F&& f) {
   if constexpr (Dim == 2) {
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i)
-        f(Vector<int, 2>{i, j}, a[0].w[i] * a[1].w[j], Vector<T, 2>{a[0].g[i] * a[1].w[j], a[0].w[i] * a[1].g[j]});
+        f(Vector<int, 2>{i, j}, a[0].w[i] * a[1].w[j],
+          Vector<T, 2>{a[0].g[i] * a[1].w[j], a[0].w[i] * a[1].g[j]});
   } else {
     for (int k = 0; k < 3; ++k)
       for (int j = 0; j < 3; ++j) {
         const T w_jk = a[1].w[j] * a[2].w[k], gy = a[1].g[j] * a[2].w[k], gz = a[1].w[j] * a[2].g[k];
         for (int i = 0; i < 3; ++i)
-          f(Vector<int, 3>{i, j, k}, a[0].w[i] * w_jk, Vector<T, 3>{a[0].g[i] * w_jk, a[0].w[i] * gy, a[0].w[i] * gz});
+          f(Vector<int, 3>{i, j, k}, a[0].w[i] * w_jk,
+            Vector<T, 3>{a[0].g[i] * w_jk, a[0].w[i] * gy, a[0].w[i] * gz});
       }
   }
 }
@@ -63,7 +66,8 @@ KOKKOS_INLINE_FUNCTION void with_weights(const Vector<T, Dim>& x, T l, F&& f) {
 template <class T>
 KOKKOS_INLINE_FUNCTION void node_weight(T r, T l, T& s, T& ds) {
   const T a = Kokkos::fabs(r), near = Kokkos::fmax(T(0), l - a);
-  const T u = Kokkos::fmin(T(1), Kokkos::fmax(T(0), (1 + l - a) / (2 * l)));  // share of the particle this side of 1
+  const T u =
+      Kokkos::fmin(T(1), Kokkos::fmax(T(0), (1 + l - a) / (2 * l)));  // share of the particle this side of 1
   s = Kokkos::fmax(T(0), 1 - l - a) + l * u * u - near * near / (2 * l);
   ds = Kokkos::copysign(T(1), r) * (near / l - u);
 }

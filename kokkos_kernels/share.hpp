@@ -62,8 +62,8 @@ struct VolumeSource {
   }
 };
 
-/// Rigid body to nodes: m_i^R = sum S m_p and the mass gradient n_i^R = sum grad S m_p (Eq. 3; it points out of
-/// the body).
+/// Rigid body to nodes: m_i^R = sum S m_p and the mass gradient n_i^R = sum grad S m_p (Eq. 3; it points out
+/// of the body).
 template <class Space_, class T, int Dim>
 struct RigidSource {
   using Space = Space_;
@@ -83,6 +83,7 @@ struct RigidSource {
 };
 
 /// Applies X(Source) to every source of a space, real type and dimension.
-#define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) X(SoilSource, Space, T, Dim) X(VolumeSource, Space, T, Dim) X(RigidSource, Space, T, Dim)
+#define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
+  X(SoilSource, Space, T, Dim) X(VolumeSource, Space, T, Dim) X(RigidSource, Space, T, Dim)
 
 }  // namespace mpm

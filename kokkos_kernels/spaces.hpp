@@ -9,7 +9,8 @@ namespace mpm {
 
 /// True where the threads of a team share scratch memory and run at once (GPU).
 template <class Space>
-inline constexpr bool is_device = !Kokkos::SpaceAccessibility<Kokkos::HostSpace, typename Space::memory_space>::accessible;
+inline constexpr bool is_device =
+    !Kokkos::SpaceAccessibility<Kokkos::HostSpace, typename Space::memory_space>::accessible;
 
 template <class Space>
 inline constexpr Backend backend_of = Backend::serial;
@@ -22,8 +23,9 @@ template <>
 inline constexpr Backend backend_of<Kokkos::Cuda> = Backend::cuda;
 #endif
 
-/// The same policy, for a kernel of a time step: its functor travels as an argument of the launch. Without the hint
-/// Kokkos sends a large functor through constant memory on CUDA, where each launch waits for the one before it.
+/// The same policy, for a kernel of a time step: its functor travels as an argument of the launch. Without
+/// the hint Kokkos sends a large functor through constant memory on CUDA, where each launch waits for the one
+/// before it.
 template <class Policy>
 auto light(const Policy& policy) {
   return Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight);

@@ -13,14 +13,15 @@ template <class Space, class Points_>
 struct Sorted {
   Points_ points;
   Bins<Space> bins;
-  Kokkos::View<long*, typename Space::memory_space> address;  // scratch of a rebuild: Grid::address_of each point
-  Kokkos::View<int*, typename Space::memory_space> order;     // scratch of a rebuild: former place of each point
+  Kokkos::View<long*, typename Space::memory_space>
+      address;  // scratch of a rebuild: Grid::address_of each point
+  Kokkos::View<int*, typename Space::memory_space> order;  // scratch of a rebuild: former place of each point
 };
 
 /// Strategy and what its lists are built with.
 struct P2GPlan {
   P2G strategy = P2G::automatic;
-  double margin = 0.5;   // cells
+  double margin = 0.5;  // cells
   int mosaic_cells = 3;
 };
 
@@ -36,17 +37,17 @@ struct State {
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   Nodes<Space, T, Dim> nodes;
   ControlView<Space> control;
-  Kokkos::View<double*, Memory> sums;    // N, force of the soil on each rigid in this step
-  Kokkos::View<char*, Memory> spare;     // scratch of a rebuild: one field in its new order
-  Kokkos::View<int*, Memory> marks;      // scratch of a rebuild: which patches hold points
+  Kokkos::View<double*, Memory> sums;  // N, force of the soil on each rigid in this step
+  Kokkos::View<char*, Memory> spare;   // scratch of a rebuild: one field in its new order
+  Kokkos::View<int*, Memory> marks;    // scratch of a rebuild: which patches hold points
 
-  double spacing = 0;                    // m, edge of a cell, whatever T is
-  Vector<double, Dim> gravity{};         // m/s2
-  double damping = 0;                    // -
-  double flip_share = 1;                 // -
-  double mass_cut = 0;                   // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
-  bool rigid_moves = false;              // some rigid is not fixed
-  bool interface_shear = false;          // some interface carries shear: the nodal volume is needed
+  double spacing = 0;             // m, edge of a cell, whatever T is
+  Vector<double, Dim> gravity{};  // m/s2
+  double damping = 0;             // -
+  double flip_share = 1;          // -
+  double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
+  bool rigid_moves = false;       // some rigid is not fixed
+  bool interface_shear = false;   // some interface carries shear: the nodal volume is needed
 };
 
 }  // namespace mpm

@@ -10,17 +10,18 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s);
 
-/// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the contact
-/// forces in s.sums. dt [s].
+/// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
+/// contact forces in s.sums. dt [s].
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt);
 
-/// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves the
-/// furthest movement of a particle in s.control. dt [s].
+/// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves
+/// the furthest movement of a particle in s.control. dt [s].
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt);
 
-/// 6. Moves the rigid bodies (Eq. 7), counts the step, and adds what any point can have moved to the bound. dt [s].
+/// 6. Moves the rigid bodies (Eq. 7), counts the step, and adds what any point can have moved to the bound.
+/// dt [s].
 template <class Space, class T, int Dim>
 void move_rigids(State<Space, T, Dim>& s, double dt);
 

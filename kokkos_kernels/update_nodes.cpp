@@ -13,17 +13,19 @@ void reset_nodes(State<Space, T, Dim>& s) {
   const auto control = s.control;
   const int rigids = static_cast<int>(s.rigid_points.size());
   const bool has_volume = s.interface_shear;
-  Kokkos::parallel_for("mpm::reset_nodes", light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())), KOKKOS_LAMBDA(int i) {
-    if (control().paused) return;
-    for (int k = 0; k < SoilShare<Dim>::size; ++k) soil(i, k) = 0;
-    if (has_volume) volume(i, 0) = 0;
-    for (int r = 0; r < rigids; ++r)
-      for (int k = 0; k < RigidShare<Dim>::size; ++k) rigid(r, i, k) = 0;
-  });
+  Kokkos::parallel_for(
+      "mpm::reset_nodes", light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())),
+      KOKKOS_LAMBDA(int i) {
+        if (control().paused) return;
+        for (int k = 0; k < SoilShare<Dim>::size; ++k) soil(i, k) = 0;
+        if (has_volume) volume(i, 0) = 0;
+        for (int r = 0; r < rigids; ++r)
+          for (int k = 0; k < RigidShare<Dim>::size; ++k) rigid(r, i, k) = 0;
+      });
 }
 
-/// The node's part of the step. A functor, as its sums are an array of run-time length: Dim components of force for
-/// each rigid.
+/// The node's part of the step. A functor, as its sums are an array of run-time length: Dim components of
+/// force for each rigid.
 template <class Space, class T, int Dim>
 struct UpdateNodes {
   using value_type = double[];
@@ -53,10 +55,10 @@ struct UpdateNodes {
       const T inv_m = 1 / m_i;
       const T inv_m_force = m_i > mass_cut ? inv_m : T(0);  // the force on less mass is round-off
       for (int d = 0; d < Dim; ++d) {
-        v_old[d] = nodes.soil(i, S::momentum + d) * inv_m;                           // Eq. (6)
-        T a = nodes.soil(i, S::force + d) * inv_m_force + g[d];                      // Eq. (8)
+        v_old[d] = nodes.soil(i, S::momentum + d) * inv_m;       // Eq. (6)
+        T a = nodes.soil(i, S::force + d) * inv_m_force + g[d];  // Eq. (8)
         a -= damping * Kokkos::fabs(a) * (v_old[d] > 0 ? T(1) : (v_old[d] < 0 ? T(-1) : T(0)));
-        v[d] = v_old[d] + a * dt;                                                    // Eq. (9)
+        v[d] = v_old[d] + a * dt;  // Eq. (9)
       }
       Coord<Dim> at = coord_of<Dim>(i);
       const Coord<Dim> from = origin(i / Patch<Dim>::cells);
@@ -64,17 +66,19 @@ struct UpdateNodes {
       const unsigned sides = sides_of(grid, at);
       apply_walls(grid, sides, v);
       if (m_i > mass_cut)
-        for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) touch(i, r, sides, m_i, v, sum + r * Dim);
+        for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r)
+          touch(i, r, sides, m_i, v, sum + r * Dim);
       apply_walls(grid, sides, v);
     }
     for (int d = 0; d < Dim; ++d) {
       nodes.motion(i, NodeMotion<Dim>::velocity + d) = v[d];
-      nodes.motion(i, NodeMotion<Dim>::acceleration + d) = (v[d] - v_old[d]) / dt;   // feels contact and walls
+      nodes.motion(i, NodeMotion<Dim>::acceleration + d) = (v[d] - v_old[d]) / dt;  // feels contact and walls
     }
   }
 
   /// Contact with rigid r; adds the force of the soil on it (Eq. 10).
-  KOKKOS_INLINE_FUNCTION void touch(int i, int r, unsigned sides, T m_i, Vector<T, Dim>& v, double* force) const {
+  KOKKOS_INLINE_FUNCTION void touch(int i, int r, unsigned sides, T m_i, Vector<T, Dim>& v,
+                                    double* force) const {
     using R = RigidShare<Dim>;
     const Rigid<Dim>& rigid = rigids(r);
     const T m_r = nodes.rigid(r, i, R::mass);
@@ -85,9 +89,10 @@ struct UpdateNodes {
       v_r[d] = static_cast<T>(rigid.velocity[d]);
     }
     if (!inward_normal(grid, sides, m_r, n)) return;
-    Interface<T> interface{Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction)};
+    Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction) };
     if (rigid.shear_limit < Kokkos::Experimental::infinity<double>::value)
-      interface.shear_speed = rigid.shear_limit > 0 ? static_cast<T>(rigid.shear_limit) * area(i) * dt / m_i : T(0);
+      interface.shear_speed =
+          rigid.shear_limit > 0 ? static_cast<T>(rigid.shear_limit) * area(i) * dt / m_i : T(0);
     const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
     for (int d = 0; d < Dim; ++d) {
       v[d] += change[d];
@@ -95,7 +100,8 @@ struct UpdateNodes {
     }
   }
 
-  /// Area of the interface at a node [m2]: of a base that lies on a grid line, the share that the soil covers.
+  /// Area of the interface at a node [m2]: of a base that lies on a grid line, the share that the soil
+  /// covers.
   KOKKOS_INLINE_FUNCTION T area(int i) const {
     const T cell = power(grid.spacing, Dim);
     return power(grid.spacing, Dim - 1) * Kokkos::fmin(T(1), 2 * nodes.volume(i, 0) / cell);
@@ -105,14 +111,16 @@ struct UpdateNodes {
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt) {
   const int values = Dim * static_cast<int>(s.rigid_points.size());
-  UpdateNodes<Space, T, Dim> update{values,    s.grid,    s.nodes,   s.patches.origin, s.rigids,
-                                    s.control, {},        T(dt),     T(s.damping),     T(s.mass_cut), s.interface_shear};
+  UpdateNodes<Space, T, Dim> update{values,           s.grid, s.nodes, s.patches.origin, s.rigids,
+                                    s.control,        {},     T(dt),   T(s.damping),     T(s.mass_cut),
+                                    s.interface_shear};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   const auto range = light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()));
   if (values > 0)
     Kokkos::parallel_reduce("mpm::update_nodes", range, update, s.sums);
   else
-    Kokkos::parallel_for("mpm::update_nodes", range, KOKKOS_LAMBDA(int i) { update(i, nullptr); });
+    Kokkos::parallel_for(
+        "mpm::update_nodes", range, KOKKOS_LAMBDA(int i) { update(i, nullptr); });
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)              \

@@ -31,7 +31,8 @@ KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const Motion* window, const
 
 /// Strain increment (symmetric part of L dt, tensor shear strains) and spin increment (skew part).
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION void increments(const T (&L)[Dim][Dim], T dt, SymTensor<T, Dim>& strain, Spin<T, Dim>& spin) {
+KOKKOS_INLINE_FUNCTION void increments(const T (&L)[Dim][Dim], T dt, SymTensor<T, Dim>& strain,
+                                       Spin<T, Dim>& spin) {
   for (int k = 0; k < sym_size<Dim>; ++k) strain[k] = 0;
   for (int i = 0; i < Dim; ++i)
     for (int j = i; j < Dim; ++j) strain[sym_index<Dim>(i, j)] = dt * (L[i][j] + L[j][i]) / 2;
@@ -48,15 +49,18 @@ struct UpdateScalars {
   T dt, inv_spacing, flip, pic;
 };
 
-/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. Returns the largest component
-/// of its movement [cells].
+/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. Returns the largest
+/// component of its movement [cells].
 template <class Space, class T, int Dim>
-KOKKOS_INLINE_FUNCTION T advance(const Soil<Space, T, Dim>& soil, int p, const Taken<T, Dim>& t, const UpdateScalars<T>& by) {
+KOKKOS_INLINE_FUNCTION T advance(const Soil<Space, T, Dim>& soil, int p, const Taken<T, Dim>& t,
+                                 const UpdateScalars<T>& by) {
   SymTensor<T, Dim> d_strain;
   Spin<T, Dim> d_spin;
   increments(t.gradient, by.dt, d_strain, d_spin);
   MaterialState<T, Dim> state{soil.stress(p), soil.plastic_strain(p), soil.strength(p)};
-  soil.materials(soil.bodies(soil.body(p)).material).visit([&](const auto& law) { law.update(state, d_strain, d_spin, by.dt); });
+  soil.materials(soil.bodies(soil.body(p)).material).visit([&](const auto& law) {
+    law.update(state, d_strain, d_spin, by.dt);
+  });
   soil.stress(p) = state.stress;
   soil.plastic_strain(p) = state.plastic_strain;
 
@@ -77,8 +81,8 @@ KOKKOS_INLINE_FUNCTION T advance(const Soil<Space, T, Dim>& soil, int p, const T
   return moved;
 }
 
-/// Reports a particle that is not finite, has no volume, or moved so far in a step that the computation cannot be
-/// trusted. `moved` [cells].
+/// Reports a particle that is not finite, has no volume, or moved so far in a step that the computation
+/// cannot be trusted. `moved` [cells].
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION void check(const Soil<Space, T, Dim>& soil, int p, T moved, const Coord<Dim>& origin,
                                   const Coord<Dim>& cell, double spacing, const ControlView<Space>& control) {
@@ -91,7 +95,8 @@ KOKKOS_INLINE_FUNCTION void check(const Soil<Space, T, Dim>& soil, int p, T move
   if (finite && soil.volume(p) > 0 && moved <= 1) return;
   double position[3] = {};
   for (int d = 0; d < Dim; ++d) position[d] = (double(origin[d]) + cell[d] + x[d]) * spacing;
-  const FaultKind kind = !finite ? FaultKind::not_finite : (moved <= 1 ? FaultKind::inverted : FaultKind::too_fast);
+  const FaultKind kind =
+      !finite ? FaultKind::not_finite : (moved <= 1 ? FaultKind::inverted : FaultKind::too_fast);
   report(control, kind, soil.id(p), position, Dim);
 }
 
@@ -112,10 +117,12 @@ void update_particles(State<Space, T, Dim>& s, double dt_) {
   const UpdateScalars<T> by{T(dt_), s.grid.inv_spacing, T(s.flip_share), T(1 - s.flip_share)};
   Kokkos::parallel_for(
       "mpm::update_particles",
-      light(Team(s.space, s.patches.slots, team_threads<Space>).set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size)))),
+      light(Team(s.space, s.patches.slots, team_threads<Space>)
+                .set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size)))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (control().paused) return;
-        const int slot = team.league_rank();  // in the order of memory, so that threads of the host keep to their part
+        const int slot =
+            team.league_rank();  // in the order of memory, so that threads of the host keep to their part
         const int from = begin(slot * Patch<Dim>::cells), to = begin((slot + 1) * Patch<Dim>::cells);
         if (from == to) return;
         const Window nodes(team.team_scratch(0), window * size);
@@ -127,15 +134,18 @@ void update_particles(State<Space, T, Dim>& s, double dt_) {
         T moved = 0;
         const auto particle = [&](int p, T& furthest) {
           const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
-          with_weights(soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-            const T own = advance(soil, p, take_from_nodes<T, Dim>(nodes.data(), cell, a, by.inv_spacing), by);
-            check(soil, p, own, origin(slot), cell, spacing, control);
-            furthest = Kokkos::fmax(furthest, own);
-          });
+          with_weights(
+              soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+                const T own =
+                    advance(soil, p, take_from_nodes<T, Dim>(nodes.data(), cell, a, by.inv_spacing), by);
+                check(soil, p, own, origin(slot), cell, spacing, control);
+                furthest = Kokkos::fmax(furthest, own);
+              });
         };
         Kokkos::parallel_reduce(Kokkos::TeamThreadRange(team, from, to), particle, Kokkos::Max<T>(moved));
         Kokkos::single(Kokkos::PerTeam(team), [&] {
-          if (moved > Kokkos::atomic_load(&control().moved)) Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
+          if (moved > Kokkos::atomic_load(&control().moved))
+            Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
         });
       });
 }

@@ -15,10 +15,11 @@ void fill_view(View& view, const std::string& label, int count, Get&& get) {
   Kokkos::deep_copy(view, host);
 }
 
-/// Cell and coordinate in it of positions [m from the mesh's lower corner]; those outside the mesh are a fault.
+/// Cell and coordinate in it of positions [m from the mesh's lower corner]; those outside the mesh are a
+/// fault.
 template <class Space, class T, int Dim, class Points_>
-void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<double>& position, Sorted<Space, Points_>& set,
-                  Fault& fault) {
+void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<double>& position,
+                  Sorted<Space, Points_>& set, Fault& fault) {
   const int count = set.points.count;
   std::vector<long> address(count);
   std::vector<Vector<T, Dim>> coordinate(count);
@@ -44,7 +45,8 @@ void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<do
 }
 
 template <class Space, class T, int Dim>
-void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& materials, const std::vector<BodyInput>& bodies, Fault& fault) {
+void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& materials,
+                 const std::vector<BodyInput>& bodies, Fault& fault) {
   auto& soil = s.soil.points;
   std::vector<int> body_of, first;
   std::vector<double> position;
@@ -57,12 +59,14 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
   place_points(s.grid, s.spacing, position, s.soil, fault);
 
   const auto in_body = [&](int p) { return p - first[body_of[p]]; };
-  fill_view(soil.body, "mpm::body", soil.count, [&](int p) { return static_cast<std::uint16_t>(body_of[p]); });
+  fill_view(soil.body, "mpm::body", soil.count,
+            [&](int p) { return static_cast<std::uint16_t>(body_of[p]); });
   fill_view(soil.velocity, "mpm::velocity", soil.count, [&](int p) {
     const BodyInput& body = bodies[body_of[p]];
     Vector<T, Dim> v;
     for (int d = 0; d < Dim; ++d)
-      v[d] = static_cast<T>(body.particle_velocity.empty() ? body.velocity[d] : body.particle_velocity[in_body(p) * Dim + d]);
+      v[d] = static_cast<T>(body.particle_velocity.empty() ? body.velocity[d]
+                                                           : body.particle_velocity[in_body(p) * Dim + d]);
     return v;
   });
   fill_view(soil.stress, "mpm::stress", soil.count, [&](int p) {
@@ -72,15 +76,16 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       stress[k] = static_cast<T>(body.stress[in_body(p) * sym_size<Dim> + k]);
     return stress;
   });
-  fill_view(soil.volume, "mpm::volume", soil.count, [&](int p) { return static_cast<T>(bodies[body_of[p]].particle_volume); });
+  fill_view(soil.volume, "mpm::volume", soil.count,
+            [&](int p) { return static_cast<T>(bodies[body_of[p]].particle_volume); });
   fill_view(soil.plastic_strain, "mpm::plastic_strain", soil.count, [](int) { return T(0); });
   fill_view(soil.strength, "mpm::strength", soil.count, [&](int p) {
     const BodyInput& body = bodies[body_of[p]];
     return static_cast<T>(body.strength.empty() ? 0 : body.strength[in_body(p)]);
   });
   fill_view(soil.bodies, "mpm::bodies", static_cast<int>(bodies.size()), [&](int b) {
-    return BodyProperties<T>{static_cast<T>(bodies[b].density * bodies[b].particle_volume), static_cast<T>(bodies[b].half_length),
-                             bodies[b].material};
+    return BodyProperties<T>{static_cast<T>(bodies[b].density * bodies[b].particle_volume),
+                             static_cast<T>(bodies[b].half_length), bodies[b].material};
   });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()),
             [&](int m) { return make_material<T>(materials[m].model, materials[m].parameters); });
@@ -128,10 +133,11 @@ bool device_agrees(const Space& space) {
   constexpr int count = 37;
   const Kokkos::View<int* [3], Kokkos::LayoutRight, Memory> first("mpm::first", count);
   const Kokkos::View<double*, Memory> second("mpm::second", count);
-  Kokkos::parallel_for("mpm::device_agrees", Kokkos::RangePolicy<Space>(space, 0, count), KOKKOS_LAMBDA(int n) {
-    for (int k = 0; k < static_cast<int>(first.extent(1)); ++k) first(n, k) = n + k;
-    second(n) = static_cast<double>(second.extent(0)) + n;
-  });
+  Kokkos::parallel_for(
+      "mpm::device_agrees", Kokkos::RangePolicy<Space>(space, 0, count), KOKKOS_LAMBDA(int n) {
+        for (int k = 0; k < static_cast<int>(first.extent(1)); ++k) first(n, k) = n + k;
+        second(n) = static_cast<double>(second.extent(0)) + n;
+      });
   const auto a = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), first);
   const auto b = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), second);
   bool agrees = true;
@@ -154,7 +160,8 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.spacing = grid.spacing;
   Fault fault{};
   s.mass_cut = std::numeric_limits<double>::max();
-  for (const BodyInput& body : bodies) s.mass_cut = std::min(s.mass_cut, k_cut * body.density * body.particle_volume);
+  for (const BodyInput& body : bodies)
+    s.mass_cut = std::min(s.mass_cut, k_cut * body.density * body.particle_volume);
   s.rigid_moves = s.interface_shear = false;
   for (const RigidInput& rigid : rigids) {
     s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.velocity != std::array<double, 3>{};
@@ -214,8 +221,9 @@ std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s) {
   auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
   std::vector<Rigid<Dim>> rigids(host.data(), host.data() + host.extent(0));
   const auto view = s.rigids;
-  Kokkos::parallel_for("mpm::take_impulse", Kokkos::RangePolicy<Space>(s.space, 0, view.extent(0)),
-                       KOKKOS_LAMBDA(int r) { view(r).impulse = filled<double, Dim>(0); });
+  Kokkos::parallel_for(
+      "mpm::take_impulse", Kokkos::RangePolicy<Space>(s.space, 0, view.extent(0)),
+      KOKKOS_LAMBDA(int r) { view(r).impulse = filled<double, Dim>(0); });
   return rigids;
 }
 
@@ -225,7 +233,8 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   const auto add = [&](const auto& view) { bytes += view.span() * sizeof(*view.data()); };
   const auto add_set = [&](const auto& set) {
     add(set.points.coordinate), add(set.points.cell), add(set.points.id), add(set.address), add(set.order);
-    add(set.bins.begin), add(set.bins.by_colour), add(set.bins.list_begin), add(set.bins.list), add(set.bins.blocks);
+    add(set.bins.begin), add(set.bins.by_colour), add(set.bins.list_begin), add(set.bins.list),
+        add(set.bins.blocks);
     auto points = set.points;
     for_each_field(points, add);
   };
@@ -244,12 +253,12 @@ template bool device_agrees(const Kokkos::OpenMP&);
 template bool device_agrees(const Kokkos::Cuda&);
 #endif
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                              \
-  template Fault upload(State<Space, T, Dim>&, const GridInput&, const std::vector<MaterialInput>&,                 \
-                        const std::vector<BodyInput>&, const std::vector<RigidInput>&);                             \
-  template SoilFields download_soil(const State<Space, T, Dim>&);                                                   \
-  template std::vector<double> download_rigid_positions(const State<Space, T, Dim>&, int);                          \
-  template std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>&);                                              \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                              \
+  template Fault upload(State<Space, T, Dim>&, const GridInput&, const std::vector<MaterialInput>&, \
+                        const std::vector<BodyInput>&, const std::vector<RigidInput>&);             \
+  template SoilFields download_soil(const State<Space, T, Dim>&);                                   \
+  template std::vector<double> download_rigid_positions(const State<Space, T, Dim>&, int);          \
+  template std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>&);                              \
   template std::size_t memory_of(const State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -15,45 +15,45 @@ bool device_agrees(const Space& space);
 
 /// The background mesh for kernels.
 struct GridInput {
-  double spacing = 1;                 // m
+  double spacing = 1;  // m
   std::array<int, 3> cells{};
-  std::array<int, 3> patches{};       // with the ring outside
+  std::array<int, 3> patches{};  // with the ring outside
   std::array<std::array<Wall, 2>, 3> walls{};
 };
 
 struct MaterialInput {
-  int model = 0;                      // index into Materials
-  std::vector<double> parameters;     // in the order of the model's table
+  int model = 0;                   // index into Materials
+  std::vector<double> parameters;  // in the order of the model's table
 };
 
 /// Particles of one deformable body. Positions are from the mesh's lower corner, Dim components each.
 struct BodyInput {
-  std::vector<double> position;       // m [Dim N]
-  std::vector<double> strength;       // Pa [N]
-  std::vector<double> stress;         // Pa [sym_size N], or empty for none
+  std::vector<double> position;           // m [Dim N]
+  std::vector<double> strength;           // Pa [N]
+  std::vector<double> stress;             // Pa [sym_size N], or empty for none
   std::vector<double> particle_velocity;  // m/s [Dim N], or empty where `velocity` holds for all
-  double particle_volume = 0;         // m3
-  double half_length = 0.25;          // cells
-  double density = 0;                 // kg/m3
-  std::array<double, 3> velocity{};   // m/s
+  double particle_volume = 0;             // m3
+  double half_length = 0.25;              // cells
+  double density = 0;                     // kg/m3
+  std::array<double, 3> velocity{};       // m/s
   int material = 0;
 };
 
 /// Particles of one rigid body.
 struct RigidInput {
-  std::vector<double> position;       // m [Dim N]
-  double particle_volume = 0;         // m3
-  double half_length = 0.125;         // cells
-  double density = 1;                 // kg/m3
-  std::array<double, 3> velocity{};   // m/s
-  std::array<double, 3> force{};      // N, external and weight
+  std::vector<double> position;      // m [Dim N]
+  double particle_volume = 0;        // m3
+  double half_length = 0.125;        // cells
+  double density = 1;                // kg/m3
+  std::array<double, 3> velocity{};  // m/s
+  std::array<double, 3> force{};     // N, external and weight
   bool dynamic = false;
-  double shear_limit = 0;             // Pa, infinite where only the friction limits
-  double friction = -1;               // -, negative: none
+  double shear_limit = 0;  // Pa, infinite where only the friction limits
+  double friction = -1;    // -, negative: none
 };
 
-/// Puts the particles on the device and makes patches, bins and lists. s.p2g and the scalars of s are set by the
-/// caller, before. Returns the first fault (a particle outside the mesh), if any.
+/// Puts the particles on the device and makes patches, bins and lists. s.p2g and the scalars of s are set by
+/// the caller, before. Returns the first fault (a particle outside the mesh), if any.
 template <class Space, class T, int Dim>
 Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
              const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids);

@@ -34,7 +34,7 @@ struct Simulation::Body {
   Outcome outcome = Outcome::finished;
   bool ready = false;
 
-  double dt = 0;        // s
+  double dt = 0;  // s
   Schedule schedule;
   std::unique_ptr<Stepper> stepper;
   Log log;
@@ -42,9 +42,9 @@ struct Simulation::Body {
   Frames frames;
 
   long step = 0;
-  double last_row_time = 0;           // s
-  double wall_start = 0;              // s
-  double stepping = 0;                // s of wall time in steps and rebuilds
+  double last_row_time = 0;                                         // s
+  double wall_start = 0;                                            // s
+  double stepping = 0;                                              // s of wall time in steps and rebuilds
   long since_rebuild = 0, rebuilds = 0, longest = 0, shortest = 0;  // steps between rebuilds
 
   double wall() const { return seconds_now() - wall_start; }
@@ -80,7 +80,8 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (ranks > 1)
-    b.report.errors = {"mpm: started with " + std::to_string(ranks) + " ranks, takes 1: runs over several ranks are not there yet"};
+    b.report.errors = {"mpm: started with " + std::to_string(ranks) +
+                       " ranks, takes 1: runs over several ranks are not there yet"};
   if (b.report.errors.empty()) b.check_mesh();
   if (b.report.errors.empty()) PetscCall(b.choose_time_step());
   if (!b.report.errors.empty()) {
@@ -98,7 +99,9 @@ void Simulation::Body::check_mesh() {
   const double patches = patch_count(config.mesh, config.dim);
   if (patches <= k_most_patches) return;
   char line[200];
-  std::snprintf(line, sizeof line, "mpm: -mesh_spacing: given \"%g\", takes an edge that gives at most %.0f patches of %d cells a side; this is %.4g",
+  std::snprintf(line, sizeof line,
+                "mpm: -mesh_spacing: given \"%g\", takes an edge that gives at most %.0f patches of %d cells "
+                "a side; this is %.4g",
                 config.mesh.spacing, k_most_patches, patch_edge(config.dim), patches);
   report.errors.push_back(line);
 }
@@ -110,14 +113,17 @@ PetscErrorCode Simulation::Body::choose_time_step() {
   dt = config.time.step.value_or(config.time.courant * critical);
   if (dt > k_largest_courant * critical) {
     char line[200];
-    std::snprintf(line, sizeof line, "mpm: -time_step: given \"%g\", takes a time in s of at most %.6g, above which the step is unstable", dt,
-                  k_largest_courant * critical);
+    std::snprintf(
+        line, sizeof line,
+        "mpm: -time_step: given \"%g\", takes a time in s of at most %.6g, above which the step is unstable",
+        dt, k_largest_courant * critical);
     report.errors.push_back(line);
   }
   if (config.time.end / dt > k_most_steps) {
     char line[200];
-    std::snprintf(line, sizeof line, "mpm: -time_end: given \"%g\", takes at most %g s with time steps of %g s (1e12 steps)", config.time.end,
-                  k_most_steps * dt, dt);
+    std::snprintf(line, sizeof line,
+                  "mpm: -time_end: given \"%g\", takes at most %g s with time steps of %g s (1e12 steps)",
+                  config.time.end, k_most_steps * dt, dt);
     report.errors.push_back(line);
   } else {
     schedule = Schedule(config.time, config.output, dt);
@@ -142,14 +148,18 @@ PetscErrorCode Simulation::run() {
 PetscErrorCode Simulation::Body::start() {
   PetscFunctionBeginUser;
   stepper = make_stepper(config);
-  PetscCheck(stepper, comm, PETSC_ERR_SUP, "This program was built without this backend, precision or dimension");
+  PetscCheck(stepper, comm, PETSC_ERR_SUP,
+             "This program was built without this backend, precision or dimension");
   PetscCall(log.start(comm, config.output.progress));
   int removed = 0;
   PetscCall(prepare_output_folder(config.output.directory, &removed));
-  PetscCall(log.line(format_header(k_version, kokkos_version(),
-                                   std::string(word_of(config.backend)) + ", " + device_name(config.backend), 1)));
+  PetscCall(
+      log.line(format_header(k_version, kokkos_version(),
+                             std::string(word_of(config.backend)) + ", " + device_name(config.backend), 1)));
   PetscCall(log.open(config.output.directory));
-  if (removed > 0) PetscCall(log.print("%d files of an earlier run were removed from %s", removed, config.output.directory.c_str()));
+  if (removed > 0)
+    PetscCall(log.print("%d files of an earlier run were removed from %s", removed,
+                        config.output.directory.c_str()));
   PetscCall(log.line("options in force\n" + format_options(report.options)));
   PetscCall(write_options_json(config.output.directory, k_version, report.options));
 
@@ -161,10 +171,11 @@ PetscErrorCode Simulation::Body::start() {
     PetscCall(fail(failure.what));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(log.print("%ld particles in %d patches, %.1f MB on the device; strategy %s", stepper->particles(), stepper->patches(),
-                      stepper->memory() / 1e6, stepper->strategy().c_str()));
-  PetscCall(log.print("time step %.9g s, Courant number %.4f; %ld steps to %g s", dt, dt / critical_time_step(config),
-                      schedule.last_step(), schedule.time_of(schedule.last_step())));
+  PetscCall(log.print("%ld particles in %d patches, %.1f MB on the device; strategy %s", stepper->particles(),
+                      stepper->patches(), stepper->memory() / 1e6, stepper->strategy().c_str()));
+  PetscCall(log.print("time step %.9g s, Courant number %.4f; %ld steps to %g s", dt,
+                      dt / critical_time_step(config), schedule.last_step(),
+                      schedule.time_of(schedule.last_step())));
   PetscCall(history.open(config));
   frames.open(config.output.directory, config.precision);
   wall_start = seconds_now();
@@ -179,12 +190,14 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   BackgroundMesh mesh;
   PetscCall(mesh.create(comm, config.mesh, config.dim));
   PetscCall(mesh.patches_with_ring(model->patches));
-  const auto add = [&](const std::string& name, const Shape& shape, std::vector<BodyParticles>& into) -> PetscErrorCode {
+  const auto add = [&](const std::string& name, const Shape& shape,
+                       std::vector<BodyParticles>& into) -> PetscErrorCode {
     PetscFunctionBeginUser;
     Lattice lattice;
     PetscCall(fill(shape, config.mesh, config.dim, lattice));
     PetscCall(log_shape(name, lattice));
-    for (std::size_t k = 0; k < lattice.position.size(); ++k) lattice.position[k] -= config.mesh.lower[k % config.dim];
+    for (std::size_t k = 0; k < lattice.position.size(); ++k)
+      lattice.position[k] -= config.mesh.lower[k % config.dim];
     into.push_back({std::move(lattice.position), lattice.spacing, lattice.particle_volume});
     PetscFunctionReturn(PETSC_SUCCESS);
   };
@@ -220,8 +233,10 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     long steps = std::min({target - step, std::max(estimate, 1L), batch_limit});
     if (config.p2g.rebuild_interval) steps = std::min(steps, *config.p2g.rebuild_interval - since_rebuild);
     const double step_dt = schedule.step_size(step);
-    if (step_dt == dt) steps = std::min(steps, std::max(schedule.last_whole_step() - step, 1L));
-    else steps = 1;
+    if (step_dt == dt)
+      steps = std::min(steps, std::max(schedule.last_whole_step() - step, 1L));
+    else
+      steps = 1;
     Batch batch;
     const double before = seconds_now();
     PetscCall(stepper->advance(steps, step_dt, &batch));
@@ -235,7 +250,8 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
       PetscCall(fail(batch.failure.what));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
-    if (batch.rebuild || (config.p2g.rebuild_interval && since_rebuild >= *config.p2g.rebuild_interval)) PetscCall(rebuild(batch));
+    if (batch.rebuild || (config.p2g.rebuild_interval && since_rebuild >= *config.p2g.rebuild_interval))
+      PetscCall(rebuild(batch));
     if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(log.progress({step, schedule.time_of(step), 0, schedule.time_of(schedule.last_step()), stepping,
                             double(step) * stepper->particles()}));
@@ -249,7 +265,8 @@ PetscErrorCode Simulation::Body::rebuild(const Batch& batch) {
   if (forced && batch.rebuild && since_rebuild < *forced) {
     char what[300];
     std::snprintf(what, sizeof what,
-                  "-p2g_rebuild_interval %d is unsafe: after %ld steps a particle can have moved %.3g cells, and the lists hold for "
+                  "-p2g_rebuild_interval %d is unsafe: after %ld steps a particle can have moved %.3g cells, "
+                  "and the lists hold for "
                   "%.3g (-p2g_margin)",
                   *forced, since_rebuild, batch.bound, config.p2g.margin);
     PetscCall(fail(what));
@@ -295,20 +312,23 @@ PetscErrorCode Simulation::Body::finish() {
   PetscCall(history.close());
   if (step > 0) {
     if (rebuilds > 0)
-      PetscCall(log.print("bins and lists were rebuilt %ld times, after %ld to %ld steps, %.1f on average", rebuilds, shortest, longest,
-                          double(step - since_rebuild) / rebuilds));
+      PetscCall(log.print("bins and lists were rebuilt %ld times, after %ld to %ld steps, %.1f on average",
+                          rebuilds, shortest, longest, double(step - since_rebuild) / rebuilds));
     PetscCall(log.line("time of the functions\n" + format_times(stepper->times(), wall(), 0, 0)));
     PetscCall(log.print("%.4g us a step without output; %s particle updates", 1e6 * stepping / step,
                         format_rate(double(step) * stepper->particles() / stepping).c_str()));
   }
-  PetscCall(log.print("%s after %ld steps at time %g s; results are in %s", outcome == Outcome::finished ? "finished" : "failed", step,
-                      schedule.time_of(step), config.output.directory.c_str()));
+  PetscCall(log.print("%s after %ld steps at time %g s; results are in %s",
+                      outcome == Outcome::finished ? "finished" : "failed", step, schedule.time_of(step),
+                      config.output.directory.c_str()));
   PetscCall(log.close());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-std::unique_ptr<InputReport, void (*)(InputReport*)> prepare_arguments(MPI_Comm comm, int* argc, char** argv) {
-  auto report = std::unique_ptr<InputReport, void (*)(InputReport*)>(new InputReport, [](InputReport* r) { delete r; });
+std::unique_ptr<InputReport, void (*)(InputReport*)> prepare_arguments(MPI_Comm comm, int* argc,
+                                                                       char** argv) {
+  auto report =
+      std::unique_ptr<InputReport, void (*)(InputReport*)>(new InputReport, [](InputReport* r) { delete r; });
   prepare_arguments(comm, argc, argv, *report);
   return report;
 }

@@ -31,8 +31,8 @@ struct LinearElastic {
   double strength_at(double) const { return 0; }
 
   template <int Dim>
-  KOKKOS_FUNCTION void update(MaterialState<T, Dim>& state, const SymTensor<T, Dim>& d_strain, const Spin<T, Dim>& d_spin,
-                              T /*dt*/) const {
+  KOKKOS_FUNCTION void update(MaterialState<T, Dim>& state, const SymTensor<T, Dim>& d_strain,
+                              const Spin<T, Dim>& d_spin, T /*dt*/) const {
     state.stress = rotated(state.stress, d_spin);
     add_elastic(state.stress, d_strain, lambda, shear_modulus);
   }

@@ -1,5 +1,6 @@
 #pragma once
-// What every material model shares: its table of parameters, the state it updates, and the rotation of stress.
+// What every material model shares: its table of parameters, the state it updates, and the rotation of
+// stress.
 
 #include "types.hpp"
 
@@ -8,12 +9,12 @@ namespace mpm {
 /// One row of a model's table of parameters: everything that the option reader, -help and the checks need.
 template <class Model>
 struct Parameter {
-  const char* key;                      // option key: -NAME_key
+  const char* key;  // option key: -NAME_key
   typename Model::real Model::*member;
   const char* unit;
   const char* meaning;
-  double lowest, highest;               // accepted range, inclusive
-  double standard;                      // default; NaN where the parameter is required
+  double lowest, highest;  // accepted range, inclusive
+  double standard;         // default; NaN where the parameter is required
 };
 
 /// What a model updates at a particle.
@@ -39,7 +40,8 @@ KOKKOS_INLINE_FUNCTION SymTensor<T, 2> rotated(const SymTensor<T, 2>& s, const S
 template <class T>
 KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const Spin<T, 3>& w) {
   // Cayley transform of the skew tensor W with axial vector a: Q = I + (2/(1+|a|^2/4)) (W/2 + W^2/4)
-  const T half[3][3] = {{0, w.c[0] / 2, -w.c[2] / 2}, {-w.c[0] / 2, 0, w.c[1] / 2}, {w.c[2] / 2, -w.c[1] / 2, 0}};
+  const T half[3][3] = {
+      {0, w.c[0] / 2, -w.c[2] / 2}, {-w.c[0] / 2, 0, w.c[1] / 2}, {w.c[2] / 2, -w.c[1] / 2, 0}};
   const T scale = 2 / (1 + (w.c[0] * w.c[0] + w.c[1] * w.c[1] + w.c[2] * w.c[2]) / 4);
   T q[3][3];
   for (int i = 0; i < 3; ++i)
@@ -59,9 +61,11 @@ KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const S
   return r;
 }
 
-/// Adds the isotropic elastic stress increment lambda tr(e) I + 2 G e to s. Shear strains are tensor components.
+/// Adds the isotropic elastic stress increment lambda tr(e) I + 2 G e to s. Shear strains are tensor
+/// components.
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION void add_elastic(SymTensor<T, Dim>& s, const SymTensor<T, Dim>& e, T lambda, T shear_modulus) {
+KOKKOS_INLINE_FUNCTION void add_elastic(SymTensor<T, Dim>& s, const SymTensor<T, Dim>& e, T lambda,
+                                        T shear_modulus) {
   const T mean = lambda * (e[0] + e[1] + e[2]);
   for (int k = 0; k < sym_size<Dim>; ++k) s[k] += 2 * shear_modulus * e[k] + (k < 3 ? mean : T(0));
 }

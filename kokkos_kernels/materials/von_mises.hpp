@@ -7,8 +7,8 @@
 namespace mpm {
 
 /// Elastic, perfectly plastic clay in undrained loading: yield at sqrt(J2) = su, radial return, so that the
-/// plane-strain shear strength is su. The strength grows linearly with depth below a level and then belongs to the
-/// particle. Jaumann rate of the Cauchy stress.
+/// plane-strain shear strength is su. The strength grows linearly with depth below a level and then belongs
+/// to the particle. Jaumann rate of the Cauchy stress.
 template <class T>
 struct VonMises {
   using real = T;
@@ -38,8 +38,8 @@ struct VonMises {
   }
 
   template <int Dim>
-  KOKKOS_FUNCTION void update(MaterialState<T, Dim>& state, const SymTensor<T, Dim>& d_strain, const Spin<T, Dim>& d_spin,
-                              T /*dt*/) const {
+  KOKKOS_FUNCTION void update(MaterialState<T, Dim>& state, const SymTensor<T, Dim>& d_strain,
+                              const Spin<T, Dim>& d_spin, T /*dt*/) const {
     SymTensor<T, Dim>& s = state.stress;
     s = rotated(s, d_spin);
     add_elastic(s, d_strain, lambda, shear_modulus);

@@ -21,7 +21,8 @@ PetscErrorCode BackgroundMesh::create(MPI_Comm comm, const MeshConfig& mesh, int
   PetscCall(DMDACreate(comm, &da_));
   PetscCall(DMSetDimension(da_, dim));
   PetscCall(DMDASetSizes(da_, patches[0], patches[1], patches[2]));
-  PetscCall(DMDASetBoundaryType(da_, DM_BOUNDARY_GHOSTED, DM_BOUNDARY_GHOSTED, dim == 3 ? DM_BOUNDARY_GHOSTED : DM_BOUNDARY_NONE));
+  PetscCall(DMDASetBoundaryType(da_, DM_BOUNDARY_GHOSTED, DM_BOUNDARY_GHOSTED,
+                                dim == 3 ? DM_BOUNDARY_GHOSTED : DM_BOUNDARY_NONE));
   PetscCall(DMDASetStencilType(da_, DMDA_STENCIL_BOX));
   PetscCall(DMDASetStencilWidth(da_, 1));
   PetscCall(DMDASetDof(da_, 1));

@@ -1,6 +1,6 @@
 #pragma once
-// The background mesh as a whole, described by a PETSc DMDA whose points are the patches: its extent, its natural
-// numbering and its ownership are then aligned to patches by construction.
+// The background mesh as a whole, described by a PETSc DMDA whose points are the patches: its extent, its
+// natural numbering and its ownership are then aligned to patches by construction.
 
 #include <petscdmda.h>
 

@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
-#include "output/files.hpp"
 #include "numbers.hpp"
+#include "output/files.hpp"
 
 namespace mpm {
 namespace {

@@ -6,8 +6,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "output/files.hpp"
 #include "numbers.hpp"
+#include "output/files.hpp"
 
 namespace mpm {
 namespace {

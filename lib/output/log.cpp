@@ -102,7 +102,8 @@ std::string format_times(const std::vector<FunctionTime>& times, double wall, do
   if (rest > 0)
     text += formatted("  %-44s %9s %11.3f %6.1f %%\n", "everything else", "", rest, 100 * rest / wall);
   text += formatted("  %-44s %9s %11.3f  100.0 %%\n", "wall time", "", wall);
-  if (wall > 0 && particle_updates > 0) text += "  particle updates per second: " + format_rate(particle_updates / wall) + "\n";
+  if (wall > 0 && particle_updates > 0)
+    text += "  particle updates per second: " + format_rate(particle_updates / wall) + "\n";
   if (bytes > 0 && wall > 0) text += formatted("  bytes per second: %.1f GB/s", bytes / wall / 1e9);
   if (bytes > 0 && wall > 0 && bandwidth > 0)
     text += formatted(", %.0f %% of the %.1f GB/s measured on this device", 100 * bytes / wall / bandwidth,

@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// The particles of one body or rigid at one time, in the order of their creation. Vectors are padded to three
-/// components, symmetric tensors to six (xx, yy, zz, xy, yz, zx). The last three are empty for rigids.
+/// The particles of one body or rigid at one time, in the order of their creation. Vectors are padded to
+/// three components, symmetric tensors to six (xx, yy, zz, xy, yz, zx). The last three are empty for rigids.
 struct ParticleSnapshot {
   std::string name;
   std::vector<double> position;        // m     [3 N]

@@ -13,7 +13,8 @@ namespace mpm {
 class Schedule {
  public:
   Schedule() = default;
-  Schedule(const TimeConfig& time, const OutputConfig& output, double dt) : dt_(dt), end_(time.end), output_(output) {
+  Schedule(const TimeConfig& time, const OutputConfig& output, double dt)
+      : dt_(dt), end_(time.end), output_(output) {
     whole_ = static_cast<long>(std::floor(time.end / dt * (1 + 1e-12)));
     all_ = whole_ + (time.end - whole_ * dt > 1e-9 * dt ? 1 : 0);
     last_ = time.max_steps ? std::min(*time.max_steps, all_) : all_;
@@ -36,7 +37,9 @@ class Schedule {
 
  private:
   /// The first step at or after each multiple of the interval.
-  long step_at(double time) const { return static_cast<long>(std::ceil(std::min(time, 2 * end_) / dt_ - 1e-9)); }
+  long step_at(double time) const {
+    return static_cast<long>(std::ceil(std::min(time, 2 * end_) / dt_ - 1e-9));
+  }
   /// The first of them after `step`.
   long next(long step, double interval) const {
     const double multiple = std::floor(step * dt_ / interval * (1 + 1e-12) + 1e-9) + 1;

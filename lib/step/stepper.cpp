@@ -30,14 +30,14 @@ const char* word_of(Backend backend) {
   switch (backend) {
     case Backend::serial: return "serial";
     case Backend::openmp: return "openmp";
-    default:              return "cuda";
+    default: return "cuda";
   }
 }
 
 std::unique_ptr<Stepper> make_stepper(const Config& config) {
-#define MPM_CHOOSE(Space, T, Dim)                                                                  \
-  if (config.backend == backend_of<Space> && config.dim == Dim &&                                  \
-      (config.precision == Precision::single) == (sizeof(T) == sizeof(float)))                     \
+#define MPM_CHOOSE(Space, T, Dim)                                              \
+  if (config.backend == backend_of<Space> && config.dim == Dim &&              \
+      (config.precision == Precision::single) == (sizeof(T) == sizeof(float))) \
     return std::make_unique<TypedStepper<Space, T, Dim>>(config);
   MPM_FOR_EACH(MPM_CHOOSE)
 #undef MPM_CHOOSE
@@ -48,7 +48,8 @@ double critical_time_step(const Config& config) {
   double step = std::numeric_limits<double>::infinity();
   for (const BodyConfig& body : config.bodies) {
     const MaterialConfig& material = config.materials[body.material];
-    const double modulus = wave_modulus(make_material<double>(model_index(material.model), material.parameters));
+    const double modulus =
+        wave_modulus(make_material<double>(model_index(material.model), material.parameters));
     step = std::min(step, config.mesh.spacing / std::sqrt(modulus / material.density));
   }
   return step;

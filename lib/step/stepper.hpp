@@ -1,6 +1,6 @@
 #pragma once
-// The time step behind one interface, whatever the backend, precision and dimension: the one place where what a user
-// chose at run time becomes a template.
+// The time step behind one interface, whatever the backend, precision and dimension: the one place where what
+// a user chose at run time becomes a template.
 
 #include <petscsys.h>
 
@@ -34,10 +34,10 @@ struct Failure {
 
 /// What a batch of steps came to.
 struct Batch {
-  long steps = 0;          // done
-  bool rebuild = false;    // the movement bound passed the margin: rebuild before the next step
-  long estimate = 1;       // steps that the bound will probably still allow
-  double bound = 0;        // cells
+  long steps = 0;        // done
+  bool rebuild = false;  // the movement bound passed the margin: rebuild before the next step
+  long estimate = 1;     // steps that the bound will probably still allow
+  double bound = 0;      // cells
   Failure failure;
 };
 

@@ -4,13 +4,13 @@ namespace mpm {
 
 const char* name_of(Function f) {
   switch (f) {
-    case Function::reset:          return "initialise nodal variables";
+    case Function::reset: return "initialise nodal variables";
     case Function::rigid_to_nodes: return "rigid bodies to nodes";
-    case Function::soil_to_nodes:  return "soil particles to nodes";
-    case Function::nodes:          return "nodal velocities, contact";
-    case Function::particles:      return "stress update, movement";
-    case Function::rigids:         return "move rigid bodies";
-    default:                       return "rebuild bins and lists";
+    case Function::soil_to_nodes: return "soil particles to nodes";
+    case Function::nodes: return "nodal velocities, contact";
+    case Function::particles: return "stress update, movement";
+    case Function::rigids: return "move rigid bodies";
+    default: return "rebuild bins and lists";
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// Time of each of the paper's functions. Each is a PETSc log event; the seconds of the closing table come from a
-// clock around it, in every step where kernels run on the host, in one step of many on a device (which must be waited
-// for, and that costs).
+// Time of each of the paper's functions. Each is a PETSc log event; the seconds of the closing table come
+// from a clock around it, in every step where kernels run on the host, in one step of many on a device (which
+// must be waited for, and that costs).
 
 #include <petscsys.h>
 

@@ -20,7 +20,8 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   BodyInput in;
   in.position = std::move(particles.position);
   in.strength.resize(in.position.size() / Dim);
-  for (std::size_t p = 0; p < in.strength.size(); ++p) in.strength[p] = strength_at(law, height_of<Dim>(in.position, p, config.mesh));
+  for (std::size_t p = 0; p < in.strength.size(); ++p)
+    in.strength[p] = strength_at(law, height_of<Dim>(in.position, p, config.mesh));
   in.particle_volume = particles.particle_volume;
   in.half_length = particles.spacing / config.mesh.spacing / 2;
   in.density = material.density;
@@ -52,7 +53,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   PetscFunctionBeginUser;
   PetscCall(timers_.create());
   PetscCheck(device_agrees(state_.space), PETSC_COMM_SELF, PETSC_ERR_LIB,
-             "kernels do not see what the host sends them: this Kokkos was built so that nvcc and the host compiler lay out "
+             "kernels do not see what the host sends them: this Kokkos was built so that nvcc and the host "
+             "compiler lay out "
              "views differently; build it with Kokkos_ENABLE_IMPL_MDSPAN=OFF");
   timers_.sample(!is_device<Space>);
   GridInput grid{config_.mesh.spacing, config_.mesh.cells, model.patches, config_.mesh.walls};
@@ -143,16 +145,19 @@ void TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
   out->bodies.clear(), out->rigids.clear();
   for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
     const std::size_t from = first_[b];
-    const std::size_t to = b + 1 < first_.size() ? first_[b + 1] : static_cast<std::size_t>(state_.soil.points.count);
+    const std::size_t to =
+        b + 1 < first_.size() ? first_[b + 1] : static_cast<std::size_t>(state_.soil.points.count);
     ParticleSnapshot body;
     body.name = config_.bodies[b].name;
-    body.position.assign(3 * (to - from), 0), body.velocity.assign(3 * (to - from), 0), body.stress.assign(6 * (to - from), 0);
+    body.position.assign(3 * (to - from), 0), body.velocity.assign(3 * (to - from), 0),
+        body.stress.assign(6 * (to - from), 0);
     for (std::size_t p = from; p < to; ++p) {
       for (int d = 0; d < Dim; ++d) {
         body.position[3 * (p - from) + d] = soil.position[p * Dim + d] + config_.mesh.lower[d];
         body.velocity[3 * (p - from) + d] = soil.velocity[p * Dim + d];
       }
-      for (int k = 0; k < sym_size<Dim>; ++k) body.stress[6 * (p - from) + k] = soil.stress[p * sym_size<Dim> + k];
+      for (int k = 0; k < sym_size<Dim>; ++k)
+        body.stress[6 * (p - from) + k] = soil.stress[p * sym_size<Dim> + k];
     }
     body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
     body.plastic_strain.assign(soil.plastic_strain.begin() + from, soil.plastic_strain.begin() + to);
@@ -188,10 +193,10 @@ template <class Space, class T, int Dim>
 std::string TypedStepper<Space, T, Dim>::strategy() const {
   switch (chosen(config_.p2g.strategy, backend_of<Space>)) {
     case P2G::sequential: return "sequential";
-    case P2G::atomic:     return "atomic";
-    case P2G::mosaic:     return "mosaic";
-    case P2G::gather:     return "gather";
-    default:              return "tile";
+    case P2G::atomic: return "atomic";
+    case P2G::mosaic: return "mosaic";
+    case P2G::gather: return "gather";
+    default: return "tile";
   }
 }
 
@@ -209,12 +214,16 @@ Failure TypedStepper<Space, T, Dim>::describe(const Fault& fault) const {
   char where[120];
   const double* x = fault.position;
   const Vec3& low = config_.mesh.lower;
-  if (Dim == 2) std::snprintf(where, sizeof where, " at (%.9g, %.9g) m ", x[0] + low[0], x[1] + low[1]);
-  else std::snprintf(where, sizeof where, " at (%.9g, %.9g, %.9g) m ", x[0] + low[0], x[1] + low[1], x[2] + low[2]);
-  const char* what = fault.kind == FaultKind::outside      ? "is outside the mesh"
-                     : fault.kind == FaultKind::not_finite ? "has a position, velocity, stress or volume that is not finite"
-                     : fault.kind == FaultKind::inverted   ? "has no volume left"
-                                                           : "moved more than a cell in one step";
+  if (Dim == 2)
+    std::snprintf(where, sizeof where, " at (%.9g, %.9g) m ", x[0] + low[0], x[1] + low[1]);
+  else
+    std::snprintf(where, sizeof where, " at (%.9g, %.9g, %.9g) m ", x[0] + low[0], x[1] + low[1],
+                  x[2] + low[2]);
+  const char* what = fault.kind == FaultKind::outside ? "is outside the mesh"
+                     : fault.kind == FaultKind::not_finite
+                         ? "has a position, velocity, stress or volume that is not finite"
+                     : fault.kind == FaultKind::inverted ? "has no volume left"
+                                                         : "moved more than a cell in one step";
   return {who + where + what};
 }
 

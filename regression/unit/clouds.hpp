@@ -21,7 +21,9 @@ struct Build {
   static constexpr int dim = Dim;
   static constexpr bool is_double = sizeof(T) == sizeof(double);
   /// The tolerance that belongs to the real type.
-  static constexpr double of(double for_double, double for_single) { return is_double ? for_double : for_single; }
+  static constexpr double of(double for_double, double for_single) {
+    return is_double ? for_double : for_single;
+  }
   static std::string name() {
     return std::string(Space::name()) + (is_double ? " double " : " single ") + std::to_string(Dim) + "D";
   }
@@ -146,10 +148,11 @@ struct Dice {
   int below(int n) { return static_cast<int>(engine() % n); }
 };
 
-/// Random particles in a share of the cells of [low, high). Some lie exactly on a node, in the middle of a cell,
-/// or where the shape function changes its branch.
+/// Random particles in a share of the cells of [low, high). Some lie exactly on a node, in the middle of a
+/// cell, or where the shape function changes its branch.
 template <int Dim>
-BodyInput random_body(Dice& dice, std::array<int, 3> low, std::array<int, 3> high, double share, int per_cell, double spacing) {
+BodyInput random_body(Dice& dice, std::array<int, 3> low, std::array<int, 3> high, double share, int per_cell,
+                      double spacing) {
   std::vector<double> position;
   const double l = 0.5 / per_cell, special[] = {0, l, 1 - l, 0.5};
   for (int k = low[2]; k < (Dim == 3 ? high[2] : low[2] + 1); ++k)
@@ -159,17 +162,20 @@ BodyInput random_body(Dice& dice, std::array<int, 3> low, std::array<int, 3> hig
         const int cell[3] = {i, j, k};
         for (int n = 1 + dice.below(5); n > 0; --n)
           for (int d = 0; d < Dim; ++d)
-            position.push_back((cell[d] + (dice.below(4) == 0 ? special[dice.below(4)] : dice.uniform(0, 1))) * spacing);
+            position.push_back(
+                (cell[d] + (dice.below(4) == 0 ? special[dice.below(4)] : dice.uniform(0, 1))) * spacing);
       }
   BodyInput body = body_of<Dim>(std::move(position), per_cell, spacing, per_cell % 2);
   for (double& strength : body.strength) strength = dice.uniform(1000, 3000);
-  for (std::size_t n = 0; n < body.position.size(); ++n) body.particle_velocity.push_back(dice.uniform(-1, 1));
-  for (std::size_t n = 0; n < body.strength.size() * sym_size<Dim>; ++n) body.stress.push_back(dice.uniform(-3000, 3000));
+  for (std::size_t n = 0; n < body.position.size(); ++n)
+    body.particle_velocity.push_back(dice.uniform(-1, 1));
+  for (std::size_t n = 0; n < body.strength.size() * sym_size<Dim>; ++n)
+    body.stress.push_back(dice.uniform(-3000, 3000));
   return body;
 }
 
-/// Bodies of 1 to 4 particles a cell edge: in the first and the last cells of the mesh, dense in the middle, and
-/// sparse with empty patches between; two rigids, one with a limited shear, one dynamic with friction.
+/// Bodies of 1 to 4 particles a cell edge: in the first and the last cells of the mesh, dense in the middle,
+/// and sparse with empty patches between; two rigids, one with a limited shear, one dynamic with friction.
 template <int Dim>
 Cloud random_cloud(int seed, Wall wall = Wall::free) {
   Dice dice{std::mt19937_64(seed)};
@@ -181,7 +187,9 @@ Cloud random_cloud(int seed, Wall wall = Wall::free) {
   cloud.materials = clays();
   cloud.bodies = {random_body<Dim>(dice, {0, 0, 0}, {4, 4, 3}, 0.7, 1, spacing),
                   random_body<Dim>(dice, from_end(3), cells, 0.7, 2, spacing),
-                  random_body<Dim>(dice, {2, 2, 1}, Dim == 2 ? std::array<int, 3>{14, 12, 0} : std::array<int, 3>{7, 6, 5}, 0.5, 3, spacing),
+                  random_body<Dim>(dice, {2, 2, 1},
+                                   Dim == 2 ? std::array<int, 3>{14, 12, 0} : std::array<int, 3>{7, 6, 5},
+                                   0.5, 3, spacing),
                   random_body<Dim>(dice, {0, 0, 0}, cells, Dim == 2 ? 0.02 : 0.01, 4, spacing)};
   const double x = 3 + dice.uniform(0, 1), y = 4 + dice.uniform(0, 1);
   cloud.rigids = {rigid_of<Dim>(lattice<Dim>({x, y, 2.3}, {x + 4, y + 2, 4.3}, 4, spacing), 4, spacing),

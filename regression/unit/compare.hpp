@@ -34,7 +34,8 @@ template <class Space, class T, int Dim>
 void one_step(State<Space, T, Dim>& s, double dt) {
   Timers timers;
   timers.sample(false);
-  if (timers.create() != PETSC_SUCCESS || step(s, timers, dt) != PETSC_SUCCESS) throw std::runtime_error("a step failed");
+  if (timers.create() != PETSC_SUCCESS || step(s, timers, dt) != PETSC_SUCCESS)
+    throw std::runtime_error("a step failed");
 }
 
 /// n steps, with a rebuild whenever the movement bound asks for it. Stops at a fault. Returns the rebuilds.
@@ -65,7 +66,8 @@ Table nodes_of(const State<Space, T, Dim>& s, const Field& field) {
   Table table{static_cast<int>(field.extent(1)), {}};
   table.value.resize(s.grid.patch_count() * Patch<Dim>::cells * table.width);
   for (int i = 0; i < s.patches.node_count(); ++i) {
-    const long at = s.grid.patch_of(origin(i / Patch<Dim>::cells)) * Patch<Dim>::cells + i % Patch<Dim>::cells;
+    const long at =
+        s.grid.patch_of(origin(i / Patch<Dim>::cells)) * Patch<Dim>::cells + i % Patch<Dim>::cells;
     for (int k = 0; k < table.width; ++k) table.value[at * table.width + k] = host(i, k);
   }
   return table;
@@ -112,7 +114,8 @@ Table by_id(const Points_& points, const Field& field) {
   if constexpr (!std::is_arithmetic_v<Value>) table.width = sizeof(Value) / sizeof(std::declval<Value>()[0]);
   table.value.resize(std::size_t(points.count) * table.width);
   for (int p = 0; p < points.count; ++p)
-    for (int k = 0; k < table.width; ++k) table.value[std::size_t(id(p)) * table.width + k] = component(host(p), k);
+    for (int k = 0; k < table.width; ++k)
+      table.value[std::size_t(id(p)) * table.width + k] = component(host(p), k);
   return table;
 }
 
@@ -132,7 +135,8 @@ std::vector<Table> soil_fields(const State<Space, T, Dim>& s) {
   return {{Dim, soil.position}, {Dim, soil.velocity}, {sym_size<Dim>, soil.stress}, {1, soil.volume}};
 }
 
-/// Largest difference of two tables over the largest value of its column; infinite where either is not finite.
+/// Largest difference of two tables over the largest value of its column; infinite where either is not
+/// finite.
 inline double largest_difference(const Table& got, const Table& expected) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   if (got.width != expected.width || got.value.size() != expected.value.size()) return infinite;

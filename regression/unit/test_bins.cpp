@@ -29,7 +29,8 @@ std::string fault_of_bins(const State<Space, T, Dim>& s, const Set& set) {
       ids.insert(id(p));
     }
   if (begin(0) != 0 || begin(cells) != set.points.count) return "the ranges do not hold every point";
-  if (static_cast<int>(ids.size()) != set.points.count || *ids.rbegin() != set.points.count - 1) return "an id is missing";
+  if (static_cast<int>(ids.size()) != set.points.count || *ids.rbegin() != set.points.count - 1)
+    return "an id is missing";
 
   std::set<int> slots;
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour)
@@ -38,7 +39,8 @@ std::string fault_of_bins(const State<Space, T, Dim>& s, const Set& set) {
       int own = 0;
       for (int d = 0; d < Dim; ++d) own |= (origin(slot)[d] / Patch<Dim>::edge % 2 != 0) << d;
       if (own != colour) return "a slot is under the wrong colour";
-      if (begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells)) return "an empty slot is listed";
+      if (begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells))
+        return "an empty slot is listed";
       slots.insert(slot);
     }
   for (int p = 0; p < set.points.count; ++p)
@@ -78,7 +80,8 @@ std::string fault_of_patches(const State<Space, T, Dim>& s) {
       }
       needed = needed || holding.count(other);
       for (int d = 0, rest = k; d < Dim; ++d, rest /= 3)
-        if (origin(other)[d] - origin(slot)[d] != (rest % 3 - 1) * Patch<Dim>::edge) return "a patch around is elsewhere";
+        if (origin(other)[d] - origin(slot)[d] != (rest % 3 - 1) * Patch<Dim>::edge)
+          return "a patch around is elsewhere";
       if (around(other, Patch<Dim>::around - 1 - k) != slot) return "a neighbour does not know its neighbour";
     }
     if (!needed) return "a patch is active that no point can reach";
@@ -98,7 +101,8 @@ template <class Space, class T, int Dim>
 void mark_by_id(const State<Space, T, Dim>& s) {
   const auto id = on_host(s.soil.points.id);
   const auto plastic_strain = on_host(s.soil.points.plastic_strain), volume = on_host(s.soil.points.volume);
-  for (int p = 0; p < s.soil.points.count; ++p) plastic_strain(p) = id(p) + T(0.5), volume(p) = id(p) + T(0.25);
+  for (int p = 0; p < s.soil.points.count; ++p)
+    plastic_strain(p) = id(p) + T(0.5), volume(p) = id(p) + T(0.25);
   Kokkos::deep_copy(s.soil.points.plastic_strain, plastic_strain);
   Kokkos::deep_copy(s.soil.points.volume, volume);
 }
@@ -109,8 +113,8 @@ std::vector<int> order_of(const State<Space, T, Dim>& s) {
   return {id.data(), id.data() + s.soil.points.count};
 }
 
-/// Moves every point by up to a cell, soil points towards the middle of the mesh and the rigids upwards; some points
-/// to so little below their cell that 1 minus it rounds to 1.
+/// Moves every point by up to a cell, soil points towards the middle of the mesh and the rigids upwards; some
+/// points to so little below their cell that 1 minus it rounds to 1.
 template <class Space, class T, int Dim>
 void move_points(const State<Space, T, Dim>& s) {
   const auto& soil = s.soil.points;
@@ -121,7 +125,8 @@ void move_points(const State<Space, T, Dim>& s) {
     for (int d = 0; d < Dim; ++d) {
       const int at = origin(cell(p) / Patch<Dim>::cells)[d] + coord_of<Dim>(cell(p))[d];
       const double far = std::fabs(drift_of(id(p), d, 1.0));
-      x(p)[d] = id(p) % 7 == 0 && at > 0 ? T(-1e-20) : static_cast<T>(x(p)[d] + (at < s.grid.cells[d] / 2 ? far : -far));
+      x(p)[d] = id(p) % 7 == 0 && at > 0 ? T(-1e-20)
+                                         : static_cast<T>(x(p)[d] + (at < s.grid.cells[d] / 2 ? far : -far));
     }
   Kokkos::deep_copy(soil.coordinate, x);
   const auto rigids = on_host(s.rigids);
@@ -159,7 +164,8 @@ TEST_CASE("a rebuild leaves every point where it is", "[bins]") {
     rebuild(s);
     double moved = 0;
     const auto after = download_soil(s).position;
-    for (std::size_t n = 0; n < soil.size(); ++n) moved = std::max(moved, std::fabs(after[n] - soil[n]) / s.spacing);
+    for (std::size_t n = 0; n < soil.size(); ++n)
+      moved = std::max(moved, std::fabs(after[n] - soil[n]) / s.spacing);
     CHECK(moved < B::of(1e-14 * 45, 1.5e-7));  // the round-off of a position, and of a coordinate up to 2
   });
 }
@@ -177,7 +183,8 @@ TEST_CASE("every field goes with its particle", "[bins]") {
     std::size_t id = 0, wrong = 0;
     for (std::size_t b = 0; b < cloud.bodies.size(); ++b)
       for (std::size_t p = 0; p < cloud.bodies[b].strength.size(); ++p, ++id) {
-        wrong += soil[0].value[id * B::dim] != typename B::real(cloud.bodies[b].particle_velocity[p * B::dim]);
+        wrong +=
+            soil[0].value[id * B::dim] != typename B::real(cloud.bodies[b].particle_velocity[p * B::dim]);
         wrong += soil[4].value[id] != typename B::real(cloud.bodies[b].strength[p]);
         wrong += soil[5].value[id] != double(b);
       }
@@ -189,11 +196,13 @@ TEST_CASE("every field goes with its particle", "[bins]") {
     rebuild(s);
     CHECK(order_of(s) != order);
     CHECK(carried_fields(s.soil.points) == soil);
-    for (std::size_t r = 0; r < homes.size(); ++r) CHECK(carried_fields(s.rigid_points[r].points)[0] == homes[r]);
+    for (std::size_t r = 0; r < homes.size(); ++r)
+      CHECK(carried_fields(s.rigid_points[r].points)[0] == homes[r]);
   });
 }
 
-TEST_CASE("the order of the points does not depend on the backend, the number of threads or the order before", "[bins]") {
+TEST_CASE("the order of the points does not depend on the backend, the number of threads or the order before",
+          "[bins]") {
   for_each_reference([](auto reference) {
     constexpr int Dim = decltype(reference)::dim;
     const Cloud cloud = random_cloud<Dim>(9);
@@ -204,7 +213,8 @@ TEST_CASE("the order of the points does not depend on the backend, the number of
     for_each_build([&](auto build) {
       using B = decltype(build);
       if constexpr (B::dim == Dim && B::is_double) {
-        const std::vector<typename B::Space> spaces{typename B::Space(), with_other_threads<typename B::Space>()};
+        const std::vector<typename B::Space> spaces{typename B::Space(),
+                                                    with_other_threads<typename B::Space>()};
         for (const auto& space : spaces) {
           INFO(build.name() << ' ' << space.concurrency() << " threads");
           auto s = state_of<B>(cloud, P2G::sequential, space);
@@ -232,15 +242,18 @@ TEST_CASE("positions come back from an upload, far from the mesh's corner too", 
     Dice dice{std::mt19937_64(21)};
     std::vector<double> position;
     const double length[] = {10000, 2, 1.2};
-    for (int n = 0; n < 2000 * Dim; ++n) position.push_back(dice.uniform(0, length[n % Dim]) * (n < 1000 ? 1 - 1e-3 / (1 + n) : 1));
+    for (int n = 0; n < 2000 * Dim; ++n)
+      position.push_back(dice.uniform(0, length[n % Dim]) * (n < 1000 ? 1 - 1e-3 / (1 + n) : 1));
     for (int k = 1; k < 500; ++k)
-      for (int d = 0; d < Dim; ++d) position.push_back(d == 0 ? k * 20.0 : length[d] * k / 500);  // x on nodes
+      for (int d = 0; d < Dim; ++d)
+        position.push_back(d == 0 ? k * 20.0 : length[d] * k / 500);  // x on nodes
     cloud.bodies = {body_of<Dim>(position, 2, spacing, 0)};
     const auto s = state_of<B>(cloud);
     double largest = 0;
     const auto got = download_soil(s).position;
     REQUIRE(got.size() == position.size());
-    for (std::size_t n = 0; n < got.size(); ++n) largest = std::max(largest, std::fabs(got[n] - position[n]) / spacing);
+    for (std::size_t n = 0; n < got.size(); ++n)
+      largest = std::max(largest, std::fabs(got[n] - position[n]) / spacing);
     CHECK(largest < B::of(1e-10, 1e-6));
   });
 }

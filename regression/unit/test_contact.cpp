@@ -12,7 +12,9 @@ namespace {
 
 constexpr double k_infinite = std::numeric_limits<double>::infinity();
 
-bool near(const Vector<double, 2>& v, double x, double y) { return std::fabs(v[0] - x) + std::fabs(v[1] - y) < 1e-15; }
+bool near(const Vector<double, 2>& v, double x, double y) {
+  return std::fabs(v[0] - x) + std::fabs(v[1] - y) < 1e-15;
+}
 
 /// Soil and a rigid plate in one another, with velocities that press them together.
 template <int Dim>
@@ -63,25 +65,27 @@ TEST_CASE("contact: no pull, no penetration, and shear up to the lesser of its b
   const auto change = [&](double shear_speed, double friction) {
     return contact_correction<double, 2>(v, v_r, n, {shear_speed, friction});
   };
-  CHECK(near(change(0, -1), 0, 1.5));                // smooth
-  CHECK(near(change(0.25, -1), -0.25, 1.5));         // limited
-  CHECK(near(change(k_infinite, -1), -1, 1.5));      // rough: it sticks
-  CHECK(near(change(3, -1), -1, 1.5));               // a limit above the slip does not reverse it
-  CHECK(near(change(k_infinite, 0.4), -0.6, 1.5));   // friction
+  CHECK(near(change(0, -1), 0, 1.5));               // smooth
+  CHECK(near(change(0.25, -1), -0.25, 1.5));        // limited
+  CHECK(near(change(k_infinite, -1), -1, 1.5));     // rough: it sticks
+  CHECK(near(change(3, -1), -1, 1.5));              // a limit above the slip does not reverse it
+  CHECK(near(change(k_infinite, 0.4), -0.6, 1.5));  // friction
   CHECK(near(change(k_infinite, 0), 0, 1.5));
-  CHECK(near(change(0.25, 0.4), -0.25, 1.5));        // both: the limit is less
-  CHECK(near(change(0.8, 0.4), -0.6, 1.5));          // both: friction is less
+  CHECK(near(change(0.25, 0.4), -0.25, 1.5));  // both: the limit is less
+  CHECK(near(change(0.8, 0.4), -0.6, 1.5));    // both: friction is less
   const Vector<double, 2> away{0, 1};
-  CHECK(near(contact_correction<double, 2>(v, v_r, away, {k_infinite, -1}), 0, 0));             // they part
-  CHECK(near(contact_correction<double, 2>({1, -0.5}, v_r, n, {k_infinite, -1}), 0, 0));        // they touch
-  CHECK(near(contact_correction<double, 2>({0, -2}, v_r, n, {0.1, -1}), 0, 1.5));               // no slip
+  CHECK(near(contact_correction<double, 2>(v, v_r, away, {k_infinite, -1}), 0, 0));       // they part
+  CHECK(near(contact_correction<double, 2>({1, -0.5}, v_r, n, {k_infinite, -1}), 0, 0));  // they touch
+  CHECK(near(contact_correction<double, 2>({0, -2}, v_r, n, {0.1, -1}), 0, 1.5));         // no slip
   const double r = std::sqrt(0.5);
-  CHECK(near(contact_correction<double, 2>({2, 0}, {0, 0}, {r, r}, {0, -1}), -1, -1));           // an inclined face
-  const auto in_3d = contact_correction<double, 3>({3, 4, 2}, {0, 0, 0}, {0, 0, 1}, {1, -1});   // slip (3, 4, 0)
+  CHECK(near(contact_correction<double, 2>({2, 0}, {0, 0}, {r, r}, {0, -1}), -1, -1));  // an inclined face
+  const auto in_3d =
+      contact_correction<double, 3>({3, 4, 2}, {0, 0, 0}, {0, 0, 1}, {1, -1});  // slip (3, 4, 0)
   CHECK(std::fabs(in_3d[0] + 0.6) + std::fabs(in_3d[1] + 0.8) + std::fabs(in_3d[2] + 2) < 1e-15);
 }
 
-TEST_CASE("the inward normal is against the mass gradient, in a roller's plane, and none in the body", "[contact]") {
+TEST_CASE("the inward normal is against the mass gradient, in a roller's plane, and none in the body",
+          "[contact]") {
   const auto grid = small_grid<2>(Wall::roller);
   Vector<double, 2> n{3, 4};
   REQUIRE(inward_normal(grid, 0u, 10.0, n));
@@ -100,7 +104,8 @@ TEST_CASE("the inward normal is against the mass gradient, in a roller's plane, 
   CHECK_FALSE(inward_normal(grid, 0u, 0.0, n));
 }
 
-TEST_CASE("below a plate the mass gradient points down, out of it, and none counts in its middle", "[contact]") {
+TEST_CASE("below a plate the mass gradient points down, out of it, and none counts in its middle",
+          "[contact]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
@@ -109,7 +114,9 @@ TEST_CASE("below a plate the mass gradient points down, out of it, and none coun
     auto s = state_of<B>(cloud);
     interpolate(s);
     const Table field = nodes_of(s, rigid_field(s, 0));
-    const auto at = [&](Coord<Dim> node, int k) { return field.value[s.grid.address_of(node) * field.width + k]; };
+    const auto at = [&](Coord<Dim> node, int k) {
+      return field.value[s.grid.address_of(node) * field.width + k];
+    };
     const auto node = [](int y) {
       Coord<Dim> c{9, y};
       if constexpr (Dim == 3) c[2] = 5;
@@ -117,9 +124,9 @@ TEST_CASE("below a plate the mass gradient points down, out of it, and none coun
     };
     INFO(build.name());
     CHECK(at(node(9), 2) < -0.5 * at(node(9), 0));
-    CHECK(std::fabs(at(node(9), 1)) < 1e-5 * at(node(9), 0));            // and not along it
-    CHECK(std::fabs(at(node(11), 2)) < 1e-5 * at(node(11), 0));          // in its middle there is none
-    CHECK(at(node(13), 2) > 0.5 * at(node(13), 0));                      // and up at its far face
+    CHECK(std::fabs(at(node(9), 1)) < 1e-5 * at(node(9), 0));    // and not along it
+    CHECK(std::fabs(at(node(11), 2)) < 1e-5 * at(node(11), 0));  // in its middle there is none
+    CHECK(at(node(13), 2) > 0.5 * at(node(13), 0));              // and up at its far face
   });
 }
 
@@ -141,8 +148,8 @@ TEST_CASE("the force on a rigid is what the soil's momentum lost in the step", "
       const auto with = nodal_momentum(touching), without = nodal_momentum(alone);
       const auto sums = on_host(touching.sums);
       INFO(build.name() << " shear limit " << shear_limit);
-      CHECK(sums(1) > 0);                                         // the soil pushes the plate up
-      CHECK(sums(0) < 0);                                         // and holds it back
+      CHECK(sums(1) > 0);  // the soil pushes the plate up
+      CHECK(sums(0) < 0);  // and holds it back
       for (int d = 0; d < Dim; ++d)
         CHECK(std::fabs((without[d] - with[d]) / dt - sums(d)) < B::of(1e-10, 1e-4) * sums(1));
     }
@@ -164,7 +171,8 @@ TEST_CASE("soil and a rigid that hits it keep their momentum", "[contact]") {
       INFO(build.name() << " shear limit " << shear_limit);
       CHECK(look(s).fault_count == 0);
       CHECK(on_host(s.rigids)(0).velocity[1] > rigid_before + 0.1);  // it was slowed down
-      for (int d = 0; d < B::dim; ++d) CHECK(std::fabs(after[d] - before[d]) < B::of(1e-12, 1e-5) * std::fabs(before[1]));
+      for (int d = 0; d < B::dim; ++d)
+        CHECK(std::fabs(after[d] - before[d]) < B::of(1e-12, 1e-5) * std::fabs(before[1]));
     }
   });
 }

@@ -61,24 +61,28 @@ template <class T, int Dim>
 double second_invariant(const SymTensor<T, Dim>& s) {
   const double mean = (double(s[0]) + s[1] + s[2]) / 3;
   double j2 = 0;
-  for (int k = 0; k < sym_size<Dim>; ++k) j2 += k < 3 ? (s[k] - mean) * (s[k] - mean) / 2 : double(s[k]) * s[k];
+  for (int k = 0; k < sym_size<Dim>; ++k)
+    j2 += k < 3 ? (s[k] - mean) * (s[k] - mean) / 2 : double(s[k]) * s[k];
   return j2;
 }
 
 /// The last state of a path that is followed on Space.
 template <class Space, class T, int Dim>
-MaterialState<T, Dim> last_on(const AnyMaterial<T>& material, const std::vector<Increment<T, Dim>>& path, T strength) {
+MaterialState<T, Dim> last_on(const AnyMaterial<T>& material, const std::vector<Increment<T, Dim>>& path,
+                              T strength) {
   using Memory = typename Space::memory_space;
   const Kokkos::View<Increment<T, Dim>*, Memory> steps("test", path.size());
-  const Kokkos::View<const Increment<T, Dim>*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(path.data(), path.size());
+  const Kokkos::View<const Increment<T, Dim>*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(path.data(),
+                                                                                                path.size());
   Kokkos::deep_copy(steps, host);
   const Kokkos::View<MaterialState<T, Dim>, Memory> out("test");
-  Kokkos::parallel_for("test::path", Kokkos::RangePolicy<Space>(0, 1), KOKKOS_LAMBDA(int) {
-    MaterialState<T, Dim> state{{}, 0, strength};
-    for (std::size_t n = 0; n < steps.extent(0); ++n)
-      material.visit([&](const auto& law) { law.update(state, steps(n).strain, steps(n).spin, T(1)); });
-    out() = state;
-  });
+  Kokkos::parallel_for(
+      "test::path", Kokkos::RangePolicy<Space>(0, 1), KOKKOS_LAMBDA(int) {
+        MaterialState<T, Dim> state{{}, 0, strength};
+        for (std::size_t n = 0; n < steps.extent(0); ++n)
+          material.visit([&](const auto& law) { law.update(state, steps(n).strain, steps(n).spin, T(1)); });
+        out() = state;
+      });
   return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), out)();
 }
 
@@ -105,7 +109,8 @@ TEST_CASE("a material keeps every parameter of its model's table, in its order",
   const auto clay_law = make_material<float>(1, {2e6, 0.4, 3000, 1500, -2});
   REQUIRE(clay_law.which == 1);
   const auto& c = *reinterpret_cast<const VonMises<float>*>(clay_law.bytes);
-  CHECK(std::array{c.young, c.poisson, c.su, c.su_gradient, c.su_datum} == std::array{2e6f, 0.4f, 3000.f, 1500.f, -2.f});
+  CHECK(std::array{c.young, c.poisson, c.su, c.su_gradient, c.su_datum} ==
+        std::array{2e6f, 0.4f, 3000.f, 1500.f, -2.f});
   const auto names = material_models();
   REQUIRE(names.size() == 2);
   CHECK(std::string(names[0]) == "linear_elastic");
@@ -116,7 +121,9 @@ TEST_CASE("a material keeps every parameter of its model's table, in its order",
 TEST_CASE("the wave modulus is lambda + 2 G", "[materials]") {
   // The footing's clay: 25.67 MPa, which gives its time step.
   CHECK(std::fabs(wave_modulus(clay()) / 25.67e6 - 1) < 1e-3);
-  CHECK(std::fabs(wave_modulus(elastic()) / (k_young * (1 - k_poisson) / ((1 + k_poisson) * (1 - 2 * k_poisson))) - 1) < 1e-14);
+  CHECK(std::fabs(wave_modulus(elastic()) /
+                      (k_young * (1 - k_poisson) / ((1 + k_poisson) * (1 - 2 * k_poisson))) -
+                  1) < 1e-14);
 }
 
 TEST_CASE("strength grows with depth below its datum only", "[materials]") {
@@ -154,7 +161,8 @@ TEST_CASE("a quarter turn moves sxx to syy", "[materials]") {
   const auto turned = after<2>(elastic(), {1000, 0, 0, 0}, L2, 1000).stress;
   CHECK(std::fabs(turned[1] - 1000) < 1e-2);
   CHECK(std::fabs(turned[0]) < 1e-2);
-  const double L3[3][3] = {{0, 0, 0}, {0, 0, -k_pi / 4}, {0, k_pi / 4, 0}};  // an eighth, about x: y to between y and z
+  const double L3[3][3] = {
+      {0, 0, 0}, {0, 0, -k_pi / 4}, {0, k_pi / 4, 0}};  // an eighth, about x: y to between y and z
   const auto eighth = after<3>(elastic(), {0, 1000, 0, 0, 0, 0}, L3, 1000).stress;
   CHECK(std::fabs(eighth[1] - 500) < 1e-2);
   CHECK(std::fabs(eighth[2] - 500) < 1e-2);
@@ -208,7 +216,8 @@ TEST_CASE("no path of strain leaves the yield surface, and plastic strain never 
       plastic = state.plastic_strain;
     }
     INFO(build.name());
-    CHECK(largest / k_su < 1 + B::of(1e-12, 1e-4));  // in single the pressure, 100 su here, hides some of the shear
+    CHECK(largest / k_su <
+          1 + B::of(1e-12, 1e-4));  // in single the pressure, 100 su here, hides some of the shear
     CHECK(largest / k_su > 0.99);
     CHECK(fell == 0);
     CHECK(plastic > 0);
@@ -219,7 +228,8 @@ TEST_CASE("a particle's own strength decides, not the model's", "[materials]") {
   const double L2[2][2] = {{0, 0.1}, {0, 0}};
   const std::vector<Increment<double, 2>> path(1000, increment_of<2>({{0, L2[0][1] / 1000}, {0, 0}}));
   for (double strength : {500., 9000.})
-    CHECK(std::fabs(follow<double, 2>(clay(), {{}, 0, strength}, path).back().stress[3] / strength - 1) < 1e-3);
+    CHECK(std::fabs(follow<double, 2>(clay(), {{}, 0, strength}, path).back().stress[3] / strength - 1) <
+          1e-3);
 }
 
 TEST_CASE("3D equals 2D plane strain for the same increments", "[materials]") {
@@ -240,7 +250,8 @@ TEST_CASE("3D treats its axes alike", "[materials]") {
   const auto path = random_path<double, 3>(33, 500, 1e-3);
   std::vector<Increment<double, 3>> turned;  // x to y, y to z, z to x
   for (const auto& s : path)
-    turned.push_back({{s.strain[2], s.strain[0], s.strain[1], s.strain[5], s.strain[3], s.strain[4]}, {s.spin.c[2], s.spin.c[0], s.spin.c[1]}});
+    turned.push_back({{s.strain[2], s.strain[0], s.strain[1], s.strain[5], s.strain[3], s.strain[4]},
+                      {s.spin.c[2], s.spin.c[0], s.spin.c[1]}});
   const auto a = follow<double, 3>(clay(), {{}, 0, k_su}, path).back().stress;
   const auto b = follow<double, 3>(clay(), {{}, 0, k_su}, turned).back().stress;
   const int to[] = {1, 2, 0, 4, 5, 3};
@@ -253,15 +264,19 @@ TEST_CASE("every backend and real type follows a path of strain to the same stre
     using T = typename B::real;
     constexpr int Dim = B::dim;
     for (int model : {0, 1}) {
-      const std::vector<double> parameters = model == 0 ? std::vector<double>{k_young, 0.3} : std::vector<double>{k_young, 0.3, k_su, 0, 0};
+      const std::vector<double> parameters =
+          model == 0 ? std::vector<double>{k_young, 0.3} : std::vector<double>{k_young, 0.3, k_su, 0, 0};
       const auto path = random_path<double, Dim>(34, 100, 1e-3);
       std::vector<Increment<T, Dim>> own(path.size());
       for (std::size_t n = 0; n < path.size(); ++n) {
         for (int k = 0; k < sym_size<Dim>; ++k) own[n].strain[k] = static_cast<T>(path[n].strain[k]);
-        for (std::size_t k = 0; k < std::size(path[n].spin.c); ++k) own[n].spin.c[k] = static_cast<T>(path[n].spin.c[k]);
+        for (std::size_t k = 0; k < std::size(path[n].spin.c); ++k)
+          own[n].spin.c[k] = static_cast<T>(path[n].spin.c[k]);
       }
-      const auto expected = follow<double, Dim>(make_material<double>(model, parameters), {{}, 0, k_su}, path).back().stress;
-      const auto got = last_on<typename B::Space, T, Dim>(make_material<T>(model, parameters), own, T(k_su)).stress;
+      const auto expected =
+          follow<double, Dim>(make_material<double>(model, parameters), {{}, 0, k_su}, path).back().stress;
+      const auto got =
+          last_on<typename B::Space, T, Dim>(make_material<T>(model, parameters), own, T(k_su)).stress;
       double scale = 0, difference = 0;
       for (int k = 0; k < sym_size<Dim>; ++k) {
         scale = std::max(scale, std::fabs(expected[k]));

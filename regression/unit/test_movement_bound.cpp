@@ -11,8 +11,8 @@ namespace {
 
 constexpr double k_spacing = 0.1;
 
-/// A block of soil in the middle of a mesh with free sides, all with one velocity [m/s], and a rigid apart from it.
-/// The soil is so soft that steps of any length here are stable.
+/// A block of soil in the middle of a mesh with free sides, all with one velocity [m/s], and a rigid apart
+/// from it. The soil is so soft that steps of any length here are stable.
 template <int Dim>
 Cloud block(std::array<double, 3> velocity) {
   Cloud cloud;
@@ -34,7 +34,9 @@ std::vector<Table> everything(const State<Space, T, Dim>& s) {
   all.push_back(nodes_of(s, s.nodes.motion));
   const auto rigids = on_host(s.rigids);
   for (std::size_t r = 0; r < rigids.extent(0); ++r)
-    all.push_back({1, {rigids(r).displacement[0], rigids(r).displacement[1], rigids(r).velocity[1], rigids(r).impulse[1]}});
+    all.push_back({1,
+                   {rigids(r).displacement[0], rigids(r).displacement[1], rigids(r).velocity[1],
+                    rigids(r).impulse[1]}});
   return all;
 }
 
@@ -51,7 +53,8 @@ Control control_after(const Cloud& cloud, double dt, int n) {
 
 }  // namespace
 
-TEST_CASE("steps go on until the bound has passed the margin, and not one step less or more", "[movement_bound]") {
+TEST_CASE("steps go on until the bound has passed the margin, and not one step less or more",
+          "[movement_bound]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     for (double margin : {0.5, 0.25})
@@ -60,7 +63,8 @@ TEST_CASE("steps go on until the bound has passed the margin, and not one step l
         Cloud cloud = block<B::dim>({2, -1, 0.5});
         cloud.p2g.margin = margin;
         auto s = state_of<B>(cloud, P2G::tile);
-        const int last = static_cast<int>(margin / cells) + 1;  // the first step after which they have moved further
+        const int last =
+            static_cast<int>(margin / cells) + 1;  // the first step after which they have moved further
         for (int n = 1; n <= last; ++n) {
           REQUIRE(look(s).paused == 0);
           one_step(s, time_to_move(cells, 2));
@@ -86,7 +90,8 @@ TEST_CASE("the bound counts the fastest of soil and rigids", "[movement_bound]")
   });
 }
 
-TEST_CASE("the bound is the sum of the furthest movements of each step, and no particle has gone further", "[movement_bound]") {
+TEST_CASE("the bound is the sum of the furthest movements of each step, and no particle has gone further",
+          "[movement_bound]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     INFO(build.name());
@@ -112,7 +117,8 @@ TEST_CASE("the bound is the sum of the furthest movements of each step, and no p
   });
 }
 
-TEST_CASE("no step after the bound has passed the margin changes a bit, and a rebuild lets them go on", "[movement_bound]") {
+TEST_CASE("no step after the bound has passed the margin changes a bit, and a rebuild lets them go on",
+          "[movement_bound]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     for (P2G how : k_strategies) {
@@ -154,7 +160,8 @@ TEST_CASE("a particle that leaves the mesh is reported with its id and place", "
     CHECK(control.fault.kind == FaultKind::outside);
     CHECK(control.fault.particle == static_cast<int>(cloud.bodies[0].strength.size()));
     CHECK(std::fabs(control.fault.position[0] - 0.55) < B::of(1e-12, 1e-6));
-    CHECK(std::fabs(control.fault.position[1] - 2.05) < B::of(1e-12, 1e-6));  // seen at the second rebuild, after 3 steps each
+    CHECK(std::fabs(control.fault.position[1] - 2.05) <
+          B::of(1e-12, 1e-6));  // seen at the second rebuild, after 3 steps each
     CHECK(control.paused == 1);
   });
 }
@@ -174,11 +181,13 @@ TEST_CASE("a rigid that leaves the mesh is reported by its number", "[movement_b
   });
 }
 
-TEST_CASE("a value that is not finite is reported with its particle, and nothing goes on", "[movement_bound]") {
+TEST_CASE("a value that is not finite is reported with its particle, and nothing goes on",
+          "[movement_bound]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
-    const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 infinite = std::numeric_limits<double>::infinity();
     for (double wrong : {nan, infinite})
       for (bool in_stress : {false, true}) {
         INFO(build.name() << ' ' << wrong << (in_stress ? " in the stress" : " in the velocity"));

@@ -19,7 +19,9 @@ Vector<double, Dim> walled(const Grid<double, Dim>& grid, Coord<Dim> node) {
   return v;
 }
 bool equal(const Vector<double, 2>& v, double x, double y) { return v[0] == x && v[1] == y; }
-bool equal(const Vector<double, 3>& v, double x, double y, double z) { return v[0] == x && v[1] == y && v[2] == z; }
+bool equal(const Vector<double, 3>& v, double x, double y, double z) {
+  return v[0] == x && v[1] == y && v[2] == z;
+}
 
 /// The state with mass 1, momentum (1, 2, 3) and no force at every node.
 template <class B>
@@ -32,12 +34,14 @@ StateOf<B> nodes_that_move(const GridInput& grid) {
   auto s = state_of<B>(cloud);
   const auto soil = on_host(s.nodes.soil);
   for (int i = 0; i < s.patches.node_count(); ++i)
-    for (int k = 0; k < SoilShare<B::dim>::size; ++k) soil(i, k) = k < SoilShare<B::dim>::force ? std::max(1, k) : 0;
+    for (int k = 0; k < SoilShare<B::dim>::size; ++k)
+      soil(i, k) = k < SoilShare<B::dim>::force ? std::max(1, k) : 0;
   Kokkos::deep_copy(s.nodes.soil, soil);
   return s;
 }
 
-/// Every node of a state, as (its place in the mesh, its velocity, its acceleration), checked by f; how often it fails.
+/// Every node of a state, as (its place in the mesh, its velocity, its acceleration), checked by f; how often
+/// it fails.
 template <class Space, class T, int Dim, class F>
 int wrong_nodes(const State<Space, T, Dim>& s, F&& right) {
   const auto motion = on_host(s.nodes.motion);
@@ -73,7 +77,8 @@ TEST_CASE("a roller stops the normal velocity at faces, edges and corners, and b
   CHECK(equal(walled<3>(deep, {0, 0, 6}), 0, 0, 0));
 }
 
-TEST_CASE("a fixed wall stops every velocity, a free one none, and the stricter holds where two meet", "[nodes]") {
+TEST_CASE("a fixed wall stops every velocity, a free one none, and the stricter holds where two meet",
+          "[nodes]") {
   const auto fixed = small_grid<2>(Wall::fixed), free = small_grid<2>(Wall::free);
   CHECK(equal(walled<2>(fixed, {0, 3}), 0, 0));
   CHECK(equal(walled<2>(fixed, {3, 7}), 0, 0));
@@ -102,26 +107,30 @@ TEST_CASE("every node of the mesh and of the ring round it obeys its walls", "[n
       const double dt = 0.25;
       update_nodes(s, dt);
       INFO(build.name() << " walls " << first);
-      CHECK(wrong_nodes(s, [&](const Coord<Dim>& at, const Vector<double, Dim>& v, const Vector<double, Dim>& a) {
-              bool stopped[3] = {}, held = false;
-              for (int d = 0; d < Dim; ++d)
-                for (int side = 0; side < 2; ++side) {
-                  if (side == 0 ? at[d] > 0 : at[d] < grid.cells[d]) continue;
-                  held = held || grid.walls[d][side] == Wall::fixed;
-                  stopped[d] = stopped[d] || grid.walls[d][side] == Wall::roller;
-                }
-              bool right = true;
-              for (int d = 0; d < Dim; ++d) {
-                const double expected = held || stopped[d] ? 0 : d + 1;
-                right = right && v[d] == expected && a[d] == (expected - (d + 1)) / dt;
-              }
-              return right;
-            }) == 0);
+      CHECK(wrong_nodes(
+                s, [&](const Coord<Dim>& at, const Vector<double, Dim>& v, const Vector<double, Dim>& a) {
+                  bool stopped[3] = {}, held = false;
+                  for (int d = 0; d < Dim; ++d)
+                    for (int side = 0; side < 2; ++side) {
+                      if (side == 0 ? at[d] > 0 : at[d] < grid.cells[d]) continue;
+                      held = held || grid.walls[d][side] == Wall::fixed;
+                      stopped[d] = stopped[d] || grid.walls[d][side] == Wall::roller;
+                    }
+                  bool right = true;
+                  for (int d = 0; d < Dim; ++d) {
+                    const double expected = held || stopped[d] ? 0 : d + 1;
+                    right = right && v[d] == expected && a[d] == (expected - (d + 1)) / dt;
+                  }
+                  return right;
+                }) == 0);
     }
   });
 }
 
-TEST_CASE("nodes without mass are at rest, those of hardly any feel no force, and force and gravity move the others", "[nodes]") {
+TEST_CASE(
+    "nodes without mass are at rest, those of hardly any feel no force, and force and gravity move the "
+    "others",
+    "[nodes]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
@@ -160,7 +169,8 @@ TEST_CASE("damping takes a share of the acceleration, against the velocity", "[n
     auto s = nodes_that_move<B>(grid_of<Dim>({9, 11, 6}, 0.1, Wall::free));
     s.damping = 0.25;
     const auto soil = on_host(s.nodes.soil);
-    for (int i = 0; i < s.patches.node_count(); ++i) soil(i, SoilShare<Dim>::force) = 4, soil(i, SoilShare<Dim>::force + 1) = -4;
+    for (int i = 0; i < s.patches.node_count(); ++i)
+      soil(i, SoilShare<Dim>::force) = 4, soil(i, SoilShare<Dim>::force + 1) = -4;
     Kokkos::deep_copy(s.nodes.soil, soil);
     update_nodes(s, 0.25);
     const auto motion = on_host(s.nodes.motion);

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double k_half_lengths[] = {1. / 2, 1. / 4, 1. / 8, 1. / 32};
 
-/// Positions of a particle along an axis: random ones, and those where the shape function changes its branch, in
-/// cells on both sides of zero; also barely beyond, down to the round-off.
+/// Positions of a particle along an axis: random ones, and those where the shape function changes its branch,
+/// in cells on both sides of zero; also barely beyond, down to the round-off.
 template <class T>
 std::vector<T> positions(double l) {
   std::vector<T> x;
@@ -53,16 +53,17 @@ template <class Space, class T>
 std::vector<Axis<T>> axis_on(const std::vector<T>& positions, T l) {
   const auto x = on_device<Space>(positions);
   const Kokkos::View<Axis<T>*, typename Space::memory_space> out("test", positions.size());
-  Kokkos::parallel_for("test::axis", Kokkos::RangePolicy<Space>(0, positions.size()), KOKKOS_LAMBDA(int n) {
-    Axis<T> axis;
-    axis.a = axis_weights(x(n), l);
-    for (int k = 0; k < 3; ++k) node_weight(x(n) - (axis.a.first + k), l, axis.s[k], axis.ds[k]);
-    T low, high, slope;
-    node_weight(x(n) - (axis.a.first - 1), l, low, slope);
-    node_weight(x(n) - (axis.a.first + 3), l, high, slope);
-    axis.beyond = low + high;
-    out(n) = axis;
-  });
+  Kokkos::parallel_for(
+      "test::axis", Kokkos::RangePolicy<Space>(0, positions.size()), KOKKOS_LAMBDA(int n) {
+        Axis<T> axis;
+        axis.a = axis_weights(x(n), l);
+        for (int k = 0; k < 3; ++k) node_weight(x(n) - (axis.a.first + k), l, axis.s[k], axis.ds[k]);
+        T low, high, slope;
+        node_weight(x(n) - (axis.a.first - 1), l, low, slope);
+        node_weight(x(n) - (axis.a.first + 3), l, high, slope);
+        axis.beyond = low + high;
+        out(n) = axis;
+      });
   return from_device(out);
 }
 
@@ -75,32 +76,37 @@ template <class Space, class T, int Dim>
 std::vector<Sums<T, Dim>> sums_on(const std::vector<Vector<T, Dim>>& positions, T l) {
   const auto x = on_device<Space>(positions);
   const Kokkos::View<Sums<T, Dim>*, typename Space::memory_space> out("test", positions.size());
-  Kokkos::parallel_for("test::sums", Kokkos::RangePolicy<Space>(0, positions.size()), KOKKOS_LAMBDA(int n) {
-    Sums<T, Dim> sums{};
-    sums.smallest = 1;
-    with_weights(x(n), l, [&](const AxisWeights<T>(&a)[Dim]) {
-      for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
-        sums.weight += w;
-        sums.smallest = Kokkos::fmin(sums.smallest, w);
-        for (int d = 0; d < Dim; ++d) {
-          sums.gradient[d] += grad[d];
-          sums.linear[d] += w * (a[d].first + k[d] - x(n)[d]);
-          for (int e = 0; e < Dim; ++e) sums.slope[d][e] += grad[d] * (a[e].first + k[e] - x(n)[e]);
-        }
+  Kokkos::parallel_for(
+      "test::sums", Kokkos::RangePolicy<Space>(0, positions.size()), KOKKOS_LAMBDA(int n) {
+        Sums<T, Dim> sums{};
+        sums.smallest = 1;
+        with_weights(x(n), l, [&](const AxisWeights<T>(&a)[Dim]) {
+          for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
+            sums.weight += w;
+            sums.smallest = Kokkos::fmin(sums.smallest, w);
+            for (int d = 0; d < Dim; ++d) {
+              sums.gradient[d] += grad[d];
+              sums.linear[d] += w * (a[d].first + k[d] - x(n)[d]);
+              for (int e = 0; e < Dim; ++e) sums.slope[d][e] += grad[d] * (a[e].first + k[e] - x(n)[e]);
+            }
+          });
+        });
+        out(n) = sums;
       });
-    });
-    out(n) = sums;
-  });
   return from_device(out);
 }
 
 /// S and dS/dx of the formula as it is printed (uGIMP, edge of the cell 1).
 void printed_formula(double r, double l, double& s, double& ds) {
   const double a = std::fabs(r), sign = r < 0 ? -1 : 1;
-  if (a < l)          s = 1 - (r * r + l * l) / (2 * l), ds = -r / l;
-  else if (a < 1 - l) s = 1 - a, ds = -sign;
-  else if (a < 1 + l) s = (1 + l - a) * (1 + l - a) / (4 * l), ds = -sign * (1 + l - a) / (2 * l);
-  else                s = 0, ds = 0;
+  if (a < l)
+    s = 1 - (r * r + l * l) / (2 * l), ds = -r / l;
+  else if (a < 1 - l)
+    s = 1 - a, ds = -sign;
+  else if (a < 1 + l)
+    s = (1 + l - a) * (1 + l - a) / (4 * l), ds = -sign * (1 + l - a) / (2 * l);
+  else
+    s = 0, ds = 0;
 }
 
 }  // namespace
@@ -124,14 +130,16 @@ TEST_CASE("weights are a partition of unity, reproduce a linear field and are no
         for (int d = 0; d < Dim; ++d) {
           gradient = std::max(gradient, std::fabs(double(sums.gradient[d])));
           linear = std::max(linear, std::fabs(double(sums.linear[d])));
-          for (int e = 0; e < Dim; ++e) slope = std::max(slope, std::fabs(double(sums.slope[d][e]) - (d == e)));
+          for (int e = 0; e < Dim; ++e)
+            slope = std::max(slope, std::fabs(double(sums.slope[d][e]) - (d == e)));
         }
       }
       INFO(build.name() << " half length " << l);
       CHECK(unity < tolerance);
       CHECK(gradient < tolerance);
       CHECK(linear < tolerance);
-      CHECK(slope < tolerance / (2 * l));  // a gradient divides the round-off of the position by the particle's edge
+      CHECK(slope <
+            tolerance / (2 * l));  // a gradient divides the round-off of the position by the particle's edge
       CHECK(smallest >= 0);
     }
   });

@@ -22,9 +22,11 @@ std::vector<Table> fields_after(const Cloud& cloud, P2G how, double dt, int n) {
 
 /// The law at a point, on the host.
 template <int Dim>
-void update_elastic(const MaterialInput& material, MaterialState<double, Dim>& state, const SymTensor<double, Dim>& strain,
-                    const Spin<double, Dim>& spin) {
-  make_material<double>(material.model, material.parameters).visit([&](const auto& law) { law.update(state, strain, spin, 1.0); });
+void update_elastic(const MaterialInput& material, MaterialState<double, Dim>& state,
+                    const SymTensor<double, Dim>& strain, const Spin<double, Dim>& spin) {
+  make_material<double>(material.model, material.parameters).visit([&](const auto& law) {
+    law.update(state, strain, spin, 1.0);
+  });
 }
 
 /// Half a footing: a smooth plate pressed into clay between rollers, on a fixed base.
@@ -35,8 +37,10 @@ Cloud footing() {
   cloud.grid = grid_of<Dim>({width, depth + 4, 4}, k_spacing, Wall::roller);
   cloud.grid.walls[1] = {Wall::fixed, Wall::free};
   cloud.materials = clays();
-  cloud.bodies = {body_of<Dim>(lattice<Dim>({0, 0, 0}, {double(width), double(depth), 4}, 2, k_spacing), 2, k_spacing, 1)};
-  cloud.rigids = {rigid_of<Dim>(lattice<Dim>({0, double(depth), 0}, {3, depth + 1., 2}, 4, k_spacing), 4, k_spacing)};
+  cloud.bodies = {body_of<Dim>(lattice<Dim>({0, 0, 0}, {double(width), double(depth), 4}, 2, k_spacing), 2,
+                               k_spacing, 1)};
+  cloud.rigids = {
+      rigid_of<Dim>(lattice<Dim>({0, double(depth), 0}, {3, depth + 1., 2}, 4, k_spacing), 4, k_spacing)};
   cloud.rigids[0].velocity = {0, -2, 0};
   cloud.p2g.margin = 0.2;  // rebuilds come sooner
   return cloud;
@@ -62,7 +66,8 @@ TEST_CASE("a body in free flight moves by v t, across rebuilds", "[step]") {
     for (P2G how : {P2G::tile, P2G::gather}) {
       auto s = state_of<B>(cloud, how);
       Table expected = soil_fields(s)[0];
-      for (std::size_t n = 0; n < expected.value.size(); ++n) expected.value[n] += v[n % Dim] * dt * steps / k_spacing;
+      for (std::size_t n = 0; n < expected.value.size(); ++n)
+        expected.value[n] += v[n % Dim] * dt * steps / k_spacing;
       const int rebuilds = run_steps(s, dt, steps);
       INFO(build.name() << ' ' << strategy_name(how));
       CHECK(rebuilds >= 7);
@@ -102,7 +107,8 @@ TEST_CASE("in a linear velocity field every particle strains and turns by its gr
       for (int j = i; j < Dim; ++j) strain[sym_index<Dim>(i, j)] = (A[i][j] + A[j][i]) * dt / 2;
     }
     spin.c[0] = (A[0][1] - A[1][0]) * dt / 2;
-    if constexpr (Dim == 3) spin.c[1] = (A[1][2] - A[2][1]) * dt / 2, spin.c[2] = (A[2][0] - A[0][2]) * dt / 2;
+    if constexpr (Dim == 3)
+      spin.c[1] = (A[1][2] - A[2][1]) * dt / 2, spin.c[2] = (A[2][0] - A[0][2]) * dt / 2;
     update_elastic(cloud.materials[0], expected, strain, spin);
 
     const auto got = fields_after<B>(cloud, P2G::tile, dt, 1);
@@ -121,12 +127,14 @@ TEST_CASE("in a linear velocity field every particle strains and turns by its gr
       volume = std::max(volume, std::fabs(got[3].value[p] / body.particle_volume - std::exp(trace)));
     }
     CHECK(inner > 50);
-    CHECK(stress < B::of(1e-12, 1e-4) * 1e5);  // of the largest stress; in single, round-off of velocities gives strain
+    CHECK(stress < B::of(1e-12, 1e-4) *
+                       1e5);  // of the largest stress; in single, round-off of velocities gives strain
     CHECK(volume < B::of(std::fabs(trace * trace * trace), 1e-5));
   });
 }
 
-TEST_CASE("FLIP and PIC mix by their share, and PIC's velocity is the one that moved the particle", "[step]") {
+TEST_CASE("FLIP and PIC mix by their share, and PIC's velocity is the one that moved the particle",
+          "[step]") {
   for_each_reference([](auto reference) {
     using B = decltype(reference);
     const double dt = 1e-5;
@@ -140,7 +148,8 @@ TEST_CASE("FLIP and PIC mix by their share, and PIC's velocity is the one that m
     double mixed = 0, moved = 0;
     for (std::size_t n = 0; n < both[1].value.size(); ++n) {
       mixed = std::max(mixed, std::fabs(both[1].value[n] - 0.75 * flip[1].value[n] - 0.25 * pic[1].value[n]));
-      moved = std::max(moved, std::fabs((pic[0].value[n] - start[0].value[n]) * cloud.grid.spacing / dt - pic[1].value[n]));
+      moved = std::max(moved, std::fabs((pic[0].value[n] - start[0].value[n]) * cloud.grid.spacing / dt -
+                                        pic[1].value[n]));
     }
     INFO(B::name());
     CHECK(mixed < 1e-13);
@@ -188,7 +197,8 @@ TEST_CASE("one step of a footing under way is the plain loop's in double on one 
       if constexpr (B::dim == Dim) {
         for (P2G how : k_strategies) {
           INFO(build.name() << ' ' << strategy_name(how));
-          CHECK(largest_difference(fields_after<B>(cloud, how, k_footing_step, 1), expected) < B::of(1e-12, 1e-5));
+          CHECK(largest_difference(fields_after<B>(cloud, how, k_footing_step, 1), expected) <
+                B::of(1e-12, 1e-5));
         }
       }
     });
@@ -222,7 +232,8 @@ TEST_CASE("a margin or an interval of rebuilds does not change the solution", "[
       cloud.p2g.margin = margin;
       for (P2G how : {P2G::gather, P2G::mosaic, P2G::tile}) {
         INFO(Dim << "D " << strategy_name(how) << " margin " << margin);
-        CHECK(largest_difference(fields_after<Reference<Dim>>(cloud, how, k_footing_step, 50), expected) < 1e-9);
+        CHECK(largest_difference(fields_after<Reference<Dim>>(cloud, how, k_footing_step, 50), expected) <
+              1e-9);
       }
     }
   });
@@ -244,7 +255,8 @@ TEST_CASE("a rigid that moves with a set velocity gathers no round-off", "[step]
     const auto end = download_rigid_positions(s, 0);
     double largest = 0;
     for (std::size_t n = 0; n < end.size(); ++n)
-      largest = std::max(largest, std::fabs(end[n] - start[n] - cloud.rigids[0].velocity[n % Dim]) / k_spacing);
+      largest =
+          std::max(largest, std::fabs(end[n] - start[n] - cloud.rigids[0].velocity[n % Dim]) / k_spacing);
     CHECK(largest < B::of(1e-11, 2e-7));
   });
 }

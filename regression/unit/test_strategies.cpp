@@ -1,4 +1,5 @@
-// Particles to nodes: every strategy gives what the plain loop gives, on every backend, real type and dimension.
+// Particles to nodes: every strategy gives what the plain loop gives, on every backend, real type and
+// dimension.
 
 #include <catch2/catch_test_macros.hpp>
 #include <map>
@@ -35,7 +36,8 @@ Total total_of(const Table& table, int column) {
   return t;
 }
 
-/// Notes which of the mosaic's blocks give to a node; the number of nodes that two blocks of one colour share.
+/// Notes which of the mosaic's blocks give to a node; the number of nodes that two blocks of one colour
+/// share.
 template <int Dim>
 int shared_nodes(const StateOf<Reference<Dim>>& s) {
   const SoilSource<Kokkos::Serial, double, Dim> source{s.soil.points, s.grid.inv_spacing};
@@ -49,8 +51,9 @@ int shared_nodes(const StateOf<Reference<Dim>>& s) {
         if (slot < 0) return;
         const int cell = slot * Patch<Dim>::cells + place_of<Dim>(c);
         for (int p = bins.begin(cell); p < bins.begin(cell + 1); ++p)
-          give_to_nodes(source, s.patches.around, p,
-                        [&](int i, int, double) { shared += owner.emplace(i, bins.blocks(b)).first->second != bins.blocks(b); });
+          give_to_nodes(source, s.patches.around, p, [&](int i, int, double) {
+            shared += owner.emplace(i, bins.blocks(b)).first->second != bins.blocks(b);
+          });
       });
   }
   return shared;
@@ -112,7 +115,8 @@ TEST_CASE("blocks of one colour share no node when every particle has moved by t
   });
 }
 
-TEST_CASE("every strategy keeps the total mass and momentum, at walls too, and internal forces in balance", "[strategies]") {
+TEST_CASE("every strategy keeps the total mass and momentum, at walls too, and internal forces in balance",
+          "[strategies]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
@@ -155,7 +159,8 @@ TEST_CASE("gather and the plain loop give the same bits on every run and number 
       INFO(build.name() << ' ' << strategy_name(how));
       const auto first = drifted_fields<B>(cloud, how);
       for (int run = 0; run < 3; ++run) CHECK(drifted_fields<B>(cloud, how) == first);
-      if (B::is_double) CHECK(drifted_fields<B>(cloud, how, with_other_threads<typename B::Space>()) == first);
+      if (B::is_double)
+        CHECK(drifted_fields<B>(cloud, how, with_other_threads<typename B::Space>()) == first);
     }
   });
 }

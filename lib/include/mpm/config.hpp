@@ -1,6 +1,6 @@
 #pragma once
-// Every input of a run as plain structs, validated, in SI units. In 2D (plane strain) every force and mass is per
-// metre of width and the third component of a vector is zero and unused.
+// Every input of a run as plain structs, validated, in SI units. In 2D (plane strain) every force and mass is
+// per metre of width and the third component of a vector is zero and unused.
 
 #include <array>
 #include <optional>
@@ -18,9 +18,9 @@ enum class Precision { double_, single };
 
 /// The background mesh of square (cubic) cells.
 struct MeshConfig {
-  Vec3 lower{}, upper{};        // m, corners
-  double spacing = 0;           // m, edge of a cell
-  std::array<int, 3> cells{};   // whole cells in each direction (third is 1 in 2D)
+  Vec3 lower{}, upper{};                       // m, corners
+  double spacing = 0;                          // m, edge of a cell
+  std::array<int, 3> cells{};                  // whole cells in each direction (third is 1 in 2D)
   std::array<std::array<Wall, 2>, 3> walls{};  // [direction][0 lower, 1 upper side]; default roller
 };
 
@@ -30,12 +30,12 @@ enum class Fill { centre, cell };
 /// A region of space and the lattice of particles that fills it.
 struct Shape {
   ShapeKind kind = ShapeKind::box;
-  Vec3 lower{}, upper{};                        // m, box
-  double fillet = 0;                            // m, box: radius of its corners
-  std::vector<std::array<double, 2>> polygon;   // m, vertices in order (2D only)
-  Vec3 centre{};                                // m, disc (ball in 3D)
-  double radius = 0;                            // m, disc
-  int particles_per_cell = 2;                   // in each direction
+  Vec3 lower{}, upper{};                       // m, box
+  double fillet = 0;                           // m, box: radius of its corners
+  std::vector<std::array<double, 2>> polygon;  // m, vertices in order (2D only)
+  Vec3 centre{};                               // m, disc (ball in 3D)
+  double radius = 0;                           // m, disc
+  int particles_per_cell = 2;                  // in each direction
   Fill fill = Fill::centre;
 };
 
@@ -50,8 +50,8 @@ struct MaterialConfig {
 struct BodyConfig {
   std::string name;
   Shape shape;
-  int material = 0;   // index into Config::materials
-  Vec3 velocity{};    // m/s, initial
+  int material = 0;  // index into Config::materials
+  Vec3 velocity{};   // m/s, initial
 };
 
 enum class Motion { fixed, prescribed, dynamic };
@@ -73,25 +73,25 @@ struct RigidConfig {
 inline constexpr double k_largest_courant = 0.6;
 
 struct TimeConfig {
-  double end = 0;                     // s
-  double courant = 0.5;               // -, Eq. 14
-  std::optional<double> step;         // s, instead of the Courant number
+  double end = 0;              // s
+  double courant = 0.5;        // -, Eq. 14
+  std::optional<double> step;  // s, instead of the Courant number
   std::optional<long> max_steps;
 };
 
 struct P2GConfig {
   P2G strategy = P2G::automatic;
-  double margin = 0.5;                   // cells, 0 < margin <= 0.5
-  int mosaic_cells = 3;                  // >= 3
-  std::optional<int> rebuild_interval;   // steps
+  double margin = 0.5;                  // cells, 0 < margin <= 0.5
+  int mosaic_cells = 3;                 // >= 3
+  std::optional<int> rebuild_interval;  // steps
 };
 
 enum class Progress { automatic, on, off };
 
 struct OutputConfig {
   std::string directory;
-  double interval = 0;           // s between frames
-  double history_interval = 0;   // s between rows of the history
+  double interval = 0;          // s between frames
+  double history_interval = 0;  // s between rows of the history
   Progress progress = Progress::automatic;
 };
 
@@ -102,10 +102,10 @@ struct Config {
   Precision precision = Precision::double_;
   P2GConfig p2g;
   MeshConfig mesh;
-  Vec3 gravity{};           // m/s2
+  Vec3 gravity{};  // m/s2
   TimeConfig time;
-  double damping = 0;       // -, local (non-viscous) damping factor, 0 <= damping < 1
-  double flip_share = 1;    // -, share of FLIP in the velocity update, the rest PIC
+  double damping = 0;     // -, local (non-viscous) damping factor, 0 <= damping < 1
+  double flip_share = 1;  // -, share of FLIP in the velocity update, the rest PIC
   std::vector<MaterialConfig> materials;
   std::vector<BodyConfig> bodies;
   std::vector<RigidConfig> rigids;

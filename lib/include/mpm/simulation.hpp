@@ -14,9 +14,9 @@ inline constexpr const char* k_version = "0.1.0";
 
 struct InputReport;
 
-/// A run of the material point method. A non-zero PetscErrorCode means that the system failed (a full disk, lost
-/// MPI); everything that a user can mend is told in one line and kept in outcome().
-/// MPI, Kokkos and PETSc are up before, and stay up until it is gone.
+/// A run of the material point method. A non-zero PetscErrorCode means that the system failed (a full disk,
+/// lost MPI); everything that a user can mend is told in one line and kept in outcome(). MPI, Kokkos and
+/// PETSc are up before, and stay up until it is gone.
 class Simulation {
  public:
   Simulation();
@@ -24,9 +24,9 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Reads and checks every option with this prefix (null for none). `arguments` is what prepare_arguments found.
-  /// Writes nothing. Sets outcome() to bad_input, after printing a line for each mistake, or to finished where only
-  /// help was asked for.
+  /// Reads and checks every option with this prefix (null for none). `arguments` is what prepare_arguments
+  /// found. Writes nothing. Sets outcome() to bad_input, after printing a line for each mistake, or to
+  /// finished where only help was asked for.
   PetscErrorCode set_from_options(MPI_Comm comm, const char* prefix, const InputReport& arguments);
   /// Whether there is something to run.
   bool ready() const;
