@@ -20,8 +20,9 @@ template <class Space, class T, int Dim>
 void rigids_to_nodes(const State<Space, T, Dim>& s) {
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& set = s.rigid_points[r];
-    interpolate<RigidSource<Space, T, Dim>>(s, set.bins, {set.points},
-                                            Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL));
+    const NodeField<Space, T, RigidShare<Dim>::size> out =
+        Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL);
+    interpolate<RigidSource<Space, T, Dim>>(s, set.bins, {set.points}, out);
   }
 }
 
