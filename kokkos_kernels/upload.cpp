@@ -180,7 +180,8 @@ std::vector<double> positions_of(const State<Space, T, Dim>& s, const Points_& p
   const auto x_p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.coordinate);
   const auto cell = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.cell);
   const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
-  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
+  const auto origin = Kokkos::create_mirror_view_and_copy(
+      Kokkos::HostSpace(), Kokkos::subview(s.patches.origin, Kokkos::make_pair(0, s.patches.slots)));
   std::vector<double> position(std::size_t(points.count) * Dim);
   for (int p = 0; p < points.count; ++p) {
     const Coord<Dim> from = origin(cell(p) / Patch<Dim>::cells), in = coord_of<Dim>(cell(p));

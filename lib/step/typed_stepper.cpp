@@ -84,8 +84,12 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch
   PetscFunctionBeginUser;
   restart_count(state_);
   for (long n = 0; n < steps; ++n) {
-    if (is_device<Space>) timers_.sample(++steps_enqueued_ % k_sample_every == 0);
+    if (is_device<Space> && steps_enqueued_++ % k_sample_every == k_sample_every - 1) {
+      state_.space.fence("mpm::before a step that is timed");
+      timers_.sample(true);
+    }
     PetscCall(step(state_, timers_, dt));
+    if (is_device<Space>) timers_.sample(false);
   }
   const Control control = look(state_);
   batch->steps = control.steps;
