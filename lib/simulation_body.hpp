@@ -1,0 +1,58 @@
+#pragma once
+// What a simulation holds while it runs. Its functions: simulation_start.cpp up to the first step,
+// simulation.cpp from there to the end.
+
+#include <chrono>
+
+#include "input/options.hpp"
+#include "input/shapes.hpp"
+#include "mpm/simulation.hpp"
+#include "output/frames.hpp"
+#include "output/history.hpp"
+#include "output/log.hpp"
+#include "step/schedule.hpp"
+#include "step/stepper.hpp"
+
+namespace mpm {
+
+/// Wall clock [s].
+inline double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct Simulation::Body {
+  MPI_Comm comm = MPI_COMM_NULL;
+  Config config;
+  InputReport report;
+  Outcome outcome = Outcome::finished;
+  bool ready = false;
+
+  double dt = 0;  // s
+  Schedule schedule;
+  std::unique_ptr<Stepper> stepper;
+  Log log;
+  History history;
+  Frames frames;
+
+  long step = 0;
+  double last_row_time = 0;                                         // s
+  double wall_start = 0;                                            // s
+  double stepping = 0;                                              // s of wall time in steps and rebuilds
+  long since_rebuild = 0, rebuilds = 0, longest = 0, shortest = 0;  // steps between rebuilds
+
+  double wall() const { return seconds_now() - wall_start; }
+
+  void check_mesh();
+  PetscErrorCode choose_time_step();
+  PetscErrorCode start();
+  PetscErrorCode load(Model* model);
+  PetscErrorCode log_shape(const std::string& name, const Lattice& lattice);
+  PetscErrorCode fail(const std::string& what);
+  PetscErrorCode advance_to(long target);
+  PetscErrorCode rebuild(const Batch& batch);
+  PetscErrorCode write_row();
+  PetscErrorCode write_frame();
+  PetscErrorCode finish();
+};
+
+}  // namespace mpm

@@ -1,0 +1,165 @@
+// From the options to the first step.
+
+#include <cmath>
+#include <cstdio>
+
+#include "mesh/background.hpp"
+#include "output/files.hpp"
+#include "output/run_options.hpp"
+#include "simulation_body.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double k_most_steps = 1e12;
+
+}  // namespace
+
+Simulation::Simulation() : body_(std::make_unique<Body>()) {}
+Simulation::~Simulation() = default;
+bool Simulation::ready() const { return body_->ready; }
+Outcome Simulation::outcome() const { return body_->outcome; }
+
+PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, const InputReport& arguments) {
+  PetscFunctionBeginUser;
+  Body& b = *body_;
+  b.comm = comm;
+  b.report = arguments;
+  PetscMPIInt ranks = 1;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  PetscCall(read_options(prefix, available_backends(), b.config, b.report));
+  if (b.report.help) {
+    PetscCall(print_help(comm, b.report));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (ranks > 1)
+    b.report.errors = {"mpm: started with " + std::to_string(ranks) +
+                       " ranks, takes 1: runs over several ranks are not there yet"};
+  if (b.report.errors.empty()) b.check_mesh();
+  if (b.report.errors.empty()) PetscCall(b.choose_time_step());
+  if (!b.report.errors.empty()) {
+    PetscCall(print_errors(comm, b.report));
+    b.outcome = Outcome::bad_input;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  b.ready = true;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The patch table is counted by int.
+void Simulation::Body::check_mesh() {
+  constexpr double k_most_patches = 2147483647;
+  const double patches = patch_count(config.mesh, config.dim);
+  if (patches <= k_most_patches) return;
+  char line[200];
+  std::snprintf(line, sizeof line,
+                "mpm: -mesh_spacing: given \"%g\", takes an edge that gives at most %.0f patches of %d cells "
+                "a side; this is %.4g",
+                config.mesh.spacing, k_most_patches, patch_edge(config.dim), patches);
+  report.errors.push_back(line);
+}
+
+/// The step from the Courant number (Eq. 14), or the user's where it is stable.
+PetscErrorCode Simulation::Body::choose_time_step() {
+  PetscFunctionBeginUser;
+  const double critical = critical_time_step(config);
+  dt = config.time.step.value_or(config.time.courant * critical);
+  if (dt > k_largest_courant * critical) {
+    char line[200];
+    std::snprintf(
+        line, sizeof line,
+        "mpm: -time_step: given \"%g\", takes a time in s of at most %.6g, above which the step is unstable",
+        dt, k_largest_courant * critical);
+    report.errors.push_back(line);
+  }
+  if (config.time.end / dt > k_most_steps) {
+    char line[200];
+    std::snprintf(line, sizeof line,
+                  "mpm: -time_end: given \"%g\", takes at most %g s with time steps of %g s (1e12 steps)",
+                  config.time.end, k_most_steps * dt, dt);
+    report.errors.push_back(line);
+  } else {
+    schedule = Schedule(config.time, config.output, dt);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Simulation::Body::start() {
+  PetscFunctionBeginUser;
+  stepper = make_stepper(config);
+  PetscCheck(stepper, comm, PETSC_ERR_SUP,
+             "This program was built without this backend, precision or dimension");
+  PetscCall(log.start(comm, config.output.progress));
+  int removed = 0;
+  PetscCall(prepare_output_folder(config.output.directory, &removed));
+  PetscCall(
+      log.line(format_header(k_version, kokkos_version(),
+                             std::string(word_of(config.backend)) + ", " + device_name(config.backend), 1)));
+  PetscCall(log.open(config.output.directory));
+  if (removed > 0)
+    PetscCall(log.print("%d files of an earlier run were removed from %s", removed,
+                        config.output.directory.c_str()));
+  PetscCall(log.line("options in force\n" + format_options(report.options)));
+  PetscCall(write_options_json(config.output.directory, k_version, report.options));
+
+  Model model;
+  Failure failure;
+  PetscCall(load(&model));
+  PetscCall(stepper->set_up(std::move(model), &failure));
+  if (!failure.what.empty()) {
+    PetscCall(fail(failure.what));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(log.print("%ld particles in %d patches, %.1f MB on the device; strategy %s", stepper->particles(),
+                      stepper->patches(), stepper->memory() / 1e6, stepper->strategy().c_str()));
+  PetscCall(log.print("time step %.9g s, Courant number %.4f; %ld steps to %g s", dt,
+                      dt / critical_time_step(config), schedule.last_step(),
+                      schedule.time_of(schedule.last_step())));
+  PetscCall(history.open(config));
+  frames.open(config.output.directory, config.precision);
+  wall_start = seconds_now();
+  PetscCall(write_row());
+  PetscCall(write_frame());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Mesh and particles.
+PetscErrorCode Simulation::Body::load(Model* model) {
+  PetscFunctionBeginUser;
+  BackgroundMesh mesh;
+  PetscCall(mesh.create(comm, config.mesh, config.dim));
+  PetscCall(mesh.patches_with_ring(model->patches));
+  const auto add = [&](const std::string& name, const Shape& shape,
+                       std::vector<BodyParticles>& into) -> PetscErrorCode {
+    PetscFunctionBeginUser;
+    Lattice lattice;
+    PetscCall(fill(shape, config.mesh, config.dim, lattice));
+    PetscCall(log_shape(name, lattice));
+    for (std::size_t k = 0; k < lattice.position.size(); ++k)
+      lattice.position[k] -= config.mesh.lower[k % config.dim];
+    into.push_back({std::move(lattice.position), lattice.spacing, lattice.particle_volume});
+    PetscFunctionReturn(PETSC_SUCCESS);
+  };
+  for (const auto& body : config.bodies) PetscCall(add("body " + body.name, body.shape, model->bodies));
+  for (const auto& rigid : config.rigids) PetscCall(add("rigid " + rigid.name, rigid.shape, model->rigids));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Simulation::Body::log_shape(const std::string& name, const Lattice& lattice) {
+  PetscFunctionBeginUser;
+  const long count = static_cast<long>(lattice.position.size()) / config.dim;
+  const char* unit = config.dim == 2 ? "m2" : "m3";
+  PetscCall(log.print("%s: %ld particles stand for %.6g %s, the shape has %.6g %s", name.c_str(), count,
+                      count * lattice.particle_volume, unit, lattice.shape_volume, unit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+std::unique_ptr<InputReport, void (*)(InputReport*)> prepare_arguments(MPI_Comm comm, int* argc,
+                                                                       char** argv) {
+  auto report =
+      std::unique_ptr<InputReport, void (*)(InputReport*)>(new InputReport, [](InputReport* r) { delete r; });
+  prepare_arguments(comm, argc, argv, *report);
+  return report;
+}
+
+}  // namespace mpm
