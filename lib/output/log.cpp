@@ -93,7 +93,10 @@ std::string format_progress(const ProgressState& s) {
 std::string format_times(const std::vector<FunctionTime>& times, double wall, double particle_updates,
                          double bandwidth) {
   double rest = wall, bytes = 0;
-  std::string text = formatted("  %-44s %9s %11s %8s %8s\n", "function", "calls", "seconds", "share", "GB/s");
+  const bool known =
+      std::any_of(times.begin(), times.end(), [](const FunctionTime& f) { return f.bytes > 0; });
+  std::string text = formatted("  %-44s %9s %11s %8s%s\n", "function", "calls", "seconds", "share",
+                               known ? "     GB/s" : "");
   for (const FunctionTime& f : times) {
     text += format_row(f, wall, bandwidth);
     rest -= f.seconds;
