@@ -42,8 +42,8 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
             if (rigid.dynamic) rigid.velocity[d] += dt * (rigid.force[d] + contact) / rigid.mass;  // Eq. (7)
           }
         }
-        constexpr double epsilon =
-            Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
+        // round-off of a coordinate's update
+        constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;
         c.increment = Kokkos::fmax(c.moved, speed * dt / spacing) + epsilon;
         c.moved = 0;
         c.bound += c.increment;

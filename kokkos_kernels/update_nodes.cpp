@@ -51,7 +51,8 @@ struct UpdateNodes {
     using S = SoilShare<Dim>;
     const T m_i = nodes.soil(i, S::mass);
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
-    if (m_i > 0) {
+    constexpr T k_floor = T(1e-12);  // of the cut: far less is at rest, lest 1 / m_i overflow
+    if (m_i > k_floor * mass_cut) {
       const T inv_m = 1 / m_i;
       const T inv_m_force = m_i > mass_cut ? inv_m : T(0);  // the force on less mass is round-off
       for (int d = 0; d < Dim; ++d) {

@@ -121,8 +121,8 @@ void update_particles(State<Space, T, Dim>& s, double dt_) {
                 .set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size)))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (control().paused) return;
-        const int slot =
-            team.league_rank();  // in the order of memory, so that threads of the host keep to their part
+        // in the order of memory, so that threads of the host keep to their part
+        const int slot = team.league_rank();
         const int from = begin(slot * Patch<Dim>::cells), to = begin((slot + 1) * Patch<Dim>::cells);
         if (from == to) return;
         const Window nodes(team.team_scratch(0), window * size);
