@@ -1,4 +1,4 @@
-// mpirun ./mpm -options_file footing.opts
+// mpirun -n 1 ./mpm -options_file footing.opts
 
 #include <mpi.h>
 #include <petscsys.h>

@@ -111,4 +111,13 @@ PetscErrorCode write_all(int descriptor, std::string_view contents, const std::s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode close_file(int* descriptor, const std::string& path) {
+  PetscFunctionBeginUser;
+  const int open = *descriptor;
+  *descriptor = -1;
+  PetscCheck(open < 0 || ::close(open) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s",
+             path.c_str(), std::strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 }  // namespace mpm

@@ -26,4 +26,8 @@ PetscErrorCode replace_file(const std::string& path, std::string_view contents);
 /// message.
 PetscErrorCode write_all(int descriptor, std::string_view contents, const std::string& path);
 
+/// Closes a file descriptor and sets it to -1; nothing where it is -1. The system may tell only now that a
+/// write failed; `path` is for the message.
+PetscErrorCode close_file(int* descriptor, const std::string& path);
+
 }  // namespace mpm

@@ -83,10 +83,7 @@ PetscErrorCode History::write(const HistoryRow& row) {
 
 PetscErrorCode History::close() {
   PetscFunctionBeginUser;
-  const int descriptor = descriptor_;
-  descriptor_ = -1;
-  PetscCheck(descriptor < 0 || ::close(descriptor) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
-             "Cannot write %s: %s", path_.c_str(), std::strerror(errno));
+  PetscCall(close_file(&descriptor_, path_));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

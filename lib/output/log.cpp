@@ -236,10 +236,7 @@ PetscErrorCode Log::progress(const ProgressState& state) {
 PetscErrorCode Log::close() {
   PetscFunctionBeginUser;
   if (speaks_) clear_live_line();
-  const int descriptor = descriptor_;
-  descriptor_ = -1;
-  PetscCheck(descriptor < 0 || ::close(descriptor) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
-             "Cannot write %s: %s", path_.c_str(), std::strerror(errno));
+  PetscCall(close_file(&descriptor_, path_));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
