@@ -70,6 +70,8 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, B
           materials, body.material);
   in.vector({.name = body.name + "_velocity", .meaning = "initial velocity", .unit = "m/s"}, config.dim,
             body.velocity);
+  in.tensor({.name = body.name + "_stress", .meaning = "initial stress, tension positive", .unit = "Pa"},
+            config.dim, body.stress);
 }
 
 /// What moves a rigid: each motion takes its own options.

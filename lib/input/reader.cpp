@@ -167,24 +167,36 @@ bool OptionReader::integer(const Option& option, std::optional<long>& value) {
   return whole(option, "", value);
 }
 
-bool OptionReader::vector(const Option& option, int dim, Vec3& value) {
+bool OptionReader::numbers(const Option& option, const std::string& form, const std::string& form_3d,
+                           std::span<double> value) {
+  const auto count = [](const std::string& list) { return std::to_string(split(list).size()); };
   const std::string unit = option.unit.empty() || option.unit == "-" ? "" : " in " + option.unit;
-  const std::string takes =
-      listing_ ? "2 numbers" + unit + ", as x,y (3 in 3D, as x,y,z)"
-               : std::to_string(dim) + " numbers" + unit + (dim == 2 ? ", as x,y" : ", as x,y,z");
-  const std::string* given = find(option, takes, text_of(value, dim));
+  std::string in_3d;
+  if (listing_ && !form_3d.empty())
+    in_3d.append(" (").append(count(form_3d)).append(" in 3D, as ").append(form_3d + ")");
+  const std::string takes = count(form) + " numbers" + unit + ", as " + form + in_3d + option.aside;
+  const std::string* given = find(option, takes, text_of(value));
   if (!given) return false;
   const auto pieces = split(*given);
-  if (static_cast<int>(pieces.size()) != dim) return fail(option, takes);
-  Vec3 read = value;
-  for (int d = 0; d < dim; ++d) {
-    const auto component = parse_number(pieces[d]);
-    if (!component || !option.range.holds(*component)) return fail(option, takes);
-    read[d] = *component;
+  if (pieces.size() != value.size()) return fail(option, takes);
+  std::vector<double> read;
+  for (const auto& piece : pieces) {
+    const auto number = parse_number(piece);
+    if (!number || !option.range.holds(*number)) return fail(option, takes);
+    read.push_back(*number);
   }
   keep(option, *given, false);
-  value = read;
+  std::copy(read.begin(), read.end(), value.begin());
   return true;
+}
+
+bool OptionReader::vector(const Option& option, int dim, Vec3& value) {
+  return numbers(option, dim == 2 ? "x,y" : "x,y,z", "x,y,z", std::span(value).first(dim));
+}
+
+bool OptionReader::tensor(const Option& option, int dim, Sym6& value) {
+  const std::string in_2d = "xx,yy,zz,xy", in_3d = in_2d + ",yz,zx";
+  return numbers(option, dim == 2 ? in_2d : in_3d, in_3d, std::span(value).first(dim == 2 ? 4 : 6));
 }
 
 bool OptionReader::text(const Option& option, std::string& value) {

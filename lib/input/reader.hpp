@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,8 +55,13 @@ class OptionReader {
   bool integer(const Option& option, int& value);
   bool integer(const Option& option, std::optional<int>& value);
   bool integer(const Option& option, std::optional<long>& value);
+  /// As many numbers as `value` holds, written as `form`; in the help `form_3d` is that in 3D.
+  bool numbers(const Option& option, const std::string& form, const std::string& form_3d,
+               std::span<double> value);
   /// `dim` numbers; the others stay.
   bool vector(const Option& option, int dim, Vec3& value);
+  /// 4 numbers in 2D (plane strain), 6 in 3D; the others stay.
+  bool tensor(const Option& option, int dim, Sym6& value);
   bool text(const Option& option, std::string& value);
   /// A list of any length; `takes` says of what, since only the caller can check it. Where a piece is empty,
   /// which is reported, the value still holds all pieces.

@@ -25,11 +25,13 @@ std::optional<double> parse_number(std::string_view text) {
 
 std::optional<long> parse_integer(std::string_view text) { return parse_whole<long>(text); }
 
-std::string text_of(const std::array<double, 3>& x, int dim) {
-  std::string text = text_of(x[0]);
-  for (int d = 1; d < dim; ++d) text += "," + text_of(x[d]);
-  return text;
+std::string text_of(std::span<const double> x) {
+  std::vector<std::string> pieces;
+  for (const double number : x) pieces.push_back(text_of(number));
+  return join(pieces);
 }
+
+std::string text_of(const std::array<double, 3>& x, int dim) { return text_of(std::span(x).first(dim)); }
 
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> pieces;

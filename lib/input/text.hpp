@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,9 @@ std::optional<double> parse_number(std::string_view text);
 /// The whole text as a whole number; none as above.
 std::optional<long> parse_integer(std::string_view text);
 
-/// The first `dim` components, as on the command line.
+/// Numbers as on the command line.
+std::string text_of(std::span<const double> x);
+/// The first `dim` components.
 std::string text_of(const std::array<double, 3>& x, int dim);
 
 /// The pieces between the separators: "a,,b" gives a, empty, b; an empty text gives one empty piece.

@@ -26,6 +26,9 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   in.half_length = particles.spacing / config.mesh.spacing / 2;
   in.density = material.density;
   in.velocity = body.velocity;
+  if (body.stress != Sym6{})
+    for (std::size_t p = 0; p < in.strength.size(); ++p)
+      in.stress.insert(in.stress.end(), body.stress.begin(), body.stress.begin() + sym_size<Dim>);
   in.material = body.material;
   return in;
 }

@@ -104,6 +104,15 @@ TEST_CASE("3D takes three components and a ball", "[options]") {
   CHECK(config.bodies.at(0).velocity == Vec3{0, 0, -2});
 }
 
+TEST_CASE("an initial stress has four components in 2D, six in 3D", "[options]") {
+  CHECK(config_of(k_deck).bodies.at(0).stress == Sym6{});
+  CHECK(config_of(k_deck + "-soil_stress -2e3,-4e3,-3e3,500").bodies.at(0).stress ==
+        Sym6{-2e3, -4e3, -3e3, 500, 0, 0});
+  const std::string deep =
+      k_deck + "-dim 3 -mesh_lower 0,0,0 -mesh_upper 8,6,2 -soil_lower 0,0,0 -soil_upper 8,2,2 ";
+  CHECK(config_of(deep + "-soil_stress 1,2,3,4,5,6").bodies.at(0).stress == Sym6{1, 2, 3, 4, 5, 6});
+}
+
 TEST_CASE("pic is a FLIP share of 0", "[options]") {
   CHECK(config_of(k_deck + "-velocity_update pic").flip_share == 0);
   CHECK(config_of(k_deck + "-flip_share 0.99").flip_share == 0.99);

@@ -12,6 +12,7 @@
 namespace mpm {
 
 using Vec3 = std::array<double, 3>;
+using Sym6 = std::array<double, 6>;  // symmetric tensor: xx yy zz xy yz zx (in 2D the last two are 0)
 
 /// Arithmetic of the fields (-precision).
 enum class Precision { double_, single };
@@ -24,17 +25,21 @@ struct MeshConfig {
   std::array<std::array<Wall, 2>, 3> walls{};  // [direction][0 lower, 1 upper side]; default roller
 };
 
-enum class ShapeKind { box, polygon, disc };
+enum class ShapeKind { box, polygon, disc, half_plane, particles };
 enum class Fill { centre, cell };
 
-/// A region of space and the lattice of particles that fills it.
+/// A region of space and the lattice of particles that fills it. The vertical axis is y in 2D and z in 3D.
 struct Shape {
   ShapeKind kind = ShapeKind::box;
-  Vec3 lower{}, upper{};                       // m, box
+  Vec3 lower{}, upper{};                       // m, box, before it is turned
   double fillet = 0;                           // m, box: radius of its corners
-  std::vector<std::array<double, 2>> polygon;  // m, vertices in order (2D only)
+  double angle = 0;                            // rad, box: turned about `lower`, from x to the vertical axis
+  std::vector<std::array<double, 2>> polygon;  // m, vertices in order: x and the vertical coordinate
+  std::array<double, 2> width{};               // m, polygon in 3D: the prism's lower and upper y
   Vec3 centre{};                               // m, disc (ball in 3D)
   double radius = 0;                           // m, disc
+  Vec3 point{}, normal{};                      // m, -, half_plane: on its face; outward, of length 1
+  std::string file;                            // particles (of a body): the HDF5 file that lists them
   int particles_per_cell = 2;                  // in each direction
   Fill fill = Fill::centre;
 };
@@ -50,8 +55,10 @@ struct MaterialConfig {
 struct BodyConfig {
   std::string name;
   Shape shape;
-  int material = 0;  // index into Config::materials
-  Vec3 velocity{};   // m/s, initial
+  int material = 0;          // index into Config::materials
+  Vec3 velocity{};           // m/s, initial
+  Sym6 stress{};             // Pa, initial, tension positive
+  std::vector<int> cut_out;  // indices into Config::rigids: particles in their shapes are left out
 };
 
 enum class Motion { fixed, prescribed, dynamic };
