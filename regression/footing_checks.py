@@ -31,3 +31,12 @@ def against_reference(run, spacing, allowed):
     yield Row("mean Nc over 0.03-0.20 B", mean(run), expected.mean(), allowed, "independent sequential solver")
     yield Row("largest difference of Nc in windows of 0.01 B", np.max(np.abs(curve(run)[1] - expected)), 0, allowed,
               "independent sequential solver")
+
+
+def draw_curve(axes, run, spacing):
+    """Nc in windows of 0.01 B against the penetration, beside the stored curve and the exact value."""
+    axes.plot(*curve(run), "o-", ms=3, label="mpm")
+    axes.plot(*reference_curve(spacing, fillet=False), "k.-", lw=0.8, ms=3, label="independent solver")
+    axes.axhline(EXACT, color="0.4", ls="--", label="exact at small strain")
+    axes.set(xlabel="penetration $w/B$", ylabel="$N_c = F / (s_u B)$", ylim=(0, None))
+    axes.legend()

@@ -1,9 +1,18 @@
-"""The strip footing with cells of B/20, half of it, smooth, to 0.2 B."""
+"""Strip footing of Dong, Wang & Randolph (2015), cells of B/20
 
-from footing_checks import against_reference
+The same problem on cells twice as large.
+"""
 
-RUNS = {"double": "-options_file inputs/footing_coarse.opts"}
+from footing_checks import against_reference, draw_curve
+
+DECK = "inputs/footing_coarse.opts"
+RUNS = {"footing": ""}
+LONG = True
 
 
 def check(runs):
-    yield from against_reference(runs["double"], spacing=0.05, allowed=0.15)
+    yield from against_reference(runs["footing"], spacing=0.05, allowed=0.15)
+
+
+def draw(axes, runs):
+    draw_curve(axes, runs["footing"], 0.05)

@@ -1,0 +1,87 @@
+"""A case of the suite: its folder's case.py, and its runs by the program.
+
+case.py holds
+  RUNS         {run: options of the program beside the deck's}; {start} in them is the file that prepare wrote
+  check(runs)  yields a Row for each answer; runs is {run: Run}, all of one back end and precision
+and may hold
+  DECK         the options file, from the top of the source tree; else case.opts of its folder
+  PRECISIONS   those in which it is run, where not in both; BACKENDS likewise
+  LONG         True: not among the quick tests
+  prepare(run, path, options)  writes the initial fields of a run to the HDF5 file `path`
+  draw(axes, runs)             draws the case's curve for the documents
+Its docstring opens with a title, and explains the problem, the exact answer and what the set-up neglects.
+"""
+
+import importlib.util
+import os
+import shlex
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+CASES = ROOT / "regression" / "cases"
+sys.path[:0] = [path for path in (str(ROOT / "scripts"), str(ROOT / "regression")) if path not in sys.path]
+
+from results import Run  # noqa: E402
+
+
+class ProgramFailed(Exception):
+    """A run that did not reach its end; the text says which, and what the program said."""
+
+
+def names():
+    return sorted(path.parent.name for path in CASES.glob("*/case.py"))
+
+
+class Case:
+    def __init__(self, name):
+        path = CASES / name / "case.py"
+        if not path.exists():
+            sys.exit(f"regression/run: no case {name}: {path} is missing")
+        spec = importlib.util.spec_from_file_location(f"case_{name}", path)
+        self.module = importlib.util.module_from_spec(spec)
+        sys.path.insert(0, str(path.parent))
+        spec.loader.exec_module(self.module)
+        self.name = name
+        self.deck = getattr(self.module, "DECK", f"regression/cases/{name}/case.opts")
+        self.runs = self.module.RUNS
+
+    def is_long(self):
+        return getattr(self.module, "LONG", False)
+
+    def variants(self, backends, precisions):
+        """The (back end, precision) pairs of those asked for in which this case is run."""
+        module = self.module
+        return [(backend, precision)
+                for backend in backends if backend in getattr(module, "BACKENDS", backends)
+                for precision in precisions if precision in getattr(module, "PRECISIONS", precisions)]
+
+    def title(self):
+        return self.module.__doc__.split("\n\n")[0].strip()
+
+    def explanation(self):
+        return "\n\n".join(self.module.__doc__.split("\n\n")[1:]).strip()
+
+
+def run_program(binary, case, run, variant, folder, more=""):
+    """Runs the program once; its output as a Run, and the time it took, s."""
+    backend, precision = variant
+    folder.mkdir(parents=True, exist_ok=True)
+    start = folder / f"{run}.start.h5"
+    options = shlex.split(f"-backend {backend} -precision {precision} {case.runs[run]} {more}".format(start=start))
+    if hasattr(case.module, "prepare"):
+        case.module.prepare(run, start, options)
+    command = [str(binary), "-options_file", case.deck, *options, "-output_dir", str(folder / run), "-progress", "off"]
+    begin = time.time()
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
+    if done.returncode != 0:
+        raise ProgramFailed(f"{shlex.join(command)}: exit status {done.returncode}\n{done.stdout[-2000:]}")
+    return Run(folder / run), time.time() - begin
+
+
+def environment():
+    """Open MPI refuses root unless told; threads that wait give way to those of other runs."""
+    return {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_PROC_BIND": "false",
+            "OMP_WAIT_POLICY": "passive", **os.environ}
