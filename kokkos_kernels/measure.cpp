@@ -18,9 +18,38 @@ struct Sum {
       m.lower[d] = Kokkos::fmin(m.lower[d], other.m.lower[d]);
       m.upper[d] = Kokkos::fmax(m.upper[d], other.m.upper[d]);
       m.momentum[d] += other.m.momentum[d];
+      m.centre[d] += other.m.centre[d];
     }
     m.kinetic_energy += other.m.kinetic_energy;
+    m.count += other.m.count;
     return *this;
+  }
+};
+
+/// Where particles are, m from the mesh's lower corner.
+template <class Space, class T, int Dim>
+struct Positions {
+  Soil<Space, T, Dim> soil;
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  double spacing;  // m
+
+  KOKKOS_INLINE_FUNCTION double operator()(int p, int d) const {
+    const int cell = soil.cell(p);
+    return (double(origin(cell / Patch<Dim>::cells)[d]) + coord_of<Dim>(cell)[d] + soil.coordinate(p)[d]) *
+           spacing;
+  }
+};
+
+/// A coordinate as a whole number of steps from the lower end of an extent. It never falls where x grows, so
+/// that an order by it is an order by x.
+struct Ruler {
+  static constexpr int digit = 12, digits = 2;  // bits of a digit
+  double lower, scale;                          // m, steps/m
+
+  Ruler(double low, double high) : lower(low), scale(high > low ? (1 << digit * digits) / (high - low) : 0) {}
+  KOKKOS_INLINE_FUNCTION int operator()(double x) const {
+    constexpr double last = (1 << digit * digits) - 1;
+    return static_cast<int>(Kokkos::fmax(0.0, Kokkos::fmin(last, (x - lower) * scale)));
   }
 };
 
@@ -39,29 +68,63 @@ namespace mpm {
 template <class Space, class T, int Dim>
 BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   const auto soil = s.soil.points;
-  const auto origin = s.patches.origin;
-  const double spacing = s.spacing;
+  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
   Sum<Dim> total;
   Kokkos::parallel_reduce(
       "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
       KOKKOS_LAMBDA(int p, Sum<Dim>& sum) {
         if (soil.body(p) != body) return;
-        const Coord<Dim> from = origin(soil.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(soil.cell(p));
         const double mass = soil.bodies(body).mass;
         for (int d = 0; d < Dim; ++d) {
-          const double x = (double(from[d]) + cell[d] + soil.coordinate(p)[d]) * spacing;
-          const double v = soil.velocity(p)[d];
+          const double x = position(p, d), v = soil.velocity(p)[d];
           sum.m.lower[d] = Kokkos::fmin(sum.m.lower[d], x);
           sum.m.upper[d] = Kokkos::fmax(sum.m.upper[d], x);
           sum.m.momentum[d] += mass * v;
+          sum.m.centre[d] += x;
           sum.m.kinetic_energy += mass * v * v / 2;
         }
+        ++sum.m.count;
       },
       Kokkos::Sum<Sum<Dim>>(total));
+  for (int d = 0; d < Dim; ++d) total.m.centre[d] /= total.m.count;  // its particles are of one mass
   return total.m;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template BodyMeasure measure(const State<Space, T, Dim>&, int);
+template <class Space, class T, int Dim>
+double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m) {
+  const auto soil = s.soil.points;
+  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
+  const Ruler ruler(m.lower[d], m.upper[d]);
+  const Kokkos::RangePolicy<Space> range(s.space, 0, soil.count);
+  const Kokkos::View<int*, typename Space::memory_space> counts("mpm::ranked_coordinate", 1 << Ruler::digit);
+  int place = 0;  // on the ruler, of the particle sought: digit by digit, the highest first
+  for (int shift = Ruler::digit * (Ruler::digits - 1); shift >= 0; shift -= Ruler::digit) {
+    Kokkos::deep_copy(s.space, counts, 0);
+    Kokkos::parallel_for(
+        "mpm::count_by_digit", range, KOKKOS_LAMBDA(int p) {
+          if (soil.body(p) != body) return;
+          const int at = ruler(position(p, d)) >> shift;
+          if (at >> Ruler::digit == place) Kokkos::atomic_inc(&counts(at - (place << Ruler::digit)));
+        });
+    const auto count = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), counts);
+    int digit = 0;
+    while (rank > count(digit)) rank -= count(digit++);
+    place = (place << Ruler::digit) + digit;
+  }
+  double x = m.lower[d];
+  Kokkos::parallel_reduce(
+      "mpm::largest_of_digits", range,
+      KOKKOS_LAMBDA(int p, double& largest) {
+        if (soil.body(p) == body && ruler(position(p, d)) == place)
+          largest = Kokkos::fmax(largest, position(p, d));
+      },
+      Kokkos::Max<double>(x));
+  return x;
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                            \
+  template BodyMeasure measure(const State<Space, T, Dim>&, int); \
+  template double ranked_coordinate(const State<Space, T, Dim>&, int, int, long, const BodyMeasure&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

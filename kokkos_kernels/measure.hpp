@@ -1,17 +1,25 @@
 #pragma once
-// Sums and extents over the particles of a body, for the history and the checks.
+// Sums, extents and quantiles over the particles of a body, for the history and the checks.
 
 #include "spaces.hpp"
 #include "state.hpp"
 
 namespace mpm {
 
-/// Extent [m from the mesh's lower corner], kinetic energy [J] and momentum [kg m/s] of one body.
+/// Extent and centre of mass [m from the mesh's lower corner], kinetic energy [J] and momentum [kg m/s] of
+/// one body, and the number of its particles.
 struct BodyMeasure {
-  double lower[3], upper[3], kinetic_energy, momentum[3];
+  double lower[3], upper[3], kinetic_energy, momentum[3], centre[3];
+  long count;
 };
 
 template <class Space, class T, int Dim>
 BodyMeasure measure(const State<Space, T, Dim>& s, int body);
+
+/// The rank-th smallest coordinate (1 <= rank <= m.count) of a body's particles along d [m from the mesh's
+/// lower corner]; m is the body's measure. It is a particle's coordinate, at most 2^-24 of the body's extent
+/// above the exact one, and the same whatever the number of threads.
+template <class Space, class T, int Dim>
+double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m);
 
 }  // namespace mpm

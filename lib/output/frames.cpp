@@ -22,6 +22,7 @@ struct Field {
 constexpr Field k_fields[] = {
     {"position", "m", 3, false, &ParticleSnapshot::position},  // first: the geometry, always float64
     {"velocity", "m/s", 3, false, &ParticleSnapshot::velocity},
+    {"grid_velocity", "m/s", 3, true, &ParticleSnapshot::grid_velocity},
     {"stress", "Pa", 6, true, &ParticleSnapshot::stress},
     {"volume", "m3", 1, true, &ParticleSnapshot::volume},
     {"plastic_strain", "-", 1, true, &ParticleSnapshot::plastic_strain},

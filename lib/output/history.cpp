@@ -33,6 +33,9 @@ std::string history_header(const Config& config) {
       for (const char* side : {"min", "max"}) header += "," + body.name + "_" + k_axis[d] + side;
     header += "," + body.name + "_kinetic_energy";
     append(header, body.name + "_momentum_", config.dim);
+    for (int d = 0; d < config.dim; ++d) header += "," + body.name + "_" + k_axis[d] + "q999";
+    append(header, body.name + "_centre_", config.dim);
+    header += "," + body.name + "_grid_velocity";
   }
   for (const RigidConfig& rigid : config.rigids)
     for (const char* quantity : {"_", "_velocity_", "_force_"})
@@ -46,7 +49,8 @@ std::string format_history_row(const HistoryRow& row, int dim) {
   for (const BodyRow& body : row.bodies) {
     for (int d = 0; d < dim; ++d) text += "," + text_of(body.lower[d]) + "," + text_of(body.upper[d]);
     text += "," + text_of(body.kinetic_energy);
-    append(text, body.momentum, dim);
+    for (const Vec3* vector : {&body.momentum, &body.quantile, &body.centre}) append(text, *vector, dim);
+    text += "," + text_of(body.grid_velocity);
   }
   for (const RigidRow& rigid : row.rigids)
     for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})

@@ -9,11 +9,13 @@
 namespace mpm {
 
 /// The particles of one body or rigid at one time, in the order of their creation. Vectors are padded to
-/// three components, symmetric tensors to six (xx, yy, zz, xy, yz, zx). The last three are empty for rigids.
+/// three components, symmetric tensors to six (xx, yy, zz, xy, yz, zx). All but position and velocity are
+/// empty for rigids.
 struct ParticleSnapshot {
   std::string name;
   std::vector<double> position;        // m     [3 N]
   std::vector<double> velocity;        // m/s   [3 N]
+  std::vector<double> grid_velocity;   // m/s   [3 N], of the nodes, interpolated to the particles
   std::vector<double> stress;          // Pa    [6 N], Cauchy, tension positive
   std::vector<double> volume;          // m3    [N]
   std::vector<double> plastic_strain;  // -     [N], engineering plastic shear strain
@@ -31,6 +33,9 @@ struct BodyRow {
   Vec3 lower{}, upper{};      // m, extent of its particles
   double kinetic_energy = 0;  // J
   Vec3 momentum{};            // kg m/s
+  Vec3 quantile{};            // m, what 99.9 % of its particles do not pass
+  Vec3 centre{};              // m, of mass
+  double grid_velocity = 0;   // m/s, largest speed of a node; that of all bodies, for they share the nodes
 };
 
 /// One row of the history for one rigid.

@@ -35,6 +35,14 @@ void soil_to_nodes(const State<Space, T, Dim>& s) {
   if (s.interface_shear) interpolate<VolumeSource<Space, T, Dim>>(s, set.bins, {set.points}, s.nodes.volume);
 }
 
+/// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own. The
+/// lists hold, as they do for that step: s.control must not be paused.
+template <class Space, class T, int Dim>
+void sum_present_soil(State<Space, T, Dim>& s) {
+  reset_nodes(s);
+  soil_to_nodes(s);
+}
+
 /// Advances one explicit step of dt [s]. Does nothing while s.control is paused. The rebuild, function 7, is
 /// the caller's, when the movement bound says so.
 template <class Space, class T, int Dim>

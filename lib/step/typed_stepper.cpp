@@ -124,15 +124,21 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
 template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
   row->bodies.clear(), row->rigids.clear();
-  for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
-    const BodyMeasure m = mpm::measure(state_, static_cast<int>(b));
+  sum_present_soil(state_);
+  const double grid_velocity = fastest_node(state_);
+  for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
+    const BodyMeasure m = mpm::measure(state_, b);
+    const long rank = m.count - m.count / 1000;  // of the 99.9 % quantile, the nearest one above
     BodyRow body;
     for (int d = 0; d < Dim; ++d) {
       body.lower[d] = m.lower[d] + config_.mesh.lower[d];
       body.upper[d] = m.upper[d] + config_.mesh.lower[d];
       body.momentum[d] = m.momentum[d];
+      body.quantile[d] = ranked_coordinate(state_, b, d, rank, m) + config_.mesh.lower[d];
+      body.centre[d] = m.centre[d] + config_.mesh.lower[d];
     }
     body.kinetic_energy = m.kinetic_energy;
+    body.grid_velocity = grid_velocity;
     row->bodies.push_back(body);
   }
   for (const Rigid<Dim>& r : take_rigids(state_)) {
@@ -149,6 +155,8 @@ void TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
 template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
   const SoilFields soil = download_soil(state_);
+  sum_present_soil(state_);
+  const std::vector<double> grid_velocity = grid_velocities(state_);
   out->bodies.clear(), out->rigids.clear();
   for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
     const std::size_t from = first_[b];
@@ -156,12 +164,14 @@ void TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
         b + 1 < first_.size() ? first_[b + 1] : static_cast<std::size_t>(state_.soil.points.count);
     ParticleSnapshot body;
     body.name = config_.bodies[b].name;
-    body.position.assign(3 * (to - from), 0), body.velocity.assign(3 * (to - from), 0),
-        body.stress.assign(6 * (to - from), 0);
+    body.position.assign(3 * (to - from), 0);
+    body.velocity = body.grid_velocity = body.position;
+    body.stress.assign(6 * (to - from), 0);
     for (std::size_t p = from; p < to; ++p) {
       for (int d = 0; d < Dim; ++d) {
         body.position[3 * (p - from) + d] = soil.position[p * Dim + d] + config_.mesh.lower[d];
         body.velocity[3 * (p - from) + d] = soil.velocity[p * Dim + d];
+        body.grid_velocity[3 * (p - from) + d] = grid_velocity[p * Dim + d];
       }
       for (int k = 0; k < sym_size<Dim>; ++k)
         body.stress[6 * (p - from) + k] = soil.stress[p * sym_size<Dim> + k];

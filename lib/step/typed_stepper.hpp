@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "grid_velocity.hpp"
 #include "measure.hpp"
 #include "step/step.hpp"
 #include "step/stepper.hpp"

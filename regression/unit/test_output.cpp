@@ -83,7 +83,7 @@ Config footing_like(const std::string& folder, int dim) {
 
 HistoryRow some_row() {
   HistoryRow row{12, 1.0 / 3, 6e-5, 0.1, {BodyRow{}}, {RigidRow{}}};
-  row.bodies[0] = {{0, -1e-300, 0}, {3, 4.1, 0}, 2.0 / 7, {1e-17, -0.25, 0}};
+  row.bodies[0] = {{0, -1e-300, 0}, {3, 4.1, 0}, 2.0 / 7, {1e-17, -0.25, 0}, {2.9, 4, 0}, {1.5, 2.1, 0}, 0.7};
   row.rigids[0] = {{0, -0.02, 0}, {0, -0.1, 0}, {1.5, 8765.4321, 0}};
   return row;
 }
@@ -93,6 +93,7 @@ ParticleSnapshot some_particles(const std::string& name, int count, bool body) {
   ParticleSnapshot p;
   p.name = name;
   for (int k = 0; k < 3 * count; ++k) p.position.push_back(200 + k / 7.0), p.velocity.push_back(-k / 3.0);
+  for (int k = 0; body && k < 3 * count; ++k) p.grid_velocity.push_back(k / 9.0);
   for (int k = 0; body && k < 6 * count; ++k) p.stress.push_back(1000.0 * k);
   for (int k = 0; body && k < count; ++k) p.volume.push_back(0.25), p.plastic_strain.push_back(0.1 * k);
   return p;
@@ -164,9 +165,13 @@ int temporary_files(const std::string& folder) {
 TEST_CASE("the history's columns are those of the manual", "[output]") {
   CHECK(history_header(footing_like("", 2)) ==
         "step,time,dt,wall_time,soil_xmin,soil_xmax,soil_ymin,soil_ymax,soil_kinetic_energy,soil_momentum_x,"
-        "soil_momentum_y,plate_x,plate_y,plate_velocity_x,plate_velocity_y,plate_force_x,plate_force_y");
+        "soil_momentum_y,soil_xq999,soil_yq999,soil_centre_x,soil_centre_y,soil_grid_velocity,plate_x,plate_"
+        "y,plate_velocity_x,plate_velocity_y,plate_force_x,plate_force_y");
   CHECK_THAT(history_header(footing_like("", 3)),
              ContainsSubstring("soil_ymax,soil_zmin,soil_zmax,soil_kinetic_energy"));
+  CHECK_THAT(history_header(footing_like("", 3)),
+             ContainsSubstring("soil_xq999,soil_yq999,soil_zq999,soil_centre_x,soil_centre_y,soil_centre_z,"
+                               "soil_grid_velocity,"));
   CHECK_THAT(history_header(footing_like("", 3)),
              ContainsSubstring("plate_x,plate_y,plate_z,plate_velocity_x"));
 }
@@ -174,8 +179,9 @@ TEST_CASE("the history's columns are those of the manual", "[output]") {
 TEST_CASE("a row of the history reads back to the same numbers", "[output]") {
   const HistoryRow row = some_row();
   const auto words = split(format_history_row(row, 2), ',');
-  const double expected[] = {12,    row.time, row.dt, row.wall_time, 0, 3,    -1e-300, 4.1,      2.0 / 7,
-                             1e-17, -0.25,    0,      -0.02,         0, -0.1, 1.5,     8765.4321};
+  const double expected[] = {12,      row.time, row.dt, row.wall_time, 0,   3,        -1e-300, 4.1,
+                             2.0 / 7, 1e-17,    -0.25,  2.9,           4,   1.5,      2.1,     0.7,
+                             0,       -0.02,    0,      -0.1,          1.5, 8765.4321};
   REQUIRE(words.size() == std::size(expected));
   for (size_t k = 0; k < words.size(); ++k) CHECK(std::strtod(words[k].c_str(), nullptr) == expected[k]);
   CHECK(split(format_history_row(row, 3), ',').size() ==
@@ -215,6 +221,9 @@ TEST_CASE("a frame reads back", "[output]") {
   CHECK(stress.bytes == (single ? 4 : 8));
   CHECK(stress.shape == std::vector<hsize_t>{5, 6});
   CHECK(stress.values == snapshot.bodies[0].stress);
+  const Dataset grid_velocity = read_dataset(path, "soil/grid_velocity");
+  CHECK(grid_velocity.shape == std::vector<hsize_t>{5, 3});
+  if (!single) CHECK(grid_velocity.values == snapshot.bodies[0].grid_velocity);
   CHECK(read_dataset(path, "soil/volume").shape == std::vector<hsize_t>{5});
   CHECK(read_dataset(path, "soil/plastic_strain").values.size() == 5);
   CHECK(read_dataset(path, "plate/velocity").shape == std::vector<hsize_t>{2, 3});
