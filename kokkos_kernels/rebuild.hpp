@@ -30,6 +30,10 @@ template <class Space, class T, int Dim>
 void sort_points(State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void build_lists(State<Space, T, Dim>& s);
+/// Brings the mean stress of each particle towards that of its cell by the share of F-bar: the particles of a
+/// cell dilate together until the next rebuild, so their pressures begin together.
+template <class Space, class T, int Dim>
+void average_pressure(State<Space, T, Dim>& s);
 
 /// Makes a view hold at least n entries; its content is lost when it grows.
 template <class View>

@@ -124,10 +124,31 @@ void sort_points(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
+void average_pressure(State<Space, T, Dim>& s) {
+  const auto soil = s.soil.points;
+  const auto begin = s.soil.bins.begin;
+  const T share = static_cast<T>(s.f_bar_share);
+  Kokkos::parallel_for(
+      "mpm::average_pressure", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
+      KOKKOS_LAMBDA(int cell) {
+        T volume = 0, sum = 0;
+        for (int p = begin(cell); p < begin(cell + 1); ++p) {
+          volume += soil.volume(p);
+          sum += soil.volume(p) * mean_of(soil.stress(p));
+        }
+        for (int p = begin(cell); p < begin(cell + 1); ++p) {
+          const T change = share * (sum / volume - mean_of(soil.stress(p)));
+          for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
+        }
+      });
+}
+
+template <class Space, class T, int Dim>
 void sort_and_list(State<Space, T, Dim>& s) {
   activate_patches(s);
   sort_points(s);
   build_lists(s);
+  if (s.f_bar_share > 0) average_pressure(s);
 
   const int nodes = s.patches.node_count();
   ensure(s.nodes.soil, nodes);
@@ -145,8 +166,9 @@ void sort_and_list(State<Space, T, Dim>& s) {
       });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)              \
-  template void sort_points(State<Space, T, Dim>&); \
+#define MPM_INSTANTIATE(Space, T, Dim)                   \
+  template void sort_points(State<Space, T, Dim>&);      \
+  template void average_pressure(State<Space, T, Dim>&); \
   template void sort_and_list(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -29,6 +29,18 @@ KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const Motion* window, const
   return t;
 }
 
+/// The dilatation rate alone, sum v_i . grad S_ip [1/s].
+template <class T, int Dim, class Motion>
+KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const Motion* window, const Coord<Dim>& cell,
+                                               const AxisWeights<T> (&a)[Dim], T inv_spacing) {
+  T sum = 0;
+  for_each_weight(a, [&](const Vector<int, Dim>& k, T, const Vector<T, Dim>& grad) {
+    const Motion* const node = window + window_place(cell, a, k) * NodeMotion<Dim>::size;
+    for (int d = 0; d < Dim; ++d) sum += node[NodeMotion<Dim>::velocity + d] * grad[d];
+  });
+  return sum * inv_spacing;
+}
+
 /// Strain increment (symmetric part of L dt, tensor shear strains) and spin increment (skew part).
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION void increments(const T (&L)[Dim][Dim], T dt, SymTensor<T, Dim>& strain,
@@ -46,17 +58,24 @@ KOKKOS_INLINE_FUNCTION void increments(const T (&L)[Dim][Dim], T dt, SymTensor<T
 /// Scalars of the particle update.
 template <class T>
 struct UpdateScalars {
-  T dt, inv_spacing, flip, pic;
+  T dt, inv_spacing, flip, pic, f_bar;
 };
 
-/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. Returns the largest
-/// component of its movement [cells].
+/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The share f_bar of its
+/// dilatation is that of its cell, `mean_dilatation` [1/s]. Returns the largest component of its movement
+/// [cells].
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION T advance(const Soil<Space, T, Dim>& soil, int p, const Taken<T, Dim>& t,
-                                 const UpdateScalars<T>& by) {
+                                 T mean_dilatation, const UpdateScalars<T>& by) {
   SymTensor<T, Dim> d_strain;
   Spin<T, Dim> d_spin;
   increments(t.gradient, by.dt, d_strain, d_spin);
+  T trace = 0;
+  for (int d = 0; d < Dim; ++d) trace += d_strain[d];
+  const T correction = by.f_bar * (by.dt * mean_dilatation - trace);
+  for (int d = 0; d < 3; ++d) d_strain[d] += correction * T(1.0 / 3);
+  trace += correction;
+
   MaterialState<T, Dim> state{soil.stress(p), soil.plastic_strain(p), soil.strength(p)};
   soil.materials(soil.bodies(soil.body(p)).material).visit([&](const auto& law) {
     law.update(state, d_strain, d_spin, by.dt);
@@ -64,8 +83,6 @@ KOKKOS_INLINE_FUNCTION T advance(const Soil<Space, T, Dim>& soil, int p, const T
   soil.stress(p) = state.stress;
   soil.plastic_strain(p) = state.plastic_strain;
 
-  T trace = 0;
-  for (int d = 0; d < Dim; ++d) trace += d_strain[d];
   soil.volume(p) *= (2 + trace) / (2 - trace);  // exp(trace) to second order: no drift in rotation
 
   Vector<T, Dim> v_p = soil.velocity(p), x_p = soil.coordinate(p);
@@ -105,7 +122,7 @@ KOKKOS_INLINE_FUNCTION void check(const Soil<Space, T, Dim>& soil, int p, T move
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt_) {
   using Team = Kokkos::TeamPolicy<Space>;
-  constexpr int size = NodeMotion<Dim>::size, window = Patch<Dim>::window;
+  constexpr int size = NodeMotion<Dim>::size, window = Patch<Dim>::window, cells = Patch<Dim>::cells;
   using Window = Kokkos::View<T*, typename Space::scratch_memory_space, Kokkos::MemoryUnmanaged>;
   const auto soil = s.soil.points;
   const auto begin = s.soil.bins.begin;
@@ -114,30 +131,53 @@ void update_particles(State<Space, T, Dim>& s, double dt_) {
   const auto motion = s.nodes.motion;
   const auto control = s.control;
   const double spacing = s.spacing;
-  const UpdateScalars<T> by{T(dt_), s.grid.inv_spacing, T(s.flip_share), T(1 - s.flip_share)};
+  const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
+      reinterpret_cast<T*>(s.spare.data()), soil.count);
+  const UpdateScalars<T> by{T(dt_), s.grid.inv_spacing, T(s.flip_share), T(1 - s.flip_share),
+                            T(s.f_bar_share)};
   Kokkos::parallel_for(
       "mpm::update_particles",
       light(Team(s.space, s.patches.slots, team_threads<Space>)
-                .set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size)))),
+                .set_scratch_size(
+                    0, Kokkos::PerTeam(Window::shmem_size(window * size) + Window::shmem_size(cells)))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (control().paused) return;
         // in the order of memory, so that threads of the host keep to their part
         const int slot = team.league_rank();
         const int from = begin(slot * Patch<Dim>::cells), to = begin((slot + 1) * Patch<Dim>::cells);
         if (from == to) return;
-        const Window nodes(team.team_scratch(0), window * size);
+        const Window nodes(team.team_scratch(0), window * size), mean(team.team_scratch(0), cells);
         Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
           const int i = number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n));
           for (int k = 0; k < size; ++k) nodes(n * size + k) = motion(i, k);
         });
         team.team_barrier();
+        if (by.f_bar > 0) {
+          Kokkos::parallel_for(Kokkos::TeamThreadRange(team, from, to), [&](int p) {
+            with_weights(soil.coordinate(p), soil.bodies(soil.body(p)).half_length,
+                         [&](const AxisWeights<T>(&a)[Dim]) {
+                           dilatation(p) = dilatation_from_nodes<T, Dim>(
+                               nodes.data(), coord_of<Dim>(soil.cell(p)), a, by.inv_spacing);
+                         });
+          });
+          team.team_barrier();
+          Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
+            T volume = 0, sum = 0;
+            for (int p = begin(slot * cells + c); p < begin(slot * cells + c + 1); ++p) {
+              volume += soil.volume(p);
+              sum += soil.volume(p) * dilatation(p);
+            }
+            mean(c) = volume > 0 ? sum / volume : T(0);
+          });
+          team.team_barrier();
+        }
         T moved = 0;
         const auto particle = [&](int p, T& furthest) {
           const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
           with_weights(
               soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-                const T own =
-                    advance(soil, p, take_from_nodes<T, Dim>(nodes.data(), cell, a, by.inv_spacing), by);
+                const T own = advance(soil, p, take_from_nodes<T, Dim>(nodes.data(), cell, a, by.inv_spacing),
+                                      by.f_bar > 0 ? mean(soil.cell(p) - slot * cells) : T(0), by);
                 check(soil, p, own, origin(slot), cell, spacing, control);
                 furthest = Kokkos::fmax(furthest, own);
               });

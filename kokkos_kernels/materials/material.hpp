@@ -61,6 +61,12 @@ KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const S
   return r;
 }
 
+/// Mean stress (s_xx + s_yy + s_zz) / 3.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T mean_of(const SymTensor<T, Dim>& s) {
+  return (s[0] + s[1] + s[2]) * T(1.0 / 3);
+}
+
 /// Adds the isotropic elastic stress increment lambda tr(e) I + 2 G e to s. Shear strains are tensor
 /// components.
 template <class T, int Dim>

@@ -98,6 +98,11 @@ void read_physics(OptionReader& in, Config& config) {
                .range = {.lowest = 0, .highest = 1}},
               config.flip_share);
   }
+  in.number({.name = "f_bar_share",
+             .meaning = "share of the cell's mean in a particle's dilatation (F-bar), against locking",
+             .unit = "-",
+             .range = {.lowest = 0, .highest = 1}},
+            config.f_bar_share);
 }
 
 void read_output(OptionReader& in, const std::string& options_file, double time_end, OutputConfig& output) {

@@ -113,6 +113,7 @@ struct Config {
   TimeConfig time;
   double damping = 0;     // -, local (non-viscous) damping factor, 0 <= damping < 1
   double flip_share = 1;  // -, share of FLIP in the velocity update, the rest PIC
+  double f_bar_share = 0;  // -, share of the cell's mean in a particle's dilatation (F-bar)
   std::vector<MaterialConfig> materials;
   std::vector<BodyConfig> bodies;
   std::vector<RigidConfig> rigids;
