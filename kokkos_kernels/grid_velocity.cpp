@@ -1,61 +1,77 @@
 #include "grid_velocity.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "particle_to_node.hpp"
 
 namespace mpm {
+namespace {
+
+/// The nodes' velocity at a particle, m/s.
+template <class Space, class T, int Dim>
+struct GridVelocity {
+  Soil<Space, T, Dim> points;
+  NodeField<Space, T, SoilShare<Dim>::size> nodes;
+  decltype(Patches<Space, Dim>::around) around;
+
+  explicit GridVelocity(const State<Space, T, Dim>& s)
+      : points(s.soil.points), nodes(s.nodes.soil), around(s.patches.around) {}
+
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> operator()(int p) const {
+    using S = SoilShare<Dim>;
+    Vector<double, Dim> v = filled<double, Dim>(0);
+    with_weights(points.coordinate(p), points.bodies(points.body(p)).half_length,
+                 [&](const AxisWeights<T>(&a)[Dim]) {
+                   const Stencil<Dim> stencil(points.cell(p), a);
+                   for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>&) {
+                     if (!(w > 0)) return;
+                     const int i = stencil.node(around, k);
+                     const double m_i = nodes(i, S::mass);
+                     if (!(m_i > 0)) return;  // a share too small for T
+                     for (int d = 0; d < Dim; ++d) v[d] += w * (nodes(i, S::momentum + d) / m_i);
+                   });
+                 });
+    return v;
+  }
+};
+
+}  // namespace
 
 template <class Space, class T, int Dim>
-double fastest_node(const State<Space, T, Dim>& s) {
-  using S = SoilShare<Dim>;
-  const auto soil = s.nodes.soil;
-  const double cut = s.mass_cut;
-  double fastest = 0;
+double largest_grid_speed(const State<Space, T, Dim>& s, int body) {
+  const GridVelocity<Space, T, Dim> velocity(s);
+  const auto body_of = s.soil.points.body;
+  double square = 0;
   Kokkos::parallel_reduce(
-      "mpm::fastest_node", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
-      KOKKOS_LAMBDA(int i, double& largest) {
-        const double m_i = soil(i, S::mass);
-        if (!(m_i > cut)) return;
-        double square = 0;
-        for (int d = 0; d < Dim; ++d) {
-          const double v = soil(i, S::momentum + d) / m_i;
-          square += v * v;
-        }
-        largest = Kokkos::fmax(largest, Kokkos::sqrt(square));
+      "mpm::largest_grid_speed", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+      KOKKOS_LAMBDA(int p, double& largest) {
+        if (body_of(p) != body) return;
+        const Vector<double, Dim> v = velocity(p);
+        largest = Kokkos::fmax(largest, dot(v, v));
       },
-      Kokkos::Max<double>(fastest));
-  return Kokkos::fmax(fastest, 0.0);
+      Kokkos::Max<double>(square));
+  return std::sqrt(std::max(square, 0.0));
 }
 
 template <class Space, class T, int Dim>
 std::vector<double> grid_velocities(const State<Space, T, Dim>& s) {
-  using S = SoilShare<Dim>;
-  const auto points = s.soil.points;
-  const auto soil = s.nodes.soil;
-  const auto around = s.patches.around;
-  const Kokkos::View<double*, typename Space::memory_space> velocity("mpm::grid_velocity",
-                                                                     std::size_t(points.count) * Dim);
+  const GridVelocity<Space, T, Dim> velocity(s);
+  const int count = s.soil.points.count;
+  const auto id = s.soil.points.id;
+  const Kokkos::View<double*, typename Space::memory_space> by_id("mpm::grid_velocity",
+                                                                  std::size_t(count) * Dim);
   Kokkos::parallel_for(
-      "mpm::grid_velocities", Kokkos::RangePolicy<Space>(s.space, 0, points.count), KOKKOS_LAMBDA(int p) {
-        const std::size_t to = std::size_t(points.id(p)) * Dim;
-        with_weights(points.coordinate(p), points.bodies(points.body(p)).half_length,
-                     [&](const AxisWeights<T>(&a)[Dim]) {
-                       const Stencil<Dim> stencil(points.cell(p), a);
-                       for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>&) {
-                         if (!(w > 0)) return;
-                         const int i = stencil.node(around, k);
-                         const double m_i = soil(i, S::mass);
-                         if (!(m_i > 0)) return;  // a share too small for T
-                         for (int d = 0; d < Dim; ++d)
-                           velocity(to + d) += w * (soil(i, S::momentum + d) / m_i);
-                       });
-                     });
+      "mpm::grid_velocities", Kokkos::RangePolicy<Space>(s.space, 0, count), KOKKOS_LAMBDA(int p) {
+        const Vector<double, Dim> v = velocity(p);
+        for (int d = 0; d < Dim; ++d) by_id(std::size_t(id(p)) * Dim + d) = v[d];
       });
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), velocity);
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), by_id);
   return {host.data(), host.data() + host.extent(0)};
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                       \
-  template double fastest_node(const State<Space, T, Dim>&); \
+#define MPM_INSTANTIATE(Space, T, Dim)                                  \
+  template double largest_grid_speed(const State<Space, T, Dim>&, int); \
   template std::vector<double> grid_velocities(const State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -1,9 +1,11 @@
 #pragma once
-// The velocity of the nodes, for what a run shows of it. FLIP's particles carry noise that no node feels, so
-// that their own velocities neither tell rest from motion nor make a picture.
+// The velocity with which the nodes move the particles, for what a run shows. FLIP's particles carry noise that
+// no node feels, so that their own velocities neither tell rest from motion nor make a picture; nor do those of
+// light nodes, which follow one particle.
 //
-// The nodal velocity here is Eq. (6), momentum over mass, without walls and contact. The sums at the nodes
-// must be those of the particles where they are now: sum_present_soil (lib/step/step.hpp).
+// The velocity of a particle is sum S v_i with the nodal velocity of Eq. (6), momentum over mass, without walls
+// and contact. The sums at the nodes must be those of the particles where they are now: sum_present_soil
+// (lib/step/step.hpp).
 
 #include <vector>
 
@@ -12,11 +14,11 @@
 
 namespace mpm {
 
-/// Largest speed of a node that holds soil, one above the mass cut [m/s].
+/// Largest speed of a body's particles, by the nodes [m/s].
 template <class Space, class T, int Dim>
-double fastest_node(const State<Space, T, Dim>& s);
+double largest_grid_speed(const State<Space, T, Dim>& s, int body);
 
-/// Nodal velocities interpolated to the particles, sum S v_i [m/s], by id: [Dim N].
+/// Velocity of every particle, by the nodes [m/s], by id: [Dim N].
 template <class Space, class T, int Dim>
 std::vector<double> grid_velocities(const State<Space, T, Dim>& s);
 

@@ -35,7 +35,7 @@ struct BodyRow {
   Vec3 momentum{};            // kg m/s
   Vec3 quantile{};            // m, what 99.9 % of its particles do not pass
   Vec3 centre{};              // m, of mass
-  double grid_velocity = 0;   // m/s, largest speed of a node; that of all bodies, for they share the nodes
+  double grid_velocity = 0;   // m/s, the largest at which the nodes move a particle of it
 };
 
 /// One row of the history for one rigid.

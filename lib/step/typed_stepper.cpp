@@ -126,7 +126,6 @@ template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
   row->bodies.clear(), row->rigids.clear();
   sum_present_soil(state_);
-  const double grid_velocity = fastest_node(state_);
   for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
     const BodyMeasure m = mpm::measure(state_, b);
     const long rank = m.count - m.count / 1000;  // of the 99.9 % quantile, the nearest one above
@@ -139,7 +138,7 @@ void TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
       body.centre[d] = m.centre[d] + config_.mesh.lower[d];
     }
     body.kinetic_energy = m.kinetic_energy;
-    body.grid_velocity = grid_velocity;
+    body.grid_velocity = largest_grid_speed(state_, b);
     row->bodies.push_back(body);
   }
   for (const Rigid<Dim>& r : take_rigids(state_)) {
