@@ -15,13 +15,15 @@ MEAN_FROM, MEAN_TO = 0.03, 0.20  # B, range of the mean that is reported
 
 
 class Run:
-    """A run's output: options {name: text}, history {column: array [rows]}, and its last frame's path or None."""
+    """A run's output: options {name: text}, history {column: array [rows]}, and the paths of its frames and the last of
+    them or None."""
 
     def __init__(self, folder):
         self.folder = Path(folder)
         self.options = read_options(self.folder)
         self.history = read_history(self.folder / "history.csv")
-        self.frame = max(self.folder.glob("frames/frame_*.h5"), default=None)
+        self.frames = sorted(self.folder.glob("frames/frame_*.h5"))
+        self.frame = self.frames[-1] if self.frames else None
 
     def text(self, name, default=""):
         return self.options.get(name, default)
@@ -38,6 +40,10 @@ class Run:
     def columns(self, name):
         """History columns NAMEx, NAMEy [, NAMEz] as an array [rows, dim]."""
         return np.column_stack([self.history[name + axis] for axis in "xyz" if name + axis in self.history])
+
+    def frame_near(self, time):
+        """Path of the frame nearest to a time [s], None without frames."""
+        return min(self.frames, key=lambda path: abs(time_of(path) - time), default=None)
 
     def moving_rigids(self):
         return [name for name in self.words("rigids") if self.text(f"{name}_motion", "fixed") != "fixed"]
@@ -62,6 +68,12 @@ def read_history(path):
         print(f"plot: {path} has no rows: no curve", file=sys.stderr)
         return {}
     return dict(zip(header, np.array(rows, dtype=float).T))
+
+
+def time_of(path):
+    """Time of a frame [s]."""
+    with h5py.File(path) as file:
+        return float(file.attrs["time"])
 
 
 def read_frame(path):

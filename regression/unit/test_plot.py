@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""What scripts/results.py computes and scripts/plot draws, on a made-up footing. Needs numpy, h5py and matplotlib."""
+"""What scripts/results.py and runout.py compute and scripts/plot draws, on a made-up footing and slide.
+Needs numpy, h5py and matplotlib."""
 
 import importlib.machinery
 import importlib.util
@@ -16,6 +17,7 @@ sys.dont_write_bytecode = True
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 import results  # noqa: E402
+import runout  # noqa: E402
 
 loader = importlib.machinery.SourceFileLoader("plot", str(SCRIPTS / "plot"))
 plot = importlib.util.module_from_spec(importlib.util.spec_from_loader("plot", loader))
@@ -41,6 +43,81 @@ def write_run(folder, nc, **changes):
             file[f"{name}/velocity"] = np.ones((count, 3))
         file["soil/volume"] = np.full(50, 0.02)
         file["soil/plastic_strain"] = np.linspace(0, 1, 50)
+
+
+SLIDE = {"dim": "2", "mesh_spacing": "0.25", "gravity": "0.8549978,-9.7726699", "materials": "clay", "clay_su": "2500",
+         "clay_density": "600", "bodies": "slide", "slide_shape": "polygon", "rigids": "base", "base_shear_limit": "2500",
+         "slide_polygon": "0,0,48.66025403784439,0,40,5,8.660254037844386,5"}
+
+
+def write_slide(folder, **changes):
+    """A body that moves as 2 t over its whole height H = 1 but faster above; most energy at 3 s; frames each second."""
+    (folder / "frames").mkdir()
+    (folder / "options.json").write_text(json.dumps({"version": "0", "options": {**SLIDE, **changes}}))
+    rows = [f"{t},{48 + 2 * t},{47 + 2 * t},{9 - (t - 3) ** 2}" for t in np.linspace(0, 5, 51)]
+    (folder / "history.csv").write_text("\n".join(["time,slide_xmax,slide_xq999,slide_kinetic_energy"] + rows) + "\n")
+    for time in range(6):
+        with h5py.File(folder / "frames" / f"frame_{time:05d}.h5", "w") as file:
+            file.attrs["time"] = float(time)
+            x, y = np.meshgrid(np.arange(0.125, 48, 0.25), np.arange(0.125, 1, 0.25))
+            file["slide/position"] = np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()])
+            file["slide/grid_velocity"] = np.column_stack([2 + y.ravel(), 0 * x.ravel(), 0 * x.ravel()])
+            file["slide/velocity"] = np.random.default_rng(time).normal(0, 9, (x.size, 3))
+            file["slide/volume"] = np.full(x.size, 0.0625)
+            file["slide/plastic_strain"] = np.zeros(x.size)
+            file["base/position"] = np.column_stack([x[0], 0 * x[0] - 0.1, 0 * x[0]])
+            file["base/velocity"] = np.zeros((len(x[0]), 3))
+
+
+class Slide(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory()
+        self.addCleanup(self.place.cleanup)
+        self.folder = pathlib.Path(self.place.name)
+
+    def test_the_front_advances_and_the_curve_ends_with_the_run(self):
+        write_slide(self.folder)
+        run = results.Run(self.folder)
+        self.assertEqual(runout.slides(run), ["slide"])
+        for column in ("xmax", "xq999"):
+            way = runout.advance(run, "slide", column)
+            self.assertAlmostEqual(runout.at_time(run, way, 3.03), 6.06)
+            self.assertTrue(np.isnan(runout.at_time(run, way, 5.2)))
+
+    def test_a_moving_rigid_makes_it_no_slide(self):
+        write_slide(self.folder, base_motion="prescribed")
+        self.assertEqual(runout.slides(results.Run(self.folder)), [])
+
+    def test_the_profile_is_the_nodes(self):
+        write_slide(self.folder)
+        run = results.Run(self.folder)
+        self.assertEqual(run.frame_near(runout.time_of_frame(run)).name, "frame_00003.h5")
+        self.assertEqual(run.frame_near(0.4).name, "frame_00000.h5")
+        _, groups = results.read_frame(run.frame)
+        height, velocity = runout.profile(groups["slide"], 24, 1, 1, 0.25)
+        np.testing.assert_allclose(height, [0.125, 0.375, 0.625, 0.875])
+        np.testing.assert_allclose(velocity, 2 + height)
+        self.assertEqual(len(runout.profile(groups["slide"], 99, 1, 1, 0.25)[0]), 0)
+
+    def test_stored_curves_belong_to_their_problem(self):
+        write_slide(self.folder)
+        run = results.Run(self.folder)
+        curves = runout.reference_runout(run)
+        self.assertAlmostEqual(np.interp(15, curves["gradient"]["time"], curves["gradient"]["toe"]), 23.864)
+        self.assertAlmostEqual(np.interp(15, curves["flat"]["time"], curves["flat"]["toe"]), 22.363)
+        run.options["mesh_spacing"] = "0.1"
+        self.assertAlmostEqual(np.interp(4, *(runout.reference_runout(run)["gradient"][k] for k in ("time", "toe"))), 11.92)
+        for name, other in (("clay_su", "2400"), ("gravity", "none"), ("slide_polygon", "0,0,48,0,40,5,8,5")):
+            changed = results.Run(self.folder)
+            changed.options[name] = other
+            self.assertEqual(runout.reference_runout(changed), {})
+
+    def test_pictures(self):
+        write_slide(self.folder)
+        run = results.Run(self.folder)
+        self.assertIsNone(plot.draw_curves(run, []))
+        for path in (plot.draw_runout(run, [run]), plot.draw_velocity(run), plot.draw_velocity(run, 1.0), plot.draw_field(run)):
+            self.assertGreater(path.stat().st_size, 10000)
 
 
 class Plot(unittest.TestCase):
@@ -85,6 +162,8 @@ class Plot(unittest.TestCase):
     def test_an_empty_folder_gives_no_picture(self):
         run = results.Run(self.folder)
         self.assertIsNone(plot.draw_curves(run, []))
+        self.assertIsNone(plot.draw_runout(run, []))
+        self.assertIsNone(plot.draw_velocity(run))
         self.assertIsNone(plot.draw_field(run))
 
 
