@@ -78,7 +78,10 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
   });
   fill_view(soil.volume, "mpm::volume", soil.count,
             [&](int p) { return static_cast<T>(bodies[body_of[p]].particle_volume); });
-  fill_view(soil.plastic_strain, "mpm::plastic_strain", soil.count, [](int) { return T(0); });
+  fill_view(soil.plastic_strain, "mpm::plastic_strain", soil.count, [&](int p) {
+    const BodyInput& body = bodies[body_of[p]];
+    return static_cast<T>(body.plastic_strain.empty() ? 0 : body.plastic_strain[in_body(p)]);
+  });
   fill_view(soil.strength, "mpm::strength", soil.count, [&](int p) {
     const BodyInput& body = bodies[body_of[p]];
     return static_cast<T>(body.strength.empty() ? 0 : body.strength[in_body(p)]);

@@ -32,6 +32,7 @@ struct BodyInput {
   std::vector<double> strength;           // Pa [N]
   std::vector<double> stress;             // Pa [sym_size N], or empty for none
   std::vector<double> particle_velocity;  // m/s [Dim N], or empty where `velocity` holds for all
+  std::vector<double> plastic_strain;     // - [N], or empty for none
   double particle_volume = 0;             // m3
   double half_length = 0.25;              // cells
   double density = 0;                     // kg/m3

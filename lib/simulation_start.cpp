@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "input/particle_file.hpp"
 #include "mesh/background.hpp"
 #include "output/files.hpp"
 #include "output/run_options.hpp"
@@ -129,19 +130,50 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   BackgroundMesh mesh;
   PetscCall(mesh.create(comm, config.mesh, config.dim));
   PetscCall(mesh.patches_with_ring(model->patches));
-  const auto add = [&](const std::string& name, const Shape& shape,
-                       std::vector<BodyParticles>& into) -> PetscErrorCode {
-    PetscFunctionBeginUser;
-    Lattice lattice;
-    PetscCall(fill(shape, config.mesh, config.dim, lattice));
-    PetscCall(log_shape(name, lattice));
-    for (std::size_t k = 0; k < lattice.position.size(); ++k)
-      lattice.position[k] -= config.mesh.lower[k % config.dim];
-    into.push_back({std::move(lattice.position), lattice.spacing, lattice.particle_volume});
-    PetscFunctionReturn(PETSC_SUCCESS);
-  };
-  for (const auto& body : config.bodies) PetscCall(add("body " + body.name, body.shape, model->bodies));
-  for (const auto& rigid : config.rigids) PetscCall(add("rigid " + rigid.name, rigid.shape, model->rigids));
+  for (const auto& body : config.bodies) {
+    const bool listed = body.shape.kind == ShapeKind::particles;
+    BodyParticles& particles = model->bodies.emplace_back();
+    PetscCall(listed ? load_file(body, &particles) : load_shape("body " + body.name, body.shape, &particles));
+  }
+  for (const auto& rigid : config.rigids)
+    PetscCall(load_shape("rigid " + rigid.name, rigid.shape, &model->rigids.emplace_back()));
+  for (auto* all : {&model->bodies, &model->rigids})
+    for (BodyParticles& particles : *all)
+      for (std::size_t k = 0; k < particles.position.size(); ++k)
+        particles.position[k] -= config.mesh.lower[k % config.dim];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Particles of a shape's lattice. Their positions are absolute, as in a file.
+PetscErrorCode Simulation::Body::load_shape(const std::string& name, const Shape& shape,
+                                            BodyParticles* particles) {
+  PetscFunctionBeginUser;
+  Lattice lattice;
+  PetscCall(fill(shape, config.mesh, config.dim, lattice));
+  PetscCall(log_shape(name, lattice));
+  particles->position = std::move(lattice.position);
+  particles->spacing = lattice.spacing;
+  particles->particle_volume = lattice.particle_volume;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Particles that a file lists, read again after they were checked with the options.
+PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles* particles) {
+  PetscFunctionBeginUser;
+  ParticleTable table;
+  std::string fault;
+  PetscCallCXX(fault = read_particles(body.shape.file, body.name, config.mesh, config.dim, table));
+  PetscCheck(fault.empty(), comm, PETSC_ERR_FILE_READ, "%s has changed: it should be %s",
+             body.shape.file.c_str(), fault.c_str());
+  const long count = static_cast<long>(table.position.size()) / config.dim;
+  PetscCall(log.print("body %s: %ld particles of %s stand for %.6g %s", body.name.c_str(), count,
+                      body.shape.file.c_str(), count * table.particle_volume, config.dim == 2 ? "m2" : "m3"));
+  particles->position = std::move(table.position);
+  particles->spacing = config.mesh.spacing / body.shape.particles_per_cell;
+  particles->particle_volume = table.particle_volume;
+  particles->velocity = std::move(table.velocity);
+  particles->stress = std::move(table.stress);
+  particles->plastic_strain = std::move(table.plastic_strain);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

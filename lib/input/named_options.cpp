@@ -55,10 +55,28 @@ std::vector<std::string> read_names(OptionReader& in, const Option& option, Name
   return good;
 }
 
+/// What the particles start with, but for what their file gives.
+void read_start(OptionReader& in, int dim, const ParticleTable& listed, BodyConfig& body) {
+  const std::string velocity = body.name + "_velocity", stress = body.name + "_stress";
+  const std::string why = body.name + "_file gives it for every particle";
+  if (listed.velocity.empty())
+    in.vector({.name = velocity, .meaning = "initial velocity", .unit = "m/s"}, dim, body.velocity);
+  else
+    in.not_taken(velocity, why);
+  if (listed.stress.empty())
+    in.tensor({.name = stress, .meaning = "initial stress, tension positive", .unit = "Pa"}, dim,
+              body.stress);
+  else
+    in.not_taken(stress, why);
+}
+
 void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, BodyConfig& body) {
   in.section("Each body or rigid NAME: its shape and particles");
-  const bool sound = read_shape(in, body.name, config.dim, body.shape);
-  if (sound && mesh) check_shape(in, body.name, body.shape, *mesh, config.dim);
+  const bool sound = read_shape(in, body.name, config.dim, /*listed*/ true, body.shape);
+  const bool from_file = body.shape.kind == ShapeKind::particles;
+  ParticleTable listed;
+  if (sound && mesh && from_file) check_particles(in, body.name, body.shape, *mesh, config.dim, listed);
+  if (sound && mesh && !from_file) check_shape(in, body.name, body.shape, *mesh, config.dim);
 
   in.section("Each body NAME");
   std::vector<std::string> materials;
@@ -68,10 +86,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, B
            .required = true,
            .aside = materials.empty() ? "a name of -materials, which lists none" : ", of -materials"},
           materials, body.material);
-  in.vector({.name = body.name + "_velocity", .meaning = "initial velocity", .unit = "m/s"}, config.dim,
-            body.velocity);
-  in.tensor({.name = body.name + "_stress", .meaning = "initial stress, tension positive", .unit = "Pa"},
-            config.dim, body.stress);
+  read_start(in, config.dim, listed, body);
 }
 
 /// What moves a rigid: each motion takes its own options.
@@ -116,7 +131,7 @@ void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
 void read_rigid(OptionReader& in, const MeshConfig* mesh, int dim, RigidConfig& rigid) {
   rigid.shape.particles_per_cell = 4;
   if (!in.listing()) {  // listed with the bodies'
-    const bool sound = read_shape(in, rigid.name, dim, rigid.shape);
+    const bool sound = read_shape(in, rigid.name, dim, /*listed*/ false, rigid.shape);
     if (sound && mesh) check_shape(in, rigid.name, rigid.shape, *mesh, dim);
   }
   in.section("Each rigid NAME");

@@ -60,39 +60,72 @@ void read_disc(OptionReader& in, const std::string& name, int dim, Shape& shape)
             shape.radius);
 }
 
+void read_file(OptionReader& in, const std::string& name, Shape& shape) {
+  in.text({.name = name + "_file",
+           .meaning = "particles: HDF5 file with a group NAME laid out as in a frame",
+           .required = true},
+          shape.file);
+}
+
+/// A word of -NAME_shape.
+struct Kind {
+  const char* word;
+  ShapeKind kind;
+  bool in_2d, in_3d, for_rigids;
+};
+constexpr Kind k_kinds[] = {
+    {"box", ShapeKind::box, true, true, true},
+    {"polygon", ShapeKind::polygon, true, false, true},
+    {"disc", ShapeKind::disc, true, true, true},
+    {"ball", ShapeKind::disc, false, true, true},
+    {"particles", ShapeKind::particles, true, true, false},
+};
+
+/// The options that belong to each kind of shape.
+const std::vector<std::pair<ShapeKind, std::vector<std::string>>> k_keys = {
+    {ShapeKind::box, {"lower", "upper", "fillet"}},
+    {ShapeKind::polygon, {"polygon"}},
+    {ShapeKind::disc, {"centre", "radius"}},
+    {ShapeKind::particles, {"file"}}};
+
 /// Reads what belongs to the kind of shape and rejects what belongs to another.
 void read_geometry(OptionReader& in, const std::string& name, int dim, const std::string& word,
                    Shape& shape) {
-  static const std::vector<std::pair<ShapeKind, std::vector<std::string>>> keys = {
-      {ShapeKind::box, {"lower", "upper", "fillet"}},
-      {ShapeKind::polygon, {"polygon"}},
-      {ShapeKind::disc, {"centre", "radius"}}};
-  for (const auto& [kind, of_kind] : keys) {
+  for (const auto& [kind, of_kind] : k_keys) {
     const bool wanted = in.listing() || kind == shape.kind;
     if (wanted && kind == ShapeKind::box) read_box(in, name, dim, shape);
     if (wanted && kind == ShapeKind::polygon) read_polygon(in, name, shape);
     if (wanted && kind == ShapeKind::disc) read_disc(in, name, dim, shape);
+    if (wanted && kind == ShapeKind::particles) read_file(in, name, shape);
     for (const auto& key : of_kind)
-      if (!wanted) in.not_taken(name + "_" + key, name + " is a " + word);
+      if (!wanted) in.not_taken(name + "_" + key, name + "_shape is " + word);
   }
 }
 
 /// The kind of shape and its geometry; whether it is known, so that what was given for it has a meaning.
-bool read_kind(OptionReader& in, const std::string& name, int dim, Shape& shape) {
-  static const std::vector<std::string> words = {"box", "polygon", "disc", "ball"};
-  int kind = 0;
+bool read_kind(OptionReader& in, const std::string& name, int dim, bool listed, Shape& shape) {
+  std::vector<std::string> words, fitting;
+  for (const Kind& k : k_kinds) {
+    if (!k.for_rigids && !listed) continue;
+    words.push_back(k.word);
+    if (dim == 2 ? k.in_2d : k.in_3d) fitting.push_back(k.word);
+  }
   const Option option{
-      .name = name + "_shape", .meaning = "box, polygon (2D) or disc (ball in 3D)", .required = true};
-  const bool known = in.word(option, words, kind);
-  shape.kind = kind == 0 ? ShapeKind::box : kind == 1 ? ShapeKind::polygon : ShapeKind::disc;
-  const bool fits = dim == 3 ? kind != 1 : kind != 3;
-  if (known && !fits) in.reject(option.name, dim == 3 ? "box or ball in 3D" : "box, polygon or disc in 2D");
+      .name = name + "_shape",
+      .meaning = "box, polygon (2D), disc (2D), ball (3D), or the particles of a file (bodies)",
+      .required = true};
+  int index = 0;
+  const bool known = in.word(option, words, index);
+  const Kind& kind = k_kinds[index];
+  shape.kind = kind.kind;
+  const bool fits = dim == 2 ? kind.in_2d : kind.in_3d;
+  if (known && !fits) in.reject(option.name, one_of(fitting) + " in " + std::to_string(dim) + "D");
   if (!in.listing() && !(known && fits)) {
-    for (const char* key : {"lower", "upper", "fillet", "polygon", "centre", "radius"})
-      in.ignore(name + "_" + key);
+    for (const auto& [other, keys] : k_keys)
+      for (const auto& key : keys) in.ignore(name + "_" + key);
     return false;
   }
-  read_geometry(in, name, dim, words[kind], shape);
+  read_geometry(in, name, dim, words[index], shape);
   return true;
 }
 
@@ -104,20 +137,23 @@ std::string placing_option(const Shape& shape, const std::string& name, bool low
 
 }  // namespace
 
-bool read_shape(OptionReader& in, const std::string& name, int dim, Shape& shape) {
+bool read_shape(OptionReader& in, const std::string& name, int dim, bool listed, Shape& shape) {
   static const std::vector<std::pair<std::string, Fill>> fills = {{"centre", Fill::centre},
                                                                   {"cell", Fill::cell}};
   const auto errors = in.errors();
-  read_kind(in, name, dim, shape);
+  read_kind(in, name, dim, listed, shape);
   in.integer({.name = name + "_particles_per_cell",
-              .meaning = "particles in each direction of a cell",
+              .meaning = "particles in each direction of a cell; of a file: their width is a cell's over it",
               .unit = "-",
               .range = {.lowest = 1, .highest = 16},
               .standard = in.listing() ? "2, for a rigid 4" : ""},
              shape.particles_per_cell);
-  in.word({.name = name + "_fill",
-           .meaning = "particles whose centre is in the shape, or those of cells that lie wholly in it"},
-          fills, shape.fill);
+  if (shape.kind == ShapeKind::particles && !in.listing())
+    in.not_taken(name + "_fill", "the particles are those of " + name + "_file");
+  else
+    in.word({.name = name + "_fill",
+             .meaning = "particles whose centre is in the shape, or those of cells that lie wholly in it"},
+            fills, shape.fill);
   return !in.listing() && in.errors() == errors;
 }
 
@@ -135,6 +171,12 @@ void check_shape(OptionReader& in, const std::string& name, const Shape& shape, 
   if (!holds_particle(shape, mesh, dim))
     in.reject(name + "_shape", shape.fill == Fill::cell ? "a shape that a whole cell of the mesh fits in"
                                                         : "a shape that holds a particle of the lattice");
+}
+
+void check_particles(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
+                     int dim, ParticleTable& table) {
+  const std::string fault = read_particles(shape.file, name, mesh, dim, table);
+  if (!fault.empty()) in.reject(name + "_file", fault);
 }
 
 }  // namespace mpm

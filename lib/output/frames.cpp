@@ -1,11 +1,10 @@
 #include "output/frames.hpp"
 
-#include <hdf5.h>
-
 #include <cstdio>
 
 #include "numbers.hpp"
 #include "output/files.hpp"
+#include "output/hdf5_handle.hpp"
 
 namespace mpm {
 namespace {
@@ -26,18 +25,6 @@ constexpr Field k_fields[] = {
     {"stress", "Pa", 6, true, &ParticleSnapshot::stress},
     {"volume", "m3", 1, true, &ParticleSnapshot::volume},
     {"plastic_strain", "-", 1, true, &ParticleSnapshot::plastic_strain},
-};
-
-/// An HDF5 identifier that is released with its scope.
-struct Handle {
-  hid_t id;
-  herr_t (*release)(hid_t);
-  Handle(hid_t id_, herr_t (*release_)(hid_t)) : id(id_), release(release_) {}
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  ~Handle() {
-    if (id >= 0) release(id);
-  }
 };
 
 /// Every HDF5 call passes here: a negative result is an error that names the file.

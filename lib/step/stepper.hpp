@@ -16,9 +16,12 @@ namespace mpm {
 
 /// The particles of a body or rigid before the run.
 struct BodyParticles {
-  std::vector<double> position;  // m from the mesh's lower corner, dim components each
-  double spacing = 0;            // m, between particles
-  double particle_volume = 0;    // m3
+  std::vector<double> position;        // m from the mesh's lower corner, dim components each
+  double spacing = 0;                  // m, between particles
+  double particle_volume = 0;          // m3
+  std::vector<double> velocity;        // m/s [dim N], or empty where the body's own holds for all
+  std::vector<double> stress;          // Pa [4 N in 2D, 6 N in 3D], likewise
+  std::vector<double> plastic_strain;  // - [N], or empty for none
 };
 
 /// Everything that a stepper starts from.

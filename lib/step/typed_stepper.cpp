@@ -26,7 +26,10 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   in.half_length = particles.spacing / config.mesh.spacing / 2;
   in.density = material.density;
   in.velocity = body.velocity;
-  if (body.stress != Sym6{})
+  in.particle_velocity = std::move(particles.velocity);
+  in.plastic_strain = std::move(particles.plastic_strain);
+  in.stress = std::move(particles.stress);
+  if (in.stress.empty() && body.stress != Sym6{})
     for (std::size_t p = 0; p < in.strength.size(); ++p)
       in.stress.insert(in.stress.end(), body.stress.begin(), body.stress.begin() + sym_size<Dim>);
   in.material = body.material;

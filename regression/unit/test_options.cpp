@@ -1,10 +1,14 @@
 // Options to Config. What wrong input is answered is in ../wrong_input.
 
+#include <unistd.h>
+
 #include <catch2/catch_test_macros.hpp>
+#include <filesystem>
 #include <string>
 
 #include "input/options.hpp"
 #include "input/text.hpp"
+#include "output/frames.hpp"
 
 using namespace mpm;
 
@@ -111,6 +115,30 @@ TEST_CASE("an initial stress has four components in 2D, six in 3D", "[options]")
   const std::string deep =
       k_deck + "-dim 3 -mesh_lower 0,0,0 -mesh_upper 8,6,2 -soil_lower 0,0,0 -soil_upper 8,2,2 ";
   CHECK(config_of(deep + "-soil_stress 1,2,3,4,5,6").bodies.at(0).stress == Sym6{1, 2, 3, 4, 5, 6});
+}
+
+TEST_CASE("what a file gives for every particle, the body does not take", "[options]") {
+  const auto path =
+      std::filesystem::temp_directory_path() / ("mpm_options_" + std::to_string(::getpid()) + ".h5");
+  ParticleSnapshot soil;
+  soil.name = "soil", soil.position = {1, 1, 0}, soil.volume = {0.0625}, soil.plastic_strain = {0};
+  soil.velocity = soil.grid_velocity = {0, 0, 0}, soil.stress.assign(6, 0);
+  REQUIRE(write_frame(path.string(), {0, 0, {soil}, {}}, Precision::single) == PETSC_SUCCESS);
+  const std::string deck =
+      k_deck.substr(0, k_deck.find("-soil_shape")) + "-soil_shape particles -soil_file " + path.string();
+  CHECK(config_of(deck).bodies.at(0).shape.kind == ShapeKind::particles);
+  CHECK(config_of(deck).bodies.at(0).shape.file == path.string());
+  const auto errors =
+      read(deck + " -soil_velocity 1,0 -soil_stress 0,0,0,0 -mesh_lower 1.5,0 -mesh_upper 3.5,2")
+          .report.errors;
+  std::filesystem::remove(path);
+  REQUIRE(errors.size() == 3);
+  CHECK(errors[0] == "mpm: -soil_file: given \"" + path.string() +
+                         "\", takes particles inside the mesh, 1.5,0 to 3.5,2; particle 0 is at 1,1");
+  CHECK(errors[1] ==
+        "mpm: -soil_velocity: given \"1,0\", takes nothing here: soil_file gives it for every particle");
+  CHECK(errors[2] ==
+        "mpm: -soil_stress: given \"0,0,0,0\", takes nothing here: soil_file gives it for every particle");
 }
 
 TEST_CASE("pic is a FLIP share of 0", "[options]") {
