@@ -46,7 +46,8 @@ struct Simulation::Body {
   PetscErrorCode choose_time_step();
   PetscErrorCode start();
   PetscErrorCode load(Model* model);
-  PetscErrorCode load_shape(const std::string& name, const Shape& shape, BodyParticles* particles);
+  PetscErrorCode load_shape(const std::string& name, const Shape& shape, const std::vector<Shape>& cut_out,
+                            BodyParticles* particles);
   PetscErrorCode load_file(const BodyConfig& body, BodyParticles* particles);
   PetscErrorCode log_shape(const std::string& name, const Lattice& lattice);
   PetscErrorCode fail(const std::string& what);

@@ -133,10 +133,11 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   for (const auto& body : config.bodies) {
     const bool listed = body.shape.kind == ShapeKind::particles;
     BodyParticles& particles = model->bodies.emplace_back();
-    PetscCall(listed ? load_file(body, &particles) : load_shape("body " + body.name, body.shape, &particles));
+    PetscCall(listed ? load_file(body, &particles)
+                     : load_shape("body " + body.name, body.shape, cut_out_of(config, body), &particles));
   }
   for (const auto& rigid : config.rigids)
-    PetscCall(load_shape("rigid " + rigid.name, rigid.shape, &model->rigids.emplace_back()));
+    PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, &model->rigids.emplace_back()));
   for (auto* all : {&model->bodies, &model->rigids})
     for (BodyParticles& particles : *all)
       for (std::size_t k = 0; k < particles.position.size(); ++k)
@@ -146,10 +147,10 @@ PetscErrorCode Simulation::Body::load(Model* model) {
 
 /// Particles of a shape's lattice. Their positions are absolute, as in a file.
 PetscErrorCode Simulation::Body::load_shape(const std::string& name, const Shape& shape,
-                                            BodyParticles* particles) {
+                                            const std::vector<Shape>& cut_out, BodyParticles* particles) {
   PetscFunctionBeginUser;
   Lattice lattice;
-  PetscCall(fill(shape, config.mesh, config.dim, lattice));
+  PetscCall(fill(shape, config.mesh, config.dim, lattice, cut_out));
   PetscCall(log_shape(name, lattice));
   particles->position = std::move(lattice.position);
   particles->spacing = lattice.spacing;
@@ -183,6 +184,9 @@ PetscErrorCode Simulation::Body::log_shape(const std::string& name, const Lattic
   const char* unit = config.dim == 2 ? "m2" : "m3";
   PetscCall(log.print("%s: %ld particles stand for %.6g %s, the shape has %.6g %s", name.c_str(), count,
                       count * lattice.particle_volume, unit, lattice.shape_volume, unit));
+  if (lattice.cut_out > 0)
+    PetscCall(log.print("%s: %ld particles, %.6g %s, were cut out", name.c_str(), lattice.cut_out,
+                        lattice.cut_out * lattice.particle_volume, unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -95,7 +95,12 @@ def extent(run, name):
     if shape == "disc":
         centre, radius = run.number(f"{name}_centre"), run.number(f"{name}_radius")
         return centre - radius, centre + radius
-    return run.number(f"{name}_lower"), run.number(f"{name}_upper")
+    if shape == "half_plane":
+        return run.number("mesh_lower"), run.number("mesh_upper")
+    (left, low), (right, high) = run.numbers(f"{name}_lower")[:2], run.numbers(f"{name}_upper")[:2]
+    angle = np.radians(run.number(f"{name}_angle_deg"))  # about the lower corner
+    x = [left + a * np.cos(angle) - b * np.sin(angle) for a in (0, right - left) for b in (0, high - low)]
+    return min(x), max(x)
 
 
 def is_half_model(run, name):

@@ -6,6 +6,7 @@
 
 #include "input/groups.hpp"
 #include "input/petsc_names.hpp"
+#include "input/shapes.hpp"
 #include "input/text.hpp"
 
 namespace mpm {
@@ -70,7 +71,33 @@ void read_start(OptionReader& in, int dim, const ParticleTable& listed, BodyConf
     in.not_taken(stress, why);
 }
 
-void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, BodyConfig& body) {
+/// The rigids out of whose shapes the body is cut.
+void read_cut_out(OptionReader& in, const std::vector<std::string>& rigids, BodyConfig& body) {
+  const Option option{
+      .name = body.name + "_cut_out",
+      .meaning = "rigids in whose shapes, as they are at the start, the body has no particles"};
+  const std::string takes = in.listing()     ? "names of -rigids, as pipe,plate"
+                            : rigids.empty() ? "names of -rigids, which lists none"
+                                             : "names of -rigids: " + join(rigids, ", ");
+  if (!in.listing() && body.shape.kind == ShapeKind::particles)
+    return in.not_taken(option.name, "the particles are those of " + body.name + "_file");
+  std::vector<std::string> names;
+  if (!in.list_of(option, takes, names)) return;
+  for (const auto& name : names) {
+    const auto found = std::find(rigids.begin(), rigids.end(), name);
+    if (found == rigids.end()) return in.reject(option.name, takes);
+    body.cut_out.push_back(static_cast<int>(found - rigids.begin()));
+  }
+}
+
+/// Checks that the shapes cut out of a body leave a particle.
+void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& config, const BodyConfig& body) {
+  if (body.cut_out.empty() || holds_particle(body.shape, mesh, config.dim, cut_out_of(config, body))) return;
+  in.reject(body.name + "_cut_out", "rigids that leave a particle of " + body.name);
+}
+
+void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config,
+               const std::vector<std::string>& rigids, BodyConfig& body) {
   in.section("Each body or rigid NAME: its shape and particles");
   const bool sound = read_shape(in, body.name, config.dim, /*listed*/ true, body.shape);
   const bool from_file = body.shape.kind == ShapeKind::particles;
@@ -87,6 +114,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, B
            .aside = materials.empty() ? "a name of -materials, which lists none" : ", of -materials"},
           materials, body.material);
   read_start(in, config.dim, listed, body);
+  read_cut_out(in, rigids, body);
 }
 
 /// What moves a rigid: each motion takes its own options.
@@ -159,14 +187,17 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
       in, {.name = "bodies", .meaning = "names of the deformable bodies", .required = true}, names);
   const auto rigids = read_names(in, {.name = "rigids", .meaning = "names of the rigid bodies"}, names);
   for (const auto& name : materials) read_material(in, name, config.materials.emplace_back());
+  const auto errors = in.errors();
   for (const auto& name : bodies) {
     config.bodies.emplace_back().name = name;
-    read_body(in, mesh, config, config.bodies.back());
+    read_body(in, mesh, config, rigids, config.bodies.back());
   }
   for (const auto& name : rigids) {
     config.rigids.emplace_back().name = name;
     read_rigid(in, mesh, config.dim, config.rigids.back());
   }
+  if (mesh && in.errors() == errors)
+    for (const auto& body : config.bodies) check_cut_out(in, *mesh, config, body);
 }
 
 }  // namespace mpm

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "input/groups.hpp"
 #include "input/polygon.hpp"
@@ -20,6 +21,14 @@ void read_box(OptionReader& in, const std::string& name, int dim, Shape& shape) 
              .unit = "m",
              .range = k_not_negative},
             shape.fillet);
+  double degrees = 0;
+  in.number(
+      {.name = name + "_angle_deg",
+       .meaning = "box: turned about its lower corner, anticlockwise; in 3D about the y axis, from x to z",
+       .unit = "deg",
+       .range = {.lowest = -360, .highest = 360}},
+      degrees);
+  shape.angle = degrees / 180 * std::numbers::pi;
   if (in.listing() || in.errors() != errors) return;
   double shortest = shape.upper[0] - shape.lower[0];
   for (int d = 1; d < dim; ++d) shortest = std::min(shortest, shape.upper[d] - shape.lower[d]);
@@ -30,12 +39,17 @@ void read_box(OptionReader& in, const std::string& name, int dim, Shape& shape) 
     in.reject(name + "_fillet", "a length in m at most half of the shortest edge, " + text_of(shortest / 2));
 }
 
-void read_polygon(OptionReader& in, const std::string& name, Shape& shape) {
-  const std::string option = name + "_polygon", takes = "x0,y0,x1,y1,... in m, 3 vertices or more";
+void read_polygon(OptionReader& in, const std::string& name, int dim, Shape& shape) {
+  const std::string option = name + "_polygon";
+  const std::string takes = in.listing() ? "x0,y0,x1,y1,... (x0,z0,... in 3D) in m, 3 vertices or more"
+                            : dim == 2   ? "x0,y0,x1,y1,... in m, 3 vertices or more"
+                                         : "x0,z0,x1,z1,... in m, 3 vertices or more";
   std::vector<std::string> pieces;
-  if (!in.list_of(
-          {.name = option, .meaning = "polygon: its vertices in order (2D)", .unit = "m", .required = true},
-          takes, pieces))
+  if (!in.list_of({.name = option,
+                   .meaning = "polygon: its vertices in order; in 3D those of a prism along y",
+                   .unit = "m",
+                   .required = true},
+                  takes, pieces))
     return;
   std::vector<double> numbers;
   for (const auto& piece : pieces)
@@ -47,6 +61,35 @@ void read_polygon(OptionReader& in, const std::string& name, Shape& shape) {
     in.reject(option, "a polygon whose edges neither cross nor touch; edges " +
                           std::to_string(crossing->first + 1) + " and " +
                           std::to_string(crossing->second + 1) + " do");
+}
+
+void read_width(OptionReader& in, const std::string& name, int dim, Shape& shape) {
+  const std::string option = name + "_width";
+  if (dim == 2 && !in.listing()) return in.not_taken(option, "a polygon in 2D has none");
+  const bool found = in.numbers({.name = option,
+                                 .meaning = "polygon in 3D: lower and upper y of the prism",
+                                 .unit = "m",
+                                 .required = true},
+                                "lower,upper", "", shape.width);
+  if (found && !(shape.width[0] < shape.width[1]))
+    in.reject(option, "2 numbers in m, as lower,upper, the second greater than the first");
+}
+
+void read_half_plane(OptionReader& in, const std::string& name, int dim, Shape& shape) {
+  in.vector(
+      {.name = name + "_point", .meaning = "half_plane: a point on its face", .unit = "m", .required = true},
+      dim, shape.point);
+  const bool found =
+      in.vector({.name = name + "_normal",
+                 .meaning = "half_plane: normal of its face, outward, of any length; the shape is "
+                            "the part of the mesh behind the face",
+                 .unit = "-",
+                 .required = true},
+                dim, shape.normal);
+  const double length = std::hypot(shape.normal[0], shape.normal[1], shape.normal[2]);
+  if (found && length == 0) in.reject(name + "_normal", std::to_string(dim) + " numbers that are not all 0");
+  if (length > 0)
+    for (double& component : shape.normal) component /= length;
 }
 
 void read_disc(OptionReader& in, const std::string& name, int dim, Shape& shape) {
@@ -67,7 +110,7 @@ void read_file(OptionReader& in, const std::string& name, Shape& shape) {
           shape.file);
 }
 
-/// A word of -NAME_shape.
+/// A word of -NAME_shape. Those that rigids do not take are the last.
 struct Kind {
   const char* word;
   ShapeKind kind;
@@ -75,17 +118,19 @@ struct Kind {
 };
 constexpr Kind k_kinds[] = {
     {"box", ShapeKind::box, true, true, true},
-    {"polygon", ShapeKind::polygon, true, false, true},
+    {"polygon", ShapeKind::polygon, true, true, true},
     {"disc", ShapeKind::disc, true, true, true},
     {"ball", ShapeKind::disc, false, true, true},
+    {"half_plane", ShapeKind::half_plane, true, true, true},
     {"particles", ShapeKind::particles, true, true, false},
 };
 
 /// The options that belong to each kind of shape.
 const std::vector<std::pair<ShapeKind, std::vector<std::string>>> k_keys = {
-    {ShapeKind::box, {"lower", "upper", "fillet"}},
-    {ShapeKind::polygon, {"polygon"}},
+    {ShapeKind::box, {"lower", "upper", "fillet", "angle_deg"}},
+    {ShapeKind::polygon, {"polygon", "width"}},
     {ShapeKind::disc, {"centre", "radius"}},
+    {ShapeKind::half_plane, {"point", "normal"}},
     {ShapeKind::particles, {"file"}}};
 
 /// Reads what belongs to the kind of shape and rejects what belongs to another.
@@ -94,8 +139,10 @@ void read_geometry(OptionReader& in, const std::string& name, int dim, const std
   for (const auto& [kind, of_kind] : k_keys) {
     const bool wanted = in.listing() || kind == shape.kind;
     if (wanted && kind == ShapeKind::box) read_box(in, name, dim, shape);
-    if (wanted && kind == ShapeKind::polygon) read_polygon(in, name, shape);
+    if (wanted && kind == ShapeKind::polygon)
+      read_polygon(in, name, dim, shape), read_width(in, name, dim, shape);
     if (wanted && kind == ShapeKind::disc) read_disc(in, name, dim, shape);
+    if (wanted && kind == ShapeKind::half_plane) read_half_plane(in, name, dim, shape);
     if (wanted && kind == ShapeKind::particles) read_file(in, name, shape);
     for (const auto& key : of_kind)
       if (!wanted) in.not_taken(name + "_" + key, name + "_shape is " + word);
@@ -129,10 +176,11 @@ bool read_kind(OptionReader& in, const std::string& name, int dim, bool listed, 
   return true;
 }
 
-/// The option that places a shape's lower or upper side.
-std::string placing_option(const Shape& shape, const std::string& name, bool lower) {
-  if (shape.kind == ShapeKind::box) return name + (lower ? "_lower" : "_upper");
-  return name + (shape.kind == ShapeKind::polygon ? "_polygon" : "_centre");
+/// The option that places the lower or upper side of a shape in direction d.
+std::string placing_option(const Shape& shape, const std::string& name, int dim, int d, bool lower) {
+  if (shape.kind == ShapeKind::disc) return name + "_centre";
+  if (shape.kind == ShapeKind::polygon) return name + (dim == 3 && d == 1 ? "_width" : "_polygon");
+  return name + (shape.angle != 0 ? "_angle_deg" : lower ? "_lower" : "_upper");
 }
 
 }  // namespace
@@ -154,18 +202,20 @@ bool read_shape(OptionReader& in, const std::string& name, int dim, bool listed,
     in.word({.name = name + "_fill",
              .meaning = "particles whose centre is in the shape, or those of cells that lie wholly in it"},
             fills, shape.fill);
+  if (shape.angle != 0 && shape.fill == Fill::cell)
+    in.reject(name + "_fill", "centre where " + name + "_angle_deg turns the box");
   return !in.listing() && in.errors() == errors;
 }
 
 void check_shape(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
                  int dim) {
-  const Bounds bounds = bounds_of(shape, dim);
+  const Bounds bounds = bounds_of(shape, mesh, dim);
   const double slack = 1e-9 * mesh.spacing;
   for (int d = 0; d < dim; ++d) {
     const bool below = bounds.lower[d] < mesh.lower[d] - slack;
     if (!below && bounds.upper[d] <= mesh.upper[d] + slack) continue;
     return in.reject(
-        placing_option(shape, name, below),
+        placing_option(shape, name, dim, d, below),
         "a shape wholly inside the mesh, " + text_of(mesh.lower, dim) + " to " + text_of(mesh.upper, dim));
   }
   if (!holds_particle(shape, mesh, dim))

@@ -1,6 +1,5 @@
 #pragma once
-// Geometry: what is inside a shape, and the lattice of particles that fills it. "Inside" includes the
-// boundary, with a tolerance of 1e-9 of the mesh spacing, so that round-off never decides.
+// The lattice of particles that fills a shape, and the shape's size.
 
 #include <petscsys.h>
 
@@ -16,26 +15,35 @@ struct Lattice {
       position;        // m, packed: component c of particle k is position[k * dim + c]; x varies fastest
   double spacing = 0;  // m, between neighbouring particles
   double particle_volume = 0;  // m3, spacing^dim
-  double shape_volume = 0;     // m3, of the shape itself, exact
+  double shape_volume = 0;     // m3, of the shape itself, exact, with what is cut out of it
+  long cut_out = 0;            // particles left out
 };
 
 /// Fills a shape with particles, shape.particles_per_cell in each direction of a cell.
-/// Fill::centre: the lattice points in the shape. The lattice of a box starts at the box's own lower corner,
-/// that of another shape is the mesh's. Fill::cell: all particles of every mesh cell that lies wholly in the
-/// shape. A polygon needs dim == 2.
-PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice& lattice);
+/// Fill::centre: the lattice points in the shape. The lattice of a box starts at the box's own lower corner
+/// and turns with it; that of another shape is the mesh's. Fill::cell: all particles of every mesh cell that
+/// lies wholly in the shape. Particles whose centre is in one of the shapes `cut_out` are left out.
+/// "In" includes the boundary, with a tolerance of 1e-9 of the mesh spacing, so that round-off never decides.
+/// ShapeKind::particles has no lattice (PETSC_ERR_SUP).
+PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice& lattice,
+                    const std::vector<Shape>& cut_out = {});
 
 /// Whether fill() would give at least one particle; stops at the first.
-bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim);
+bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim,
+                    const std::vector<Shape>& cut_out = {});
 
-/// Volume [m3] (area [m2] in 2D) of a shape. A fillet rounds all corners of a box (quarter circles), and in
-/// 3D all edges and corners (quarter cylinders, eighths of a ball).
-double shape_volume(const Shape& shape, int dim);
+/// The shapes that are cut out of a body.
+std::vector<Shape> cut_out_of(const Config& config, const BodyConfig& body);
 
-/// The smallest box that holds a shape.
+/// Volume [m3] (area [m2] in 2D) of a shape; of a half plane, that of the mesh behind it. A fillet rounds all
+/// corners of a box (quarter circles), and in 3D all edges and corners (quarter cylinders, eighths of a
+/// ball).
+double shape_volume(const Shape& shape, const MeshConfig& mesh, int dim);
+
+/// The smallest box that holds a shape; of a half plane, the mesh.
 struct Bounds {
   Vec3 lower{}, upper{};  // m; the third component is 0 in 2D
 };
-Bounds bounds_of(const Shape& shape, int dim);
+Bounds bounds_of(const Shape& shape, const MeshConfig& mesh, int dim);
 
 }  // namespace mpm

@@ -4,6 +4,7 @@
 
 #include <catch2/catch_test_macros.hpp>
 #include <filesystem>
+#include <numbers>
 #include <string>
 
 #include "input/options.hpp"
@@ -141,6 +142,30 @@ TEST_CASE("what a file gives for every particle, the body does not take", "[opti
         "mpm: -soil_stress: given \"0,0,0,0\", takes nothing here: soil_file gives it for every particle");
 }
 
+TEST_CASE("a prism, a half plane and a turned box have their geometry", "[options]") {
+  const Config config = config_of(
+      k_deck +
+      "-dim 3 -mesh_lower 0,0,0 -mesh_upper 8,6,2 -soil_lower 0,0,0 -soil_upper 8,2,2 -rigids "
+      "ramp,floor,plate "
+      "-ramp_shape polygon -ramp_polygon 0,0,4,0,0,2 -ramp_width 1,3 -floor_shape half_plane -floor_point "
+      "0,0,0.5 "
+      "-floor_normal 3,0,4 -plate_shape box -plate_lower 6,0,0 -plate_upper 7,1,0.5 -plate_angle_deg 90");
+  CHECK(config.rigids[0].shape.polygon.at(2) == std::array{0., 2.});
+  CHECK(config.rigids[0].shape.width == std::array{1., 3.});
+  CHECK(config.rigids[1].shape.point == Vec3{0, 0, 0.5});
+  CHECK(config.rigids[1].shape.normal == Vec3{0.6, 0, 0.8});
+  CHECK(config.rigids[2].shape.angle == std::numbers::pi / 2);
+}
+
+TEST_CASE("what is cut out of a body are rigids by their place in the list", "[options]") {
+  const Config config =
+      config_of(k_deck +
+                "-rigids wall,pipe -wall_shape half_plane -wall_point 7,0 -wall_normal -1,0 "
+                "-pipe_shape disc -pipe_centre 3,1 -pipe_radius 0.5 -soil_cut_out pipe,wall");
+  CHECK(config.bodies.at(0).cut_out == std::vector<int>{1, 0});
+  CHECK(config_of(k_deck).bodies.at(0).cut_out.empty());
+}
+
 TEST_CASE("pic is a FLIP share of 0", "[options]") {
   CHECK(config_of(k_deck + "-velocity_update pic").flip_share == 0);
   CHECK(config_of(k_deck + "-flip_share 0.99").flip_share == 0.99);
@@ -169,7 +194,7 @@ TEST_CASE("a name's number does not make it inherit the options of the name with
   const auto errors =
       read(k_deck + "-rigids pile,pile_1 -pile_shape box -pile_lower 0,4 -pile_upper 1,5").report.errors;
   REQUIRE(errors.size() == 1);
-  CHECK(errors[0] == "mpm: -pile_1_shape: not given, takes box, polygon, disc or ball");
+  CHECK(errors[0] == "mpm: -pile_1_shape: not given, takes box, polygon, disc, ball or half_plane");
 }
 
 TEST_CASE("a prefix keeps two simulations apart", "[options]") {

@@ -1,6 +1,7 @@
 // Particle counts, positions and volumes of shapes. Counts of the benchmark cases are those of Dong, Wang &
 // Randolph (Computers and Geotechnics 66, 2015, 31-38), Tables 1 and 3.
 
+#include <algorithm>
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
@@ -29,6 +30,14 @@ Shape box(Vec3 lower, Vec3 upper, int particles_per_cell = 2) {
 Shape disc(Vec3 centre, double radius) {
   Shape shape;
   shape.kind = ShapeKind::disc, shape.centre = centre, shape.radius = radius;
+  return shape;
+}
+
+Shape half_plane(Vec3 point, Vec3 normal) {
+  Shape shape;
+  const double length = std::hypot(normal[0], normal[1], normal[2]);
+  for (double& component : normal) component /= length;
+  shape.kind = ShapeKind::half_plane, shape.point = point, shape.normal = normal;
   return shape;
 }
 
@@ -156,10 +165,11 @@ TEST_CASE("particles represent the volume of every shape as the lattice is refin
 TEST_CASE("volumes are exact", "[shapes]") {
   Shape rounded = box({0, 0, 0}, {2, 2, 2});
   rounded.fillet = 1;  // a disc, a ball
-  CHECK(shape_volume(rounded, 2) == Approx(std::numbers::pi));
-  CHECK(shape_volume(rounded, 3) == Approx(4 * std::numbers::pi / 3));
-  CHECK(shape_volume(box({0, 0, 0}, {2, 3, 4}), 3) == Approx(24));
-  CHECK(shape_volume(polygon(trapezoid()), 2) == Approx(200));
+  const MeshConfig any;
+  CHECK(shape_volume(rounded, any, 2) == Approx(std::numbers::pi));
+  CHECK(shape_volume(rounded, any, 3) == Approx(4 * std::numbers::pi / 3));
+  CHECK(shape_volume(box({0, 0, 0}, {2, 3, 4}), any, 3) == Approx(24));
+  CHECK(shape_volume(polygon(trapezoid()), any, 2) == Approx(200));
 }
 
 TEST_CASE("a polygon that crosses or touches itself is found", "[shapes]") {
@@ -171,9 +181,128 @@ TEST_CASE("a polygon that crosses or touches itself is found", "[shapes]") {
   CHECK(first_crossing({{0, 0}, {1, 0}, {1, 0}, {0, 1}}));                     // a vertex twice
 }
 
-TEST_CASE("a polygon in 3D is refused", "[shapes]") {
+TEST_CASE("a list of particles has no lattice", "[shapes]") {
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
   Lattice lattice;
-  CHECK(fill(polygon(trapezoid()), mesh_of({0, 0, 0}, {50, 6, 1}, 1), 3, lattice) == PETSC_ERR_SUP);
+  Shape listed;
+  listed.kind = ShapeKind::particles;
+  CHECK(fill(listed, mesh_of({0, 0, 0}, {50, 6, 1}, 1), 3, lattice) == PETSC_ERR_SUP);
   PetscPopErrorHandler();
+}
+
+TEST_CASE("a prism has the particles of its polygon in every layer of its width", "[shapes]") {
+  const auto plane = mesh_of({0, 0}, {50, 6}, 0.5), space = mesh_of({0, -1, 0}, {50, 2, 6}, 0.5);
+  for (Fill how : {Fill::centre, Fill::cell}) {
+    Shape prism = polygon(trapezoid(), how);
+    prism.width = {-0.5, 1};
+    CHECK(count(prism, space, 3) == 6 * count(polygon(trapezoid(), how), plane));
+  }
+  Shape narrow = polygon({{0.5, 0}, {2, 0.5}, {1, 3}});
+  narrow.width = {-0.5, 1};
+  CHECK(shape_volume(narrow, space, 3) == Approx(1.5 * shape_volume(narrow, plane, 2)));
+  const Bounds bounds = bounds_of(narrow, space, 3);
+  CHECK(bounds.lower == Vec3{0.5, -0.5, 0});
+  CHECK(bounds.upper == Vec3{2, 1, 3});
+  narrow.width = {-0.5, 0.49};  // cells of the second layer are not wholly in it
+  narrow.fill = Fill::cell;
+  const long wide = count(narrow, space, 3);
+  narrow.width = {-0.5, 0.5};
+  CHECK(count(narrow, space, 3) == 2 * wide);
+}
+
+TEST_CASE("a half plane fills the part of the mesh behind it", "[shapes]") {
+  const auto plane = mesh_of({-1, 0}, {3, 2}, 0.25), space = mesh_of({-1, 0, 0}, {3, 2, 1}, 0.25);
+  CHECK(count(half_plane({7, 1}, {0, 1}), plane) == 16 * 4 * 4);   // a level floor, 1 m high
+  CHECK(count(half_plane({7, 1}, {0, -1}), plane) == 16 * 4 * 4);  // and what is above it
+  CHECK(count(half_plane({0, 3, 0.5}, {0, 0, 1}), space, 3) == 16 * 8 * 2 * 8);
+  CHECK(count(half_plane({0, -1}, {0, 1}), plane) == 0);
+  const Lattice lattice = filled(half_plane({1, 1}, {1, 1}), plane);
+  for (std::size_t k = 0; k < lattice.position.size(); k += 2)
+    CHECK(lattice.position[k] + lattice.position[k + 1] < 2 + 1e-8);
+}
+
+TEST_CASE("the volume behind a half plane is that of the polygon or prism that it cuts off", "[shapes]") {
+  const auto plane = mesh_of({-1, 0}, {3, 2}, 0.25), space = mesh_of({-1, 0, 0}, {3, 2, 1}, 0.25);
+  const auto behind = [&](Vec3 point, Vec3 normal) {
+    return shape_volume(half_plane(point, normal), plane, 2);
+  };
+  CHECK(behind({0, 0.5}, {0, 1}) == Approx(2));
+  CHECK(behind({0, 0.5}, {0, -1}) == Approx(6));
+  CHECK(behind({0, 2}, {1, 1}) == Approx(area_of({{-1, 0}, {2, 0}, {0, 2}, {-1, 2}})));
+  CHECK(behind({0, 2}, {-1, -1}) == Approx(8 - 4));
+  CHECK(behind({-1, 0.5}, {-0.1, 1}) == Approx(4 * 0.7));  // 0.5 to 0.9 high
+  CHECK(behind({-1, 0.5}, {-1e-6, 1}) == Approx(4 * (0.5 + 2e-6)).epsilon(1e-12));
+  CHECK(behind({-1, 0.5}, {-2e-4, 1}) == Approx(4 * (0.5 + 4e-4)).epsilon(1e-9));
+  CHECK(behind({9, 9}, {1, 1}) == Approx(8));
+  CHECK(behind({-9, -9}, {1, 1}) == 0);
+  // Planes that no row of the lattice lies in: centres on the face count as inside.
+  const auto corner = half_plane({0, 0, 0.5}, {1.03, 0.87, 1.91});
+  CHECK(shape_volume(half_plane({-0.5, 0, 0}, {1, 1, 1}), space, 3) == Approx(0.125 / 6));  // a corner
+  CHECK(share(corner, mesh_of({-1, 0, 0}, {3, 2, 1}, 0.05), 3) == Approx(1).epsilon(5e-3));
+  CHECK(share(half_plane({0.3, 1}, {0.2137, 1}), mesh_of({-1, 0}, {3, 2}, 0.02), 2) ==
+        Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("a box that is turned has its own lattice, turned about its lower corner", "[shapes]") {
+  const auto plane = mesh_of({0, 0}, {10, 10}, 0.5), space = mesh_of({0, 0, 0}, {10, 10, 10}, 0.5);
+  for (double degrees : {5., 45., 90., 210., -30.}) {
+    Shape straight = box({4, 5, 5}, {6, 6, 6.5}), turned = straight;
+    turned.angle = degrees / 180 * std::numbers::pi;
+    const double c = std::cos(turned.angle), s = std::sin(turned.angle);
+    for (int dim : {2, 3}) {
+      const auto& mesh = dim == 2 ? plane : space;
+      const Lattice expected = filled(straight, mesh, dim), got = filled(turned, mesh, dim);
+      REQUIRE(got.position.size() == expected.position.size());
+      CHECK(got.shape_volume == expected.shape_volume);
+      double largest = 0;
+      for (std::size_t k = 0; k < got.position.size(); k += dim) {
+        const double along = expected.position[k] - 4, up = expected.position[k + dim - 1] - 5;
+        largest = std::max({largest, std::abs(got.position[k] - 4 - (c * along - s * up)),
+                            std::abs(got.position[k + dim - 1] - 5 - (s * along + c * up))});
+        if (dim == 3) largest = std::max(largest, std::abs(got.position[k + 1] - expected.position[k + 1]));
+      }
+      CHECK(largest < 1e-14);
+    }
+  }
+}
+
+TEST_CASE("the bounds of a turned box are its corners', or where its fillet is widest", "[shapes]") {
+  const auto mesh = mesh_of({0, 0}, {10, 10}, 0.5);
+  Shape square = box({4, 5}, {6, 7});
+  square.angle = std::numbers::pi / 4;
+  const Bounds sharp = bounds_of(square, mesh, 2);
+  CHECK(sharp.lower[0] == Approx(4 - std::sqrt(2)));
+  CHECK(sharp.lower[1] == Approx(5));
+  CHECK(sharp.upper[0] == Approx(4 + std::sqrt(2)));
+  CHECK(sharp.upper[1] == Approx(5 + 2 * std::sqrt(2)));
+  square.fillet = 1;  // a disc about (4, 5 + sqrt 2)
+  const Bounds round = bounds_of(square, mesh, 2);
+  CHECK(round.lower[0] == Approx(3));
+  CHECK(round.upper[1] == Approx(6 + std::sqrt(2)));
+}
+
+TEST_CASE("particles whose centre is in a shape that is cut out are left out, and only those", "[shapes]") {
+  const auto mesh = mesh_of({0, 0}, {8, 6}, 0.25);
+  Shape turned = box({5, 1}, {7, 2});
+  turned.angle = 0.4;
+  const std::vector<Shape> holes = {disc({2, 2}, 0.8), turned, polygon({{0, 4}, {2, 4}, {0, 5.5}}),
+                                    half_plane({8, 5}, {-1, -1})};
+  for (Fill how : {Fill::centre, Fill::cell}) {
+    Shape ground = box({0, 0}, {8, 6});
+    ground.fill = how;
+    Lattice whole, rest;
+    REQUIRE(fill(ground, mesh, 2, whole) == PETSC_SUCCESS);
+    REQUIRE(fill(ground, mesh, 2, rest, holes) == PETSC_SUCCESS);
+    CHECK(whole.cut_out == 0);
+    CHECK(2 * rest.cut_out == long(whole.position.size() - rest.position.size()));
+    double expected = 0;  // the holes neither overlap nor leave the body
+    for (const Shape& hole : holes) expected += shape_volume(hole, mesh, 2);
+    CHECK(rest.cut_out * rest.particle_volume == Approx(expected).epsilon(0.01));
+    bool in_hole = false;
+    for (std::size_t k = 0; k < rest.position.size(); k += 2)
+      in_hole = in_hole || std::hypot(rest.position[k] - 2, rest.position[k + 1] - 2) < 0.8;
+    CHECK_FALSE(in_hole);
+  }
+  CHECK_FALSE(holds_particle(disc({2, 2}, 0.8), mesh, 2, {box({1, 1}, {3, 3})}));
+  CHECK(holds_particle(disc({2, 2}, 0.8), mesh, 2, {box({1, 1}, {2, 3})}));
 }

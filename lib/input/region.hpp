@@ -1,0 +1,37 @@
+#pragma once
+// What is inside a shape. "Inside" includes the boundary, with a slack, so that round-off never decides.
+
+#include <vector>
+
+#include "input/polygon.hpp"
+#include "mpm/config.hpp"
+
+namespace mpm {
+
+/// A point [m] turned by an angle [rad] about the point `about`, from the x axis to the vertical one: y in
+/// 2D; in 3D z, so that it turns about the y axis.
+Vec3 turned(const Vec3& x, const Vec3& about, double angle, int dim);
+
+/// The inside of a shape, which must outlive it, asked row by row (of constant height).
+class Region {
+ public:
+  /// `slack` [m] is what a point may be outside.
+  Region(const Shape& shape, int dim, double slack) : shape_(shape), dim_(dim), slack_(slack) {}
+
+  /// Prepares for points and cells whose vertical coordinate is from low to high [m].
+  void enter_row(double low, double high);
+  bool holds(const Vec3& x) const;
+  /// Whether all of a cell is inside.
+  bool holds_cell(const Vec3& corner, double edge) const;
+
+ private:
+  bool box_holds(const Vec3& x) const;
+  bool prism_holds(const Vec3& x) const;
+
+  const Shape& shape_;
+  int dim_;
+  double slack_;
+  std::vector<Edge> edges_;  // polygon: those of the row
+};
+
+}  // namespace mpm
