@@ -142,6 +142,15 @@ class Plot(unittest.TestCase):
         write_run(self.folder, nc=5.5, plate_lower="1,4", plate_upper="1.5,4.05")
         self.assertAlmostEqual(results.footing(results.Run(self.folder), "plate")[0], 0.5)
 
+    def test_extent_of_a_turned_plate_and_of_a_half_plane(self):
+        write_run(self.folder, nc=5.5, plate_lower="1,2", plate_upper="3,3", plate_angle_deg="90")
+        run = results.Run(self.folder)
+        np.testing.assert_allclose(results.extent(run, "plate"), (0, 1), atol=1e-12)
+        run.options.update(plate_angle_deg="30")
+        np.testing.assert_allclose(results.extent(run, "plate"), (0.5, 1 + np.sqrt(3)))
+        run.options.update(plate_shape="half_plane")
+        np.testing.assert_allclose(results.extent(run, "plate"), (0, 3))
+
     def test_a_sideways_or_free_rigid_is_no_footing(self):
         write_run(self.folder, nc=5.5, plate_velocity="0.1,-0.1")
         self.assertIsNone(results.footing(results.Run(self.folder), "plate"))
