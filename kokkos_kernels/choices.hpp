@@ -14,4 +14,7 @@ enum class P2G { sequential, atomic, mosaic, gather, tile, automatic };
 /// velocity; free, nothing.
 enum class Wall { roller, fixed, free };
 
+/// How particles take their velocity from the nodes (-velocity_update).
+enum class VelocityUpdate { flip, pic, xpic, apic };
+
 }  // namespace mpm

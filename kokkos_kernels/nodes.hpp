@@ -30,6 +30,7 @@ template <class Space, class T, int Dim>
 struct Nodes {
   NodeField<Space, T, SoilShare<Dim>::size> soil;
   NodeField<Space, T, NodeMotion<Dim>::size> motion;
+  NodeField<Space, T, Dim> rest;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   NodeField<Space, T, 1> volume;  // m3, of the soil; allocated where an interface carries shear
   Kokkos::View<T* * [RigidShare<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space>
       rigid;  // [rigid][node]

@@ -25,11 +25,13 @@ void gather_by_node(const Interpolation<Source>& it) {
         for (int n = first; n < last; ++n) {
           const int p = list(n), cell = source.points.cell(p);
           const Coord<Dim> from = origin(cell / Patch<Dim>::cells), place = coord_of<Dim>(cell);
-          const Vector<T, Dim> x = source.points.coordinate(p);
+          Vector<T, Dim> x = source.points.coordinate(p);
           const typename Source::Point q = source.load(p);
           T s[Dim], ds[Dim];
-          for (int d = 0; d < Dim; ++d)
-            node_weight(x[d] + (from[d] + place[d] - at[d] - in[d]), q.half_length, s[d], ds[d]);
+          for (int d = 0; d < Dim; ++d) {
+            x[d] += from[d] + place[d] - at[d] - in[d];  // from the node
+            node_weight(x[d], q.half_length, s[d], ds[d]);
+          }
           T w = 1;
           Vector<T, Dim> grad;
           for (int d = 0; d < Dim; ++d) {
@@ -37,7 +39,12 @@ void gather_by_node(const Interpolation<Source>& it) {
             grad[d] = ds[d];
             for (int e = 0; e < Dim; ++e) grad[d] *= e == d ? T(1) : s[e];
           }
-          if (w > 0) Source::give(q, w, grad, [&](int k, T v) { sum[k] += v; });
+          const auto offset = [&] {
+            Vector<T, Dim> r;
+            for (int d = 0; d < Dim; ++d) r[d] = -x[d];
+            return r;
+          };
+          if (w > 0) give<Source>(q, w, grad, offset, [&](int k, T v) { sum[k] += v; });
         }
         for (int k = 0; k < Source::size; ++k) out(i, k) += sum[k];
       });

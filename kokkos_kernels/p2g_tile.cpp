@@ -51,10 +51,12 @@ void reduce_by_tile(const Interpolation<Source>& it) {
           Kokkos::parallel_for(Kokkos::TeamThreadRange(team, from, to), [&](int p) {
             const typename Source::Point q = source.load(p);
             const Coord<Dim> cell = coord_of<Dim>(source.points.cell(p));
-            with_weights(source.points.coordinate(p), q.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+            const Vector<T, Dim> x = source.points.coordinate(p);
+            with_weights(x, q.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
               for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
                 T* const node = &sums(window_place(cell, a, k) * size);
-                Source::give(q, w, grad, [&](int value, T v) { add_to<Space>(node[value], v); });
+                const auto offset = [&] { return offset_to(x, a, k); };
+                give<Source>(q, w, grad, offset, [&](int value, T v) { add_to<Space>(node[value], v); });
               });
             });
           });

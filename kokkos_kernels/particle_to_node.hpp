@@ -101,21 +101,32 @@ struct Stencil {
   }
 };
 
-/// Gives the share of particle p to its nodes by add(node, value index, value). Nodes of no weight are left
-/// alone, which keeps the blocks of one colour apart.
+/// Calls f(node, w, grad, offset) for every node of particle p: w [-] its weight, grad [1/cell] its gradient,
+/// offset() [cells] from the particle to it. Nodes of no weight are left alone, which keeps the blocks of one
+/// colour apart.
+template <class Points_, class T, class Around, class F>
+KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, T half_length, const Around& around, int p,
+                                          F&& f) {
+  const auto x = points.coordinate(p);
+  with_weights(x, half_length, [&](const auto& a) {
+    constexpr int Dim = sizeof(a) / sizeof(a[0]);
+    const Stencil<Dim> stencil(points.cell(p), a);
+    for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
+      if (w > 0) f(stencil.node(around, k), w, grad, [&] { return offset_to(x, a, k); });
+    });
+  });
+}
+
+/// Gives the share of particle p to its nodes by add(node, value index, value).
 template <class Source, class Around, class Add>
 KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const Around& around, int p, Add&& add) {
   using T = typename Source::real;
   constexpr int Dim = Source::dim;
   const typename Source::Point q = source.load(p);
-  with_weights(source.points.coordinate(p), q.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-    const Stencil<Dim> stencil(source.points.cell(p), a);
-    for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
-      if (!(w > 0)) return;
-      const int i = stencil.node(around, k);
-      Source::give(q, w, grad, [&](int value, T v) { add(i, value, v); });
-    });
-  });
+  for_each_node(source.points, q.half_length, around, p,
+                [&](int i, T w, const Vector<T, Dim>& grad, auto&& offset) {
+                  give<Source>(q, w, grad, offset, [&](int value, T v) { add(i, value, v); });
+                });
 }
 
 }  // namespace mpm

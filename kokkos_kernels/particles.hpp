@@ -38,6 +38,7 @@ struct Soil : Points<Space, T, Dim> {
   Kokkos::View<T*, Memory> plastic_strain;          // -, engineering plastic shear strain
   Kokkos::View<T*, Memory> strength;                // Pa, undrained shear strength
   Kokkos::View<std::uint16_t*, Memory> body;        // index into bodies
+  Kokkos::View<Matrix<T, Dim>*, Memory> affine;     // m/s a cell, C_p of APIC; of extent 0 without it
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
   Kokkos::View<AnyMaterial<T>*, Memory> materials;
@@ -58,6 +59,7 @@ struct RigidPoints : Points<Space, T, Dim> {
 template <class Space, class T, int Dim, class F>
 void for_each_field(Soil<Space, T, Dim>& s, F&& f) {
   f(s.velocity), f(s.stress), f(s.volume), f(s.plastic_strain), f(s.strength), f(s.body);
+  if (s.affine.extent(0) > 0) f(s.affine);
 }
 template <class Space, class T, int Dim, class F>
 void for_each_field(RigidPoints<Space, T, Dim>& s, F&& f) {

@@ -153,6 +153,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   const int nodes = s.patches.node_count();
   ensure(s.nodes.soil, nodes);
   ensure(s.nodes.motion, nodes);
+  if (s.xpic_order > 0) ensure(s.nodes.rest, nodes);
   if (s.interface_shear) ensure(s.nodes.volume, nodes);
   if (static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid =

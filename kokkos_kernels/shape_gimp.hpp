@@ -53,6 +53,15 @@ KOKKOS_INLINE_FUNCTION void for_each_weight(const AxisWeights<T> (&a)[Dim], F&& 
   }
 }
 
+/// From a particle at x to its node k steps from the first one [cells].
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION Vector<T, Dim> offset_to(const Vector<T, Dim>& x, const AxisWeights<T> (&a)[Dim],
+                                                const Vector<int, Dim>& k) {
+  Vector<T, Dim> r;
+  for (int d = 0; d < Dim; ++d) r[d] = a[d].first + k[d] - x[d];
+  return r;
+}
+
 /// The weights of a particle along every axis. x [cells], l [cells] half length.
 template <class T, int Dim, class F>
 KOKKOS_INLINE_FUNCTION void with_weights(const Vector<T, Dim>& x, T l, F&& f) {

@@ -42,6 +42,56 @@ struct SoilSource {
   }
 };
 
+/// Soil to nodes by APIC (Jiang et al. 2015): as SoilSource, but p_i = sum S m_p (v_p + C_p (x_i - x_p)).
+template <class Space_, class T, int Dim>
+struct AffineSource : SoilSource<Space_, T, Dim> {
+  using Base = SoilSource<Space_, T, Dim>;
+  static constexpr bool takes_offset = true;
+  struct Point : Base::Point {
+    Matrix<T, Dim> affine;  // m_p C_p, kg m/s a cell
+  };
+
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    Point q{Base::load(p), this->points.affine(p)};
+    for (int k = 0; k < Dim * Dim; ++k) q.affine[k] *= q.mass;
+    return q;
+  }
+  /// offset [cells] from the particle to the node.
+  template <class Add>
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>& grad,
+                                          const Vector<T, Dim>& offset, Add&& add) {
+    typename Base::Point here = q;
+    for (int d = 0; d < Dim; ++d)
+      for (int e = 0; e < Dim; ++e) here.momentum[d] += q.affine(d, e) * offset[e];
+    Base::give(here, w, grad, add);
+  }
+};
+
+/// Any velocity of the particles to nodes, as momentum: sum S m_p r_p. XPIC sends what is left of theirs.
+template <class Space_, class T, int Dim>
+struct RestSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = Dim;
+  struct Point {
+    T half_length;
+    Vector<T, Dim> momentum;
+  };
+  Soil<Space, T, Dim> points;
+  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> rest;  // m/s
+
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const BodyProperties<T> body = points.bodies(points.body(p));
+    Point q{body.half_length, rest(p)};
+    for (int d = 0; d < Dim; ++d) q.momentum[d] *= body.mass;
+    return q;
+  }
+  template <class Add>
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>&, Add&& add) {
+    for (int d = 0; d < Dim; ++d) add(d, w * q.momentum[d]);
+  }
+};
+
 /// Volume of soil at a node, V_i = sum S V_p, for the area of an interface that carries shear.
 template <class Space_, class T, int Dim>
 struct VolumeSource {
@@ -82,8 +132,22 @@ struct RigidSource {
   }
 };
 
+/// Source::give, with the offset() from the particle to the node [cells] where the source takes one.
+template <class Source, class T, int Dim, class Offset, class Add>
+KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, T w, const Vector<T, Dim>& grad,
+                                 Offset&& offset, Add&& add) {
+  if constexpr (requires { Source::takes_offset; })
+    Source::give(q, w, grad, offset(), add);
+  else
+    Source::give(q, w, grad, add);
+}
+
 /// Applies X(Source) to every source of a space, real type and dimension.
 #define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
-  X(SoilSource, Space, T, Dim) X(VolumeSource, Space, T, Dim) X(RigidSource, Space, T, Dim)
+  X(SoilSource, Space, T, Dim)                \
+  X(AffineSource, Space, T, Dim)              \
+  X(RestSource, Space, T, Dim)                \
+  X(VolumeSource, Space, T, Dim)              \
+  X(RigidSource, Space, T, Dim)
 
 }  // namespace mpm

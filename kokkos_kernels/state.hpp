@@ -38,13 +38,16 @@ struct State {
   Nodes<Space, T, Dim> nodes;
   ControlView<Space> control;
   Kokkos::View<double*, Memory> sums;  // N, force of the soil on each rigid in this step
-  Kokkos::View<char*, Memory> spare;   // scratch of a rebuild: one field in its new order; of a step: dilatations
-  Kokkos::View<int*, Memory> marks;    // scratch of a rebuild: which patches hold points
+  Kokkos::View<char*, Memory>
+      spare;  // scratch of a rebuild: one field in its new order; of a step: dilatations, XPIC
+  Kokkos::View<int*, Memory> marks;  // scratch of a rebuild: which patches hold points
 
   double spacing = 0;             // m, edge of a cell, whatever T is
   Vector<double, Dim> gravity{};  // m/s2
   double damping = 0;             // -
-  double flip_share = 1;          // -
+  double flip_share = 1;          // -, what is not FLIP is PIC, or XPIC
+  int xpic_order = 0;             // m of XPIC(m), 0 without it
+  bool affine = false;            // APIC: Soil::affine is in use; flip_share is then 0
   double f_bar_share = 0;         // -
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   bool rigid_moves = false;       // some rigid is not fixed

@@ -13,6 +13,16 @@ struct Vector {
   KOKKOS_INLINE_FUNCTION const T& operator[](int d) const { return c[d]; }
 };
 
+/// Matrix of Dim rows and columns; component k of [] goes row by row.
+template <class T, int Dim>
+struct Matrix {
+  T c[Dim * Dim];
+  KOKKOS_INLINE_FUNCTION T& operator[](int k) { return c[k]; }
+  KOKKOS_INLINE_FUNCTION const T& operator[](int k) const { return c[k]; }
+  KOKKOS_INLINE_FUNCTION T& operator()(int i, int j) { return c[i * Dim + j]; }
+  KOKKOS_INLINE_FUNCTION const T& operator()(int i, int j) const { return c[i * Dim + j]; }
+};
+
 /// Components of a symmetric tensor: 2D (plane strain) xx yy zz xy; 3D xx yy zz xy yz zx.
 template <int Dim>
 inline constexpr int sym_size = Dim == 2 ? 4 : 6;

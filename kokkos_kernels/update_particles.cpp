@@ -133,8 +133,8 @@ void update_particles(State<Space, T, Dim>& s, double dt_) {
   const double spacing = s.spacing;
   const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
       reinterpret_cast<T*>(s.spare.data()), soil.count);
-  const UpdateScalars<T> by{T(dt_), s.grid.inv_spacing, T(s.flip_share), T(1 - s.flip_share),
-                            T(s.f_bar_share)};
+  const double flip = s.xpic_order > 0 ? 1 : s.flip_share;  // XPIC has changed the velocities already
+  const UpdateScalars<T> by{T(dt_), s.grid.inv_spacing, T(flip), T(1 - flip), T(s.f_bar_share)};
   Kokkos::parallel_for(
       "mpm::update_particles",
       light(Team(s.space, s.patches.slots, team_threads<Space>)

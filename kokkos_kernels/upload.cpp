@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "velocity_gradients.hpp"
+
 namespace mpm {
 namespace {
 
@@ -94,6 +96,26 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
             [&](int m) { return make_material<T>(materials[m].model, materials[m].parameters); });
 }
 
+/// C_p of APIC at the start: the gradient of each body's velocities, so that a linear field is kept from the
+/// first step on.
+template <class Space, class T, int Dim>
+void upload_affine(State<Space, T, Dim>& s, const std::vector<BodyInput>& bodies) {
+  std::vector<double> gradient;
+  for (const BodyInput& body : bodies) {
+    std::vector<double> cells = body.position;
+    for (double& x : cells) x /= s.spacing;
+    if (body.particle_velocity.empty())
+      gradient.resize(gradient.size() + cells.size() * Dim);
+    else
+      for (const double g : velocity_gradients(cells, body.particle_velocity, Dim)) gradient.push_back(g);
+  }
+  fill_view(s.soil.points.affine, "mpm::affine", s.soil.points.count, [&](int p) {
+    Matrix<T, Dim> c;
+    for (int k = 0; k < Dim * Dim; ++k) c[k] = static_cast<T>(gradient[std::size_t(p) * Dim * Dim + k]);
+    return c;
+  });
+}
+
 template <class Space, class T, int Dim>
 void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut, Fault& fault) {
   const double spacing = s.spacing;
@@ -173,6 +195,7 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.control = ControlView<Space>("mpm::control");
   s.sums = decltype(s.sums)("mpm::sums", Dim * rigids.size());
   upload_soil(s, materials, bodies, fault);
+  if (s.affine) upload_affine(s, bodies);
   upload_rigids(s, rigids, k_cut, fault);
   if (fault.kind == FaultKind::none) sort_and_list(s);
   return fault;
@@ -245,7 +268,7 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add_set(s.soil);
   for (const auto& set : s.rigid_points) add_set(set);
   add(s.patches.slot_of), add(s.patches.origin), add(s.patches.around), add(s.marks), add(s.spare);
-  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.volume), add(s.nodes.rigid);
+  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.volume), add(s.nodes.rigid);
   return bytes;
 }
 

@@ -76,6 +76,36 @@ void read_time(OptionReader& in, TimeConfig& time) {
              time.max_steps);
 }
 
+void read_velocity_update(OptionReader& in, Config& config) {
+  VelocityUpdate& update = config.velocity_update;
+  in.word({.name = "velocity_update", .meaning = "how particles take their velocity from the nodes"},
+          Words<VelocityUpdate>{{"flip", VelocityUpdate::flip},
+                                {"pic", VelocityUpdate::pic},
+                                {"xpic", VelocityUpdate::xpic},
+                                {"apic", VelocityUpdate::apic}},
+          update);
+  const std::string chosen = "-velocity_update is " + std::string(in.given_text("velocity_update"));
+  const bool xpic = update == VelocityUpdate::xpic;
+  if (update != VelocityUpdate::flip) config.flip_share = 0;
+  if (update == VelocityUpdate::flip || xpic)
+    in.number({.name = "flip_share",
+               .meaning = "share of FLIP in the velocity update, the rest PIC, or XPIC with xpic",
+               .unit = "-",
+               .range = {.lowest = 0, .highest = 1},
+               .standard = in.listing() ? "1 with flip, 0 with xpic" : ""},
+              config.flip_share);
+  else
+    in.not_taken("flip_share", chosen);
+  if (xpic || in.listing())
+    in.integer({.name = "xpic_order",
+                .meaning = "order m of XPIC(m): the higher, the less it damps",
+                .unit = "-",
+                .range = {.lowest = 2, .highest = 20}},
+               config.xpic_order);
+  else
+    in.not_taken("xpic_order", "-velocity_update is not xpic");
+}
+
 void read_physics(OptionReader& in, Config& config) {
   in.section("Physics");
   in.vector({.name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2"}, config.dim,
@@ -85,19 +115,7 @@ void read_physics(OptionReader& in, Config& config) {
              .unit = "-",
              .range = {.lowest = 0, .highest = 1, .open_highest = true}},
             config.damping);
-  int update = 0;
-  in.word({.name = "velocity_update", .meaning = "how particles take their velocity from the nodes"},
-          std::vector<std::string>{"flip", "pic"}, update);
-  if (update == 1) {
-    config.flip_share = 0;
-    in.not_taken("flip_share", "-velocity_update is pic");
-  } else {
-    in.number({.name = "flip_share",
-               .meaning = "share of FLIP in the velocity update, the rest PIC",
-               .unit = "-",
-               .range = {.lowest = 0, .highest = 1}},
-              config.flip_share);
-  }
+  read_velocity_update(in, config);
   in.number({.name = "f_bar_share",
              .meaning = "share of the cell's mean in a particle's dilatation (F-bar), against locking",
              .unit = "-",

@@ -4,6 +4,7 @@
 #include "particle_to_node.hpp"
 #include "step/timers.hpp"
 #include "step_kernels.hpp"
+#include "velocity_update.hpp"
 
 namespace mpm {
 
@@ -31,16 +32,33 @@ void rigids_to_nodes(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s) {
   const auto& set = s.soil;
-  interpolate<SoilSource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing}, s.nodes.soil);
+  if (s.affine)
+    interpolate<AffineSource<Space, T, Dim>>(s, set.bins, {{set.points, s.grid.inv_spacing}}, s.nodes.soil);
+  else
+    interpolate<SoilSource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing}, s.nodes.soil);
   if (s.interface_shear) interpolate<VolumeSource<Space, T, Dim>>(s, set.bins, {set.points}, s.nodes.volume);
 }
 
-/// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own. The
-/// lists hold, as they do for that step: s.control must not be paused.
+/// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own.
+/// The lists hold, as they do for that step: s.control must not be paused.
 template <class Space, class T, int Dim>
 void sum_present_soil(State<Space, T, Dim>& s) {
   reset_nodes(s);
   soil_to_nodes(s);
+}
+
+/// Function 5: velocities by XPIC or APIC where they are chosen, then the update of the soil's particles.
+template <class Space, class T, int Dim>
+void nodes_to_soil(State<Space, T, Dim>& s, double dt) {
+  for (int pass = 0; pass < s.xpic_order; ++pass) {
+    if (pass > 0) {
+      Kokkos::deep_copy(s.space, s.nodes.rest, T(0));
+      interpolate<RestSource<Space, T, Dim>>(s, s.soil.bins, {s.soil.points, rest_of(s)}, s.nodes.rest);
+    }
+    xpic_pass(s, pass);
+  }
+  if (s.affine) take_affine(s);
+  update_particles(s, dt);
 }
 
 /// Advances one explicit step of dt [s]. Does nothing while s.control is paused. The rebuild, function 7, is
@@ -54,7 +72,7 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt) {
   PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s); }));  // 2 rigid bodies to nodes
   PetscCall(run(Function::soil_to_nodes, [&] { soil_to_nodes(s); }));     // 3 soil particles to nodes
   PetscCall(run(Function::nodes, [&] { update_nodes(s, dt); }));          // 4 velocities, walls, contact
-  PetscCall(run(Function::particles, [&] { update_particles(s, dt); }));  // 5 stress update, movement
+  PetscCall(run(Function::particles, [&] { nodes_to_soil(s, dt); }));     // 5 stress update, movement
   PetscCall(run(Function::rigids, [&] { move_rigids(s, dt); }));          // 6 move the rigid bodies
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -79,6 +79,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   for (int d = 0; d < Dim; ++d) state_.gravity[d] = config_.gravity[d];
   state_.damping = config_.damping;
   state_.flip_share = config_.flip_share;
+  if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;
+  state_.affine = config_.velocity_update == VelocityUpdate::apic;
   state_.f_bar_share = config_.f_bar_share;
   Fault fault{};
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));

@@ -72,6 +72,8 @@ struct Cloud {
   P2GPlan p2g{P2G::sequential, 0.5, 3};
   std::array<double, 3> gravity{};
   double flip_share = 1, damping = 0;
+  int xpic_order = 0;
+  bool affine = false;
 };
 
 template <class B>
@@ -82,6 +84,8 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typenam
   s.p2g.strategy = how;
   for (int d = 0; d < B::dim; ++d) s.gravity[d] = cloud.gravity[d];
   s.flip_share = cloud.flip_share;
+  s.xpic_order = cloud.xpic_order;
+  s.affine = cloud.affine;
   s.damping = cloud.damping;
   if (upload(s, cloud.grid, cloud.materials, cloud.bodies, cloud.rigids).kind != FaultKind::none)
     throw std::runtime_error("a particle of the test lies outside the mesh");

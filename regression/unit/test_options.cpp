@@ -168,6 +168,12 @@ TEST_CASE("what is cut out of a body are rigids by their place in the list", "[o
 
 TEST_CASE("pic is a FLIP share of 0", "[options]") {
   CHECK(config_of(k_deck + "-velocity_update pic").flip_share == 0);
+  CHECK(config_of(k_deck + "-velocity_update apic").flip_share == 0);
+  CHECK(config_of(k_deck + "-velocity_update xpic").flip_share == 0);
+  const Config xpic = config_of(k_deck + "-velocity_update xpic -xpic_order 5 -flip_share 0.9");
+  CHECK(xpic.velocity_update == VelocityUpdate::xpic);
+  CHECK(xpic.xpic_order == 5);
+  CHECK(xpic.flip_share == 0.9);
   CHECK(config_of(k_deck + "-flip_share 0.99").flip_share == 0.99);
 }
 

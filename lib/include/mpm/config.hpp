@@ -111,8 +111,10 @@ struct Config {
   MeshConfig mesh;
   Vec3 gravity{};  // m/s2
   TimeConfig time;
-  double damping = 0;     // -, local (non-viscous) damping factor, 0 <= damping < 1
-  double flip_share = 1;  // -, share of FLIP in the velocity update, the rest PIC
+  double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
+  VelocityUpdate velocity_update = VelocityUpdate::flip;
+  int xpic_order = 2;      // -, m of XPIC(m), with xpic
+  double flip_share = 1;   // -, share of FLIP in the velocity update, the rest PIC, or XPIC with xpic
   double f_bar_share = 0;  // -, share of the cell's mean in a particle's dilatation (F-bar)
   std::vector<MaterialConfig> materials;
   std::vector<BodyConfig> bodies;

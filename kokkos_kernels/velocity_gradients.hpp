@@ -1,0 +1,15 @@
+#pragma once
+// The gradient of the velocities that particles start with, for APIC.
+
+#include <vector>
+
+namespace mpm {
+
+/// Velocity gradient at each particle of a body, row by row [m/s a cell, dim^2 N], by least squares over the
+/// particles in its cell and those around. Exact for a linear field; zero along directions in which the
+/// neighbours do not lie apart.
+///   position [cells, dim N]   velocity [m/s, dim N]
+std::vector<double> velocity_gradients(const std::vector<double>& position,
+                                       const std::vector<double>& velocity, int dim);
+
+}  // namespace mpm
