@@ -1,0 +1,42 @@
+"""Rolling cylinder and ball
+
+A cylinder rolls down a slope of $\\theta$ = 20° without slip if $\\mu \\ge \\tan\\theta/3$, by $x = g \\sin\\theta\\, t^2/3$;
+with less friction it slips, $x = g t^2 (\\sin\\theta - \\mu \\cos\\theta)/2$. A ball that does not slip takes
+$x = 5 g \\sin\\theta\\, t^2/14$. The body is elastic and stiff (its weight flattens it by $10^{-3}$ of its radius). The
+acceleration of its centre of mass is compared, from 0.2 s on.
+"""
+
+import numpy as np
+
+from curves import slope
+from row import Row
+
+G, SLOPE = 9.81, np.radians(20)
+BALL = ("-dim 3 -mesh_lower 0,0,-0.2 -mesh_upper 3.2,1.2,1.3 -mesh_spacing 0.1 -wheel_centre 0.75,0.6,0.5"
+        " -base_lower 0,0,-0.2 -base_upper 3.2,1.2,0 -base_particles_per_cell 2 -gravity 3.355218,0,-9.218385 -mesh_zmin free -mesh_zmax free"
+        " -wheel_particles_per_cell 2")
+CHATTER = "Coulomb's limit follows the normal impulse of the single step, which fluctuates."
+RUNS = {"rolls": "", "slips": "-base_friction 0.08", "ball_rolls": BALL}
+EXACT = {"rolls": 2 / 3 * G * np.sin(SLOPE), "slips": G * (np.sin(SLOPE) - 0.08 * np.cos(SLOPE)),
+         "ball_rolls": 5 / 7 * G * np.sin(SLOPE)}
+
+
+def speed(run):
+    """Speed of the centre of mass along the slope, m/s."""
+    place, t = run.history["wheel_centre_x"], run.history["time"]
+    return np.gradient(place, t)
+
+
+def check(runs):
+    for name, run in runs.items():
+        yield Row(f"acceleration, {name.replace('_', ' ')} (m/s2)", slope(run.history["time"], speed(run), 0.2), EXACT[name], 0.02,
+                  "rigid body mechanics", relative=True, shortfall=CHATTER, bound=0.7)
+
+
+def draw(axes, runs):
+    for name, run in runs.items():
+        t = run.history["time"]
+        line, = axes.plot(t, speed(run), lw=1, label=name.replace("_", " "))
+        axes.plot(t, EXACT[name] * t, "--", color=line.get_color(), lw=0.8)
+    axes.set(xlabel="time (s)", ylabel="speed of the centre (m/s; dashed: exact)")
+    axes.legend()
