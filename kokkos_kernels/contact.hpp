@@ -45,30 +45,53 @@ KOKKOS_INLINE_FUNCTION bool inward_normal(const Grid<T, Dim>& grid, unsigned sid
   return true;
 }
 
+/// Share of the normal correction at a gap [m] between body and soil (the "Geo-contact" penalty of Ma, Wang
+/// and Randolph 2014, in the form 1 - (gap/reach)^k): 1 in touch, 0 from `reach` on.
+template <class T>
+KOKKOS_INLINE_FUNCTION T penalty(T gap, T reach, T exponent) {
+  if (gap <= 0) return 1;
+  return gap < reach ? 1 - Kokkos::pow(gap / reach, exponent) : T(0);
+}
+
+/// What a step leaves of the normal impulse that friction has not used.
+template <class T>
+inline constexpr T k_memory = T(0.998);
+
 /// What a contact needs to know of the interface at a node.
 template <class T>
 struct Interface {
-  T shear_speed;  // m/s: shear limit x area x dt / nodal mass, the largest change of the tangential velocity
-  T friction;     // -, negative: none
+  T shear_speed;   // m/s: shear limit x area x dt / nodal mass, the largest change of the tangential velocity
+  T friction;      // -, negative: none
+  T pressing = 0;  // m/s: what the soil's own force and weight press towards the rigid x dt / nodal mass
+  T stock = 0;     // m/s: normal impulse not yet used by friction / nodal mass; updated
+  T penalty = 1;   // -, share of the normal correction
+  bool separates = true;
 };
 
-/// Correction dV of the soil's velocity v at a node: none where they part;
-/// v_r velocity of the rigid, n inward unit normal.
+/// Correction dV of the soil's velocity v at a node; v_r velocity of the rigid, n inward unit normal. No soil
+/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a share of the normal
+/// impulse of this step and of what earlier ones left (`stock`): the impulse of a node rings with the soil's
+/// elastic waves, and a body that sticks on the whole must not slip in each trough. Where it slips the stock
+/// is used up, so that the friction is that of each step.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v, const Vector<T, Dim>& v_r,
-                                                         const Vector<T, Dim>& n,
-                                                         const Interface<T>& interface) {
+                                                         const Vector<T, Dim>& n, Interface<T>& interface) {
   Vector<T, Dim> relative, change = filled<T, Dim>(0);
   for (int d = 0; d < Dim; ++d) relative[d] = v[d] - v_r[d];
   const T approach = dot(relative, n);
-  if (!(approach > 0)) return change;
+  const T stop = interface.penalty * (interface.separates ? Kokkos::fmax(T(0), approach) : approach);
+  const bool touches = !interface.separates || approach > 0 || interface.pressing > 0;
+  T largest = touches ? interface.shear_speed : T(0);
+  if (interface.friction >= 0) {
+    interface.stock += Kokkos::fmax(T(0), stop);
+    largest = Kokkos::fmin(interface.shear_speed, interface.friction * interface.stock);
+  }
   Vector<T, Dim> slip;
   for (int d = 0; d < Dim; ++d) slip[d] = relative[d] - approach * n[d];
   const T speed = Kokkos::sqrt(dot(slip, slip));
-  T largest = interface.shear_speed;
-  if (interface.friction >= 0) largest = Kokkos::fmin(largest, interface.friction * approach);
   const T share = largest >= speed ? T(1) : largest / speed;
-  for (int d = 0; d < Dim; ++d) change[d] = -approach * n[d] - share * slip[d];
+  if (interface.friction > 0) interface.stock -= share * speed / interface.friction;
+  for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - share * slip[d];
   return change;
 }
 

@@ -1,11 +1,11 @@
 #pragma once
-// The velocity with which the nodes move the particles, for what a run shows. FLIP's particles carry noise that
-// no node feels, so that their own velocities neither tell rest from motion nor make a picture; nor do those of
-// light nodes, which follow one particle.
+// The velocity with which the nodes move the particles, for what a run shows. FLIP's particles carry noise
+// that no node feels, so that their own velocities neither tell rest from motion nor make a picture; nor do
+// those of light nodes, which follow one particle.
 //
-// The velocity of a particle is sum S v_i with the nodal velocity of Eq. (6), momentum over mass, without walls
-// and contact. The sums at the nodes must be those of the particles where they are now: sum_present_soil
-// (lib/step/step.hpp).
+// The velocity of a particle is sum S v_i with the nodal velocity of Eq. (6), momentum over mass, without
+// walls and contact. The sums at the nodes must be those of the particles where they are now:
+// sum_present_soil (lib/step/step.hpp).
 
 #include <vector>
 

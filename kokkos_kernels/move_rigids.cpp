@@ -2,6 +2,18 @@
 
 namespace mpm {
 
+/// Acceleration of a rigid [m/s2] under the force [N] of the soil on it (Eq. 7).
+template <int Dim>
+KOKKOS_INLINE_FUNCTION double acceleration(const Rigid<Dim>& rigid, int d, double contact) {
+  return rigid.dynamic ? (rigid.force[d] + contact) / rigid.mass : 0;
+}
+
+/// What a rigid moves in a step [m]: exact where the force is constant.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION double movement(const Rigid<Dim>& rigid, int d, double contact, double dt) {
+  return dt * (rigid.velocity[d] + dt / 2 * acceleration(rigid, d, contact));
+}
+
 template <class Space, class T, int Dim>
 void move_rigids(State<Space, T, Dim>& s, double dt) {
   const auto control = s.control;
@@ -22,8 +34,9 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
                              cell = coord_of<Dim>(points.cell(p));
             for (int d = 0; d < Dim; ++d)
               points.coordinate(p)[d] = static_cast<T>(
-                  home(p)[d] + (rigids(r).displacement[d] + dt * rigids(r).velocity[d]) / spacing - from[d] -
-                  cell[d]);
+                  home(p)[d] +
+                  (rigids(r).displacement[d] + movement(rigids(r), d, sums(r * Dim + d), dt)) / spacing -
+                  from[d] - cell[d]);
           });
     }
 
@@ -31,20 +44,21 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
       "mpm::move_rigids", light(Kokkos::RangePolicy<Space>(s.space, 0, 1)), KOKKOS_LAMBDA(int) {
         Control& c = control();
         if (c.paused) return;
-        double speed = 0;
+        double furthest = 0;  // m
         for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) {
           Rigid<Dim>& rigid = rigids(r);
           for (int d = 0; d < Dim; ++d) {
             const double contact = sums(r * Dim + d);
-            speed = Kokkos::fmax(speed, Kokkos::fabs(rigid.velocity[d]));
-            rigid.displacement[d] += dt * rigid.velocity[d];
+            const double step = movement(rigid, d, contact, dt);
+            furthest = Kokkos::fmax(furthest, Kokkos::fabs(step));
+            rigid.displacement[d] += step;
             rigid.impulse[d] += dt * contact;
-            if (rigid.dynamic) rigid.velocity[d] += dt * (rigid.force[d] + contact) / rigid.mass;  // Eq. (7)
+            rigid.velocity[d] += dt * acceleration(rigid, d, contact);
           }
         }
         // round-off of a coordinate's update
         constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;
-        c.increment = Kokkos::fmax(c.moved, speed * dt / spacing) + epsilon;
+        c.increment = Kokkos::fmax(c.moved, furthest / spacing) + epsilon;
         c.moved = 0;
         c.bound += c.increment;
         ++c.steps;

@@ -2,6 +2,7 @@
 // Nodal fields, the rigid bodies' state, and the control block that lives on the device.
 
 #include "patches.hpp"
+#include "surface.hpp"
 #include "types.hpp"
 
 namespace mpm {
@@ -31,7 +32,11 @@ struct Nodes {
   NodeField<Space, T, SoilShare<Dim>::size> soil;
   NodeField<Space, T, NodeMotion<Dim>::size> motion;
   NodeField<Space, T, Dim> rest;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
-  NodeField<Space, T, 1> volume;  // m3, of the soil; allocated where an interface carries shear
+  Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
+      gap;  // m, [rigid][node], from a rigid to the nearest soil; allocated where a contact depends on it
+  Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
+      impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step
+  NodeField<Space, T, Dim> surface;  // m2, the soil's boundary as a vector out of it; allocated with rigids
   Kokkos::View<T* * [RigidShare<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space>
       rigid;  // [rigid][node]
 };
@@ -45,9 +50,14 @@ struct Rigid {
   Vector<double, Dim> force;         // N, external and weight
   double mass;                       // kg
   bool dynamic;
-  double shear_limit;  // Pa, infinite where only the friction limits
-  double friction;     // -, negative: none
-  double mass_cut;     // kg, nodes below it are not touched
+  Surface<Dim> surface;
+  bool surface_normal;  // normals from the surface, not from the mass gradient
+  bool separates;       // the soil may part from it
+  double reach;         // m, gap at which the contact ends; 0: it does not depend on the gap
+  double exponent;      // -, of its decrease with the gap
+  double shear_limit;   // Pa, infinite where only the friction limits
+  double friction;      // -, negative: none
+  double mass_cut;      // kg, nodes below it are not touched
 };
 
 /// Why a run cannot go on.

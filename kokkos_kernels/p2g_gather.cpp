@@ -24,6 +24,7 @@ void gather_by_node(const Interpolation<Source>& it) {
         T sum[Source::size] = {};
         for (int n = first; n < last; ++n) {
           const int p = list(n), cell = source.points.cell(p);
+          if (source.skips(cell / Patch<Dim>::cells)) continue;
           const Coord<Dim> from = origin(cell / Patch<Dim>::cells), place = coord_of<Dim>(cell);
           Vector<T, Dim> x = source.points.coordinate(p);
           const typename Source::Point q = source.load(p);

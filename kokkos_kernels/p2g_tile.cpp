@@ -44,6 +44,7 @@ void reduce_by_tile(const Interpolation<Source>& it) {
         KOKKOS_LAMBDA(const typename Team::member_type& team) {
           if (control().paused) return;
           const int slot = by_colour(first + team.league_rank());
+          if (source.skips(slot)) return;
           const Window sums(team.team_scratch(0), window * size);
           Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int n) { sums(n) = 0; });
           team.team_barrier();

@@ -122,6 +122,7 @@ template <class Source, class Around, class Add>
 KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const Around& around, int p, Add&& add) {
   using T = typename Source::real;
   constexpr int Dim = Source::dim;
+  if (source.skips(source.points.cell(p) / Patch<Dim>::cells)) return;
   const typename Source::Point q = source.load(p);
   for_each_node(source.points, q.half_length, around, p,
                 [&](int i, T w, const Vector<T, Dim>& grad, auto&& offset) {

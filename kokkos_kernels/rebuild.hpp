@@ -23,13 +23,28 @@ void rebuild(State<Space, T, Dim>& s) {
   sort_and_list(s);
 }
 
+/// Nodal impulses that outlive a rebuild, with the patches that they were of.
+template <class Space, class T, int Dim>
+struct KeptImpulse {
+  Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space> impulse;
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  int slots = 0;
+};
+
 // Parts of sort_and_list.
+template <class Space, class T, int Dim>
+KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void restore_impulse(State<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& kept);
 template <class Space, class T, int Dim>
 void activate_patches(State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void sort_points(State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void build_lists(State<Space, T, Dim>& s);
+/// Notes which slots have a rigid near: a node that soil and a rigid share is reached from no other slot.
+template <class Space, class T, int Dim>
+void mark_near_rigids(State<Space, T, Dim>& s);
 /// Brings the mean stress of each particle towards that of its cell by the share of F-bar: the particles of a
 /// cell dilate together until the next rebuild, so their pressures begin together.
 template <class Space, class T, int Dim>

@@ -124,6 +124,26 @@ void sort_points(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
+void mark_near_rigids(State<Space, T, Dim>& s) {
+  ensure(s.near_rigid, s.patches.slots);
+  const auto near = s.near_rigid;
+  const auto around = s.patches.around;
+  const int slots = s.patches.slots;
+  Kokkos::deep_copy(s.space, near, 0);
+  for (const auto& set : s.rigid_points) {
+    const auto begin = set.bins.begin;
+    Kokkos::parallel_for(
+        "mpm::mark_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
+          for (int k = 0; k < Patch<Dim>::around; ++k) {
+            const int other = around(slot, k);
+            if (other >= 0 && begin(other * Patch<Dim>::cells) < begin((other + 1) * Patch<Dim>::cells))
+              near(slot) = 1;
+          }
+        });
+  }
+}
+
+template <class Space, class T, int Dim>
 void average_pressure(State<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
   const auto begin = s.soil.bins.begin;
@@ -145,16 +165,22 @@ void average_pressure(State<Space, T, Dim>& s) {
 
 template <class Space, class T, int Dim>
 void sort_and_list(State<Space, T, Dim>& s) {
+  const auto kept = keep_impulse(s);
   activate_patches(s);
+  if (s.has_friction) restore_impulse(s, kept);
   sort_points(s);
   build_lists(s);
+  if (!s.rigid_points.empty()) mark_near_rigids(s);
   if (s.f_bar_share > 0) average_pressure(s);
 
   const int nodes = s.patches.node_count();
   ensure(s.nodes.soil, nodes);
   ensure(s.nodes.motion, nodes);
   if (s.xpic_order > 0) ensure(s.nodes.rest, nodes);
-  if (s.interface_shear) ensure(s.nodes.volume, nodes);
+  if (s.soil_surface) ensure(s.nodes.surface, nodes);
+  if (s.has_penalty && static_cast<int>(s.nodes.gap.extent(1)) < nodes)
+    s.nodes.gap = decltype(s.nodes.gap)(Kokkos::view_alloc("mpm::nodes.gap", Kokkos::WithoutInitializing),
+                                        s.rigid_points.size(), nodes + nodes / 8);
   if (static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid =
         decltype(s.nodes.rigid)(Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing),
@@ -169,6 +195,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
 
 #define MPM_INSTANTIATE(Space, T, Dim)                   \
   template void sort_points(State<Space, T, Dim>&);      \
+  template void mark_near_rigids(State<Space, T, Dim>&); \
   template void average_pressure(State<Space, T, Dim>&); \
   template void sort_and_list(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)

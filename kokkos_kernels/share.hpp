@@ -22,6 +22,7 @@ struct SoilSource {
   Soil<Space, T, Dim> points;
   T inv_spacing;
 
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     const BodyProperties<T> body = points.bodies(points.body(p));
     Point q{body.half_length, body.mass, points.velocity(p), points.stress(p)};
@@ -80,6 +81,7 @@ struct RestSource {
   Soil<Space, T, Dim> points;
   Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> rest;  // m/s
 
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     const BodyProperties<T> body = points.bodies(points.body(p));
     Point q{body.half_length, rest(p)};
@@ -92,23 +94,28 @@ struct RestSource {
   }
 };
 
-/// Volume of soil at a node, V_i = sum S V_p, for the area of an interface that carries shear.
+/// The soil's boundary at a node, sum grad S V_p: by Gauss' theorem the integral of S_i n over it, n out of
+/// the soil. Summed over the nodes along a face it is the face's area, however the face cuts the cells.
 template <class Space_, class T, int Dim>
-struct VolumeSource {
+struct SurfaceSource {
   using Space = Space_;
   using real = T;
-  static constexpr int dim = Dim, size = 1;
+  static constexpr int dim = Dim, size = Dim;
   struct Point {
-    T half_length, volume;
+    T half_length, area;  // V_p / d
   };
   Soil<Space, T, Dim> points;
+  T inv_spacing;
+  Kokkos::View<int*, typename Space::memory_space> near_rigid;  // by slot
 
+  /// Far from every rigid the boundary matters to nobody.
+  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return near_rigid(slot) == 0; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    return {points.bodies(points.body(p)).half_length, points.volume(p)};
+    return {points.bodies(points.body(p)).half_length, points.volume(p) * inv_spacing};
   }
   template <class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>&, Add&& add) {
-    add(0, w * q.volume);
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T, const Vector<T, Dim>& grad, Add&& add) {
+    for (int d = 0; d < Dim; ++d) add(d, grad[d] * q.area);
   }
 };
 
@@ -124,6 +131,7 @@ struct RigidSource {
   };
   RigidPoints<Space, T, Dim> points;
 
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int) const { return {points.half_length, points.mass}; }
   template <class Add>
   KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>& grad, Add&& add) {
@@ -147,7 +155,7 @@ KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, T w, const Vec
   X(SoilSource, Space, T, Dim)                \
   X(AffineSource, Space, T, Dim)              \
   X(RestSource, Space, T, Dim)                \
-  X(VolumeSource, Space, T, Dim)              \
+  X(SurfaceSource, Space, T, Dim)             \
   X(RigidSource, Space, T, Dim)
 
 }  // namespace mpm

@@ -35,6 +35,8 @@ struct State {
   Sorted<Space, Soil<Space, T, Dim>> soil;
   std::vector<Sorted<Space, RigidPoints<Space, T, Dim>>> rigid_points;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
+  Kokkos::View<Vertex*, Memory> vertices;  // of the rigids' polygons
+  Kokkos::View<int*, Memory> near_rigid;   // by slot: 1 where it or one around it holds points of a rigid
   Nodes<Space, T, Dim> nodes;
   ControlView<Space> control;
   Kokkos::View<double*, Memory> sums;  // N, force of the soil on each rigid in this step
@@ -51,7 +53,9 @@ struct State {
   double f_bar_share = 0;         // -
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   bool rigid_moves = false;       // some rigid is not fixed
-  bool interface_shear = false;   // some interface carries shear: the nodal volume is needed
+  bool soil_surface = false;      // some contact needs the soil's boundary at the nodes
+  bool has_friction = false;      // some contact has Coulomb friction
+  bool has_penalty = false;       // some contact is reduced by the gap
 };
 
 }  // namespace mpm

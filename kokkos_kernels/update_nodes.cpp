@@ -8,17 +8,19 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s) {
   const auto soil = s.nodes.soil;
-  const auto volume = s.nodes.volume;
+  const auto surface = s.nodes.surface;
   const auto rigid = s.nodes.rigid;
   const auto control = s.control;
   const int rigids = static_cast<int>(s.rigid_points.size());
-  const bool has_volume = s.interface_shear;
+  const bool has_surface = s.soil_surface, has_penalty = s.has_penalty;
+  const auto gap = s.nodes.gap;
   Kokkos::parallel_for(
       "mpm::reset_nodes", light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())),
       KOKKOS_LAMBDA(int i) {
         if (control().paused) return;
         for (int k = 0; k < SoilShare<Dim>::size; ++k) soil(i, k) = 0;
-        if (has_volume) volume(i, 0) = 0;
+        for (int d = 0; d < Dim && has_surface; ++d) surface(i, d) = 0;
+        for (int r = 0; r < rigids && has_penalty; ++r) gap(r, i) = Kokkos::Experimental::infinity<T>::value;
         for (int r = 0; r < rigids; ++r)
           for (int k = 0; k < RigidShare<Dim>::size; ++k) rigid(r, i, k) = 0;
       });
@@ -34,10 +36,12 @@ struct UpdateNodes {
   Nodes<Space, T, Dim> nodes;
   Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
+  Kokkos::View<Vertex*, typename Space::memory_space> vertices;
   ControlView<Space> control;
   Vector<T, Dim> g;
   T dt, damping, mass_cut;
-  bool has_volume;
+  double spacing;
+  bool has_surface, has_friction;
 
   KOKKOS_INLINE_FUNCTION void init(double* sum) const {
     for (int k = 0; k < value_count; ++k) sum[k] = 0;
@@ -51,6 +55,8 @@ struct UpdateNodes {
     using S = SoilShare<Dim>;
     const T m_i = nodes.soil(i, S::mass);
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
+    for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r)
+      nodes.impulse(r, i) *= k_memory<T>;
     constexpr T k_floor = T(1e-12);  // of the cut: far less is at rest, lest 1 / m_i overflow
     if (m_i > k_floor * mass_cut) {
       const T inv_m = 1 / m_i;
@@ -68,7 +74,7 @@ struct UpdateNodes {
       apply_walls(grid, sides, v);
       if (m_i > mass_cut)
         for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r)
-          touch(i, r, sides, m_i, v, sum + r * Dim);
+          touch(i, r, at, sides, m_i, v, sum + r * Dim);
       apply_walls(grid, sides, v);
     }
     for (int d = 0; d < Dim; ++d) {
@@ -78,43 +84,70 @@ struct UpdateNodes {
   }
 
   /// Contact with rigid r; adds the force of the soil on it (Eq. 10).
-  KOKKOS_INLINE_FUNCTION void touch(int i, int r, unsigned sides, T m_i, Vector<T, Dim>& v,
-                                    double* force) const {
+  KOKKOS_INLINE_FUNCTION void touch(int i, int r, const Coord<Dim>& at, unsigned sides, T m_i,
+                                    Vector<T, Dim>& v, double* force) const {
     using R = RigidShare<Dim>;
+    using S = SoilShare<Dim>;
     const Rigid<Dim>& rigid = rigids(r);
     const T m_r = nodes.rigid(r, i, R::mass);
     if (!(m_r > rigid.mass_cut)) return;
-    Vector<T, Dim> n, v_r;
+    Vector<T, Dim> n, v_r, boundary = filled<T, Dim>(0);
     for (int d = 0; d < Dim; ++d) {
       n[d] = nodes.rigid(r, i, R::normal + d);
       v_r[d] = static_cast<T>(rigid.velocity[d]);
+      if (has_surface) boundary[d] = nodes.surface(i, d);
     }
-    if (!inward_normal(grid, sides, m_r, n)) return;
+    if (rigid.surface_normal ? !surface_normal(rigid, at, sides, boundary, n)
+                             : !inward_normal(grid, sides, m_r, n))
+      return;
     Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction) };
     if (rigid.shear_limit < Kokkos::Experimental::infinity<double>::value)
-      interface.shear_speed =
-          rigid.shear_limit > 0 ? static_cast<T>(rigid.shear_limit) * area(i) * dt / m_i : T(0);
+      interface.shear_speed = rigid.shear_limit > 0 ? static_cast<T>(rigid.shear_limit) *
+                                                          Kokkos::fmax(T(0), dot(boundary, n)) * dt / m_i
+                                                    : T(0);
+    T pressing = 0;
+    for (int d = 0; d < Dim; ++d) pressing += (nodes.soil(i, S::force + d) / m_i + g[d]) * n[d];
+    interface.pressing = pressing * dt;
+    interface.separates = rigid.separates;
+    if (rigid.reach > 0) {
+      interface.penalty = penalty(nodes.gap(r, i), T(rigid.reach), T(rigid.exponent));
+      if (!(interface.penalty > 0)) return;
+    }
+    if (has_friction) interface.stock = nodes.impulse(r, i) / m_i;
     const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
+    if (has_friction) nodes.impulse(r, i) = interface.stock * m_i;
     for (int d = 0; d < Dim; ++d) {
       v[d] += change[d];
       force[d] -= static_cast<double>(m_i) * change[d] / dt;
     }
   }
 
-  /// Area of the interface at a node [m2]: of a base that lies on a grid line, the share that the soil
-  /// covers.
-  KOKKOS_INLINE_FUNCTION T area(int i) const {
-    const T cell = power(grid.spacing, Dim);
-    return power(grid.spacing, Dim - 1) * Kokkos::fmin(T(1), 2 * nodes.volume(i, 0) / cell);
+  /// Inward unit normal from the rigid's own surface. A node in the body looks from a cell's edge further
+  /// towards the soil, so that it finds the face that the soil is at. False where there is none.
+  KOKKOS_INLINE_FUNCTION bool surface_normal(const Rigid<Dim>& rigid, const Coord<Dim>& at, unsigned sides,
+                                             const Vector<T, Dim>& boundary, Vector<T, Dim>& n) const {
+    Vector<double, Dim> x;
+    for (int d = 0; d < Dim; ++d) {
+      const int inside = Kokkos::max(0, Kokkos::min(at[d], grid.cells[d]));  // bodies go on beyond the mesh
+      x[d] = inside * spacing - rigid.displacement[d];
+    }
+    Distance<Dim> to = distance_to(rigid.surface, vertices, x);
+    const T length = Kokkos::sqrt(dot(boundary, boundary));
+    if (to.value < 0 && length > 0) {
+      for (int d = 0; d < Dim; ++d) x[d] -= spacing * boundary[d] / length;
+      to = distance_to(rigid.surface, vertices, x);
+    }
+    for (int d = 0; d < Dim; ++d) n[d] = static_cast<T>(to.normal[d]);
+    return inward_normal(grid, sides, T(1), n);
   }
 };
 
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt) {
   const int values = Dim * static_cast<int>(s.rigid_points.size());
-  UpdateNodes<Space, T, Dim> update{values,           s.grid, s.nodes, s.patches.origin, s.rigids,
-                                    s.control,        {},     T(dt),   T(s.damping),     T(s.mass_cut),
-                                    s.interface_shear};
+  UpdateNodes<Space, T, Dim> update{
+      values, s.grid, s.nodes,      s.patches.origin, s.rigids,  s.vertices,     s.control,
+      {},     T(dt),  T(s.damping), T(s.mass_cut),    s.spacing, s.soil_surface, s.has_friction};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   const auto range = light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()));
   if (values > 0)

@@ -116,6 +116,18 @@ void upload_affine(State<Space, T, Dim>& s, const std::vector<BodyInput>& bodies
   });
 }
 
+template <int Dim>
+Surface<Dim> surface_of(const SurfaceInput& in) {
+  Surface<Dim> out{};
+  out.kind = in.kind;
+  for (int d = 0; d < Dim; ++d)
+    out.centre[d] = in.centre[d], out.half[d] = in.half[d], out.normal[d] = in.normal[d];
+  out.radius = in.radius;
+  out.cosine = std::cos(in.angle), out.sine = std::sin(in.angle);
+  out.count = static_cast<int>(in.vertices.size());
+  return out;
+}
+
 template <class Space, class T, int Dim>
 void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut, Fault& fault) {
   const double spacing = s.spacing;
@@ -134,6 +146,14 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
       return x;
     });
   }
+  std::vector<Vertex> vertices;
+  std::vector<int> first_vertex;
+  for (const RigidInput& rigid : rigids) {
+    first_vertex.push_back(static_cast<int>(vertices.size()));
+    vertices.insert(vertices.end(), rigid.surface.vertices.begin(), rigid.surface.vertices.end());
+  }
+  fill_view(s.vertices, "mpm::vertices", static_cast<int>(vertices.size()),
+            [&](int v) { return vertices[v]; });
   fill_view(s.rigids, "mpm::rigids", static_cast<int>(rigids.size()), [&](int r) {
     Rigid<Dim> rigid{};
     for (int d = 0; d < Dim; ++d) {
@@ -145,6 +165,12 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
     rigid.dynamic = rigids[r].dynamic;
     rigid.shear_limit = rigids[r].shear_limit;
     rigid.friction = rigids[r].friction;
+    rigid.surface_normal = rigids[r].surface_normal;
+    rigid.separates = rigids[r].separates;
+    rigid.reach = rigids[r].reach;
+    rigid.exponent = rigids[r].exponent;
+    rigid.surface = surface_of<Dim>(rigids[r].surface);
+    rigid.surface.first = first_vertex[r];
     rigid.mass_cut = cut * particle_mass;
     return rigid;
   });
@@ -187,10 +213,12 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.mass_cut = std::numeric_limits<double>::max();
   for (const BodyInput& body : bodies)
     s.mass_cut = std::min(s.mass_cut, k_cut * body.density * body.particle_volume);
-  s.rigid_moves = s.interface_shear = false;
+  s.rigid_moves = s.soil_surface = s.has_friction = s.has_penalty = false;
   for (const RigidInput& rigid : rigids) {
     s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.velocity != std::array<double, 3>{};
-    s.interface_shear = s.interface_shear || (rigid.shear_limit > 0 && std::isfinite(rigid.shear_limit));
+    s.has_penalty = s.has_penalty || rigid.reach > 0;
+    s.has_friction = s.has_friction || rigid.friction > 0;
+    s.soil_surface = s.soil_surface || rigid.surface_normal || rigid.shear_limit > 0;
   }
   s.control = ControlView<Space>("mpm::control");
   s.sums = decltype(s.sums)("mpm::sums", Dim * rigids.size());
@@ -268,7 +296,8 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add_set(s.soil);
   for (const auto& set : s.rigid_points) add_set(set);
   add(s.patches.slot_of), add(s.patches.origin), add(s.patches.around), add(s.marks), add(s.spare);
-  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.volume), add(s.nodes.rigid);
+  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.surface), add(s.nodes.impulse),
+      add(s.nodes.gap), add(s.near_rigid), add(s.vertices), add(s.nodes.rigid);
   return bytes;
 }
 

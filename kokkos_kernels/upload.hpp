@@ -40,6 +40,14 @@ struct BodyInput {
   int material = 0;
 };
 
+/// The surface of a rigid body, as Surface has it.
+struct SurfaceInput {
+  SurfaceKind kind = SurfaceKind::box;
+  std::array<double, 3> centre{}, half{}, normal{};
+  double radius = 0, angle = 0;  // m, rad
+  std::vector<Vertex> vertices;
+};
+
 /// Particles of one rigid body.
 struct RigidInput {
   std::vector<double> position;      // m [Dim N]
@@ -51,6 +59,11 @@ struct RigidInput {
   bool dynamic = false;
   double shear_limit = 0;  // Pa, infinite where only the friction limits
   double friction = -1;    // -, negative: none
+  SurfaceInput surface;
+  bool surface_normal = false;  // contact normals from the surface, not from the mass gradient
+  bool separates = true;        // the soil may part from it
+  double reach = 0;             // m, gap at which the contact ends; 0: it does not depend on the gap
+  double exponent = 6;          // -, of its decrease with the gap
 };
 
 /// Puts the particles on the device and makes patches, bins and lists. s.p2g and the scalars of s are set by

@@ -156,6 +156,27 @@ void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
   }
 }
 
+void read_penalty(OptionReader& in, RigidConfig& rigid) {
+  in.word({.name = rigid.name + "_contact_penalty",
+           .meaning = "geo: the normal correction decreases with the gap g as 1 - (g/reach)^exponent"},
+          std::vector<std::pair<std::string, bool>>{{"none", false}, {"geo", true}}, rigid.penalty);
+  const Option reach{.name = rigid.name + "_penalty_reach",
+                     .meaning = "geo: the gap at which contact ends, in cells",
+                     .unit = "-",
+                     .range = {.lowest = 0, .highest = 2, .open_lowest = true}},
+      exponent{.name = rigid.name + "_penalty_exponent",
+               .meaning = "geo: exponent of the decrease",
+               .unit = "-",
+               .range = {.lowest = 0.1, .highest = 100}};
+  if (rigid.penalty || in.listing()) {
+    in.number(reach, rigid.penalty_reach);
+    in.number(exponent, rigid.penalty_exponent);
+  } else {
+    in.not_taken(reach.name, rigid.name + "_contact_penalty is none");
+    in.not_taken(exponent.name, rigid.name + "_contact_penalty is none");
+  }
+}
+
 void read_rigid(OptionReader& in, const MeshConfig* mesh, int dim, RigidConfig& rigid) {
   rigid.shape.particles_per_cell = 4;
   if (!in.listing()) {  // listed with the bodies'
@@ -175,6 +196,15 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, int dim, RigidConfig& 
        .unit = "-",
        .range = {.lowest = 0, .highest = 10}},
       rigid.friction);
+  in.word({.name = rigid.name + "_contact_normal",
+           .meaning = "contact normals: of the body's own surface, or of its nodal mass gradient (Eq. 3)"},
+          std::vector<std::pair<std::string, ContactNormal>>{{"surface", ContactNormal::surface},
+                                                             {"gradient", ContactNormal::gradient}},
+          rigid.contact_normal);
+  in.word({.name = rigid.name + "_separation",
+           .meaning = "whether the soil may part from it; none: contact pulls as well (suction)"},
+          std::vector<std::pair<std::string, bool>>{{"free", true}, {"none", false}}, rigid.separates);
+  read_penalty(in, rigid);
 }
 
 }  // namespace

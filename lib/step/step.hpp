@@ -27,8 +27,8 @@ void rigids_to_nodes(const State<Space, T, Dim>& s) {
   }
 }
 
-/// Function 3: the soil's mass, momentum and internal force to the nodes, and its volume where an interface
-/// needs it.
+/// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
+/// needs it, and how near the soil is to bodies whose contact depends on that.
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s) {
   const auto& set = s.soil;
@@ -36,7 +36,10 @@ void soil_to_nodes(const State<Space, T, Dim>& s) {
     interpolate<AffineSource<Space, T, Dim>>(s, set.bins, {{set.points, s.grid.inv_spacing}}, s.nodes.soil);
   else
     interpolate<SoilSource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing}, s.nodes.soil);
-  if (s.interface_shear) interpolate<VolumeSource<Space, T, Dim>>(s, set.bins, {set.points}, s.nodes.volume);
+  if (s.has_penalty) measure_gaps(s);
+  if (s.soil_surface)
+    interpolate<SurfaceSource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing, s.near_rigid},
+                                              s.nodes.surface);
 }
 
 /// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own.

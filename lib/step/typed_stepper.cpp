@@ -1,4 +1,5 @@
 #include "step/typed_stepper.hpp"
+#include "step/surface_input.hpp"
 
 #include <cstdio>
 
@@ -49,6 +50,11 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
   const bool only_friction = rigid.friction && !rigid.has_shear_limit;
   in.shear_limit = only_friction ? std::numeric_limits<double>::infinity() : rigid.shear_limit;
   in.friction = rigid.friction.value_or(-1);
+  in.surface = surface_input(rigid.shape, config.mesh, config.dim);
+  in.surface_normal = rigid.contact_normal == ContactNormal::surface;
+  in.separates = rigid.separates;
+  if (rigid.penalty) in.reach = rigid.penalty_reach * config.mesh.spacing;
+  in.exponent = rigid.penalty_exponent;
   return in;
 }
 

@@ -78,7 +78,7 @@ template <class Space, class T, int Dim>
 std::vector<Table> nodal_fields(const State<Space, T, Dim>& s) {
   std::vector<Table> fields{nodes_of(s, s.nodes.soil)};
   for (std::size_t r = 0; r < s.rigid_points.size(); ++r) fields.push_back(nodes_of(s, rigid_field(s, r)));
-  if (s.interface_shear) fields.push_back(nodes_of(s, s.nodes.volume));
+  if (s.soil_surface) fields.push_back(nodes_of(s, s.nodes.surface));
   return fields;
 }
 

@@ -63,7 +63,8 @@ Vector<double, Dim> total_momentum(const State<Space, T, Dim>& s) {
 TEST_CASE("contact: no pull, no penetration, and shear up to the lesser of its bounds", "[contact]") {
   const Vector<double, 2> v{1, -2}, v_r{0, -0.5}, n{0, -1};  // relative (1, -1.5): approach 1.5, slip 1
   const auto change = [&](double shear_speed, double friction) {
-    return contact_correction<double, 2>(v, v_r, n, {shear_speed, friction});
+    Interface<double> interface { shear_speed, friction };
+    return contact_correction<double, 2>(v, v_r, n, interface);
   };
   CHECK(near(change(0, -1), 0, 1.5));               // smooth
   CHECK(near(change(0.25, -1), -0.25, 1.5));        // limited
@@ -74,14 +75,56 @@ TEST_CASE("contact: no pull, no penetration, and shear up to the lesser of its b
   CHECK(near(change(0.25, 0.4), -0.25, 1.5));  // both: the limit is less
   CHECK(near(change(0.8, 0.4), -0.6, 1.5));    // both: friction is less
   const Vector<double, 2> away{0, 1};
-  CHECK(near(contact_correction<double, 2>(v, v_r, away, {k_infinite, -1}), 0, 0));       // they part
-  CHECK(near(contact_correction<double, 2>({1, -0.5}, v_r, n, {k_infinite, -1}), 0, 0));  // they touch
-  CHECK(near(contact_correction<double, 2>({0, -2}, v_r, n, {0.1, -1}), 0, 1.5));         // no slip
+  const auto with = [](auto dim, auto own, auto v, auto v_r, auto n) {
+    Interface<double> interface = own;
+    return contact_correction<double, decltype(dim)::value>(v, v_r, n, interface);
+  };
+  using In2D = std::integral_constant<int, 2>;
+  using V2 = Vector<double, 2>;
+  const Interface<double> rough{k_infinite, -1};
+  CHECK(near(with(In2D{}, rough, v, v_r, away), 0, 0));         // they part
+  CHECK(near(with(In2D{}, rough, V2{1, -0.5}, v_r, n), 0, 0));  // no approach, no pressing
+  CHECK(near(with(In2D{}, Interface<double>{0.1, -1}, V2{0, -2}, v_r, n), 0, 1.5));  // no slip
+  Interface<double> pressed{0.25, -1};
+  pressed.pressing = 1e-3;  // bounces off, but the soil behind presses: shear acts on
+  CHECK(near(with(In2D{}, pressed, V2{1, -0.4}, v_r, n), -0.25, 0));
+  Interface<double> glued{0, -1};
+  glued.separates = false;  // no gap opens
+  CHECK(near(with(In2D{}, glued, v, v_r, away), 0, 1.5));
+  Interface<double> partly{0, -1};
+  partly.penalty = 0.25;
+  CHECK(near(with(In2D{}, partly, v, v_r, n), 0, 0.375));
   const double r = std::sqrt(0.5);
-  CHECK(near(contact_correction<double, 2>({2, 0}, {0, 0}, {r, r}, {0, -1}), -1, -1));  // an inclined face
+  CHECK(near(with(In2D{}, Interface<double>{0, -1}, V2{2, 0}, V2{0, 0}, V2{r, r}), -1,
+             -1));  // an inclined face
   const auto in_3d =
-      contact_correction<double, 3>({3, 4, 2}, {0, 0, 0}, {0, 0, 1}, {1, -1});  // slip (3, 4, 0)
+      with(std::integral_constant<int, 3>{}, Interface<double>{1, -1}, Vector<double, 3>{3, 4, 2},
+           Vector<double, 3>{0, 0, 0}, Vector<double, 3>{0, 0, 1});  // slip (3, 4, 0)
   CHECK(std::fabs(in_3d[0] + 0.6) + std::fabs(in_3d[1] + 0.8) + std::fabs(in_3d[2] + 2) < 1e-15);
+}
+
+TEST_CASE("friction spends the normal impulse of all steps, no more and no less", "[contact]") {
+  // the impulse comes in every fourth step only; the driving is less than friction takes on the whole
+  Interface<double> interface { k_infinite, 0.5 };
+  double normal = 0, tangential = 0, v = 0;
+  const auto run = [&](double drive, int steps) {
+    normal = tangential = 0;
+    for (int step = 0; step < steps; ++step) {
+      v += drive;
+      interface.stock *= k_memory<double>;
+      const auto change =
+          contact_correction<double, 2>({v, step % 4 == 0 ? -4.0 : 0.01}, {0, 0}, {0, -1}, interface);
+      v += change[0];
+      normal += change[1], tangential -= change[0];
+    }
+  };
+  run(0.45, 400);  // tan = 0.45 < 0.5: it sticks
+  CHECK(std::fabs(v) < 1e-12);
+  CHECK(std::fabs(tangential - 0.45 * 400) < 1e-9);
+  interface.stock = 0;
+  run(0.6, 400);  // it slides, by what friction does not take
+  CHECK(std::fabs(tangential / normal - 0.5) < 1e-3);
+  CHECK(std::fabs(v - 0.1 * 400) < 0.5);
 }
 
 TEST_CASE("the inward normal is against the mass gradient, in a roller's plane, and none in the body",

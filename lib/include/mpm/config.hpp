@@ -61,6 +61,9 @@ struct BodyConfig {
   std::vector<int> cut_out;  // indices into Config::rigids: particles in their shapes are left out
 };
 
+/// Where the normals of a contact come from: the body's own surface, or its nodal mass gradient (Eq. 3).
+enum class ContactNormal { surface, gradient };
+
 enum class Motion { fixed, prescribed, dynamic };
 
 /// A rigid body: it translates.
@@ -73,6 +76,11 @@ struct RigidConfig {
   Vec3 force{};                    // N, external (dynamic), beside gravity
   double shear_limit = 0;          // Pa, largest shear stress of the interface; 0 is smooth
   std::optional<double> friction;  // -, Coulomb coefficient
+  ContactNormal contact_normal = ContactNormal::surface;
+  bool separates = true;           // the soil may part from it
+  bool penalty = false;            // the normal correction decreases with the gap (Geo-contact)
+  double penalty_reach = 0.5;      // cells, gap at which it ends
+  double penalty_exponent = 6;     // -
   bool has_shear_limit = false;    // -NAME_shear_limit was given (it then bounds the friction too)
 };
 

@@ -1,0 +1,81 @@
+#include "step/surface_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mpm {
+namespace {
+
+constexpr double k_slack = 1e-6;  // of the mesh spacing: closer to the mesh's boundary is on it
+
+SurfaceInput box(const Shape& shape, const MeshConfig& mesh, int dim) {
+  SurfaceInput out;
+  const double slack = k_slack * mesh.spacing;
+  Vec3 lower = shape.lower, upper = shape.upper;
+  double shortest = upper[0] - lower[0];
+  for (int d = 1; d < dim; ++d) shortest = std::min(shortest, upper[d] - lower[d]);
+  for (int d = 0; d < dim && shape.angle == 0; ++d) {
+    const double beyond = mesh.upper[d] - mesh.lower[d];
+    if (lower[d] < mesh.lower[d] + slack) lower[d] -= beyond;
+    if (upper[d] > mesh.upper[d] - slack) upper[d] += beyond;
+  }
+  for (int d = 0; d < dim; ++d) {
+    out.half[d] = (upper[d] - lower[d]) / 2;
+    out.centre[d] = (upper[d] + lower[d]) / 2 - mesh.lower[d];
+  }
+  out.angle = shape.angle;
+  if (shape.angle != 0) {
+    const int up = dim - 1;
+    out.centre[0] = lower[0] + std::cos(out.angle) * out.half[0] - std::sin(out.angle) * out.half[up];
+    out.centre[up] = lower[up] + std::sin(out.angle) * out.half[0] + std::cos(out.angle) * out.half[up];
+    out.centre[0] -= mesh.lower[0], out.centre[up] -= mesh.lower[up];
+  }
+  constexpr double k_rounding = 0.5;  // cells
+  out.radius = std::max(shape.fillet, std::min(k_rounding * mesh.spacing, shortest / 2));
+  return out;
+}
+
+SurfaceInput polygon(const Shape& shape, const MeshConfig& mesh, int dim) {
+  SurfaceInput out;
+  out.kind = SurfaceKind::polygon;
+  const int up = dim - 1;
+  const double slack = k_slack * mesh.spacing;
+  const auto on_boundary = [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+    bool on = false;
+    for (int k = 0; k < 2; ++k) {
+      const int d = k == 0 ? 0 : up;
+      for (const double side : {mesh.lower[d], mesh.upper[d]})
+        on = on || (std::abs(a[k] - side) < slack && std::abs(b[k] - side) < slack);
+    }
+    return on;
+  };
+  const std::size_t count = shape.polygon.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto &a = shape.polygon[k], &b = shape.polygon[(k + 1) % count];
+    out.vertices.push_back({a[0] - mesh.lower[0], a[1] - mesh.lower[up], on_boundary(a, b)});
+  }
+  if (dim == 3) {
+    double low = shape.width[0], high = shape.width[1];
+    if (low < mesh.lower[1] + slack) low -= mesh.upper[1] - mesh.lower[1];
+    if (high > mesh.upper[1] - slack) high += mesh.upper[1] - mesh.lower[1];
+    out.half[1] = (high - low) / 2;
+    out.centre[1] = (high + low) / 2 - mesh.lower[1];
+  }
+  return out;
+}
+
+}  // namespace
+
+SurfaceInput surface_input(const Shape& shape, const MeshConfig& mesh, int dim) {
+  if (shape.kind == ShapeKind::box) return box(shape, mesh, dim);
+  if (shape.kind == ShapeKind::polygon) return polygon(shape, mesh, dim);
+  SurfaceInput out;
+  out.kind = shape.kind == ShapeKind::disc ? SurfaceKind::disc : SurfaceKind::half_plane;
+  const Vec3& centre = shape.kind == ShapeKind::disc ? shape.centre : shape.point;
+  for (int d = 0; d < dim; ++d) out.centre[d] = centre[d] - mesh.lower[d];
+  out.normal = shape.normal;
+  out.radius = shape.radius;
+  return out;
+}
+
+}  // namespace mpm

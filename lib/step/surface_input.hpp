@@ -1,0 +1,14 @@
+#pragma once
+// A rigid body's shape as the surface that contact kernels measure from.
+
+#include "mpm/config.hpp"
+#include "upload.hpp"
+
+namespace mpm {
+
+/// The surface of a shape. A face on the mesh's boundary is none: no soil can be behind it, so the body goes
+/// on beyond the mesh. The corners of a box are rounded by half a cell's edge at least, so that the normal at
+/// a corner lies between those of its faces.
+SurfaceInput surface_input(const Shape& shape, const MeshConfig& mesh, int dim);
+
+}  // namespace mpm
