@@ -1,9 +1,10 @@
 """Slab dragged over clay
 
 A slab whose interface slips at $\\tau_{max}$ is dragged over clay, and needs the force $\\tau_{max} A$: whatever the clay does
-below, and wherever the ends of the slab stand in their cells. The interface must touch for that, so the slab is lowered by
-1.2 mm while it moves by 0.3 m (six cells); the clay ahead of its front face, over that height, adds less than 0.1 % at
-a pressure of $s_u$. The mean force over the last two thirds is compared.
+below, and wherever its ends are in their cells. The interface must touch for that, so the clay carries a pressure of 3 kPa from the
+start; the slab moves by 0.3 m (six cells), and is lowered by 0.3 mm meanwhile. The clay is a strip that lies wholly under the slab, so $A$ is that of the strip. In one more run
+the clay is wider than the slab, whose front end then meets clay: nodes at the surface, up to a cell ahead, are pushed before
+it, which costs about $6 s_u d$ in cells of $d$. The mean force over the last two thirds is compared.
 """
 
 import numpy as np
@@ -11,21 +12,23 @@ import numpy as np
 from row import Row
 
 LIMIT = 1000.0
-FACES = "Nodes below the underside and beside the slab's ends touch it too."
+PLOUGHS = "The front end of the slab pushes the nodes at the surface that are less than a cell ahead of it."
+DEEPER = "Where the slab has been pressed in by a thousandth of a cell, nodes a cell below it touch it too, and take over the load."
 RUNS = {
-    "on_nodes": "",
-    "off_nodes": "-slab_lower 1.2623,1 -slab_upper 2.2801,1.25",
-    "3D": ("-dim 3 -mesh_lower 0,0,0 -mesh_upper 2.4,1.6,0.9 -mesh_spacing 0.1 -soil_lower 0,0,0 -soil_upper 2.4,1.6,0.5"
-           " -slab_lower 0.43,0.48,0.5 -slab_upper 1.27,1.13,0.8 -slab_velocity 0.5,0,-0.002 -mesh_ymin roller -mesh_ymax roller"
-           " -mesh_zmin fixed -mesh_zmax free"),
+    "ends on nodes": "",
+    "ends off nodes": "-soil_lower 1.0123,0 -soil_upper 3.0373,0.25",
+    "3D": ("-dim 3 -mesh_lower -0.6,-0.2,0 -mesh_upper 2.4,1.4,0.7 -mesh_spacing 0.1 -soil_lower 0.537,0.313,0 -soil_upper 1.587,0.863,0.2"
+           " -slab_lower -0.4,-0.1,0.2 -slab_upper 2,1.3,0.5 -slab_velocity 0.5,0,-0.001 -mesh_zmin fixed -mesh_zmax free -soil_stress 0,0,-3000,0,0,0"),
+    "wider clay": "-soil_lower 0,0 -soil_upper 5,0.5 -slab_lower 1.25,0.5 -slab_upper 2.25,0.75 -soil_stress 0,0,0,0 -slab_velocity 0.5,-0.002 -clay_su 3000",
 }
+RUNS = {name.replace(" ", "_"): options for name, options in RUNS.items()}
 LONG = True
 
 
 def area(run):
-    """Area of the underside, m2 (2D: m)."""
-    lower, upper = np.array(run.numbers("slab_lower")), np.array(run.numbers("slab_upper"))
-    return np.prod((upper - lower)[:-1])
+    """Area of the interface, m2 (2D: m): of the clay, or of the slab where that is smaller."""
+    soil, slab = (np.subtract(run.numbers(f"{name}_upper"), run.numbers(f"{name}_lower"))[:-1] for name in ("soil", "slab"))
+    return min(np.prod(soil), np.prod(slab))
 
 
 def force(run):
@@ -34,17 +37,16 @@ def force(run):
 
 
 def check(runs):
-    for name, run in runs.items():
+    for run_name, run in runs.items():
+        name, why = run_name.replace("_", " "), {"wider_clay": PLOUGHS, "3D": DEEPER}.get(run_name, "")
         late = run.history["time"] > run.number("time_end") / 3
         yield Row(f"force over tau_max A, {name}", force(run)[late].mean(), 1, 0.01, "definition", relative=True,
-                  shortfall=FACES, bound=6)
-        yield Row(f"standard deviation of the force over tau_max A, {name}", force(run)[late].std(), 0, 0.05, "definition",
-                  shortfall=FACES, bound=0.5)
+                  shortfall=why, bound=1.4 if why == PLOUGHS else 0.15)
 
 
 def draw(axes, runs):
     for name, run in runs.items():
-        axes.plot(0.5 * run.history["time"], force(run), lw=1, label=name)
+        axes.plot(0.5 * run.history["time"], force(run), lw=1, label=name.replace("_", " "))
     axes.axhline(1, color="k", lw=0.8)
-    axes.set(xlabel="distance dragged (m)", ylabel="force over $\\tau_{max} A$", ylim=(0.7, 1.3))
+    axes.set(xlabel="distance dragged (m)", ylabel="force over $\\tau_{max} A$", ylim=(0, None))
     axes.legend()

@@ -1,9 +1,9 @@
 """Slab pushed over clay by a force
 
-A rigid slab of mass $M$ that is free to move is pressed on clay by a vertical force and pushed over it by a horizontal one,
-$F$, larger than what the interface can hold, $\\tau_{max} A$. It must take the acceleration $(F - \\tau_{max} A)/M$. The
-vertical force (5.8 kPa, a third of the bearing capacity) acts at once, so the slab bounces at first; the acceleration is
-taken from 0.15 s on, when its bounces are over.
+A rigid slab of mass $M$ that is free to move is pressed on a strip of clay that lies wholly under it, and pushed over it by a
+horizontal force $F$, larger than what the interface can hold, $\\tau_{max} A$. It must take the acceleration
+$(F - \\tau_{max} A)/M$. The clay carries the vertical force (3 kPa) from the start. The acceleration is taken from
+0.05 s on, when the shear has built up. What is compared is the resistance $F - M a$ over $\\tau_{max} A$.
 """
 
 import numpy as np
@@ -12,12 +12,10 @@ from curves import last_frame, slope
 from row import Row
 
 LIMIT = 1000.0
-FACES = "Nodes below the underside and beside the slab's ends touch it too."
 RUNS = {
     "2D": "",
-    "3D": ("-dim 3 -mesh_lower 0,0,0 -mesh_upper 2.8,1.6,0.9 -mesh_spacing 0.1 -mesh_ymin roller -mesh_ymax roller -mesh_zmin fixed"
-           " -mesh_zmax free -soil_lower 0,0,0 -soil_upper 2.8,1.6,0.5 -slab_lower 0.43,0.48,0.5 -slab_upper 1.27,1.13,0.8"
-           " -slab_force 1500,0,-3000"),
+    "3D": ("-dim 3 -mesh_lower 0,0,0 -mesh_upper 2.4,1.2,0.7 -mesh_spacing 0.1 -soil_lower 0.537,0.313,0 -soil_upper 1.587,0.863,0.2"
+           " -slab_lower 0.2,0.1,0.2 -slab_upper 1.8,1.1,0.5 -mesh_zmin fixed -mesh_zmax free -slab_force 1100,0,-1732.5 -soil_stress 0,0,-3000,0,0,0"),
 }
 LONG = True
 
@@ -30,15 +28,14 @@ def mass(run):
 
 def resistance(run):
     """What holds the slab, F - M a, over tau_max A."""
-    area = np.prod(np.subtract(run.numbers("slab_upper"), run.numbers("slab_lower"))[:-1])
-    a = slope(run.history["time"], run.history["slab_velocity_x"], 0.15)
+    area = np.prod(np.subtract(run.numbers("soil_upper"), run.numbers("soil_lower"))[:-1])
+    a = slope(run.history["time"], run.history["slab_velocity_x"], 0.05)
     return (run.number("slab_force") - mass(run) * a) / (LIMIT * area)
 
 
 def check(runs):
     for name, run in runs.items():
-        yield Row(f"resistance F - M a over tau_max A, {name}", resistance(run), 1, 0.01, "Newton's second law", relative=True,
-                  shortfall=FACES, bound=3)
+        yield Row(f"resistance F - M a over tau_max A, {name}", resistance(run), 1, 0.01, "Newton's second law", relative=True)
 
 
 def draw(axes, runs):
