@@ -39,6 +39,7 @@ def columns(case, results):
 def section(case, results):
     """Title, explanation, table of answers and picture of a case."""
     entries = columns(case, results)
+    entries = {label: column for label, column in entries.items() if column} or entries
     lines = [f"### {case.title()}", "", case.explanation(), "",
              f"`regression/run {case.name}`: [the deck](../{case.deck}), [the check](../regression/cases/{case.name}/case.py)", "",
              "| answer | exact | allowed | " + " | ".join(entries) + " | source |", "| --- " * (len(entries) + 4) + "|"]
@@ -72,7 +73,7 @@ def cell(column, what):
 def answer_text(row):
     if row["answer"] is None:
         return "**no answer**"
-    error = f" ({100 * row['error']:.2g} %)" if row["relative"] and not row["at_least"] else ""
+    error = f" ({100 * row['error']:.3g} %)" if row["relative"] and not row["at_least"] else ""
     mark = {"pass": "", "short": " **short**", "FAIL": " **fails**"}[row["verdict"]]
     return f"{row['answer']:.5g}{error}{mark}"
 

@@ -29,7 +29,7 @@ def options(angle, offset, dim=2):
     return text
 
 
-SHALLOW = "At a shallow angle the ends of the block's boundary layer count a little less, by 1.6 % at the most."
+SHALLOW = "Up to 1.6 % too little at this shallow angle; the reason has not been found."
 CASES = {f"{angle}_{k}": (angle, offset, 2) for angle in ANGLES for k, offset in enumerate(OFFSETS.values())}
 CASES |= {f"{angle}_3D": (angle, 0.03, 3) for angle in (0, 17)}
 RUNS = {name: options(*how) for name, how in CASES.items()}

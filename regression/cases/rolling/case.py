@@ -15,7 +15,8 @@ G, SLOPE = 9.81, np.radians(20)
 BALL = ("-dim 3 -mesh_lower 0,0,-0.2 -mesh_upper 3.2,1.2,1.3 -mesh_spacing 0.1 -wheel_centre 0.75,0.6,0.5"
         " -base_lower 0,0,-0.2 -base_upper 3.2,1.2,0 -base_particles_per_cell 2 -gravity 3.355218,0,-9.218385 -mesh_zmin free -mesh_zmax free"
         " -wheel_particles_per_cell 2")
-CHATTER = "Coulomb's limit follows the normal impulse of the single step, which fluctuates."
+DISTANCE = ("Nodes up to a cell away from the plane touch it, so the wheel sticks over a length of half its radius, which brakes it. With "
+            "contact only within a tenth of a cell (-base_contact_penalty geo, -base_penalty_reach 0.1) the cylinder takes 2.02 m/s2.")
 RUNS = {"rolls": "", "slips": "-base_friction 0.08", "ball_rolls": BALL}
 EXACT = {"rolls": 2 / 3 * G * np.sin(SLOPE), "slips": G * (np.sin(SLOPE) - 0.08 * np.cos(SLOPE)),
          "ball_rolls": 5 / 7 * G * np.sin(SLOPE)}
@@ -30,7 +31,7 @@ def speed(run):
 def check(runs):
     for name, run in runs.items():
         yield Row(f"acceleration, {name.replace('_', ' ')} (m/s2)", slope(run.history["time"], speed(run), 0.2), EXACT[name], 0.02,
-                  "rigid body mechanics", relative=True, shortfall=CHATTER, bound=0.7)
+                  "rigid body mechanics", relative=True, shortfall=DISTANCE, bound=0.7)
 
 
 def draw(axes, runs):
