@@ -122,8 +122,9 @@ struct UpdateNodes {
     }
   }
 
-  /// Inward unit normal from the rigid's own surface. A node in the body looks from a cell's edge further
-  /// towards the soil, so that it finds the face that the soil is at. False where there is none.
+  /// Inward unit normal from the rigid's own surface. Where the soil's boundary says that the soil is at
+  /// another face, as in a thin plate, the node looks from a cell's edge further towards the soil. False
+  /// where there is none.
   KOKKOS_INLINE_FUNCTION bool surface_normal(const Rigid<Dim>& rigid, const Coord<Dim>& at, unsigned sides,
                                              const Vector<T, Dim>& boundary, Vector<T, Dim>& n) const {
     Vector<double, Dim> x;
@@ -132,8 +133,10 @@ struct UpdateNodes {
       x[d] = inside * spacing - rigid.displacement[d];
     }
     Distance<Dim> to = distance_to(rigid.surface, vertices, x);
-    const T length = Kokkos::sqrt(dot(boundary, boundary));
-    if (to.value < 0 && length > 0) {
+    double against = 0;
+    for (int d = 0; d < Dim; ++d) against += boundary[d] * to.normal[d];
+    if (against > 0) {
+      const T length = Kokkos::sqrt(dot(boundary, boundary));
       for (int d = 0; d < Dim; ++d) x[d] -= spacing * boundary[d] / length;
       to = distance_to(rigid.surface, vertices, x);
     }

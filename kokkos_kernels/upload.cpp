@@ -116,18 +116,6 @@ void upload_affine(State<Space, T, Dim>& s, const std::vector<BodyInput>& bodies
   });
 }
 
-template <int Dim>
-Surface<Dim> surface_of(const SurfaceInput& in) {
-  Surface<Dim> out{};
-  out.kind = in.kind;
-  for (int d = 0; d < Dim; ++d)
-    out.centre[d] = in.centre[d], out.half[d] = in.half[d], out.normal[d] = in.normal[d];
-  out.radius = in.radius;
-  out.cosine = std::cos(in.angle), out.sine = std::sin(in.angle);
-  out.count = static_cast<int>(in.vertices.size());
-  return out;
-}
-
 template <class Space, class T, int Dim>
 void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut, Fault& fault) {
   const double spacing = s.spacing;
@@ -177,6 +165,21 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
 }
 
 }  // namespace
+
+template <int Dim>
+Surface<Dim> surface_of(const SurfaceInput& in) {
+  Surface<Dim> out{};
+  out.kind = in.kind;
+  for (int d = 0; d < Dim; ++d)
+    out.centre[d] = in.centre[d], out.half[d] = in.half[d], out.normal[d] = in.normal[d];
+  out.radius = in.radius;
+  out.cosine = std::cos(in.angle), out.sine = std::sin(in.angle);
+  out.count = static_cast<int>(in.vertices.size());
+  return out;
+}
+
+template Surface<2> surface_of(const SurfaceInput&);
+template Surface<3> surface_of(const SurfaceInput&);
 
 template <class Space>
 bool device_agrees(const Space& space) {

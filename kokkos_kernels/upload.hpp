@@ -48,6 +48,9 @@ struct SurfaceInput {
   std::vector<Vertex> vertices;
 };
 
+template <int Dim>
+Surface<Dim> surface_of(const SurfaceInput& in);
+
 /// Particles of one rigid body.
 struct RigidInput {
   std::vector<double> position;      // m [Dim N]

@@ -71,7 +71,7 @@ struct Cloud {
   std::vector<RigidInput> rigids;
   P2GPlan p2g{P2G::sequential, 0.5, 3};
   std::array<double, 3> gravity{};
-  double flip_share = 1, damping = 0;
+  double flip_share = 1, damping = 0, f_bar_share = 0;
   int xpic_order = 0;
   bool affine = false;
 };
@@ -87,6 +87,7 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typenam
   s.xpic_order = cloud.xpic_order;
   s.affine = cloud.affine;
   s.damping = cloud.damping;
+  s.f_bar_share = cloud.f_bar_share;
   if (upload(s, cloud.grid, cloud.materials, cloud.bodies, cloud.rigids).kind != FaultKind::none)
     throw std::runtime_error("a particle of the test lies outside the mesh");
   return s;
@@ -200,6 +201,14 @@ Cloud random_cloud(int seed, Wall wall = Wall::free) {
                   rigid_of<Dim>(lattice<Dim>({0, 0, 0}, {3, 1, 2}, 2, spacing), 2, spacing)};
   cloud.rigids[0].velocity = {0.3, -0.5, 0.1};
   cloud.rigids[0].shear_limit = 2000;
+  if (seed % 2) {
+    cloud.rigids[0].surface_normal = true;
+    cloud.rigids[0].reach = 0.8 * spacing;
+    for (int d = 0; d < 3; ++d) {
+      cloud.rigids[0].surface.centre[d] = spacing * (d == 0 ? x + 2 : d == 1 ? y + 1 : 3.3);
+      cloud.rigids[0].surface.half[d] = spacing * (d == 0 ? 2 : 1);
+    }
+  }
   cloud.rigids[1].dynamic = true;
   cloud.rigids[1].shear_limit = std::numeric_limits<double>::infinity();
   cloud.rigids[1].friction = 0.3;

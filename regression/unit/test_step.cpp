@@ -159,6 +159,61 @@ TEST_CASE("FLIP and PIC mix by their share, and PIC's velocity is the one that m
   });
 }
 
+TEST_CASE("with F-bar the particles of a cell dilate alike, and their pressures begin alike", "[step]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    Cloud cloud = random_cloud<B::dim>(2);
+    cloud.f_bar_share = 1;
+    auto s = state_of<B>(cloud);
+    const auto cell = on_host(s.soil.points.cell);
+    const auto start = on_host(s.soil.points.volume);
+    const std::vector<double> before(start.data(), start.data() + start.extent(0));
+    one_step(s, 1e-5);
+    const auto after = on_host(s.soil.points.volume);
+    const auto stress = on_host(s.soil.points.stress);
+    double ratio = 0, pressure = 0, change = 0;
+    int together = 0;
+    for (int p = 1; p < s.soil.points.count; ++p) {
+      change = std::max(change, std::fabs(after(p) / before[p] - 1));
+      if (cell(p) != cell(p - 1)) continue;
+      ++together;
+      ratio = std::max(ratio, std::fabs(after(p) / before[p] - after(p - 1) / before[p - 1]));
+      pressure = std::max(pressure, std::fabs(double(mean_of(stress(p))) - mean_of(stress(p - 1))));
+    }
+    INFO(B::name());
+    CHECK(together > 100);
+    CHECK(change > 1e-6);
+    CHECK(ratio < B::of(1e-14, 1e-6));
+    CHECK(pressure < B::of(1e-7, 30));  // of some 10 kPa; both bodies have the same bulk modulus
+  });
+}
+
+TEST_CASE("a rigid falls freely as it should, to round-off", "[step]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    Cloud cloud = random_cloud<Dim>(2);
+    cloud.bodies = {
+        body_of<Dim>(lattice<Dim>({0, 0, 0}, {2, 2, 2}, 2, cloud.grid.spacing), 2, cloud.grid.spacing, 0)};
+    cloud.rigids.resize(1);
+    cloud.rigids[0].velocity = {0.3, 0.2, -0.1};
+    cloud.rigids[0].dynamic = true;
+    cloud.rigids[0].force = {0, -7, 3};
+    auto s = state_of<B>(cloud);
+    const double dt = 1e-3;
+    const int steps = 100;
+    run_steps(s, dt, steps);
+    const auto rigid = on_host(s.rigids);
+    const double t = steps * dt;
+    INFO(B::name());
+    for (int d = 0; d < Dim; ++d) {
+      const double a = cloud.rigids[0].force[d] / rigid(0).mass, v = cloud.rigids[0].velocity[d];
+      CHECK(std::fabs(rigid(0).velocity[d] - v - a * t) < 1e-12);
+      CHECK(std::fabs(rigid(0).displacement[d] - v * t - a * t * t / 2) < 1e-12);
+    }
+  });
+}
+
 TEST_CASE("one step of a random cloud is the plain loop's in double on one thread", "[step]") {
   for_each_reference([](auto reference) {
     constexpr int Dim = decltype(reference)::dim;
@@ -167,6 +222,7 @@ TEST_CASE("one step of a random cloud is the plain loop's in double on one threa
       cloud.gravity = {1, -9.81, 0.5};
       cloud.flip_share = seed == 2 ? 0.9 : 1;
       cloud.damping = seed == 3 ? 0.05 : 0;
+      cloud.f_bar_share = seed == 3 ? 0.9 : 0;
       const auto expected = fields_after<Reference<Dim>>(cloud, P2G::sequential, 1e-5, 1);
       for_each_build([&](auto build) {
         using B = decltype(build);

@@ -1,0 +1,232 @@
+// The surfaces of rigid bodies, and the soil's boundary at the nodes.
+
+#include <catch2/catch_test_macros.hpp>
+
+#include <numbers>
+
+#include "compare.hpp"
+#include "contact.hpp"
+#include "step/surface_input.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+MeshConfig mesh_of() {
+  MeshConfig mesh;
+  mesh.lower = {-5, -5, -5}, mesh.upper = {5, 5, 5}, mesh.spacing = 0.1;
+  return mesh;
+}
+
+/// Signed distance of a shape at x [m], by way of what a run uploads.
+template <int Dim>
+Distance<Dim> distance(const Shape& shape, Vector<double, Dim> x) {
+  const MeshConfig mesh = mesh_of();
+  const SurfaceInput in = surface_input(shape, mesh, Dim);
+  Surface<Dim> surface = surface_of<Dim>(in);
+  const Kokkos::View<const Vertex*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> vertices(in.vertices.data(),
+                                                                                         in.vertices.size());
+  for (int d = 0; d < Dim; ++d) x[d] -= mesh.lower[d];
+  return distance_to(surface, vertices, x);
+}
+
+Shape box(Vec3 lower, Vec3 upper, double fillet = 0, double angle = 0) {
+  Shape shape;
+  shape.lower = lower, shape.upper = upper, shape.fillet = fillet, shape.angle = angle;
+  return shape;
+}
+
+Shape polygon(std::vector<std::array<double, 2>> vertices) {
+  Shape shape;
+  shape.kind = ShapeKind::polygon, shape.polygon = std::move(vertices), shape.width = {-1, 2};
+  return shape;
+}
+
+template <int Dim>
+bool is(const Distance<Dim>& got, double value, Vector<double, Dim> normal) {
+  double off = std::fabs(got.value - value);
+  for (int d = 0; d < Dim; ++d) off += std::fabs(got.normal[d] - normal[d]);
+  return off < 1e-12;
+}
+
+const double k_half = std::sqrt(0.5);
+
+}  // namespace
+
+TEST_CASE("distance to a box: faces, rounded corners, inside, turned, cut off by the mesh", "[surface]") {
+  const Shape plate = box({-2, 0}, {1, 1});
+  CHECK(is<2>(distance<2>(plate, {0, -0.3}), 0.3, {0, -1}));
+  CHECK(is<2>(distance<2>(plate, {1.2, 0.5}), 0.2, {1, 0}));
+  CHECK(is<2>(distance<2>(plate, {0, 0.1}), -0.1, {0, -1}));
+  CHECK(is<2>(distance<2>(plate, {0.95, 0.5}), -0.05, {1, 0}));
+  // a corner is rounded by half a cell: its centre of curvature is 0.05 m inside
+  CHECK(is<2>(distance<2>(plate, {1, 0}), 0.05 * (std::sqrt(2.) - 1), {k_half, -k_half}));
+  CHECK(is<2>(distance<2>(box({-2, 0}, {1, 1}, 0.4), {1, 0}), 0.4 * (std::sqrt(2.) - 1), {k_half, -k_half}));
+  // a quarter of a turn puts the box [0, 3] x [0, 1] onto [-1, 0] x [0, 3]
+  CHECK(is<2>(distance<2>(box({0, 0}, {3, 1}, 0, std::numbers::pi / 2), {-0.5, 3.25}), 0.25, {0, 1}));
+  CHECK(is<2>(distance<2>(box({0, 0}, {3, 1}, 0, std::numbers::pi / 4), {1, 1 - std::sqrt(0.5)}), 0.5,
+              {k_half, -k_half}));
+  // its left face is the mesh's side: no surface, and no corner
+  const Shape half = box({-5, 0}, {1, 1});
+  CHECK(is<2>(distance<2>(half, {-5, -0.3}), 0.3, {0, -1}));
+  CHECK(is<2>(distance<2>(half, {-4.99, 0.4}), -0.4, {0, -1}));
+  CHECK(is<3>(distance<3>(box({0, 0, 0}, {1, 1, 1}), {0.5, 0.5, 1.5}), 0.5, {0, 0, 1}));
+  CHECK(is<3>(distance<3>(box({0, 0, 0}, {1, 1, 1}, 0, std::numbers::pi / 2), {-0.5, 0.5, 1.5}), 0.5,
+              {0, 0, 1}));
+}
+
+TEST_CASE("distance to a disc, a half plane, a polygon and a prism", "[surface]") {
+  Shape disc;
+  disc.kind = ShapeKind::disc, disc.centre = {1, 2, 3}, disc.radius = 0.5;
+  CHECK(is<2>(distance<2>(disc, {1, 3}), 0.5, {0, 1}));
+  CHECK(is<3>(distance<3>(disc, {0.75, 2, 3}), -0.25, {-1, 0, 0}));
+  Shape plane;
+  plane.kind = ShapeKind::half_plane, plane.point = {1, 1, 0}, plane.normal = {0.6, 0.8, 0};
+  CHECK(is<2>(distance<2>(plane, {1.6, 1.8}), 1, {0.6, 0.8}));
+  CHECK(is<3>(distance<3>(plane, {0.4, 0.2, 2}), -1, {0.6, 0.8, 0}));
+  for (const bool reversed : {false, true}) {
+    std::vector<std::array<double, 2>> corner = {{0, 0}, {2, 0}, {2, 2}, {1, 2}, {1, 1}, {0, 1}};
+    if (reversed) std::reverse(corner.begin(), corner.end());
+    const Shape ell = polygon(corner);
+    CHECK(is<2>(distance<2>(ell, {0.5, -0.5}), 0.5, {0, -1}));
+    CHECK(is<2>(distance<2>(ell, {0.5, 1.25}), 0.25, {0, 1}));
+    CHECK(is<2>(distance<2>(ell, {1.75, 1}), -0.25, {1, 0}));
+    CHECK(is<2>(distance<2>(ell, {2.3, 2.4}), 0.5, {0.6, 0.8}));
+    CHECK(is<2>(distance<2>(ell, {0.5, 0}), 0, {0, -1}));
+    CHECK(is<3>(distance<3>(ell, {0.5, 0, -0.5}), 0.5, {0, 0, -1}));
+    CHECK(is<3>(distance<3>(ell, {0.5, 2.5, 0.5}), 0.5, {0, 1, 0}));
+    CHECK(is<3>(distance<3>(ell, {0.5, -1.3, -0.4}), 0.5, {0, -0.6, -0.8}));
+  }
+  // an edge on the mesh's side is no surface
+  CHECK(distance<2>(polygon({{-5, -5}, {5, -5}, {5, 0}, {-5, 0}}), {-4.9, -4}).value == -4);
+}
+
+TEST_CASE("the soil's boundary sums to the area of each face, wherever the block lies", "[surface]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    const double spacing = 0.1;
+    Dice dice{std::mt19937_64(7)};
+    for (int trial = 0; trial < 4; ++trial) {
+      std::array<double, 3> low{}, high{};
+      for (int d = 0; d < 3; ++d) {
+        low[d] = 4 + dice.uniform(0, 1);
+        high[d] = low[d] + 3 + 0.5 * dice.below(4);
+      }
+      Cloud cloud;
+      cloud.grid = grid_of<Dim>({16, 16, 16}, spacing, Wall::free);
+      cloud.materials = clays();
+      cloud.bodies = {body_of<Dim>(lattice<Dim>(low, high, 2, spacing), 2, spacing, 1)};
+      cloud.rigids = {rigid_of<Dim>(lattice<Dim>({0, 0, 0}, {16, 16, 16}, 1, spacing), 1, spacing)};
+      cloud.rigids[0].surface_normal = true;
+      for (P2G how : k_strategies) {
+        auto s = state_of<B>(cloud, how);
+        interpolate(s);
+        const Table field = nodes_of(s, s.nodes.surface);
+        double face = 1, lower = 0, upper = 0, across = 0;
+        for (int d = 0; d < Dim - 1; ++d) face *= (high[d] - low[d]) * spacing;
+        for (int z = 0; z <= 16; ++z)
+          for (int y = 0; y <= 16; ++y)
+            for (int x = 0; x <= (Dim == 3 ? 16 : 0); ++x) {
+              Coord<Dim> node{y, z};
+              if constexpr (Dim == 3) node = {x, y, z};
+              const double* a = &field.value[s.grid.address_of(node) * field.width];
+              (z < (low[Dim - 1] + high[Dim - 1]) / 2 ? lower : upper) += a[Dim - 1];
+              across += std::fabs(a[0]) > 0 ? a[0] : 0;
+            }
+        INFO(build.name() << ' ' << strategy_name(how));
+        CHECK(std::fabs(lower + face) < B::of(1e-12, 1e-5) * face);
+        CHECK(std::fabs(upper - face) < B::of(1e-12, 1e-5) * face);
+        CHECK(std::fabs(across) < B::of(1e-12, 1e-5) * face);
+      }
+    }
+  });
+}
+
+TEST_CASE("soil pressed into a thin plate is stopped by the face that it is at", "[surface]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    const double spacing = 0.1;
+    for (const bool below : {true, false}) {
+      Cloud cloud;
+      cloud.grid = grid_of<Dim>({20, 20, 20}, spacing, Wall::free);
+      cloud.materials = clays();
+      // 0.6 of the plate deep in it, so that the nodes at its far side hold soil too
+      const double face = below ? 10.6 : 10.4;
+      std::array<double, 3> low{6, 6, 6}, high{14, 14, 14};
+      (below ? high : low)[Dim - 1] = face;
+      cloud.bodies = {body_of<Dim>(lattice<Dim>(low, high, 5, spacing), 5, spacing, 1)};
+      cloud.bodies[0].velocity[Dim - 1] = below ? 1 : -1;
+      std::array<double, 3> from{4, 4, 4}, to{16, 16, 16};
+      from[Dim - 1] = 10, to[Dim - 1] = 11;
+      cloud.rigids = {rigid_of<Dim>(lattice<Dim>(from, to, 4, spacing), 4, spacing)};
+      auto& plate = cloud.rigids[0];
+      plate.surface_normal = true;
+      for (int d = 0; d < 3; ++d) {
+        plate.surface.half[d] = (to[d] - from[d]) * spacing / 2;
+        plate.surface.centre[d] = (to[d] + from[d]) * spacing / 2;
+      }
+      auto s = state_of<B>(cloud);
+      interpolate(s);
+      update_nodes(s, 1e-6);
+      const Table motion = nodes_of(s, s.nodes.motion), soil = nodes_of(s, s.nodes.soil);
+      double fastest = 0;
+      int held = 0;
+      for (int z : {10, 11}) {
+        Coord<Dim> node{10, z};
+        if constexpr (Dim == 3) node = {10, 10, z};
+        const std::size_t at = s.grid.address_of(node);
+        held += soil.value[at * soil.width] > s.mass_cut;
+        fastest = std::max(fastest, std::fabs(motion.value[at * motion.width + Dim - 1]));
+      }
+      INFO(build.name() << (below ? " soil below" : " soil above"));
+      CHECK(held == 2);
+      CHECK(fastest < B::of(1e-12, 1e-5));
+    }
+  });
+}
+
+TEST_CASE("the penalty is 1 in touch and 0 from its reach on, and its gap is that of the nearest particle",
+          "[surface]") {
+  CHECK(penalty(-0.1, 0.5, 6.) == 1);
+  CHECK(penalty(0., 0.5, 6.) == 1);
+  CHECK(std::fabs(penalty(0.25, 0.5, 6.) - (1 - 1. / 64)) < 1e-15);
+  CHECK(penalty(0.5, 0.5, 6.) == 0);
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    const double spacing = 0.1;
+    Cloud cloud;
+    cloud.grid = grid_of<Dim>({20, 20, 20}, spacing, Wall::free);
+    cloud.materials = clays();
+    std::array<double, 3> high{14, 14, 14};
+    high[Dim - 1] = 9.7;
+    cloud.bodies = {body_of<Dim>(lattice<Dim>({6, 6, 6}, high, 10, spacing), 10, spacing, 1)};
+    std::array<double, 3> from{4, 4, 4}, to{16, 16, 16};
+    from[Dim - 1] = 10, to[Dim - 1] = 12;
+    cloud.rigids = {rigid_of<Dim>(lattice<Dim>(from, to, 4, spacing), 4, spacing)};
+    auto& plate = cloud.rigids[0];
+    plate.reach = 0.5 * spacing;
+    for (int d = 0; d < 3; ++d) {
+      plate.surface.half[d] = (to[d] - from[d]) * spacing / 2;
+      plate.surface.centre[d] = (to[d] + from[d]) * spacing / 2;
+    }
+    auto s = state_of<B>(cloud);
+    interpolate(s);
+    Coord<Dim> node{10, 10};
+    if constexpr (Dim == 3) node = {10, 10, 10};
+    const auto gap = on_host(s.nodes.gap);
+    const auto origin = on_host(s.patches.origin);
+    double found = -1;
+    for (int i = 0; i < s.patches.node_count(); ++i) {
+      bool here = true;
+      for (int d = 0; d < Dim; ++d)
+        here = here && origin(i / Patch<Dim>::cells)[d] + coord_of<Dim>(i)[d] == node[d];
+      if (here) found = gap(0, i);
+    }
+    INFO(build.name());
+    CHECK(std::fabs(found - 0.3 * spacing) < B::of(1e-12, 1e-6));
+  });
+}
