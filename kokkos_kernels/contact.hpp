@@ -66,6 +66,8 @@ struct Interface {
   T stock = 0;     // m/s: normal impulse not yet used by friction / nodal mass; updated
   T penalty = 1;   // -, share of the normal correction
   bool separates = true;
+  bool within_soil =
+      false;  // more than half a cell from the surface: it is not stopped, and nothing presses it
 };
 
 /// Correction dV of the soil's velocity v at a node; v_r velocity of the rigid, n inward unit normal. No soil
@@ -79,16 +81,19 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
   Vector<T, Dim> relative, change = filled<T, Dim>(0);
   for (int d = 0; d < Dim; ++d) relative[d] = v[d] - v_r[d];
   const T approach = dot(relative, n);
-  const T stop = interface.penalty * (interface.separates ? Kokkos::fmax(T(0), approach) : approach);
-  const bool touches = !interface.separates || approach > 0 || interface.pressing > 0;
+  const T stop = (interface.within_soil ? T(0) : interface.penalty) *
+                 (interface.separates ? Kokkos::fmax(T(0), approach) : approach);
+  Vector<T, Dim> slip;
+  for (int d = 0; d < Dim; ++d) slip[d] = relative[d] - approach * n[d];
+  const T speed = Kokkos::sqrt(dot(slip, slip));
+  constexpr T k_leaves = T(0.1);  // of the slip: a node in the soil that moves away faster is not in touch
+  const bool touches = !interface.separates || approach > 0 || interface.pressing > 0 ||
+                       (interface.within_soil && -approach < k_leaves * speed);
   T largest = touches ? interface.shear_speed : T(0);
   if (interface.friction >= 0) {
     interface.stock += Kokkos::fmax(T(0), stop);
     largest = Kokkos::fmin(interface.shear_speed, interface.friction * interface.stock);
   }
-  Vector<T, Dim> slip;
-  for (int d = 0; d < Dim; ++d) slip[d] = relative[d] - approach * n[d];
-  const T speed = Kokkos::sqrt(dot(slip, slip));
   const T share = largest >= speed ? T(1) : largest / speed;
   if (interface.friction > 0) interface.stock -= share * speed / interface.friction;
   for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - share * slip[d];

@@ -97,7 +97,8 @@ struct UpdateNodes {
       v_r[d] = static_cast<T>(rigid.velocity[d]);
       if (has_surface) boundary[d] = nodes.surface(i, d);
     }
-    if (rigid.surface_normal ? !surface_normal(rigid, at, sides, boundary, n)
+    T distance = 0;  // m, of the node from the surface
+    if (rigid.surface_normal ? !surface_normal(rigid, at, sides, boundary, n, distance)
                              : !inward_normal(grid, sides, m_r, n))
       return;
     Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction) };
@@ -109,6 +110,9 @@ struct UpdateNodes {
     for (int d = 0; d < Dim; ++d) pressing += (nodes.soil(i, S::force + d) / m_i + g[d]) * n[d];
     interface.pressing = pressing * dt;
     interface.separates = rigid.separates;
+    // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
+    // well, the body would act thicker than it is.
+    interface.within_soil = distance > grid.spacing / 2;
     if (rigid.reach > 0) {
       interface.penalty = penalty(nodes.gap(r, i), T(rigid.reach), T(rigid.exponent));
       if (!(interface.penalty > 0)) return;
@@ -126,13 +130,15 @@ struct UpdateNodes {
   /// another face, as in a thin plate, the node looks from a cell's edge further towards the soil. False
   /// where there is none.
   KOKKOS_INLINE_FUNCTION bool surface_normal(const Rigid<Dim>& rigid, const Coord<Dim>& at, unsigned sides,
-                                             const Vector<T, Dim>& boundary, Vector<T, Dim>& n) const {
+                                             const Vector<T, Dim>& boundary, Vector<T, Dim>& n,
+                                             T& distance) const {
     Vector<double, Dim> x;
     for (int d = 0; d < Dim; ++d) {
       const int inside = Kokkos::max(0, Kokkos::min(at[d], grid.cells[d]));  // bodies go on beyond the mesh
       x[d] = inside * spacing - rigid.displacement[d];
     }
     Distance<Dim> to = distance_to(rigid.surface, vertices, x);
+    distance = static_cast<T>(to.value);
     double against = 0;
     for (int d = 0; d < Dim; ++d) against += boundary[d] * to.normal[d];
     if (against > 0) {

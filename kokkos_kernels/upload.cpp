@@ -203,7 +203,10 @@ bool device_agrees(const Space& space) {
 template <class Space, class T, int Dim>
 Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
              const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids) {
-  constexpr double k_cut = 1e-6;  // of a particle's mass: below it a node's mass is round-off
+  // Of a particle's mass. A node's weight falls with the square of its gradient, so a node that is left out
+  // with 1e-12 would have felt a millionth of a particle's force; a rigid holds a node that it reaches by a
+  // thousandth of a cell.
+  constexpr double k_cut = 1e-12, k_rigid_cut = 1e-6;
   s.grid.spacing = static_cast<T>(grid.spacing);
   s.grid.inv_spacing = static_cast<T>(1 / grid.spacing);
   for (int d = 0; d < Dim; ++d) {
@@ -227,7 +230,7 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.sums = decltype(s.sums)("mpm::sums", Dim * rigids.size());
   upload_soil(s, materials, bodies, fault);
   if (s.affine) upload_affine(s, bodies);
-  upload_rigids(s, rigids, k_cut, fault);
+  upload_rigids(s, rigids, k_rigid_cut, fault);
   if (fault.kind == FaultKind::none) sort_and_list(s);
   return fault;
 }
