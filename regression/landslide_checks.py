@@ -10,9 +10,8 @@ PUBLISHED = "Dong, Wang & Randolph (2015): run-out 20 to 25 m, and the independe
 SOLVER = "independent sequential solver"
 TOES = ((4, 11.5, 0.7), (8, 20.5, 1.5), (15, 23.5, 2.0))  # time (s), way of the front (m), tolerance (m)
 LAST = 2.0  # s, end of the run over which what comes to rest is averaged
-CREEP = ("The slide still creeps at 15 s, fed by the noise of the particles' velocities, so that the base carries its "
-         "deceleration too.")
 
+BACK = "Particles at the tip of the back slope, in a wedge of one cell, still move by up to 0.1 m/s; the body there is at rest."
 
 def mass(run):
     """Mass of the slide, kg/m: of the first frame."""
@@ -74,16 +73,16 @@ def velocity_rows(run):
     yield Row("largest grid speed (m/s)", speed.max(), 3.8, 0.4, SOLVER)
     yield Row("grid speed at the front at 4 s (m/s)", velocity.mean(), 3.5, 0.4, SOLVER)
     yield Row("front at 4 s: above 1.5 m over below 0.75 m", above / below, 1.03, 0.07, SOLVER)
-    yield Row("back 10 m at 4 s: largest grid speed over the front's", back(run, 4) / velocity.mean(), 0, 0.02, SOLVER)
+    yield Row("back 10 m at 4 s: largest grid speed over the front's", back(run, 4) / velocity.mean(), 0, 0.02, SOLVER,
+              shortfall=BACK, bound=0.05)
 
 
 def rest_rows(run):
     """At rest the base carries the weight's part along the slope."""
     end = run.history["time"][-1]
     speed = run.history["slide_momentum_x"][-1] / mass(run)
-    yield Row(f"base shear over W sin 5 deg, last {LAST:.0f} s", shear_over_weight(run, end - LAST, end), 1, 0.02, "equilibrium",
-              shortfall=CREEP, bound=0.08)
-    yield Row("speed of the centre of mass at the end (m/s)", speed, 0, 0.02, "rest", shortfall=CREEP, bound=0.25)
+    yield Row(f"base shear over W sin 5 deg, last {LAST:.0f} s", shear_over_weight(run, end - LAST, end), 1, 0.02, "equilibrium")
+    yield Row("speed of the centre of mass at the end (m/s)", speed, 0, 0.02, "rest")
 
 
 def draw_curve(axes, run):
