@@ -77,11 +77,11 @@ struct RigidConfig {
   double shear_limit = 0;          // Pa, largest shear stress of the interface; 0 is smooth
   std::optional<double> friction;  // -, Coulomb coefficient
   ContactNormal contact_normal = ContactNormal::surface;
-  bool separates = true;           // the soil may part from it
-  bool penalty = false;            // the normal correction decreases with the gap (Geo-contact)
-  double penalty_reach = 0.5;      // cells, gap at which it ends
-  double penalty_exponent = 6;     // -
-  bool has_shear_limit = false;    // -NAME_shear_limit was given (it then bounds the friction too)
+  bool separates = true;         // the soil may part from it
+  bool penalty = false;          // the normal correction decreases with the gap (Geo-contact)
+  double penalty_reach = 0.5;    // cells, gap at which it ends
+  double penalty_exponent = 6;   // -
+  bool has_shear_limit = false;  // -NAME_shear_limit was given (it then bounds the friction too)
 };
 
 /// Courant numbers above this are known to be unstable (the energy of an elastic bar grows at 0.7).
