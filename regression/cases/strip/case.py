@@ -14,7 +14,8 @@ from row import Row
 SPACINGS = (0.1, 0.05, 0.025)
 ROUGH = " -plate_shear_limit 3000"
 FULL = "-mesh_lower -3,0 -soil_lower -3,0 -plate_lower -0.5,4"
-COARSE = "Half the footing is five cells wide: the cells under its edge give way as a whole."
+COARSE = (
+    "Half the footing is only five cells wide; with F-bar and contact within half a cell it is too soft there.")
 BELOW = "The values come from below, so that the line through the last two overshoots; the finer of them is closer."
 RUNS = {f"{base}_{d}": f"-mesh_spacing {d}" + more for base, more in (("smooth", ""), ("rough", ROUGH)) for d in SPACINGS}
 RUNS |= {"smooth_full": FULL, "rough_full": FULL + ROUGH}
