@@ -45,6 +45,18 @@ KOKKOS_INLINE_FUNCTION bool inward_normal(const Grid<T, Dim>& grid, unsigned sid
   return true;
 }
 
+/// How far beyond a node the soil begins along the normal [cells], negative where the node is in it, from the
+/// soil's volume over a cell's edge and its area [the same units] at the node: for a plane face across the
+/// node's cells the integrals of S_i are (1 - h)^2 / 2 and 1 - h. A face that covers a part of the cells
+/// scales both, and an inclined one hardly changes their ratio.
+template <class T>
+KOKKOS_INLINE_FUNCTION T surface_depth(T volume, T area) {
+  if (2 * volume <= area) return 1 - 2 * volume / area;
+  if (!(area > 0)) return -1;
+  const T ratio = volume / area;
+  return 2 / (ratio + Kokkos::sqrt(ratio * ratio + 2)) - 1;
+}
+
 /// Share of the normal correction at a gap [m] between body and soil (the "Geo-contact" penalty of Ma, Wang
 /// and Randolph 2014, in the form 1 - (gap/reach)^k): 1 in touch, 0 from `reach` on.
 template <class T>

@@ -16,6 +16,11 @@ template <int Dim>
 struct SoilShare {
   static constexpr int mass = 0, momentum = 1, force = 1 + Dim, size = 1 + 2 * Dim;
 };
+/// What soil near a rigid gives a node beside: its boundary as a vector out of it [m2] and its volume [m3].
+template <int Dim>
+struct BoundaryShare {
+  static constexpr int area = 0, volume = Dim, size = Dim + 1;
+};
 /// Values that a rigid gives a node: mass [kg], mass gradient times the cell's edge [kg] (Eq. 3).
 template <int Dim>
 struct RigidShare {
@@ -33,12 +38,10 @@ struct Nodes {
   NodeField<Space, T, NodeMotion<Dim>::size> motion;
   NodeField<Space, T, Dim> rest;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
-      gap;  // m, [rigid][node], from a rigid to the nearest soil; allocated where a contact depends on it
-  Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
       impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step
-  NodeField<Space, T, Dim> surface;  // m2, the soil's boundary as a vector out of it; allocated with rigids
+  NodeField<Space, T, BoundaryShare<Dim>::size> boundary;  // of the soil; allocated with rigids
   Kokkos::View<T* * [RigidShare<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space>
-      rigid;  // [rigid][node]
+      rigid;  // [rigid][node]; allocated where a normal comes from the mass gradient
 };
 
 /// A rigid body on the device.

@@ -52,6 +52,7 @@ struct RigidPoints : Points<Space, T, Dim> {
   Kokkos::View<Vector<double, Dim>*, Memory> home;  // cells from the mesh's lower corner, at the start
   T mass = 0;                                       // kg, of one particle
   T half_length = 0;                                // cells
+  bool surface_normal = false;                      // contact does not ask for their mass at the nodes
 };
 
 /// Applies f to every view that holds one entry a particle, but coordinate, cell and id. The one list of

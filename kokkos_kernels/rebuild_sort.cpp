@@ -177,11 +177,8 @@ void sort_and_list(State<Space, T, Dim>& s) {
   ensure(s.nodes.soil, nodes);
   ensure(s.nodes.motion, nodes);
   if (s.xpic_order > 0) ensure(s.nodes.rest, nodes);
-  if (s.soil_surface) ensure(s.nodes.surface, nodes);
-  if (s.has_penalty && static_cast<int>(s.nodes.gap.extent(1)) < nodes)
-    s.nodes.gap = decltype(s.nodes.gap)(Kokkos::view_alloc("mpm::nodes.gap", Kokkos::WithoutInitializing),
-                                        s.rigid_points.size(), nodes + nodes / 8);
-  if (static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
+  if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
+  if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid =
         decltype(s.nodes.rigid)(Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing),
                                 s.rigid_points.size(), nodes + nodes / 8);

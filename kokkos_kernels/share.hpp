@@ -95,14 +95,15 @@ struct RestSource {
 };
 
 /// The soil's boundary at a node, sum grad S V_p: by Gauss' theorem the integral of S_i n over it, n out of
-/// the soil. Summed over the nodes along a face it is the face's area, however the face cuts the cells.
+/// the soil. Summed over the nodes along a face it is the face's area, however the face cuts the cells. And
+/// its volume there, sum S V_p.
 template <class Space_, class T, int Dim>
-struct SurfaceSource {
+struct BoundarySource {
   using Space = Space_;
   using real = T;
-  static constexpr int dim = Dim, size = Dim;
+  static constexpr int dim = Dim, size = BoundaryShare<Dim>::size;
   struct Point {
-    T half_length, area;  // V_p / d
+    T half_length, area, volume;  // V_p / d, V_p
   };
   Soil<Space, T, Dim> points;
   T inv_spacing;
@@ -111,11 +112,13 @@ struct SurfaceSource {
   /// Far from every rigid the boundary matters to nobody.
   KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return near_rigid(slot) == 0; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    return {points.bodies(points.body(p)).half_length, points.volume(p) * inv_spacing};
+    const T volume = points.volume(p);
+    return {points.bodies(points.body(p)).half_length, volume * inv_spacing, volume};
   }
   template <class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T, const Vector<T, Dim>& grad, Add&& add) {
-    for (int d = 0; d < Dim; ++d) add(d, grad[d] * q.area);
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>& grad, Add&& add) {
+    for (int d = 0; d < Dim; ++d) add(BoundaryShare<Dim>::area + d, grad[d] * q.area);
+    add(BoundaryShare<Dim>::volume, w * q.volume);
   }
 };
 
@@ -155,7 +158,7 @@ KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, T w, const Vec
   X(SoilSource, Space, T, Dim)                \
   X(AffineSource, Space, T, Dim)              \
   X(RestSource, Space, T, Dim)                \
-  X(SurfaceSource, Space, T, Dim)             \
+  X(BoundarySource, Space, T, Dim)            \
   X(RigidSource, Space, T, Dim)
 
 }  // namespace mpm

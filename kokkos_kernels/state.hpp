@@ -53,9 +53,9 @@ struct State {
   double f_bar_share = 0;         // -
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   bool rigid_moves = false;       // some rigid is not fixed
-  bool soil_surface = false;      // some contact needs the soil's boundary at the nodes
+  bool mass_normals = false;      // some rigid's normals are those of its mass gradient
+  bool soil_boundary = false;     // some contact needs the soil's boundary at the nodes
   bool has_friction = false;      // some contact has Coulomb friction
-  bool has_penalty = false;       // some contact is reduced by the gap
 };
 
 }  // namespace mpm

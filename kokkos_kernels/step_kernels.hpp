@@ -10,11 +10,6 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s);
 
-/// 3. Least gap between each rigid whose contact depends on it and the soil at a node: the least signed
-/// distance of a particle that reaches the node from the rigid's surface, less the particle's half length.
-template <class Space, class T, int Dim>
-void measure_gaps(const State<Space, T, Dim>& s);
-
 /// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
 /// contact forces in s.sums. dt [s].
 template <class Space, class T, int Dim>

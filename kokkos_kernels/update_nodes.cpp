@@ -8,19 +8,17 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s) {
   const auto soil = s.nodes.soil;
-  const auto surface = s.nodes.surface;
+  const auto boundary = s.nodes.boundary;
   const auto rigid = s.nodes.rigid;
   const auto control = s.control;
-  const int rigids = static_cast<int>(s.rigid_points.size());
-  const bool has_surface = s.soil_surface, has_penalty = s.has_penalty;
-  const auto gap = s.nodes.gap;
+  const int rigids = s.mass_normals ? static_cast<int>(s.rigid_points.size()) : 0;
+  const int values = s.soil_boundary ? BoundaryShare<Dim>::size : 0;
   Kokkos::parallel_for(
       "mpm::reset_nodes", light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())),
       KOKKOS_LAMBDA(int i) {
         if (control().paused) return;
         for (int k = 0; k < SoilShare<Dim>::size; ++k) soil(i, k) = 0;
-        for (int d = 0; d < Dim && has_surface; ++d) surface(i, d) = 0;
-        for (int r = 0; r < rigids && has_penalty; ++r) gap(r, i) = Kokkos::Experimental::infinity<T>::value;
+        for (int k = 0; k < values; ++k) boundary(i, k) = 0;
         for (int r = 0; r < rigids; ++r)
           for (int k = 0; k < RigidShare<Dim>::size; ++k) rigid(r, i, k) = 0;
       });
@@ -37,11 +35,12 @@ struct UpdateNodes {
   Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   Kokkos::View<Vertex*, typename Space::memory_space> vertices;
+  Kokkos::View<int*, typename Space::memory_space> near_rigid;
   ControlView<Space> control;
   Vector<T, Dim> g;
   T dt, damping, mass_cut;
   double spacing;
-  bool has_surface, has_friction;
+  bool has_boundary, has_friction;
 
   KOKKOS_INLINE_FUNCTION void init(double* sum) const {
     for (int k = 0; k < value_count; ++k) sum[k] = 0;
@@ -72,7 +71,7 @@ struct UpdateNodes {
       for (int d = 0; d < Dim; ++d) at[d] += from[d];
       const unsigned sides = sides_of(grid, at);
       apply_walls(grid, sides, v);
-      if (m_i > mass_cut)
+      if (m_i > mass_cut && value_count > 0 && near_rigid(i / Patch<Dim>::cells) != 0)
         for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r)
           touch(i, r, at, sides, m_i, v, sum + r * Dim);
       apply_walls(grid, sides, v);
@@ -86,35 +85,32 @@ struct UpdateNodes {
   /// Contact with rigid r; adds the force of the soil on it (Eq. 10).
   KOKKOS_INLINE_FUNCTION void touch(int i, int r, const Coord<Dim>& at, unsigned sides, T m_i,
                                     Vector<T, Dim>& v, double* force) const {
-    using R = RigidShare<Dim>;
     using S = SoilShare<Dim>;
     const Rigid<Dim>& rigid = rigids(r);
-    const T m_r = nodes.rigid(r, i, R::mass);
-    if (!(m_r > rigid.mass_cut)) return;
     Vector<T, Dim> n, v_r, boundary = filled<T, Dim>(0);
     for (int d = 0; d < Dim; ++d) {
-      n[d] = nodes.rigid(r, i, R::normal + d);
       v_r[d] = static_cast<T>(rigid.velocity[d]);
-      if (has_surface) boundary[d] = nodes.surface(i, d);
+      if (has_boundary) boundary[d] = nodes.boundary(i, BoundaryShare<Dim>::area + d);
     }
-    T distance = 0;  // m, of the node from the surface
-    if (rigid.surface_normal ? !surface_normal(rigid, at, sides, boundary, n, distance)
-                             : !inward_normal(grid, sides, m_r, n))
+    Distance<Dim> to{};
+    if (rigid.surface_normal || rigid.reach > 0) to = distance_to(rigid.surface, vertices, place(rigid, at));
+    if (rigid.surface_normal ? !surface_normal(rigid, at, sides, boundary, to, n)
+                             : !mass_normal(rigid, i, r, sides, n))
       return;
+    const T area = Kokkos::fmax(T(0), dot(boundary, n));
     Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction) };
     if (rigid.shear_limit < Kokkos::Experimental::infinity<double>::value)
-      interface.shear_speed = rigid.shear_limit > 0 ? static_cast<T>(rigid.shear_limit) *
-                                                          Kokkos::fmax(T(0), dot(boundary, n)) * dt / m_i
-                                                    : T(0);
+      interface.shear_speed = static_cast<T>(rigid.shear_limit) * area * dt / m_i;
     T pressing = 0;
     for (int d = 0; d < Dim; ++d) pressing += (nodes.soil(i, S::force + d) / m_i + g[d]) * n[d];
     interface.pressing = pressing * dt;
     interface.separates = rigid.separates;
     // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
     // well, the body would act thicker than it is.
-    interface.within_soil = distance > grid.spacing / 2;
+    interface.within_soil = rigid.surface_normal && to.value > spacing / 2;
     if (rigid.reach > 0) {
-      interface.penalty = penalty(nodes.gap(r, i), T(rigid.reach), T(rigid.exponent));
+      const T depth = surface_depth(nodes.boundary(i, BoundaryShare<Dim>::volume) / spacing, area);
+      interface.penalty = penalty(T(to.value) + depth * grid.spacing, T(rigid.reach), T(rigid.exponent));
       if (!(interface.penalty > 0)) return;
     }
     if (has_friction) interface.stock = nodes.impulse(r, i) / m_i;
@@ -126,27 +122,43 @@ struct UpdateNodes {
     }
   }
 
-  /// Inward unit normal from the rigid's own surface. Where the soil's boundary says that the soil is at
-  /// another face, as in a thin plate, the node looks from a cell's edge further towards the soil. False
-  /// where there is none.
-  KOKKOS_INLINE_FUNCTION bool surface_normal(const Rigid<Dim>& rigid, const Coord<Dim>& at, unsigned sides,
-                                             const Vector<T, Dim>& boundary, Vector<T, Dim>& n,
-                                             T& distance) const {
+  /// Place of a node in the frame of a rigid's surface [m]. Bodies go on beyond the mesh.
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> place(const Rigid<Dim>& rigid, const Coord<Dim>& at) const {
     Vector<double, Dim> x;
+    for (int d = 0; d < Dim; ++d)
+      x[d] = Kokkos::max(0, Kokkos::min(at[d], grid.cells[d])) * spacing - rigid.displacement[d];
+    return x;
+  }
+
+  /// Inward unit normal from the rigid's mass gradient; false where it is out of touch.
+  KOKKOS_INLINE_FUNCTION bool mass_normal(const Rigid<Dim>& rigid, int i, int r, unsigned sides,
+                                          Vector<T, Dim>& n) const {
+    const T m_r = nodes.rigid(r, i, RigidShare<Dim>::mass);
+    for (int d = 0; d < Dim; ++d) n[d] = nodes.rigid(r, i, RigidShare<Dim>::normal + d);
+    return m_r > rigid.mass_cut && inward_normal(grid, sides, m_r, n);
+  }
+
+  /// Inward unit normal from the rigid's own surface, to which the node has the distance `to`. Where the
+  /// soil's boundary says that the soil is at another face, as in a thin plate, the node looks from a cell's
+  /// edge further towards the soil. False where the rigid does not reach into the node's cells.
+  KOKKOS_INLINE_FUNCTION bool surface_normal(const Rigid<Dim>& rigid, const Coord<Dim>& at, unsigned sides,
+                                             const Vector<T, Dim>& boundary, const Distance<Dim>& to,
+                                             Vector<T, Dim>& n) const {
+    constexpr double k_overlap = 1e-3;  // cells: less is no touch
+    double reach = -k_overlap, against = 0;
+    Vector<double, Dim> out = to.normal;
     for (int d = 0; d < Dim; ++d) {
-      const int inside = Kokkos::max(0, Kokkos::min(at[d], grid.cells[d]));  // bodies go on beyond the mesh
-      x[d] = inside * spacing - rigid.displacement[d];
+      reach += Kokkos::fabs(out[d]);
+      against += boundary[d] * out[d];
     }
-    Distance<Dim> to = distance_to(rigid.surface, vertices, x);
-    distance = static_cast<T>(to.value);
-    double against = 0;
-    for (int d = 0; d < Dim; ++d) against += boundary[d] * to.normal[d];
+    if (to.value > reach * spacing) return false;
     if (against > 0) {
       const T length = Kokkos::sqrt(dot(boundary, boundary));
+      Vector<double, Dim> x = place(rigid, at);
       for (int d = 0; d < Dim; ++d) x[d] -= spacing * boundary[d] / length;
-      to = distance_to(rigid.surface, vertices, x);
+      out = distance_to(rigid.surface, vertices, x).normal;
     }
-    for (int d = 0; d < Dim; ++d) n[d] = static_cast<T>(to.normal[d]);
+    for (int d = 0; d < Dim; ++d) n[d] = static_cast<T>(out[d]);
     return inward_normal(grid, sides, T(1), n);
   }
 };
@@ -155,8 +167,8 @@ template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt) {
   const int values = Dim * static_cast<int>(s.rigid_points.size());
   UpdateNodes<Space, T, Dim> update{
-      values, s.grid, s.nodes,      s.patches.origin, s.rigids,  s.vertices,     s.control,
-      {},     T(dt),  T(s.damping), T(s.mass_cut),    s.spacing, s.soil_surface, s.has_friction};
+      values, s.grid, s.nodes,      s.patches.origin, s.rigids,  s.vertices,      s.near_rigid,  s.control,
+      {},     T(dt),  T(s.damping), T(s.mass_cut),    s.spacing, s.soil_boundary, s.has_friction};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   const auto range = light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()));
   if (values > 0)

@@ -125,6 +125,7 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
     points.count = static_cast<int>(rigids[r].position.size() / Dim);
     points.mass = static_cast<T>(rigids[r].density * rigids[r].particle_volume);
     points.half_length = static_cast<T>(rigids[r].half_length);
+    points.surface_normal = rigids[r].surface_normal;
     const bool sound = fault.kind == FaultKind::none;
     place_points(s.grid, spacing, rigids[r].position, s.rigid_points[r], fault);
     if (sound && fault.kind != FaultKind::none) fault.particle = -1 - static_cast<int>(r);
@@ -219,12 +220,12 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.mass_cut = std::numeric_limits<double>::max();
   for (const BodyInput& body : bodies)
     s.mass_cut = std::min(s.mass_cut, k_cut * body.density * body.particle_volume);
-  s.rigid_moves = s.soil_surface = s.has_friction = s.has_penalty = false;
+  s.rigid_moves = s.mass_normals = s.soil_boundary = s.has_friction = false;
   for (const RigidInput& rigid : rigids) {
     s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.velocity != std::array<double, 3>{};
-    s.has_penalty = s.has_penalty || rigid.reach > 0;
     s.has_friction = s.has_friction || rigid.friction > 0;
-    s.soil_surface = s.soil_surface || rigid.surface_normal || rigid.shear_limit > 0;
+    s.mass_normals = s.mass_normals || !rigid.surface_normal;
+    s.soil_boundary = s.soil_boundary || rigid.surface_normal || rigid.shear_limit > 0 || rigid.reach > 0;
   }
   s.control = ControlView<Space>("mpm::control");
   s.sums = decltype(s.sums)("mpm::sums", Dim * rigids.size());
@@ -302,8 +303,8 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add_set(s.soil);
   for (const auto& set : s.rigid_points) add_set(set);
   add(s.patches.slot_of), add(s.patches.origin), add(s.patches.around), add(s.marks), add(s.spare);
-  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.surface), add(s.nodes.impulse),
-      add(s.nodes.gap), add(s.near_rigid), add(s.vertices), add(s.nodes.rigid);
+  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.boundary), add(s.nodes.impulse),
+      add(s.near_rigid), add(s.vertices), add(s.nodes.rigid);
   return bytes;
 }
 

@@ -16,11 +16,12 @@ void interpolate(const State<Space, T, Dim>& s, const Bins<Space>& bins, const S
                                                          s.control, s.p2g.mosaic_cells});
 }
 
-/// Function 2: each rigid body's mass and normal direction to the nodes.
+/// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not tell them.
 template <class Space, class T, int Dim>
 void rigids_to_nodes(const State<Space, T, Dim>& s) {
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& set = s.rigid_points[r];
+    if (set.points.surface_normal) continue;
     const NodeField<Space, T, RigidShare<Dim>::size> out =
         Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL);
     interpolate<RigidSource<Space, T, Dim>>(s, set.bins, {set.points}, out);
@@ -28,7 +29,7 @@ void rigids_to_nodes(const State<Space, T, Dim>& s) {
 }
 
 /// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
-/// needs it, and how near the soil is to bodies whose contact depends on that.
+/// needs it.
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s) {
   const auto& set = s.soil;
@@ -36,10 +37,9 @@ void soil_to_nodes(const State<Space, T, Dim>& s) {
     interpolate<AffineSource<Space, T, Dim>>(s, set.bins, {{set.points, s.grid.inv_spacing}}, s.nodes.soil);
   else
     interpolate<SoilSource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing}, s.nodes.soil);
-  if (s.has_penalty) measure_gaps(s);
-  if (s.soil_surface)
-    interpolate<SurfaceSource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing, s.near_rigid},
-                                              s.nodes.surface);
+  if (s.soil_boundary)
+    interpolate<BoundarySource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing, s.near_rigid},
+                                               s.nodes.boundary);
 }
 
 /// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own.

@@ -123,7 +123,7 @@ TEST_CASE("the soil's boundary sums to the area of each face, wherever the block
       for (P2G how : k_strategies) {
         auto s = state_of<B>(cloud, how);
         interpolate(s);
-        const Table field = nodes_of(s, s.nodes.surface);
+        const Table field = nodes_of(s, s.nodes.boundary);
         double face = 1, lower = 0, upper = 0, across = 0;
         for (int d = 0; d < Dim - 1; ++d) face *= (high[d] - low[d]) * spacing;
         for (int z = 0; z <= 16; ++z)
