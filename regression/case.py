@@ -20,7 +20,7 @@ import sys
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent  # of the source tree, or of a bundle
 CASES = ROOT / "regression" / "cases"
 sys.path[:0] = [path for path in (str(ROOT / "scripts"), str(ROOT / "regression")) if path not in sys.path]
 
@@ -29,6 +29,12 @@ from results import Run  # noqa: E402
 
 class ProgramFailed(Exception):
     """A run that did not reach its end; the text says which, and what the program said."""
+
+
+def program():
+    """The program to run where none is named: a bundle's own, or what the preset built."""
+    bundled = ROOT / "bin" / "mpm"
+    return bundled if bundled.exists() else ROOT / "build" / os.environ.get("MPM_PRESET", "openmp") / "app" / "mpm"
 
 
 def names():
