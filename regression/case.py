@@ -72,8 +72,8 @@ class Case:
 
 
 def run_program(binary, case, run, variant, folder, more=""):
-    """Runs the program once; its output as a Run, and the time it took, s."""
-    backend, precision = variant
+    """Runs the program once, in a variant (back end, precision, ...); its output as a Run, and the time it took, s."""
+    backend, precision = variant[:2]
     folder.mkdir(parents=True, exist_ok=True)
     start = folder / f"{run}.start.h5"
     options = shlex.split(f"-backend {backend} -precision {precision} {case.runs[run]} {more}".format(start=start))

@@ -1,0 +1,93 @@
+"""How far two runs of one problem are apart: the largest difference of each field of the last frame and of each column of
+the history, over a scale of the field. Needs numpy and h5py.
+
+The scale is the largest value of the field in the reference, but not less than what round-off of the others makes of it.
+With the impedance Z = rho c of the stiffest body, the stress S = max(|sigma|, Z |v|) and the speed S / Z belong together:
+a field that should be zero (the stress of a body that flies freely, the velocity of one at rest) differs by round-off of
+these. An energy has at least the scale M (S / Z)^2 / 2, a force on a rigid S on the face of a cell, a displacement a cell.
+"""
+
+import numpy as np
+
+from results import read_frame
+
+
+def impedance(run):
+    """Largest density times speed of compression waves of the run's bodies, Pa s/m."""
+    values = []
+    for body in run.words("bodies"):
+        material = run.text(f"{body}_material")
+        young, nu, density = (run.number(f"{material}_{key}") for key in ("young", "poisson", "density"))
+        values.append(np.sqrt(density * young * (1 - nu) / ((1 + nu) * (1 - 2 * nu))))
+    return max(values)
+
+
+def mass(run, groups):
+    """Mass of all bodies, kg."""
+    return sum(groups[body]["volume"].sum() * run.number(f"{run.text(f'{body}_material')}_density")
+               for body in run.words("bodies"))
+
+
+class Scales:
+    """What differences of a problem's fields are measured by, from its reference run."""
+
+    def __init__(self, run, groups):
+        z = impedance(run)
+        fields = [groups[body] for body in run.words("bodies")]
+        speed = max(np.abs(each["velocity"]).max() for each in fields)
+        self.stress = max(z * speed, *(np.abs(each["stress"]).max() for each in fields))
+        self.velocity = self.stress / z
+        self.spacing = run.number("mesh_spacing")
+        self.strain = self.stress / min(run.number(f"{name}_young") for name in run.words("materials"))
+        self.momentum = mass(run, groups) * self.velocity
+        self.force = self.stress * self.spacing ** (run.number("dim", 2) - 1)
+        self.rigids = run.words("rigids")
+
+    def of_field(self, name):
+        return {"velocity": self.velocity, "grid_velocity": self.velocity, "stress": self.stress,
+                "plastic_strain": self.strain}.get(name, 0)
+
+    def of_column(self, name):
+        if name.endswith("kinetic_energy"):
+            return self.momentum * self.velocity / 2
+        if "momentum" in name:
+            return self.momentum
+        if "velocity" in name:
+            return self.velocity
+        if "force" in name:
+            return self.force
+        return self.spacing if name[:-2] in self.rigids else 0  # a rigid's displacement
+
+
+def relative(values, reference, scale):
+    """Largest difference over the scale; infinite where the two do not match, or are not finite."""
+    if values.shape != reference.shape:
+        return np.inf
+    difference = np.abs(values.astype(float) - reference).max(initial=0)
+    if difference == 0:
+        return 0.0
+    share = difference / max(np.abs(reference).max(), scale)
+    return share if np.isfinite(share) else np.inf
+
+
+def columns_of(run):
+    return {name: values for name, values in run.history.items() if name != "wall_time"}
+
+
+def largest(run, reference):
+    """The largest relative difference of a run from its reference, and where it is."""
+    groups, wanted = read_frame(run.frame)[1], read_frame(reference.frame)[1]
+    scales = Scales(reference, wanted)
+    found = [(relative(groups[name][key], values, scales.of_field(key)), f"{name} {key}")
+             for name, fields in wanted.items() for key, values in fields.items()]
+    found += [(relative(run.history[name], values, scales.of_column(name)), name)
+              for name, values in columns_of(reference).items()]
+    return max([(0.0, "nowhere"), *found])
+
+
+def differing(run, other):
+    """Number of values of the last frames and of the histories whose bits differ between two runs."""
+    groups, again = read_frame(run.frame)[1], read_frame(other.frame)[1]
+    pairs = [(again[name][key], values) for name, fields in groups.items() for key, values in fields.items()]
+    pairs += [(other.history[name], values) for name, values in columns_of(run).items()]
+    return sum(int(np.sum(a != b)) if a.shape == b.shape else b.size for a, b in pairs)
