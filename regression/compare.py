@@ -14,7 +14,7 @@ from row import Row, failed
 
 STRATEGIES = ("sequential", "atomic", "mosaic", "gather", "tile")
 REPEATABLE = ("sequential", "gather")
-BOUNDS = {1: {"double": 1e-12, "single": 1e-5}, 100: {"double": 1e-9, "single": 1e-2}}
+BOUNDS = {1: {"double": 1e-12, "single": 5e-6}, 100: {"double": 1e-9, "single": 1e-3}}
 Started = namedtuple("Started", "short again whole")  # {steps: {run: future}}, {run: future}, {run: future}
 
 

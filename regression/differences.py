@@ -82,7 +82,7 @@ def largest(run, reference):
              for name, fields in wanted.items() for key, values in fields.items()]
     found += [(relative(run.history[name], values, scales.of_column(name)), name)
               for name, values in columns_of(reference).items()]
-    return max([(0.0, "nowhere"), *found])
+    return max([(0.0, "nowhere"), *found], key=lambda each: each[0])
 
 
 def differing(run, other):

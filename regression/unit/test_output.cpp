@@ -19,6 +19,8 @@
 #include "output/frames.hpp"
 #include "output/history.hpp"
 #include "output/log.hpp"
+#include "output/performance.hpp"
+#include "output/remembered.hpp"
 #include "output/run_options.hpp"
 
 using namespace mpm;
@@ -298,11 +300,41 @@ TEST_CASE("progress says how far and how long", "[output]") {
 }
 
 TEST_CASE("the closing table adds up", "[output]") {
-  const std::string table =
-      format_times({{"interpolate", 100, 6.0, 3e11}, {"move", 100, 3.0, 0}}, 10, 2e7, 1e11);
+  Performance p;
+  p.functions = {{"interpolate", 100, 6.0, 3e11}, {"move", 100, 3.0, 0}};
+  p.wall = 10, p.stepping = 9.5, p.steps = 100, p.particles = 190000;
+  p.rebuilds = 3, p.shortest = 20, p.longest = 40, p.interval = 30;
+  p.strategy = "tile", p.memory = 19e6, p.bandwidth = 1e11;
+  const std::string report = format_performance(p);
   for (const char* part :
-       {"60.0 %", "30.0 %", "everything else", "10.0 %", "2.0 M/s", "50.0 (50 %)", "30 % of the 100.0 GB/s"})
-    CHECK_THAT(table, ContainsSubstring(part));
+       {"60.0 %", "30.0 %", "everything else", "10.0 %", "300.00      50.0   50.0 %",
+        "rebuilt 3 times, after 20 to 40", "30.0 on average", "strategy tile", "100.0 bytes a particle",
+        "31.6 GB/s, 31.6 % of it", "2.0 M/s", "9.5e+04 us a step"})
+    CHECK_THAT(report, ContainsSubstring(part));
+}
+
+TEST_CASE("a figure is measured once a key, and every time where it cannot be kept", "[output]") {
+  const Folder folder;
+  const char* const before = std::getenv("XDG_CACHE_HOME");
+  const std::string kept = before != nullptr ? before : "";
+  int measured = 0;
+  const auto figure = [&](const std::string& key, double value) {
+    return remembered("figures", key, [&] { return ++measured, value; });
+  };
+  setenv("XDG_CACHE_HOME", folder.path.c_str(), 1);
+  CHECK(figure("serial, some processor", 1.0 / 3) == 1.0 / 3);
+  CHECK(figure("cuda, some GPU", 4e12) == 4e12);
+  CHECK(figure("serial, some processor", 5) == 1.0 / 3);
+  CHECK(figure("cuda, some GPU", 5) == 4e12);
+  CHECK(measured == 2);
+  CHECK(figure("no memory", 0) == 0);
+  CHECK(figure("no memory", 0) == 0);
+  CHECK(measured == 4);
+  std::ofstream(folder / "a file");
+  setenv("XDG_CACHE_HOME", (folder / "a file").c_str(), 1);
+  CHECK(figure("serial, some processor", 7) == 7);
+  CHECK(figure("serial, some processor", 8) == 8);
+  before != nullptr ? setenv("XDG_CACHE_HOME", kept.c_str(), 1) : unsetenv("XDG_CACHE_HOME");
 }
 
 TEST_CASE("the log's file holds what was said before it was opened and each tenth of the run", "[output]") {
