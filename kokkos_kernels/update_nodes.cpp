@@ -109,9 +109,11 @@ struct UpdateNodes {
     // well, the body would act thicker than it is.
     interface.within_soil = rigid.surface_normal && to.value > spacing / 2;
     if (rigid.reach > 0) {
-      const T depth = surface_depth(nodes.boundary(i, BoundaryShare<Dim>::volume) / spacing, area);
-      interface.penalty = penalty(T(to.value) + depth * grid.spacing, T(rigid.reach), T(rigid.exponent));
-      if (!(interface.penalty > 0)) return;
+      const T depth = surface_depth(nodes.boundary(i, BoundaryShare<Dim>::volume) / grid.spacing, area);
+      const T gap = static_cast<T>(to.value) + depth * grid.spacing;
+      interface.penalty = penalty(gap, T(rigid.reach), T(rigid.exponent));
+      // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
+      if (gap > Kokkos::fmax(T(rigid.reach), grid.spacing / 2)) return;
     }
     if (has_friction) interface.stock = nodes.impulse(r, i) / m_i;
     const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);

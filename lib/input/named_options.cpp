@@ -156,10 +156,18 @@ void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
   }
 }
 
+/// The gap counts by default where it is known and may open.
 void read_penalty(OptionReader& in, RigidConfig& rigid) {
-  in.word({.name = rigid.name + "_contact_penalty",
-           .meaning = "geo: the normal correction decreases with the gap g as 1 - (g/reach)^exponent"},
-          std::vector<std::pair<std::string, bool>>{{"none", false}, {"geo", true}}, rigid.penalty);
+  const std::string name = rigid.name + "_contact_penalty";
+  rigid.penalty = rigid.separates && rigid.contact_normal == ContactNormal::surface;
+  if (rigid.separates || in.listing())
+    in.word(
+        {.name = name,
+         .meaning = "geo: the normal correction decreases with the gap g as 1 - (g/reach)^exponent; none is "
+                    "the default with normals of the mass gradient"},
+        std::vector<std::pair<std::string, bool>>{{"none", false}, {"geo", true}}, rigid.penalty);
+  else
+    in.not_taken(name, rigid.name + "_separation is none");
   const Option reach{.name = rigid.name + "_penalty_reach",
                      .meaning = "geo: the gap at which contact ends, in cells",
                      .unit = "-",

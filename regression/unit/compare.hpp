@@ -77,7 +77,8 @@ Table nodes_of(const State<Space, T, Dim>& s, const Field& field) {
 template <class Space, class T, int Dim>
 std::vector<Table> nodal_fields(const State<Space, T, Dim>& s) {
   std::vector<Table> fields{nodes_of(s, s.nodes.soil)};
-  for (std::size_t r = 0; r < s.rigid_points.size() && s.mass_normals; ++r) fields.push_back(nodes_of(s, rigid_field(s, r)));
+  for (std::size_t r = 0; r < s.rigid_points.size() && s.mass_normals; ++r)
+    fields.push_back(nodes_of(s, rigid_field(s, r)));
   if (s.soil_boundary) fields.push_back(nodes_of(s, s.nodes.boundary));
   return fields;
 }

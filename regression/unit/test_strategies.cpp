@@ -144,6 +144,7 @@ TEST_CASE("every strategy keeps the total mass and momentum, at walls too, and i
       }
       for (std::size_t r = 0; r < cloud.rigids.size(); ++r) {
         const RigidInput& rigid = cloud.rigids[r];
+        if (rigid.surface_normal) continue;  // contact does not ask for its mass
         const double rigid_mass = rigid.density * rigid.particle_volume * (rigid.position.size() / Dim);
         CHECK(std::fabs(total_of(fields[1 + r], 0).sum / rigid_mass - 1) < tolerance);
       }

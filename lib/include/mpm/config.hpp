@@ -78,8 +78,8 @@ struct RigidConfig {
   std::optional<double> friction;  // -, Coulomb coefficient
   ContactNormal contact_normal = ContactNormal::surface;
   bool separates = true;         // the soil may part from it
-  bool penalty = false;          // the normal correction decreases with the gap (Geo-contact)
-  double penalty_reach = 0.5;    // cells, gap at which it ends
+  bool penalty = true;           // the normal correction decreases with the gap (Geo-contact)
+  double penalty_reach = 0.15;   // cells, gap at which it ends
   double penalty_exponent = 6;   // -
   bool has_shear_limit = false;  // -NAME_shear_limit was given (it then bounds the friction too)
 };
