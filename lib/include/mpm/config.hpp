@@ -123,7 +123,7 @@ struct Config {
   VelocityUpdate velocity_update = VelocityUpdate::flip;
   int xpic_order = 2;      // -, m of XPIC(m), with xpic
   double flip_share = 1;   // -, share of FLIP in the velocity update, the rest PIC, or XPIC with xpic
-  double f_bar_share = 1;  // -, share of the cell's mean in a particle's dilatation (F-bar)
+  double f_bar_share = 0.98;  // -, share of the cell's mean in a particle's dilatation (F-bar)
   std::vector<MaterialConfig> materials;
   std::vector<BodyConfig> bodies;
   std::vector<RigidConfig> rigids;

@@ -13,9 +13,6 @@ from row import Row
 
 EXACT = {("smooth", 2): 6.661, ("smooth", 6): 8.839, ("smooth", 20): 14.678,
          ("rough", 2): 7.597, ("rough", 6): 10.421, ("rough", 20): 17.402}
-THIN = (
-    "Probably the full share of F-bar, not isolated by a test here: with a share of 0.95 the load of the uniform strip is "
-    "1.5 % higher at B/40 and 3 % higher at B/20.")
 RUNS = {f"{base}_{growth}": f"-clay_su_gradient {3000 * growth}" + (" -plate_shear_limit 3000" if base == "rough" else "")
         for base, growth in EXACT}
 LONG = True
@@ -31,7 +28,7 @@ def line(run):
 def check(runs):
     for (base, growth), exact in EXACT.items():
         yield Row(f"q/su0, {base}, k B/su0 = {growth}", line(runs[f"{base}_{growth}"])[1], exact, 0.03,
-                  "slip lines; problem of Davis & Booker (1973)", relative=True, shortfall=THIN, bound=0.06)
+                  "slip lines; problem of Davis & Booker (1973)", relative=True)
 
 
 def draw(axes, runs):

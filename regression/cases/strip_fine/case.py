@@ -1,0 +1,29 @@
+"""Strip footing, finer
+
+The case `strip` once more with cells of $B$/80, beside $B$/40: eight times the work, so it is run on a GPU or on all cores, in
+double precision. The straight line through the two, over $d$, gives the answer at $d = 0$. Some of what is left is no error: a
+footing that has sunk by 0.035 $B$, the mean of the window, stands in a trough.
+"""
+
+import case as cases
+from row import Row
+
+strip = cases.Case("strip").module
+DECK = "regression/cases/strip/case.opts"
+SPACINGS = (0.025, 0.0125)
+RUNS = {f"{base}_{d}": f"-mesh_spacing {d}" + more for base, more in (("smooth", ""), ("rough", strip.ROUGH)) for d in SPACINGS}
+BACKENDS, PRECISIONS = ("openmp", "cuda"), ("double",)
+TROUGH = "The values rise with the mesh to what a footing in a trough carries."
+LONG = True
+
+
+def check(runs):
+    for base in ("smooth", "rough"):
+        coarse, fine = (strip.factor(runs[f"{base}_{d}"]) for d in SPACINGS)
+        yield Row(f"Nc, {base}, d = B/80", fine, strip.EXACT, 0.03, "Prandtl (1921)", relative=True)
+        yield Row(f"Nc, {base}, extrapolated from B/40 and B/80", 2 * fine - coarse, strip.EXACT, 0.02, "Prandtl (1921)",
+                  relative=True, shortfall=TROUGH, bound=0.03)
+
+
+def draw(axes, runs):
+    strip.draw_curves(axes, runs, dict(zip(SPACINGS, ("--", "-"))))
