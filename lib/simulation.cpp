@@ -106,6 +106,7 @@ PetscErrorCode Simulation::Body::write_row() {
 
 PetscErrorCode Simulation::Body::write_frame() {
   PetscFunctionBeginUser;
+  if (!config.output.frames) PetscFunctionReturn(PETSC_SUCCESS);
   Snapshot snapshot;
   stepper->snapshot(&snapshot);
   snapshot.step = step;
@@ -118,12 +119,20 @@ PetscErrorCode Simulation::Body::finish() {
   PetscFunctionBeginUser;
   PetscCall(history.close());
   if (step > 0) {
-    if (rebuilds > 0)
-      PetscCall(log.print("bins and lists were rebuilt %ld times, after %ld to %ld steps, %.1f on average",
-                          rebuilds, shortest, longest, double(step - since_rebuild) / rebuilds));
-    PetscCall(log.line("time of the functions\n" + format_times(stepper->times(), wall(), 0, 0)));
-    PetscCall(log.print("%.4g us a step without output; %s particle updates", 1e6 * stepping / step,
-                        format_rate(double(step) * stepper->particles() / stepping).c_str()));
+    PetscCall(
+        log.line(format_performance({.functions = stepper->times(),
+                                     .wall = wall(),
+                                     .stepping = stepping,
+                                     .steps = step,
+                                     .particles = stepper->particles(),
+                                     .rebuilds = rebuilds,
+                                     .shortest = shortest,
+                                     .longest = longest,
+                                     .interval = rebuilds > 0 ? double(step - since_rebuild) / rebuilds : 0,
+                                     .strategy = stepper->strategy(),
+                                     .device = device_name(config.backend),
+                                     .memory = double(stepper->memory()),
+                                     .bandwidth = bandwidth})));
   }
   PetscCall(log.print("%s after %ld steps at time %g s; results are in %s",
                       outcome == Outcome::finished ? "finished" : "failed", step, schedule.time_of(step),

@@ -10,6 +10,7 @@
 #include "output/frames.hpp"
 #include "output/history.hpp"
 #include "output/log.hpp"
+#include "output/performance.hpp"
 #include "step/schedule.hpp"
 #include "step/stepper.hpp"
 
@@ -37,6 +38,7 @@ struct Simulation::Body {
   long step = 0;
   double last_row_time = 0;                                         // s
   double wall_start = 0;                                            // s
+  double bandwidth = 0;                                             // bytes/s of the device's copy
   double stepping = 0;                                              // s of wall time in steps and rebuilds
   long since_rebuild = 0, rebuilds = 0, longest = 0, shortest = 0;  // steps between rebuilds
 

@@ -6,6 +6,7 @@
 #include "input/particle_file.hpp"
 #include "mesh/background.hpp"
 #include "output/files.hpp"
+#include "output/remembered.hpp"
 #include "output/run_options.hpp"
 #include "simulation_body.hpp"
 
@@ -103,6 +104,11 @@ PetscErrorCode Simulation::Body::start() {
   PetscCall(log.line("options in force\n" + format_options(report.options)));
   PetscCall(write_options_json(config.output.directory, k_version, report.options));
 
+  const Backend backend = config.backend;
+  const std::string processor = backend == Backend::cuda ? "" : processor_name();
+  const std::string device =
+      formatted("%s, %s %s", word_of(backend), device_name(backend).c_str(), processor.c_str());
+  bandwidth = remembered("copy_bandwidth", device, [&] { return copy_bandwidth(backend); });
   Model model;
   Failure failure;
   PetscCall(load(&model));

@@ -134,6 +134,10 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
            .meaning = "folder of the results",
            .standard = listing ? "out/ and the stem of the options file" : ""},
           output.directory);
+  in.word(
+      {.name = "output_frames",
+       .meaning = "off: no frames of the particles, as for measuring speed or where the disk is too small"},
+      Words<bool>{{"on", true}, {"off", false}}, output.frames);
   in.number({.name = "output_interval",
              .meaning = "time between frames",
              .unit = "s",

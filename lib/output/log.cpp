@@ -19,23 +19,6 @@
 namespace mpm {
 namespace {
 
-/// As sprintf, to a string.
-__attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...) {
-  char buffer[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  return buffer;
-}
-
-std::string processor_name() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("model name")) return line.substr(std::min(line.find(':') + 2, line.size()));
-  return "unknown processor";
-}
-
 /// Cores that this process may use.
 int usable_cores() {
   cpu_set_t set;
@@ -55,17 +38,23 @@ double share_done(const ProgressState& s) {
   return s.end > s.start ? std::clamp((s.time - s.start) / (s.end - s.start), 0.0, 1.0) : 1.0;
 }
 
-std::string format_row(const FunctionTime& f, double wall, double bandwidth) {
-  std::string row = formatted("  %-44s %9ld %11.3f %6.1f %%", f.name.c_str(), f.calls, f.seconds,
-                              wall > 0 ? 100 * f.seconds / wall : 0.0);
-  if (f.bytes > 0 && f.seconds > 0) {
-    row += formatted(" %8.1f", f.bytes / f.seconds / 1e9);
-    if (bandwidth > 0) row += formatted(" (%.0f %%)", 100 * f.bytes / f.seconds / bandwidth);
-  }
-  return row + "\n";
+}  // namespace
+
+std::string formatted(const char* format, ...) {
+  char buffer[512];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof buffer, format, arguments);
+  va_end(arguments);
+  return buffer;
 }
 
-}  // namespace
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name")) return line.substr(std::min(line.find(':') + 2, line.size()));
+  return "unknown processor";
+}
 
 std::string format_duration(double seconds) {
   const long s = std::isfinite(seconds) && seconds > 0 ? std::lround(std::min(seconds, 1e12)) : 0;
@@ -88,30 +77,6 @@ std::string format_progress(const ProgressState& s) {
   text += "  " + format_rate(s.particle_updates / s.wall) + " particle updates";
   if (done >= 1) return text + "  in " + format_duration(s.wall);
   return done > 0 ? text + "  " + format_duration(s.wall * (1 - done) / done) + " left" : text;
-}
-
-std::string format_times(const std::vector<FunctionTime>& times, double wall, double particle_updates,
-                         double bandwidth) {
-  double rest = wall, bytes = 0;
-  const bool known =
-      std::any_of(times.begin(), times.end(), [](const FunctionTime& f) { return f.bytes > 0; });
-  std::string text = formatted("  %-44s %9s %11s %8s%s\n", "function", "calls", "seconds", "share",
-                               known ? "     GB/s" : "");
-  for (const FunctionTime& f : times) {
-    text += format_row(f, wall, bandwidth);
-    rest -= f.seconds;
-    bytes += f.bytes;
-  }
-  if (rest > 0)
-    text += formatted("  %-44s %9s %11.3f %6.1f %%\n", "everything else", "", rest, 100 * rest / wall);
-  text += formatted("  %-44s %9s %11.3f  100.0 %%\n", "wall time", "", wall);
-  if (wall > 0 && particle_updates > 0)
-    text += "  particle updates per second: " + format_rate(particle_updates / wall) + "\n";
-  if (bytes > 0 && wall > 0) text += formatted("  bytes per second: %.1f GB/s", bytes / wall / 1e9);
-  if (bytes > 0 && wall > 0 && bandwidth > 0)
-    text += formatted(", %.0f %% of the %.1f GB/s measured on this device", 100 * bytes / wall / bandwidth,
-                      bandwidth / 1e9);
-  return bytes > 0 && wall > 0 ? text + "\n" : text;
 }
 
 std::string format_header(const std::string& version, const std::string& kokkos_version,

@@ -19,23 +19,14 @@ struct ProgressState {
   double particle_updates = 0;          // particles times steps since the first step
 };
 
-/// Time of one of the step's functions on the slowest rank.
-struct FunctionTime {
-  std::string name;
-  long calls = 0;
-  double seconds = 0;
-  double bytes = 0;  // moved to and from memory in all calls; 0 if not known
-};
+/// As sprintf, to a string of up to 511 characters.
+__attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...);
 
+std::string processor_name();                 // of this machine
 std::string format_duration(double seconds);  // "42 s", "3 min 05 s", "2 h 07 min"
 std::string format_rate(double per_second);   // "12.3 M/s"
 std::string format_progress(
     const ProgressState& s);  // "step 1200  t = 0.072 s  3.6 %  12.3 M/s  2 min 05 s left"
-
-/// The closing table: each function with calls, seconds, share of `wall` [s], and GB/s where bytes are known
-/// (beside the share of `bandwidth` [bytes/s] where that is not 0); the rest; particle updates per second.
-std::string format_times(const std::vector<FunctionTime>& times, double wall, double particle_updates,
-                         double bandwidth);
 
 /// Program, date, machine (host, processor, cores, ranks) and versions of the libraries (this text knows
 /// PETSc, MPI and HDF5; the version of Kokkos is given, as is the device's name). Collective on nothing; one

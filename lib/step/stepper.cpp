@@ -3,6 +3,7 @@
 #include <cstring>
 #include <limits>
 
+#include "copy_bandwidth.hpp"
 #include "step/typed_stepper.hpp"
 
 namespace mpm {
@@ -68,6 +69,16 @@ std::string device_name(Backend backend) {
   if (backend == Backend::openmp) return std::to_string(Kokkos::OpenMP().concurrency()) + " threads";
 #endif
   return backend == Backend::serial ? "1 thread" : "";
+}
+
+double copy_bandwidth(Backend backend) {
+#ifdef KOKKOS_ENABLE_CUDA
+  if (backend == Backend::cuda) return copy_bandwidth(Kokkos::Cuda());
+#endif
+#ifdef KOKKOS_ENABLE_OPENMP
+  if (backend == Backend::openmp) return copy_bandwidth(Kokkos::OpenMP());
+#endif
+  return copy_bandwidth(Kokkos::Serial());
 }
 
 }  // namespace mpm

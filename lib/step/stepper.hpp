@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mpm/config.hpp"
-#include "output/log.hpp"
+#include "output/performance.hpp"
 #include "output/snapshot.hpp"
 
 namespace mpm {
@@ -76,5 +76,9 @@ double critical_time_step(const Config& config);
 /// Version of Kokkos, and the name of the device that the backend runs on.
 std::string kokkos_version();
 std::string device_name(Backend backend);
+
+/// Bytes read and written per second by a copy on the device of a backend, measured now [bytes/s]; 0 if it
+/// cannot be.
+double copy_bandwidth(Backend backend);
 
 }  // namespace mpm

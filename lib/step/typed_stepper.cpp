@@ -1,5 +1,6 @@
 #include "step/typed_stepper.hpp"
 #include "step/surface_input.hpp"
+#include "step/traffic.hpp"
 
 #include <cstdio>
 
@@ -212,7 +213,8 @@ std::vector<FunctionTime> TypedStepper<Space, T, Dim>::times() const {
   std::vector<FunctionTime> times;
   for (int n = 0; n < k_functions; ++n) {
     const Function f = static_cast<Function>(n);
-    times.push_back({name_of(f), timers_.calls(f), timers_.seconds(f), 0});
+    times.push_back(
+        {name_of(f), timers_.calls(f), timers_.seconds(f), timers_.calls(f) * bytes_of(f, state_)});
   }
   return times;
 }

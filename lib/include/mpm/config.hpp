@@ -105,6 +105,7 @@ enum class Progress { automatic, on, off };
 
 struct OutputConfig {
   std::string directory;
+  bool frames = true;           // of the particles; without them a run writes its history only
   double interval = 0;          // s between frames
   double history_interval = 0;  // s between rows of the history
   Progress progress = Progress::automatic;

@@ -1,0 +1,53 @@
+#include "output/performance.hpp"
+
+#include <algorithm>
+
+#include "output/log.hpp"
+
+namespace mpm {
+namespace {
+
+/// A row of the table; calls are left out where they are negative, bytes and bandwidth where they are 0.
+std::string row_of(const FunctionTime& f, double wall, double bandwidth) {
+  std::string row = formatted("  %-30s %9s %11.3f %6.1f %%", f.name.c_str(),
+                              f.calls < 0 ? "" : std::to_string(f.calls).c_str(), f.seconds,
+                              wall > 0 ? 100 * f.seconds / wall : 0.0);
+  if (f.bytes > 0 && f.seconds > 0) {
+    row += formatted(" %11.2f %9.1f", f.bytes / 1e9, f.bytes / f.seconds / 1e9);
+    if (bandwidth > 0) row += formatted(" %6.1f %%", 100 * f.bytes / f.seconds / bandwidth);
+  }
+  return row + "\n";
+}
+
+std::string table_of(const Performance& p) {
+  std::string text = formatted("  %-30s %9s %11s %8s %11s %9s %8s\n", "function", "calls", "seconds", "share",
+                               "GB moved", "GB/s", "of copy");
+  double rest = p.wall;
+  for (const FunctionTime& f : p.functions) {
+    text += row_of(f, p.wall, p.bandwidth);
+    rest -= f.seconds;
+  }
+  if (rest > 0) text += row_of({"everything else", -1, rest, 0}, p.wall, 0);
+  return text + row_of({"wall time", -1, p.wall, 0}, p.wall, 0);
+}
+
+}  // namespace
+
+std::string format_performance(const Performance& p) {
+  double bytes = 0;
+  for (const FunctionTime& f : p.functions) bytes += f.bytes;
+  std::string text = "time of the functions, and the least that they must move\n" + table_of(p);
+  if (p.rebuilds > 0)
+    text += formatted("bins and lists were rebuilt %ld times, after %ld to %ld steps, %.1f on average\n",
+                      p.rebuilds, p.shortest, p.longest, p.interval);
+  text += formatted("strategy %s; %.1f MB on the device, %.1f bytes a particle\n", p.strategy.c_str(),
+                    p.memory / 1e6, p.memory / std::max(p.particles, 1L));
+  if (p.bandwidth > 0)
+    text += formatted("%s: a copy reads and writes %.1f GB/s; the steps move %.1f GB/s, %.1f %% of it\n",
+                      p.device.c_str(), p.bandwidth / 1e9, bytes / p.stepping / 1e9,
+                      100 * bytes / p.stepping / p.bandwidth);
+  return text + formatted("%.4g us a step without output; %s particle updates", 1e6 * p.stepping / p.steps,
+                          format_rate(double(p.steps) * p.particles / p.stepping).c_str());
+}
+
+}  // namespace mpm

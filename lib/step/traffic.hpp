@@ -1,0 +1,68 @@
+#pragma once
+// The least that each function of a step must move to and from memory: every value of a particle or node that
+// it needs is read once, and every one that it changes is written once. What it reads again because a cache
+// has lost it, lists, windows and passes over unchanged data are not counted. So a function's share of the
+// copy bandwidth tells how near it is to the limit of memory.
+
+#include "state.hpp"
+#include "step/timers.hpp"
+
+namespace mpm {
+
+/// Bytes a particle of the fields that are sorted.
+template <class Points_>
+double bytes_of_point(Points_ points) {
+  double bytes = sizeof(*points.coordinate.data()) + sizeof(*points.cell.data()) + sizeof(*points.id.data());
+  for_each_field(points, [&](const auto& field) { bytes += sizeof(*field.data()); });
+  return bytes;
+}
+
+/// Function 3: place, body, velocity, stress, volume and APIC's matrix of each particle; the sums of each
+/// node.
+template <class Space, class T, int Dim>
+double bytes_to_nodes(const State<Space, T, Dim>& s) {
+  const auto& p = s.soil.points;
+  double particle = sizeof(*p.coordinate.data()) + sizeof(*p.cell.data()) + sizeof(*p.body.data());
+  particle += sizeof(*p.velocity.data()) + sizeof(*p.stress.data()) + sizeof(*p.volume.data());
+  if (s.affine) particle += sizeof(*p.affine.data());
+  return p.count * particle + s.patches.node_count() * double(sizeof(T) * SoilShare<Dim>::size);
+}
+
+/// Function 5: all that changes of a particle is read and written; cell, body and strength are read; the
+/// motion of each node. Each pass of XPIC reads places and takes and leaves a velocity, APIC's matrix is
+/// written.
+template <class Space, class T, int Dim>
+double bytes_to_particles(const State<Space, T, Dim>& s) {
+  const auto& p = s.soil.points;
+  const double place = sizeof(*p.coordinate.data()) + sizeof(*p.cell.data()) + sizeof(*p.body.data());
+  double particle = place + sizeof(*p.coordinate.data()) + sizeof(*p.strength.data());
+  particle += 2 * (sizeof(*p.velocity.data()) + sizeof(*p.stress.data()));
+  particle += 2 * (sizeof(*p.volume.data()) + sizeof(*p.plastic_strain.data()));
+  particle += s.xpic_order * (place + 2 * sizeof(*p.velocity.data()));
+  if (s.affine) particle += sizeof(*p.affine.data());
+  return p.count * particle + s.patches.node_count() * double(sizeof(T) * NodeMotion<Dim>::size);
+}
+
+/// Bytes that one call of a function must move.
+template <class Space, class T, int Dim>
+double bytes_of(Function f, const State<Space, T, Dim>& s) {
+  double points = 0, sorted = s.soil.points.count * bytes_of_point(s.soil.points);  // of the rigids; of all
+  for (const auto& set : s.rigid_points) {
+    points += set.points.count;
+    sorted += set.points.count * bytes_of_point(set.points);
+  }
+  constexpr double place = sizeof(Vector<T, Dim>) + sizeof(int), home = sizeof(Vector<double, Dim>);
+  const double rigid_sums = s.rigid_points.size() * RigidShare<Dim>::size;
+  const double sums = s.patches.node_count() * sizeof(T) * (SoilShare<Dim>::size + rigid_sums);
+  switch (f) {
+    case Function::reset: return sums;
+    case Function::rigid_to_nodes: return points * place;  // the few nodes that they reach are left out
+    case Function::soil_to_nodes: return bytes_to_nodes(s);
+    case Function::nodes: return sums + s.patches.node_count() * double(sizeof(T) * NodeMotion<Dim>::size);
+    case Function::particles: return bytes_to_particles(s);
+    case Function::rigids: return s.rigid_moves ? points * (place + home) : 0;
+    default: return 2 * sorted;
+  }
+}
+
+}  // namespace mpm
