@@ -52,7 +52,7 @@ def draw_curve(axes, kept, problem):
         axes.axhline(EXACT, color="0.4", ls="--", label="exact, small strain; the paper agrees \"reasonably well\"")
         axes.set(title="Fig. 5: bearing capacity of the footing", xlabel="penetration $w/B$", ylabel="$N_c$", ylim=(0, 7.5), xlim=(0, 0.2))
     else:
-        axes.axhspan(20, 25, color="0.85", label="end of the paper's axis: between 20 and 25 m")
+        axes.axhspan(20, 25, color="0.85", label="where the paper's slide ends: 20 to 25 m")
         axes.axvline(11, color="0.4", ls=":", label="the paper's slide stops at 11 s")
         axes.set(title="Fig. 8: run-out of the slide", xlabel="time (s)", ylabel="run-out of the toe (m)", ylim=(0, 30), xlim=(0, 15))
 
@@ -74,6 +74,7 @@ def draw_speedups(axes, measured, problem):
     number = {"footing": 6, "landslide": 10}[problem]
     axes.set(xscale="log", yscale="log", xlabel="particles", ylabel="speed-up over one core, double precision",
              title=f"Fig. {number}: speed-up of the {problem}")
+    axes.set_ylim(top=15 * axes.get_ylim()[1])  # room for the legend
 
 
 def draw(kept, folder):
@@ -90,7 +91,7 @@ def draw(kept, folder):
     for axes in panels.flat:
         axes.grid(alpha=0.25, which="both")
         if axes.get_legend_handles_labels()[0]:
-            axes.legend(fontsize=8)
+            axes.legend(fontsize=8, loc="best" if axes in panels[:, 0] else "upper left", ncols=1 if axes in panels[:, 0] else 3)
     figure.savefig(folder / "performance_paper.png", dpi=100)
     plt.close(figure)
     return "![Figs 5, 6, 8 and 10 of the paper by our runs](images/performance_paper.png)"

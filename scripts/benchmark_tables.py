@@ -54,12 +54,17 @@ def number(value):
     return f"{value:,.0f}" if value >= 1000 else f"{value:.4g}"
 
 
+def digits(value):
+    """Three digits, without exponent."""
+    return f"{float(f'{value:.3g}'):g}"
+
+
 def ms(us):
     return number(us / 1e3) if us is not None else "-"
 
 
 def ratio(us, other):
-    return f"{float(f'{us / other:.3g}'):g}" if us is not None and other else "-"
+    return digits(us / other) if us is not None and other else "-"
 
 
 def table(header, rows):
@@ -78,7 +83,7 @@ def runtimes(measured, problem):
         rows.append([f"{particles:,}", f"{cpu} / {single:.2f} / {double:.2f}", ours("serial", "double", "auto"),
                      f"{ours('cuda', 'single', 'gather')} / {ours('cuda', 'double', 'gather')}",
                      f"{ours('cuda', 'single', 'auto')} / {ours('cuda', 'double', 'auto')}",
-                     f"{particles / best / 1e3:.3g}" if best else "-",
+                     digits(particles / best / 1e3) if best else "-",
                      ratio(measured.us(problem, particles, "serial", "double", "auto"), best)])
     return table(["particles", "paper: CPU / GPU single / double", "our CPU", "our GPU, gather: single / double",
                   "our GPU, default: single / double", "G updates/s, single", "speed-up, single"], rows)
@@ -106,12 +111,12 @@ def speedups(measured):
 
 def strategies(measured):
     """One table of all strategies: us a step (M particle updates/s), a column each back end and precision."""
-    columns = [(backend, precision) for backend in measured.values("backend") for precision in measured.values("precision")]
+    columns = sorted({(each["backend"], each["precision"]) for each in measured.runs}, key=lambda each: (each[0], each[1] == "double"))
     rows = []
     for particles in sorted(measured.values("particles")):
         for strategy in measured.values("strategy"):
             found = [measured.us("footing", particles, *column, strategy) for column in columns]
             if any(us is not None for us in found):
                 rows.append([f"{particles:,}", f"`{strategy}`",
-                             *(f"{number(us)} ({particles / us:.3g})" if us is not None else "-" for us in found)])
+                             *(f"{number(us)} ({digits(particles / us)})" if us is not None else "-" for us in found)])
     return table(["particles", "strategy", *(f"{backend}, {precision}" for backend, precision in columns)], rows)
