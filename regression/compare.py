@@ -54,7 +54,8 @@ def rows(case, variant, started, reference):
     source = "-".join(variant[:1] + variant[2:])
     for steps, futures in started.short.items():
         if variant is not reference["variant"]:
-            apart = {name: differences.largest(run, reference[steps][name]) for name, run in of_precision(futures, variant[1]).items()}
+            apart = {name: differences.largest(run, reference[steps][name])
+                     for name, run in of_precision(futures, variant[1]).items()}
             name = max(apart, key=lambda each: apart[each][0])
             yield Row(f"{steps} steps: apart at most, {name}, {apart[name][1]}", apart[name][0], 0,
                       BOUNDS[steps]["double"], "-".join(reference["variant"]), single=BOUNDS[steps]["single"])

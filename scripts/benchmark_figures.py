@@ -30,8 +30,8 @@ def curves(program, backend, folder):
             x, y = done.history["time"], advance(done, "slide")
             stored = reference_runout(done).get("flat")
             reference = (stored["time"], stored["toe"]) if stored else None
-        found[problem] = {"x": rounded(x), "y": rounded(y), "reference": [rounded(each) for each in reference] if reference else None,
-                          "particles": log["count"], "backend": backend, "commit": commit()}
+        found[problem] = {"x": rounded(x), "y": rounded(y), "particles": log["count"], "backend": backend, "commit": commit(),
+                          "reference": [rounded(each) for each in reference] if reference else None}
         print(f"{problem}.opts to its end: {log['steps']} steps of {log['us']:.4g} us", flush=True)
     return found
 
@@ -50,11 +50,13 @@ def draw_curve(axes, kept, problem):
         axes.plot(*curve["reference"], "k.", ms=4, label="independent sequential solver")
     if problem == "footing":
         axes.axhline(EXACT, color="0.4", ls="--", label="exact, small strain; the paper agrees \"reasonably well\"")
-        axes.set(title="Fig. 5: bearing capacity of the footing", xlabel="penetration $w/B$", ylabel="$N_c$", ylim=(0, 7.5), xlim=(0, 0.2))
+        axes.set(title="Fig. 5: bearing capacity of the footing", xlabel="penetration $w/B$", ylabel="$N_c$",
+                 xlim=(0, 0.2), ylim=(0, 7.5))
     else:
         axes.axhspan(20, 25, color="0.85", label="where the paper's slide ends: 20 to 25 m")
         axes.axvline(11, color="0.4", ls=":", label="the paper's slide stops at 11 s")
-        axes.set(title="Fig. 8: run-out of the slide", xlabel="time (s)", ylabel="run-out of the toe (m)", ylim=(0, 30), xlim=(0, 15))
+        axes.set(title="Fig. 8: run-out of the slide", xlabel="time (s)", ylabel="run-out of the toe (m)",
+                 xlim=(0, 15), ylim=(0, 30))
 
 
 def draw_speedups(axes, measured, problem):

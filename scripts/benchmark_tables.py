@@ -44,9 +44,9 @@ class Measured:
         about = {}
         for each in self.runs:
             hardware = each["device"] if each["backend"] == "cuda" else f"{each['machine']}, {each['device']}"
-            about.setdefault((each["backend"], hardware), set()).add((each["date"], each["commit"]))
-        return "\n".join(f"- `{backend}`: {hardware}; {', '.join(f'{day}, commit {commit}' for day, commit in sorted(when))}"
-                         for (backend, hardware), when in about.items())
+            about.setdefault((each["backend"], hardware), set()).add(
+                f"{each['date']}, commit {each['commit']}, median of {len(each['all_us'])}")
+        return "\n".join(f"- `{backend}`: {hardware}; {'; '.join(sorted(when))}" for (backend, hardware), when in about.items())
 
 
 def number(value):
@@ -111,7 +111,8 @@ def speedups(measured):
 
 def strategies(measured):
     """One table of all strategies: us a step (M particle updates/s), a column each back end and precision."""
-    columns = sorted({(each["backend"], each["precision"]) for each in measured.runs}, key=lambda each: (each[0], each[1] == "double"))
+    columns = sorted({(each["backend"], each["precision"]) for each in measured.runs},
+                     key=lambda each: (each[0], each[1] == "double"))
     rows = []
     for particles in sorted(measured.values("particles")):
         for strategy in measured.values("strategy"):
