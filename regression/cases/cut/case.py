@@ -16,6 +16,7 @@ from row import Row
 
 STANDS, SLIDE = 3.5, (4.0, 4.2, 4.4)
 RUNS = {f"n_{n}": f"-gravity 0,{-n / 0.4:.6g}" for n in (STANDS, *SLIDE)}
+COARSE = "Forty cells over the height; the case `cut_fine` has eighty."
 LONG = True
 
 
@@ -31,7 +32,7 @@ def line(runs):
 
 
 def check(runs):
-    yield Row("gamma H/su at failure", line(runs)[1], 3.78, 0.03, "limit analysis", relative=True)
+    yield Row("gamma H/su at failure", line(runs)[1], 3.78, 0.03, "limit analysis", relative=True, shortfall=COARSE, bound=0.045)
     yield Row(f"speed of the bank at gamma H/su = {STANDS} (m/s)", speed(runs[f"n_{STANDS}"]), 0, 1e-3, "below the limit it stands")
     yield Row("speed of the bank at gamma H/su = 4.4 (m/s)", speed(runs["n_4.4"]), 1e-2, 0, "above the limit it slides",
               at_least=True)
