@@ -51,6 +51,7 @@ struct Simulation::Body {
   PetscErrorCode load_shape(const std::string& name, const Shape& shape, const std::vector<Shape>& cut_out,
                             BodyParticles* particles);
   PetscErrorCode load_file(const BodyConfig& body, BodyParticles* particles);
+  PetscErrorCode choose_strategy(const Model& model, const std::string& device);
   PetscErrorCode log_shape(const std::string& name, const Lattice& lattice);
   PetscErrorCode fail(const std::string& what);
   PetscErrorCode advance_to(long target);

@@ -112,6 +112,10 @@ PetscErrorCode Simulation::Body::start() {
   Model model;
   Failure failure;
   PetscCall(load(&model));
+  if (config.p2g.strategy == P2G::automatic) {
+    PetscCall(choose_strategy(model, device));
+    stepper = make_stepper(config);
+  }
   PetscCall(stepper->set_up(std::move(model), &failure));
   if (!failure.what.empty()) {
     PetscCall(fail(failure.what));

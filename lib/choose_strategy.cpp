@@ -1,0 +1,86 @@
+// `-p2g auto`: every strategy makes the first steps on a copy of the problem, and the fastest makes the run.
+// What was found is kept for problems of the same size on the same device, so that the same options give the
+// same strategy again, and with it the same bits.
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "output/remembered.hpp"
+#include "simulation_body.hpp"
+
+namespace mpm {
+namespace {
+
+/// Those worth trying: `sequential` is one thread, `atomic` on one thread a slower `sequential`.
+std::vector<P2G> candidates(Backend backend) {
+  std::vector<P2G> all = {P2G::tile, P2G::gather, P2G::mosaic};
+  all.push_back(backend == Backend::serial ? P2G::sequential : P2G::atomic);
+  return all;
+}
+
+/// Seconds a step, in the best of a stepper's first batches, as others may use the machine meanwhile; the
+/// very first steps, which load kernels, do not count. Nothing where it cannot take a step.
+std::optional<double> time_of_steps(Stepper& stepper, double dt) {
+  constexpr long k_first = 2, k_most = 128;
+  constexpr double k_enough = 0.05;  // s
+  Batch batch;
+  if (stepper.advance(k_first, dt, &batch) != PETSC_SUCCESS || batch.steps < k_first) return std::nullopt;
+  std::optional<double> best;
+  const double start = seconds_now();
+  for (long steps = 1; steps <= k_most && seconds_now() - start < k_enough; steps *= 2) {
+    const double before = seconds_now();
+    if (stepper.advance(steps, dt, &batch) != PETSC_SUCCESS) return std::nullopt;
+    if (batch.steps < steps) break;  // a rebuild is due
+    const double took = (seconds_now() - before) / steps;
+    best = std::min(best.value_or(took), took);
+  }
+  return best;
+}
+
+/// Tries one strategy; adds what it took to `told`. A strategy whose lists do not fit into memory is left
+/// out.
+std::optional<double> try_strategy(const Config& config, Model model, double dt, std::string* told) {
+  const auto stepper = make_stepper(config);
+  Failure failure;
+  if (stepper->set_up(std::move(model), &failure) != PETSC_SUCCESS || !failure.what.empty())
+    return std::nullopt;
+  const auto seconds = time_of_steps(*stepper, dt);
+  if (seconds)
+    *told +=
+        formatted("%s%s %.4g us", told->empty() ? "" : ", ", stepper->strategy().c_str(), 1e6 * *seconds);
+  return seconds;
+}
+
+}  // namespace
+
+PetscErrorCode Simulation::Body::choose_strategy(const Model& model, const std::string& device) {
+  PetscFunctionBeginUser;
+  std::size_t coordinates = 1;
+  for (const BodyParticles& body : model.bodies) coordinates += body.position.size();
+  const int size = static_cast<int>(std::lround(std::log2(double(coordinates) / config.dim)));
+  const std::string key =
+      formatted("mpm %s, %s, %s, %dD, 2^%d particles", k_version, device.c_str(),
+                config.precision == Precision::single ? "single" : "double", config.dim, size);
+  std::string told;
+  const auto fastest = [&] {
+    Config trial = config;
+    std::pair<double, P2G> best{0, P2G::automatic};
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);  // what a trial cannot do, the run may
+    for (const P2G strategy : candidates(config.backend)) {
+      trial.p2g.strategy = strategy;
+      const auto seconds = try_strategy(trial, model, dt, &told);
+      if (seconds && (best.second == P2G::automatic || *seconds < best.first)) best = {*seconds, strategy};
+    }
+    PetscPopErrorHandler();
+    return best.second == P2G::automatic ? 0.0 : 1.0 + static_cast<int>(best.second);
+  };
+  const double kept = remembered("fastest_strategy", key, fastest);
+  if (kept >= 1 && kept <= static_cast<int>(P2G::automatic))
+    config.p2g.strategy = static_cast<P2G>(int(kept) - 1);
+  if (!told.empty())
+    PetscCall(log.line("strategies on the first steps: " + told + " a step; the fastest is kept"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm
