@@ -22,8 +22,10 @@ std::string row_of(const FunctionTime& f, double wall, double bandwidth) {
 std::string table_of(const Performance& p) {
   std::string text = formatted("  %-30s %9s %11s %8s %11s %9s %8s\n", "function", "calls", "seconds", "share",
                                "GB moved", "GB/s", "of copy");
-  double rest = p.wall;
-  for (const FunctionTime& f : p.functions) {
+  double sum = 0, rest = p.wall;
+  for (const FunctionTime& f : p.functions) sum += f.seconds;
+  for (FunctionTime f : p.functions) {
+    f.seconds *= std::min(1.0, p.stepping / sum);
     text += row_of(f, p.wall, p.bandwidth);
     rest -= f.seconds;
   }

@@ -27,9 +27,10 @@ struct Performance {
   double bandwidth = 0;                          // bytes/s of the device's copy; 0 if not known
 };
 
-/// The report, in lines: a table of the functions with calls, seconds, share of the wall time, bytes moved,
-/// bytes per second and their share of the copy bandwidth; then rebuilds, memory, bandwidth and particle
-/// updates per second.
+/// The report, in lines (where the functions' times add up to more than the steps took, as on a device that
+/// is waited for after each function of a timed step, they are scaled down to it): a table of the functions
+/// with calls, seconds, share of the wall time, bytes moved, bytes per second and their share of the copy
+/// bandwidth; then rebuilds, memory, bandwidth and particle updates per second.
 std::string format_performance(const Performance& p);
 
 }  // namespace mpm

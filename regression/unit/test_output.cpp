@@ -313,6 +313,16 @@ TEST_CASE("the closing table adds up", "[output]") {
     CHECK_THAT(report, ContainsSubstring(part));
 }
 
+TEST_CASE("times that the waiting has made longer than the steps are scaled", "[output]") {
+  Performance p;
+  p.functions = {{"interpolate", 100, 6.0, 3e9}, {"move", 100, 3.0, 0}};
+  p.wall = 4, p.stepping = 3, p.steps = 100, p.particles = 1000;
+  const std::string report = format_performance(p);
+  for (const char* part :
+       {"2.000   50.0 %        3.00       1.5", "1.000   25.0 %", "1.000   25.0 %\n  wall time"})
+    CHECK_THAT(report, ContainsSubstring(part));
+}
+
 TEST_CASE("a figure is measured once a key, and every time where it cannot be kept", "[output]") {
   const Folder folder;
   const char* const before = std::getenv("XDG_CACHE_HOME");
