@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "input/particle_file.hpp"
+#include "memory_need.hpp"
 #include "mesh/background.hpp"
 #include "output/files.hpp"
 #include "output/remembered.hpp"
@@ -39,6 +40,8 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
                        " ranks, takes 1: runs over several ranks are not there yet"};
   if (b.report.errors.empty()) b.check_mesh();
   if (b.report.errors.empty()) PetscCall(b.choose_time_step());
+  if (b.report.errors.empty())
+    if (const std::string fault = memory_fault(b.config); !fault.empty()) b.report.errors.push_back(fault);
   if (!b.report.errors.empty()) {
     PetscCall(print_errors(comm, b.report));
     b.outcome = Outcome::bad_input;

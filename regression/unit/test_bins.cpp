@@ -5,6 +5,7 @@
 #include <set>
 
 #include "compare.hpp"
+#include "footprint.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -275,5 +276,26 @@ TEST_CASE("an upload names the particle that lies outside the mesh", "[bins]") {
       CHECK(fault.particle == 5);
       CHECK(fault.position[1] == wrong);
     }
+  });
+}
+
+TEST_CASE("the memory of a state is what particles and nodes take, to a tenth", "[bins]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    using Space = typename B::Space;
+    using T = typename B::real;
+    constexpr int Dim = B::dim;
+    const int edge = Dim == 2 ? 200 : 32;  // cells
+    Cloud cloud;
+    cloud.grid = grid_of<Dim>({edge, edge, edge}, 0.1, Wall::free);
+    cloud.materials = clays();
+    const std::array<double, 3> end{double(edge), double(edge), double(edge)};
+    cloud.bodies = {body_of<Dim>(lattice<Dim>({0, 0, 0}, end, 2, 0.1), 2, 0.1, 1)};
+    const auto s = state_of<B>(cloud, P2G::tile);
+    const double cells = power(double(edge), Dim);
+    const double expected =
+        Footprint<T, Dim>::particle * power(2, Dim) * cells + Footprint<T, Dim>::node * cells;
+    INFO(build.name());
+    CHECK(std::fabs(memory_of<Space, T, Dim>(s) / expected - 1) < (Dim == 2 ? 0.1 : 0.2));
   });
 }

@@ -1,0 +1,22 @@
+#pragma once
+// What particles and nodes take of the device's memory, from their types alone.
+
+#include "nodes.hpp"
+#include "particles.hpp"
+
+namespace mpm {
+
+/// Bytes that a State holds for each particle of the soil, with what sorts it, and for each node. Lists of
+/// the strategies and the rigids come on top.
+template <class T, int Dim>
+struct Footprint {
+  static constexpr double grown = 9.0 / 8;  // ensure() leaves room
+  static constexpr double particle = 2 * sizeof(Vector<T, Dim>) + sizeof(SymTensor<T, Dim>) + 3 * sizeof(T) +
+                                     sizeof(std::uint16_t) + 2 * sizeof(int) + sizeof(long) +
+                                     grown * (sizeof(int) + sizeof(SymTensor<T, Dim>));
+  static constexpr double node =
+      grown *
+      (sizeof(T) * (SoilShare<Dim>::size + NodeMotion<Dim>::size + BoundaryShare<Dim>::size) + sizeof(int));
+};
+
+}  // namespace mpm

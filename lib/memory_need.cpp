@@ -1,0 +1,89 @@
+#include "memory_need.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include "footprint.hpp"
+#include "input/shapes.hpp"
+#include "output/log.hpp"
+#include "step/stepper.hpp"
+
+namespace mpm {
+namespace {
+
+/// Bytes on the device of so many particles that fill so many cells.
+template <class T, int Dim>
+double on_device(const Config& config, double particles, double cells) {
+  constexpr double k_ring = 1.1;  // the patches round the soil
+  double bytes = particles * Footprint<T, Dim>::particle + k_ring * cells * Footprint<T, Dim>::node;
+  if (config.p2g.strategy == P2G::gather) {
+    // a particle is in the lists of the nodes that it may reach before the margin is used up
+    const double reach = 2 * (1.25 + config.p2g.margin);
+    bytes += sizeof(int) * particles * std::pow(reach, Dim);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+MemoryNeed memory_need(const Config& config) {
+  // A particle's place, strength and order while it is brought to the device; of a frame its fields, put
+  // together, and the file as HDF5 makes it in memory.
+  constexpr double k_made = 100, k_framed = 500;
+  MemoryNeed need;
+  double cells = 0;
+  for (const BodyConfig& body : config.bodies) {
+    if (body.shape.kind == ShapeKind::particles) continue;
+    const double in_body =
+        shape_volume(body.shape, config.mesh, config.dim) / std::pow(config.mesh.spacing, config.dim);
+    cells += in_body;
+    need.particles += in_body * std::pow(body.shape.particles_per_cell, config.dim);
+  }
+  const bool single = config.precision == Precision::single;
+  need.device = config.dim == 2 ? (single ? on_device<float, 2>(config, need.particles, cells)
+                                          : on_device<double, 2>(config, need.particles, cells))
+                                : (single ? on_device<float, 3>(config, need.particles, cells)
+                                          : on_device<double, 3>(config, need.particles, cells));
+  need.host = need.particles * (config.output.frames ? k_framed : k_made);
+  return need;
+}
+
+double free_memory(Backend backend) {
+#ifdef KOKKOS_ENABLE_CUDA
+  std::size_t free = 0, total = 0;
+  if (backend == Backend::cuda) return cudaMemGetInfo(&free, &total) == cudaSuccess ? double(free) : 0;
+#endif
+  (void)backend;
+  return free_host_memory();
+}
+
+double free_host_memory() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string name, rest; file >> name && std::getline(file, rest);)
+    if (name == "MemAvailable:") return 1024 * std::stod(rest);
+  return 0;
+}
+
+std::string memory_fault(const Config& config) {
+  constexpr double k_most_particles = 2147483647;  // they are numbered by int
+  const MemoryNeed need = memory_need(config);
+  const bool shared = config.backend != Backend::cuda;
+  const double device = free_memory(config.backend), host = free_host_memory();
+  const double on_device = need.device + (shared ? need.host : 0);
+  std::string why;
+  if (need.particles > k_most_particles)
+    why = formatted("%.0f is the most", k_most_particles);
+  else if (device > 0 && on_device > device)
+    why = formatted("%s they need about %.4g GB, and %.4g GB are free",
+                    shared ? "in main memory" : ("on " + device_name(config.backend)).c_str(),
+                    on_device / 1e9, device / 1e9);
+  else if (!shared && host > 0 && need.host > host)
+    why = formatted("the host needs about %.4g GB for them, and %.4g GB are free%s", need.host / 1e9,
+                    host / 1e9, config.output.frames ? " (less is needed with -output_frames off)" : "");
+  if (why.empty()) return {};
+  return formatted(
+      "mpm: -mesh_spacing: given \"%g\", takes an edge whose particles fit into memory; these are %.4g: %s",
+      config.mesh.spacing, need.particles, why.c_str());
+}
+
+}  // namespace mpm

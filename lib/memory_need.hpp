@@ -1,0 +1,25 @@
+#pragma once
+// Whether a run fits into memory, before anything is made.
+
+#include <string>
+
+#include "mpm/config.hpp"
+
+namespace mpm {
+
+/// Estimates from sizes alone, right to about a tenth.
+struct MemoryNeed {
+  double particles = 0;  // of the bodies' lattices; those of files are few enough to be read
+  double device = 0;     // bytes, where the kernels run
+  double host = 0;       // bytes beside, while particles are made and frames are written
+};
+MemoryNeed memory_need(const Config& config);
+
+/// Bytes that are free where a backend's kernels run, and on the host; 0 where the system does not tell.
+double free_memory(Backend backend);
+double free_host_memory();
+
+/// Why a run cannot fit, as a line for the user; empty if it can.
+std::string memory_fault(const Config& config);
+
+}  // namespace mpm
