@@ -8,62 +8,78 @@ KOKKOS_INLINE_FUNCTION double acceleration(const Rigid<Dim>& rigid, int d, doubl
   return rigid.dynamic ? (rigid.force[d] + contact) / rigid.mass : 0;
 }
 
-/// What a rigid moves in a step [m]: exact where the force is constant.
+/// Moves a rigid by a step, exactly where the force is constant. contact [N] is the force of the soil on it.
+/// Returns the largest component of its movement [m].
 template <int Dim>
-KOKKOS_INLINE_FUNCTION double movement(const Rigid<Dim>& rigid, int d, double contact, double dt) {
-  return dt * (rigid.velocity[d] + dt / 2 * acceleration(rigid, d, contact));
+KOKKOS_INLINE_FUNCTION double move_rigid(Rigid<Dim>& rigid, const double* contact, double dt) {
+  double furthest = 0;
+  for (int d = 0; d < Dim; ++d) {
+    const double a = acceleration(rigid, d, contact[d]), step = dt * (rigid.velocity[d] + dt / 2 * a);
+    furthest = Kokkos::fmax(furthest, Kokkos::fabs(step));
+    rigid.displacement[d] += step;
+    rigid.impulse[d] += dt * contact[d];
+    rigid.velocity[d] += dt * a;
+  }
+  return furthest;
+}
+
+/// Counts the step and adds what any point can have moved to the bound; moved_rigid, margin [cells].
+template <class T>
+KOKKOS_INLINE_FUNCTION void end_step(Control& c, double moved_rigid, double margin) {
+  constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
+  c.increment = Kokkos::fmax(c.moved, moved_rigid) + epsilon;
+  c.moved = 0;
+  c.bound += c.increment;
+  ++c.steps;
+  if (!(c.bound <= margin) || c.fault_count > 0) c.paused = 1;
 }
 
 template <class Space, class T, int Dim>
 void move_rigids(State<Space, T, Dim>& s, double dt) {
+  using Team = Kokkos::TeamPolicy<Space>;
+  constexpr int threads = is_device<Space> ? 128 : 1;
   const auto control = s.control;
   const auto sums = s.sums;
+  const auto forces = s.slot_forces;
   const auto rigids = s.rigids;
   const auto origin = s.patches.origin;
   const double spacing = s.spacing, margin = s.p2g.margin;
-
-  if (s.rigid_moves)
-    for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
-      const auto points = s.rigid_points[r].points;
-      const auto home = points.home;
-      Kokkos::parallel_for(
-          "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(s.space, 0, points.count)),
-          KOKKOS_LAMBDA(int p) {
-            if (control().paused) return;
-            const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells),
-                             cell = coord_of<Dim>(points.cell(p));
-            for (int d = 0; d < Dim; ++d)
-              points.coordinate(p)[d] = static_cast<T>(
-                  home(p)[d] +
-                  (rigids(r).displacement[d] + movement(rigids(r), d, sums(r * Dim + d), dt)) / spacing -
-                  from[d] - cell[d]);
-          });
-    }
+  const int count = static_cast<int>(s.rigid_points.size()), values = Dim * count, slots = s.near_count;
 
   Kokkos::parallel_for(
-      "mpm::move_rigids", light(Kokkos::RangePolicy<Space>(s.space, 0, 1)), KOKKOS_LAMBDA(int) {
-        Control& c = control();
-        if (c.paused) return;
-        double furthest = 0;  // m
-        for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) {
-          Rigid<Dim>& rigid = rigids(r);
-          for (int d = 0; d < Dim; ++d) {
-            const double contact = sums(r * Dim + d);
-            const double step = movement(rigid, d, contact, dt);
-            furthest = Kokkos::fmax(furthest, Kokkos::fabs(step));
-            rigid.displacement[d] += step;
-            rigid.impulse[d] += dt * contact;
-            rigid.velocity[d] += dt * acceleration(rigid, d, contact);
-          }
+      "mpm::move_rigids", light(Team(s.space, 1, threads)),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (control().paused) return;
+        for (int v = 0; v < values; ++v) {  // in an order that is always the same
+          double sum = 0;
+          Kokkos::parallel_reduce(
+              Kokkos::TeamThreadRange(team, slots),
+              [&](int n, double& part) { part += forces(n * values + v); }, sum);
+          Kokkos::single(Kokkos::PerTeam(team), [&] { sums(v) = sum; });
         }
-        // round-off of a coordinate's update
-        constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;
-        c.increment = Kokkos::fmax(c.moved, furthest / spacing) + epsilon;
-        c.moved = 0;
-        c.bound += c.increment;
-        ++c.steps;
-        if (!(c.bound <= margin) || c.fault_count > 0) c.paused = 1;
+        team.team_barrier();  // also: no thread looks at `paused` any more
+        Kokkos::single(Kokkos::PerTeam(team), [&] {
+          double furthest = 0;  // m
+          for (int r = 0; r < count; ++r)
+            furthest = Kokkos::fmax(furthest, move_rigid(rigids(r), &sums(r * Dim), dt));
+          end_step<T>(control(), furthest / spacing, margin);
+        });
       });
+
+  if (!s.rigid_moves) return;
+  for (int r = 0; r < count; ++r) {
+    const auto points = s.rigid_points[r].points;
+    const auto home = points.home;
+    Kokkos::parallel_for(  // also while the steps are paused: it gives the same again
+        "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(s.space, 0, points.count)),
+        KOKKOS_LAMBDA(int p) {
+          const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells),
+                           cell = coord_of<Dim>(points.cell(p));
+          for (int d = 0; d < Dim; ++d)
+            points.coordinate(p)[d] =
+                static_cast<T>(home(p)[d] + rigids(r).displacement[d] / spacing - from[d] - cell[d]);
+        });
+  }
 }
 
 template <class Space, class T, int Dim>

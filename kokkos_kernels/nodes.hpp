@@ -32,6 +32,12 @@ struct NodeMotion {
   static constexpr int velocity = 0, acceleration = Dim, size = 2 * Dim;
 };
 
+/// NodeMotion of one node, read and written at once.
+template <class T, int Dim>
+struct alignas(group_alignment<T, NodeMotion<Dim>::size>) MotionValues {
+  T c[NodeMotion<Dim>::size];
+};
+
 template <class Space, class T, int Dim>
 struct Nodes {
   NodeField<Space, T, SoilShare<Dim>::size> soil;

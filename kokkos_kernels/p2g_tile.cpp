@@ -1,76 +1,42 @@
-#include "window.hpp"
+#include "tile.hpp"
 
 namespace mpm {
-namespace {
 
-/// a += v, by an atomic addition where other threads may add to it at the same time.
-template <class Space, class T>
-KOKKOS_INLINE_FUNCTION void add_to(T& a, T v) {
-  if constexpr (is_device<Space>)
-    Kokkos::atomic_add(&a, v);
-  else
-    a += v;
-}
-
-}  // namespace
-
-// A team sums the shares of its patch's particles in scratch memory and adds the window to the nodes. On the
-// host patches go colour by colour (windows of one colour share no node); on a device all at once, by atomic
-// additions.
+// On the host patches go colour by colour (windows of one colour share no node); on a device all at once, by
+// atomic additions to the nodes.
 template <class Source>
 void reduce_by_tile(const Interpolation<Source>& it) {
-  using T = typename Source::real;
   using Space = typename Source::Space;
-  using Team = Kokkos::TeamPolicy<Space>;
-  constexpr int Dim = Source::dim, size = Source::size;
+  constexpr int Dim = Source::dim, cells = Patch<Dim>::cells;
+  using Team = PatchTeam<Space, typename Source::real, Dim>;
+  using Tile_ = Tile<Source>;
   const auto source = it.source;
   const auto around = it.patches.around;
   const auto begin = it.bins.begin;
   const auto by_colour = it.bins.by_colour;
   const auto out = it.out;
   const auto control = it.control;
-  constexpr int window = Patch<Dim>::window;
-  using Window = Kokkos::View<T*, typename Space::scratch_memory_space, Kokkos::MemoryUnmanaged>;
 
-  constexpr int launches = is_device<Space> ? 1 : Patch<Dim>::colours;
-  for (int launch = 0; launch < launches; ++launch) {
-    const int first = it.bins.colour_begin[launch];
-    const int last = it.bins.colour_begin[is_device<Space> ? Patch<Dim>::colours : launch + 1];
-    if (first == last) continue;
+  for_each_launch<Space, Dim>(it.bins, [&](int first, int last) {
     Kokkos::parallel_for(
         "mpm::reduce_by_tile",
         light(Team(it.space, last - first, team_threads<Space>)
-                  .set_scratch_size(0, Kokkos::PerTeam(Window::shmem_size(window * size)))),
+                  .set_scratch_size(0, Kokkos::PerTeam(Tile_::bytes() + k_scratch_slack))),
         KOKKOS_LAMBDA(const typename Team::member_type& team) {
           if (control().paused) return;
           const int slot = by_colour(first + team.league_rank());
           if (source.skips(slot)) return;
-          const Window sums(team.team_scratch(0), window * size);
-          Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int n) { sums(n) = 0; });
+          const Tile_ tile(team);
+          number_window<Dim>(team, around, slot, tile.number);
+          tile.clear(team);
           team.team_barrier();
-          const int from = begin(slot * Patch<Dim>::cells), to = begin((slot + 1) * Patch<Dim>::cells);
-          Kokkos::parallel_for(Kokkos::TeamThreadRange(team, from, to), [&](int p) {
-            const typename Source::Point q = source.load(p);
-            const Coord<Dim> cell = coord_of<Dim>(source.points.cell(p));
-            const Vector<T, Dim> x = source.points.coordinate(p);
-            with_weights(x, q.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-              for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
-                T* const node = &sums(window_place(cell, a, k) * size);
-                const auto offset = [&] { return offset_to(x, a, k); };
-                give<Source>(q, w, grad, offset, [&](int value, T v) { add_to<Space>(node[value], v); });
-              });
-            });
+          const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
+          tile.add(team, cell_begin, [&](int p) {
+            return typename Tile_::Entry{source.points.coordinate(p), source.load(p)};
           });
-          team.team_barrier();
-          Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
-            bool touched = false;
-            for (int k = 0; k < size; ++k) touched = touched || sums(n * size + k) != 0;
-            if (!touched) return;
-            const int i = number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n));
-            for (int k = 0; k < size; ++k) add_to<Space>(out(i, k), sums(n * size + k));
-          });
+          tile.give_window(team, out);
         });
-  }
+  });
 }
 
 #define MPM_STRATEGY reduce_by_tile

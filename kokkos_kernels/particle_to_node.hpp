@@ -105,8 +105,8 @@ struct Stencil {
 /// offset() [cells] from the particle to it. Nodes of no weight are left alone, which keeps the blocks of one
 /// colour apart.
 template <class Points_, class T, class Around, class F>
-KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, T half_length, const Around& around, int p,
-                                          F&& f) {
+KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, const HalfLength<T>& half_length,
+                                          const Around& around, int p, F&& f) {
   const auto x = points.coordinate(p);
   with_weights(x, half_length, [&](const auto& a) {
     constexpr int Dim = sizeof(a) / sizeof(a[0]);

@@ -6,6 +6,7 @@
 
 #include "materials/any.hpp"
 #include "patches.hpp"
+#include "shape_gimp.hpp"
 #include "types.hpp"
 
 namespace mpm {
@@ -23,9 +24,9 @@ struct Points {
 /// What all particles of a body share.
 template <class T>
 struct BodyProperties {
-  T mass;         // kg, of one particle
-  T half_length;  // cells, of one particle
-  int material;   // index into Soil::materials
+  T mass;                     // kg, of one particle
+  HalfLength<T> half_length;  // cells, of one particle
+  int material;               // index into Soil::materials
 };
 
 /// The soil: the particles of all deformable bodies.
@@ -51,7 +52,7 @@ struct RigidPoints : Points<Space, T, Dim> {
   using Memory = typename Space::memory_space;
   Kokkos::View<Vector<double, Dim>*, Memory> home;  // cells from the mesh's lower corner, at the start
   T mass = 0;                                       // kg, of one particle
-  T half_length = 0;                                // cells
+  HalfLength<T> half_length{};                      // cells
   bool surface_normal = false;                      // contact does not ask for their mass at the nodes
 };
 

@@ -17,7 +17,7 @@ struct Patch {
   static constexpr int cells = power(edge, Dim);  // 64 in both
   static constexpr int around = power(3, Dim);    // patches round one, itself included
   static constexpr int colours = power(2, Dim);   // patches of one colour do not touch
-  static constexpr int window_edge = edge + 4;    // nodes that its particles reach: -1 ... edge + 2
+  static constexpr int window_edge = edge + 3;    // nodes that its particles reach: -1 ... edge + 1
   static constexpr int window = power(window_edge, Dim);
 };
 

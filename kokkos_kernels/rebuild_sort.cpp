@@ -141,6 +141,16 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
           }
         });
   }
+  ensure(s.near_slots, slots);
+  const auto list = s.near_slots;
+  Kokkos::parallel_scan(
+      "mpm::list_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots),
+      KOKKOS_LAMBDA(int slot, int& n, bool last) {
+        if (last && near(slot) != 0) list(n) = slot;
+        n += near(slot);
+      },
+      s.near_count);
+  ensure(s.slot_forces, std::size_t(s.near_count) * Dim * s.rigid_points.size());
 }
 
 template <class Space, class T, int Dim>
@@ -173,6 +183,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   if (!s.rigid_points.empty()) mark_near_rigids(s);
   if (s.f_bar_share > 0) average_pressure(s);
 
+  s.soil_summed = false;
   const int nodes = s.patches.node_count();
   ensure(s.nodes.soil, nodes);
   ensure(s.nodes.motion, nodes);

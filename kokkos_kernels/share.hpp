@@ -7,6 +7,8 @@
 
 namespace mpm {
 
+// A Point holds what a particle gives, as plain T, so that a strategy may keep it value by value.
+
 /// Soil to nodes, Eqs (1), (2), (4): m_i = sum S m_p, p_i = sum S m_p v_p, f_i = - sum V_p sigma_p grad S.
 /// The weight, Eq. (5), is m_i g and is added at the node.
 template <class Space_, class T, int Dim>
@@ -15,20 +17,28 @@ struct SoilSource {
   using real = T;
   static constexpr int dim = Dim, size = SoilShare<Dim>::size;
   struct Point {
-    T half_length, mass;
-    Vector<T, Dim> momentum;
-    SymTensor<T, Dim> stress_volume;  // - V_p sigma_p / d
+    HalfLength<T> half_length;
+    T mass, momentum[Dim];
+    T stress_volume[Dim * (Dim + 1) / 2];  // - V_p sigma_p / d, components along the axes of the mesh
   };
+  /// Place of component (i, j) in stress_volume: that of SymTensor, without zz in plane strain.
+  KOKKOS_INLINE_FUNCTION static constexpr int place(int i, int j) {
+    return Dim == 2 && i != j ? 2 : sym_index<Dim>(i, j);
+  }
   Soil<Space, T, Dim> points;
   T inv_spacing;
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    const BodyProperties<T> body = points.bodies(points.body(p));
-    Point q{body.half_length, body.mass, points.velocity(p), points.stress(p)};
-    const T scale = -points.volume(p) * inv_spacing;
-    for (int d = 0; d < Dim; ++d) q.momentum[d] *= q.mass;
-    for (int k = 0; k < sym_size<Dim>; ++k) q.stress_volume[k] *= scale;
+    return point(points.bodies(points.body(p)), points.velocity(p), points.stress(p), points.volume(p));
+  }
+  KOKKOS_INLINE_FUNCTION Point point(const BodyProperties<T>& body, const Vector<T, Dim>& v_p,
+                                     const SymTensor<T, Dim>& stress, T volume) const {
+    Point q{body.half_length, body.mass, {}, {}};
+    const T scale = -volume * inv_spacing;
+    for (int d = 0; d < Dim; ++d) q.momentum[d] = q.mass * v_p[d];
+    for (int k = 0; k < Dim * (Dim + 1) / 2; ++k)
+      q.stress_volume[k] = scale * stress[k < Dim ? k : k + 3 - Dim];
     return q;
   }
   template <class Add>
@@ -36,8 +46,8 @@ struct SoilSource {
     add(SoilShare<Dim>::mass, w * q.mass);
     for (int d = 0; d < Dim; ++d) add(SoilShare<Dim>::momentum + d, w * q.momentum[d]);
     for (int d = 0; d < Dim; ++d) {
-      T f = q.stress_volume[sym_index<Dim>(d, 0)] * grad[0];
-      for (int e = 1; e < Dim; ++e) f += q.stress_volume[sym_index<Dim>(d, e)] * grad[e];
+      T f = q.stress_volume[place(d, 0)] * grad[0];
+      for (int e = 1; e < Dim; ++e) f += q.stress_volume[place(d, e)] * grad[e];
       add(SoilShare<Dim>::force + d, f);
     }
   }
@@ -49,12 +59,12 @@ struct AffineSource : SoilSource<Space_, T, Dim> {
   using Base = SoilSource<Space_, T, Dim>;
   static constexpr bool takes_offset = true;
   struct Point : Base::Point {
-    Matrix<T, Dim> affine;  // m_p C_p, kg m/s a cell
+    T affine[Dim * Dim];  // m_p C_p by rows, kg m/s a cell
   };
 
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    Point q{Base::load(p), this->points.affine(p)};
-    for (int k = 0; k < Dim * Dim; ++k) q.affine[k] *= q.mass;
+    Point q{Base::load(p), {}};
+    for (int k = 0; k < Dim * Dim; ++k) q.affine[k] = q.mass * this->points.affine(p)[k];
     return q;
   }
   /// offset [cells] from the particle to the node.
@@ -63,7 +73,7 @@ struct AffineSource : SoilSource<Space_, T, Dim> {
                                           const Vector<T, Dim>& offset, Add&& add) {
     typename Base::Point here = q;
     for (int d = 0; d < Dim; ++d)
-      for (int e = 0; e < Dim; ++e) here.momentum[d] += q.affine(d, e) * offset[e];
+      for (int e = 0; e < Dim; ++e) here.momentum[d] += q.affine[d * Dim + e] * offset[e];
     Base::give(here, w, grad, add);
   }
 };
@@ -75,8 +85,8 @@ struct RestSource {
   using real = T;
   static constexpr int dim = Dim, size = Dim;
   struct Point {
-    T half_length;
-    Vector<T, Dim> momentum;
+    HalfLength<T> half_length;
+    T momentum[Dim];
   };
   Soil<Space, T, Dim> points;
   Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> rest;  // m/s
@@ -84,8 +94,8 @@ struct RestSource {
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     const BodyProperties<T> body = points.bodies(points.body(p));
-    Point q{body.half_length, rest(p)};
-    for (int d = 0; d < Dim; ++d) q.momentum[d] *= body.mass;
+    Point q{body.half_length, {}};
+    for (int d = 0; d < Dim; ++d) q.momentum[d] = body.mass * rest(p)[d];
     return q;
   }
   template <class Add>
@@ -103,7 +113,8 @@ struct BoundarySource {
   using real = T;
   static constexpr int dim = Dim, size = BoundaryShare<Dim>::size;
   struct Point {
-    T half_length, area, volume;  // V_p / d, V_p
+    HalfLength<T> half_length;
+    T area, volume;  // V_p / d, V_p
   };
   Soil<Space, T, Dim> points;
   T inv_spacing;
@@ -130,7 +141,8 @@ struct RigidSource {
   using real = T;
   static constexpr int dim = Dim, size = RigidShare<Dim>::size;
   struct Point {
-    T half_length, mass;
+    HalfLength<T> half_length;
+    T mass;
   };
   RigidPoints<Space, T, Dim> points;
 

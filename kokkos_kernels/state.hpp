@@ -37,6 +37,10 @@ struct State {
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   Kokkos::View<Vertex*, Memory> vertices;  // of the rigids' polygons
   Kokkos::View<int*, Memory> near_rigid;   // by slot: 1 where it or one around it holds points of a rigid
+  Kokkos::View<int*, Memory> near_slots;   // those slots
+  int near_count = 0;
+  Kokkos::View<double*, Memory>
+      slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
   Nodes<Space, T, Dim> nodes;
   ControlView<Space> control;
   Kokkos::View<double*, Memory> sums;  // N, force of the soil on each rigid in this step
@@ -52,6 +56,7 @@ struct State {
   bool affine = false;            // APIC: Soil::affine is in use; flip_share is then 0
   double f_bar_share = 0;         // -
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
+  bool soil_summed = false;       // nodes.soil holds the sums of the soil as it is, made by the step before
   bool rigid_moves = false;       // some rigid is not fixed
   bool mass_normals = false;      // some rigid's normals are those of its mass gradient
   bool soil_boundary = false;     // some contact needs the soil's boundary at the nodes

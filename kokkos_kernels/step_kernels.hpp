@@ -10,13 +10,21 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s);
 
+/// Whether update_particles goes on to function 3 of the next step: particles then pass through memory once a
+/// step. So it is on a GPU with the strategy `tile`, where a velocity update does not need the nodal sums
+/// again and the scratch memory holds both.
+template <class Space, class T, int Dim>
+bool sums_ahead(const State<Space, T, Dim>& s);
+
 /// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
-/// contact forces in s.sums. dt [s].
+/// contact forces in s.slot_forces. Where sums_ahead, it leaves the nodal sums at zero, which is function 1
+/// of the next step. dt [s].
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt);
 
 /// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves
-/// the furthest movement of a particle in s.control. dt [s].
+/// the furthest movement of a particle in s.control. Where sums_ahead, adds the soil as it then is to the
+/// nodes. dt [s].
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt);
 

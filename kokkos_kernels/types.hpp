@@ -5,9 +5,15 @@
 
 namespace mpm {
 
+/// Alignment at which a group of n values is read at once: pairs, and fours up to 16 bytes.
+template <class T, int n>
+inline constexpr int group_alignment = n % 4 == 0 && 4 * sizeof(T) <= 16 ? 4 * sizeof(T)
+                                       : n % 2 == 0                      ? 2 * sizeof(T)
+                                                                         : sizeof(T);
+
 /// Vector of Dim components.
 template <class T, int Dim>
-struct Vector {
+struct alignas(group_alignment<T, Dim>) Vector {
   T c[Dim];
   KOKKOS_INLINE_FUNCTION T& operator[](int d) { return c[d]; }
   KOKKOS_INLINE_FUNCTION const T& operator[](int d) const { return c[d]; }
@@ -29,7 +35,7 @@ inline constexpr int sym_size = Dim == 2 ? 4 : 6;
 
 /// Symmetric tensor of second order.
 template <class T, int Dim>
-struct SymTensor {
+struct alignas(group_alignment<T, sym_size<Dim>>) SymTensor {
   T c[sym_size<Dim>];
   KOKKOS_INLINE_FUNCTION T& operator[](int k) { return c[k]; }
   KOKKOS_INLINE_FUNCTION const T& operator[](int k) const { return c[k]; }

@@ -2,11 +2,13 @@
 
 #include "contact.hpp"
 #include "step_kernels.hpp"
+#include "window.hpp"
 
 namespace mpm {
 
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s) {
+  s.soil_summed = false;
   const auto soil = s.nodes.soil;
   const auto boundary = s.nodes.boundary;
   const auto rigid = s.nodes.rigid;
@@ -24,33 +26,43 @@ void reset_nodes(State<Space, T, Dim>& s) {
       });
 }
 
-/// The node's part of the step. A functor, as its sums are an array of run-time length: Dim components of
-/// force for each rigid.
+/// The node's part of the step.
 template <class Space, class T, int Dim>
 struct UpdateNodes {
-  using value_type = double[];
+  using Member = typename Kokkos::TeamPolicy<Space>::member_type;
+  static constexpr int cells = Patch<Dim>::cells;
   int value_count;
   Grid<T, Dim> grid;
   Nodes<Space, T, Dim> nodes;
   Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   Kokkos::View<Vertex*, typename Space::memory_space> vertices;
-  Kokkos::View<int*, typename Space::memory_space> near_rigid;
-  ControlView<Space> control;
+  Kokkos::View<int*, typename Space::memory_space> near_slots;
+  Kokkos::View<double*, typename Space::memory_space> forces;
   Vector<T, Dim> g;
   T dt, damping, mass_cut;
   double spacing;
-  bool has_boundary, has_friction;
+  bool has_boundary, has_friction, has_mass_normals, clears;
 
-  KOKKOS_INLINE_FUNCTION void init(double* sum) const {
-    for (int k = 0; k < value_count; ++k) sum[k] = 0;
-  }
-  KOKKOS_INLINE_FUNCTION void join(double* into, const double* from) const {
-    for (int k = 0; k < value_count; ++k) into[k] += from[k];
+  /// The nodes of slot number n of those near a rigid. Leaves the force on each rigid [N] in `forces`; it is
+  /// summed in the order of the nodes.
+  KOKKOS_INLINE_FUNCTION void update_near(const Member& team, int n) const {
+    const int slot = near_slots(n);
+    double* const force = scratch<double>(team, value_count * cells);
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int k) {
+      for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
+      update<true>(slot * cells + k, force + k);
+    });
+    team.team_barrier();
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, value_count), [&](int v) {
+      double sum = 0;
+      for (int k = 0; k < cells; ++k) sum += force[v * cells + k];
+      forces(n * value_count + v) = sum;
+    });
   }
 
-  KOKKOS_INLINE_FUNCTION void operator()(int i, double* sum) const {
-    if (control().paused) return;
+  template <bool Near>
+  KOKKOS_INLINE_FUNCTION void update(int i, double* force) const {
     using S = SoilShare<Dim>;
     const T m_i = nodes.soil(i, S::mass);
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
@@ -71,18 +83,32 @@ struct UpdateNodes {
       for (int d = 0; d < Dim; ++d) at[d] += from[d];
       const unsigned sides = sides_of(grid, at);
       apply_walls(grid, sides, v);
-      if (m_i > mass_cut && value_count > 0 && near_rigid(i / Patch<Dim>::cells) != 0)
-        for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r)
-          touch(i, r, at, sides, m_i, v, sum + r * Dim);
+      if constexpr (Near) {
+        for (int r = 0; r < static_cast<int>(rigids.extent(0)) && m_i > mass_cut; ++r)
+          touch(i, r, at, sides, m_i, v, force + r * Dim * cells);
+      }
       apply_walls(grid, sides, v);
     }
+    if (clears) clear<Near>(i);
+    MotionValues<T, Dim> motion;
     for (int d = 0; d < Dim; ++d) {
-      nodes.motion(i, NodeMotion<Dim>::velocity + d) = v[d];
-      nodes.motion(i, NodeMotion<Dim>::acceleration + d) = (v[d] - v_old[d]) / dt;  // feels contact and walls
+      motion.c[NodeMotion<Dim>::velocity + d] = v[d];
+      motion.c[NodeMotion<Dim>::acceleration + d] = (v[d] - v_old[d]) / dt;  // feels contact and walls
     }
+    *reinterpret_cast<MotionValues<T, Dim>*>(&nodes.motion(i, 0)) = motion;
   }
 
-  /// Contact with rigid r; adds the force of the soil on it (Eq. 10).
+  /// Sets the node's sums to zero; far from every rigid nothing is added to those of rigids and boundary.
+  template <bool Near>
+  KOKKOS_INLINE_FUNCTION void clear(int i) const {
+    for (int k = 0; k < SoilShare<Dim>::size; ++k) nodes.soil(i, k) = 0;
+    if (!Near) return;
+    for (int k = 0; k < BoundaryShare<Dim>::size && has_boundary; ++k) nodes.boundary(i, k) = 0;
+    for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_mass_normals; ++r)
+      for (int k = 0; k < RigidShare<Dim>::size; ++k) nodes.rigid(r, i, k) = 0;
+  }
+
+  /// Contact with rigid r; adds the force of the soil on it (Eq. 10) to force[0], force[cells] ...
   KOKKOS_INLINE_FUNCTION void touch(int i, int r, const Coord<Dim>& at, unsigned sides, T m_i,
                                     Vector<T, Dim>& v, double* force) const {
     using S = SoilShare<Dim>;
@@ -120,7 +146,7 @@ struct UpdateNodes {
     if (has_friction) nodes.impulse(r, i) = interface.stock * m_i;
     for (int d = 0; d < Dim; ++d) {
       v[d] += change[d];
-      force[d] -= static_cast<double>(m_i) * change[d] / dt;
+      force[d * cells] -= static_cast<double>(m_i) * change[d] / dt;
     }
   }
 
@@ -167,17 +193,32 @@ struct UpdateNodes {
 
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt) {
+  using Team = Kokkos::TeamPolicy<Space>;
+  using Update = UpdateNodes<Space, T, Dim>;
+  constexpr int threads = is_device<Space> ? Patch<Dim>::cells : 1;
   const int values = Dim * static_cast<int>(s.rigid_points.size());
-  UpdateNodes<Space, T, Dim> update{
-      values, s.grid, s.nodes,      s.patches.origin, s.rigids,  s.vertices,      s.near_rigid,  s.control,
-      {},     T(dt),  T(s.damping), T(s.mass_cut),    s.spacing, s.soil_boundary, s.has_friction};
+  Update update{values,       s.grid,          s.nodes,        s.patches.origin,
+                s.rigids,     s.vertices,      s.near_slots,   s.slot_forces,
+                {},           T(dt),           T(s.damping),   T(s.mass_cut),
+                s.spacing,    s.soil_boundary, s.has_friction, s.mass_normals,
+                sums_ahead(s)};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
-  const auto range = light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()));
-  if (values > 0)
-    Kokkos::parallel_reduce("mpm::update_nodes", range, update, s.sums);
-  else
-    Kokkos::parallel_for(
-        "mpm::update_nodes", range, KOKKOS_LAMBDA(int i) { update(i, nullptr); });
+  const auto near = s.near_rigid;
+  const auto control = s.control;
+  Kokkos::parallel_for(
+      "mpm::update_nodes", light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())),
+      KOKKOS_LAMBDA(int i) {
+        if (control().paused || (values > 0 && near(i / Patch<Dim>::cells) != 0)) return;
+        update.template update<false>(i, nullptr);
+      });
+  if (values == 0 || s.near_count == 0) return;
+  const std::size_t near_bytes = scratch_bytes<double>(values * Update::cells) + k_scratch_slack;
+  Kokkos::parallel_for(
+      "mpm::update_nodes_near_rigids",
+      light(Team(s.space, s.near_count, threads).set_scratch_size(0, Kokkos::PerTeam(near_bytes))),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (!control().paused) update.update_near(team, team.league_rank());
+      });
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)              \

@@ -1,5 +1,5 @@
 #include "step_kernels.hpp"
-#include "window.hpp"
+#include "tile.hpp"
 
 namespace mpm {
 namespace {
@@ -7,35 +7,30 @@ namespace {
 /// What a particle takes from the nodes.
 template <class T, int Dim>
 struct Taken {
-  Vector<T, Dim> velocity, acceleration;  // m/s, m/s2
-  T gradient[Dim][Dim];                   // 1/s, L_ij = dv_i/dx_j
+  T motion[NodeMotion<Dim>::size];  // m/s, m/s2
+  T gradient[Dim][Dim];             // 1/s, L_ij = dv_i/dx_j
 };
 
-template <class T, int Dim, class Motion>
-KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const Motion* window, const Coord<Dim>& cell,
-                                                     const AxisWeights<T> (&a)[Dim], T inv_spacing) {
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const MotionValues<T, Dim>* window,
+                                                     const Coord<Dim>& cell, const AxisWeights<T> (&a)[Dim],
+                                                     T inv_spacing) {
   Taken<T, Dim> t{};
-  for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
-    const Motion* const node = window + window_place(cell, a, k) * NodeMotion<Dim>::size;
-    for (int d = 0; d < Dim; ++d) {
-      const T v_i = node[NodeMotion<Dim>::velocity + d];
-      t.velocity[d] += w * v_i;
-      t.acceleration[d] += w * node[NodeMotion<Dim>::acceleration + d];
-      for (int e = 0; e < Dim; ++e) t.gradient[d][e] += v_i * grad[e];
-    }
-  });
+  interpolate_by_lines(
+      a, [&](const Vector<int, Dim>& k) -> const auto& { return window[window_place(cell, a, k)].c; },
+      t.motion, t.gradient);
   for (int d = 0; d < Dim; ++d)
     for (int e = 0; e < Dim; ++e) t.gradient[d][e] *= inv_spacing;
   return t;
 }
 
 /// The dilatation rate alone, sum v_i . grad S_ip [1/s].
-template <class T, int Dim, class Motion>
-KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const Motion* window, const Coord<Dim>& cell,
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const MotionValues<T, Dim>* window, const Coord<Dim>& cell,
                                                const AxisWeights<T> (&a)[Dim], T inv_spacing) {
   T sum = 0;
   for_each_weight(a, [&](const Vector<int, Dim>& k, T, const Vector<T, Dim>& grad) {
-    const Motion* const node = window + window_place(cell, a, k) * NodeMotion<Dim>::size;
+    const T* const node = window[window_place(cell, a, k)].c;
     for (int d = 0; d < Dim; ++d) sum += node[NodeMotion<Dim>::velocity + d] * grad[d];
   });
   return sum * inv_spacing;
@@ -61,11 +56,19 @@ struct UpdateScalars {
   T dt, inv_spacing, flip, pic, f_bar;
 };
 
+/// What a step changes of a particle.
+template <class T, int Dim>
+struct Particle {
+  Vector<T, Dim> x, v;  // cells, m/s
+  T volume;             // m3
+  MaterialState<T, Dim> material;
+};
+
 /// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The share f_bar of its
 /// dilatation is that of its cell, `mean_dilatation` [1/s]. Returns the largest component of its movement
 /// [cells].
-template <class Space, class T, int Dim>
-KOKKOS_INLINE_FUNCTION T advance(const Soil<Space, T, Dim>& soil, int p, const Taken<T, Dim>& t,
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T advance(Particle<T, Dim>& q, const AnyMaterial<T>& material, const Taken<T, Dim>& t,
                                  T mean_dilatation, const UpdateScalars<T>& by) {
   SymTensor<T, Dim> d_strain;
   Spin<T, Dim> d_spin;
@@ -75,122 +78,218 @@ KOKKOS_INLINE_FUNCTION T advance(const Soil<Space, T, Dim>& soil, int p, const T
   const T correction = by.f_bar * (by.dt * mean_dilatation - trace);
   for (int d = 0; d < 3; ++d) d_strain[d] += correction * T(1.0 / 3);
   trace += correction;
+  material.visit([&](const auto& law) { law.update(q.material, d_strain, d_spin, by.dt); });
 
-  MaterialState<T, Dim> state{soil.stress(p), soil.plastic_strain(p), soil.strength(p)};
-  soil.materials(soil.bodies(soil.body(p)).material).visit([&](const auto& law) {
-    law.update(state, d_strain, d_spin, by.dt);
-  });
-  soil.stress(p) = state.stress;
-  soil.plastic_strain(p) = state.plastic_strain;
-
-  soil.volume(p) *= (2 + trace) / (2 - trace);  // exp(trace) to second order: no drift in rotation
-
-  Vector<T, Dim> v_p = soil.velocity(p), x_p = soil.coordinate(p);
+  q.volume *= (2 + trace) / (2 - trace);  // exp(trace) to second order: no drift in rotation
   T moved = 0;
   for (int d = 0; d < Dim; ++d) {
-    v_p[d] = by.flip * (v_p[d] + by.dt * t.acceleration[d]) + by.pic * t.velocity[d];
-    const T movement = by.dt * t.velocity[d] * by.inv_spacing;
-    x_p[d] += movement;
+    const T v_i = t.motion[NodeMotion<Dim>::velocity + d], a_i = t.motion[NodeMotion<Dim>::acceleration + d];
+    q.v[d] = by.flip * (q.v[d] + by.dt * a_i) + by.pic * v_i;
+    const T movement = by.dt * v_i * by.inv_spacing;
+    q.x[d] += movement;
     moved = Kokkos::fmax(moved, Kokkos::fabs(movement));
   }
-  soil.velocity(p) = v_p;
-  soil.coordinate(p) = x_p;
   return moved;
 }
 
-/// Reports a particle that is not finite, has no volume, or moved so far in a step that the computation
-/// cannot be trusted. `moved` [cells].
+/// What is wrong with a particle that moved by `moved` [cells] in the step: not finite, no volume, or so fast
+/// that the computation cannot be trusted.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION FaultKind fault_of(const Particle<T, Dim>& q, T moved) {
+  T sum = q.volume;
+  for (int d = 0; d < Dim; ++d) sum += q.x[d] + q.v[d];
+  for (int k = 0; k < sym_size<Dim>; ++k) sum += q.material.stress[k];
+  if (!(0 * sum == 0)) return FaultKind::not_finite;  // 0 times what is not finite is not zero
+  if (!(q.volume > 0)) return FaultKind::inverted;
+  return moved <= 1 ? FaultKind::none : FaultKind::too_fast;
+}
+
+/// A team moves the particles of a patch. If Sums, it adds them where they now are to the nodes for the next
+/// step, as the strategy `tile` does: a particle is read and written once a step.
+template <class Space, class T, int Dim, bool Sums>
+struct UpdateParticles {
+  using Source = SoilSource<Space, T, Dim>;
+  using Tile_ = Tile<Source>;
+  using Team = PatchTeam<Space, T, Dim>;
+  using Member = typename Team::member_type;
+  using Memory = typename Space::memory_space;
+  static constexpr int cells = Patch<Dim>::cells, window = Patch<Dim>::window;
+  /// What is left of a tile where nothing is summed.
+  struct Numbers {
+    int* number;
+    KOKKOS_INLINE_FUNCTION explicit Numbers(const Member& team) : number(scratch<int>(team, window)) {}
+  };
+  using TileOrNumbers = std::conditional_t<Sums, Tile_, Numbers>;
+
+  Source source;
+  Kokkos::View<int*, Memory> begin, slots;
+  decltype(Patches<Space, Dim>::around) around;
+  Kokkos::View<Coord<Dim>*, Memory> origin;
+  NodeField<Space, T, NodeMotion<Dim>::size> motion;
+  NodeField<Space, T, SoilShare<Dim>::size> out;
+  ControlView<Space> control;
+  Kokkos::View<T*, Memory, Kokkos::MemoryUnmanaged> dilatation;  // 1/s, by particle
+  UpdateScalars<T> by;
+  double spacing;
+  int first;  // of slots
+
+  static constexpr std::size_t bytes() {
+    return scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) +
+           (Sums ? Tile_::bytes() : scratch_bytes<int>(window));
+  }
+
+  KOKKOS_FUNCTION void operator()(const Member& team) const {
+    if (control().paused) return;
+    const int slot = slots(first + team.league_rank());
+    const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
+    MotionValues<T, Dim>* const nodes = scratch<MotionValues<T, Dim>>(team, window);
+    T* const mean = scratch<T>(team, cells);
+    const TileOrNumbers tile(team);
+    number_window<Dim>(team, around, slot, tile.number);
+    team.team_barrier();
+    load_window(team, tile.number, nodes);
+    T moved = 0;
+    const auto particle = [&](int p) { return step_particle(nodes, mean, slot, p, moved); };
+    if constexpr (Sums) {
+      tile.clear(team);
+      team.team_barrier();
+      if (by.f_bar > 0) average_dilatation(team, slot, nodes, mean);
+      tile.add(team, cell_begin, particle);
+      tile.give_window(team, out);
+    } else {
+      team.team_barrier();
+      if (by.f_bar > 0) average_dilatation(team, slot, nodes, mean);
+      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), particle);
+    }
+    team.team_reduce(Kokkos::Max<T>(moved));
+    Kokkos::single(Kokkos::PerTeam(team), [&] {
+      if (moved > Kokkos::atomic_load(&control().moved))
+        Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
+    });
+  }
+
+  KOKKOS_INLINE_FUNCTION void load_window(const Member& team, const int* number,
+                                          MotionValues<T, Dim>* nodes) const {
+    constexpr int size = NodeMotion<Dim>::size;
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int m) {
+      nodes[m / size].c[m % size] = motion(number[m / size], m % size);  // neighbours by neighbouring threads
+    });
+  }
+
+  /// Mean dilatation rate of each cell [1/s], weighted by volume.
+  KOKKOS_INLINE_FUNCTION void average_dilatation(const Member& team, int slot,
+                                                 const MotionValues<T, Dim>* nodes, T* mean) const {
+    const auto& soil = source.points;
+    const int from = begin(slot * cells), to = begin((slot + 1) * cells);
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, from, to), [&](int p) {
+      with_weights_near(
+          soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+            dilatation(p) =
+                dilatation_from_nodes<T, Dim>(nodes, coord_of<Dim>(soil.cell(p)), a, by.inv_spacing);
+          });
+    });
+    team.team_barrier();
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
+      T volume = 0, sum = 0;
+      for (int p = begin(slot * cells + c); p < begin(slot * cells + c + 1); ++p) {
+        volume += soil.volume(p);
+        sum += soil.volume(p) * dilatation(p);
+      }
+      mean[c] = volume > 0 ? sum / volume : T(0);
+    });
+    team.team_barrier();
+  }
+
+  /// Moves particle p; `moved` [cells] becomes the largest movement so far. Returns what it then gives.
+  KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const MotionValues<T, Dim>* nodes, const T* mean,
+                                                             int slot, int p, T& moved) const {
+    const auto& soil = source.points;
+    const BodyProperties<T> body = soil.bodies(soil.body(p));
+    const int place = soil.cell(p) - slot * cells;
+    const Coord<Dim> cell = coord_of<Dim>(place);
+    Particle<T, Dim> q{soil.coordinate(p),
+                       soil.velocity(p),
+                       soil.volume(p),
+                       {soil.stress(p), soil.plastic_strain(p), soil.strength(p)}};
+    const T plastic_strain = q.material.plastic_strain;
+    T own = 0;
+    with_weights_near(q.x, body.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+      own = advance(q, soil.materials(body.material), take_from_nodes(nodes, cell, a, by.inv_spacing),
+                    by.f_bar > 0 ? mean[place] : T(0), by);
+    });
+    soil.coordinate(p) = q.x;
+    soil.velocity(p) = q.v;
+    soil.volume(p) = q.volume;
+    soil.stress(p) = q.material.stress;
+    if (q.material.plastic_strain != plastic_strain) soil.plastic_strain(p) = q.material.plastic_strain;
+    const FaultKind fault = fault_of(q, own);
+    if (fault != FaultKind::none) {
+      double position[3] = {};
+      for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
+      report(control, fault, soil.id(p), position, Dim);
+    }
+    moved = Kokkos::fmax(moved, own);
+    return {q.x, source.point(body, q.v, q.material.stress, q.volume)};
+  }
+};
+
+/// Only on a device: a processor's caches hold the particles of a patch between the two functions anyway.
 template <class Space, class T, int Dim>
-KOKKOS_INLINE_FUNCTION void check(const Soil<Space, T, Dim>& soil, int p, T moved, const Coord<Dim>& origin,
-                                  const Coord<Dim>& cell, double spacing, const ControlView<Space>& control) {
-  const Vector<T, Dim> x = soil.coordinate(p), v = soil.velocity(p);
-  const SymTensor<T, Dim> s = soil.stress(p);
-  T sum = soil.volume(p);
-  for (int d = 0; d < Dim; ++d) sum += x[d] + v[d];
-  for (int k = 0; k < sym_size<Dim>; ++k) sum += s[k];
-  const bool finite = 0 * sum == 0;  // 0 times what is not finite is not zero
-  if (finite && soil.volume(p) > 0 && moved <= 1) return;
-  double position[3] = {};
-  for (int d = 0; d < Dim; ++d) position[d] = (double(origin[d]) + cell[d] + x[d]) * spacing;
-  const FaultKind kind =
-      !finite ? FaultKind::not_finite : (moved <= 1 ? FaultKind::inverted : FaultKind::too_fast);
-  report(control, kind, soil.id(p), position, Dim);
+inline constexpr bool sums_fit =
+    is_device<Space>&& scratch_fits<Space, T, Dim>(UpdateParticles<Space, T, Dim, true>::bytes());
+
+template <bool Sums, class Space, class T, int Dim>
+void launch_update(State<Space, T, Dim>& s, double dt) {
+  using Update = UpdateParticles<Space, T, Dim, Sums>;
+  const auto& set = s.soil;
+  const double flip = s.xpic_order > 0 ? 1 : s.flip_share;  // XPIC has changed the velocities already
+  const UpdateScalars<T> by{T(dt), s.grid.inv_spacing, T(flip), T(1 - flip), T(s.f_bar_share)};
+  const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
+      reinterpret_cast<T*>(s.spare.data()), set.points.count);
+  Update update{{set.points, s.grid.inv_spacing},
+                set.bins.begin,
+                set.bins.by_colour,
+                s.patches.around,
+                s.patches.origin,
+                s.nodes.motion,
+                s.nodes.soil,
+                s.control,
+                dilatation,
+                by,
+                s.spacing,
+                0};
+  const auto launch = [&](int first, int last) {
+    update.first = first;
+    Kokkos::parallel_for("mpm::update_particles",
+                         light(typename Update::Team(s.space, last - first, team_threads<Space>)
+                                   .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
+                         update);
+  };
+  if (Sums)
+    for_each_launch<Space, Dim>(set.bins, launch);
+  else
+    launch(0, set.bins.colour_begin[Patch<Dim>::colours]);
 }
 
 }  // namespace
 
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt_) {
-  using Team = Kokkos::TeamPolicy<Space>;
-  constexpr int size = NodeMotion<Dim>::size, window = Patch<Dim>::window, cells = Patch<Dim>::cells;
-  using Window = Kokkos::View<T*, typename Space::scratch_memory_space, Kokkos::MemoryUnmanaged>;
-  const auto soil = s.soil.points;
-  const auto begin = s.soil.bins.begin;
-  const auto around = s.patches.around;
-  const auto origin = s.patches.origin;
-  const auto motion = s.nodes.motion;
-  const auto control = s.control;
-  const double spacing = s.spacing;
-  const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
-      reinterpret_cast<T*>(s.spare.data()), soil.count);
-  const double flip = s.xpic_order > 0 ? 1 : s.flip_share;  // XPIC has changed the velocities already
-  const UpdateScalars<T> by{T(dt_), s.grid.inv_spacing, T(flip), T(1 - flip), T(s.f_bar_share)};
-  Kokkos::parallel_for(
-      "mpm::update_particles",
-      light(Team(s.space, s.patches.slots, team_threads<Space>)
-                .set_scratch_size(
-                    0, Kokkos::PerTeam(Window::shmem_size(window * size) + Window::shmem_size(cells)))),
-      KOKKOS_LAMBDA(const typename Team::member_type& team) {
-        if (control().paused) return;
-        // in the order of memory, so that threads of the host keep to their part
-        const int slot = team.league_rank();
-        const int from = begin(slot * Patch<Dim>::cells), to = begin((slot + 1) * Patch<Dim>::cells);
-        if (from == to) return;
-        const Window nodes(team.team_scratch(0), window * size), mean(team.team_scratch(0), cells);
-        Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
-          const int i = number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n));
-          for (int k = 0; k < size; ++k) nodes(n * size + k) = motion(i, k);
-        });
-        team.team_barrier();
-        if (by.f_bar > 0) {
-          Kokkos::parallel_for(Kokkos::TeamThreadRange(team, from, to), [&](int p) {
-            with_weights(soil.coordinate(p), soil.bodies(soil.body(p)).half_length,
-                         [&](const AxisWeights<T>(&a)[Dim]) {
-                           dilatation(p) = dilatation_from_nodes<T, Dim>(
-                               nodes.data(), coord_of<Dim>(soil.cell(p)), a, by.inv_spacing);
-                         });
-          });
-          team.team_barrier();
-          Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
-            T volume = 0, sum = 0;
-            for (int p = begin(slot * cells + c); p < begin(slot * cells + c + 1); ++p) {
-              volume += soil.volume(p);
-              sum += soil.volume(p) * dilatation(p);
-            }
-            mean(c) = volume > 0 ? sum / volume : T(0);
-          });
-          team.team_barrier();
-        }
-        T moved = 0;
-        const auto particle = [&](int p, T& furthest) {
-          const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
-          with_weights(
-              soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-                const T own = advance(soil, p, take_from_nodes<T, Dim>(nodes.data(), cell, a, by.inv_spacing),
-                                      by.f_bar > 0 ? mean(soil.cell(p) - slot * cells) : T(0), by);
-                check(soil, p, own, origin(slot), cell, spacing, control);
-                furthest = Kokkos::fmax(furthest, own);
-              });
-        };
-        Kokkos::parallel_reduce(Kokkos::TeamThreadRange(team, from, to), particle, Kokkos::Max<T>(moved));
-        Kokkos::single(Kokkos::PerTeam(team), [&] {
-          if (moved > Kokkos::atomic_load(&control().moved))
-            Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
-        });
-      });
+bool sums_ahead(const State<Space, T, Dim>& s) {
+  return sums_fit<Space, T, Dim> && chosen(s.p2g.strategy, backend_of<Space>) == P2G::tile &&
+         s.xpic_order == 0 && !s.affine;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template void update_particles(State<Space, T, Dim>&, double);
+template <class Space, class T, int Dim>
+void update_particles(State<Space, T, Dim>& s, double dt) {
+  s.soil_summed = sums_ahead(s);
+  if constexpr (sums_fit<Space, T, Dim>)
+    if (s.soil_summed) return launch_update<true>(s, dt);
+  launch_update<false>(s, dt);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                   \
+  template bool sums_ahead(const State<Space, T, Dim>&); \
+  template void update_particles(State<Space, T, Dim>&, double);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

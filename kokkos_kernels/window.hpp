@@ -1,6 +1,5 @@
 #pragma once
-// The window of a patch: the nodes that its particles reach while they drift, copied to a team's scratch
-// memory.
+// The window of a patch: the nodes that its particles reach while they drift, in a team's scratch memory.
 
 #include "particle_to_node.hpp"
 
@@ -9,6 +8,12 @@ namespace mpm {
 /// Threads of a team that works on a patch.
 template <class Space>
 inline constexpr int team_threads = is_device<Space> ? 128 : 1;
+/// Teams that share a multiprocessor: the registers of a thread are limited to what so many leave it.
+/// Measured on an H200: more teams hide more latency, until registers spill.
+template <class T, int Dim>
+inline constexpr int teams_at_once = sizeof(T) == sizeof(float) ? (Dim == 2 ? 9 : 7) : (Dim == 2 ? 5 : 4);
+template <class Space, class T, int Dim>
+using PatchTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, teams_at_once<T, Dim>>>;
 
 /// Place in the window of the node k steps from the first one that a particle reaches.
 template <class T, int Dim>
@@ -19,12 +24,61 @@ KOKKOS_INLINE_FUNCTION int window_place(const Coord<Dim>& cell, const AxisWeight
   return n;
 }
 
-/// Coordinates in the patch of a place in the window, from -1 to edge + 2.
+/// Coordinates in the patch of a place in the window, from -1 to edge + 1.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION Coord<Dim> window_coord(int n) {
   Coord<Dim> c{};
   for (int d = 0; d < Dim; ++d, n /= Patch<Dim>::window_edge) c[d] = n % Patch<Dim>::window_edge - 1;
   return c;
+}
+
+/// Numbers of the nodes of a slot's window, to number[window].
+template <int Dim, class Team, class Around>
+KOKKOS_INLINE_FUNCTION void number_window(const Team& team, const Around& around, int slot, int* number) {
+  Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Dim>::window), [&](int n) {
+    number[n] = number_at<Around, Dim>(around, slot, window_coord<Dim>(n));
+  });
+}
+
+/// The weights along every axis of a particle that is near the cell where it was binned.
+template <class T, int Dim, class F>
+KOKKOS_INLINE_FUNCTION void with_weights_near(const Vector<T, Dim>& x, const HalfLength<T>& half, F&& f) {
+  AxisWeights<T> a[Dim];
+  for (int d = 0; d < Dim; ++d) a[d] = axis_weights_near(x[d], half);
+  f(a);
+}
+
+/// Calls launch(first, last) for ranges of Bins::by_colour whose windows may be added to the nodes at once:
+/// on a device that is all, by atomic additions, on the host a colour.
+template <class Space, int Dim, class Launch>
+void for_each_launch(const Bins<Space>& bins, Launch&& launch) {
+  constexpr int colours = Patch<Dim>::colours, step = is_device<Space> ? colours : 1;
+  for (int colour = 0; colour < colours; colour += step)
+    if (bins.colour_begin[colour] < bins.colour_begin[colour + step])
+      launch(bins.colour_begin[colour], bins.colour_begin[colour + step]);
+}
+
+/// Bytes that the first of a team's scratch memory may have to move up, to a place for groups of 16 bytes.
+inline constexpr int k_scratch_slack = 16;
+/// Whether a team can have so much, so that teams_at_once share a multiprocessor. On a GPU a team can have
+/// 48 KiB, of which Kokkos takes 8 bytes a thread and two; a multiprocessor of Hopper has 227 KiB, of which 1
+/// KiB a team is the driver's.
+template <class Space, class T, int Dim>
+constexpr bool scratch_fits(std::size_t bytes) {
+  constexpr int kib = 1024;
+  const std::size_t all = bytes + k_scratch_slack + 8 * (team_threads<Space> + 2);
+  return !is_device<Space> || (all <= 48 * kib && (all + kib) * teams_at_once<T, Dim> <= 227 * kib);
+}
+
+/// Bytes of scratch memory for so many values.
+template <class T>
+constexpr std::size_t scratch_bytes(int values) {
+  return (values * sizeof(T) + 15) / 16 * 16;
+}
+/// The next of it, for so many values.
+template <class T, class Team>
+KOKKOS_INLINE_FUNCTION T* scratch(const Team& team, int values) {
+  return static_cast<T*>(team.team_scratch(0).get_shmem_aligned(scratch_bytes<T>(values), 16));
 }
 
 }  // namespace mpm

@@ -28,14 +28,20 @@ void rigids_to_nodes(const State<Space, T, Dim>& s) {
   }
 }
 
+/// Function 1, where the step before has not done it.
+template <class Space, class T, int Dim>
+void prepare_nodes(State<Space, T, Dim>& s) {
+  if (!s.soil_summed) reset_nodes(s);
+}
+
 /// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
-/// needs it.
+/// needs it. The first ones may be there already.
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s) {
   const auto& set = s.soil;
   if (s.affine)
     interpolate<AffineSource<Space, T, Dim>>(s, set.bins, {{set.points, s.grid.inv_spacing}}, s.nodes.soil);
-  else
+  else if (!s.soil_summed)
     interpolate<SoilSource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing}, s.nodes.soil);
   if (s.soil_boundary)
     interpolate<BoundarySource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing, s.near_rigid},
@@ -46,6 +52,7 @@ void soil_to_nodes(const State<Space, T, Dim>& s) {
 /// The lists hold, as they do for that step: s.control must not be paused.
 template <class Space, class T, int Dim>
 void sum_present_soil(State<Space, T, Dim>& s) {
+  if (s.soil_summed) return;
   reset_nodes(s);
   soil_to_nodes(s);
 }
@@ -71,7 +78,7 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt) {
   PetscFunctionBeginUser;
   const auto wait = [&] { s.space.fence("mpm::step"); };
   const auto run = [&](Function f, auto&& work) { return timers.run(f, work, wait); };
-  PetscCall(run(Function::reset, [&] { reset_nodes(s); }));               // 1 initialise nodal variables
+  PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));             // 1 initialise nodal variables
   PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s); }));  // 2 rigid bodies to nodes
   PetscCall(run(Function::soil_to_nodes, [&] { soil_to_nodes(s); }));     // 3 soil particles to nodes
   PetscCall(run(Function::nodes, [&] { update_nodes(s, dt); }));          // 4 velocities, walls, contact

@@ -4,8 +4,8 @@
 // has lost it, lists, windows and passes over unchanged data are not counted. So a function's share of the
 // copy bandwidth tells how near it is to the limit of memory.
 
-#include "state.hpp"
 #include "step/timers.hpp"
+#include "step_kernels.hpp"
 
 namespace mpm {
 
@@ -54,12 +54,15 @@ double bytes_of(Function f, const State<Space, T, Dim>& s) {
   constexpr double place = sizeof(Vector<T, Dim>) + sizeof(int), home = sizeof(Vector<double, Dim>);
   const double rigid_sums = s.rigid_points.size() * RigidShare<Dim>::size;
   const double sums = s.patches.node_count() * sizeof(T) * (SoilShare<Dim>::size + rigid_sums);
+  const double soil_sums = s.patches.node_count() * double(sizeof(T) * SoilShare<Dim>::size);
+  const bool ahead = sums_ahead(s);  // then functions 1 and 3 are part of 4 and 5 of the step before
   switch (f) {
-    case Function::reset: return sums;
+    case Function::reset: return ahead ? 0 : sums;
     case Function::rigid_to_nodes: return points * place;  // the few nodes that they reach are left out
-    case Function::soil_to_nodes: return bytes_to_nodes(s);
-    case Function::nodes: return sums + s.patches.node_count() * double(sizeof(T) * NodeMotion<Dim>::size);
-    case Function::particles: return bytes_to_particles(s);
+    case Function::soil_to_nodes: return ahead ? 0 : bytes_to_nodes(s);
+    case Function::nodes:
+      return (ahead ? 2 : 1) * sums + s.patches.node_count() * double(sizeof(T) * NodeMotion<Dim>::size);
+    case Function::particles: return bytes_to_particles(s) + (ahead ? soil_sums : 0);
     case Function::rigids: return s.rigid_moves ? points * (place + home) : 0;
     default: return 2 * sorted;
   }
