@@ -5,6 +5,7 @@ shortfalls, {{machines}} what the results were made with.
 """
 
 import re
+from collections import Counter
 
 import case as cases
 import store
@@ -116,7 +117,13 @@ def shortfalls(all_cases, results):
 
 
 def machines(results):
-    return "; ".join(f"{label}: {kept['machine']}, mpm {kept['version']}" for label, kept in results.items() if kept["cases"])
+    """What the results were made with, the machine of most of them first."""
+    told = []
+    for label, kept in results.items():
+        made = Counter(entry["machine"] for variants in kept["cases"].values() for entry in variants.values())
+        if made:
+            told.append(f"{label}: {', '.join(name for name, _ in made.most_common())}, mpm {kept['version']}")
+    return "; ".join(told)
 
 
 def draw(drawn):

@@ -1,6 +1,6 @@
 """Results of the suite in a JSON file, merged case by case:
 
-    {"machine": ..., "version": ..., "cases": {CASE: {BACKEND-PRECISION: {"seconds": s, "rows": [...]}}}}
+    {"version": ..., "cases": {CASE: {BACKEND-PRECISION: {"machine": ..., "seconds": s, "rows": [...]}}}}
 """
 
 import json
@@ -19,11 +19,21 @@ def load(path):
 def keep(path, case, variant, rows, seconds, runs):
     """Puts the rows of a case in one variant into the file, in place of what it held for them."""
     results = load(path)
-    results["machine"] = machine(variant[0])
     results["version"] = version(runs)
     results["cases"].setdefault(case.name, {})["-".join(variant)] = {
-        "seconds": round(seconds, 1), "rows": [as_dict(row, variant[1]) for row in rows]}
+        "machine": machine(variant[0]), "seconds": round(seconds, 1), "rows": [as_dict(row, variant[1]) for row in rows]}
     path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(results, indent=1, sort_keys=True) + "\n")
+
+
+def merge(path, others):
+    """Puts what other files hold into one, the later over the earlier: results of several machines or calls."""
+    results = load(path)
+    for other in map(load, others):
+        results["version"] = other["version"]
+        for name, variants in other["cases"].items():
+            for variant, entry in variants.items():
+                results["cases"].setdefault(name, {})[variant] = {"machine": other.get("machine", ""), **entry}
     path.write_text(json.dumps(results, indent=1, sort_keys=True) + "\n")
 
 
