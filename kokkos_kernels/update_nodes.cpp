@@ -43,12 +43,13 @@ struct UpdateNodes {
   T dt, damping, mass_cut;
   double spacing;
   bool has_boundary, has_friction, has_mass_normals, clears;
+  int scratch_level;
 
   /// The nodes of slot number n of those near a rigid. Leaves the force on each rigid [N] in `forces`; it is
   /// summed in the order of the nodes.
   KOKKOS_INLINE_FUNCTION void update_near(const Member& team, int n) const {
     const int slot = near_slots(n);
-    double* const force = scratch<double>(team, value_count * cells);
+    double* const force = scratch<double>(team, value_count * cells, scratch_level);
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int k) {
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
       update<true>(slot * cells + k, force + k);
@@ -197,11 +198,24 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
   using Update = UpdateNodes<Space, T, Dim>;
   constexpr int threads = is_device<Space> ? Patch<Dim>::cells : 1;
   const int values = Dim * static_cast<int>(s.rigid_points.size());
-  Update update{values,       s.grid,          s.nodes,        s.patches.origin,
-                s.rigids,     s.vertices,      s.near_slots,   s.slot_forces,
-                {},           T(dt),           T(s.damping),   T(s.mass_cut),
-                s.spacing,    s.soil_boundary, s.has_friction, s.mass_normals,
-                sums_ahead(s)};
+  Update update{values,
+                s.grid,
+                s.nodes,
+                s.patches.origin,
+                s.rigids,
+                s.vertices,
+                s.near_slots,
+                s.slot_forces,
+                {},
+                T(dt),
+                T(s.damping),
+                T(s.mass_cut),
+                s.spacing,
+                s.soil_boundary,
+                s.has_friction,
+                s.mass_normals,
+                sums_ahead(s),
+                0};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   const auto near = s.near_rigid;
   const auto control = s.control;
@@ -213,9 +227,12 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
       });
   if (values == 0 || s.near_count == 0) return;
   const std::size_t near_bytes = scratch_bytes<double>(values * Update::cells) + k_scratch_slack;
+  constexpr std::size_t k_fast = 32 * 1024;  // bytes that every back end has; some thirty rigids need more
+  update.scratch_level = near_bytes > k_fast ? 1 : 0;
   Kokkos::parallel_for(
       "mpm::update_nodes_near_rigids",
-      light(Team(s.space, s.near_count, threads).set_scratch_size(0, Kokkos::PerTeam(near_bytes))),
+      light(Team(s.space, s.near_count, threads)
+                .set_scratch_size(update.scratch_level, Kokkos::PerTeam(near_bytes))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (!control().paused) update.update_near(team, team.league_rank());
       });

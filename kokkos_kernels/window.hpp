@@ -75,10 +75,10 @@ template <class T>
 constexpr std::size_t scratch_bytes(int values) {
   return (values * sizeof(T) + 15) / 16 * 16;
 }
-/// The next of it, for so many values.
+/// The next of it, for so many values; level 1 is in the device's memory, slow and large.
 template <class T, class Team>
-KOKKOS_INLINE_FUNCTION T* scratch(const Team& team, int values) {
-  return static_cast<T*>(team.team_scratch(0).get_shmem_aligned(scratch_bytes<T>(values), 16));
+KOKKOS_INLINE_FUNCTION T* scratch(const Team& team, int values, int level = 0) {
+  return static_cast<T*>(team.team_scratch(level).get_shmem_aligned(scratch_bytes<T>(values), 16));
 }
 
 }  // namespace mpm

@@ -221,3 +221,21 @@ TEST_CASE("soil and a rigid that hits it keep their momentum", "[contact]") {
     }
   });
 }
+
+TEST_CASE("any number of rigids fits, and those out of touch change nothing", "[contact]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    Cloud cloud = pressed<B::dim>();
+    const auto velocity_after = [&] {
+      auto s = state_of<B>(cloud, P2G::tile);
+      run_steps(s, 2e-4, 5);
+      return on_host(s.rigids)(0).velocity;
+    };
+    const auto alone = velocity_after();
+    for (int r = 1; r < 70; ++r)
+      cloud.rigids.push_back(rigid_of<B::dim>(lattice<B::dim>({0, 15, 0}, {1, 16, 1}, 2, 0.1), 2, 0.1));
+    const auto among_others = velocity_after();
+    INFO(build.name());
+    for (int d = 0; d < B::dim; ++d) CHECK(among_others[d] == alone[d]);
+  });
+}

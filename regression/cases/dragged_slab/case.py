@@ -4,7 +4,7 @@ A slab whose interface slips at $\\tau_{max}$ is dragged over clay, and needs th
 below, and wherever its ends are in their cells. The interface must touch for that, so the clay carries a pressure of 3 kPa from the
 start; the slab moves by 0.3 m (six cells), and is lowered by 0.3 mm meanwhile. The clay is a strip that lies wholly under the slab, so $A$ is that of the strip. In one more run
 the clay is wider than the slab, whose front end then meets clay: nodes at the surface, up to a cell ahead, are pushed before
-it, which raises the force by a quarter. The mean force over the last two thirds is compared.
+it, which raises the force by 29 %. The mean force over the last two thirds is compared.
 """
 
 import numpy as np
