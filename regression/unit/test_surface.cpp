@@ -52,6 +52,18 @@ bool is(const Distance<Dim>& got, double value, Vector<double, Dim> normal) {
 
 const double k_half = std::sqrt(0.5);
 
+/// A box [cells] with normals of its own surface.
+template <int Dim>
+RigidInput plate_of(const std::array<double, 3>& from, const std::array<double, 3>& to, double spacing) {
+  RigidInput plate = rigid_of<Dim>(lattice<Dim>(from, to, 4, spacing), 4, spacing);
+  plate.surface_normal = true;
+  for (int d = 0; d < 3; ++d) {
+    plate.surface.half[d] = (to[d] - from[d]) * spacing / 2;
+    plate.surface.centre[d] = (to[d] + from[d]) * spacing / 2;
+  }
+  return plate;
+}
+
 }  // namespace
 
 TEST_CASE("distance to a box: faces, rounded corners, inside, turned, cut off by the mesh", "[surface]") {
@@ -161,13 +173,7 @@ TEST_CASE("soil pressed into a thin plate is stopped by the face that it is at",
       cloud.bodies[0].velocity[Dim - 1] = below ? 1 : -1;
       std::array<double, 3> from{4, 4, 4}, to{16, 16, 16};
       from[Dim - 1] = 10, to[Dim - 1] = 11;
-      cloud.rigids = {rigid_of<Dim>(lattice<Dim>(from, to, 4, spacing), 4, spacing)};
-      auto& plate = cloud.rigids[0];
-      plate.surface_normal = true;
-      for (int d = 0; d < 3; ++d) {
-        plate.surface.half[d] = (to[d] - from[d]) * spacing / 2;
-        plate.surface.centre[d] = (to[d] + from[d]) * spacing / 2;
-      }
+      cloud.rigids = {plate_of<Dim>(from, to, spacing)};
       auto s = state_of<B>(cloud);
       interpolate(s);
       update_nodes(s, 1e-6);
@@ -221,14 +227,8 @@ TEST_CASE("contact begins where the gap is closed, and the mass of the body does
       cloud.bodies[0].velocity[Dim - 1] = 1;
       std::array<double, 3> from{4, 4, 4}, to{16, 16, 16};
       from[Dim - 1] = 10, to[Dim - 1] = 12;
-      cloud.rigids = {rigid_of<Dim>(lattice<Dim>(from, to, 4, spacing), 4, spacing)};
-      auto& plate = cloud.rigids[0];
-      plate.surface_normal = true;
-      plate.reach = 0.15 * spacing;
-      for (int d = 0; d < 3; ++d) {
-        plate.surface.half[d] = (to[d] - from[d]) * spacing / 2;
-        plate.surface.centre[d] = (to[d] + from[d]) * spacing / 2;
-      }
+      cloud.rigids = {plate_of<Dim>(from, to, spacing)};
+      cloud.rigids[0].reach = 0.15 * spacing;
       auto s = state_of<B>(cloud);
       interpolate(s);
       update_nodes(s, 1e-6);
