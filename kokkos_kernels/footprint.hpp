@@ -10,10 +10,10 @@ namespace mpm {
 /// the strategies and the rigids come on top.
 template <class T, int Dim>
 struct Footprint {
-  static constexpr double grown = 9.0 / 8;  // ensure() leaves room
+  static constexpr double grown = 17.0 / 16;  // ensure() leaves room
   static constexpr double particle = 2 * sizeof(Vector<T, Dim>) + sizeof(SymTensor<T, Dim>) + 3 * sizeof(T) +
                                      sizeof(std::uint16_t) + 2 * sizeof(int) + sizeof(long) +
-                                     grown * (sizeof(int) + sizeof(SymTensor<T, Dim>));
+                                     grown * (sizeof(int) + sizeof(Vector<T, Dim>));
   static constexpr double node =
       grown *
       (sizeof(T) * (SoilShare<Dim>::size + NodeMotion<Dim>::size + BoundaryShare<Dim>::size) + sizeof(int));

@@ -69,6 +69,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
   if (!s.rigid_moves) return;
   for (int r = 0; r < count; ++r) {
     const auto points = s.rigid_points[r].points;
+    if (points.surface_normal) continue;  // only a rebuild asks for them, and finds them itself
     const auto home = points.home;
     Kokkos::parallel_for(  // also while the steps are paused: it gives the same again
         "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(s.space, 0, points.count)),

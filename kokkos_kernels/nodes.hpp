@@ -36,6 +36,7 @@ struct NodeMotion {
 template <class T, int Dim>
 struct alignas(group_alignment<T, NodeMotion<Dim>::size>) MotionValues {
   T c[NodeMotion<Dim>::size];
+  KOKKOS_INLINE_FUNCTION const T& operator[](int k) const { return c[k]; }
 };
 
 template <class Space, class T, int Dim>

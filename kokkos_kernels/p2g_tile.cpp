@@ -26,7 +26,8 @@ void reduce_by_tile(const Interpolation<Source>& it) {
           if (control().paused) return;
           const int slot = by_colour(first + team.league_rank());
           if (source.skips(slot)) return;
-          const Tile_ tile(team);
+          Scratch scratch(team, Tile_::bytes());
+          const Tile_ tile(scratch);
           number_window<Dim>(team, around, slot, tile.number);
           tile.clear(team);
           team.team_barrier();

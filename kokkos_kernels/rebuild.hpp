@@ -50,13 +50,30 @@ void mark_near_rigids(State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void average_pressure(State<Space, T, Dim>& s);
 
+/// What the sort moves of a value at a time, so that its scratch memory stays small: a particle's vector, or
+/// as much of a tensor.
+template <class Value>
+struct SortedPart {
+  using type = Value;
+};
+template <class T, int Dim>
+struct SortedPart<SymTensor<T, Dim>> {
+  using type = Vector<T, 2>;
+};
+template <class T, int Dim>
+struct SortedPart<Matrix<T, Dim>> {
+  using type = Vector<T, Dim>;
+};
+template <class Value>
+using PartOf = typename SortedPart<Value>::type;
+
 /// Makes a view hold at least n entries; its content is lost when it grows.
 template <class View>
 void ensure(View& view, std::size_t n) {
   if (view.extent(0) >= n) return;
   const std::string label = view.label();
   view = View();  // the old memory goes before the new one comes
-  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), n + n / 8);
+  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), n + n / 16);
 }
 
 }  // namespace mpm

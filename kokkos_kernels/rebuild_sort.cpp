@@ -58,17 +58,23 @@ void order_points(const Space& space, Sorted<Space, Points_>& set, const Spare& 
       "mpm::keep_order", Range(space, 0, count), KOKKOS_LAMBDA(int p) { order(p) = former(p); });
 }
 
-/// Puts one field into the new order.
+/// Puts one field into the new order, piece by piece of its values.
 template <class Space, class Field, class Order, class Spare>
 void permute(const Space& space, const Field& field, const Order& order, int count, const Spare& spare) {
   using Range = Kokkos::RangePolicy<Space>;
   using Value = typename Field::value_type;
-  Kokkos::View<Value*, typename Space::memory_space, Kokkos::MemoryUnmanaged> sorted(
-      reinterpret_cast<Value*>(spare.data()), count);
-  Kokkos::parallel_for(
-      "mpm::permute", Range(space, 0, count), KOKKOS_LAMBDA(int p) { sorted(p) = field(order(p)); });
-  Kokkos::parallel_for(
-      "mpm::permute_back", Range(space, 0, count), KOKKOS_LAMBDA(int p) { field(p) = sorted(p); });
+  using Part = PartOf<Value>;
+  constexpr int parts = sizeof(Value) / sizeof(Part);
+  Part* const sorted = reinterpret_cast<Part*>(spare.data());
+  Part* const whole = reinterpret_cast<Part*>(field.data());
+  for (int k = 0; k < parts; ++k) {
+    Kokkos::parallel_for(
+        "mpm::permute", Range(space, 0, count),
+        KOKKOS_LAMBDA(int p) { sorted[p] = whole[std::size_t(order(p)) * parts + k]; });
+    Kokkos::parallel_for(
+        "mpm::permute_back", Range(space, 0, count),
+        KOKKOS_LAMBDA(int p) { whole[std::size_t(p) * parts + k] = sorted[p]; });
+  }
 }
 
 /// Slots that hold points, ordered by the colour of their patch.
@@ -102,8 +108,11 @@ void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Spa
               Spare& spare) {
   const int cells = patches.node_count();
   auto& points = set.points;
-  std::size_t widest = std::max(sizeof(int), sizeof(typename decltype(points.coordinate)::value_type));
-  for_each_field(points, [&](const auto& field) { widest = std::max(widest, sizeof(field.data()[0])); });
+  std::size_t widest =
+      std::max(sizeof(int), sizeof(PartOf<typename decltype(points.coordinate)::value_type>));
+  for_each_field(points, [&](const auto& field) {
+    widest = std::max(widest, sizeof(PartOf<typename std::decay_t<decltype(field)>::value_type>));
+  });
   ensure(spare, widest * points.count);
 
   count_by_cell(space, set, patches.slot_of, cells, Patch<Dim>::cells);
@@ -192,7 +201,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid =
         decltype(s.nodes.rigid)(Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing),
-                                s.rigid_points.size(), nodes + nodes / 8);
+                                s.rigid_points.size(), nodes + nodes / 16);
   const auto control = s.control;
   Kokkos::parallel_for(
       "mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {

@@ -51,12 +51,11 @@ struct Tile {
 
   static constexpr std::size_t bytes() { return bytes_of(capacity); }
 
-  template <class Team>
-  KOKKOS_INLINE_FUNCTION explicit Tile(const Team& team)
-      : number(scratch<int>(team, window)),
-        sums(scratch<T>(team, size * window)),
-        stage(scratch<T>(team, k_values * pitch)),
-        firsts(scratch<int>(team, pitch)) {}
+  KOKKOS_INLINE_FUNCTION explicit Tile(Scratch& scratch)
+      : number(scratch.take<int>(window)),
+        sums(scratch.take<T>(size * window)),
+        stage(scratch.take<T>(k_values * pitch)),
+        firsts(scratch.take<int>(pitch)) {}
 
   KOKKOS_INLINE_FUNCTION T& sum(int node, int value) const {
     return sums[device ? value * window + node : node * size + value];

@@ -6,23 +6,35 @@
 
 namespace mpm {
 
+/// Threads of a team that takes the nodes of a slot.
+template <class Space, int Dim>
+inline constexpr int node_threads = is_device<Space> ? Patch<Dim>::cells : 1;
+
+/// Sets the sums of a slot's nodes to zero, neighbours in memory by neighbouring threads.
+template <class Team, class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const Nodes<Space, T, Dim>& nodes, int slot,
+                                       bool boundary, int rigids) {
+  constexpr int cells = Patch<Dim>::cells;
+  const auto clear = [&](T* values, int count) {
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, count), [&](int n) { values[n] = 0; });
+  };
+  clear(&nodes.soil(slot * cells, 0), cells * SoilShare<Dim>::size);
+  if (boundary) clear(&nodes.boundary(slot * cells, 0), cells * BoundaryShare<Dim>::size);
+  for (int r = 0; r < rigids; ++r) clear(&nodes.rigid(r, slot * cells, 0), cells * RigidShare<Dim>::size);
+}
+
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s) {
+  using Team = Kokkos::TeamPolicy<Space>;
   s.soil_summed = false;
-  const auto soil = s.nodes.soil;
-  const auto boundary = s.nodes.boundary;
-  const auto rigid = s.nodes.rigid;
+  const auto nodes = s.nodes;
   const auto control = s.control;
   const int rigids = s.mass_normals ? static_cast<int>(s.rigid_points.size()) : 0;
-  const int values = s.soil_boundary ? BoundaryShare<Dim>::size : 0;
+  const bool boundary = s.soil_boundary;
   Kokkos::parallel_for(
-      "mpm::reset_nodes", light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())),
-      KOKKOS_LAMBDA(int i) {
-        if (control().paused) return;
-        for (int k = 0; k < SoilShare<Dim>::size; ++k) soil(i, k) = 0;
-        for (int k = 0; k < values; ++k) boundary(i, k) = 0;
-        for (int r = 0; r < rigids; ++r)
-          for (int k = 0; k < RigidShare<Dim>::size; ++k) rigid(r, i, k) = 0;
+      "mpm::reset_nodes", light(Team(s.space, s.patches.slots, node_threads<Space, Dim>)),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (!control().paused) clear_sums(team, nodes, team.league_rank(), boundary, rigids);
       });
 }
 
@@ -60,6 +72,7 @@ struct UpdateNodes {
       for (int k = 0; k < cells; ++k) sum += force[v * cells + k];
       forces(n * value_count + v) = sum;
     });
+    if (clears) clear_sums(team, nodes, slot, has_boundary, has_mass_normals ? rigids.extent(0) : 0);
   }
 
   template <bool Near>
@@ -90,7 +103,6 @@ struct UpdateNodes {
       }
       apply_walls(grid, sides, v);
     }
-    if (clears) clear<Near>(i);
     MotionValues<T, Dim> motion;
     for (int d = 0; d < Dim; ++d) {
       motion.c[NodeMotion<Dim>::velocity + d] = v[d];
@@ -99,14 +111,12 @@ struct UpdateNodes {
     *reinterpret_cast<MotionValues<T, Dim>*>(&nodes.motion(i, 0)) = motion;
   }
 
-  /// Sets the node's sums to zero; far from every rigid nothing is added to those of rigids and boundary.
-  template <bool Near>
-  KOKKOS_INLINE_FUNCTION void clear(int i) const {
-    for (int k = 0; k < SoilShare<Dim>::size; ++k) nodes.soil(i, k) = 0;
-    if (!Near) return;
-    for (int k = 0; k < BoundaryShare<Dim>::size && has_boundary; ++k) nodes.boundary(i, k) = 0;
-    for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_mass_normals; ++r)
-      for (int k = 0; k < RigidShare<Dim>::size; ++k) nodes.rigid(r, i, k) = 0;
+  /// The nodes of a slot far from every rigid.
+  KOKKOS_INLINE_FUNCTION void update_far(const Member& team, int slot) const {
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells),
+                         [&](int k) { update<false>(slot * cells + k, nullptr); });
+    team.team_barrier();
+    if (clears) clear_sums(team, nodes, slot, false, 0);
   }
 
   /// Contact with rigid r; adds the force of the soil on it (Eq. 10) to force[0], force[cells] ...
@@ -196,7 +206,7 @@ template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt) {
   using Team = Kokkos::TeamPolicy<Space>;
   using Update = UpdateNodes<Space, T, Dim>;
-  constexpr int threads = is_device<Space> ? Patch<Dim>::cells : 1;
+  constexpr int threads = node_threads<Space, Dim>;
   const int values = Dim * static_cast<int>(s.rigid_points.size());
   Update update{values,
                 s.grid,
@@ -220,10 +230,11 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
   const auto near = s.near_rigid;
   const auto control = s.control;
   Kokkos::parallel_for(
-      "mpm::update_nodes", light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())),
-      KOKKOS_LAMBDA(int i) {
-        if (control().paused || (values > 0 && near(i / Patch<Dim>::cells) != 0)) return;
-        update.template update<false>(i, nullptr);
+      "mpm::update_nodes", light(Team(s.space, s.patches.slots, threads)),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        const int slot = team.league_rank();
+        if (control().paused || (values > 0 && near(slot) != 0)) return;
+        update.update_far(team, slot);
       });
   if (values == 0 || s.near_count == 0) return;
   const std::size_t near_bytes = scratch_bytes<double>(values * Update::cells) + k_scratch_slack;

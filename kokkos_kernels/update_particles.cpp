@@ -17,8 +17,7 @@ KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const MotionValues<T, Dim>*
                                                      T inv_spacing) {
   Taken<T, Dim> t{};
   interpolate_by_lines(
-      a, [&](const Vector<int, Dim>& k) -> const auto& { return window[window_place(cell, a, k)].c; },
-      t.motion, t.gradient);
+      a, [&](const Vector<int, Dim>& k) { return window[window_place(cell, a, k)]; }, t.motion, t.gradient);
   for (int d = 0; d < Dim; ++d)
     for (int e = 0; e < Dim; ++e) t.gradient[d][e] *= inv_spacing;
   return t;
@@ -30,7 +29,7 @@ KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const MotionValues<T, Dim>* windo
                                                const AxisWeights<T> (&a)[Dim], T inv_spacing) {
   T sum = 0;
   for_each_weight(a, [&](const Vector<int, Dim>& k, T, const Vector<T, Dim>& grad) {
-    const T* const node = window[window_place(cell, a, k)].c;
+    const MotionValues<T, Dim> node = window[window_place(cell, a, k)];
     for (int d = 0; d < Dim; ++d) sum += node[NodeMotion<Dim>::velocity + d] * grad[d];
   });
   return sum * inv_spacing;
@@ -114,10 +113,11 @@ struct UpdateParticles {
   using Member = typename Team::member_type;
   using Memory = typename Space::memory_space;
   static constexpr int cells = Patch<Dim>::cells, window = Patch<Dim>::window;
+  static constexpr int threads = team_threads<Space>;
   /// What is left of a tile where nothing is summed.
   struct Numbers {
     int* number;
-    KOKKOS_INLINE_FUNCTION explicit Numbers(const Member& team) : number(scratch<int>(team, window)) {}
+    KOKKOS_INLINE_FUNCTION explicit Numbers(Scratch& scratch) : number(scratch.take<int>(window)) {}
   };
   using TileOrNumbers = std::conditional_t<Sums, Tile_, Numbers>;
 
@@ -131,10 +131,11 @@ struct UpdateParticles {
   Kokkos::View<T*, Memory, Kokkos::MemoryUnmanaged> dilatation;  // 1/s, by particle
   UpdateScalars<T> by;
   double spacing;
-  int first;  // of slots
+  int first;      // of slots
+  bool one_body;  // no particle needs to be asked which its body is
 
   static constexpr std::size_t bytes() {
-    return scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) +
+    return scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) + scratch_bytes<T>(threads) +
            (Sums ? Tile_::bytes() : scratch_bytes<int>(window));
   }
 
@@ -142,12 +143,13 @@ struct UpdateParticles {
     if (control().paused) return;
     const int slot = slots(first + team.league_rank());
     const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
-    MotionValues<T, Dim>* const nodes = scratch<MotionValues<T, Dim>>(team, window);
-    T* const mean = scratch<T>(team, cells);
-    const TileOrNumbers tile(team);
-    number_window<Dim>(team, around, slot, tile.number);
-    team.team_barrier();
-    load_window(team, tile.number, nodes);
+    Scratch scratch(team, bytes());
+    MotionValues<T, Dim>* const nodes = scratch.take<MotionValues<T, Dim>>(window);
+    T* const mean = scratch.take<T>(cells);
+    T* const furthest = scratch.take<T>(threads);
+    const TileOrNumbers tile(scratch);
+    prefetch_particle(begin(slot * cells) + team.team_rank(), begin((slot + 1) * cells));
+    load_window(team, slot, tile.number, nodes);
     T moved = 0;
     const auto particle = [&](int p) { return step_particle(nodes, mean, slot, p, moved); };
     if constexpr (Sums) {
@@ -155,24 +157,50 @@ struct UpdateParticles {
       team.team_barrier();
       if (by.f_bar > 0) average_dilatation(team, slot, nodes, mean);
       tile.add(team, cell_begin, particle);
+      note_movement(team, moved, furthest);
       tile.give_window(team, out);
     } else {
       team.team_barrier();
       if (by.f_bar > 0) average_dilatation(team, slot, nodes, mean);
       Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), particle);
+      note_movement(team, moved, furthest);
     }
-    team.team_reduce(Kokkos::Max<T>(moved));
+  }
+
+  /// Asks the memory for what the first particle of a thread holds, before its nodes are there.
+  KOKKOS_INLINE_FUNCTION void prefetch_particle(int p, int end) const {
+    if (!is_device<Space> || p >= end) return;
+    const auto& soil = source.points;
+    prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
+    prefetch(&soil.volume(p)), prefetch(&soil.strength(p)), prefetch(&soil.plastic_strain(p));
+  }
+
+  /// Brings the largest of the team's movements [cells] to s.control. A reduction by Kokkos would take
+  /// longer.
+  KOKKOS_INLINE_FUNCTION void note_movement(const Member& team, T moved, T* furthest) const {
+    constexpr int few = threads < 16 ? 1 : 16;
+    furthest[team.team_rank()] = moved;
+    team.team_barrier();
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, few), [&](int n) {
+      for (int k = n + few; k < threads; k += few) furthest[n] = Kokkos::fmax(furthest[n], furthest[k]);
+    });
+    team.team_barrier();
     Kokkos::single(Kokkos::PerTeam(team), [&] {
-      if (moved > Kokkos::atomic_load(&control().moved))
-        Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
+      T most = furthest[0];
+      for (int n = 1; n < few; ++n) most = Kokkos::fmax(most, furthest[n]);
+      if (most > Kokkos::atomic_load(&control().moved))
+        Kokkos::atomic_max(&control().moved, static_cast<double>(most));
     });
   }
 
-  KOKKOS_INLINE_FUNCTION void load_window(const Member& team, const int* number,
+  /// Numbers and motion of the nodes of the slot's window.
+  KOKKOS_INLINE_FUNCTION void load_window(const Member& team, int slot, int* number,
                                           MotionValues<T, Dim>* nodes) const {
-    constexpr int size = NodeMotion<Dim>::size;
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int m) {
-      nodes[m / size].c[m % size] = motion(number[m / size], m % size);  // neighbours by neighbouring threads
+    using Around = decltype(Patches<Space, Dim>::around);
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
+      const int i = number_at<Around, Dim>(around, slot, window_coord<Dim>(n));
+      number[n] = i;
+      nodes[n] = *reinterpret_cast<const MotionValues<T, Dim>*>(&motion(i, 0));
     });
   }
 
@@ -182,11 +210,11 @@ struct UpdateParticles {
     const auto& soil = source.points;
     const int from = begin(slot * cells), to = begin((slot + 1) * cells);
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, from, to), [&](int p) {
-      with_weights_near(
-          soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-            dilatation(p) =
-                dilatation_from_nodes<T, Dim>(nodes, coord_of<Dim>(soil.cell(p)), a, by.inv_spacing);
-          });
+      with_weights_near(soil.coordinate(p), soil.bodies(one_body ? 0 : soil.body(p)).half_length,
+                        [&](const AxisWeights<T>(&a)[Dim]) {
+                          dilatation(p) = dilatation_from_nodes<T, Dim>(nodes, coord_of<Dim>(soil.cell(p)), a,
+                                                                        by.inv_spacing);
+                        });
     });
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
@@ -204,7 +232,7 @@ struct UpdateParticles {
   KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const MotionValues<T, Dim>* nodes, const T* mean,
                                                              int slot, int p, T& moved) const {
     const auto& soil = source.points;
-    const BodyProperties<T> body = soil.bodies(soil.body(p));
+    const BodyProperties<T> body = soil.bodies(one_body ? 0 : soil.body(p));
     const int place = soil.cell(p) - slot * cells;
     const Coord<Dim> cell = coord_of<Dim>(place);
     Particle<T, Dim> q{soil.coordinate(p),
@@ -257,7 +285,8 @@ void launch_update(State<Space, T, Dim>& s, double dt) {
                 dilatation,
                 by,
                 s.spacing,
-                0};
+                0,
+                set.points.bodies.extent(0) == 1};
   const auto launch = [&](int first, int last) {
     update.first = first;
     Kokkos::parallel_for("mpm::update_particles",

@@ -15,6 +15,11 @@ inline constexpr int teams_at_once = sizeof(T) == sizeof(float) ? (Dim == 2 ? 9 
 template <class Space, class T, int Dim>
 using PatchTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, teams_at_once<T, Dim>>>;
 
+/// Asks a GPU to fetch what p points at into its second cache.
+KOKKOS_INLINE_FUNCTION void prefetch([[maybe_unused]] const void* p) {
+  KOKKOS_IF_ON_DEVICE((asm volatile("prefetch.global.L2 [%0];" ::"l"(p));))
+}
+
 /// Place in the window of the node k steps from the first one that a particle reaches.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION int window_place(const Coord<Dim>& cell, const AxisWeights<T> (&a)[Dim],
@@ -75,6 +80,23 @@ template <class T>
 constexpr std::size_t scratch_bytes(int values) {
   return (values * sizeof(T) + 15) / 16 * 16;
 }
+/// Scratch memory of a team, taken piece by piece; each begins at a multiple of 16 bytes. Asked for at once:
+/// a piece's place is then known when the kernel is compiled.
+class Scratch {
+ public:
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION Scratch(const Team& team, std::size_t bytes)
+      : next_(static_cast<char*>(team.team_scratch(0).get_shmem_aligned(bytes, 16))) {}
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T* take(int values) {
+    T* const piece = reinterpret_cast<T*>(next_);
+    next_ += scratch_bytes<T>(values);
+    return piece;
+  }
+
+ private:
+  char* next_;
+};
 /// The next of it, for so many values; level 1 is in the device's memory, slow and large.
 template <class T, class Team>
 KOKKOS_INLINE_FUNCTION T* scratch(const Team& team, int values, int level = 0) {

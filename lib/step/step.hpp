@@ -10,10 +10,18 @@ namespace mpm {
 
 /// Interpolation of one source by the strategy that the user chose.
 template <class Source, class Space, class T, int Dim>
-void interpolate(const State<Space, T, Dim>& s, const Bins<Space>& bins, const Source& source,
+void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>& bins, const Source& source,
                  const NodeField<Space, T, Source::size>& out) {
-  particle_to_node(s.p2g.strategy, Interpolation<Source>{s.space, s.grid, s.patches, bins, source, out,
-                                                         s.control, s.p2g.mosaic_cells});
+  particle_to_node(strategy, Interpolation<Source>{s.space, s.grid, s.patches, bins, source, out, s.control,
+                                                   s.p2g.mosaic_cells});
+}
+
+/// The strategy for the points of rigids. They are few in many cells of a patch or many in few: where `tile`
+/// would leave most of a GPU's threads idle, a thread a point does not.
+template <class Space>
+P2G strategy_of_rigids(P2G chosen_for_soil) {
+  const bool tile = chosen(chosen_for_soil, backend_of<Space>) == P2G::tile;
+  return is_device<Space> && tile ? P2G::atomic : chosen_for_soil;
 }
 
 /// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not tell them.
@@ -24,7 +32,8 @@ void rigids_to_nodes(const State<Space, T, Dim>& s) {
     if (set.points.surface_normal) continue;
     const NodeField<Space, T, RigidShare<Dim>::size> out =
         Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL);
-    interpolate<RigidSource<Space, T, Dim>>(s, set.bins, {set.points}, out);
+    interpolate<RigidSource<Space, T, Dim>>(s, strategy_of_rigids<Space>(s.p2g.strategy), set.bins,
+                                            {set.points}, out);
   }
 }
 
@@ -39,13 +48,15 @@ void prepare_nodes(State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s) {
   const auto& set = s.soil;
+  const P2G how = s.p2g.strategy;
   if (s.affine)
-    interpolate<AffineSource<Space, T, Dim>>(s, set.bins, {{set.points, s.grid.inv_spacing}}, s.nodes.soil);
+    interpolate<AffineSource<Space, T, Dim>>(s, how, set.bins, {{set.points, s.grid.inv_spacing}},
+                                             s.nodes.soil);
   else if (!s.soil_summed)
-    interpolate<SoilSource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing}, s.nodes.soil);
+    interpolate<SoilSource<Space, T, Dim>>(s, how, set.bins, {set.points, s.grid.inv_spacing}, s.nodes.soil);
   if (s.soil_boundary)
-    interpolate<BoundarySource<Space, T, Dim>>(s, set.bins, {set.points, s.grid.inv_spacing, s.near_rigid},
-                                               s.nodes.boundary);
+    interpolate<BoundarySource<Space, T, Dim>>(
+        s, how, set.bins, {set.points, s.grid.inv_spacing, s.near_rigid}, s.nodes.boundary);
 }
 
 /// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own.
@@ -63,7 +74,8 @@ void nodes_to_soil(State<Space, T, Dim>& s, double dt) {
   for (int pass = 0; pass < s.xpic_order; ++pass) {
     if (pass > 0) {
       Kokkos::deep_copy(s.space, s.nodes.rest, T(0));
-      interpolate<RestSource<Space, T, Dim>>(s, s.soil.bins, {s.soil.points, rest_of(s)}, s.nodes.rest);
+      interpolate<RestSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, {s.soil.points, rest_of(s)},
+                                             s.nodes.rest);
     }
     xpic_pass(s, pass);
   }
