@@ -1,0 +1,229 @@
+#pragma once
+// Lanes: values of one real type on which one instruction of a processor works at once. Formulas that are
+// templates on the real type take them as they take a number; where one would branch, they select.
+
+#include <Kokkos_Core.hpp>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+namespace mpm {
+
+/// Bytes of the processor's widest vectors.
+#if defined(__AVX512F__)
+inline constexpr int k_vector_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr int k_vector_bytes = 32;
+#else
+inline constexpr int k_vector_bytes = 16;
+#endif
+template <class T>
+inline constexpr int native_lanes = k_vector_bytes / sizeof(T);
+
+namespace impl {
+/// The compiler's own vectors: it takes them apart where the processor's are shorter.
+template <class T, int W>
+struct VectorOf;
+#define MPM_VECTOR_OF(T, W)                                      \
+  template <>                                                    \
+  struct VectorOf<T, W> {                                        \
+    typedef T type __attribute__((vector_size(W * sizeof(T)))); \
+  };
+MPM_VECTOR_OF(float, 4)
+MPM_VECTOR_OF(float, 8)
+MPM_VECTOR_OF(float, 16)
+MPM_VECTOR_OF(double, 2)
+MPM_VECTOR_OF(double, 4)
+MPM_VECTOR_OF(double, 8)
+#undef MPM_VECTOR_OF
+}  // namespace impl
+
+/// Truth by lane: all bits of a lane, or none.
+template <class T, int W>
+struct LaneMask {
+  using Bits = decltype(typename impl::VectorOf<T, W>::type{} < typename impl::VectorOf<T, W>::type{});
+  Bits bits;
+  KOKKOS_FORCEINLINE_FUNCTION bool operator[](int lane) const { return bits[lane] != 0; }
+  KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator&(LaneMask a, LaneMask b) { return {a.bits & b.bits}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator|(LaneMask a, LaneMask b) { return {a.bits | b.bits}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator!(LaneMask a) { return {~a.bits}; }
+};
+
+/// W values of T. A single T stands for W equal ones.
+template <class T, int W>
+struct Lanes {
+  using real = T;
+  using Values = typename impl::VectorOf<T, W>::type;
+  static constexpr int k_count = W;
+  Values v;
+
+  Lanes() = default;
+  KOKKOS_FORCEINLINE_FUNCTION Lanes(T a) : v(a - Values{}) {}
+  KOKKOS_FORCEINLINE_FUNCTION explicit Lanes(Values values) : v(values) {}
+  /// From and to W values in memory.
+  KOKKOS_FORCEINLINE_FUNCTION static Lanes load(const T* from) {
+    Lanes a;
+    memcpy(&a.v, from, sizeof a.v);
+    return a;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void store(T* to) const { memcpy(to, &v, sizeof v); }
+  KOKKOS_FORCEINLINE_FUNCTION T operator[](int lane) const { return v[lane]; }
+  KOKKOS_FORCEINLINE_FUNCTION void set(int lane, T a) { v[lane] = a; }
+
+  KOKKOS_FORCEINLINE_FUNCTION friend Lanes operator+(Lanes a, Lanes b) { return Lanes(a.v + b.v); }
+  KOKKOS_FORCEINLINE_FUNCTION friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.v - b.v); }
+  KOKKOS_FORCEINLINE_FUNCTION friend Lanes operator*(Lanes a, Lanes b) { return Lanes(a.v * b.v); }
+  KOKKOS_FORCEINLINE_FUNCTION friend Lanes operator/(Lanes a, Lanes b) { return Lanes(a.v / b.v); }
+  KOKKOS_FORCEINLINE_FUNCTION friend Lanes operator-(Lanes a) { return Lanes(-a.v); }
+  KOKKOS_FORCEINLINE_FUNCTION Lanes& operator+=(Lanes b) { return v += b.v, *this; }
+  KOKKOS_FORCEINLINE_FUNCTION Lanes& operator-=(Lanes b) { return v -= b.v, *this; }
+  KOKKOS_FORCEINLINE_FUNCTION Lanes& operator*=(Lanes b) { return v *= b.v, *this; }
+  KOKKOS_FORCEINLINE_FUNCTION Lanes& operator/=(Lanes b) { return v /= b.v, *this; }
+
+  using Mask = LaneMask<T, W>;
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator<(Lanes a, Lanes b) { return {a.v < b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator>(Lanes a, Lanes b) { return {a.v > b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator<=(Lanes a, Lanes b) { return {a.v <= b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator>=(Lanes a, Lanes b) { return {a.v >= b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator==(Lanes a, Lanes b) { return {a.v == b.v}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend Mask operator!=(Lanes a, Lanes b) { return {a.v != b.v}; }
+};
+
+/// Calls f with the constants 0 ... n - 1, so that loops over arrays of lanes leave them in registers.
+template <int n, class F>
+KOKKOS_FORCEINLINE_FUNCTION void unrolled(F&& f) {
+  [&]<int... k>(std::integer_sequence<int, k...>) {
+    (f(std::integral_constant<int, k>{}), ...);
+  }(std::make_integer_sequence<int, n>{});
+}
+
+namespace impl {
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector) && !defined(__CUDACC__)
+#define MPM_SHUFFLES
+#endif
+#endif
+#ifdef MPM_SHUFFLES
+/// Lane l of what was N arrays of W values one after the other is value from(l) of them.
+template <int N, class V, class From, int... l>
+KOKKOS_FORCEINLINE_FUNCTION V collect(const V (&a)[N], From, std::integer_sequence<int, l...>) {
+  constexpr int W = sizeof...(l);
+  constexpr int second = N > 1 ? 1 : 0;
+  V got = __builtin_shufflevector(a[0], a[second], (From::of(l) < 2 * W ? From::of(l) : 0)...);
+  unrolled<(N > 2 ? N - 2 : 0)>([&](auto s) {
+    got = __builtin_shufflevector(got, a[s + 2],
+                                  (From::of(l) / W == s + 2 ? W + From::of(l) % W : l)...);
+  });
+  return got;
+}
+template <int N, int W, int k>
+struct Apart {  // value k of every group of N
+  static constexpr int of(int l) { return l * N + k; }
+};
+template <int N, int W, int k>
+struct Together {  // part k of groups of N, of which each member has its own lanes
+  static constexpr int of(int l) { return (k * W + l) % N * W + (k * W + l) / N; }
+};
+template <int half, class V, class F, int... l>
+KOKKOS_FORCEINLINE_FUNCTION void fold_by(V& a, F&& f, std::integer_sequence<int, l...>) {
+  a = f(a, __builtin_shufflevector(a, a, int((l + half) % sizeof...(l))...));
+}
+/// Leaves in lane 0 what f makes of all lanes, two by two.
+template <int W, class V, class F>
+KOKKOS_FORCEINLINE_FUNCTION void halve(V& a, F&& f) {
+  unrolled<4>([&](auto k) {
+    constexpr int half = W >> (k + 1);
+    if constexpr (half > 0) fold_by<half>(a, f, std::make_integer_sequence<int, W>{});
+  });
+}
+#endif
+}  // namespace impl
+
+/// a where the condition holds, else b; for numbers and by lane.
+template <class T>
+KOKKOS_FORCEINLINE_FUNCTION T select(bool condition, const T& a, const T& b) {
+  return condition ? a : b;
+}
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION Lanes<T, W> select(LaneMask<T, W> condition,
+                                               std::type_identity_t<Lanes<T, W>> a,
+                                               std::type_identity_t<Lanes<T, W>> b) {
+  return Lanes<T, W>(condition.bits ? a.v : b.v);
+}
+/// Whether a condition holds somewhere.
+KOKKOS_FORCEINLINE_FUNCTION bool any_of(bool condition) { return condition; }
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION bool any_of(LaneMask<T, W> condition) {
+#ifdef MPM_SHUFFLES
+  auto any = condition.bits;
+  impl::halve<W>(any, [](auto a, auto b) { return a | b; });
+  return any[0] != 0;
+#else
+  auto any = condition.bits[0];
+  for (int l = 1; l < W; ++l) any |= condition.bits[l];
+  return any != 0;
+#endif
+}
+/// Largest of all lanes.
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION T largest_of(Lanes<T, W> a) {
+  T most = a[0];
+  for (int l = 1; l < W; ++l) most = a[l] > most ? a[l] : most;
+  return most;
+}
+
+/// Reads W groups of N values: a[k] gets value k of every group.
+template <int N, class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION void load_groups(const T* from, Lanes<T, W> (&a)[N]) {
+#ifdef MPM_SHUFFLES
+  typename Lanes<T, W>::Values parts[N];
+  memcpy(parts, from, sizeof parts);
+  unrolled<N>([&](auto k) {
+    a[k].v = impl::collect<N>(parts, impl::Apart<N, W, k>{}, std::make_integer_sequence<int, W>{});
+  });
+#else
+  for (int l = 0; l < W; ++l)
+    for (int k = 0; k < N; ++k) a[k].v[l] = from[l * N + k];
+#endif
+}
+/// The inverse.
+template <int N, class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION void store_groups(const Lanes<T, W> (&a)[N], T* to) {
+#ifdef MPM_SHUFFLES
+  typename Lanes<T, W>::Values values[N], parts[N];
+  unrolled<N>([&](auto k) { values[k] = a[k].v; });
+  unrolled<N>([&](auto k) {
+    parts[k] = impl::collect<N>(values, impl::Together<N, W, k>{}, std::make_integer_sequence<int, W>{});
+  });
+  memcpy(to, parts, sizeof parts);
+#else
+  for (int l = 0; l < W; ++l)
+    for (int k = 0; k < N; ++k) to[l * N + k] = a[k].v[l];
+#endif
+}
+
+}  // namespace mpm
+
+// As Kokkos' own SIMD types do, so that a formula calls the same functions for numbers and for lanes.
+namespace Kokkos {
+
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fmax(mpm::Lanes<T, W> a, mpm::Lanes<T, W> b) {
+  return mpm::select(b > a, b, a);
+}
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fmax(T a, mpm::Lanes<T, W> b) {
+  return fmax(mpm::Lanes<T, W>(a), b);
+}
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fabs(mpm::Lanes<T, W> a) {
+  return mpm::select(a < T(0), -a, a);
+}
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> sqrt(mpm::Lanes<T, W> a) {
+  mpm::Lanes<T, W> root;
+  for (int l = 0; l < W; ++l) root.v[l] = Kokkos::sqrt(a.v[l]);
+  return root;
+}
+
+}  // namespace Kokkos
