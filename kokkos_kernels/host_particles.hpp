@@ -12,32 +12,37 @@ namespace mpm {
 template <class R>
 struct MaterialLanes {
   const AnyMaterial<typename R::real>* table;
+  bool same;                // only which[0] is set
   int which[R::k_count];
-  bool alike;
 };
 
 /// Each law takes all lanes; those that are not of its material keep their state.
 template <class R, class T, int Dim>
-void update_material(const MaterialLanes<R>& of, MaterialState<R, Dim>& state,
-                     const SymTensor<R, Dim>& d_strain, const Spin<R, Dim>& d_spin, T dt) {
-  const auto by_law = [&](int which, MaterialState<R, Dim>& s) {
-    of.table[which].visit([&](const auto& law) { law.update(s, d_strain, d_spin, dt); });
-  };
-  if (of.alike) return by_law(of.which[0], state);
+[[gnu::noinline]] void update_materials(const MaterialLanes<R>& of, MaterialState<R, Dim>& state,
+                                        const SymTensor<R, Dim>& d_strain, const Spin<R, Dim>& d_spin, T dt) {
   const MaterialState<R, Dim> old = state;
   bool done[R::k_count] = {};
   for (int l = 0; l < R::k_count; ++l) {
     if (done[l]) continue;
     MaterialState<R, Dim> now = old;
-    by_law(of.which[l], now);
+    of.table[of.which[l]].visit([&](const auto& law) { law.update(now, d_strain, d_spin, dt); });
     R own = 0;
     for (int k = l; k < R::k_count; ++k)
       if (of.which[k] == of.which[l]) done[k] = true, own.set(k, T(1));
-    for (int k = 0; k < sym_size<Dim>; ++k)
-      state.stress[k] = select(own > 0, now.stress[k], state.stress[k]);
-    state.plastic_strain = select(own > 0, now.plastic_strain, state.plastic_strain);
-    state.strength = select(own > 0, now.strength, state.strength);
+    const auto mine = own > 0;
+    for (int k = 0; k < sym_size<Dim>; ++k) state.stress[k] = select(mine, now.stress[k], state.stress[k]);
+    state.plastic_strain = select(mine, now.plastic_strain, state.plastic_strain);
+    state.strength = select(mine, now.strength, state.strength);
   }
+}
+template <class R, class T, int Dim>
+KOKKOS_FORCEINLINE_FUNCTION void update_material(const MaterialLanes<R>& of, MaterialState<R, Dim>& state,
+                                                 const SymTensor<R, Dim>& d_strain,
+                                                 const Spin<R, Dim>& d_spin, T dt) {
+  if (of.same)
+    of.table[of.which[0]].visit([&](const auto& law) { law.update(state, d_strain, d_spin, dt); });
+  else
+    update_materials(of, state, d_strain, d_spin, dt);
 }
 
 /// Moves the particles of patches.
@@ -48,11 +53,14 @@ struct HostParticles {
   static constexpr int k_motion = NodeMotion<Dim>::size;
   static constexpr int k_node = k_motion <= 4 ? 4 : 8;  // values of a node, with a gap in 3D
   using Node = Lanes<T, k_node>;
+  static constexpr int k_room = 2048 / sizeof(T);  // particles on the stage, which the cache holds
+  static constexpr int k_pitch = k_room + W;        // not a power of two: values would drive each other out
   /// What the particles of some cells take from the nodes, in their order, each value apart.
   struct alignas(R) Stage {
-    T motion[k_motion][k_host_stage<T>], gradient[Dim * Dim][k_host_stage<T>];  // m/s, m/s2; 1/s
-    T mean[k_host_stage<T>];  // 1/s, dilatation rate of the particle's cell
-    int base[k_host_stage<T>];  // window_base of its cell
+    T motion[k_motion][k_pitch], gradient[Dim * Dim][k_pitch];  // m/s, m/s2; 1/s
+    T mean[k_pitch];                                            // 1/s, dilatation rate of the particle's cell
+    int base[k_pitch];                                          // window_base of its cell
+    bool one_body;                                              // all particles of the patch
   };
 
   Soil<Space, T, Dim> soil;
@@ -74,11 +82,12 @@ struct HostParticles {
     for (int n = 0; n < window; ++n)
       for (int k = k_motion; k < k_node; ++k) nodes[n][k] = 0;
     Stage stage;
+    stage.one_body = of_one_body(soil, begin(slot * cells), begin((slot + 1) * cells));
     R moved = 0;
     for (int c = 0, end; c < cells; c = end) {  // as many whole cells as the stage holds
       const int from = begin(slot * cells + c);
-      for (end = c + 1; end < cells && begin(slot * cells + end + 1) - from <= k_host_stage<T>;) ++end;
-      if (begin(slot * cells + end) - from <= k_host_stage<T>)
+      for (end = c + 1; end < cells && begin(slot * cells + end + 1) - from <= k_room;) ++end;
+      if (begin(slot * cells + end) - from <= k_room)
         move_cells(nodes, slot, c, end, stage, moved);
       else
         move_crowd(nodes, slot, c, stage, moved);
@@ -110,9 +119,9 @@ struct HostParticles {
     const int from = begin(slot * cells + c), to = begin(slot * cells + c + 1);
     T volume = 0, sum = 0;
     for (int pass = by.f_bar > 0 ? 0 : 1; pass < 2; ++pass)
-      for (int first = from; first < to; first += k_host_stage<T>) {
-        const int last = Kokkos::min(first + k_host_stage<T>, to);
-        for (int n = 0; n < k_host_stage<T>; ++n) {
+      for (int first = from; first < to; first += k_room) {
+        const int last = Kokkos::min(first + k_room, to);
+        for (int n = 0; n < k_room; ++n) {
           stage.base[n] = window_base<Dim>(c);
           stage.mean[n] = volume > 0 ? sum / volume : T(0);
         }
@@ -133,7 +142,7 @@ struct HostParticles {
       R x[Dim];
       load_field(soil.coordinate, p, count, x);
       const HalfLength<R> half =
-          half_lengths<R>(count, [&](int l) { return soil.bodies(soil.body(p + l)).half_length; });
+          half_lengths<R>(stage.one_body, count, [&](int l) { return soil.bodies(soil.body(p + l)).half_length; });
       alignas(R) T weight[Dim][2][3][W], shift[W];
       R to_first = 0;
       for (int d = 0, step = 1; d < Dim; ++d, step *= Patch<Dim>::window_edge) {
@@ -198,11 +207,9 @@ struct HostParticles {
     for (int k = 0; k < k_motion; ++k) t.motion[k] = R::load(stage.motion[k] + n);
     for (int k = 0; k < Dim * Dim; ++k) t.gradient[k / Dim][k % Dim] = R::load(stage.gradient[k] + n);
     MaterialLanes<R> materials;
-    materials.table = soil.materials.data(), materials.alike = true;
-    for (int l = 0; l < W; ++l) {
-      materials.which[l] = soil.bodies(soil.body(p + (l < count ? l : 0))).material;
-      materials.alike &= materials.which[l] == materials.which[0];
-    }
+    materials.table = soil.materials.data(), materials.same = stage.one_body;
+    for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
+      materials.which[l] = soil.bodies(soil.body(p + Kokkos::min(l, count - 1))).material;
     const R own = advance(q, materials, t, R::load(stage.mean + n), by);
     store_field(q.x.c, soil.coordinate, p, count);
     store_field(q.v.c, soil.velocity, p, count);

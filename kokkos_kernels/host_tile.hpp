@@ -19,11 +19,12 @@ struct HostTile {
   using Row = Lanes<T, k_row>;
   static constexpr bool k_offset = requires { Source::takes_offset; };
 
-  /// A particle on its way to the nodes.
-  struct Entry {
-    alignas(Row) T weight[Dim][2][k_row];  // -, 1/cell: of the nodes -1 to 2 of its cell, and their slopes
-    Point point;
-    Vector<T, Dim> x;  // cells
+  static constexpr int k_room = 1024 / sizeof(T);  // particles on the stage, which the cache holds
+  /// Particles on their way to the nodes.
+  struct alignas(R) Stage {
+    T weight[Dim][2][k_room][k_row];  // -, 1/cell: of the nodes -1 to 2 of the cell, and their slopes
+    Point point[k_room];
+    Vector<T, Dim> x[k_room];  // cells
   };
 
   Source source;
@@ -35,16 +36,16 @@ struct HostTile {
   void operator()(int slot) const {
     if (source.skips(slot)) return;
     alignas(R) T sums[size][window] = {};
-    Entry entries[k_host_stage<T>];
+    Stage stage;
     const int to = begin((slot + 1) * cells);
+    const bool one_body = of_one_body(source.points, begin(slot * cells), to);
     int c = 0;
-    for (int from = begin(slot * cells); from < to; from += k_host_stage<T>) {
-      const int end = Kokkos::min(from + k_host_stage<T>, to);
-      for (int p = from; p < end; p += W) fill(p, Kokkos::min(W, end - p), entries + (p - from));
+    for (int from = begin(slot * cells); from < to; from += k_room) {
+      const int end = Kokkos::min(from + k_room, to);
+      for (int p = from; p < end; p += W) fill(p, Kokkos::min(W, end - p), one_body, stage, p - from);
       for (;; ++c) {  // a cell may go on in the next lot
         const int first = Kokkos::max(begin(slot * cells + c), from), next = begin(slot * cells + c + 1);
-        if (first < Kokkos::min(next, end))
-          add_cell(c, entries + (first - from), Kokkos::min(next, end) - first, sums);
+        if (first < Kokkos::min(next, end)) add_cell(c, stage, first - from, Kokkos::min(next, end) - from, sums);
         if (next >= end) break;
       }
     }
@@ -54,43 +55,41 @@ struct HostTile {
     });
   }
 
-  /// Makes the entries of `count` particles from p on; their weights at once.
-  void fill(int p, int count, Entry* entries) const {
-    for (int l = 0; l < count; ++l) entries[l].point = source.load(p + l);
+  /// Puts `count` particles from p on to the stage from n on; their weights at once.
+  void fill(int p, int count, bool one_body, Stage& stage, int n) const {
+    for (int l = 0; l < count; ++l) stage.point[n + l] = source.load(p + l);
     R x[Dim];
     load_field(source.points.coordinate, p, count, x);
-    const HalfLength<R> half = half_lengths<R>(count, [&](int l) { return entries[l].point.half_length; });
+    const HalfLength<R> half =
+        half_lengths<R>(one_body, count, [&](int l) { return stage.point[n + l].half_length; });
     for (int d = 0; d < Dim; ++d) {
       const AxisWeights<R> a = axis_weights_near(x[d], half);
-      const auto late = a.first == 0;
-      alignas(R) T weights[2][W * k_row];
-      R row[k_row];
-      for (int slope = 0; slope < 2; ++slope) {
-        const R(&w)[3] = slope == 0 ? a.w : a.g;
-        row[0] = select(late, T(0), w[0]);
-        row[1] = select(late, w[0], w[1]);
-        row[2] = select(late, w[1], w[2]);
-        row[3] = select(late, w[2], T(0));
-        store_groups(row, weights[slope]);
-        for (int l = 0; l < count; ++l) Row::load(weights[slope] + l * k_row).store(entries[l].weight[d][slope]);
-      }
+      put_weights(a.first, a.w, stage.weight[d][0][n]);
+      put_weights(a.first, a.g, stage.weight[d][1][n]);
       if (k_offset)
-        for (int l = 0; l < count; ++l) entries[l].x[d] = x[d][l];
+        for (int l = 0; l < count; ++l) stage.x[n + l][d] = x[d][l];
     }
   }
 
-  /// Adds `count` particles of a cell of the patch.
-  void add_cell(int place, const Entry* entries, int count, T (&sums)[size][window]) const {
+  /// The weights of three nodes from the first one, -1 or 0, as those of four from -1 on.
+  static void put_weights(R first, const R (&w)[3], T* to) {
+    const auto late = first == 0;
+    const R row[k_row] = {select(late, T(0), w[0]), select(late, w[0], w[1]), select(late, w[1], w[2]),
+                          select(late, w[2], T(0))};
+    store_groups(row, to);
+  }
+
+  /// Adds the particles [from, to) of the stage, of one cell of the patch.
+  void add_cell(int place, const Stage& stage, int from, int to, T (&sums)[size][window]) const {
     constexpr int layers = Dim == 3 ? k_row : 1;
     const int base = window_base<Dim>(place);
     for (int k = 0; k < layers; ++k) {
       Row own[k_row][size];
       for (int j = 0; j < k_row; ++j)
         for (int n = 0; n < size; ++n) own[j][n] = T(0);
-      for (int e = 0; e < count; ++e) {
-        const Entry& entry = entries[e];
-        const Row w_x = Row::load(entry.weight[0][0]), g_x = Row::load(entry.weight[0][1]);
-        unrolled<k_row>([&](auto j) { add_row(entry, w_x, g_x, j, k, own[j]); });
+      for (int e = from; e < to; ++e) {
+        const Row w_x = Row::load(stage.weight[0][0][e]), g_x = Row::load(stage.weight[0][1][e]);
+        unrolled<k_row>([&](auto j) { add_row(stage, e, w_x, g_x, j, k, own[j]); });
       }
       unrolled<k_row>([&](auto j) {
         for (int n = 0; n < size; ++n) {
@@ -101,24 +100,24 @@ struct HostTile {
     }
   }
 
-  /// Adds a particle to the nodes of row j in layer k: the same share of the particle, with lanes for weights.
-  static void add_row(const Entry& entry, Row w_x, Row g_x, int j, int k, Row (&own)[size]) {
-    T w = entry.weight[1][0][j], g_y = entry.weight[1][1][j];
+  /// Adds particle e of the stage to the nodes of row j in layer k: its share, with lanes for weights.
+  static void add_row(const Stage& stage, int e, Row w_x, Row g_x, int j, int k, Row (&own)[size]) {
+    T w = stage.weight[1][0][e][j], g_y = stage.weight[1][1][e][j];
     Vector<Row, Dim> grad;
     if constexpr (Dim == 3) {
-      grad[2] = w * entry.weight[2][1][k] * w_x;
-      w *= entry.weight[2][0][k], g_y *= entry.weight[2][0][k];
+      grad[2] = w * stage.weight[2][1][e][k] * w_x;
+      w *= stage.weight[2][0][e][k], g_y *= stage.weight[2][0][e][k];
     }
     grad[0] = w * g_x, grad[1] = g_y * w_x;
     const auto offset = [&] {
       Vector<Row, Dim> r;
       constexpr T along[k_row] = {-1, 0, 1, 2};
-      r[0] = Row::load(along) - entry.x[0];
-      r[1] = j - 1 - entry.x[1];
-      if constexpr (Dim == 3) r[2] = k - 1 - entry.x[2];
+      r[0] = Row::load(along) - stage.x[e][0];
+      r[1] = j - 1 - stage.x[e][1];
+      if constexpr (Dim == 3) r[2] = k - 1 - stage.x[e][2];
       return r;
     };
-    give<Source>(entry.point, Row(w * w_x), grad, offset, [&](int n, Row share) { own[n] += share; });
+    give<Source>(stage.point[e], Row(w * w_x), grad, offset, [&](int n, Row share) { own[n] += share; });
   }
 };
 

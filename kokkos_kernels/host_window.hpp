@@ -9,10 +9,6 @@
 
 namespace mpm {
 
-/// Particles that a thread keeps in its cache at once; whole vectors.
-template <class T>
-inline constexpr int k_host_stage = 2048 / sizeof(T);
-
 /// Calls f(place, node, count) for every run of the window of a slot that lies together in both: from `place`
 /// in the window, and from the number `node`, `count` nodes.
 template <int Dim, class Around, class F>
@@ -36,42 +32,54 @@ constexpr int window_base(int place) {
   return n;
 }
 
-/// The first `count` of W groups of N values; the others repeat the last of them.
+/// The first `count` < W of W groups of N values; the others repeat the last of them.
 template <int N, class T, int W>
-void load_some(const T* from, int count, Lanes<T, W> (&a)[N]) {
-  if (count >= W) return load_groups(from, a);
+[[gnu::noinline]] void load_some(const T* from, int count, Lanes<T, W> (&a)[N]) {
   T some[N * W];
   for (int l = 0; l < W; ++l)
     memcpy(some + l * N, from + (l < count ? l : count - 1) * N, N * sizeof(T));
   load_groups(some, a);
 }
 template <int N, class T, int W>
-void store_some(const Lanes<T, W> (&a)[N], int count, T* to) {
-  if (count >= W) return store_groups(a, to);
+[[gnu::noinline]] void store_some(const Lanes<T, W> (&a)[N], int count, T* to) {
   T some[N * W];
   store_groups(a, some);
   memcpy(to, some, count * N * sizeof(T));
 }
-/// A field of the particles from number p on; Value is made of as many T as `a` has members.
+/// A field of `count` particles from number p on; it has as many values of T as `a` has members.
 template <class R, class Field, int N>
-void load_field(const Field& field, int p, int count, R (&a)[N]) {
-  load_some<N>(reinterpret_cast<const typename R::real*>(&field(p)), count, a);
+KOKKOS_FORCEINLINE_FUNCTION void load_field(const Field& field, int p, int count, R (&a)[N]) {
+  const auto* const from = reinterpret_cast<const typename R::real*>(&field(p));
+  if (count >= R::k_count)
+    load_groups(from, a);
+  else
+    load_some(from, count, a);
 }
 template <class R, class Field, int N>
-void store_field(const R (&a)[N], const Field& field, int p, int count) {
-  store_some<N>(a, count, reinterpret_cast<typename R::real*>(&field(p)));
+KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field, int p, int count) {
+  auto* const to = reinterpret_cast<typename R::real*>(&field(p));
+  if (count >= R::k_count)
+    store_groups(a, to);
+  else
+    store_some(a, count, to);
 }
 
-/// The half lengths of W particles by lane, from `count` of them: half_of(l).
+/// Whether the points [from, to) are all of one body.
+template <class Points_>
+bool of_one_body(const Points_& points, int from, int to) {
+  int others = 0;
+  if constexpr (requires { points.body; })
+    for (int p = from; p < to; ++p) others |= points.body(p) ^ points.body(from);
+  return others == 0;
+}
+
+/// The half lengths of `count` particles by lane, half_of(l), which may all be the same.
 template <class R, class HalfOf>
-HalfLength<R> half_lengths(int count, HalfOf&& half_of) {
-  using T = typename R::real;
-  const HalfLength<T> first = half_of(0);
+KOKKOS_FORCEINLINE_FUNCTION HalfLength<R> half_lengths(bool same, int count, HalfOf&& half_of) {
   HalfLength<R> half;
-  half.l = first.l, half.inverse = first.inverse;
-  bool alike = true;
-  for (int l = 1; l < count; ++l) alike &= half_of(l).l == first.l;
-  for (int l = 1; l < count && !alike; ++l) half.l.set(l, half_of(l).l), half.inverse.set(l, half_of(l).inverse);
+  half.l = half_of(0).l, half.inverse = half_of(0).inverse;
+  for (int l = 1; l < count && !same; ++l)
+    half.l.set(l, half_of(l).l), half.inverse.set(l, half_of(l).inverse);
   return half;
 }
 
