@@ -244,20 +244,15 @@ struct HostParticles {
 template <class Space, class T, int Dim>
 void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by) {
   const auto& set = s.soil;
-  const auto slots = set.bins.by_colour;
   const auto control = s.control;
   const HostParticles<Space, T, Dim> particles{set.points,     set.bins.begin, s.patches.around, s.patches.origin,
                                                s.nodes.motion, s.control,      by,               s.spacing};
-  Kokkos::parallel_for(
-      "mpm::update_particles",
-      Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>(
-          s.space, 0, set.bins.colour_begin[Patch<Dim>::colours], Kokkos::ChunkSize(1)),
-      [=](int n) {
-        if (control().paused) return;
-        const T moved = particles(slots(n));
-        if (moved > Kokkos::atomic_load(&control().moved))
-          Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
-      });
+  for_each_slot<Space, Dim>("mpm::update_particles", s.space, set.bins, s.patches.slots, false, [=](int slot) {
+    if (control().paused) return;
+    const T moved = particles(slot);
+    if (moved > Kokkos::atomic_load(&control().moved))
+      Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
+  });
 }
 
 }  // namespace mpm

@@ -17,6 +17,8 @@ struct HostTile {
   static constexpr int W = native_lanes<T>, k_row = 4;  // nodes that particles of a cell reach along an axis
   using R = Lanes<T, W>;
   using Row = Lanes<T, k_row>;
+  static constexpr int k_rows = sizeof(T) == 4 ? 2 : 1;  // rows that share a vector
+  using Rows = Lanes<T, k_rows * k_row>;
   static constexpr bool k_offset = requires { Source::takes_offset; };
 
   static constexpr int k_room = 1024 / sizeof(T);  // particles on the stage, which the cache holds
@@ -84,58 +86,69 @@ struct HostTile {
     constexpr int layers = Dim == 3 ? k_row : 1;
     const int base = window_base<Dim>(place);
     for (int k = 0; k < layers; ++k) {
-      Row own[k_row][size];
-      for (int j = 0; j < k_row; ++j)
+      Rows own[k_row / k_rows][size];
+      for (int j = 0; j < k_row / k_rows; ++j)
         for (int n = 0; n < size; ++n) own[j][n] = T(0);
-      for (int e = from; e < to; ++e) {
-        const Row w_x = Row::load(stage.weight[0][0][e]), g_x = Row::load(stage.weight[0][1][e]);
-        unrolled<k_row>([&](auto j) { add_row(stage, e, w_x, g_x, j, k, own[j]); });
-      }
+      for (int e = from; e < to; ++e) add_particle(stage, e, k, own);
       unrolled<k_row>([&](auto j) {
         for (int n = 0; n < size; ++n) {
           T* const row = &sums[n][base + across * (j + across * k)];
-          (Row::load(row) + own[j][n]).store(row);
+          (Row::load(row) + part_of<k_row, j % k_rows * k_row>(own[j / k_rows][n])).store(row);
         }
       });
     }
   }
 
-  /// Adds particle e of the stage to the nodes of row j in layer k: its share, with lanes for weights.
-  static void add_row(const Stage& stage, int e, Row w_x, Row g_x, int j, int k, Row (&own)[size]) {
-    T w = stage.weight[1][0][e][j], g_y = stage.weight[1][1][e][j];
-    Vector<Row, Dim> grad;
-    if constexpr (Dim == 3) {
-      grad[2] = w * stage.weight[2][1][e][k] * w_x;
-      w *= stage.weight[2][0][e][k], g_y *= stage.weight[2][0][e][k];
+  /// Adds particle e of the stage to the nodes of layer k: its share, with lanes for the weights.
+  KOKKOS_FORCEINLINE_FUNCTION void add_particle(const Stage& stage, int e, int k,
+                                                Rows (&own)[k_row / k_rows][size]) const {
+    const Rows w_x = repeated<Rows::k_count>(Row::load(stage.weight[0][0][e])),
+               g_x = repeated<Rows::k_count>(Row::load(stage.weight[0][1][e]));
+    unrolled<k_row / k_rows>([&](auto part) {
+      constexpr int j = part * k_rows;
+      Rows w = along_y<j>(stage.weight[1][0][e]), g_y = along_y<j>(stage.weight[1][1][e]);
+      Vector<Rows, Dim> grad;
+      if constexpr (Dim == 3) {
+        grad[2] = w * stage.weight[2][1][e][k] * w_x;
+        w *= stage.weight[2][0][e][k], g_y *= stage.weight[2][0][e][k];
+      }
+      grad[0] = w * g_x, grad[1] = g_y * w_x;
+      give<Source>(
+          stage.point[e], w * w_x, grad, [&] { return offset(stage.x[e], j, k); },
+          [&](int n, Rows share) { own[part][n] += share; });
+    });
+  }
+
+  /// A weight along y for all nodes of the rows from j on.
+  template <int j>
+  KOKKOS_FORCEINLINE_FUNCTION static Rows along_y(const T (&weight)[k_row]) {
+    if constexpr (k_rows == 1)
+      return weight[j];
+    else
+      return stretched<Rows::k_count, j>(Row::load(weight));
+  }
+
+  /// From a particle at x to the nodes of the rows from j on in layer k [cells].
+  static Vector<Rows, Dim> offset(const Vector<T, Dim>& x, int j, int k) {
+    Vector<Rows, Dim> r;
+    for (int l = 0; l < Rows::k_count; ++l) {
+      r[0].set(l, l % k_row - 1 - x[0]);
+      r[1].set(l, j + l / k_row - 1 - x[1]);
+      if constexpr (Dim == 3) r[2].set(l, k - 1 - x[2]);
     }
-    grad[0] = w * g_x, grad[1] = g_y * w_x;
-    const auto offset = [&] {
-      Vector<Row, Dim> r;
-      constexpr T along[k_row] = {-1, 0, 1, 2};
-      r[0] = Row::load(along) - stage.x[e][0];
-      r[1] = j - 1 - stage.x[e][1];
-      if constexpr (Dim == 3) r[2] = k - 1 - stage.x[e][2];
-      return r;
-    };
-    give<Source>(stage.point[e], Row(w * w_x), grad, offset, [&](int n, Row share) { own[n] += share; });
+    return r;
   }
 };
 
 /// The interpolation on a processor, colour by colour: windows of one colour share no node.
 template <class Source>
 void sum_on_host(const Interpolation<Source>& it) {
-  using Space = typename Source::Space;
   const HostTile<Source> tile{it.source, it.bins.begin, it.patches.around, it.out};
-  const auto slots = it.bins.by_colour;
   const auto control = it.control;
-  for_each_launch<Space, Source::dim>(it.bins, [&](int first, int last) {
-    Kokkos::parallel_for("mpm::reduce_by_tile",
-                         Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>(it.space, first, last,
-                                                                                       Kokkos::ChunkSize(1)),
-                         [=](int n) {
-                           if (!control().paused) tile(slots(n));
-                         });
-  });
+  for_each_slot<typename Source::Space, Source::dim>("mpm::reduce_by_tile", it.space, it.bins, it.patches.slots,
+                                                     true, [=](int slot) {
+                                                       if (!control().paused) tile(slot);
+                                                     });
 }
 
 }  // namespace mpm

@@ -172,6 +172,47 @@ KOKKOS_FORCEINLINE_FUNCTION T largest_of(Lanes<T, W> a) {
   return most;
 }
 
+namespace impl {
+template <class To, class From, class A, int... l>
+KOKKOS_FORCEINLINE_FUNCTION To pick(A a, From, std::integer_sequence<int, l...>) {
+#ifdef MPM_SHUFFLES
+  return To(__builtin_shufflevector(a.v, a.v, From::of(l)...));
+#else
+  To got;
+  ((got.v[l] = a.v[From::of(l)]), ...);
+  return got;
+#endif
+}
+template <int w>
+struct Repeated {
+  static constexpr int of(int l) { return l % w; }
+};
+template <int first, int times>
+struct Stretched {
+  static constexpr int of(int l) { return first + l / times; }
+};
+template <int first>
+struct Part {
+  static constexpr int of(int l) { return first + l; }
+};
+}  // namespace impl
+
+/// All lanes of a, and again, as often as W holds them.
+template <int W, class T, int w>
+KOKKOS_FORCEINLINE_FUNCTION Lanes<T, W> repeated(Lanes<T, w> a) {
+  return impl::pick<Lanes<T, W>>(a, impl::Repeated<w>{}, std::make_integer_sequence<int, W>{});
+}
+/// Lane `first` of a w times, then the next one w times, and so on.
+template <int W, int first, class T, int w>
+KOKKOS_FORCEINLINE_FUNCTION Lanes<T, W> stretched(Lanes<T, w> a) {
+  return impl::pick<Lanes<T, W>>(a, impl::Stretched<first, w>{}, std::make_integer_sequence<int, W>{});
+}
+/// w lanes of a from lane `first` on.
+template <int w, int first, class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION Lanes<T, w> part_of(Lanes<T, W> a) {
+  return impl::pick<Lanes<T, w>>(a, impl::Part<first>{}, std::make_integer_sequence<int, w>{});
+}
+
 /// Reads W groups of N values: a[k] gets value k of every group.
 template <int N, class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION void load_groups(const T* from, Lanes<T, W> (&a)[N]) {
