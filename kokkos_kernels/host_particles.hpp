@@ -141,8 +141,7 @@ struct HostParticles {
       const int count = Kokkos::min(W, to - p), n = p - from;
       R x[Dim];
       load_field(soil.coordinate, p, count, x);
-      const HalfLength<R> half =
-          half_lengths<R>(stage.one_body, count, [&](int l) { return soil.bodies(soil.body(p + l)).half_length; });
+      const HalfLength<R> half = bodies_of<R>(soil, p, count, stage.one_body).half_length;
       alignas(R) T weight[Dim][2][3][W], shift[W];
       R to_first = 0;
       for (int d = 0, step = 1; d < Dim; ++d, step *= Patch<Dim>::window_edge) {

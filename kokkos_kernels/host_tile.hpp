@@ -17,15 +17,22 @@ struct HostTile {
   static constexpr int W = native_lanes<T>, k_row = 4;  // nodes that particles of a cell reach along an axis
   using R = Lanes<T, W>;
   using Row = Lanes<T, k_row>;
-  static constexpr int k_rows = sizeof(T) == 4 ? 2 : 1;  // rows that share a vector
+  static constexpr int k_rows = 32 / sizeof(T) / k_row;  // rows that share a vector
   using Rows = Lanes<T, k_rows * k_row>;
   static constexpr bool k_offset = requires { Source::takes_offset; };
 
+  static constexpr int k_point = sizeof(Point) / sizeof(T) - 2;
+  /// Whether the points of many particles are made at once.
+  static constexpr bool k_in_lanes = [] {
+    if constexpr (requires { typename Source::template PointOf<T>; })
+      return std::is_same_v<Point, typename Source::template PointOf<T>>;
+    return false;
+  }();
   static constexpr int k_room = 1024 / sizeof(T);  // particles on the stage, which the cache holds
   /// Particles on their way to the nodes.
   struct alignas(R) Stage {
     T weight[Dim][2][k_room][k_row];  // -, 1/cell: of the nodes -1 to 2 of the cell, and their slopes
-    Point point[k_room];
+    T value[k_point][k_room + W];  // of the point, each apart, without its half length
     Vector<T, Dim> x[k_room];  // cells
   };
 
@@ -59,18 +66,46 @@ struct HostTile {
 
   /// Puts `count` particles from p on to the stage from n on; their weights at once.
   void fill(int p, int count, bool one_body, Stage& stage, int n) const {
-    for (int l = 0; l < count; ++l) stage.point[n + l] = source.load(p + l);
+    const BodyProperties<R> body = bodies_of<R>(source.points, p, count, one_body);
+    put_points(p, count, body, stage, n);
     R x[Dim];
     load_field(source.points.coordinate, p, count, x);
-    const HalfLength<R> half =
-        half_lengths<R>(one_body, count, [&](int l) { return stage.point[n + l].half_length; });
     for (int d = 0; d < Dim; ++d) {
-      const AxisWeights<R> a = axis_weights_near(x[d], half);
+      const AxisWeights<R> a = axis_weights_near(x[d], body.half_length);
       put_weights(a.first, a.w, stage.weight[d][0][n]);
       put_weights(a.first, a.g, stage.weight[d][1][n]);
       if (k_offset)
         for (int l = 0; l < count; ++l) stage.x[n + l][d] = x[d][l];
     }
+  }
+
+  void put_points(int p, int count, const BodyProperties<R>& body, Stage& stage, int n) const {
+    if constexpr (k_in_lanes) {
+      const auto& soil = source.points;
+      Vector<R, Dim> v;
+      SymTensor<R, Dim> stress;
+      R volume[1], value[k_point + 2];
+      load_field(soil.velocity, p, count, v.c);
+      load_field(soil.stress, p, count, stress.c);
+      load_field(soil.volume, p, count, volume);
+      const auto point = source.point(body, v, stress, volume[0]);
+      memcpy(value, &point, sizeof point);
+      for (int k = 0; k < k_point; ++k) value[k + 2].store(stage.value[k] + n);
+    } else {
+      for (int l = 0; l < count; ++l) {
+        const Point point = source.load(p + l);
+        T value[k_point + 2];
+        memcpy(value, &point, sizeof point);
+        for (int k = 0; k < k_point; ++k) stage.value[k][n + l] = value[k + 2];
+      }
+    }
+  }
+  KOKKOS_FORCEINLINE_FUNCTION static Point point(const Stage& stage, int e) {
+    T value[k_point + 2] = {};
+    for (int k = 0; k < k_point; ++k) value[k + 2] = stage.value[k][e];
+    Point q;
+    memcpy(&q, value, sizeof q);
+    return q;
   }
 
   /// The weights of three nodes from the first one, -1 or 0, as those of four from -1 on.
@@ -104,6 +139,7 @@ struct HostTile {
                                                 Rows (&own)[k_row / k_rows][size]) const {
     const Rows w_x = repeated<Rows::k_count>(Row::load(stage.weight[0][0][e])),
                g_x = repeated<Rows::k_count>(Row::load(stage.weight[0][1][e]));
+    const Point q = point(stage, e);
     unrolled<k_row / k_rows>([&](auto part) {
       constexpr int j = part * k_rows;
       Rows w = along_y<j>(stage.weight[1][0][e]), g_y = along_y<j>(stage.weight[1][1][e]);
@@ -114,7 +150,7 @@ struct HostTile {
       }
       grad[0] = w * g_x, grad[1] = g_y * w_x;
       give<Source>(
-          stage.point[e], w * w_x, grad, [&] { return offset(stage.x[e], j, k); },
+          q, w * w_x, grad, [&] { return offset(stage.x[e], j, k); },
           [&](int n, Rows share) { own[part][n] += share; });
     });
   }

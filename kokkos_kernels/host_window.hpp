@@ -94,14 +94,25 @@ bool of_one_body(const Points_& points, int from, int to) {
   return others == 0;
 }
 
-/// The half lengths of `count` particles by lane, half_of(l), which may all be the same.
-template <class R, class HalfOf>
-KOKKOS_FORCEINLINE_FUNCTION HalfLength<R> half_lengths(bool same, int count, HalfOf&& half_of) {
-  HalfLength<R> half;
-  half.l = half_of(0).l, half.inverse = half_of(0).inverse;
-  for (int l = 1; l < count && !same; ++l)
-    half.l.set(l, half_of(l).l), half.inverse.set(l, half_of(l).inverse);
-  return half;
+/// What bodies give `count` points from p on, by lane; without the material. same: all points are of one body.
+template <class R, class Points_>
+KOKKOS_FORCEINLINE_FUNCTION BodyProperties<R> bodies_of(const Points_& points, int p, int count, bool same) {
+  BodyProperties<R> body;
+  const auto put = [&](int l, const auto& of) {
+    body.mass.set(l, of.mass);
+    body.half_length.l.set(l, of.half_length.l), body.half_length.inverse.set(l, of.half_length.inverse);
+  };
+  const auto all = [&](const auto& of) {
+    body.mass = of.mass;
+    body.half_length.l = of.half_length.l, body.half_length.inverse = of.half_length.inverse;
+  };
+  if constexpr (requires { points.body; }) {
+    all(points.bodies(points.body(p)));
+    for (int l = 1; l < count && !same; ++l) put(l, points.bodies(points.body(p + l)));
+  } else {
+    all(points);
+  }
+  return body;
 }
 
 }  // namespace mpm

@@ -16,11 +16,13 @@ struct SoilSource {
   using Space = Space_;
   using real = T;
   static constexpr int dim = Dim, size = SoilShare<Dim>::size;
-  struct Point {
-    HalfLength<T> half_length;
-    T mass, momentum[Dim];
-    T stress_volume[Dim * (Dim + 1) / 2];  // - V_p sigma_p / d, components along the axes of the mesh
+  template <class R>
+  struct PointOf {
+    HalfLength<R> half_length;
+    R mass, momentum[Dim];
+    R stress_volume[Dim * (Dim + 1) / 2];  // - V_p sigma_p / d, components along the axes of the mesh
   };
+  using Point = PointOf<T>;
   /// Place of component (i, j) in stress_volume: that of SymTensor, without zz in plane strain.
   KOKKOS_INLINE_FUNCTION static constexpr int place(int i, int j) {
     return Dim == 2 && i != j ? 2 : sym_index<Dim>(i, j);
@@ -32,10 +34,12 @@ struct SoilSource {
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     return point(points.bodies(points.body(p)), points.velocity(p), points.stress(p), points.volume(p));
   }
-  KOKKOS_INLINE_FUNCTION Point point(const BodyProperties<T>& body, const Vector<T, Dim>& v_p,
-                                     const SymTensor<T, Dim>& stress, T volume) const {
-    Point q{body.half_length, body.mass, {}, {}};
-    const T scale = -volume * inv_spacing;
+  /// R: T, or lanes of it.
+  template <class R>
+  KOKKOS_INLINE_FUNCTION PointOf<R> point(const BodyProperties<R>& body, const Vector<R, Dim>& v_p,
+                                          const SymTensor<R, Dim>& stress, R volume) const {
+    PointOf<R> q{body.half_length, body.mass, {}, {}};
+    const R scale = -volume * inv_spacing;
     for (int d = 0; d < Dim; ++d) q.momentum[d] = q.mass * v_p[d];
     for (int k = 0; k < Dim * (Dim + 1) / 2; ++k)
       q.stress_volume[k] = scale * stress[k < Dim ? k : k + 3 - Dim];
