@@ -84,27 +84,25 @@ struct HostTile {
       const auto& soil = source.points;
       Vector<R, Dim> v;
       SymTensor<R, Dim> stress;
-      R volume[1], value[k_point + 2];
+      R volume[1];
       load_field(soil.velocity, p, count, v.c);
       load_field(soil.stress, p, count, stress.c);
       load_field(soil.volume, p, count, volume);
       const auto point = source.point(body, v, stress, volume[0]);
-      memcpy(value, &point, sizeof point);
-      for (int k = 0; k < k_point; ++k) value[k + 2].store(stage.value[k] + n);
+      const R* const value = reinterpret_cast<const R*>(&point) + 2;
+      unrolled<k_point>([&](auto k) { value[k].store(stage.value[k] + n); });
     } else {
       for (int l = 0; l < count; ++l) {
         const Point point = source.load(p + l);
-        T value[k_point + 2];
-        memcpy(value, &point, sizeof point);
-        for (int k = 0; k < k_point; ++k) stage.value[k][n + l] = value[k + 2];
+        const T* const value = reinterpret_cast<const T*>(&point) + 2;
+        for (int k = 0; k < k_point; ++k) stage.value[k][n + l] = value[k];
       }
     }
   }
   KOKKOS_FORCEINLINE_FUNCTION static Point point(const Stage& stage, int e) {
-    T value[k_point + 2] = {};
-    for (int k = 0; k < k_point; ++k) value[k + 2] = stage.value[k][e];
     Point q;
-    memcpy(&q, value, sizeof q);
+    T* const value = reinterpret_cast<T*>(&q) + 2;
+    unrolled<k_point>([&](auto k) { value[k] = stage.value[k][e]; });
     return q;
   }
 

@@ -218,7 +218,7 @@ template <int N, class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION void load_groups(const T* from, Lanes<T, W> (&a)[N]) {
 #ifdef MPM_SHUFFLES
   typename Lanes<T, W>::Values parts[N];
-  memcpy(parts, from, sizeof parts);
+  unrolled<N>([&](auto k) { parts[k] = Lanes<T, W>::load(from + k * W).v; });
   unrolled<N>([&](auto k) {
     a[k].v = impl::collect<N>(parts, impl::Apart<N, W, k>{}, std::make_integer_sequence<int, W>{});
   });
@@ -231,12 +231,13 @@ KOKKOS_FORCEINLINE_FUNCTION void load_groups(const T* from, Lanes<T, W> (&a)[N])
 template <int N, class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION void store_groups(const Lanes<T, W> (&a)[N], T* to) {
 #ifdef MPM_SHUFFLES
-  typename Lanes<T, W>::Values values[N], parts[N];
+  using Values = typename Lanes<T, W>::Values;
+  Values values[N];
   unrolled<N>([&](auto k) { values[k] = a[k].v; });
   unrolled<N>([&](auto k) {
-    parts[k] = impl::collect<N>(values, impl::Together<N, W, k>{}, std::make_integer_sequence<int, W>{});
+    constexpr impl::Together<N, W, k> from{};
+    Lanes<T, W>(impl::collect<N>(values, from, std::make_integer_sequence<int, W>{})).store(to + k * W);
   });
-  memcpy(to, parts, sizeof parts);
 #else
   for (int l = 0; l < W; ++l)
     for (int k = 0; k < N; ++k) to[l * N + k] = a[k].v[l];
