@@ -12,14 +12,16 @@ namespace mpm {
 template <class R>
 struct MaterialLanes {
   const AnyMaterial<typename R::real>* table;
-  bool same;                // only which[0] is set
+  bool same;  // only which[0] is set
   int which[R::k_count];
 };
 
 /// Each law takes all lanes; those that are not of its material keep their state.
 template <class R, class T, int Dim>
-[[gnu::noinline]] void update_materials(const MaterialLanes<R>& of, MaterialState<R, Dim>& state,
-                                        const SymTensor<R, Dim>& d_strain, const Spin<R, Dim>& d_spin, T dt) {
+[[gnu::noinline]] KOKKOS_FUNCTION void update_materials(const MaterialLanes<R>& of,
+                                                        MaterialState<R, Dim>& state,
+                                                        const SymTensor<R, Dim>& d_strain,
+                                                        const Spin<R, Dim>& d_spin, T dt) {
   const MaterialState<R, Dim> old = state;
   bool done[R::k_count] = {};
   for (int l = 0; l < R::k_count; ++l) {
@@ -54,7 +56,7 @@ struct HostParticles {
   static constexpr int k_node = k_motion <= 4 ? 4 : 8;  // values of a node, with a gap in 3D
   using Node = Lanes<T, k_node>;
   static constexpr int k_room = 2048 / sizeof(T);  // particles on the stage, which the cache holds
-  static constexpr int k_pitch = k_room + W;        // not a power of two: values would drive each other out
+  static constexpr int k_pitch = k_room + W;       // not a power of two: values would drive each other out
   /// What the particles of some cells take from the nodes, in their order, each value apart.
   struct alignas(R) Stage {
     T motion[k_motion][k_pitch], gradient[Dim * Dim][k_pitch];  // m/s, m/s2; 1/s
@@ -154,13 +156,15 @@ struct HostParticles {
         AxisWeights<T> a[Dim];
         for (int d = 0; d < Dim; ++d)
           for (int k = 0; k < 3; ++k) a[d].w[k] = weight[d][0][k][l], a[d].g[k] = weight[d][1][k][l];
-        take_one(nodes[stage.base[n + Kokkos::min(l, count - 1)] + static_cast<int>(shift[l])], a, n + l, stage);
+        take_one(nodes[stage.base[n + Kokkos::min(l, count - 1)] + static_cast<int>(shift[l])], a, n + l,
+                 stage);
       }
     }
   }
 
   /// Particle n of the stage, with the weights `a`; first: the lowest node that it reaches.
-  void take_one(const T* first, const AxisWeights<T> (&a)[Dim], int n, Stage& stage) const {
+  KOKKOS_INLINE_FUNCTION void take_one(const T* first, const AxisWeights<T> (&a)[Dim], int n,
+                                       Stage& stage) const {
     constexpr int across = Patch<Dim>::window_edge;
     Node value[1] = {T(0)}, gradient[1][Dim] = {};
     for (int d = 0; d < Dim; ++d) gradient[0][d] = T(0);
@@ -192,7 +196,8 @@ struct HostParticles {
   }
 
   /// `count` particles from p on, of the stage from n on; `moved` by lane.
-  void move_block(int p, int count, int slot, const Stage& stage, int n, R& moved) const {
+  KOKKOS_INLINE_FUNCTION void move_block(int p, int count, int slot, const Stage& stage, int n,
+                                         R& moved) const {
     Particle<R, Dim> q;
     R volume[1], plastic_strain[1], strength[1];
     load_field(soil.coordinate, p, count, q.x.c);
@@ -223,7 +228,8 @@ struct HostParticles {
     moved = Kokkos::fmax(moved, own);
   }
 
-  void find_faults(const Particle<R, Dim>& block, const R& moved, int p, int count, int slot) const {
+  [[gnu::noinline]] KOKKOS_FUNCTION void find_faults(const Particle<R, Dim>& block, const R& moved, int p,
+                                                     int count, int slot) const {
     for (int l = 0; l < count; ++l) {
       Particle<T, Dim> q;
       for (int d = 0; d < Dim; ++d) q.x[d] = block.x[d][l], q.v[d] = block.v[d][l];
@@ -244,14 +250,16 @@ template <class Space, class T, int Dim>
 void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by) {
   const auto& set = s.soil;
   const auto control = s.control;
-  const HostParticles<Space, T, Dim> particles{set.points,     set.bins.begin, s.patches.around, s.patches.origin,
-                                               s.nodes.motion, s.control,      by,               s.spacing};
-  for_each_slot<Space, Dim>("mpm::update_particles", s.space, set.bins, s.patches.slots, false, [=](int slot) {
-    if (control().paused) return;
-    const T moved = particles(slot);
-    if (moved > Kokkos::atomic_load(&control().moved))
-      Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
-  });
+  const HostParticles<Space, T, Dim> particles{
+      set.points, set.bins.begin, s.patches.around, s.patches.origin, s.nodes.motion, s.control,
+      by,         s.spacing};
+  for_each_slot<Space, Dim>("mpm::update_particles", s.space, set.bins, s.patches.slots, false,
+                            [=](int slot) {
+                              if (control().paused) return;
+                              const T moved = particles(slot);
+                              if (moved > Kokkos::atomic_load(&control().moved))
+                                Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
+                            });
 }
 
 }  // namespace mpm

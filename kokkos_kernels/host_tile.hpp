@@ -1,6 +1,6 @@
 #pragma once
-// The strategy `tile` on a processor: a thread sums the shares of the particles of a patch, cell by cell, four
-// nodes of a row at once. The sums of a cell stay in registers, those of the patch in the cache.
+// The strategy `tile` on a processor: a thread sums the shares of the particles of a patch, cell by cell,
+// four nodes of a row at once. The sums of a cell stay in registers, those of the patch in the cache.
 
 #include "host_window.hpp"
 #include "particle_to_node.hpp"
@@ -32,8 +32,8 @@ struct HostTile {
   /// Particles on their way to the nodes.
   struct alignas(R) Stage {
     T weight[Dim][2][k_room][k_row];  // -, 1/cell: of the nodes -1 to 2 of the cell, and their slopes
-    T value[k_point][k_room + W];  // of the point, each apart, without its half length
-    Vector<T, Dim> x[k_room];  // cells
+    T value[k_point][k_room + W];     // of the point, each apart, without its half length
+    Vector<T, Dim> x[k_room];         // cells
   };
 
   Source source;
@@ -54,7 +54,8 @@ struct HostTile {
       for (int p = from; p < end; p += W) fill(p, Kokkos::min(W, end - p), one_body, stage, p - from);
       for (;; ++c) {  // a cell may go on in the next lot
         const int first = Kokkos::max(begin(slot * cells + c), from), next = begin(slot * cells + c + 1);
-        if (first < Kokkos::min(next, end)) add_cell(c, stage, first - from, Kokkos::min(next, end) - from, sums);
+        if (first < Kokkos::min(next, end))
+          add_cell(c, stage, first - from, Kokkos::min(next, end) - from, sums);
         if (next >= end) break;
       }
     }
@@ -65,7 +66,7 @@ struct HostTile {
   }
 
   /// Puts `count` particles from p on to the stage from n on; their weights at once.
-  void fill(int p, int count, bool one_body, Stage& stage, int n) const {
+  KOKKOS_INLINE_FUNCTION void fill(int p, int count, bool one_body, Stage& stage, int n) const {
     const BodyProperties<R> body = bodies_of<R>(source.points, p, count, one_body);
     put_points(p, count, body, stage, n);
     R x[Dim];
@@ -79,7 +80,8 @@ struct HostTile {
     }
   }
 
-  void put_points(int p, int count, const BodyProperties<R>& body, Stage& stage, int n) const {
+  KOKKOS_INLINE_FUNCTION void put_points(int p, int count, const BodyProperties<R>& body, Stage& stage,
+                                         int n) const {
     if constexpr (k_in_lanes) {
       const auto& soil = source.points;
       Vector<R, Dim> v;
@@ -107,7 +109,7 @@ struct HostTile {
   }
 
   /// The weights of three nodes from the first one, -1 or 0, as those of four from -1 on.
-  static void put_weights(R first, const R (&w)[3], T* to) {
+  KOKKOS_INLINE_FUNCTION static void put_weights(R first, const R (&w)[3], T* to) {
     const auto late = first == 0;
     const R row[k_row] = {select(late, T(0), w[0]), select(late, w[0], w[1]), select(late, w[1], w[2]),
                           select(late, w[2], T(0))};
@@ -115,7 +117,8 @@ struct HostTile {
   }
 
   /// Adds the particles [from, to) of the stage, of one cell of the patch.
-  void add_cell(int place, const Stage& stage, int from, int to, T (&sums)[size][window]) const {
+  KOKKOS_INLINE_FUNCTION void add_cell(int place, const Stage& stage, int from, int to,
+                                       T (&sums)[size][window]) const {
     constexpr int layers = Dim == 3 ? k_row : 1;
     const int base = window_base<Dim>(place);
     for (int k = 0; k < layers; ++k) {
@@ -163,7 +166,7 @@ struct HostTile {
   }
 
   /// From a particle at x to the nodes of the rows from j on in layer k [cells].
-  static Vector<Rows, Dim> offset(const Vector<T, Dim>& x, int j, int k) {
+  KOKKOS_INLINE_FUNCTION static Vector<Rows, Dim> offset(const Vector<T, Dim>& x, int j, int k) {
     Vector<Rows, Dim> r;
     for (int l = 0; l < Rows::k_count; ++l) {
       r[0].set(l, l % k_row - 1 - x[0]);
@@ -179,8 +182,8 @@ template <class Source>
 void sum_on_host(const Interpolation<Source>& it) {
   const HostTile<Source> tile{it.source, it.bins.begin, it.patches.around, it.out};
   const auto control = it.control;
-  for_each_slot<typename Source::Space, Source::dim>("mpm::reduce_by_tile", it.space, it.bins, it.patches.slots,
-                                                     true, [=](int slot) {
+  for_each_slot<typename Source::Space, Source::dim>("mpm::reduce_by_tile", it.space, it.bins,
+                                                     it.patches.slots, true, [=](int slot) {
                                                        if (!control().paused) tile(slot);
                                                      });
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The strategy `tile` on a processor: what its two passes over the particles of a patch share. A thread takes a
-// patch, many particles at once; all of its memory is on its stack.
+// The strategy `tile` on a processor: what its two passes over the particles of a patch share. A thread takes
+// a patch, many particles at once; all of its memory is on its stack.
 
 #include "lanes.hpp"
 #include "patches.hpp"
@@ -26,7 +26,7 @@ void for_each_run(const Around& around, int slot, F&& f) {
 
 /// Place in the window of the lowest node that particles of a cell of the patch reach.
 template <int Dim>
-constexpr int window_base(int place) {
+KOKKOS_INLINE_FUNCTION constexpr int window_base(int place) {
   int n = 0;
   for (int d = Dim - 1; d >= 0; --d) n = n * Patch<Dim>::window_edge + coord_of<Dim>(place)[d];
   return n;
@@ -34,14 +34,13 @@ constexpr int window_base(int place) {
 
 /// The first `count` < W of W groups of N values; the others repeat the last of them.
 template <int N, class T, int W>
-[[gnu::noinline]] void load_some(const T* from, int count, Lanes<T, W> (&a)[N]) {
+[[gnu::noinline]] KOKKOS_FUNCTION void load_some(const T* from, int count, Lanes<T, W> (&a)[N]) {
   T some[N * W];
-  for (int l = 0; l < W; ++l)
-    memcpy(some + l * N, from + (l < count ? l : count - 1) * N, N * sizeof(T));
+  for (int l = 0; l < W; ++l) memcpy(some + l * N, from + (l < count ? l : count - 1) * N, N * sizeof(T));
   load_groups(some, a);
 }
 template <int N, class T, int W>
-[[gnu::noinline]] void store_some(const Lanes<T, W> (&a)[N], int count, T* to) {
+[[gnu::noinline]] KOKKOS_FUNCTION void store_some(const Lanes<T, W> (&a)[N], int count, T* to) {
   T some[N * W];
   store_groups(a, some);
   memcpy(to, some, count * N * sizeof(T));
@@ -94,7 +93,8 @@ bool of_one_body(const Points_& points, int from, int to) {
   return others == 0;
 }
 
-/// What bodies give `count` points from p on, by lane; without the material. same: all points are of one body.
+/// What bodies give `count` points from p on, by lane; without the material. same: all points are of one
+/// body.
 template <class R, class Points_>
 KOKKOS_FORCEINLINE_FUNCTION BodyProperties<R> bodies_of(const Points_& points, int p, int count, bool same) {
   BodyProperties<R> body;

@@ -24,9 +24,9 @@ namespace impl {
 /// The compiler's own vectors: it takes them apart where the processor's are shorter.
 template <class T, int W>
 struct VectorOf;
-#define MPM_VECTOR_OF(T, W)                                      \
-  template <>                                                    \
-  struct VectorOf<T, W> {                                        \
+#define MPM_VECTOR_OF(T, W)                                     \
+  template <>                                                   \
+  struct VectorOf<T, W> {                                       \
     typedef T type __attribute__((vector_size(W * sizeof(T)))); \
   };
 MPM_VECTOR_OF(float, 4)
@@ -45,7 +45,6 @@ struct LaneMask {
   Bits bits;
   KOKKOS_FORCEINLINE_FUNCTION bool operator[](int lane) const { return bits[lane] != 0; }
   KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator&(LaneMask a, LaneMask b) { return {a.bits & b.bits}; }
-  KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator|(LaneMask a, LaneMask b) { return {a.bits | b.bits}; }
   KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator!(LaneMask a) { return {~a.bits}; }
 };
 
@@ -92,9 +91,8 @@ struct Lanes {
 /// Calls f with the constants 0 ... n - 1, so that loops over arrays of lanes leave them in registers.
 template <int n, class F>
 KOKKOS_FORCEINLINE_FUNCTION void unrolled(F&& f) {
-  [&]<int... k>(std::integer_sequence<int, k...>) {
-    (f(std::integral_constant<int, k>{}), ...);
-  }(std::make_integer_sequence<int, n>{});
+  [&]<int... k>(std::integer_sequence<int, k...>) { (f(std::integral_constant<int, k>{}), ...); }
+  (std::make_integer_sequence<int, n>{});
 }
 
 namespace impl {
@@ -111,8 +109,7 @@ KOKKOS_FORCEINLINE_FUNCTION V collect(const V (&a)[N], From, std::integer_sequen
   constexpr int second = N > 1 ? 1 : 0;
   V got = __builtin_shufflevector(a[0], a[second], (From::of(l) < 2 * W ? From::of(l) : 0)...);
   unrolled<(N > 2 ? N - 2 : 0)>([&](auto s) {
-    got = __builtin_shufflevector(got, a[s + 2],
-                                  (From::of(l) / W == s + 2 ? W + From::of(l) % W : l)...);
+    got = __builtin_shufflevector(got, a[s + 2], (From::of(l) / W == s + 2 ? W + From::of(l) % W : l)...);
   });
   return got;
 }
@@ -124,17 +121,13 @@ template <int N, int W, int k>
 struct Together {  // part k of groups of N, of which each member has its own lanes
   static constexpr int of(int l) { return (k * W + l) % N * W + (k * W + l) / N; }
 };
-template <int half, class V, class F, int... l>
-KOKKOS_FORCEINLINE_FUNCTION void fold_by(V& a, F&& f, std::integer_sequence<int, l...>) {
-  a = f(a, __builtin_shufflevector(a, a, int((l + half) % sizeof...(l))...));
-}
-/// Leaves in lane 0 what f makes of all lanes, two by two.
-template <int W, class V, class F>
-KOKKOS_FORCEINLINE_FUNCTION void halve(V& a, F&& f) {
-  unrolled<4>([&](auto k) {
-    constexpr int half = W >> (k + 1);
-    if constexpr (half > 0) fold_by<half>(a, f, std::make_integer_sequence<int, W>{});
-  });
+/// The bits of all lanes together, in lane 0.
+template <int half, class V, int... l>
+KOKKOS_FORCEINLINE_FUNCTION V either(V a, std::integer_sequence<int, l...> lanes) {
+  if constexpr (half == 0)
+    return a;
+  else
+    return either<half / 2>(a | __builtin_shufflevector(a, a, int((l + half) % sizeof...(l))...), lanes);
 }
 #endif
 }  // namespace impl
@@ -145,8 +138,7 @@ KOKKOS_FORCEINLINE_FUNCTION T select(bool condition, const T& a, const T& b) {
   return condition ? a : b;
 }
 template <class T, int W>
-KOKKOS_FORCEINLINE_FUNCTION Lanes<T, W> select(LaneMask<T, W> condition,
-                                               std::type_identity_t<Lanes<T, W>> a,
+KOKKOS_FORCEINLINE_FUNCTION Lanes<T, W> select(LaneMask<T, W> condition, std::type_identity_t<Lanes<T, W>> a,
                                                std::type_identity_t<Lanes<T, W>> b) {
   return Lanes<T, W>(condition.bits ? a.v : b.v);
 }
@@ -155,9 +147,7 @@ KOKKOS_FORCEINLINE_FUNCTION bool any_of(bool condition) { return condition; }
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION bool any_of(LaneMask<T, W> condition) {
 #ifdef MPM_SHUFFLES
-  auto any = condition.bits;
-  impl::halve<W>(any, [](auto a, auto b) { return a | b; });
-  return any[0] != 0;
+  return impl::either<W / 2>(condition.bits, std::make_integer_sequence<int, W>{})[0] != 0;
 #else
   auto any = condition.bits[0];
   for (int l = 1; l < W; ++l) any |= condition.bits[l];
