@@ -7,6 +7,18 @@
 #include <type_traits>
 #include <utility>
 
+// nvcc knows vectors, but not in functions of host and device.
+#if defined(__CUDACC__) || !defined(__GNUC__)
+#define MPM_PLAIN_LANES
+#endif
+#ifdef MPM_PLAIN_LANES
+#include "plain_lanes.hpp"
+#elif defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector)
+#define MPM_SHUFFLES
+#endif
+#endif
+
 namespace mpm {
 
 /// Bytes of the processor's widest vectors.
@@ -21,6 +33,12 @@ template <class T>
 inline constexpr int native_lanes = k_vector_bytes / sizeof(T);
 
 namespace impl {
+#ifdef MPM_PLAIN_LANES
+template <class T, int W>
+struct VectorOf {
+  using type = Plain<T, W>;
+};
+#else
 /// The compiler's own vectors: it takes them apart where the processor's are shorter.
 template <class T, int W>
 struct VectorOf;
@@ -36,6 +54,7 @@ MPM_VECTOR_OF(double, 2)
 MPM_VECTOR_OF(double, 4)
 MPM_VECTOR_OF(double, 8)
 #undef MPM_VECTOR_OF
+#endif
 }  // namespace impl
 
 /// Truth by lane: all bits of a lane, or none.
@@ -96,11 +115,6 @@ KOKKOS_FORCEINLINE_FUNCTION void unrolled(F&& f) {
 }
 
 namespace impl {
-#if defined(__has_builtin)
-#if __has_builtin(__builtin_shufflevector) && !defined(__CUDACC__)
-#define MPM_SHUFFLES
-#endif
-#endif
 #ifdef MPM_SHUFFLES
 /// Lane l of what was N arrays of W values one after the other is value from(l) of them.
 template <int N, class V, class From, int... l>
@@ -140,7 +154,12 @@ KOKKOS_FORCEINLINE_FUNCTION T select(bool condition, const T& a, const T& b) {
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION Lanes<T, W> select(LaneMask<T, W> condition, std::type_identity_t<Lanes<T, W>> a,
                                                std::type_identity_t<Lanes<T, W>> b) {
+#ifdef MPM_PLAIN_LANES
+  for (int l = 0; l < W; ++l) a.v[l] = condition.bits[l] ? a.v[l] : b.v[l];
+  return a;
+#else
   return Lanes<T, W>(condition.bits ? a.v : b.v);
+#endif
 }
 /// Whether a condition holds somewhere.
 KOKKOS_FORCEINLINE_FUNCTION bool any_of(bool condition) { return condition; }
@@ -149,9 +168,9 @@ KOKKOS_FORCEINLINE_FUNCTION bool any_of(LaneMask<T, W> condition) {
 #ifdef MPM_SHUFFLES
   return impl::either<W / 2>(condition.bits, std::make_integer_sequence<int, W>{})[0] != 0;
 #else
-  auto any = condition.bits[0];
-  for (int l = 1; l < W; ++l) any |= condition.bits[l];
-  return any != 0;
+  bool any = false;
+  for (int l = 0; l < W; ++l) any |= condition[l];
+  return any;
 #endif
 }
 /// Largest of all lanes.
