@@ -1,3 +1,4 @@
+#include "host_tile.hpp"
 #include "tile.hpp"
 
 namespace mpm {
@@ -5,7 +6,7 @@ namespace mpm {
 // On the host patches go colour by colour (windows of one colour share no node); on a device all at once, by
 // atomic additions to the nodes.
 template <class Source>
-void reduce_by_tile(const Interpolation<Source>& it) {
+void sum_on_device(const Interpolation<Source>& it) {
   using Space = typename Source::Space;
   constexpr int Dim = Source::dim, cells = Patch<Dim>::cells;
   using Team = PatchTeam<Space, typename Source::real, Dim>;
@@ -38,6 +39,14 @@ void reduce_by_tile(const Interpolation<Source>& it) {
           tile.give_window(team, out);
         });
   });
+}
+
+template <class Source>
+void reduce_by_tile(const Interpolation<Source>& it) {
+  if constexpr (is_device<typename Source::Space>)
+    sum_on_device(it);
+  else
+    sum_on_host(it);
 }
 
 #define MPM_STRATEGY reduce_by_tile

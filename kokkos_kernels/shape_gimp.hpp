@@ -25,14 +25,16 @@ using HalfLengthOf = const HalfLength<std::type_identity_t<T>>&;
 ///   w[k] [-] weight of node first + k, all >= 0, sum 1;  g[k] [1/cell] its derivative by x, sum 0
 /// The weight of the third node is exactly zero where the particle does not reach it.
 template <class T>
+using FirstNode = std::conditional_t<std::is_arithmetic_v<T>, int, T>;  // a whole number by lane, for lanes
+template <class T>
 struct AxisWeights {
-  int first;
+  FirstNode<T> first;
   T w[3], g[3];
 };
 
 /// `first` is known here;  r [cells] the distance from that node, l <= r < 1 + l.
 template <class T>
-KOKKOS_INLINE_FUNCTION AxisWeights<T> weights_from(int first, T r, HalfLengthOf<T> half) {
+KOKKOS_INLINE_FUNCTION AxisWeights<T> weights_from(FirstNode<T> first, T r, HalfLengthOf<T> half) {
   AxisWeights<T> a;
   const T l = half.l;
   a.first = first;
@@ -59,12 +61,12 @@ KOKKOS_INLINE_FUNCTION AxisWeights<T> axis_weights(T x, HalfLengthOf<T> half) {
 template <class T>
 KOKKOS_INLINE_FUNCTION AxisWeights<T> axis_weights_near(T x, HalfLengthOf<T> half) {
   const T low = x - half.l;
-  const bool beyond = low >= 1;
-  const int first = low < 0 ? -1 : 0;
-  AxisWeights<T> a = weights_from<T>(first, x - first - (beyond ? T(1) : T(0)), half);
-  if (beyond) {
-    for (int k = 2; k > 0; --k) a.w[k] = a.w[k - 1], a.g[k] = a.g[k - 1];
-    a.w[0] = a.g[0] = 0;
+  const auto beyond = low >= 1;
+  const auto first = select(low < 0, FirstNode<T>(-1), FirstNode<T>(0));
+  AxisWeights<T> a = weights_from<T>(first, x - first - select(beyond, T(1), T(0)), half);
+  for (int k = 2; k >= 0; --k) {
+    a.w[k] = select(beyond, k > 0 ? a.w[k - 1] : T(0), a.w[k]);
+    a.g[k] = select(beyond, k > 0 ? a.g[k - 1] : T(0), a.g[k]);
   }
   return a;
 }
@@ -92,13 +94,13 @@ KOKKOS_INLINE_FUNCTION void for_each_weight(const AxisWeights<T> (&a)[Dim], F&& 
 /// Interpolates N nodal values to a particle, and the gradients [1/cell] of the first M of them; the sums
 /// over the nodes go line by line along the first axis. at(k) gives the values of the node k steps from the
 /// first.
-template <int N, int M, class T, int Dim, class At>
-KOKKOS_INLINE_FUNCTION void interpolate_by_lines(const AxisWeights<T> (&a)[Dim], At&& at, T (&value)[N],
-                                                 T (&gradient)[M][Dim]) {
+template <int N, int M, class T, int Dim, class At, class V>
+KOKKOS_INLINE_FUNCTION void interpolate_by_lines(const AxisWeights<T> (&a)[Dim], At&& at, V (&value)[N],
+                                                 V (&gradient)[M][Dim]) {
   const int layers = Dim == 3 ? 3 : 1;
   for (int k = 0; k < layers; ++k)
     for (int j = 0; j < 3; ++j) {
-      T along[N] = {}, slope[M] = {};
+      V along[N] = {}, slope[M] = {};
       for (int i = 0; i < 3; ++i) {
         Vector<int, Dim> step{i, j};
         if constexpr (Dim == 3) step[2] = k;

@@ -16,11 +16,13 @@ struct SoilSource {
   using Space = Space_;
   using real = T;
   static constexpr int dim = Dim, size = SoilShare<Dim>::size;
-  struct Point {
-    HalfLength<T> half_length;
-    T mass, momentum[Dim];
-    T stress_volume[Dim * (Dim + 1) / 2];  // - V_p sigma_p / d, components along the axes of the mesh
+  template <class R>
+  struct PointOf {
+    HalfLength<R> half_length;
+    R mass, momentum[Dim];
+    R stress_volume[Dim * (Dim + 1) / 2];  // - V_p sigma_p / d, components along the axes of the mesh
   };
+  using Point = PointOf<T>;
   /// Place of component (i, j) in stress_volume: that of SymTensor, without zz in plane strain.
   KOKKOS_INLINE_FUNCTION static constexpr int place(int i, int j) {
     return Dim == 2 && i != j ? 2 : sym_index<Dim>(i, j);
@@ -32,21 +34,23 @@ struct SoilSource {
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     return point(points.bodies(points.body(p)), points.velocity(p), points.stress(p), points.volume(p));
   }
-  KOKKOS_INLINE_FUNCTION Point point(const BodyProperties<T>& body, const Vector<T, Dim>& v_p,
-                                     const SymTensor<T, Dim>& stress, T volume) const {
-    Point q{body.half_length, body.mass, {}, {}};
-    const T scale = -volume * inv_spacing;
+  /// R: T, or lanes of it.
+  template <class R>
+  KOKKOS_INLINE_FUNCTION PointOf<R> point(const BodyProperties<R>& body, const Vector<R, Dim>& v_p,
+                                          const SymTensor<R, Dim>& stress, R volume) const {
+    PointOf<R> q{body.half_length, body.mass, {}, {}};
+    const R scale = -volume * inv_spacing;
     for (int d = 0; d < Dim; ++d) q.momentum[d] = q.mass * v_p[d];
     for (int k = 0; k < Dim * (Dim + 1) / 2; ++k)
       q.stress_volume[k] = scale * stress[k < Dim ? k : k + 3 - Dim];
     return q;
   }
-  template <class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>& grad, Add&& add) {
+  template <class W, class Add>
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, W w, const Vector<W, Dim>& grad, Add&& add) {
     add(SoilShare<Dim>::mass, w * q.mass);
     for (int d = 0; d < Dim; ++d) add(SoilShare<Dim>::momentum + d, w * q.momentum[d]);
     for (int d = 0; d < Dim; ++d) {
-      T f = q.stress_volume[place(d, 0)] * grad[0];
+      W f = q.stress_volume[place(d, 0)] * grad[0];
       for (int e = 1; e < Dim; ++e) f += q.stress_volume[place(d, e)] * grad[e];
       add(SoilShare<Dim>::force + d, f);
     }
@@ -68,13 +72,18 @@ struct AffineSource : SoilSource<Space_, T, Dim> {
     return q;
   }
   /// offset [cells] from the particle to the node.
-  template <class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>& grad,
-                                          const Vector<T, Dim>& offset, Add&& add) {
-    typename Base::Point here = q;
-    for (int d = 0; d < Dim; ++d)
-      for (int e = 0; e < Dim; ++e) here.momentum[d] += q.affine[d * Dim + e] * offset[e];
-    Base::give(here, w, grad, add);
+  template <class W, class Add>
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, W w, const Vector<W, Dim>& grad,
+                                          const Vector<W, Dim>& offset, Add&& add) {
+    Base::give(q, w, grad, [&](int value, W share) {
+      const int d = value - SoilShare<Dim>::momentum;
+      if (d >= 0 && d < Dim) {
+        W more = q.affine[d * Dim] * offset[0];
+        for (int e = 1; e < Dim; ++e) more += q.affine[d * Dim + e] * offset[e];
+        share += w * more;
+      }
+      add(value, share);
+    });
   }
 };
 
@@ -98,8 +107,8 @@ struct RestSource {
     for (int d = 0; d < Dim; ++d) q.momentum[d] = body.mass * rest(p)[d];
     return q;
   }
-  template <class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>&, Add&& add) {
+  template <class W, class Add>
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, W w, const Vector<W, Dim>&, Add&& add) {
     for (int d = 0; d < Dim; ++d) add(d, w * q.momentum[d]);
   }
 };
@@ -126,8 +135,8 @@ struct BoundarySource {
     const T volume = points.volume(p);
     return {points.bodies(points.body(p)).half_length, volume * inv_spacing, volume};
   }
-  template <class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>& grad, Add&& add) {
+  template <class W, class Add>
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, W w, const Vector<W, Dim>& grad, Add&& add) {
     for (int d = 0; d < Dim; ++d) add(BoundaryShare<Dim>::area + d, grad[d] * q.area);
     add(BoundaryShare<Dim>::volume, w * q.volume);
   }
@@ -148,8 +157,8 @@ struct RigidSource {
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int) const { return {points.half_length, points.mass}; }
-  template <class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, T w, const Vector<T, Dim>& grad, Add&& add) {
+  template <class W, class Add>
+  KOKKOS_INLINE_FUNCTION static void give(const Point& q, W w, const Vector<W, Dim>& grad, Add&& add) {
     add(RigidShare<Dim>::mass, w * q.mass);
     for (int d = 0; d < Dim; ++d) add(RigidShare<Dim>::normal + d, grad[d] * q.mass);
   }

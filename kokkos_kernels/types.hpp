@@ -3,6 +3,8 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "lanes.hpp"
+
 namespace mpm {
 
 /// Alignment at which a group of n values is read at once: pairs, and fours up to 16 bytes.

@@ -1,15 +1,10 @@
+#include "advance.hpp"
+#include "host_particles.hpp"
 #include "step_kernels.hpp"
 #include "tile.hpp"
 
 namespace mpm {
 namespace {
-
-/// What a particle takes from the nodes.
-template <class T, int Dim>
-struct Taken {
-  T motion[NodeMotion<Dim>::size];  // m/s, m/s2
-  T gradient[Dim][Dim];             // 1/s, L_ij = dv_i/dx_j
-};
 
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const MotionValues<T, Dim>* window,
@@ -33,74 +28,6 @@ KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const MotionValues<T, Dim>* windo
     for (int d = 0; d < Dim; ++d) sum += node[NodeMotion<Dim>::velocity + d] * grad[d];
   });
   return sum * inv_spacing;
-}
-
-/// Strain increment (symmetric part of L dt, tensor shear strains) and spin increment (skew part).
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION void increments(const T (&L)[Dim][Dim], T dt, SymTensor<T, Dim>& strain,
-                                       Spin<T, Dim>& spin) {
-  for (int k = 0; k < sym_size<Dim>; ++k) strain[k] = 0;
-  for (int i = 0; i < Dim; ++i)
-    for (int j = i; j < Dim; ++j) strain[sym_index<Dim>(i, j)] = dt * (L[i][j] + L[j][i]) / 2;
-  spin.c[0] = dt * (L[0][1] - L[1][0]) / 2;
-  if constexpr (Dim == 3) {
-    spin.c[1] = dt * (L[1][2] - L[2][1]) / 2;
-    spin.c[2] = dt * (L[2][0] - L[0][2]) / 2;
-  }
-}
-
-/// Scalars of the particle update.
-template <class T>
-struct UpdateScalars {
-  T dt, inv_spacing, flip, pic, f_bar;
-};
-
-/// What a step changes of a particle.
-template <class T, int Dim>
-struct Particle {
-  Vector<T, Dim> x, v;  // cells, m/s
-  T volume;             // m3
-  MaterialState<T, Dim> material;
-};
-
-/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The share f_bar of its
-/// dilatation is that of its cell, `mean_dilatation` [1/s]. Returns the largest component of its movement
-/// [cells].
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION T advance(Particle<T, Dim>& q, const AnyMaterial<T>& material, const Taken<T, Dim>& t,
-                                 T mean_dilatation, const UpdateScalars<T>& by) {
-  SymTensor<T, Dim> d_strain;
-  Spin<T, Dim> d_spin;
-  increments(t.gradient, by.dt, d_strain, d_spin);
-  T trace = 0;
-  for (int d = 0; d < Dim; ++d) trace += d_strain[d];
-  const T correction = by.f_bar * (by.dt * mean_dilatation - trace);
-  for (int d = 0; d < 3; ++d) d_strain[d] += correction * T(1.0 / 3);
-  trace += correction;
-  material.visit([&](const auto& law) { law.update(q.material, d_strain, d_spin, by.dt); });
-
-  q.volume *= (2 + trace) / (2 - trace);  // exp(trace) to second order: no drift in rotation
-  T moved = 0;
-  for (int d = 0; d < Dim; ++d) {
-    const T v_i = t.motion[NodeMotion<Dim>::velocity + d], a_i = t.motion[NodeMotion<Dim>::acceleration + d];
-    q.v[d] = by.flip * (q.v[d] + by.dt * a_i) + by.pic * v_i;
-    const T movement = by.dt * v_i * by.inv_spacing;
-    q.x[d] += movement;
-    moved = Kokkos::fmax(moved, Kokkos::fabs(movement));
-  }
-  return moved;
-}
-
-/// What is wrong with a particle that moved by `moved` [cells] in the step: not finite, no volume, or so fast
-/// that the computation cannot be trusted.
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION FaultKind fault_of(const Particle<T, Dim>& q, T moved) {
-  T sum = q.volume;
-  for (int d = 0; d < Dim; ++d) sum += q.x[d] + q.v[d];
-  for (int k = 0; k < sym_size<Dim>; ++k) sum += q.material.stress[k];
-  if (!(0 * sum == 0)) return FaultKind::not_finite;  // 0 times what is not finite is not zero
-  if (!(q.volume > 0)) return FaultKind::inverted;
-  return moved <= 1 ? FaultKind::none : FaultKind::too_fast;
 }
 
 /// A team moves the particles of a patch. If Sums, it adds them where they now are to the nodes for the next
@@ -266,12 +193,17 @@ template <class Space, class T, int Dim>
 inline constexpr bool sums_fit =
     is_device<Space>&& scratch_fits<Space, T, Dim>(UpdateParticles<Space, T, Dim, true>::bytes());
 
+template <class Space, class T, int Dim>
+UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
+  const double flip = s.xpic_order > 0 ? 1 : s.flip_share;  // XPIC has changed the velocities already
+  return {T(dt), s.grid.inv_spacing, T(flip), T(1 - flip), T(s.f_bar_share)};
+}
+
 template <bool Sums, class Space, class T, int Dim>
 void launch_update(State<Space, T, Dim>& s, double dt) {
   using Update = UpdateParticles<Space, T, Dim, Sums>;
   const auto& set = s.soil;
-  const double flip = s.xpic_order > 0 ? 1 : s.flip_share;  // XPIC has changed the velocities already
-  const UpdateScalars<T> by{T(dt), s.grid.inv_spacing, T(flip), T(1 - flip), T(s.f_bar_share)};
+  const UpdateScalars<T> by = update_scalars(s, dt);
   const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
       reinterpret_cast<T*>(s.spare.data()), set.points.count);
   Update update{{set.points, s.grid.inv_spacing},
@@ -311,9 +243,13 @@ bool sums_ahead(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt) {
   s.soil_summed = sums_ahead(s);
-  if constexpr (sums_fit<Space, T, Dim>)
-    if (s.soil_summed) return launch_update<true>(s, dt);
-  launch_update<false>(s, dt);
+  if constexpr (is_device<Space>) {
+    if constexpr (sums_fit<Space, T, Dim>)
+      if (s.soil_summed) return launch_update<true>(s, dt);
+    launch_update<false>(s, dt);
+  } else {
+    move_on_host(s, update_scalars(s, dt));
+  }
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                   \

@@ -30,9 +30,10 @@ struct LinearElastic {
   /// Undrained shear strength at a height [m]; none here.
   double strength_at(double) const { return 0; }
 
-  template <int Dim>
-  KOKKOS_FUNCTION void update(MaterialState<T, Dim>& state, const SymTensor<T, Dim>& d_strain,
-                              const Spin<T, Dim>& d_spin, T /*dt*/) const {
+  /// R: T, or lanes of it.
+  template <class R, int Dim>
+  KOKKOS_FUNCTION void update(MaterialState<R, Dim>& state, const SymTensor<R, Dim>& d_strain,
+                              const Spin<R, Dim>& d_spin, T /*dt*/) const {
     state.stress = rotated(state.stress, d_spin);
     add_elastic(state.stress, d_strain, lambda, shear_modulus);
   }

@@ -69,11 +69,11 @@ KOKKOS_INLINE_FUNCTION T mean_of(const SymTensor<T, Dim>& s) {
 
 /// Adds the isotropic elastic stress increment lambda tr(e) I + 2 G e to s. Shear strains are tensor
 /// components.
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION void add_elastic(SymTensor<T, Dim>& s, const SymTensor<T, Dim>& e, T lambda,
+template <class R, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void add_elastic(SymTensor<R, Dim>& s, const SymTensor<R, Dim>& e, T lambda,
                                         T shear_modulus) {
-  const T mean = lambda * (e[0] + e[1] + e[2]);
-  for (int k = 0; k < sym_size<Dim>; ++k) s[k] += 2 * shear_modulus * e[k] + (k < 3 ? mean : T(0));
+  const R mean = lambda * (e[0] + e[1] + e[2]);
+  for (int k = 0; k < sym_size<Dim>; ++k) s[k] += 2 * shear_modulus * e[k] + (k < 3 ? mean : R(0));
 }
 
 /// Elastic constants of Young's modulus and Poisson's ratio.

@@ -37,23 +37,26 @@ struct VonMises {
     return su + (height < su_datum ? su_gradient * (su_datum - height) : 0.0);
   }
 
-  template <int Dim>
-  KOKKOS_FUNCTION void update(MaterialState<T, Dim>& state, const SymTensor<T, Dim>& d_strain,
-                              const Spin<T, Dim>& d_spin, T /*dt*/) const {
-    SymTensor<T, Dim>& s = state.stress;
+  /// R: T, or lanes of it.
+  template <class R, int Dim>
+  KOKKOS_FUNCTION void update(MaterialState<R, Dim>& state, const SymTensor<R, Dim>& d_strain,
+                              const Spin<R, Dim>& d_spin, T /*dt*/) const {
+    SymTensor<R, Dim>& s = state.stress;
     s = rotated(s, d_spin);
     add_elastic(s, d_strain, lambda, shear_modulus);
 
-    const T mean = (s[0] + s[1] + s[2]) * T(1.0 / 3);
-    T j2 = 0;
+    const R mean = mean_of(s);
+    R j2 = 0;
     for (int k = 0; k < sym_size<Dim>; ++k) {
-      const T deviator = k < 3 ? s[k] - mean : s[k];
+      const R deviator = k < 3 ? s[k] - mean : s[k];
       j2 += k < 3 ? deviator * deviator / 2 : deviator * deviator;
     }
-    if (j2 <= state.strength * state.strength) return;
-    const T size = Kokkos::sqrt(j2), share = state.strength / size;
-    for (int k = 0; k < sym_size<Dim>; ++k) s[k] = k < 3 ? mean + share * (s[k] - mean) : share * s[k];
-    state.plastic_strain += (size - state.strength) / shear_modulus;
+    const auto yields = j2 > state.strength * state.strength;
+    if (!any_of(yields)) return;
+    const R size = Kokkos::sqrt(j2), share = state.strength / size;
+    for (int k = 0; k < sym_size<Dim>; ++k)
+      s[k] = select(yields, k < 3 ? mean + share * (s[k] - mean) : share * s[k], s[k]);
+    state.plastic_strain += select(yields, (size - state.strength) / shear_modulus, R(0));
   }
 };
 

@@ -1,0 +1,118 @@
+#pragma once
+// The strategy `tile` on a processor: what its two passes over the particles of a patch share. A thread takes
+// a patch, many particles at once; all of its memory is on its stack.
+
+#include "lanes.hpp"
+#include "patches.hpp"
+#include "shape_gimp.hpp"
+#include "window.hpp"
+
+namespace mpm {
+
+/// Calls f(place, node, count) for every run of the window of a slot that lies together in both: from `place`
+/// in the window, and from the number `node`, `count` nodes.
+template <int Dim, class Around, class F>
+void for_each_run(const Around& around, int slot, F&& f) {
+  constexpr int edge = Patch<Dim>::edge, across = Patch<Dim>::window_edge;
+  for (int row = 0; row < Patch<Dim>::window; row += across) {
+    Coord<Dim> c = window_coord<Dim>(row);
+    f(row, number_at<Around, Dim>(around, slot, c), 1);
+    c[0] = 0;
+    f(row + 1, number_at<Around, Dim>(around, slot, c), edge);
+    c[0] = edge;
+    f(row + 1 + edge, number_at<Around, Dim>(around, slot, c), 2);
+  }
+}
+
+/// Place in the window of the lowest node that particles of a cell of the patch reach.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION constexpr int window_base(int place) {
+  int n = 0;
+  for (int d = Dim - 1; d >= 0; --d) n = n * Patch<Dim>::window_edge + coord_of<Dim>(place)[d];
+  return n;
+}
+
+/// The first `count` < W of W groups of N values; the others repeat the last of them.
+template <int N, class T, int W>
+[[gnu::noinline]] KOKKOS_FUNCTION void load_some(const T* from, int count, Lanes<T, W> (&a)[N]) {
+  T some[N * W];
+  for (int l = 0; l < W; ++l) memcpy(some + l * N, from + (l < count ? l : count - 1) * N, N * sizeof(T));
+  load_groups(some, a);
+}
+template <int N, class T, int W>
+[[gnu::noinline]] KOKKOS_FUNCTION void store_some(const Lanes<T, W> (&a)[N], int count, T* to) {
+  T some[N * W];
+  store_groups(a, some);
+  memcpy(to, some, count * N * sizeof(T));
+}
+/// A field of `count` particles from number p on; it has as many values of T as `a` has members.
+template <class R, class Field, int N>
+KOKKOS_FORCEINLINE_FUNCTION void load_field(const Field& field, int p, int count, R (&a)[N]) {
+  const auto* const from = reinterpret_cast<const typename R::real*>(&field(p));
+  if (count >= R::k_count)
+    load_groups(from, a);
+  else
+    load_some(from, count, a);
+}
+template <class R, class Field, int N>
+KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field, int p, int count) {
+  auto* const to = reinterpret_cast<typename R::real*>(&field(p));
+  if (count >= R::k_count)
+    store_groups(a, to);
+  else
+    store_some(a, count, to);
+}
+
+/// Calls f(slot) for the slots that hold points, each by one thread: in the order of the points, or colour by
+/// colour where f adds to the nodes that patches share; one thread alone needs no colours.
+template <class Space, int Dim, class F>
+void for_each_slot(const char* label, const Space& space, const Bins<Space>& bins, int slots, bool colours,
+                   const F& f) {
+  using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>;
+  constexpr int cells = Patch<Dim>::cells;
+  const auto begin = bins.begin;
+  if (!colours || backend_of<Space> == Backend::serial) {
+    Kokkos::parallel_for(label, Range(space, 0, slots, Kokkos::ChunkSize(1)), [=](int slot) {
+      if (begin(slot * cells) < begin((slot + 1) * cells)) f(slot);
+    });
+    return;
+  }
+  const auto by_colour = bins.by_colour;
+  for (int colour = 0; colour < Patch<Dim>::colours; ++colour)
+    Kokkos::parallel_for(
+        label, Range(space, bins.colour_begin[colour], bins.colour_begin[colour + 1], Kokkos::ChunkSize(1)),
+        [=](int n) { f(by_colour(n)); });
+}
+
+/// Whether the points [from, to) are all of one body.
+template <class Points_>
+bool of_one_body(const Points_& points, int from, int to) {
+  int others = 0;
+  if constexpr (requires { points.body; })
+    for (int p = from; p < to; ++p) others |= points.body(p) ^ points.body(from);
+  return others == 0;
+}
+
+/// What bodies give `count` points from p on, by lane; without the material. same: all points are of one
+/// body.
+template <class R, class Points_>
+KOKKOS_FORCEINLINE_FUNCTION BodyProperties<R> bodies_of(const Points_& points, int p, int count, bool same) {
+  BodyProperties<R> body;
+  const auto put = [&](int l, const auto& of) {
+    body.mass.set(l, of.mass);
+    body.half_length.l.set(l, of.half_length.l), body.half_length.inverse.set(l, of.half_length.inverse);
+  };
+  const auto all = [&](const auto& of) {
+    body.mass = of.mass;
+    body.half_length.l = of.half_length.l, body.half_length.inverse = of.half_length.inverse;
+  };
+  if constexpr (requires { points.body; }) {
+    all(points.bodies(points.body(p)));
+    for (int l = 1; l < count && !same; ++l) put(l, points.bodies(points.body(p + l)));
+  } else {
+    all(points);
+  }
+  return body;
+}
+
+}  // namespace mpm
