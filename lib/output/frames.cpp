@@ -1,6 +1,8 @@
 #include "output/frames.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <optional>
 
 #include "numbers.hpp"
 #include "output/files.hpp"
@@ -154,6 +156,13 @@ std::string format_tensor(const std::string& name, const std::string& item, long
   return text;
 }
 
+/// Whether a group of a frame has a field.
+bool has_field(const FrameEntry::Group& group, const Field& field) {
+  if (field.bodies_only && !group.body) return false;
+  return group.fields.empty() ||
+         std::find(group.fields.begin(), group.fields.end(), field.name) != group.fields.end();
+}
+
 /// The grid of one body or rigid: a point a particle.
 std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group, int real_bytes) {
   const std::string count = std::to_string(group.count);
@@ -163,7 +172,7 @@ std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group,
   text += "          <Geometry GeometryType=\"XYZ\">" + data_item(frame, group, k_fields[0], real_bytes) +
           "</Geometry>\n";
   for (const Field& field : k_fields) {
-    if (&field == k_fields || (field.bodies_only && !group.body)) continue;
+    if (&field == k_fields || !has_field(group, field)) continue;
     const std::string item = data_item(frame, group, field, real_bytes);
     if (field.components == 6)
       text += format_tensor(field.name, item, group.count);
@@ -171,6 +180,48 @@ std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group,
       text += format_attribute(field.name, field.components == 3 ? "Vector" : "Scalar", item);
   }
   return text + "        </Grid>\n";
+}
+
+/// Name of a frame relative to the output folder.
+std::string file_name(int number) {
+  char file[40];
+  std::snprintf(file, sizeof file, "frames/frame_%05d.h5", number);
+  return file;
+}
+
+/// What the index says of a group of a frame that is there; false where it cannot be read.
+bool read_group(hid_t file, FrameEntry::Group& group) {
+  Handle opened(H5Gopen2(file, group.name.c_str(), H5P_DEFAULT), H5Gclose);
+  if (opened.id < 0) return false;
+  for (const Field& field : k_fields)
+    if (H5Lexists(opened.id, field.name, H5P_DEFAULT) > 0) {
+      group.fields.push_back(field.name);
+      group.body = group.body || field.bodies_only;
+    }
+  Handle data(H5Dopen2(opened.id, k_fields[0].name, H5P_DEFAULT), H5Dclose);
+  if (data.id < 0) return false;
+  Handle space(H5Dget_space(data.id), H5Sclose);
+  hsize_t sizes[2] = {0, 0};
+  if (H5Sget_simple_extent_ndims(space.id) != 2) return false;
+  H5Sget_simple_extent_dims(space.id, sizes, nullptr);
+  group.count = static_cast<long>(sizes[0]);
+  return true;
+}
+
+/// What the index says of a frame of an earlier part of the run; nothing where it is no longer there.
+std::optional<FrameEntry> read_entry(const std::string& folder, const std::string& name,
+                                     const std::vector<std::string>& groups) {
+  const Quiet quiet;
+  Handle file(H5Fopen((folder + "/" + name).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (file.id < 0) return std::nullopt;
+  FrameEntry entry{name, 0, {}};
+  Handle time(H5Aopen(file.id, "time", H5P_DEFAULT), H5Aclose);
+  if (time.id < 0 || H5Aread(time.id, H5T_NATIVE_DOUBLE, &entry.time) < 0) return std::nullopt;
+  for (const std::string& group : groups) {
+    entry.groups.push_back({group});
+    if (!read_group(file.id, entry.groups.back())) return std::nullopt;
+  }
+  return entry;
 }
 
 }  // namespace
@@ -203,12 +254,37 @@ void Frames::open(const std::string& folder, Precision precision) {
   folder_ = folder;
   precision_ = precision;
   entries_.clear();
+  count_ = 0;
+}
+
+PetscErrorCode Frames::resume(const Config& config, long count) {
+  PetscFunctionBeginUser;
+  open(config.output.directory, config.precision);
+  std::vector<std::string> names;
+  for (const BodyConfig& body : config.bodies) names.push_back(body.name);
+  for (const RigidConfig& rigid : config.rigids) names.push_back(rigid.name);
+  for (; count_ < count; ++count_)
+    if (auto entry = read_entry(folder_, file_name(count_), names)) entries_.push_back(std::move(*entry));
+  if (!entries_.empty()) PetscCall(write_index());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Frames::settle() const {
+  PetscFunctionBeginUser;
+  if (count_ > 0) PetscCall(bring_to_disk(folder_ + "/frames"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Frames::write_index() const {
+  PetscFunctionBeginUser;
+  PetscCall(replace_file(folder_ + "/particles.xdmf",
+                         format_xdmf(entries_, precision_ == Precision::single ? 4 : 8)));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode Frames::write(const Snapshot& snapshot) {
   PetscFunctionBeginUser;
-  char file[40];
-  std::snprintf(file, sizeof file, "frames/frame_%05d.h5", count());
+  const std::string file = file_name(count_);
   PetscCall(write_frame(folder_ + "/" + file, snapshot, precision_));
 
   FrameEntry entry{file, snapshot.time, {}};
@@ -217,8 +293,8 @@ PetscErrorCode Frames::write(const Snapshot& snapshot) {
   for (const auto& rigid : snapshot.rigids)
     entry.groups.push_back({rigid.name, static_cast<long>(rigid.position.size() / 3), false});
   entries_.push_back(std::move(entry));
-  PetscCall(replace_file(folder_ + "/particles.xdmf",
-                         format_xdmf(entries_, precision_ == Precision::single ? 4 : 8)));
+  ++count_;
+  PetscCall(write_index());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

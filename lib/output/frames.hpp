@@ -17,6 +17,7 @@ struct FrameEntry {
     std::string name;
     long count = 0;     // particles
     bool body = false;  // has stress, volume and plastic_strain
+    std::vector<std::string> fields{};  // that it has; empty for all
   };
   std::string file;  // relative to the output folder
   double time = 0;   // s
@@ -37,14 +38,22 @@ class Frames {
  public:
   /// Says where they go; nothing is written yet. The folder was made by prepare_output_folder.
   void open(const std::string& folder, Precision precision);
+  /// Goes on after the first `count` frames of an earlier part of the run; those that are still there stay in the
+  /// index.
+  PetscErrorCode resume(const Config& config, long count);
+  /// Brings what was written to the disk, with its name.
+  PetscErrorCode settle() const;
   /// Writes the next frame, then the index anew; both are complete or as they were.
   PetscErrorCode write(const Snapshot& snapshot);
-  int count() const { return static_cast<int>(entries_.size()); }
+  int count() const { return count_; }
 
  private:
+  PetscErrorCode write_index() const;
+
   std::string folder_;
   Precision precision_ = Precision::double_;
   std::vector<FrameEntry> entries_;
+  int count_ = 0;
 };
 
 }  // namespace mpm
