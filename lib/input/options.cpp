@@ -150,6 +150,19 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
              .range = k_positive,
              .standard = listing ? "a five-hundredth of time_end" : ""},
             output.history_interval);
+  in.number({.name = "checkpoint_interval",
+             .meaning = "simulated time between checkpoints, of which the last two are kept",
+             .unit = "s",
+             .range = k_positive},
+            output.checkpoint_interval);
+  in.text({.name = "restart",
+           .meaning = "checkpoint to go on from, or latest: the last sound one of the output folder"},
+          output.restart);
+  in.number({.name = "wall_time_limit",
+             .meaning = "time on the clock after which the run writes a checkpoint and stops with exit status 75",
+             .unit = "s",
+             .range = k_positive},
+            output.wall_time_limit);
   in.word({.name = "progress", .meaning = "auto: a live line on a terminal, else a line each 10 %"},
           Words<Progress>{{"auto", Progress::automatic}, {"on", Progress::on}, {"off", Progress::off}},
           output.progress);

@@ -209,6 +209,25 @@ void TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
 }
 
 template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::restore(const SavedState& saved, long since_rebuild,
+                                                    bool* rebuilt) {
+  PetscFunctionBeginUser;
+  const int particles = state_.soil.points.count;
+  std::string unfit;
+  PetscCallCXX(unfit = restore_state(state_, saved));
+  PetscCheck(unfit.empty() && state_.soil.points.count == particles, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+             "The checkpoint does not fit to what the options describe: %s",
+             unfit.empty() ? "the number of particles" : unfit.c_str());
+  const auto& forced = config_.p2g.rebuild_interval;
+  *rebuilt = saved.bound > config_.p2g.margin || (forced && since_rebuild >= *forced);
+  Failure failure;
+  if (*rebuilt) PetscCall(rebuild(&failure));
+  PetscCheck(failure.what.empty(), PETSC_COMM_SELF, PETSC_ERR_FP, "The checkpoint's %s",
+             failure.what.c_str());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
 std::vector<FunctionTime> TypedStepper<Space, T, Dim>::times() const {
   std::vector<FunctionTime> times;
   for (int n = 0; n < k_functions; ++n) {

@@ -109,6 +109,9 @@ struct OutputConfig {
   double interval = 0;          // s between frames
   double history_interval = 0;  // s between rows of the history
   Progress progress = Progress::automatic;
+  std::optional<double> checkpoint_interval;  // s between checkpoints; none: only when the run is told to stop
+  std::optional<double> wall_time_limit;      // s of wall time after which the run stops
+  std::string restart;                        // the checkpoint to go on from, or "latest"; empty: from the start
 };
 
 /// Everything that a run needs to know.
