@@ -78,6 +78,7 @@ struct Simulation::Body {
   void find_history();
   void keep_strategy();
   PetscErrorCode resume();
+  Checkpoint description() const;
   PetscErrorCode write_checkpoint();
   PetscErrorCode look_for_stop(bool* stop);
   PetscErrorCode stop();

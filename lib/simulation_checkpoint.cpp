@@ -107,8 +107,7 @@ void Simulation::Body::find_history() {
 /// Steps on from the checkpoint, after set_up. The folder is touched last.
 PetscErrorCode Simulation::Body::resume() {
   PetscFunctionBeginUser;
-  const std::string changes = changed_machine(*restart, word_of(config.backend), word_of(config.precision),
-                                              stepper->strategy(), ranks());
+  const std::string changes = changed_machine(*restart, description());
   began = restart->run;
   step = began.step;
   last_row_time = began.last_row_time;
@@ -122,11 +121,9 @@ PetscErrorCode Simulation::Body::resume() {
   PetscCall(log.print("goes on from %s: step %ld, time %.9g s", restart_file.c_str(), step, began.time));
   if (restart->version != k_version)
     PetscCall(log.print("it was written by version %s", restart->version.c_str()));
-  PetscCall(log.line(changes.empty() && !rebuilt
-                         ? "backend, precision, strategy and ranks are the same: so will be the bits"
-                         : changes + (changes.empty() || !rebuilt ? "" : ", ") +
-                               (rebuilt ? "lists of another margin" : "") +
-                               ": results will be equal up to round-off"));
+  PetscCall(log.line(changes.empty()
+                         ? "backend, precision, strategy and ranks are the same, and so will be the bits"
+                         : changes + ": results will be the same up to round-off"));
   int removed = 0;
   PetscCall(go_back_to(config.output.directory, step, restart->frames, &removed));
   if (removed > 0)
@@ -146,21 +143,26 @@ void Simulation::Body::keep_strategy() {
     config.p2g.strategy = strategy_of(restart->strategy);
 }
 
+/// A checkpoint of this run but for its state.
+Checkpoint Simulation::Body::description() const {
+  return {k_version,
+          config.dim,
+          ranks(),
+          word_of(config.backend),
+          word_of(config.precision),
+          stepper->strategy(),
+          options_to_keep(report.options, config),
+          {},
+          {},
+          frames.count(),
+          {}};
+}
+
 PetscErrorCode Simulation::Body::write_checkpoint() {
   PetscFunctionBeginUser;
   if (checkpointed == step) PetscFunctionReturn(PETSC_SUCCESS);
   const std::string& folder = config.output.directory;
-  Checkpoint c{k_version,
-               config.dim,
-               ranks(),
-               word_of(config.backend),
-               word_of(config.precision),
-               stepper->strategy(),
-               options_to_keep(report.options, config),
-               {},
-               {},
-               frames.count(),
-               {}};
+  Checkpoint c = description();
   c.run = {step,     schedule.time_of(step), dt,       last_row_time, wall(),
            stepping, since_rebuild,          rebuilds, longest,       shortest};
   PetscCall(frames.settle());

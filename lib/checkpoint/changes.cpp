@@ -45,6 +45,13 @@ bool same_value(const std::string& a, const std::string& b) {
   return true;
 }
 
+/// The value of an option; empty if there is none of that name.
+std::string value_of(const std::string& name, const std::vector<EffectiveOption>& options) {
+  for (const EffectiveOption& option : options)
+    if (option.name == name) return option.value;
+  return "";
+}
+
 }  // namespace
 
 std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>& options,
@@ -84,16 +91,18 @@ std::vector<std::string> contradictions(const Checkpoint& checkpoint, const std:
   return lines;
 }
 
-std::string changed_machine(const Checkpoint& checkpoint, const std::string& backend,
-                            const std::string& precision, const std::string& strategy, int ranks) {
+std::string changed_machine(const Checkpoint& then, const Checkpoint& now) {
   std::string text;
-  const auto compare = [&](const char* what, const std::string& then, const std::string& now) {
-    if (then != now) text += (text.empty() ? "" : ", ") + std::string(what) + " " + now + " after " + then;
+  const auto compare = [&](const std::string& what, const std::string& before, const std::string& after) {
+    if (!same_value(before, after))
+      text += (text.empty() ? "" : ", ") + what + " " + after + " after " + before;
   };
-  compare("backend", checkpoint.backend, backend);
-  compare("precision", checkpoint.precision, precision);
-  compare("strategy", checkpoint.strategy, strategy);
-  compare("ranks", std::to_string(checkpoint.ranks), std::to_string(ranks));
+  compare("backend", then.backend, now.backend);
+  compare("precision", then.precision, now.precision);
+  compare("strategy", then.strategy, now.strategy);
+  compare("ranks", std::to_string(then.ranks), std::to_string(now.ranks));
+  for (const char* name : {"-p2g_margin", "-p2g_mosaic_cells", "-p2g_rebuild_interval", "-partition"})
+    compare(name, value_of(name, then.options), value_of(name, now.options));
   return text;
 }
 

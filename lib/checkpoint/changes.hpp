@@ -19,9 +19,9 @@ std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>&
 std::vector<std::string> contradictions(const Checkpoint& checkpoint, const std::vector<EffectiveOption>& now,
                                         const std::string& file);
 
-/// A line of what goes on otherwise than it was and so gives other bits; empty if nothing.
-std::string changed_machine(const Checkpoint& checkpoint, const std::string& backend,
-                            const std::string& precision, const std::string& strategy, int ranks);
+/// What goes on otherwise than it was and so gives other bits; empty if nothing. `now` tells the machine and
+/// the options with which the run goes on.
+std::string changed_machine(const Checkpoint& then, const Checkpoint& now);
 
 /// What is wrong with the state for this mesh and these bodies ("takes ..."); empty if nothing.
 std::string state_fault(const SavedState& state, const Config& config);
