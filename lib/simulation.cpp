@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "simulation_body.hpp"
 
@@ -118,7 +119,7 @@ PetscErrorCode Simulation::Body::write_frame() {
   stepper->snapshot(&snapshot);
   snapshot.step = step;
   snapshot.time = schedule.time_of(step);
-  PetscCall(frames.write(snapshot));
+  PetscCall(frames.write(std::move(snapshot)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -133,6 +134,7 @@ PetscErrorCode Simulation::Body::write_last_output() {
 
 PetscErrorCode Simulation::Body::finish() {
   PetscFunctionBeginUser;
+  PetscCall(frames.settle());
   PetscCall(history.close());
   if (step > began.step) {
     PetscCall(

@@ -9,7 +9,7 @@
 #include "input/options.hpp"
 #include "input/shapes.hpp"
 #include "mpm/simulation.hpp"
-#include "output/frames.hpp"
+#include "output/frame_queue.hpp"
 #include "output/history.hpp"
 #include "output/log.hpp"
 #include "output/performance.hpp"
@@ -35,7 +35,7 @@ struct Simulation::Body {
   std::unique_ptr<Stepper> stepper;
   Log log;
   History history;
-  Frames frames;
+  FrameQueue frames;
 
   long step = 0;
   double last_row_time = 0;                                         // s

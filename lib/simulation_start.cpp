@@ -138,7 +138,7 @@ PetscErrorCode Simulation::Body::start() {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(history.open(config));
-  frames.open(config.output.directory, config.precision);
+  frames.open(config.output.directory, config.precision, {config.output.fields, config.output.compression});
   wall_start = seconds_now();
   PetscCall(write_row());
   PetscCall(write_frame());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "download_nodes.hpp"
 #include "grid_velocity.hpp"
 #include "measure.hpp"
 #include "save_state.hpp"
