@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "mpm/simulation.hpp"
+#include "signals.hpp"
 
 namespace {
 
@@ -41,6 +42,7 @@ int main(int argc, char** argv) {
   PetscCall(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"));
   PetscCall(PetscInitialize(&argc, &argv, nullptr, nullptr));
   PetscCall(PetscPushErrorHandler(tell_in_one_line, nullptr));
+  mpm::catch_signals();
   mpm::Outcome outcome{};
   const bool whole = run(*arguments, &outcome) == PETSC_SUCCESS;
   PetscCall(PetscPopErrorHandler());

@@ -13,6 +13,13 @@ add_compile_options(
   # No -Wextra for nvcc: it would speak of the code that nvcc generates.
   # Relaxed: constexpr lambdas of the host may be called by functions of host and device.
   "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;-Xcompiler=${host_options_of_nvcc}>")
+if(MPM_SANITIZE)
+  add_compile_options(-fsanitize=${MPM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  add_link_options(-fsanitize=${MPM_SANITIZE})
+  if(MPM_FUZZ)
+    add_compile_options(-fsanitize=fuzzer-no-link)
+  endif()
+endif()
 # No C++ bindings of MPI: they would have to be linked.
 add_compile_definitions(OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
 # Only what is used is loaded at run time.

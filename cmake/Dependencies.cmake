@@ -1,5 +1,5 @@
 # What mpm stands on, as targets:
-#   Kokkos::kokkos  PETSc::PETSc  MPI::MPI_C  HDF5::HDF5  METIS::METIS  Catch2::Catch2
+#   Kokkos::kokkos  PETSc::PETSc  MPI::MPI_C  HDF5::HDF5  METIS::METIS  ZLIB::ZLIB  Catch2::Catch2
 # `scripts/setup` installs what is missing; <Package>_ROOT and CMAKE_PREFIX_PATH steer the search.
 
 find_package(Kokkos 4.7 REQUIRED CONFIG)
@@ -47,6 +47,8 @@ else()
     message(FATAL_ERROR "HDF5 in ${HDF5_INCLUDE_DIRS} is not parallel; name another by HDF5_ROOT")
   endif()
 endif()
+
+find_package(ZLIB REQUIRED)  # HDF5 stands on it too
 
 find_path(METIS_INCLUDE_DIR metis.h HINTS ${METIS_ROOT} ENV METIS_ROOT PATH_SUFFIXES include REQUIRED)
 find_library(METIS_LIBRARY metis HINTS ${METIS_ROOT} ENV METIS_ROOT PATH_SUFFIXES lib REQUIRED)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "simulation_body.hpp"
 
@@ -15,9 +16,12 @@ PetscErrorCode Simulation::run() {
   while (b.outcome == Outcome::finished && b.step < b.schedule.last_step()) {
     PetscCall(b.advance_to(b.schedule.next_stop(b.step)));
     if (b.outcome != Outcome::finished) break;
-    if (b.schedule.row_due(b.step)) PetscCall(b.write_row());
-    if (b.schedule.frame_due(b.step)) PetscCall(b.write_frame());
+    if (b.schedule.row_in_turn(b.step)) PetscCall(b.write_row());
+    if (b.schedule.frame_in_turn(b.step)) PetscCall(b.write_frame());
+    if (b.schedule.checkpoint_due(b.step)) PetscCall(b.write_checkpoint());
+    if (!b.stopped_by.empty() && b.step < b.schedule.last_step()) PetscCall(b.stop());
   }
+  if (b.outcome == Outcome::finished) PetscCall(b.write_last_output());
   PetscCall(b.finish());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -34,8 +38,9 @@ PetscErrorCode Simulation::Body::fail(const std::string& what) {
 /// Steps up to `target`, in batches that end where the movement bound will probably ask for a rebuild.
 PetscErrorCode Simulation::Body::advance_to(long target) {
   PetscFunctionBeginUser;
-  constexpr double k_look_every = 0.5;  // s of wall time between two looks at the steps
-  long estimate = 1, batch_limit = 16;
+  // s of wall time between two looks at the steps, which cost time on a device only, and whether to stop
+  const double k_look_every = config.backend == Backend::cuda ? 0.5 : 0.05;
+  long estimate = 1, batch_limit = 1;
   while (step < target) {
     long steps = std::min({target - step, std::max(estimate, 1L), batch_limit});
     if (config.p2g.rebuild_interval) steps = std::min(steps, *config.p2g.rebuild_interval - since_rebuild);
@@ -49,7 +54,7 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     PetscCall(stepper->advance(steps, step_dt, &batch));
     const double took = seconds_now() - before;
     stepping += took;
-    batch_limit = std::max(16L, static_cast<long>(k_look_every * batch.steps / std::max(took, 1e-9)));
+    batch_limit = std::max(1L, static_cast<long>(k_look_every * batch.steps / std::max(took, 1e-9)));
     estimate = batch.estimate;
     step += batch.steps;
     since_rebuild += batch.steps;
@@ -62,6 +67,9 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(log.progress({step, schedule.time_of(step), 0, schedule.time_of(schedule.last_step()), stepping,
                             double(step) * stepper->particles()}));
+    bool stop = false;
+    PetscCall(look_for_stop(&stop));
+    if (stop) PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -111,19 +119,29 @@ PetscErrorCode Simulation::Body::write_frame() {
   stepper->snapshot(&snapshot);
   snapshot.step = step;
   snapshot.time = schedule.time_of(step);
-  PetscCall(frames.write(snapshot));
+  PetscCall(frames.write(std::move(snapshot)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The row and the frame at the end that a longer run would not have: a checkpoint comes before them.
+PetscErrorCode Simulation::Body::write_last_output() {
+  PetscFunctionBeginUser;
+  if (step == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!schedule.row_in_turn(step)) PetscCall(write_row());
+  if (!schedule.frame_in_turn(step)) PetscCall(write_frame());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode Simulation::Body::finish() {
   PetscFunctionBeginUser;
+  PetscCall(frames.settle());
   PetscCall(history.close());
-  if (step > 0) {
+  if (step > began.step) {
     PetscCall(
         log.line(format_performance({.functions = stepper->times(),
-                                     .wall = wall(),
-                                     .stepping = stepping,
-                                     .steps = step,
+                                     .wall = wall() - began.wall,
+                                     .stepping = stepping - began.stepping,
+                                     .steps = step - began.step,
                                      .particles = stepper->particles(),
                                      .rebuilds = rebuilds,
                                      .shortest = shortest,
@@ -134,8 +152,10 @@ PetscErrorCode Simulation::Body::finish() {
                                      .memory = double(stepper->memory()),
                                      .bandwidth = bandwidth})));
   }
-  PetscCall(log.print("%s after %ld steps at time %g s; results are in %s",
-                      outcome == Outcome::finished ? "finished" : "failed", step, schedule.time_of(step),
+  const char* how = outcome == Outcome::finished  ? "finished"
+                    : outcome == Outcome::stopped ? "stopped"
+                                                  : "failed";
+  PetscCall(log.print("%s after %ld steps at time %g s; results are in %s", how, step, schedule.time_of(step),
                       config.output.directory.c_str()));
   PetscCall(log.close());
   PetscFunctionReturn(PETSC_SUCCESS);

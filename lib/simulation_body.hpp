@@ -3,11 +3,13 @@
 // simulation.cpp from there to the end.
 
 #include <chrono>
+#include <optional>
 
+#include "checkpoint/checkpoint.hpp"
 #include "input/options.hpp"
 #include "input/shapes.hpp"
 #include "mpm/simulation.hpp"
-#include "output/frames.hpp"
+#include "output/frame_queue.hpp"
 #include "output/history.hpp"
 #include "output/log.hpp"
 #include "output/performance.hpp"
@@ -33,7 +35,7 @@ struct Simulation::Body {
   std::unique_ptr<Stepper> stepper;
   Log log;
   History history;
-  Frames frames;
+  FrameQueue frames;
 
   long step = 0;
   double last_row_time = 0;                                         // s
@@ -42,7 +44,15 @@ struct Simulation::Body {
   double stepping = 0;                                              // s of wall time in steps and rebuilds
   long since_rebuild = 0, rebuilds = 0, longest = 0, shortest = 0;  // steps between rebuilds
 
-  double wall() const { return seconds_now() - wall_start; }
+  double wall() const { return began.wall + seconds_now() - wall_start; }
+
+  double born = seconds_now();        // s
+  RunState began;                     // where this part of the run began
+  std::optional<Checkpoint> restart;  // until it is on the device
+  std::string restart_file, history_rows;
+  std::vector<std::string> passed_over;  // checkpoints that are damaged, as lines for the log
+  std::string stopped_by;                // what told the run to stop; empty if nothing did
+  long checkpointed = -1;                // step of the last checkpoint
 
   void check_mesh();
   PetscErrorCode choose_time_step();
@@ -58,7 +68,21 @@ struct Simulation::Body {
   PetscErrorCode rebuild(const Batch& batch);
   PetscErrorCode write_row();
   PetscErrorCode write_frame();
+  PetscErrorCode write_last_output();
   PetscErrorCode finish();
+
+  // simulation_checkpoint.cpp
+  std::vector<std::string> restart_files() const;
+  PetscErrorCode read_restart();
+  PetscErrorCode check_restart();
+  void find_history();
+  void keep_strategy();
+  PetscErrorCode resume();
+  Checkpoint description() const;
+  PetscErrorCode write_checkpoint();
+  PetscErrorCode look_for_stop(bool* stop);
+  PetscErrorCode stop();
+  int ranks() const;
 };
 
 }  // namespace mpm

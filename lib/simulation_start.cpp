@@ -42,6 +42,7 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
   if (b.report.errors.empty()) PetscCall(b.choose_time_step());
   if (b.report.errors.empty())
     if (const std::string fault = memory_fault(b.config); !fault.empty()) b.report.errors.push_back(fault);
+  if (b.report.errors.empty() && !b.config.output.restart.empty()) PetscCall(b.read_restart());
   if (!b.report.errors.empty()) {
     PetscCall(print_errors(comm, b.report));
     b.outcome = Outcome::bad_input;
@@ -96,11 +97,14 @@ PetscErrorCode Simulation::Body::start() {
              "This program was built without this backend, precision or dimension");
   PetscCall(log.start(comm, config.output.progress));
   int removed = 0;
-  PetscCall(prepare_output_folder(config.output.directory, &removed));
+  if (restart)
+    PetscCall(make_folder(config.output.directory));
+  else
+    PetscCall(prepare_output_folder(config.output.directory, &removed));
   PetscCall(
       log.line(format_header(k_version, kokkos_version(),
                              std::string(word_of(config.backend)) + ", " + device_name(config.backend), 1)));
-  PetscCall(log.open(config.output.directory));
+  PetscCall(log.open(config.output.directory, restart.has_value()));
   if (removed > 0)
     PetscCall(log.print("%d files of an earlier run were removed from %s", removed,
                         config.output.directory.c_str()));
@@ -115,10 +119,9 @@ PetscErrorCode Simulation::Body::start() {
   Model model;
   Failure failure;
   PetscCall(load(&model));
-  if (config.p2g.strategy == P2G::automatic) {
-    PetscCall(choose_strategy(model, device));
-    stepper = make_stepper(config);
-  }
+  if (restart) keep_strategy();
+  if (config.p2g.strategy == P2G::automatic) PetscCall(choose_strategy(model, device));
+  stepper = make_stepper(config);
   PetscCall(stepper->set_up(std::move(model), &failure));
   if (!failure.what.empty()) {
     PetscCall(fail(failure.what));
@@ -129,8 +132,13 @@ PetscErrorCode Simulation::Body::start() {
   PetscCall(log.print("time step %.9g s, Courant number %.4f; %ld steps to %g s", dt,
                       dt / critical_time_step(config), schedule.last_step(),
                       schedule.time_of(schedule.last_step())));
+  if (restart) {
+    PetscCall(resume());
+    wall_start = seconds_now();
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(history.open(config));
-  frames.open(config.output.directory, config.precision);
+  frames.open(config.output.directory, config.precision, {config.output.fields, config.output.compression});
   wall_start = seconds_now();
   PetscCall(write_row());
   PetscCall(write_frame());

@@ -1,11 +1,13 @@
 #include "input/options.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
 #include "input/groups.hpp"
 #include "input/reader.hpp"
 #include "input/text.hpp"
+#include "output/frames.hpp"
 
 namespace mpm {
 namespace {
@@ -123,6 +125,30 @@ void read_physics(OptionReader& in, Config& config) {
             config.f_bar_share);
 }
 
+/// What frames hold.
+void read_frames(OptionReader& in, OutputConfig& output) {
+  const auto known = frame_field_names();
+  const Option fields{
+      .name = "output_fields",
+      .meaning = "fields of the frames beside the position; those of bodies are left out of rigids",
+      .standard = "all"};
+  const std::string takes = "names of fields: " + join(known, ", ");
+  std::vector<std::string> names;
+  if (in.list_of(fields, takes, names)) {
+    output.fields = names;
+    for (const auto& name : names)
+      if (std::find(known.begin(), known.end(), name) == known.end()) return in.reject(fields.name, takes);
+  }
+  in.integer({.name = "output_compression",
+              .meaning = "level of the compression of frames, 0 for none",
+              .unit = "-",
+              .range = {.lowest = 0, .highest = 9}},
+             output.compression);
+  in.word({.name = "output_nodes",
+           .meaning = "on: frames also hold mass and velocity of the nodes, as group nodes"},
+          Words<bool>{{"on", true}, {"off", false}}, output.nodes);
+}
+
 void read_output(OptionReader& in, const std::string& options_file, double time_end, OutputConfig& output) {
   in.section("Output");
   const std::string stem = std::filesystem::path(options_file).stem().string();
@@ -138,6 +164,7 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
       {.name = "output_frames",
        .meaning = "off: no frames of the particles, as for measuring speed or where the disk is too small"},
       Words<bool>{{"on", true}, {"off", false}}, output.frames);
+  read_frames(in, output);
   in.number({.name = "output_interval",
              .meaning = "time between frames",
              .unit = "s",
@@ -150,6 +177,20 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
              .range = k_positive,
              .standard = listing ? "a five-hundredth of time_end" : ""},
             output.history_interval);
+  in.number({.name = "checkpoint_interval",
+             .meaning = "simulated time between checkpoints, of which the last two are kept",
+             .unit = "s",
+             .range = k_positive},
+            output.checkpoint_interval);
+  in.text({.name = "restart",
+           .meaning = "checkpoint to go on from, or latest: the last sound one of the output folder"},
+          output.restart);
+  in.number(
+      {.name = "wall_time_limit",
+       .meaning = "time on the clock after which the run writes a checkpoint and stops with exit status 75",
+       .unit = "s",
+       .range = k_positive},
+      output.wall_time_limit);
   in.word({.name = "progress", .meaning = "auto: a live line on a terminal, else a line each 10 %"},
           Words<Progress>{{"auto", Progress::automatic}, {"on", Progress::on}, {"off", Progress::off}},
           output.progress);
@@ -170,6 +211,10 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   read_physics(in, config);
   read_output(in, options_file, config.time.end, config.output);
   read_named(in, sound ? &config.mesh : nullptr, config);
+  const auto named_nodes = [](const auto& thing) { return thing.name == k_nodes; };
+  if (config.output.nodes && (std::any_of(config.bodies.begin(), config.bodies.end(), named_nodes) ||
+                              std::any_of(config.rigids.begin(), config.rigids.end(), named_nodes)))
+    in.reject("output_nodes", "off where a body or rigid has the name nodes");
   in.report_unknown();
 }
 

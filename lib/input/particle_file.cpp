@@ -9,22 +9,6 @@
 namespace mpm {
 namespace {
 
-/// HDF5 prints nothing in this scope: what fails is told as wrong input.
-class Quiet {
- public:
-  Quiet() {
-    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
-
- private:
-  H5E_auto2_t print_ = nullptr;
-  void* data_ = nullptr;
-};
-
 /// Reads the datasets of one group. The first fault is kept, and nothing is read after it.
 struct GroupReader {
   hid_t group;

@@ -22,6 +22,7 @@ bool is_ours(const std::string& name, bool in_frames) {
   const std::string suffix = ".tmp";
   const std::string stem = name.ends_with(suffix) ? name.substr(0, name.size() - suffix.size()) : name;
   if (in_frames) return stem.starts_with("frame_") && stem.ends_with(".h5");
+  if (stem.starts_with("checkpoint_") && stem.ends_with(".h5")) return true;
   return std::find(std::begin(names), std::end(names), stem) != std::end(names);
 }
 
@@ -39,21 +40,6 @@ PetscErrorCode remove_ours(const fs::path& folder, bool in_frames, int* removed)
   }
   PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot read the folder %s: %s", folder.c_str(),
              error.message().c_str());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/// Writes a new file and brings it to the disk: some file systems report a full disk only then.
-PetscErrorCode write_new_file(const std::string& path, std::string_view contents) {
-  PetscFunctionBeginUser;
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  PetscCheck(descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", path.c_str(),
-             std::strerror(errno));
-  const PetscErrorCode failed = write_all(descriptor, contents, path);
-  int reason = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;  // EINVAL: nothing to bring there
-  if (::close(descriptor) != 0 && reason == 0) reason = errno;
-  PetscCall(failed);
-  PetscCheck(reason == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path.c_str(),
-             std::strerror(reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,18 +70,50 @@ PetscErrorCode prepare_output_folder(const std::string& folder, int* removed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode write_new_file(const std::string& path, std::initializer_list<std::string_view> parts) {
+  PetscFunctionBeginUser;
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  PetscCheck(descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", path.c_str(),
+             std::strerror(errno));
+  PetscErrorCode failed = PETSC_SUCCESS;
+  for (const std::string_view part : parts)
+    if (!failed) failed = write_all(descriptor, part, path);
+  int reason = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;  // EINVAL: nothing to bring there
+  if (::close(descriptor) != 0 && reason == 0) reason = errno;
+  PetscCall(failed);
+  PetscCheck(reason == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path.c_str(),
+             std::strerror(reason));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode rename_file(const std::string& from, const std::string& to) {
+  PetscFunctionBeginUser;
+  PetscCheck(std::rename(from.c_str(), to.c_str()) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
+             "Cannot rename %s to %s: %s", from.c_str(), to.c_str(), std::strerror(errno));
+  const std::string folder = fs::path(to).parent_path().string();
+  PetscCall(bring_to_disk(folder.empty() ? "." : folder));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode bring_to_disk(const std::string& path) {
+  PetscFunctionBeginUser;
+  int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  PetscCheck(descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", path.c_str(),
+             std::strerror(errno));
+  const int reason = ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
+  PetscCall(close_file(&descriptor, path));
+  PetscCheck(reason == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path.c_str(),
+             std::strerror(reason));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode replace_file(const std::string& path, std::string_view contents) {
   PetscFunctionBeginUser;
   const std::string temporary = path + ".tmp";
-  const PetscErrorCode failed = write_new_file(temporary, contents);
+  PetscErrorCode failed = write_new_file(temporary, {contents});
+  if (!failed) failed = rename_file(temporary, path);
   if (failed) ::unlink(temporary.c_str());
   PetscCall(failed);
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const int reason = errno;
-    ::unlink(temporary.c_str());
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot rename %s to %s: %s", temporary.c_str(),
-            path.c_str(), std::strerror(reason));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

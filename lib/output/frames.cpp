@@ -1,6 +1,8 @@
 #include "output/frames.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <optional>
 
 #include "numbers.hpp"
 #include "output/files.hpp"
@@ -9,23 +11,48 @@
 namespace mpm {
 namespace {
 
-/// One field of a particle group. A new field is a line of k_fields.
+/// The groups that have a field.
+enum class Of { all, bodies, nodes };
+
+/// One field of a group. A new field is a line of k_fields.
 struct Field {
   const char* name;
   const char* unit;
   int components;
-  bool bodies_only;
+  Of of;
   std::vector<double> ParticleSnapshot::*values;  // [components N]
 };
 
 constexpr Field k_fields[] = {
-    {"position", "m", 3, false, &ParticleSnapshot::position},  // first: the geometry, always float64
-    {"velocity", "m/s", 3, false, &ParticleSnapshot::velocity},
-    {"grid_velocity", "m/s", 3, true, &ParticleSnapshot::grid_velocity},
-    {"stress", "Pa", 6, true, &ParticleSnapshot::stress},
-    {"volume", "m3", 1, true, &ParticleSnapshot::volume},
-    {"plastic_strain", "-", 1, true, &ParticleSnapshot::plastic_strain},
+    {"position", "m", 3, Of::all, &ParticleSnapshot::position},  // first: the geometry, always float64
+    {"velocity", "m/s", 3, Of::all, &ParticleSnapshot::velocity},
+    {"grid_velocity", "m/s", 3, Of::bodies, &ParticleSnapshot::grid_velocity},
+    {"stress", "Pa", 6, Of::bodies, &ParticleSnapshot::stress},
+    {"volume", "m3", 1, Of::bodies, &ParticleSnapshot::volume},
+    {"plastic_strain", "-", 1, Of::bodies, &ParticleSnapshot::plastic_strain},
+    {"mass", "kg", 1, Of::nodes, &ParticleSnapshot::mass},
+    {"number", "-", 1, Of::nodes, &ParticleSnapshot::number},
 };
+
+/// Whether a group of this kind has a field in this style. Nodes have all of theirs.
+bool is_written(const Field& field, Of group, const FrameStyle& style) {
+  if (field.of != Of::all && field.of != group) return false;
+  return &field == k_fields || group == Of::nodes || style.fields.empty() ||
+         std::find(style.fields.begin(), style.fields.end(), field.name) != style.fields.end();
+}
+
+/// In pieces that are compressed each by itself; the bytes of all numbers in a piece are put together first,
+/// high bytes with high bytes, which differ little.
+hid_t layout_of(hsize_t rows, hsize_t components, int compression) {
+  constexpr hsize_t k_piece = 1 << 16;  // rows
+  const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+  const hsize_t piece[2] = {std::min(rows, k_piece), components};
+  if (compression == 0 || rows == 0) return layout;
+  H5Pset_chunk(layout, components == 1 ? 1 : 2, piece);
+  H5Pset_shuffle(layout);
+  H5Pset_deflate(layout, static_cast<unsigned>(compression));
+  return layout;
+}
 
 /// Every HDF5 call passes here: a negative result is an error that names the file.
 PetscErrorCode check(hid_t result, const std::string& path, const char* what) {
@@ -57,7 +84,7 @@ PetscErrorCode write_unit(hid_t dataset, const std::string& path, const std::str
 
 /// One dataset, N x components, or N where there is one component.
 PetscErrorCode write_field(hid_t group, const std::string& path, const Field& field,
-                           const ParticleSnapshot& particles, hid_t type) {
+                           const ParticleSnapshot& particles, hid_t type, int compression) {
   PetscFunctionBeginUser;
   const std::vector<double>& values = particles.*field.values;
   const size_t count = particles.position.size() / 3;
@@ -67,7 +94,8 @@ PetscErrorCode write_field(hid_t group, const std::string& path, const Field& fi
   const hsize_t sizes[2] = {count, static_cast<hsize_t>(field.components)};
   Handle space(H5Screate_simple(field.components == 1 ? 1 : 2, sizes, nullptr), H5Sclose);
   PetscCall(check(space.id, path, field.name));
-  Handle data(H5Dcreate2(group, field.name, type, space.id, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  Handle layout(layout_of(count, sizes[1], compression), H5Pclose);
+  Handle data(H5Dcreate2(group, field.name, type, space.id, H5P_DEFAULT, layout.id, H5P_DEFAULT), H5Dclose);
   PetscCall(check(data.id, path, field.name));
   if (count > 0)
     PetscCall(check(H5Dwrite(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path,
@@ -76,36 +104,41 @@ PetscErrorCode write_field(hid_t group, const std::string& path, const Field& fi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSnapshot& particles, bool body,
-                           Precision precision) {
+PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSnapshot& particles, Of kind,
+                           Precision precision, const FrameStyle& style) {
   PetscFunctionBeginUser;
   const char* name = particles.name.c_str();
   Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   PetscCall(check(group.id, path, name));
   const hid_t real = precision == Precision::single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
-  for (const Field& field : k_fields)
-    if (body || !field.bodies_only)
-      PetscCall(write_field(group.id, path, field, particles, &field == k_fields ? H5T_IEEE_F64LE : real));
+  for (const Field& field : k_fields) {
+    if (!is_written(field, kind, style)) continue;
+    const bool number = field.values == &ParticleSnapshot::number;
+    const hid_t type = number ? H5T_STD_I64LE : &field == k_fields ? H5T_IEEE_F64LE : real;
+    PetscCall(write_field(group.id, path, field, particles, type, style.compression));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode write_groups(hid_t file, const std::string& path, const Snapshot& snapshot,
-                            Precision precision) {
+                            Precision precision, const FrameStyle& style) {
   PetscFunctionBeginUser;
   const long long step = snapshot.step;
   PetscCall(write_attribute(file, path, "time", H5T_NATIVE_DOUBLE, &snapshot.time));
   PetscCall(write_attribute(file, path, "step", H5T_NATIVE_LLONG, &step));
   for (const ParticleSnapshot& body : snapshot.bodies)
-    PetscCall(write_group(file, path, body, true, precision));
+    PetscCall(write_group(file, path, body, Of::bodies, precision, style));
   for (const ParticleSnapshot& rigid : snapshot.rigids)
-    PetscCall(write_group(file, path, rigid, false, precision));
+    PetscCall(write_group(file, path, rigid, Of::all, precision, style));
+  for (const ParticleSnapshot& nodes : snapshot.nodes)
+    PetscCall(write_group(file, path, nodes, Of::nodes, precision, style));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// The bytes of the frame as a file. HDF5 makes them in memory, for it does not survive a disk that fills
 /// while it writes: its close fails, and its clean-up at the end of the program then crashes.
 PetscErrorCode frame_image(const std::string& path, const Snapshot& snapshot, Precision precision,
-                           std::string* image) {
+                           const FrameStyle& style, std::string* image) {
   constexpr size_t k_growth = 4 << 20;  // bytes
   PetscFunctionBeginUser;
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -113,7 +146,7 @@ PetscErrorCode frame_image(const std::string& path, const Snapshot& snapshot, Pr
   PetscCall(check(H5Pset_fapl_core(access.id, k_growth, /*backing_store*/ false), path, "access"));
   Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id), H5Fclose);
   PetscCall(check(file.id, path, "creation"));
-  PetscCall(write_groups(file.id, path, snapshot, precision));
+  PetscCall(write_groups(file.id, path, snapshot, precision, style));
   PetscCall(check(H5Fflush(file.id, H5F_SCOPE_GLOBAL), path, "flush"));
   const ssize_t size = H5Fget_file_image(file.id, nullptr, 0);
   PetscCall(check(size, path, "size"));
@@ -154,6 +187,14 @@ std::string format_tensor(const std::string& name, const std::string& item, long
   return text;
 }
 
+/// Whether a group of a frame has a field.
+bool has_field(const FrameEntry::Group& group, const Field& field) {
+  if ((field.of == Of::bodies && !group.body) || (field.of == Of::nodes && group.name != k_nodes))
+    return false;
+  return group.fields.empty() ||
+         std::find(group.fields.begin(), group.fields.end(), field.name) != group.fields.end();
+}
+
 /// The grid of one body or rigid: a point a particle.
 std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group, int real_bytes) {
   const std::string count = std::to_string(group.count);
@@ -163,7 +204,7 @@ std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group,
   text += "          <Geometry GeometryType=\"XYZ\">" + data_item(frame, group, k_fields[0], real_bytes) +
           "</Geometry>\n";
   for (const Field& field : k_fields) {
-    if (&field == k_fields || (field.bodies_only && !group.body)) continue;
+    if (&field == k_fields || !has_field(group, field)) continue;
     const std::string item = data_item(frame, group, field, real_bytes);
     if (field.components == 6)
       text += format_tensor(field.name, item, group.count);
@@ -171,6 +212,49 @@ std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group,
       text += format_attribute(field.name, field.components == 3 ? "Vector" : "Scalar", item);
   }
   return text + "        </Grid>\n";
+}
+
+/// Name of a frame relative to the output folder.
+std::string file_name(int number) {
+  char file[40];
+  std::snprintf(file, sizeof file, "frames/frame_%05d.h5", number);
+  return file;
+}
+
+/// What the index says of a group of a frame that is there; false where it cannot be read.
+bool read_group(hid_t file, FrameEntry::Group& group) {
+  Handle opened(H5Gopen2(file, group.name.c_str(), H5P_DEFAULT), H5Gclose);
+  if (opened.id < 0) return false;
+  for (const Field& field : k_fields)
+    if (H5Lexists(opened.id, field.name, H5P_DEFAULT) > 0) {
+      group.fields.push_back(field.name);
+      group.body = group.body || field.of == Of::bodies;
+    }
+  Handle data(H5Dopen2(opened.id, k_fields[0].name, H5P_DEFAULT), H5Dclose);
+  if (data.id < 0) return false;
+  Handle space(H5Dget_space(data.id), H5Sclose);
+  hsize_t sizes[2] = {0, 0};
+  if (H5Sget_simple_extent_ndims(space.id) != 2) return false;
+  H5Sget_simple_extent_dims(space.id, sizes, nullptr);
+  group.count = static_cast<long>(sizes[0]);
+  return true;
+}
+
+/// What the index says of a frame of an earlier part of the run; nothing where it is no longer there.
+std::optional<FrameEntry> read_entry(const std::string& folder, const std::string& name,
+                                     const std::vector<std::string>& groups) {
+  const Quiet quiet;
+  Handle file(H5Fopen((folder + "/" + name).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (file.id < 0) return std::nullopt;
+  FrameEntry entry{name, 0, {}};
+  Handle time(H5Aopen(file.id, "time", H5P_DEFAULT), H5Aclose);
+  if (time.id < 0 || H5Aread(time.id, H5T_NATIVE_DOUBLE, &entry.time) < 0) return std::nullopt;
+  for (const std::string& group : groups) {
+    if (group == k_nodes && H5Lexists(file.id, k_nodes, H5P_DEFAULT) <= 0) continue;
+    entry.groups.push_back({group});
+    if (!read_group(file.id, entry.groups.back())) return std::nullopt;
+  }
+  return entry;
 }
 
 }  // namespace
@@ -191,34 +275,72 @@ std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes) {
   return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
 }
 
-PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Precision precision) {
+std::vector<std::string> frame_field_names() {
+  std::vector<std::string> names;
+  for (const Field& field : k_fields)
+    if (&field != k_fields && field.of != Of::nodes) names.push_back(field.name);
+  return names;
+}
+
+PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
+                           const FrameStyle& style) {
   PetscFunctionBeginUser;
   std::string image;
-  PetscCall(frame_image(path, snapshot, precision, &image));
+  PetscCall(frame_image(path, snapshot, precision, style, &image));
   PetscCall(replace_file(path, image));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void Frames::open(const std::string& folder, Precision precision) {
+void Frames::open(const std::string& folder, Precision precision, const FrameStyle& style) {
+  style_ = style;
   folder_ = folder;
   precision_ = precision;
   entries_.clear();
+  count_ = 0;
+}
+
+PetscErrorCode Frames::resume(const Config& config, long count) {
+  PetscFunctionBeginUser;
+  open(config.output.directory, config.precision, {config.output.fields, config.output.compression});
+  std::vector<std::string> names;
+  for (const BodyConfig& body : config.bodies) names.push_back(body.name);
+  for (const RigidConfig& rigid : config.rigids) names.push_back(rigid.name);
+  names.push_back(k_nodes);
+  for (; count_ < count; ++count_)
+    if (auto entry = read_entry(folder_, file_name(count_), names)) entries_.push_back(std::move(*entry));
+  if (!entries_.empty()) PetscCall(write_index());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Frames::settle() const {
+  PetscFunctionBeginUser;
+  if (count_ > 0) PetscCall(bring_to_disk(folder_ + "/frames"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Frames::write_index() const {
+  PetscFunctionBeginUser;
+  PetscCall(replace_file(folder_ + "/particles.xdmf",
+                         format_xdmf(entries_, precision_ == Precision::single ? 4 : 8)));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode Frames::write(const Snapshot& snapshot) {
   PetscFunctionBeginUser;
-  char file[40];
-  std::snprintf(file, sizeof file, "frames/frame_%05d.h5", count());
-  PetscCall(write_frame(folder_ + "/" + file, snapshot, precision_));
+  const std::string file = file_name(count_);
+  PetscCall(write_frame(folder_ + "/" + file, snapshot, precision_, style_));
 
   FrameEntry entry{file, snapshot.time, {}};
+  const std::vector<std::string>& fields = style_.fields;
   for (const auto& body : snapshot.bodies)
-    entry.groups.push_back({body.name, static_cast<long>(body.position.size() / 3), true});
+    entry.groups.push_back({body.name, static_cast<long>(body.position.size() / 3), true, fields});
   for (const auto& rigid : snapshot.rigids)
-    entry.groups.push_back({rigid.name, static_cast<long>(rigid.position.size() / 3), false});
+    entry.groups.push_back({rigid.name, static_cast<long>(rigid.position.size() / 3), false, fields});
+  for (const auto& nodes : snapshot.nodes)
+    entry.groups.push_back({nodes.name, static_cast<long>(nodes.position.size() / 3), false});
   entries_.push_back(std::move(entry));
-  PetscCall(replace_file(folder_ + "/particles.xdmf",
-                         format_xdmf(entries_, precision_ == Precision::single ? 4 : 8)));
+  ++count_;
+  PetscCall(write_index());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

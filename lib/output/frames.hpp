@@ -15,13 +15,23 @@ namespace mpm {
 struct FrameEntry {
   struct Group {
     std::string name;
-    long count = 0;     // particles
-    bool body = false;  // has stress, volume and plastic_strain
+    long count = 0;                     // particles
+    bool body = false;                  // has stress, volume and plastic_strain
+    std::vector<std::string> fields{};  // that it has; empty for all
   };
   std::string file;  // relative to the output folder
   double time = 0;   // s
   std::vector<Group> groups;
 };
+
+/// What of a snapshot is written, and how.
+struct FrameStyle {
+  std::vector<std::string> fields{};  // of bodies and rigids beside the position; empty for all
+  int compression = 0;                // level of HDF5's deflate filter, 0 to 9
+};
+
+/// The names that FrameStyle::fields may hold.
+std::vector<std::string> frame_field_names();
 
 /// The text of particles.xdmf: a temporal collection of spatial collections with one grid a body or rigid.
 /// The index shows stress as six scalars, stress_xx to stress_zx. `real_bytes` is 8 or 4, the size of every
@@ -30,21 +40,31 @@ std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes);
 
 /// Writes one frame as HDF5 to `path`: attributes time [s] and step; a group each body and rigid.
 /// Positions are float64; the other fields are float64, or float32 for a run in single precision.
-PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Precision precision);
+PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
+                           const FrameStyle& style = {});
 
 /// The frames of a run, numbered from 0. One rank calls it.
 class Frames {
  public:
   /// Says where they go; nothing is written yet. The folder was made by prepare_output_folder.
-  void open(const std::string& folder, Precision precision);
+  void open(const std::string& folder, Precision precision, const FrameStyle& style = {});
+  /// Goes on after the first `count` frames of an earlier part of the run; those that are still there stay in
+  /// the index.
+  PetscErrorCode resume(const Config& config, long count);
+  /// Brings what was written to the disk, with its name.
+  PetscErrorCode settle() const;
   /// Writes the next frame, then the index anew; both are complete or as they were.
   PetscErrorCode write(const Snapshot& snapshot);
-  int count() const { return static_cast<int>(entries_.size()); }
+  int count() const { return count_; }
 
  private:
+  PetscErrorCode write_index() const;
+
   std::string folder_;
   Precision precision_ = Precision::double_;
+  FrameStyle style_;
   std::vector<FrameEntry> entries_;
+  int count_ = 0;
 };
 
 }  // namespace mpm

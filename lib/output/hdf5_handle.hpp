@@ -1,5 +1,5 @@
 #pragma once
-// HDF5 identifiers that release themselves.
+// HDF5 identifiers that release themselves, and silence.
 
 #include <hdf5.h>
 
@@ -15,6 +15,22 @@ struct Handle {
   ~Handle() {
     if (id >= 0) release(id);
   }
+};
+
+/// HDF5 prints nothing in this scope: what fails is told by who looks at the results.
+class Quiet {
+ public:
+  Quiet() {
+    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+
+ private:
+  H5E_auto2_t print_ = nullptr;
+  void* data_ = nullptr;
 };
 
 }  // namespace mpm

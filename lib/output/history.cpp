@@ -5,7 +5,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
+#include "checksum.hpp"
 #include "numbers.hpp"
 #include "output/files.hpp"
 
@@ -58,16 +60,28 @@ std::string format_history_row(const HistoryRow& row, int dim) {
   return text;
 }
 
+HistoryMark mark_of(const std::string& path, long bytes, std::string* text) {
+  std::ifstream file(path, std::ios::binary);
+  std::string start(static_cast<size_t>(bytes), '\0');
+  file.read(start.data(), bytes);
+  start.resize(static_cast<size_t>(file.gcount()));
+  const HistoryMark mark{static_cast<long>(start.size()), checksum(0, start)};
+  if (text) *text = std::move(start);
+  return mark;
+}
+
 History::~History() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-PetscErrorCode History::open(const Config& config) {
+PetscErrorCode History::open(const Config& config, const std::string& rows) {
   PetscFunctionBeginUser;
   PetscCall(close());
   dim_ = config.dim;
   path_ = config.output.directory + "/history.csv";
-  PetscCall(replace_file(path_, history_header(config) + "\n"));
+  const std::string text = rows.empty() ? history_header(config) + "\n" : rows;
+  PetscCall(replace_file(path_, text));
+  mark_ = {static_cast<long>(text.size()), checksum(0, text)};
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   PetscCheck(descriptor_ >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", path_.c_str(),
              std::strerror(errno));
@@ -78,10 +92,19 @@ PetscErrorCode History::write(const HistoryRow& row) {
   PetscFunctionBeginUser;
   PetscCheck(descriptor_ >= 0, PETSC_COMM_SELF, PETSC_ERR_ORDER, "history.csv is not open");
   const off_t whole = ::lseek(descriptor_, 0, SEEK_END);
-  const PetscErrorCode failed = write_all(descriptor_, format_history_row(row, dim_) + "\n", path_);
+  const std::string text = format_history_row(row, dim_) + "\n";
+  const PetscErrorCode failed = write_all(descriptor_, text, path_);
   // Should the cut fail too, there is nothing better to do than to report the write that failed first.
   if (failed && ::ftruncate(descriptor_, whole) != 0) errno = 0;
   PetscCall(failed);
+  mark_ = {mark_.bytes + static_cast<long>(text.size()), checksum(mark_.crc, text)};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode History::settle(HistoryMark* mark) const {
+  PetscFunctionBeginUser;
+  PetscCall(bring_to_disk(path_));
+  *mark = mark_;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,6 +3,7 @@
 
 #include <petscsys.h>
 
+#include <cstdint>
 #include <string>
 
 #include "mpm/config.hpp"
@@ -16,6 +17,18 @@ std::string history_header(const Config& config);
 /// A row in the same order, without a line end; enough digits to read the same numbers back.
 std::string format_history_row(const HistoryRow& row, int dim);
 
+/// The first bytes of a history.csv, as all rows of a run up to some step.
+struct HistoryMark {
+  long bytes = 0;         // with the header line
+  std::uint32_t crc = 0;  // of them
+
+  bool operator==(const HistoryMark&) const = default;
+};
+
+/// What has been written of a file, of at most `bytes`; the text of it to `text`, unless it is null. All zero
+/// where it cannot be read.
+HistoryMark mark_of(const std::string& path, long bytes, std::string* text);
+
 /// The open file. Rows are whole: each is one write, and one that does not fit the disk is taken back.
 class History {
  public:
@@ -24,16 +37,19 @@ class History {
   History& operator=(const History&) = delete;
   ~History();
 
-  /// Starts OUTPUT/history.csv with its header.
-  PetscErrorCode open(const Config& config);
+  /// Starts OUTPUT/history.csv with its header, or with the header and rows of an earlier part of the run.
+  PetscErrorCode open(const Config& config, const std::string& rows = "");
   /// Appends one row. An error (full disk) names the file, and what stands there stays whole.
   PetscErrorCode write(const HistoryRow& row);
+  /// What has been written so far, brought to the disk.
+  PetscErrorCode settle(HistoryMark* mark) const;
   PetscErrorCode close();
 
  private:
   std::string path_;
   int dim_ = 2;
   int descriptor_ = -1;
+  HistoryMark mark_;
 };
 
 }  // namespace mpm

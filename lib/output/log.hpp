@@ -44,8 +44,8 @@ class Log {
 
   /// Before open: which rank speaks. Lines before open go to the terminal and are kept for the file.
   PetscErrorCode start(MPI_Comm comm, Progress progress);
-  /// Starts OUTPUT/mpm.log.
-  PetscErrorCode open(const std::string& folder);
+  /// Starts OUTPUT/mpm.log, or goes on with it.
+  PetscErrorCode open(const std::string& folder, bool goes_on = false);
   /// Text of one or more lines; the last line end may be left out.
   PetscErrorCode line(const std::string& text);
   /// The same by a format as of printf.

@@ -19,13 +19,19 @@ struct ParticleSnapshot {
   std::vector<double> stress;          // Pa    [6 N], Cauchy, tension positive
   std::vector<double> volume;          // m3    [N]
   std::vector<double> plastic_strain;  // -     [N], engineering plastic shear strain
+  std::vector<double> mass;            // kg    [N], of nodes
+  std::vector<double> number;          // -     [N], of nodes: in the whole mesh, x fastest
 };
 
-/// One frame: bodies first, then rigids, in the order of the options.
+/// The name of the group of nodes.
+inline constexpr const char* k_nodes = "nodes";
+
+/// One frame: bodies first, then rigids, in the order of the options, then nodes that hold soil, if they are asked
+/// for (position, velocity, mass and number).
 struct Snapshot {
   double time = 0;  // s
   long step = 0;
-  std::vector<ParticleSnapshot> bodies, rigids;
+  std::vector<ParticleSnapshot> bodies, rigids, nodes;
 };
 
 /// One row of the history for one body.

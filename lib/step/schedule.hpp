@@ -29,10 +29,17 @@ class Schedule {
   double time_of(long step) const { return step >= all_ ? end_ : step * dt_; }
 
   bool row_due(long step) const { return step == last_ || due(step, output_.history_interval); }
+  /// Whether a row or a frame is due though the run goes on after this step.
+  bool row_in_turn(long step) const { return due(step, output_.history_interval); }
+  bool frame_in_turn(long step) const { return due(step, output_.interval); }
+  bool checkpoint_due(long step) const {
+    return output_.checkpoint_interval && (step == last_ || due(step, *output_.checkpoint_interval));
+  }
   bool frame_due(long step) const { return step == last_ || due(step, output_.interval); }
-  /// The next step after `step` at which a row or a frame is due.
+  /// The next step after `step` at which a row, a frame or a checkpoint is due.
   long next_stop(long step) const {
-    return std::min({last_, next(step, output_.history_interval), next(step, output_.interval)});
+    const long checkpoint = output_.checkpoint_interval ? next(step, *output_.checkpoint_interval) : last_;
+    return std::min({last_, next(step, output_.history_interval), next(step, output_.interval), checkpoint});
   }
 
  private:

@@ -11,6 +11,7 @@
 #include "mpm/config.hpp"
 #include "output/performance.hpp"
 #include "output/snapshot.hpp"
+#include "saved_state.hpp"
 
 namespace mpm {
 
@@ -56,6 +57,11 @@ class Stepper {
   /// Rows of the history; `interval` [s] is the time since the last call, over which the forces are a mean.
   virtual void measure(double interval, HistoryRow* row) = 0;
   virtual void snapshot(Snapshot* snapshot) = 0;
+  /// All that this rank's part of the state is, between two steps, with no rebuild due.
+  virtual SavedState save() const = 0;
+  /// Puts a saved state in the place of what set_up made from the same input. `rebuilt`: it was saved for
+  /// lists of another margin, so that bins and lists had to be made anew.
+  virtual PetscErrorCode restore(const SavedState& saved, long since_rebuild, bool* rebuilt) = 0;
   virtual std::vector<FunctionTime> times() const = 0;
   virtual long particles() const = 0;        // of the soil
   virtual int patches() const = 0;           // active ones

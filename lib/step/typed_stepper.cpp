@@ -38,6 +38,22 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   return in;
 }
 
+/// Vectors with three components, positions from the origin.
+template <int Dim>
+ParticleSnapshot node_snapshot(NodeFields&& nodes, const Vec3& lower) {
+  ParticleSnapshot out;
+  out.name = k_nodes;
+  out.position.assign(3 * nodes.mass.size(), 0);
+  out.velocity = out.position;
+  for (std::size_t n = 0; n < nodes.mass.size(); ++n)
+    for (int d = 0; d < Dim; ++d) {
+      out.position[3 * n + d] = nodes.position[n * Dim + d] + lower[d];
+      out.velocity[3 * n + d] = nodes.velocity[n * Dim + d];
+    }
+  out.mass = std::move(nodes.mass), out.number = std::move(nodes.number);
+  return out;
+}
+
 RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParticles&& particles) {
   RigidInput in;
   in.position = std::move(particles.position);
@@ -169,7 +185,7 @@ void TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
   const SoilFields soil = download_soil(state_);
   sum_present_soil(state_);
   const std::vector<double> grid_velocity = grid_velocities(state_);
-  out->bodies.clear(), out->rigids.clear();
+  out->bodies.clear(), out->rigids.clear(), out->nodes.clear();
   for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
     const std::size_t from = first_[b];
     const std::size_t to =
@@ -206,6 +222,26 @@ void TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
       }
     out->rigids.push_back(std::move(rigid));
   }
+  if (config_.output.nodes) out->nodes = {node_snapshot<Dim>(download_nodes(state_), config_.mesh.lower)};
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::restore(const SavedState& saved, long since_rebuild,
+                                                    bool* rebuilt) {
+  PetscFunctionBeginUser;
+  const int particles = state_.soil.points.count;
+  std::string unfit;
+  PetscCallCXX(unfit = restore_state(state_, saved));
+  PetscCheck(unfit.empty() && state_.soil.points.count == particles, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+             "The checkpoint does not fit to what the options describe: %s",
+             unfit.empty() ? "the number of particles" : unfit.c_str());
+  const auto& forced = config_.p2g.rebuild_interval;
+  *rebuilt = saved.bound > config_.p2g.margin || (forced && since_rebuild >= *forced);
+  Failure failure;
+  if (*rebuilt) PetscCall(rebuild(&failure));
+  PetscCheck(failure.what.empty(), PETSC_COMM_SELF, PETSC_ERR_FP, "The checkpoint's %s",
+             failure.what.c_str());
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 template <class Space, class T, int Dim>

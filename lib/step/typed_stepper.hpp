@@ -4,8 +4,10 @@
 #include <cmath>
 #include <string>
 
+#include "download_nodes.hpp"
 #include "grid_velocity.hpp"
 #include "measure.hpp"
+#include "save_state.hpp"
 #include "step/step.hpp"
 #include "step/stepper.hpp"
 #include "upload.hpp"
@@ -25,6 +27,8 @@ class TypedStepper final : public Stepper {
   PetscErrorCode rebuild(Failure* failure) override;
   void measure(double interval, HistoryRow* row) override;
   void snapshot(Snapshot* snapshot) override;
+  SavedState save() const override { return save_state(state_); }
+  PetscErrorCode restore(const SavedState& saved, long since_rebuild, bool* rebuilt) override;
   std::vector<FunctionTime> times() const override;
   long particles() const override { return state_.soil.points.count; }
   int patches() const override { return state_.patches.slots; }

@@ -271,13 +271,14 @@ TEST_CASE("a frame that does not fit leaves nothing, and the frames before it st
 TEST_CASE("an earlier run's files go, others stay", "[output]") {
   const Folder folder;
   for (const char* name : {"history.csv", "mpm.log", "runout.png", "velocity.png", "frames/frame_00007.h5",
-                           "frames/frame_00008.h5.tmp", "notes.txt", "checkpoint_100.h5"})
+                           "frames/frame_00008.h5.tmp", "checkpoint_100.h5", "notes.txt",
+                           "my_checkpoint_100.h5"})
     std::ofstream(folder / name) << "old";
   int removed = 0;
   REQUIRE(prepare_output_folder(folder.path, &removed) == PETSC_SUCCESS);
-  CHECK(removed == 6);
+  CHECK(removed == 7);
   CHECK(fs::exists(folder / "notes.txt"));
-  CHECK(fs::exists(folder / "checkpoint_100.h5"));
+  CHECK(fs::exists(folder / "my_checkpoint_100.h5"));
 }
 
 TEST_CASE("a folder that cannot be made is an error", "[output]") {

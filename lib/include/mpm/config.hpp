@@ -105,10 +105,17 @@ enum class Progress { automatic, on, off };
 
 struct OutputConfig {
   std::string directory;
-  bool frames = true;           // of the particles; without them a run writes its history only
-  double interval = 0;          // s between frames
-  double history_interval = 0;  // s between rows of the history
+  bool frames = true;               // of the particles; without them a run writes its history only
+  std::vector<std::string> fields;  // of the frames, beside the position; empty for all
+  int compression = 0;              // of the frames, level of HDF5's deflate filter
+  bool nodes = false;               // frames hold the nodes' mass and velocity too
+  double interval = 0;              // s between frames
+  double history_interval = 0;      // s between rows of the history
   Progress progress = Progress::automatic;
+  std::optional<double>
+      checkpoint_interval;                // s between checkpoints; none: only when the run is told to stop
+  std::optional<double> wall_time_limit;  // s of wall time after which the run stops
+  std::string restart;                    // the checkpoint to go on from, or "latest"; empty: from the start
 };
 
 /// Everything that a run needs to know.
@@ -122,8 +129,8 @@ struct Config {
   TimeConfig time;
   double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
   VelocityUpdate velocity_update = VelocityUpdate::flip;
-  int xpic_order = 2;      // -, m of XPIC(m), with xpic
-  double flip_share = 1;   // -, share of FLIP in the velocity update, the rest PIC, or XPIC with xpic
+  int xpic_order = 2;         // -, m of XPIC(m), with xpic
+  double flip_share = 1;      // -, share of FLIP in the velocity update, the rest PIC, or XPIC with xpic
   double f_bar_share = 0.98;  // -, share of the cell's mean in a particle's dilatation (F-bar)
   std::vector<MaterialConfig> materials;
   std::vector<BodyConfig> bodies;

@@ -1,0 +1,226 @@
+#include "save_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "rebuild.hpp"
+
+namespace mpm {
+namespace {
+
+/// The number that an entry of a field is made of, and how many of them it has.
+template <class Value>
+auto number_of(const Value& value) {
+  if constexpr (std::is_arithmetic_v<Value>)
+    return value;
+  else
+    return value.c[0];
+}
+template <class Value>
+using Number = decltype(number_of(std::declval<Value>()));
+template <class Value>
+constexpr int components_of = sizeof(Value) / sizeof(Number<Value>);
+
+/// The name of a view without the prefix that all labels have.
+template <class View>
+std::string name_of_view(const View& view) {
+  const std::string label = view.label();
+  const auto colons = label.rfind("::");
+  return colons == std::string::npos ? label : label.substr(colons + 2);
+}
+
+template <class View>
+SavedField save_field(const View& view, int count) {
+  using Value = typename View::non_const_value_type;
+  constexpr int n = components_of<Value>;
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+  SavedField field{name_of_view(view), n, static_cast<int>(sizeof(Number<Value>)), {}};
+  field.values.resize(std::size_t(count) * n);
+  const auto* numbers = reinterpret_cast<const Number<Value>*>(host.data());
+  std::copy(numbers, numbers + field.values.size(), field.values.begin());
+  return field;
+}
+
+/// Addresses of the cells where points are binned.
+template <class T, int Dim, class Patches_, class Cells>
+std::vector<long> addresses_of(const Grid<T, Dim>& grid, const Patches_& patches, const Cells& cells,
+                               int count) {
+  const auto cell = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), cells);
+  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), patches.origin);
+  constexpr int in_patch = Patch<Dim>::cells;
+  std::vector<long> address(count);
+  for (int p = 0; p < count; ++p)
+    address[p] = grid.patch_of(origin(cell(p) / in_patch)) * in_patch + cell(p) % in_patch;
+  return address;
+}
+
+template <class Grid_, class Patches_, class Points_>
+SavedPoints save_points(const Grid_& grid, const Patches_& patches, Points_ points) {
+  SavedPoints saved;
+  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
+  saved.id.assign(id.data(), id.data() + points.count);
+  saved.address = addresses_of(grid, patches, points.cell, points.count);
+  saved.fields.push_back(save_field(points.coordinate, points.count));
+  for_each_field(points, [&](const auto& field) { saved.fields.push_back(save_field(field, points.count)); });
+  return saved;
+}
+
+template <class Space, class T, int Dim>
+SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
+  SavedImpulse saved;
+  if (!s.has_friction) return saved;
+  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
+  const auto impulse = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
+  const int rigids = static_cast<int>(s.rigid_points.size());
+  const auto holds_some = [&](int i) {
+    for (int r = 0; r < rigids; ++r)
+      if (impulse(r, i) != 0 || std::signbit(impulse(r, i))) return true;
+    return false;
+  };
+  for (int i = 0; i < s.patches.node_count(); ++i) {
+    if (!holds_some(i)) continue;
+    saved.address.push_back(s.grid.patch_of(origin(i / Patch<Dim>::cells)) * Patch<Dim>::cells +
+                            i % Patch<Dim>::cells);
+    for (int r = 0; r < rigids; ++r) saved.values.push_back(impulse(r, i));
+  }
+  return saved;
+}
+
+/// Puts a saved field into a view of `count` entries. False where there is none of its name and size.
+template <class View>
+bool restore_field(View& view, const SavedPoints& saved, int count) {
+  using Value = typename View::non_const_value_type;
+  constexpr int n = components_of<Value>;
+  const std::string label = view.label(), name = name_of_view(view);
+  const auto field = std::find_if(saved.fields.begin(), saved.fields.end(),
+                                  [&](const SavedField& f) { return f.name == name; });
+  if (field == saved.fields.end() || field->components != n || field->values.size() != std::size_t(count) * n)
+    return false;
+  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), count);
+  const auto host = Kokkos::create_mirror_view(view);
+  auto* numbers = reinterpret_cast<Number<Value>*>(host.data());
+  for (std::size_t k = 0; k < field->values.size(); ++k)
+    numbers[k] = static_cast<Number<Value>>(field->values[k]);
+  Kokkos::deep_copy(view, host);
+  return true;
+}
+
+template <class View>
+void restore_whole(View& view, const std::vector<long>& values) {
+  const std::string label = view.label();
+  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), values.size());
+  const auto host = Kokkos::create_mirror_view(view);
+  for (std::size_t p = 0; p < values.size(); ++p)
+    host(p) = static_cast<typename View::non_const_value_type>(values[p]);
+  Kokkos::deep_copy(view, host);
+}
+
+/// Points with their addresses, not sorted yet. The name of a field that does not fit, or nothing.
+template <class Space, class Points_>
+std::string restore_points(Sorted<Space, Points_>& set, const SavedPoints& saved) {
+  auto& points = set.points;
+  points.count = static_cast<int>(saved.id.size());
+  std::string missing;
+  const auto restore = [&](auto& view) {
+    if (!restore_field(view, saved, points.count)) missing = name_of_view(view);
+  };
+  restore(points.coordinate);
+  for_each_field(points, restore);
+  restore_whole(points.id, saved.id);
+  restore_whole(set.address, saved.address);
+  restore_whole(points.cell, saved.address);  // sorting gives the cells; only the length counts
+  return missing;
+}
+
+template <class Space, class T, int Dim>
+void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved) {
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  for (std::size_t r = 0; r < saved.rigids.size(); ++r)
+    for (int d = 0; d < Dim; ++d) {
+      host(r).displacement[d] = saved.rigids[r].displacement[d];
+      host(r).velocity[d] = saved.rigids[r].velocity[d];
+      host(r).impulse[d] = saved.rigids[r].impulse[d];
+    }
+  Kokkos::deep_copy(s.rigids, host);
+}
+
+/// The patches are those of the run, so each node that held something is there.
+template <class Space, class T, int Dim>
+void restore_nodes(State<Space, T, Dim>& s, const SavedImpulse& saved) {
+  if (!s.has_friction) return;
+  const int rigids = static_cast<int>(s.rigid_points.size());
+  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", rigids, s.patches.node_count());
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
+  const auto slot_of = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.slot_of);
+  for (std::size_t n = 0; n < saved.address.size(); ++n) {
+    const int slot = slot_of(saved.address[n] / Patch<Dim>::cells);
+    if (slot < 0) continue;
+    const int i = slot * Patch<Dim>::cells + static_cast<int>(saved.address[n] % Patch<Dim>::cells);
+    for (int r = 0; r < rigids; ++r) host(r, i) = static_cast<T>(saved.values[n * rigids + r]);
+  }
+  Kokkos::deep_copy(s.nodes.impulse, host);
+}
+
+template <class Space, class T, int Dim>
+void restore_control(State<Space, T, Dim>& s, const SavedState& saved) {
+  const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
+  control().bound = saved.bound;
+  control().increment = saved.increment;
+  control().paused = 0;
+  Kokkos::deep_copy(s.control, control);
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+SavedState save_state(const State<Space, T, Dim>& s) {
+  s.space.fence("mpm::save_state");
+  SavedState saved;
+  const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
+  saved.bound = control().bound, saved.increment = control().increment;
+  saved.soil = save_points(s.grid, s.patches, s.soil.points);
+  for (const auto& set : s.rigid_points)
+    saved.rigid_points.push_back(save_points(s.grid, s.patches, set.points));
+  const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
+    SavedRigid& rigid = saved.rigids.emplace_back();
+    for (int d = 0; d < Dim; ++d) {
+      rigid.displacement[d] = rigids(r).displacement[d];
+      rigid.velocity[d] = rigids(r).velocity[d];
+      rigid.impulse[d] = rigids(r).impulse[d];
+    }
+  }
+  saved.impulse = save_impulse(s);
+  return saved;
+}
+
+template <class Space, class T, int Dim>
+std::string restore_state(State<Space, T, Dim>& s, const SavedState& saved) {
+  if (saved.rigids.size() != s.rigid_points.size() || saved.rigid_points.size() != s.rigid_points.size())
+    return "the number of rigids";
+  std::string missing = restore_points(s.soil, saved.soil);
+  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
+    const std::string of_rigid = restore_points(s.rigid_points[r], saved.rigid_points[r]);
+    if (missing.empty()) missing = of_rigid;
+  }
+  if (!missing.empty()) return missing;
+  restore_rigids(s, saved);
+  // A rebuild brings the pressures of a cell together (F-bar); here none is made, only its tables.
+  const double share = std::exchange(s.f_bar_share, 0);
+  sort_and_list(s);
+  s.f_bar_share = share;
+  restore_nodes(s, saved.impulse);
+  restore_control(s, saved);
+  s.soil_summed = false;
+  s.space.fence("mpm::restore_state");
+  return {};
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                           \
+  template SavedState save_state(const State<Space, T, Dim>& s); \
+  template std::string restore_state(State<Space, T, Dim>&, const SavedState&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

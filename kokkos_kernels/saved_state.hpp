@@ -1,0 +1,46 @@
+#pragma once
+// All that a run needs to go on to the same bits, on the host, as plain data whatever the execution space,
+// real type and dimension. What was binned stays binned: a point is saved by the cell of its bin and its
+// coordinate from there, so that going on does not need the rebuild that the run would not have made here.
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace mpm {
+
+/// One field of points. Every type that a field has goes into a double and back without a change of its bits.
+struct SavedField {
+  std::string name;            // the label of its view, without mpm::
+  int components = 1;          // a point
+  int bytes = 8;               // of a number on the device: 8 and 4 are real, 2 is a whole number
+  std::vector<double> values;  // [components N]
+};
+
+/// Points in any order: sorting by address and id gives that of the device back.
+struct SavedPoints {
+  std::vector<long> id;            // order of creation, over all ranks
+  std::vector<long> address;       // Grid::address_of the cell of the bin
+  std::vector<SavedField> fields;  // the coordinate in that cell is the first
+};
+
+/// How a rigid body moves.
+struct SavedRigid {
+  std::array<double, 3> displacement{}, velocity{}, impulse{};  // m, m/s, N s since the last row
+};
+
+/// Normal impulses at the nodes that friction has not used; nodes that hold none are left out.
+struct SavedImpulse {
+  std::vector<long> address;   // Grid::address_of the cell whose lower corner is the node
+  std::vector<double> values;  // N s, of each rigid [rigids M]
+};
+
+struct SavedState {
+  double bound = 0, increment = 0;  // cells, of Control
+  SavedPoints soil;
+  std::vector<SavedPoints> rigid_points;  // of each rigid
+  std::vector<SavedRigid> rigids;
+  SavedImpulse impulse;
+};
+
+}  // namespace mpm

@@ -1,0 +1,59 @@
+#pragma once
+// The layout of a checkpoint in HDF5: one list, which the writer and the reader both go through. Each item is
+// at once what is written and where it is read to.
+
+#include <string>
+#include <vector>
+
+#include "checkpoint/checkpoint.hpp"
+
+namespace mpm {
+
+/// Goes through all of a checkpoint. An Archive has
+///   value(path, number)           a number or text, as an attribute
+///   list(path, vector)            numbers that every rank holds whole
+///   text(path, string)            any length
+///   points(path, points, block)  a set of points, of which each rank holds a block
+/// `soil` and `rigids` tell the blocks of the sets.
+template <class Archive>
+void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& soil,
+                std::vector<IdBlock>& rigids) {
+  archive.value("version", c.version), archive.value("dim", c.dim), archive.value("ranks", c.ranks);
+  archive.value("backend", c.backend), archive.value("precision", c.precision);
+  archive.value("strategy", c.strategy), archive.value("step", c.run.step), archive.value("time", c.run.time);
+  archive.value("dt", c.run.dt), archive.value("last_row_time", c.run.last_row_time);
+  archive.value("wall", c.run.wall), archive.value("stepping", c.run.stepping);
+  archive.value("since_rebuild", c.run.since_rebuild), archive.value("rebuilds", c.run.rebuilds);
+  archive.value("longest", c.run.longest), archive.value("shortest", c.run.shortest);
+  archive.value("history_bytes", c.history.bytes), archive.value("history_crc", c.history.crc);
+  archive.value("frames", c.frames);
+  archive.value("bound", c.state.bound), archive.value("increment", c.state.increment);
+  archive.text("options", options);
+
+  archive.points("soil", c.state.soil, soil);
+  std::vector<double> motion;
+  for (const SavedRigid& rigid : c.state.rigids)
+    for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse})
+      motion.insert(motion.end(), vector->begin(), vector->end());
+  archive.list("rigids", motion);
+  constexpr std::size_t k_motion = 9;
+  c.state.rigids.resize(motion.size() / k_motion);
+  for (std::size_t k = 0; k < c.state.rigids.size() * k_motion; ++k) {
+    SavedRigid& rigid = c.state.rigids[k / k_motion];
+    std::array<double, 3>* vectors[] = {&rigid.displacement, &rigid.velocity, &rigid.impulse};
+    (*vectors[k % k_motion / 3])[k % 3] = motion[k];
+  }
+  c.state.rigid_points.resize(c.state.rigids.size());
+  rigids.resize(c.state.rigids.size());
+  for (std::size_t r = 0; r < rigids.size(); ++r)
+    archive.points("rigid_" + std::to_string(r), c.state.rigid_points[r], rigids[r]);
+  archive.list("impulse_address", c.state.impulse.address);
+  archive.list("impulse", c.state.impulse.values);
+}
+
+/// Options in force as text: a line each of name, value, unit and whether the default holds, by tabulators.
+std::string text_of_options(const std::vector<EffectiveOption>& options);
+/// False where the text is none.
+bool options_of_text(const std::string& text, std::vector<EffectiveOption>& options);
+
+}  // namespace mpm

@@ -1,0 +1,21 @@
+#pragma once
+// From the points that each rank has, in any order, to equal blocks by number, one a rank.
+
+#include <petscsys.h>
+
+#include "checkpoint/checkpoint.hpp"
+
+namespace mpm {
+
+/// The block of a rank.
+IdBlock block_of(long total, int rank, int ranks);
+
+/// Brings the points of all ranks into blocks by number: `points` becomes the block of this rank, in order. A
+/// point that several ranks have is kept once. Collective.
+PetscErrorCode bring_to_blocks(MPI_Comm comm, SavedPoints& points, IdBlock* block);
+
+/// Brings the impulses of all ranks together, in order of address, on every rank. A node that several ranks
+/// have is kept once, of the first. Collective.
+PetscErrorCode gather_impulse(MPI_Comm comm, int rigids, SavedImpulse& impulse);
+
+}  // namespace mpm

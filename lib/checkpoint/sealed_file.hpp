@@ -1,0 +1,30 @@
+#pragma once
+// A file with a seal: a last line that tells how long the file is before it, and the checksum (CRC-32) of
+// that part. A file that was cut, or in which a byte changed, is known before anything in it is looked at.
+// HDF5 does not mind what stands behind its own part.
+
+#include <petscsys.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace mpm {
+
+/// The seal of a text of so many bytes.
+std::string seal_of(long bytes, std::uint32_t crc);
+
+/// Writes `contents` and its seal to `path` under a temporary name, brings it to the disk, reads it from
+/// there and compares, renames it and brings the new name to the disk. If any of this fails the temporary
+/// file is removed and a former `path` stays as it was.
+PetscErrorCode replace_sealed(const std::string& path, std::string_view contents);
+
+/// Gives the file its seal at the end, where it was written by all ranks, and brings it to the disk. Each
+/// rank reads its part of the file for the checksum. Collective.
+PetscErrorCode seal_file(MPI_Comm comm, const std::string& path);
+
+/// Compares a file with its seal; each rank reads a part of it. `fault` is what a whole file would be, or
+/// empty. Collective.
+PetscErrorCode check_seal(MPI_Comm comm, const std::string& path, std::string* fault);
+
+}  // namespace mpm

@@ -1,0 +1,71 @@
+// Whether a state that was read can be that of a run: what a kernel would use as an index is in range, and
+// every number is finite.
+
+#include <algorithm>
+#include <cmath>
+
+#include "checkpoint/changes.hpp"
+#include "mesh/background.hpp"
+
+namespace mpm {
+namespace {
+
+/// Whether an address (patch number in the grid with its ring, times cells of a patch, plus place) is that of
+/// a cell at most `ring` cells outside the mesh.
+bool in_mesh(long address, const MeshConfig& mesh, int dim, int ring) {
+  const int edge = patch_edge(dim);
+  long cells_of_patch = 1;
+  for (int d = 0; d < dim; ++d) cells_of_patch *= edge;
+  if (address < 0) return false;
+  long patch = address / cells_of_patch, place = address % cells_of_patch;
+  for (int d = 0; d < dim; ++d) {
+    const long patches = (mesh.cells[d] + edge - 1) / edge + 2;  // with the ring outside
+    const long cell = (patch % patches - 1) * edge + place % edge;
+    if (cell < -ring || cell >= mesh.cells[d] + ring) return false;
+    patch /= patches, place /= edge;
+  }
+  return patch == 0;
+}
+
+std::string points_fault(const SavedPoints& points, const Config& config, const std::string& name) {
+  const auto inside = [&](long address) { return in_mesh(address, config.mesh, config.dim, 0); };
+  if (!std::all_of(points.address.begin(), points.address.end(), inside))
+    return "a checkpoint whose " + name + " is inside the mesh";
+  for (const SavedField& field : points.fields) {
+    const double furthest = field.name == "coordinate" ? 2 : HUGE_VAL;  // cells: more than any margin
+    const double bodies = field.name == "body" ? static_cast<double>(config.bodies.size()) : HUGE_VAL;
+    const auto sound = [&](double x) {
+      return std::isfinite(x) && std::fabs(x) <= furthest && x < bodies && (bodies == HUGE_VAL || x >= 0);
+    };
+    if (!std::all_of(field.values.begin(), field.values.end(), sound))
+      return "a checkpoint with a sound " + name + "/" + field.name;
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string state_fault(const SavedState& state, const Config& config) {
+  if (state.rigids.size() != config.rigids.size()) return "a checkpoint of as many rigids";
+  if (!std::isfinite(state.bound) || !std::isfinite(state.increment) || state.bound < 0 || state.bound > 0.5)
+    return "a checkpoint with a sound bound";
+  const std::size_t rigids = config.rigids.size();
+  if (state.impulse.values.size() != state.impulse.address.size() * rigids)
+    return "a checkpoint with a sound impulse";
+  const int ring = patch_edge(config.dim);
+  for (const long address : state.impulse.address)
+    if (!in_mesh(address, config.mesh, config.dim, 2 * ring))
+      return "a checkpoint with a sound impulse_address";
+  const auto finite = [](double x) { return std::isfinite(x); };
+  if (!std::all_of(state.impulse.values.begin(), state.impulse.values.end(), finite))
+    return "a checkpoint with a sound impulse";
+  for (const SavedRigid& rigid : state.rigids)
+    for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse})
+      if (!std::all_of(vector->begin(), vector->end(), finite)) return "a checkpoint with sound rigids";
+  std::string fault = points_fault(state.soil, config, "soil");
+  for (std::size_t r = 0; r < rigids && fault.empty(); ++r)
+    fault = points_fault(state.rigid_points[r], config, config.rigids[r].name);
+  return fault;
+}
+
+}  // namespace mpm

@@ -1,0 +1,33 @@
+#pragma once
+// Frames written on a thread beside the run, so that steps go on while a frame is put together, compressed
+// and brought to the disk. One frame is on its way at a time; nothing else of the run may call HDF5
+// meanwhile, so who does settles first.
+
+#include <future>
+
+#include "output/frames.hpp"
+
+namespace mpm {
+
+class FrameQueue {
+ public:
+  /// As Frames has them.
+  void open(const std::string& folder, Precision precision, const FrameStyle& style);
+  PetscErrorCode resume(const Config& config, long count);
+  /// Takes a frame. What failed with the one before is told now.
+  PetscErrorCode write(Snapshot&& snapshot);
+  /// Waits until every frame that was taken is on the disk.
+  PetscErrorCode settle();
+  /// Frames taken.
+  long count() const { return count_; }
+
+ private:
+  PetscErrorCode wait();
+
+  Frames frames_;
+  Snapshot snapshot_;  // on its way
+  long count_ = 0;
+  std::future<PetscErrorCode> result_;  // last: it waits for its thread before the others go
+};
+
+}  // namespace mpm

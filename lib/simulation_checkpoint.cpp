@@ -1,0 +1,205 @@
+// Going on: checkpoints of a run, and runs from checkpoints.
+
+#include <cmath>
+#include <filesystem>
+
+#include "checkpoint/changes.hpp"
+#include "checkpoint/folder.hpp"
+#include "output/files.hpp"
+#include "signals.hpp"
+#include "simulation_body.hpp"
+
+namespace mpm {
+namespace {
+
+const char* word_of(Precision precision) { return precision == Precision::single ? "single" : "double"; }
+
+P2G strategy_of(const std::string& word) {
+  return word == "sequential" ? P2G::sequential
+         : word == "atomic"   ? P2G::atomic
+         : word == "mosaic"   ? P2G::mosaic
+         : word == "gather"   ? P2G::gather
+         : word == "tile"     ? P2G::tile
+                              : P2G::automatic;
+}
+
+}  // namespace
+
+/// The files that -restart may mean, the best first.
+std::vector<std::string> Simulation::Body::restart_files() const {
+  if (config.output.restart != "latest") return {config.output.restart};
+  std::vector<std::string> files;
+  for (const long step : checkpoint_steps(config.output.directory))
+    files.insert(files.begin(), checkpoint_path(config.output.directory, step));
+  return files;
+}
+
+/// Reads the checkpoint to go on from, and checks it against the options; touches nothing.
+PetscErrorCode Simulation::Body::read_restart() {
+  PetscFunctionBeginUser;
+  const std::string given = "mpm: -restart: given \"" + config.output.restart + "\", takes ";
+  std::string fault = "a folder with a checkpoint_STEP.h5, and " + config.output.directory + " has none";
+  restart.emplace();
+  for (const std::string& file : restart_files()) {
+    PetscCall(read_checkpoint(comm, file, *restart, &fault));
+    restart_file = file;
+    if (fault.empty()) break;
+    passed_over.push_back(file + " is passed over; a restart takes " + fault);
+  }
+  if (fault.empty()) {
+    report.errors = contradictions(*restart, options_to_keep(report.options, config), restart_file);
+    if (!report.errors.empty()) PetscFunctionReturn(PETSC_SUCCESS);
+    fault = state_fault(restart->state, config);
+  }
+  if (!fault.empty())
+    report.errors.push_back(given + fault +
+                            (passed_over.size() > 1
+                                 ? " (and so for " + std::to_string(passed_over.size() - 1) + " earlier ones)"
+                                 : ""));
+  else
+    PetscCall(check_restart());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Whether times and the history of the output folder go on where the checkpoint is.
+PetscErrorCode Simulation::Body::check_restart() {
+  PetscFunctionBeginUser;
+  const RunState& run = restart->run;
+  const long last = schedule.last_step();
+  if (run.step < 0 || run.since_rebuild < 0 || restart->frames < 0 || restart->history.bytes < 0)
+    report.errors.push_back("mpm: -restart: given \"" + config.output.restart +
+                            "\", takes a checkpoint with a sound step");
+  else if (run.step > last)
+    report.errors.push_back(
+        config.time.max_steps && *config.time.max_steps <= last
+            ? formatted("mpm: -time_max_steps: given \"%ld\", takes at least the %ld steps of %s",
+                        *config.time.max_steps, run.step, restart_file.c_str())
+            : formatted("mpm: -time_end: given \"%g\", takes at least the %.9g s of %s", config.time.end,
+                        run.time, restart_file.c_str()));
+  else if (std::fabs(schedule.time_of(run.step) - run.time) > 1e-9 * dt)
+    report.errors.push_back(
+        formatted("mpm: -time_end: given \"%g\", takes %.9g here, where %s has ended with a "
+                  "shorter step; an earlier checkpoint takes any",
+                  config.time.end, run.time, restart_file.c_str()));
+  if (!report.errors.empty()) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallCXX(find_history());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The rows to go on with: those of the output folder, or of the checkpoint's own where that is another.
+void Simulation::Body::find_history() {
+  namespace fs = std::filesystem;
+  const HistoryMark& wanted = restart->history;
+  const std::string here = config.output.directory + "/history.csv";
+  const fs::path folder = fs::path(restart_file).parent_path();
+  std::error_code none;
+  for (const std::string& file : {here, (folder / "history.csv").string()}) {
+    if (!fs::exists(file, none)) continue;
+    if (mark_of(file, wanted.bytes, &history_rows) == wanted) return;
+    history_rows.clear();
+    if (file == here)
+      return report.errors.push_back("mpm: -output_dir: given \"" + config.output.directory +
+                                     "\", takes a folder without a history.csv or with that of " +
+                                     restart_file);
+  }
+}
+
+/// Steps on from the checkpoint, after set_up. The folder is touched last.
+PetscErrorCode Simulation::Body::resume() {
+  PetscFunctionBeginUser;
+  const std::string changes = changed_machine(*restart, description());
+  began = restart->run;
+  step = began.step;
+  last_row_time = began.last_row_time;
+  stepping = began.stepping;
+  since_rebuild = began.since_rebuild, rebuilds = began.rebuilds;
+  longest = began.longest, shortest = began.shortest;
+  bool rebuilt = false;
+  PetscCall(stepper->restore(restart->state, since_rebuild, &rebuilt));
+  if (rebuilt) since_rebuild = 0;
+  for (const std::string& line : passed_over) PetscCall(log.line(line));
+  PetscCall(log.print("goes on from %s: step %ld, time %.9g s", restart_file.c_str(), step, began.time));
+  if (restart->version != k_version)
+    PetscCall(log.print("it was written by version %s", restart->version.c_str()));
+  PetscCall(log.line(changes.empty()
+                         ? "backend, precision, strategy and ranks are the same, and so will be the bits"
+                         : changes + ": results will be the same up to round-off"));
+  int removed = 0;
+  PetscCall(go_back_to(config.output.directory, step, restart->frames, &removed));
+  if (removed > 0)
+    PetscCall(log.print("%d files that were written later, or not finished, were removed", removed));
+  if (history_rows.empty())
+    PetscCall(log.line("there is no history.csv to go on with: a new one begins here"));
+  PetscCall(history.open(config, history_rows));
+  PetscCall(frames.resume(config, restart->frames));
+  restart.reset();
+  history_rows.clear();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// `-p2g auto` at a restart keeps the strategy, and with it the bits, where the backend is the same.
+void Simulation::Body::keep_strategy() {
+  if (config.p2g.strategy == P2G::automatic && restart->backend == word_of(config.backend))
+    config.p2g.strategy = strategy_of(restart->strategy);
+}
+
+/// A checkpoint of this run but for its state.
+Checkpoint Simulation::Body::description() const {
+  return {k_version,
+          config.dim,
+          ranks(),
+          word_of(config.backend),
+          word_of(config.precision),
+          stepper->strategy(),
+          options_to_keep(report.options, config),
+          {},
+          {},
+          frames.count(),
+          {}};
+}
+
+PetscErrorCode Simulation::Body::write_checkpoint() {
+  PetscFunctionBeginUser;
+  if (checkpointed == step) PetscFunctionReturn(PETSC_SUCCESS);
+  const std::string& folder = config.output.directory;
+  Checkpoint c = description();
+  c.run = {step,     schedule.time_of(step), dt,       last_row_time, wall(),
+           stepping, since_rebuild,          rebuilds, longest,       shortest};
+  PetscCall(frames.settle());
+  PetscCall(history.settle(&c.history));
+  PetscCallCXX(c.state = stepper->save());
+  PetscCall(mpm::write_checkpoint(comm, checkpoint_path(folder, step), std::move(c)));
+  PetscCall(keep_last_checkpoints(folder));
+  checkpointed = step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Whether any rank was told to stop, or the time on the clock is up. Collective.
+PetscErrorCode Simulation::Body::look_for_stop(bool* stop) {
+  PetscFunctionBeginUser;
+  constexpr int k_clock = 1 << 20;  // more than any signal
+  int why = signal_caught();
+  if (why == 0 && config.output.wall_time_limit && seconds_now() - born >= *config.output.wall_time_limit)
+    why = k_clock;
+  if (ranks() > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &why, 1, MPI_INT, MPI_MAX, comm));
+  if (why != 0) stopped_by = why == k_clock ? "-wall_time_limit" : name_of_signal(why);
+  *stop = why != 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Simulation::Body::stop() {
+  PetscFunctionBeginUser;
+  PetscCall(write_checkpoint());
+  outcome = Outcome::stopped;
+  PetscCall(log.print("told to stop by %s; %s is written, and -restart latest goes on from it",
+                      stopped_by.c_str(), checkpoint_path(config.output.directory, step).c_str()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int Simulation::Body::ranks() const {
+  PetscMPIInt size = 1;
+  MPI_Comm_size(comm, &size);
+  return size;
+}
+
+}  // namespace mpm

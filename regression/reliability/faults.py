@@ -1,0 +1,319 @@
+#!/usr/bin/env python3
+"""Makes things go wrong, and checks that each ends with one clear line, its exit status, and earlier files intact.
+
+    faults.py MPM INJECT [--short] [NAME ...]
+
+INJECT is the library made of inject.c; --short takes fewer samples; NAME says which of the checks to make.
+"""
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+from folders import (ENVIRONMENT, checkpoints, command, contents, differences, faults_of_folder, frames, fresh,
+                     is_whole, rows, run)
+
+HERE = pathlib.Path(__file__).parent
+DECK = HERE / "small.opts"
+OPTIONS = ("-backend", "serial", "-p2g", "gather", "-time_max_steps", 120)
+
+
+def not_built(done):
+    return "built without" in done.stderr or "compiled in" in done.stderr
+
+
+class Checks:
+    def __init__(self, binary, inject, short):
+        self.binary, self.inject, self.short = binary, inject, short
+        self.base = pathlib.Path(tempfile.mkdtemp(prefix="mpm_faults_"))
+        self.whole = self.base / "whole"
+        run(binary, DECK, self.whole, *OPTIONS)
+        self.chance = random.Random(3)
+
+    def go(self, folder, *options, **how):
+        return run(self.binary, DECK, folder, *OPTIONS, *options, **how)
+
+    def expect_line(self, done, *words):
+        """One line on stderr that holds the words."""
+        lines = done.stderr.splitlines()
+        assert len(lines) == 1 and lines[0].startswith("mpm: "), f"not one line: {done.stderr!r}"
+        for word in words:
+            assert word in lines[0], f"{word!r} is not in {lines[0]!r}"
+
+    def expect_end(self, folder):
+        """From what is left the run ends as if nothing had happened."""
+        again = ("-restart", "latest") if checkpoints(folder) else ()
+        self.go(folder, *again)
+        different = differences(self.whole, folder)
+        assert not different, different
+
+    def expect_intact(self, folder):
+        faults = faults_of_folder(folder)
+        assert not faults, faults
+
+    # --- going on -----------------------------------------------------------------------------------------
+
+    def check_two_halves(self):
+        """N + N steps are 2 N, whatever the strategy, the velocity update and where the cut is."""
+        count = 0
+        for strategy in ("sequential", "mosaic", "gather", "tile"):
+            for update in ((), ("-velocity_update", "apic"), ("-velocity_update", "xpic")):
+                if self.short and (strategy == "gather") == (update == ()):
+                    continue
+                options = ("-p2g", strategy, *update)
+                one, two = fresh(self.base / "one"), fresh(self.base / "two")
+                self.go(one, *options)
+                for last in (self.chance.randrange(1, 119), 120):
+                    again = ("-restart", "latest") if checkpoints(two) else ()
+                    self.go(two, *options, *again, "-time_max_steps", last)
+                different = differences(one, two)
+                assert not different, (options, different)
+                count += 1
+        return f"{count} pairs of runs"
+
+    def check_across_rebuilds(self):
+        """The same where a rebuild lies between, in both precisions."""
+        one, two = fresh(self.base / "one"), fresh(self.base / "two")
+        for options in ((), ("-precision", "single")):
+            whole = self.go(one, *options, "-time_max_steps", 900, status=None)
+            if not_built(whole):
+                continue
+            for last in (217, 222, 580, 900):
+                again = ("-restart", "latest") if checkpoints(two) else ()
+                self.go(two, *options, *again, "-time_max_steps", last)
+            different = differences(one, two)
+            assert not different, different
+            fresh(two)
+
+    def check_other_machine(self):
+        """Another backend, precision or strategy goes on, says so, and stays near."""
+        for options in (("-p2g", "tile"), ("-backend", "openmp"), ("-precision", "single"), ("-p2g_margin", 0.2)):
+            folder = fresh(self.base / "other")
+            self.go(folder, "-time_max_steps", 60)
+            done = self.go(folder, "-restart", "latest", *options, status=None)
+            if not_built(done):
+                continue
+            assert done.returncode == 0 and "same up to round-off" in done.stdout, done.stdout[-2000:] + done.stderr
+            ours, theirs = rows(folder), rows(self.whole)
+            assert [row[0] for row in ours] == [row[0] for row in theirs]
+            x, y = (float(r[-1][r[0].index("plate_y")]) for r in (ours, theirs))
+            assert abs(x - y) < 1e-6, (options, x, y)
+
+    def check_same_again(self):
+        """A restart from the end changes nothing; one from an earlier checkpoint comes to the same end."""
+        folder = self.base / "again"
+        shutil.copytree(self.whole, folder)
+        self.go(folder, "-restart", "latest")
+        assert not differences(self.whole, folder)
+        self.go(folder, "-restart", checkpoints(folder)[0])
+        assert not differences(self.whole, folder)
+
+    def check_other_folder(self):
+        """A checkpoint of another folder brings its rows along."""
+        folder = fresh(self.base / "elsewhere")
+        self.go(folder, "-restart", checkpoints(self.whole)[0])
+        assert rows(folder) == rows(self.whole)
+
+    def check_signals(self):
+        """Each signal ends the run with a checkpoint and 75; from there it ends as if it had not come."""
+        for sent in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
+            folder = fresh(self.base / "told")
+            process = subprocess.Popen(command(self.binary, DECK, folder, *OPTIONS, "-checkpoint_interval", 10,
+                                               "-history_interval", 1e-5), env=ENVIRONMENT,
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            while not (folder / "history.csv").exists() and process.poll() is None:
+                time.sleep(0.001)
+            process.send_signal(sent)
+            told, _ = process.communicate(timeout=60)
+            if process.returncode == 0:
+                raise AssertionError("the run ended before the signal came")
+            assert process.returncode == 75 and sent.name in told, (process.returncode, told[-500:])
+            assert len(checkpoints(folder)) == 1
+            self.go(folder, "-restart", "latest", "-checkpoint_interval", 10, "-history_interval", 1e-5)
+            assert len(rows(folder)) == 122
+
+    def check_wall_time_limit(self):
+        """A chain of runs that each stop at the limit ends as one that does not."""
+        whole, folder, runs = self.base / "few", fresh(self.base / "chain"), 0
+        self.go(whole, "-time_max_steps", 8)
+        while True:
+            again = ("-restart", "latest") if checkpoints(folder) else ()
+            done = self.go(folder, *again, "-time_max_steps", 8, "-wall_time_limit", 1e-3, status=None)
+            runs += 1
+            if done.returncode == 0:
+                break
+            assert done.returncode == 75, done.stderr
+        assert runs > 2 and not differences(whole, folder), runs
+        return f"{runs} runs"
+
+    def check_contradictions(self):
+        """A change that contradicts the state is refused by name, and nothing is touched."""
+        folder = self.base / "refused"
+        shutil.copytree(self.whole, folder)
+        before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+        for option, value in (("-gravity", "0,-9"), ("-mesh_spacing", "0.05"), ("-clay_su", "900"), ("-time_step", "1e-4"),
+                              ("-plate_velocity", "0,-1"), ("-soil_particles_per_cell", "3"), ("-f_bar_share", "0"),
+                              ("-plate_friction", "0.2"), ("-time_end", "1e-3"), ("-time_max_steps", "7"),
+                              ("-velocity_update", "pic"), ("-mesh_ymax", "roller")):
+            done = self.go(folder, "-restart", "latest", option, value, status=2)
+            self.expect_line(done, option)
+        for path, text in before.items():
+            assert path.read_bytes() == text, f"{path} was touched"
+
+    # --- damaged checkpoints ------------------------------------------------------------------------------
+
+    def check_damaged_checkpoint(self):
+        """A checkpoint that is cut, or has a wrong byte anywhere, is passed over; the one before is taken."""
+        flips, cuts, folder = 6 if self.short else 40, 3 if self.short else 20, self.base / "damaged"
+        sound = checkpoints(self.whole)[-1].read_bytes()
+        for n in range(flips + cuts):
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(self.whole, folder)
+            data = bytearray(sound)
+            if n < flips:
+                at = self.chance.randrange(len(data))
+                data[at] ^= 1 << self.chance.randrange(8)
+            else:
+                at = self.chance.randrange(len(data))
+                del data[at:]
+            latest = checkpoints(folder)[-1]
+            latest.write_bytes(data)
+            self.expect_line(self.go(folder, "-restart", latest, status=2), "-restart", latest.name, "takes")
+            if n % 10 == 0:
+                done = self.go(folder, "-restart", "latest")
+                assert "is passed over" in done.stdout
+                assert not differences(self.whole, folder)
+        return f"{flips} flipped bits, {cuts} cuts"
+
+    def check_no_checkpoint(self):
+        """Rubbish, a frame, a folder, nothing: one line, nothing touched."""
+        rubbish = self.base / "rubbish.h5"
+        rubbish.write_bytes(self.chance.randbytes(5000))
+        empty = self.base / "empty.h5"
+        empty.write_bytes(b"")
+        for file in (rubbish, empty, frames(self.whole)[0], self.base, self.base / "none.h5"):
+            folder = fresh(self.base / "nothing")
+            self.expect_line(self.go(folder, "-restart", file, status=2), "-restart")
+            assert not folder.exists()
+        self.expect_line(self.go(fresh(self.base / "nothing"), "-restart", "latest", status=2), "has none")
+
+    def check_other_history(self):
+        """A history that is not that of the checkpoint is not cut."""
+        folder = self.base / "history"
+        shutil.copytree(self.whole, folder)
+        path = folder / "history.csv"
+        text = path.read_text().replace("e-05", "e-06", 1)
+        path.write_text(text)
+        self.expect_line(self.go(folder, "-restart", "latest", status=2), "-output_dir", "history.csv")
+        assert path.read_text() == text
+
+    # --- the system ---------------------------------------------------------------------------------------
+
+    def check_full_disk(self):
+        """A file system of 200 to 700 kB."""
+        point = self.base / "disk"
+        point.mkdir()
+        tried = 0
+        for size in (130, 280) if self.short else (60, 130, 200, 280, 360, 440):
+            if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}k", "none", point],
+                              capture_output=True).returncode != 0:
+                return "left out: no file system can be mounted here; injected faults do the same"
+            try:
+                folder = point / "out"
+                done = self.go(folder, status=1)
+                self.expect_line(done, "No space left on device", str(folder))
+                self.expect_intact(folder)
+                kept = self.base / "kept"
+                shutil.rmtree(kept, ignore_errors=True)
+                shutil.copytree(folder, kept)
+                self.expect_end(kept)
+                tried += 1
+            finally:
+                subprocess.run(["umount", point], check=True)
+        return f"{tried} sizes"
+
+    def check_injected_faults(self):
+        """Calls of the system that fail, one after another through the run."""
+        tried = 0
+        for call, error, word in (("write", 28, "No space left"), ("write", 5, "Input/output error"),
+                                  ("fsync", 5, "Input/output error"), ("fsync", 28, "No space left"),
+                                  ("rename", 13, "Permission denied"), ("open", 13, "Permission denied"),
+                                  ("open", 30, "Read-only")):
+            folder, count = fresh(self.base / "injected"), self.base / "count"
+            setting = {"LD_PRELOAD": self.inject, "INJECT_FOLDER": str(folder), "INJECT_CALL": call,
+                       "INJECT_ERRNO": str(error), "INJECT_PART": "0.4"}
+            count.write_bytes(b"")
+            self.go(folder, environment={**setting, "INJECT_COUNT": str(count)})
+            calls = count.stat().st_size
+            assert calls > 10, f"{call} was seen {calls} times"
+            for after in sorted(self.chance.sample(range(calls), 1 if self.short else 8)):
+                fresh(folder)
+                done = self.go(folder, environment={**setting, "INJECT_AFTER": str(after)}, status=1)
+                self.expect_line(done, word, str(folder))
+                if folder.exists():
+                    self.expect_intact(folder)
+                    assert not list(folder.rglob("*.tmp")) or call == "open", list(folder.rglob("*.tmp"))
+                self.expect_end(folder)
+                tried += 1
+        return f"{tried} failing calls"
+
+    def check_unwritable_folder(self):
+        """A folder that cannot be made or written into."""
+        blocked = self.base / "file"
+        blocked.write_text("in the way")
+        for folder in ("/proc/mpm", blocked, blocked / "below"):
+            self.expect_line(self.go(folder, status=1), str(folder))
+        assert blocked.read_text() == "in the way"
+
+    # --- the user and the computation ---------------------------------------------------------------------
+
+    def check_rubbish_options(self):
+        """An options file with bytes of rubbish."""
+        for n in range(4 if self.short else 20):
+            file = self.base / "rubbish.opts"
+            text = bytearray(DECK.read_bytes())
+            for _ in range(20):
+                text[self.chance.randrange(len(text))] = self.chance.randrange(256)
+            file.write_bytes(text if n else self.chance.randbytes(3000))
+            folder = fresh(self.base / "rubbish")
+            done = run(self.binary, file, folder, "-backend", "serial", "-time_max_steps", 3, status=None)
+            assert done.returncode in (0, 2, 3), (done.returncode, done.stderr)
+            if done.returncode == 2:
+                assert done.stderr.startswith("mpm: ") and not folder.exists()
+
+    def check_failing_computation(self):
+        """A value that is not finite, and a particle that leaves: status 3, and what was written is whole."""
+        for words, options in ((("not finite", "moved more", "no volume"), ("-soil_velocity", "1e308,1e308")),
+                               (("outside the mesh", "moved more"), ("-soil_velocity", "0,30", "-rigids", "plate",
+                                                                     "-time_max_steps", 2000))):
+            folder = fresh(self.base / "failing")
+            deck = self.base / "failing.opts"
+            deck.write_text("".join(line for line in DECK.read_text().splitlines(True)
+                                    if "-rigids" not in options or not line.startswith("-stone")))
+            done = run(self.binary, deck, folder, "-backend", "serial", *options, status=3)
+            assert any(word in done.stderr for word in words), done.stderr
+            self.expect_line(done, "step", "time")
+            self.expect_intact(folder)
+
+
+def main():
+    words = [word for word in sys.argv[1:] if word != "--short"]
+    binary, inject, *names = words
+    checks = Checks(binary, inject, short=len(words) < len(sys.argv) - 1)
+    for name in names or [name[6:] for name in dir(checks) if name.startswith("check_")]:
+        began = time.time()
+        try:
+            result = getattr(checks, "check_" + name)()
+        except AssertionError as error:
+            sys.exit(f"{name}: {error}\n(files are in {checks.base})")
+        print(f"{name:24} {time.time() - began:6.1f} s  {result or 'as it should be'}", flush=True)
+    shutil.rmtree(checks.base)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,268 @@
+// Checkpoint files: what goes in comes out, on any number of ranks, and what is not whole is refused.
+
+#include <unistd.h>
+
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "checkpoint/changes.hpp"
+#include "checkpoint/checkpoint.hpp"
+#include "checkpoint/folder.hpp"
+#include "checkpoint/id_blocks.hpp"
+#include "checkpoint/sealed_file.hpp"
+
+using namespace mpm;
+namespace fs = std::filesystem;
+
+namespace {
+
+int rank_of_this() {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank;
+}
+int ranks_of_all() {
+  int ranks = 1;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  return ranks;
+}
+
+/// A folder that all ranks share, empty at first.
+std::string folder_of(const std::string& test) {
+  const char* job = std::getenv("OMPI_MCA_ess_base_jobid");
+  const fs::path folder =
+      fs::temp_directory_path() / ("mpm_" + test + (job ? job : std::to_string(::getpid())));
+  if (rank_of_this() == 0) {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  return folder.string();
+}
+
+/// The value of a field of a point, the same whoever has it.
+double value_of(long id, int field, int component) { return 1.0 / (1 + id) + 100 * field + component / 7.0; }
+
+/// Points of which this rank has every so-many-th, the last first.
+SavedPoints some_points(long total) {
+  SavedPoints points;
+  for (long id = total - 1; id >= 0; --id)
+    if (id % ranks_of_all() == rank_of_this()) points.id.push_back(id);
+  for (const long id : points.id) points.address.push_back(1000 + 3 * id);
+  int number = 0;
+  for (const auto& [name, components, bytes] :
+       {std::tuple{"coordinate", 2, 8}, {"stress", 4, 8}, {"body", 1, 2}}) {
+    SavedField field{name, components, bytes, {}};
+    for (const long id : points.id)
+      for (int k = 0; k < components; ++k)
+        field.values.push_back(bytes == 2 ? double(id % 3) : value_of(id, number, k));
+    points.fields.push_back(field);
+    ++number;
+  }
+  return points;
+}
+
+constexpr long k_soil = 1003, k_rigid = 17;
+
+Checkpoint some_checkpoint() {
+  Checkpoint c{"0.9",
+               2,
+               3,
+               "serial",
+               "double",
+               "gather",
+               {{"-gravity", "0,-10", "m/s2", false}, {"-dim", "2", "", true}},
+               {},
+               {},
+               12,
+               {}};
+  c.run = {1234, 0.1 + 0.2, 1e-4, 0.3, 17.5, 16.5, 3, 4, 5, 6};
+  c.history = {4096, 0xdeadbeef};
+  c.state.bound = 0.1, c.state.increment = 1.0 / 3;
+  c.state.soil = some_points(k_soil);
+  c.state.rigid_points = {some_points(k_rigid), some_points(k_rigid)};
+  c.state.rigids = {{{1, 2, 0}, {3, 4, 0}, {5, 6, 0}}, {{-1, -2, 0}, {-3, -4, 0}, {-5, -6, 0}}};
+  if (rank_of_this() == 0) c.state.impulse = {{7, 5}, {70, 71, 50, 51}};
+  return c;
+}
+
+void check_points(const SavedPoints& points, long total) {
+  const IdBlock block = block_of(total, rank_of_this(), ranks_of_all());
+  REQUIRE(points.id.size() == std::size_t(block.count));
+  REQUIRE(points.fields.size() == 3);
+  for (std::size_t p = 0; p < points.id.size(); ++p) {
+    const long id = block.first + long(p);
+    REQUIRE(points.id[p] == id);
+    REQUIRE(points.address[p] == 1000 + 3 * id);
+    for (const SavedField& field : points.fields)
+      for (int k = 0; k < field.components; ++k) {
+        const int number = field.name == "coordinate" ? 0 : 1;
+        const double wanted = field.name == "body" ? double(id % 3) : value_of(id, number, k);
+        REQUIRE(field.values[p * field.components + k] == wanted);
+      }
+  }
+}
+
+std::string text_of_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << text;
+}
+
+/// What reading a file says is wrong with it.
+std::string fault_of(const std::string& path) {
+  Checkpoint read;
+  std::string fault;
+  REQUIRE(read_checkpoint(PETSC_COMM_SELF, path, read, &fault) == PETSC_SUCCESS);
+  return fault;
+}
+
+}  // namespace
+
+TEST_CASE("blocks by number hold every number once", "[checkpoint]") {
+  for (const long total : {0L, 1L, 5L, 64L, 1000003L})
+    for (const int ranks : {1, 2, 3, 7, 64}) {
+      long next = 0;
+      for (int rank = 0; rank < ranks; ++rank) {
+        const IdBlock block = block_of(total, rank, ranks);
+        REQUIRE(block.first == next);
+        next += block.count;
+      }
+      REQUIRE(next == total);
+    }
+}
+
+TEST_CASE("a checkpoint reads as it was written, whichever rank had which point", "[checkpoint]") {
+  const std::string path = folder_of("checkpoint") + "/checkpoint_1234.h5";
+  REQUIRE(write_checkpoint(PETSC_COMM_WORLD, path, some_checkpoint()) == PETSC_SUCCESS);
+  Checkpoint read;
+  std::string fault;
+  REQUIRE(read_checkpoint(PETSC_COMM_WORLD, path, read, &fault) == PETSC_SUCCESS);
+  REQUIRE(fault.empty());
+  const Checkpoint wanted = some_checkpoint();
+  CHECK(read.version == "0.9");
+  CHECK((read.dim == 2 && read.ranks == 3 && read.backend == "serial" && read.precision == "double"));
+  CHECK((read.strategy == "gather" && read.frames == 12 && read.history == wanted.history));
+  CHECK((read.run.step == 1234 && read.run.time == 0.1 + 0.2 && read.run.since_rebuild == 3 &&
+         read.run.shortest == 6));
+  CHECK((read.state.bound == 0.1 && read.state.increment == 1.0 / 3));
+  REQUIRE(read.options.size() == 2);
+  CHECK((read.options[0].name == "-gravity" && read.options[0].value == "0,-10" && read.options[1].standard));
+  check_points(read.state.soil, k_soil);
+  REQUIRE(read.state.rigids.size() == 2);
+  CHECK((read.state.rigids[0].velocity[1] == 4 && read.state.rigids[1].impulse[0] == -5));
+  for (const SavedPoints& points : read.state.rigid_points) check_points(points, k_rigid);
+  CHECK(read.state.impulse.address == std::vector<long>{5, 7});
+  CHECK(read.state.impulse.values == std::vector<double>{50, 51, 70, 71});
+  CHECK(!fs::exists(path + ".tmp"));
+}
+
+TEST_CASE("a checkpoint in which anything changed is refused", "[checkpoint]") {
+  if (ranks_of_all() > 1) return;
+  const std::string folder = folder_of("damage"), path = folder + "/sound.h5", other = folder + "/damaged.h5";
+  REQUIRE(write_checkpoint(PETSC_COMM_SELF, path, some_checkpoint()) == PETSC_SUCCESS);
+  const std::string sound = text_of_file(path);
+  REQUIRE(fault_of(path).empty());
+  std::mt19937 chance(11);
+  for (int n = 0; n < 300; ++n) {
+    std::string text = sound;
+    text[chance() % text.size()] ^= char(1 << chance() % 8);
+    write_text(other, text);
+    REQUIRE(!fault_of(other).empty());
+    write_text(other, sound.substr(0, chance() % sound.size()));
+    REQUIRE(!fault_of(other).empty());
+    write_text(other, sound + std::string(1 + chance() % 100, '\0'));
+    REQUIRE(!fault_of(other).empty());
+  }
+}
+
+TEST_CASE("what is sealed but no checkpoint is refused without harm", "[checkpoint]") {
+  if (ranks_of_all() > 1) return;
+  const std::string folder = folder_of("sealed"), path = folder + "/text.h5";
+  REQUIRE(replace_sealed(path, "no HDF5 at all") == PETSC_SUCCESS);
+  CHECK(!fault_of(path).empty());
+  REQUIRE(replace_sealed(path, "") == PETSC_SUCCESS);
+  CHECK(!fault_of(path).empty());
+}
+
+TEST_CASE("only what contradicts the state is refused at a restart", "[checkpoint]") {
+  Checkpoint c;
+  c.options = {{"-gravity", "0,-10", "m/s2", false},
+               {"-time_end", "2", "s", false},
+               {"-damping", "0", "-", true},
+               {"-backend", "serial", "", true},
+               {"-plate_friction", "0.3", "-", false}};
+  const auto refused = [&](std::vector<EffectiveOption> now) {
+    return contradictions(c, now, "FILE").size();
+  };
+  CHECK(refused(c.options) == 0);
+  auto same = c.options;
+  same[0].value = "0,-1e1", same[2] = {"-damping", "0.0", "-", false}, same[4].value = ".3";
+  CHECK(refused(same) == 0);
+  auto allowed = c.options;
+  allowed[1].value = "3", allowed[3] = {"-backend", "openmp", "", false};
+  allowed.push_back({"-output_compression", "3", "", false});
+  CHECK(refused(allowed) == 0);
+  auto wrong = c.options;
+  wrong[0].value = "0,-9", wrong[2].value = "0.1";
+  wrong.pop_back();
+  wrong.push_back({"-stone_shape", "disc", "", false});
+  const auto lines = contradictions(c, wrong, "FILE");
+  REQUIRE(lines.size() == 4);
+  CHECK(lines[0].starts_with("mpm: -gravity: given \"0,-9\", takes \"0,-10\""));
+  CHECK(lines[3].find("-plate_friction") != std::string::npos);
+}
+
+TEST_CASE("the last two checkpoints are kept, and what is later goes at a restart", "[checkpoint]") {
+  if (ranks_of_all() > 1) return;
+  const std::string folder = folder_of("kept");
+  fs::create_directories(folder + "/frames");
+  for (const char* name :
+       {"checkpoint_9.h5", "checkpoint_100.h5", "checkpoint_20.h5", "checkpoint_x.h5", "checkpoint_1",
+        "checkpoint_300.h5.tmp", "frames/frame_00001.h5", "frames/frame_00007.h5", "frames/mine.h5"})
+    write_text(folder + "/" + name, "text");
+  CHECK(checkpoint_steps(folder) == std::vector<long>{9, 20, 100});
+  REQUIRE(keep_last_checkpoints(folder) == PETSC_SUCCESS);
+  CHECK(checkpoint_steps(folder) == std::vector<long>{20, 100});
+  int removed = 0;
+  REQUIRE(go_back_to(folder, 20, 7, &removed) == PETSC_SUCCESS);
+  CHECK(removed == 3);
+  CHECK(checkpoint_steps(folder) == std::vector<long>{20});
+  CHECK((fs::exists(folder + "/checkpoint_x.h5") && fs::exists(folder + "/frames/frame_00001.h5")));
+  CHECK((fs::exists(folder + "/frames/mine.h5") && !fs::exists(folder + "/frames/frame_00007.h5")));
+}
+
+TEST_CASE("a state that no kernel could take is refused", "[checkpoint]") {
+  Config config;
+  config.mesh.cells = {20, 10, 1};
+  config.bodies.resize(2);
+  config.rigids.resize(1);
+  SavedState sound;
+  sound.rigids.resize(1), sound.rigid_points.resize(1);
+  sound.soil.address = {(1 + 5) * 64 + 3};  // the first patch of the mesh: 5 patches a row with the ring
+  sound.soil.fields = {{"coordinate", 2, 8, {0.25, 1.2}}, {"body", 1, 2, {1}}};
+  REQUIRE(state_fault(sound, config).empty());
+  const auto refused = [&](auto&& change) {
+    SavedState state = sound;
+    change(state);
+    return !state_fault(state, config).empty();
+  };
+  CHECK(refused([](SavedState& s) { s.soil.address[0] = 0; }));
+  CHECK(refused([](SavedState& s) { s.soil.address[0] = -64; }));
+  CHECK(refused([](SavedState& s) { s.soil.address[0] = 1L << 40; }));
+  CHECK(refused([](SavedState& s) { s.soil.fields[0].values[1] = std::nan(""); }));
+  CHECK(refused([](SavedState& s) { s.soil.fields[0].values[1] = 3; }));
+  CHECK(refused([](SavedState& s) { s.soil.fields[1].values[0] = 2; }));
+  CHECK(refused([](SavedState& s) { s.soil.fields[1].values[0] = -1; }));
+  CHECK(refused([](SavedState& s) { s.bound = 0.7; }));
+  CHECK(refused([](SavedState& s) { s.rigids[0].velocity[0] = HUGE_VAL; }));
+  CHECK(refused([](SavedState& s) { s.rigids.clear(); }));
+  CHECK(refused([](SavedState& s) { s.impulse.address = {5}; }));
+}
