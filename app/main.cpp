@@ -1,11 +1,14 @@
-// mpirun -n 1 ./mpm -options_file footing.opts
+// mpirun -n 4 ./mpm -options_file footing.opts
 
 #include <mpi.h>
 #include <petscsys.h>
 #include <Kokkos_Core.hpp>
 
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
+#include <thread>
 
 #include "mpm/simulation.hpp"
 
@@ -30,11 +33,37 @@ PetscErrorCode run(const mpm::InputReport& arguments, mpm::Outcome* outcome) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// A device a rank, in turn by the number of the rank on its node, unless the user has chosen
+/// (--kokkos-device-id, KOKKOS_DEVICE_ID).
+void choose_device() {
+  if (Kokkos::num_devices() <= 0) return;
+  MPI_Comm node = MPI_COMM_NULL;
+  int rank = 0;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+  MPI_Comm_rank(node, &rank);
+  MPI_Comm_free(&node);
+  setenv("KOKKOS_DEVICE_ID", std::to_string(rank % Kokkos::num_devices()).c_str(), 0);
+}
+
+/// A rank that failed alone, as for want of memory, must not leave the others waiting for it for ever.
+void end_others() {
+  constexpr int k_patience = 5000;  // ms
+  MPI_Request all = MPI_REQUEST_NULL;
+  int ended = 0;
+  MPI_Ibarrier(MPI_COMM_WORLD, &all);
+  for (int n = 0; n < k_patience && !ended; ++n) {
+    MPI_Test(&all, &ended, MPI_STATUS_IGNORE);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  if (!ended) MPI_Abort(MPI_COMM_WORLD, k_system_failure);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   setenv("OMP_PROC_BIND", "false", 0);  // what an unset variable means; Kokkos would warn of it
   MPI_Init(&argc, &argv);
+  choose_device();
   Kokkos::initialize(argc, argv);  // first: takes its --kokkos-* words out of argv
   const auto arguments = mpm::prepare_arguments(MPI_COMM_WORLD, &argc, argv);
   // The system's own way with signals: PETSc's is a page of text even where a reader closes a pipe.
@@ -43,6 +72,7 @@ int main(int argc, char** argv) {
   PetscCall(PetscPushErrorHandler(tell_in_one_line, nullptr));
   mpm::Outcome outcome{};
   const bool whole = run(*arguments, &outcome) == PETSC_SUCCESS;
+  if (!whole) end_others();
   PetscCall(PetscPopErrorHandler());
   PetscCall(PetscFinalize());
   Kokkos::finalize();

@@ -36,6 +36,7 @@ struct Simulation::Body {
   Frames frames;
 
   long step = 0;
+  std::string partition_rows;                                       // of partition.csv
   double last_row_time = 0;                                         // s
   double wall_start = 0;                                            // s
   double bandwidth = 0;                                             // bytes/s of the device's copy
@@ -58,6 +59,8 @@ struct Simulation::Body {
   PetscErrorCode rebuild(const Batch& batch);
   PetscErrorCode write_row();
   PetscErrorCode write_frame();
+  PetscErrorCode write_partition();
+  PetscErrorCode share_errors();
   PetscErrorCode finish();
 };
 

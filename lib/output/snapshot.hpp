@@ -13,6 +13,7 @@ namespace mpm {
 /// empty for rigids.
 struct ParticleSnapshot {
   std::string name;
+  std::vector<int> id;                 // of the particles of this rank, in the body; empty where all are here
   std::vector<double> position;        // m     [3 N]
   std::vector<double> velocity;        // m/s   [3 N]
   std::vector<double> grid_velocity;   // m/s   [3 N], of the nodes, interpolated to the particles
