@@ -4,6 +4,10 @@
 #include <petscsys.h>
 #include <Kokkos_Core.hpp>
 
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -33,16 +37,25 @@ PetscErrorCode run(const mpm::InputReport& arguments, mpm::Outcome* outcome) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// A device a rank, in turn by the number of the rank on its node, unless the user has chosen
-/// (--kokkos-device-id, KOKKOS_DEVICE_ID).
-void choose_device() {
-  if (Kokkos::num_devices() <= 0) return;
+/// What several ranks on a node must not each take whole, where the user has not chosen: a device each, in turn
+/// (--kokkos-device-id, KOKKOS_DEVICE_ID), and a part of the cores (OMP_NUM_THREADS, KOKKOS_NUM_THREADS). One
+/// of them speaks for all of what Kokkos warns of.
+void share_node() {
   MPI_Comm node = MPI_COMM_NULL;
-  int rank = 0;
+  int world = 0, rank = 0, size = 1;
+  MPI_Comm_rank(MPI_COMM_WORLD, &world);
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
   MPI_Comm_rank(node, &rank);
+  MPI_Comm_size(node, &size);
   MPI_Comm_free(&node);
-  setenv("KOKKOS_DEVICE_ID", std::to_string(rank % Kokkos::num_devices()).c_str(), 0);
+  const int devices = Kokkos::num_devices();
+  if (devices > 0) setenv("KOKKOS_DEVICE_ID", std::to_string(rank % devices).c_str(), 0);
+  cpu_set_t mine;
+  const int usable = sched_getaffinity(0, sizeof mine, &mine) == 0 ? CPU_COUNT(&mine) : 1;
+  const int part = std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)) / size);
+  if (size > 1 && std::getenv("OMP_NUM_THREADS") == nullptr)
+    setenv("KOKKOS_NUM_THREADS", std::to_string(std::min(usable, part)).c_str(), 0);
+  if (world > 0) setenv("KOKKOS_DISABLE_WARNINGS", "1", 0);
 }
 
 /// A rank that failed alone, as for want of memory, must not leave the others waiting for it for ever.
@@ -63,7 +76,7 @@ void end_others() {
 int main(int argc, char** argv) {
   setenv("OMP_PROC_BIND", "false", 0);  // what an unset variable means; Kokkos would warn of it
   MPI_Init(&argc, &argv);
-  choose_device();
+  share_node();
   Kokkos::initialize(argc, argv);  // first: takes its --kokkos-* words out of argv
   const auto arguments = mpm::prepare_arguments(MPI_COMM_WORLD, &argc, argv);
   // The system's own way with signals: PETSc's is a page of text even where a reader closes a pipe.

@@ -115,7 +115,7 @@ PetscErrorCode Simulation::Body::write_frame() {
   PetscCall(stepper->snapshot(&snapshot));
   snapshot.step = step;
   snapshot.time = schedule.time_of(step);
-  PetscCall(agree(comm, rank_of(comm) == 0 ? frames.write(snapshot) : PETSC_SUCCESS));
+  PetscCall(frames.write(snapshot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

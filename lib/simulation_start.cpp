@@ -144,7 +144,7 @@ PetscErrorCode Simulation::Body::start() {
                       dt / critical_time_step(config), schedule.last_step(),
                       schedule.time_of(schedule.last_step())));
   PetscCall(agree(comm, first ? history.open(config) : PETSC_SUCCESS));
-  frames.open(config.output.directory, config.precision);
+  frames.open(config.output.directory, config.precision, comm);
   wall_start = seconds_now();
   PetscCall(write_row());
   PetscCall(write_frame());

@@ -1,10 +1,15 @@
 #include "output/frames.hpp"
 
+#include <sys/mman.h>
+
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include "numbers.hpp"
 #include "output/files.hpp"
 #include "output/hdf5_handle.hpp"
+#include "parallel/together.hpp"
 
 namespace mpm {
 namespace {
@@ -55,6 +60,24 @@ PetscErrorCode write_unit(hid_t dataset, const std::string& path, const std::str
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// A dataset whose numbers come later, from all ranks: its place in the file is fixed now.
+PetscErrorCode reserve_field(hid_t group, const std::string& path, const Field& field, hsize_t count, hid_t type,
+                             long long* offset) {
+  PetscFunctionBeginUser;
+  const hsize_t sizes[2] = {count, static_cast<hsize_t>(field.components)};
+  Handle space(H5Screate_simple(field.components == 1 ? 1 : 2, sizes, nullptr), H5Sclose);
+  PetscCall(check(space.id, path, field.name));
+  Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  PetscCall(check(how.id, path, field.name));
+  PetscCall(check(H5Pset_alloc_time(how.id, H5D_ALLOC_TIME_EARLY), path, field.name));
+  PetscCall(check(H5Pset_fill_time(how.id, H5D_FILL_TIME_NEVER), path, field.name));
+  Handle data(H5Dcreate2(group, field.name, type, space.id, H5P_DEFAULT, how.id, H5P_DEFAULT), H5Dclose);
+  PetscCall(check(data.id, path, field.name));
+  PetscCall(write_unit(data.id, path, field.unit));
+  *offset = static_cast<long long>(H5Dget_offset(data.id));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /// One dataset, N x components, or N where there is one component.
 PetscErrorCode write_field(hid_t group, const std::string& path, const Field& field,
                            const ParticleSnapshot& particles, hid_t type) {
@@ -76,27 +99,36 @@ PetscErrorCode write_field(hid_t group, const std::string& path, const Field& fi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// slabs: where the numbers belong, for those of several ranks; null where they are all here.
 PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSnapshot& particles, bool body,
-                           Precision precision) {
+                           Precision precision, std::vector<FrameSlab>* slabs = nullptr, std::size_t number = 0) {
   PetscFunctionBeginUser;
   const char* name = particles.name.c_str();
   Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   PetscCall(check(group.id, path, name));
   const hid_t real = precision == Precision::single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
-  for (const Field& field : k_fields)
-    if (body || !field.bodies_only)
-      PetscCall(write_field(group.id, path, field, particles, &field == k_fields ? H5T_IEEE_F64LE : real));
+  for (const Field& field : k_fields) {
+    if (!body && field.bodies_only) continue;
+    const hid_t type = &field == k_fields ? H5T_IEEE_F64LE : real;
+    if (slabs == nullptr) {
+      PetscCall(write_field(group.id, path, field, particles, type));
+      continue;
+    }
+    FrameSlab slab{number, field.values, field.components, static_cast<int>(H5Tget_size(type)), 0};
+    PetscCall(reserve_field(group.id, path, field, particles.total, type, &slab.offset));
+    slabs->push_back(slab);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode write_groups(hid_t file, const std::string& path, const Snapshot& snapshot,
-                            Precision precision) {
+                            Precision precision, std::vector<FrameSlab>* slabs = nullptr) {
   PetscFunctionBeginUser;
   const long long step = snapshot.step;
   PetscCall(write_attribute(file, path, "time", H5T_NATIVE_DOUBLE, &snapshot.time));
   PetscCall(write_attribute(file, path, "step", H5T_NATIVE_LLONG, &step));
-  for (const ParticleSnapshot& body : snapshot.bodies)
-    PetscCall(write_group(file, path, body, true, precision));
+  for (std::size_t b = 0; b < snapshot.bodies.size(); ++b)
+    PetscCall(write_group(file, path, snapshot.bodies[b], true, precision, slabs, b));
   for (const ParticleSnapshot& rigid : snapshot.rigids)
     PetscCall(write_group(file, path, rigid, false, precision));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -191,6 +223,19 @@ std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes) {
   return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
 }
 
+PetscErrorCode lay_out_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
+                             int* descriptor, std::vector<FrameSlab>* slabs) {
+  PetscFunctionBeginUser;
+  *descriptor = ::memfd_create("mpm frame", MFD_CLOEXEC);  // holes take no memory
+  PetscCheck(*descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot make %s in memory: %s", path.c_str(),
+             std::strerror(errno));
+  const std::string name = "/proc/self/fd/" + std::to_string(*descriptor);
+  Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  PetscCall(check(file.id, path, "creation"));
+  PetscCall(write_groups(file.id, path, snapshot, precision, slabs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Precision precision) {
   PetscFunctionBeginUser;
   std::string image;
@@ -199,7 +244,8 @@ PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Pr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void Frames::open(const std::string& folder, Precision precision) {
+void Frames::open(const std::string& folder, Precision precision, MPI_Comm comm) {
+  comm_ = comm;
   folder_ = folder;
   precision_ = precision;
   entries_.clear();
@@ -209,16 +255,22 @@ PetscErrorCode Frames::write(const Snapshot& snapshot) {
   PetscFunctionBeginUser;
   char file[40];
   std::snprintf(file, sizeof file, "frames/frame_%05d.h5", count());
-  PetscCall(write_frame(folder_ + "/" + file, snapshot, precision_));
+  if (size_of(comm_) == 1)
+    PetscCall(write_frame(folder_ + "/" + file, snapshot, precision_));
+  else
+    PetscCall(write_frame_together(comm_, folder_ + "/" + file, snapshot, precision_));
 
   FrameEntry entry{file, snapshot.time, {}};
   for (const auto& body : snapshot.bodies)
-    entry.groups.push_back({body.name, static_cast<long>(body.position.size() / 3), true});
+    entry.groups.push_back(
+        {body.name, body.total < 0 ? static_cast<long>(body.position.size() / 3) : body.total, true});
   for (const auto& rigid : snapshot.rigids)
     entry.groups.push_back({rigid.name, static_cast<long>(rigid.position.size() / 3), false});
   entries_.push_back(std::move(entry));
-  PetscCall(replace_file(folder_ + "/particles.xdmf",
-                         format_xdmf(entries_, precision_ == Precision::single ? 4 : 8)));
+  const auto write_index = [&] {
+    return replace_file(folder_ + "/particles.xdmf", format_xdmf(entries_, precision_ == Precision::single ? 4 : 8));
+  };
+  PetscCall(agree(comm_, rank_of(comm_) == 0 ? write_index() : PETSC_SUCCESS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

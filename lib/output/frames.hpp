@@ -28,20 +28,39 @@ struct FrameEntry {
 /// field but position, which is always 8.
 std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes);
 
+/// Where a field's numbers stand in a frame's file.
+struct FrameSlab {
+  std::size_t body = 0;  // of Snapshot::bodies
+  std::vector<double> ParticleSnapshot::*values = nullptr;
+  int components = 0, bytes = 0;  // of a particle; of a number
+  long long offset = 0;           // bytes, of the first particle of the body
+};
+
+/// A frame's file without the bodies' numbers, made in memory: its bytes as a descriptor to read from, which
+/// the caller closes, and where the numbers belong.
+PetscErrorCode lay_out_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
+                             int* descriptor, std::vector<FrameSlab>* slabs);
+
+/// Writes one frame whose bodies are spread over the ranks of comm, each with a range of their particles, by
+/// MPI-IO. The same file as write_frame makes of all of them; whole or absent. Collective.
+PetscErrorCode write_frame_together(MPI_Comm comm, const std::string& path, const Snapshot& snapshot,
+                                    Precision precision);
+
 /// Writes one frame as HDF5 to `path`: attributes time [s] and step; a group each body and rigid.
 /// Positions are float64; the other fields are float64, or float32 for a run in single precision.
 PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Precision precision);
 
-/// The frames of a run, numbered from 0. One rank calls it.
+/// The frames of a run, numbered from 0.
 class Frames {
  public:
   /// Says where they go; nothing is written yet. The folder was made by prepare_output_folder.
-  void open(const std::string& folder, Precision precision);
-  /// Writes the next frame, then the index anew; both are complete or as they were.
+  void open(const std::string& folder, Precision precision, MPI_Comm comm = PETSC_COMM_SELF);
+  /// Writes the next frame, then the index anew; both are complete or as they were. Collective.
   PetscErrorCode write(const Snapshot& snapshot);
   int count() const { return static_cast<int>(entries_.size()); }
 
  private:
+  MPI_Comm comm_ = PETSC_COMM_SELF;
   std::string folder_;
   Precision precision_ = Precision::double_;
   std::vector<FrameEntry> entries_;

@@ -19,27 +19,36 @@ constexpr Part k_parts[] = {{&ParticleSnapshot::position, 3}, {&ParticleSnapshot
 
 }  // namespace
 
-// Field by field, so that rank 0 holds one of them twice, not all.
-PetscErrorCode gather_particles(MPI_Comm comm, ParticleSnapshot* body) {
+PetscErrorCode order_particles(MPI_Comm comm, long total, ParticleSnapshot* body) {
   PetscFunctionBeginUser;
+  const int ranks = size_of(comm), rank = rank_of(comm);
+  const auto begin = [&](int r) { return total * r / ranks; };
   const std::size_t here = body->id.size();
-  for (const auto& [values, width] : k_parts) {
+  std::vector<int> to(here);  // rank of each particle
+  for (std::size_t p = 0; p < here; ++p) {
+    to[p] = static_cast<int>(body->id[p] * long(ranks) / std::max(total, 1L));
+    while (body->id[p] >= begin(to[p] + 1)) ++to[p];
+  }
+  body->first = begin(rank);
+  body->total = total;
+  for (const auto& [values, width] : k_parts) {  // field by field: one of them at a time is there twice
     const std::size_t row = width * sizeof(double), size = sizeof(double) + row;
-    std::vector<std::vector<char>> out(size_of(comm));
-    out[0].resize(here * size);
+    std::vector<std::vector<char>> out(ranks);
     for (std::size_t p = 0; p < here; ++p) {
       const double id = body->id[p];
-      std::memcpy(&out[0][p * size], &id, sizeof id);
-      std::memcpy(&out[0][p * size + sizeof id], &(body->*values)[p * width], row);
+      const char* const name = reinterpret_cast<const char*>(&id);
+      const char* const numbers = reinterpret_cast<const char*>(&(body->*values)[p * width]);
+      out[to[p]].insert(out[to[p]].end(), name, name + sizeof id);
+      out[to[p]].insert(out[to[p]].end(), numbers, numbers + row);
     }
     std::vector<char> in;
     PetscCall(exchange_records(comm, size, out, &in));
-    std::vector<double>& all = body->*values;
-    all.assign(in.size() / size * width, 0);
+    std::vector<double>& own = body->*values;
+    own.assign((begin(rank + 1) - begin(rank)) * width, 0);
     for (std::size_t at = 0; at < in.size(); at += size) {
       double id = 0;
       std::memcpy(&id, &in[at], sizeof id);
-      std::memcpy(&all[static_cast<std::size_t>(id) * width], &in[at + sizeof id], row);
+      std::memcpy(&own[(static_cast<std::size_t>(id) - body->first) * width], &in[at + sizeof id], row);
     }
   }
   body->id.clear();

@@ -7,8 +7,8 @@
 
 namespace mpm {
 
-/// Brings all particles of a body to rank 0, in the order of their ids; the other ranks are left with none.
-/// Collective.
-PetscErrorCode gather_particles(MPI_Comm comm, ParticleSnapshot* body);
+/// Brings a body's particles into the order of their ids, over the ranks in equal parts, whoever holds them:
+/// rank r gets those from total r / ranks to total (r + 1) / ranks. Collective.
+PetscErrorCode order_particles(MPI_Comm comm, long total, ParticleSnapshot* body);
 
 }  // namespace mpm

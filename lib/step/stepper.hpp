@@ -68,7 +68,7 @@ class Stepper {
   virtual PetscErrorCode rebuild(Failure* failure) = 0;
   /// Rows of the history; `interval` [s] is the time since the last call, over which the forces are a mean.
   virtual PetscErrorCode measure(double interval, HistoryRow* row) = 0;
-  /// The frame, whole on rank 0.
+  /// The frame; on several ranks each has a range of the particles of a body.
   virtual PetscErrorCode snapshot(Snapshot* snapshot) = 0;
   /// Rows of partition.csv, on rank 0: the patches that hold particles, with these and their rank.
   virtual PetscErrorCode ownership(std::vector<OwnedPatch>* patches) = 0;

@@ -217,7 +217,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     }
     body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
     body.plastic_strain.assign(soil.plastic_strain.begin() + from, soil.plastic_strain.begin() + to);
-    if (ranks_) PetscCall(gather_particles(comm_, &body));
+    if (ranks_) PetscCall(order_particles(comm_, (b + 1 < first_.size() ? first_[b + 1] : total_) - first_[b], &body));
     out->bodies.push_back(std::move(body));
   }
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.rigids);
