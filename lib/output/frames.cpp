@@ -1,10 +1,13 @@
 #include "output/frames.hpp"
 
-#include <sys/mman.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include "numbers.hpp"
 #include "output/files.hpp"
@@ -12,6 +15,8 @@
 #include "parallel/together.hpp"
 
 namespace mpm {
+namespace fs = std::filesystem;
+
 namespace {
 
 /// One field of a particle group. A new field is a line of k_fields.
@@ -154,6 +159,16 @@ PetscErrorCode frame_image(const std::string& path, const Snapshot& snapshot, Pr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// The structure of a frame as a file of its own; `path` is for messages.
+PetscErrorCode make_layout(const std::string& name, const std::string& path, const Snapshot& snapshot,
+                           Precision precision, std::vector<FrameSlab>* slabs) {
+  PetscFunctionBeginUser;
+  Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  PetscCall(check(file.id, path, "creation"));
+  PetscCall(write_groups(file.id, path, snapshot, precision, slabs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /// `<DataItem>` that points at one dataset of a frame.
 std::string data_item(const FrameEntry& frame, const FrameEntry::Group& group, const Field& field,
                       int real_bytes) {
@@ -226,13 +241,18 @@ std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes) {
 PetscErrorCode lay_out_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
                              int* descriptor, std::vector<FrameSlab>* slabs) {
   PetscFunctionBeginUser;
-  *descriptor = ::memfd_create("mpm frame", MFD_CLOEXEC);  // holes take no memory
-  PetscCheck(*descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot make %s in memory: %s", path.c_str(),
+  std::error_code error;
+  const std::string memory = "/dev/shm";  // holes take no memory
+  std::string name =
+      (fs::is_directory(memory, error) ? memory : fs::temp_directory_path(error).string()) + "/mpm_frame_XXXXXX";
+  *descriptor = ::mkostemp(name.data(), O_CLOEXEC);
+  PetscCheck(*descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", name.c_str(),
              std::strerror(errno));
-  const std::string name = "/proc/self/fd/" + std::to_string(*descriptor);
-  Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-  PetscCall(check(file.id, path, "creation"));
-  PetscCall(write_groups(file.id, path, snapshot, precision, slabs));
+  const auto forget = [&](PetscErrorCode result) {
+    ::unlink(name.c_str());
+    return result;
+  };
+  PetscCall(forget(make_layout(name, path, snapshot, precision, slabs)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -36,8 +36,8 @@ struct FrameSlab {
   long long offset = 0;           // bytes, of the first particle of the body
 };
 
-/// A frame's file without the bodies' numbers, made in memory: its bytes as a descriptor to read from, which
-/// the caller closes, and where the numbers belong.
+/// A frame's file without the bodies' numbers, made in memory (/dev/shm): its bytes as a descriptor to read
+/// from, which the caller closes, and where the numbers belong.
 PetscErrorCode lay_out_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
                              int* descriptor, std::vector<FrameSlab>* slabs);
 
