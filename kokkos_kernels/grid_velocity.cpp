@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "particle_to_node.hpp"
 
@@ -58,16 +59,21 @@ template <class Space, class T, int Dim>
 std::vector<double> grid_velocities(const State<Space, T, Dim>& s) {
   const GridVelocity<Space, T, Dim> velocity(s);
   const int count = s.soil.points.count;
-  const auto id = s.soil.points.id;
-  const Kokkos::View<double*, typename Space::memory_space> by_id("mpm::grid_velocity",
-                                                                  std::size_t(count) * Dim);
+  const Kokkos::View<Vector<double, Dim>*, typename Space::memory_space> values("mpm::grid_velocity", count);
   Kokkos::parallel_for(
-      "mpm::grid_velocities", Kokkos::RangePolicy<Space>(s.space, 0, count), KOKKOS_LAMBDA(int p) {
-        const Vector<double, Dim> v = velocity(p);
-        for (int d = 0; d < Dim; ++d) by_id(std::size_t(id(p)) * Dim + d) = v[d];
-      });
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), by_id);
-  return {host.data(), host.data() + host.extent(0)};
+      "mpm::grid_velocities", Kokkos::RangePolicy<Space>(s.space, 0, count),
+      KOKKOS_LAMBDA(int p) { values(p) = velocity(p); });
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), values);
+  const auto id = Kokkos::create_mirror_view_and_copy(
+      Kokkos::HostSpace(), Kokkos::subview(s.soil.points.id, Kokkos::make_pair(0, count)));
+  std::vector<int> by_id(count);
+  std::iota(by_id.begin(), by_id.end(), 0);
+  std::sort(by_id.begin(), by_id.end(), [&](int p, int q) { return id(p) < id(q); });
+  std::vector<double> out;
+  out.reserve(std::size_t(count) * Dim);
+  for (const int p : by_id)
+    for (int d = 0; d < Dim; ++d) out.push_back(host(p)[d]);
+  return out;
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                  \

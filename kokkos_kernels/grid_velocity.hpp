@@ -18,7 +18,7 @@ namespace mpm {
 template <class Space, class T, int Dim>
 double largest_grid_speed(const State<Space, T, Dim>& s, int body);
 
-/// Velocity of every particle, by the nodes [m/s], by id: [Dim N].
+/// Velocity of every particle of this rank, by the nodes [m/s], in the order of id: [Dim N].
 template <class Space, class T, int Dim>
 std::vector<double> grid_velocities(const State<Space, T, Dim>& s);
 

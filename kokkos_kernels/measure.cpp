@@ -91,7 +91,8 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
 }
 
 template <class Space, class T, int Dim>
-double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m) {
+double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
+                         const OverRanks& over) {
   const auto soil = s.soil.points;
   const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
   const Ruler ruler(m.lower[d], m.upper[d]);
@@ -107,6 +108,7 @@ double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long ra
           if (at >> Ruler::digit == place) Kokkos::atomic_inc(&counts(at - (place << Ruler::digit)));
         });
     const auto count = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), counts);
+    if (over.sum) over.sum(count.data(), 1 << Ruler::digit);
     int digit = 0;
     while (rank > count(digit)) rank -= count(digit++);
     place = (place << Ruler::digit) + digit;
@@ -119,12 +121,14 @@ double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long ra
           largest = Kokkos::fmax(largest, position(p, d));
       },
       Kokkos::Max<double>(x));
+  if (over.largest) over.largest(&x);
   return x;
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                            \
   template BodyMeasure measure(const State<Space, T, Dim>&, int); \
-  template double ranked_coordinate(const State<Space, T, Dim>&, int, int, long, const BodyMeasure&);
+  template double ranked_coordinate(const State<Space, T, Dim>&, int, int, long, const BodyMeasure&, \
+                                    const OverRanks&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -1,6 +1,8 @@
 #pragma once
 // Sums, extents and quantiles over the particles of a body, for the history and the checks.
 
+#include <functional>
+
 #include "spaces.hpp"
 #include "state.hpp"
 
@@ -16,10 +18,18 @@ struct BodyMeasure {
 template <class Space, class T, int Dim>
 BodyMeasure measure(const State<Space, T, Dim>& s, int body);
 
+/// What a measure asks of the other ranks: numbers summed, the largest one taken, each in its place. Empty on
+/// one rank.
+struct OverRanks {
+  std::function<void(int*, int)> sum;
+  std::function<void(double*)> largest;
+};
+
 /// The rank-th smallest coordinate (1 <= rank <= m.count) of a body's particles along d [m from the mesh's
-/// lower corner]; m is the body's measure. It is a particle's coordinate, at most 2^-24 of the body's extent
+/// lower corner]; m is the measure of the whole body. It is a particle's coordinate, at most 2^-24 of the body's extent
 /// above the exact one, and the same whatever the number of threads.
 template <class Space, class T, int Dim>
-double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m);
+double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
+                         const OverRanks& over = {});
 
 }  // namespace mpm

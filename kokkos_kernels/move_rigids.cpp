@@ -35,6 +35,27 @@ KOKKOS_INLINE_FUNCTION void end_step(Control& c, double moved_rigid, double marg
 }
 
 template <class Space, class T, int Dim>
+void move_rigid_points(State<Space, T, Dim>& s) {
+  const auto origin = s.patches.origin;
+  const auto rigids = s.rigids;
+  const double spacing = s.spacing;
+  for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
+    const auto points = s.rigid_points[r].points;
+    if (points.surface_normal) continue;  // only a rebuild asks for them, and finds them itself
+    const auto home = points.home;
+    Kokkos::parallel_for(  // also while the steps are paused: it gives the same again
+        "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(s.space, 0, points.count)),
+        KOKKOS_LAMBDA(int p) {
+          const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells),
+                           cell = coord_of<Dim>(points.cell(p));
+          for (int d = 0; d < Dim; ++d)
+            points.coordinate(p)[d] =
+                static_cast<T>(home(p)[d] + rigids(r).displacement[d] / spacing - from[d] - cell[d]);
+        });
+  }
+}
+
+template <class Space, class T, int Dim>
 void move_rigids(State<Space, T, Dim>& s, double dt) {
   using Team = Kokkos::TeamPolicy<Space>;
   constexpr int threads = is_device<Space> ? 128 : 1;
@@ -66,21 +87,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
         });
       });
 
-  if (!s.rigid_moves) return;
-  for (int r = 0; r < count; ++r) {
-    const auto points = s.rigid_points[r].points;
-    if (points.surface_normal) continue;  // only a rebuild asks for them, and finds them itself
-    const auto home = points.home;
-    Kokkos::parallel_for(  // also while the steps are paused: it gives the same again
-        "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(s.space, 0, points.count)),
-        KOKKOS_LAMBDA(int p) {
-          const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells),
-                           cell = coord_of<Dim>(points.cell(p));
-          for (int d = 0; d < Dim; ++d)
-            points.coordinate(p)[d] =
-                static_cast<T>(home(p)[d] + rigids(r).displacement[d] / spacing - from[d] - cell[d]);
-        });
-  }
+  if (s.rigid_moves) move_rigid_points(s);
 }
 
 template <class Space, class T, int Dim>
@@ -102,6 +109,7 @@ void restart_count(State<Space, T, Dim>& s) {
 
 #define MPM_INSTANTIATE(Space, T, Dim)                      \
   template void move_rigids(State<Space, T, Dim>&, double); \
+  template void move_rigid_points(State<Space, T, Dim>&);   \
   template Control look(const State<Space, T, Dim>&);       \
   template void restart_count(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)

@@ -55,6 +55,7 @@ struct Nodes {
 template <int Dim>
 struct Rigid {
   Vector<double, Dim> displacement;  // m, since the start
+  Vector<double, Dim> binned;        // m, displacement when its points were binned
   Vector<double, Dim> velocity;      // m/s
   Vector<double, Dim> impulse;       // N s, of the soil on it since the host last took it
   Vector<double, Dim> force;         // N, external and weight

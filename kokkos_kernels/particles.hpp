@@ -15,7 +15,8 @@ namespace mpm {
 template <class Space, class T, int Dim>
 struct Points {
   using Memory = typename Space::memory_space;
-  int count = 0;
+  int count = 0;  // points that have a slot, the first ones
+  int all = 0;    // points in memory: those behind are far from the soil, or go to another rank
   Kokkos::View<Vector<T, Dim>*, Memory> coordinate;  // cells, from the lower corner of `cell`
   Kokkos::View<int*, Memory> cell;                   // number of the cell where the point was binned
   Kokkos::View<int*, Memory> id;                     // order of creation

@@ -11,6 +11,10 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void locate(State<Space, T, Dim>& s);
 
+/// The rigids' part of it.
+template <class Space, class T, int Dim>
+void locate_rigids(State<Space, T, Dim>& s);
+
 /// Makes the patch table, the order of the points, their bins and the strategy's lists from the points'
 /// addresses, and resets the movement bound. Nodal fields are laid out anew and hold nothing.
 template <class Space, class T, int Dim>

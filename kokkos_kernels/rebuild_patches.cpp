@@ -16,17 +16,69 @@ KOKKOS_INLINE_FUNCTION long patch_around(const Grid<T, Dim>& grid, Coord<Dim> at
   return grid.patch_of(at);
 }
 
-/// Marks the patches that hold points.
-template <class Space, class Points_, class Marks>
-void mark_patches(const Space& space, const Sorted<Space, Points_>& set, const Marks& marks,
-                  int cells_per_patch) {
-  const auto address = set.address;
+constexpr int k_soil = 1, k_rigid = 2;  // what a patch is marked to hold
+
+/// Marks the patches that hold soil of this rank.
+template <class Space, class T, int Dim, class Marks>
+void mark_soil(const State<Space, T, Dim>& s, const Marks& marks) {
+  const auto address = s.soil.address;
   Kokkos::parallel_for(
-      "mpm::mark_patches", Kokkos::RangePolicy<Space>(space, 0, set.points.count),
-      KOKKOS_LAMBDA(int p) { marks(address(p) / cells_per_patch) = 1; });
+      "mpm::mark_soil", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.all), KOKKOS_LAMBDA(int p) {
+        if (address(p) >= 0) marks(address(p) / Patch<Dim>::cells) = k_soil;
+      });
+}
+
+/// Marks the patches that hold points of a rigid and lie at those of the soil: no other point of it reaches a
+/// node that soil reaches before the next rebuild.
+template <class Space, class T, int Dim, class Points_, class Marks>
+void mark_rigid(const State<Space, T, Dim>& s, const Sorted<Space, Points_>& set, const Marks& marks) {
+  const auto address = set.address;
+  const auto grid = s.grid;
+  Kokkos::parallel_for(
+      "mpm::mark_rigid", Kokkos::RangePolicy<Space>(s.space, 0, set.points.all), KOKKOS_LAMBDA(int p) {
+        const long own = address(p) / Patch<Dim>::cells;
+        if (Kokkos::atomic_load(&marks(own)) != 0) return;
+        const Coord<Dim> at = grid.origin_of(own);
+        for (int k = 0; k < Patch<Dim>::around; ++k) {
+          const long other = patch_around(grid, at, k);
+          if (other < 0 || Kokkos::atomic_load(&marks(other)) != k_soil) continue;
+          Kokkos::atomic_store(&marks(own), k_rigid);
+          return;
+        }
+      });
 }
 
 }  // namespace
+
+template <class Space, class T, int Dim>
+void locate_rigids(State<Space, T, Dim>& s) {
+  const auto grid = s.grid;
+  const auto control = s.control;
+  const double spacing = s.spacing;
+  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
+    const auto& points = s.rigid_points[r].points;
+    const auto home = points.home;
+    const auto x_p = points.coordinate;
+    const auto id = points.id;
+    const auto address = s.rigid_points[r].address;
+    const auto rigids = s.rigids;
+    Kokkos::parallel_for(
+        "mpm::locate_rigid", Kokkos::RangePolicy<Space>(s.space, 0, points.all), KOKKOS_LAMBDA(int p) {
+          Coord<Dim> c{};
+          double position[3] = {};
+          if (p == 0) rigids(r).binned = rigids(r).displacement;
+          for (int d = 0; d < Dim; ++d) {
+            const double x = home(p)[d] + rigids(r).displacement[d] / spacing;
+            c[d] = static_cast<int>(Kokkos::floor(x));
+            x_p(p)[d] = static_cast<T>(x - Kokkos::floor(x));
+            position[d] = x * spacing;
+          }
+          if (!grid.holds(c))
+            return report(control, FaultKind::outside, -1 - static_cast<int>(r), position, Dim);
+          address(p) = grid.address_of(c);
+        });
+  }
+}
 
 template <class Space, class T, int Dim>
 void locate(State<Space, T, Dim>& s) {
@@ -57,28 +109,7 @@ void locate(State<Space, T, Dim>& s) {
           address(p) = grid.address_of(c);
         });
   }
-  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
-    const auto& points = s.rigid_points[r].points;
-    const auto home = points.home;
-    const auto x_p = points.coordinate;
-    const auto id = points.id;
-    const auto address = s.rigid_points[r].address;
-    const auto rigids = s.rigids;
-    Kokkos::parallel_for(
-        "mpm::locate_rigid", Kokkos::RangePolicy<Space>(s.space, 0, points.count), KOKKOS_LAMBDA(int p) {
-          Coord<Dim> c{};
-          double position[3] = {};
-          for (int d = 0; d < Dim; ++d) {
-            const double x = home(p)[d] + rigids(r).displacement[d] / spacing;
-            c[d] = static_cast<int>(Kokkos::floor(x));
-            x_p(p)[d] = static_cast<T>(x - Kokkos::floor(x));
-            position[d] = x * spacing;
-          }
-          if (!grid.holds(c))
-            return report(control, FaultKind::outside, -1 - static_cast<int>(r), position, Dim);
-          address(p) = grid.address_of(c);
-        });
-  }
+  locate_rigids(s);
 }
 
 template <class Space, class T, int Dim>
@@ -92,8 +123,8 @@ void activate_patches(State<Space, T, Dim>& s) {
   const auto marks = s.marks;
   const auto slot_of = patches.slot_of;
   Kokkos::deep_copy(s.space, marks, 0);
-  mark_patches(s.space, s.soil, marks, Patch<Dim>::cells);
-  for (const auto& set : s.rigid_points) mark_patches(s.space, set, marks, Patch<Dim>::cells);
+  mark_soil(s, marks);
+  for (const auto& set : s.rigid_points) mark_rigid(s, set, marks);
 
   Kokkos::parallel_scan(
       "mpm::number_patches", Range(s.space, 0, patch_count),
@@ -126,8 +157,9 @@ void activate_patches(State<Space, T, Dim>& s) {
       });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)         \
-  template void locate(State<Space, T, Dim>&); \
+#define MPM_INSTANTIATE(Space, T, Dim)                \
+  template void locate(State<Space, T, Dim>&);        \
+  template void locate_rigids(State<Space, T, Dim>&); \
   template void activate_patches(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -6,22 +6,25 @@
 namespace mpm {
 namespace {
 
-/// Cells of the points under the new patch table, counted and summed to ranges.
+/// Cells of the points under the new patch table, counted and summed to ranges. Points of patches without a
+/// mark have none: they go behind the others.
 template <class Space, class Points_, class Slots>
-void count_by_cell(const Space& space, Sorted<Space, Points_>& set, const Slots& slot_of, int cells,
-                   int cells_per_patch) {
+void count_by_cell(const Space& space, Sorted<Space, Points_>& set, const Slots& slot_of, const Slots& marks,
+                   int cells, int cells_per_patch) {
   using Range = Kokkos::RangePolicy<Space>;
   ensure(set.bins.begin, cells + 1);
-  ensure(set.order, set.points.count);
+  ensure(set.order, set.points.all);
   const auto begin = set.bins.begin, order = set.order;
   const auto cell = set.points.cell;
   const auto address = set.address;
   Kokkos::parallel_for(
       "mpm::clear_bins", Range(space, 0, cells + 1), KOKKOS_LAMBDA(int c) { begin(c) = 0; });
   Kokkos::parallel_for(
-      "mpm::count_by_cell", Range(space, 0, set.points.count), KOKKOS_LAMBDA(int p) {
-        const int c = slot_of(address(p) / cells_per_patch) * cells_per_patch +
-                      static_cast<int>(address(p) % cells_per_patch);
+      "mpm::count_by_cell", Range(space, 0, set.points.all), KOKKOS_LAMBDA(int p) {
+        const long patch = address(p) / cells_per_patch;
+        const bool held = address(p) >= 0 && marks(patch) != 0;
+        const int c =
+            held ? slot_of(patch) * cells_per_patch + static_cast<int>(address(p) % cells_per_patch) : cells;
         cell(p) = c;
         order(p) = Kokkos::atomic_fetch_add(&begin(c), 1);  // place in the cell, for now
       });
@@ -37,7 +40,7 @@ void count_by_cell(const Space& space, Sorted<Space, Points_>& set, const Slots&
 template <class Space, class Points_, class Spare>
 void order_points(const Space& space, Sorted<Space, Points_>& set, const Spare& spare, int cells) {
   using Range = Kokkos::RangePolicy<Space>;
-  const int count = set.points.count;
+  const int count = set.points.all;
   const auto begin = set.bins.begin, order = set.order;
   const auto cell = set.points.cell, id = set.points.id;
   Kokkos::View<int*, typename Space::memory_space, Kokkos::MemoryUnmanaged> former(
@@ -105,7 +108,7 @@ void slots_by_colour(const Space& space, Sorted<Space, Points_>& set, const Patc
 
 template <class Space, class Points_, int Dim, class Spare>
 void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches,
-              Spare& spare) {
+              const Kokkos::View<int*, typename Space::memory_space>& marks, Spare& spare) {
   const int cells = patches.node_count();
   auto& points = set.points;
   std::size_t widest =
@@ -113,14 +116,18 @@ void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Spa
   for_each_field(points, [&](const auto& field) {
     widest = std::max(widest, sizeof(PartOf<typename std::decay_t<decltype(field)>::value_type>));
   });
-  ensure(spare, widest * points.count);
+  ensure(spare, widest * points.all);
 
-  count_by_cell(space, set, patches.slot_of, cells, Patch<Dim>::cells);
+  count_by_cell(space, set, patches.slot_of, marks, cells, Patch<Dim>::cells);
   order_points(space, set, spare, cells);
-  permute(space, points.coordinate, set.order, points.count, spare);
-  permute(space, points.cell, set.order, points.count, spare);
-  permute(space, points.id, set.order, points.count, spare);
-  for_each_field(points, [&](const auto& field) { permute(space, field, set.order, points.count, spare); });
+  permute(space, points.coordinate, set.order, points.all, spare);
+  permute(space, points.cell, set.order, points.all, spare);
+  permute(space, points.id, set.order, points.all, spare);
+  for_each_field(points, [&](const auto& field) { permute(space, field, set.order, points.all, spare); });
+  Kokkos::View<int, Kokkos::HostSpace> held("mpm::held");
+  Kokkos::deep_copy(space, held, Kokkos::subview(set.bins.begin, cells));
+  space.fence("mpm::sort_set");
+  points.count = held();
   slots_by_colour(space, set, patches);
 }
 
@@ -128,8 +135,9 @@ void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Spa
 
 template <class Space, class T, int Dim>
 void sort_points(State<Space, T, Dim>& s) {
-  sort_set(s.space, s.soil, s.patches, s.spare);
-  for (auto& set : s.rigid_points) sort_set(s.space, set, s.patches, s.spare);
+  sort_set(s.space, s.soil, s.patches, s.marks, s.spare);
+  s.soil.points.all = s.soil.points.count;  // what is left belongs to other ranks now
+  for (auto& set : s.rigid_points) sort_set(s.space, set, s.patches, s.marks, s.spare);
 }
 
 template <class Space, class T, int Dim>

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rebuild.hpp"
+#include "step_kernels.hpp"
 
 namespace mpm {
 namespace {
@@ -121,7 +122,7 @@ void restore_whole(View& view, const std::vector<long>& values) {
 template <class Space, class Points_>
 std::string restore_points(Sorted<Space, Points_>& set, const SavedPoints& saved) {
   auto& points = set.points;
-  points.count = static_cast<int>(saved.id.size());
+  points.count = points.all = static_cast<int>(saved.id.size());
   std::string missing;
   const auto restore = [&](auto& view) {
     if (!restore_field(view, saved, points.count)) missing = name_of_view(view);
@@ -134,14 +135,17 @@ std::string restore_points(Sorted<Space, Points_>& set, const SavedPoints& saved
   return missing;
 }
 
+/// binned: the rigids stand where their points were binned, else where they are.
 template <class Space, class T, int Dim>
-void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved) {
+void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved, bool binned) {
   const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
   for (std::size_t r = 0; r < saved.rigids.size(); ++r)
     for (int d = 0; d < Dim; ++d) {
-      host(r).displacement[d] = saved.rigids[r].displacement[d];
-      host(r).velocity[d] = saved.rigids[r].velocity[d];
-      host(r).impulse[d] = saved.rigids[r].impulse[d];
+      const SavedRigid& from = saved.rigids[r];
+      host(r).displacement[d] = binned ? from.binned[d] : from.displacement[d];
+      host(r).binned[d] = from.binned[d];
+      host(r).velocity[d] = from.velocity[d];
+      host(r).impulse[d] = from.impulse[d];
     }
   Kokkos::deep_copy(s.rigids, host);
 }
@@ -181,8 +185,6 @@ SavedState save_state(const State<Space, T, Dim>& s) {
   const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
   saved.bound = control().bound, saved.increment = control().increment;
   saved.soil = save_points(s.grid, s.patches, s.soil.points);
-  for (const auto& set : s.rigid_points)
-    saved.rigid_points.push_back(save_points(s.grid, s.patches, set.points));
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
   for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
     SavedRigid& rigid = saved.rigids.emplace_back();
@@ -190,6 +192,7 @@ SavedState save_state(const State<Space, T, Dim>& s) {
       rigid.displacement[d] = rigids(r).displacement[d];
       rigid.velocity[d] = rigids(r).velocity[d];
       rigid.impulse[d] = rigids(r).impulse[d];
+      rigid.binned[d] = rigids(r).binned[d];
     }
   }
   saved.impulse = save_impulse(s);
@@ -197,30 +200,38 @@ SavedState save_state(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-std::string restore_state(State<Space, T, Dim>& s, const SavedState& saved) {
-  if (saved.rigids.size() != s.rigid_points.size() || saved.rigid_points.size() != s.rigid_points.size())
-    return "the number of rigids";
-  std::string missing = restore_points(s.soil, saved.soil);
-  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
-    const std::string of_rigid = restore_points(s.rigid_points[r], saved.rigid_points[r]);
-    if (missing.empty()) missing = of_rigid;
-  }
+std::string take_saved(State<Space, T, Dim>& s, const SavedState& saved) {
+  if (saved.rigids.size() != s.rigid_points.size()) return "the number of rigids";
+  const std::string missing = restore_points(s.soil, saved.soil);
   if (!missing.empty()) return missing;
-  restore_rigids(s, saved);
+  restore_rigids(s, saved, true);
+  locate_rigids(s);
+  return {};
+}
+
+template <class Space, class T, int Dim>
+void list_saved(State<Space, T, Dim>& s) {
   // A rebuild brings the pressures of a cell together (F-bar); here none is made, only its tables.
   const double share = std::exchange(s.f_bar_share, 0);
   sort_and_list(s);
   s.f_bar_share = share;
+}
+
+template <class Space, class T, int Dim>
+void finish_saved(State<Space, T, Dim>& s, const SavedState& saved) {
+  restore_rigids(s, saved, false);
+  move_rigid_points(s);
   restore_nodes(s, saved.impulse);
   restore_control(s, saved);
   s.soil_summed = false;
   s.space.fence("mpm::restore_state");
-  return {};
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                           \
-  template SavedState save_state(const State<Space, T, Dim>& s); \
-  template std::string restore_state(State<Space, T, Dim>&, const SavedState&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                       \
+  template SavedState save_state(const State<Space, T, Dim>& s);             \
+  template std::string take_saved(State<Space, T, Dim>&, const SavedState&); \
+  template void list_saved(State<Space, T, Dim>&);                           \
+  template void finish_saved(State<Space, T, Dim>&, const SavedState&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -10,9 +10,26 @@ namespace mpm {
 template <class Space, class T, int Dim>
 SavedState save_state(const State<Space, T, Dim>& s);
 
-/// Puts a saved state in the place of what `upload` made from the same input: the next step gives the bits
-/// that it would have given then, where space and real type are the same, too. Empty, or what does not fit.
+// A saved state takes the place of what `upload` made from the same input in three parts, between which
+// several ranks bring its points to their owners: the points, their order and lists, and all that hangs on
+// these. The next step then gives the bits that it would have given, where space and real type are the same.
+
+/// Empty, or what does not fit.
 template <class Space, class T, int Dim>
-std::string restore_state(State<Space, T, Dim>& s, const SavedState& saved);
+std::string take_saved(State<Space, T, Dim>& s, const SavedState& saved);
+template <class Space, class T, int Dim>
+void list_saved(State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void finish_saved(State<Space, T, Dim>& s, const SavedState& saved);
+
+/// All of it, on one rank. Empty, or what does not fit.
+template <class Space, class T, int Dim>
+std::string restore_state(State<Space, T, Dim>& s, const SavedState& saved) {
+  const std::string unfit = take_saved(s, saved);
+  if (!unfit.empty()) return unfit;
+  list_saved(s);
+  finish_saved(s, saved);
+  return {};
+}
 
 }  // namespace mpm

@@ -27,6 +27,7 @@ struct SavedPoints {
 /// How a rigid body moves.
 struct SavedRigid {
   std::array<double, 3> displacement{}, velocity{}, impulse{};  // m, m/s, N s since the last row
+  std::array<double, 3> binned{};  // m, displacement when its points were binned; they follow from it
 };
 
 /// Normal impulses at the nodes that friction has not used; nodes that hold none are left out.
@@ -36,9 +37,10 @@ struct SavedImpulse {
 };
 
 struct SavedState {
-  double bound = 0, increment = 0;  // cells, of Control
+  double bound = 0, increment = 0;  // cells, of Control; the largest of all ranks
+  std::vector<double> bounds;       // cells, of each of several ranks: what Ranks::save puts there
+  std::vector<long> owners;         // rank of each patch of the grid; empty on one rank
   SavedPoints soil;
-  std::vector<SavedPoints> rigid_points;  // of each rigid
   std::vector<SavedRigid> rigids;
   SavedImpulse impulse;
 };

@@ -1,6 +1,7 @@
 #pragma once
 // Everything that a time step works on, for one execution space, real type and dimension.
 
+#include <cstdint>
 #include <vector>
 
 #include "nodes.hpp"
@@ -42,6 +43,8 @@ struct State {
   Kokkos::View<double*, Memory>
       slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
   Nodes<Space, T, Dim> nodes;
+  Kokkos::View<std::uint64_t*, Memory>
+      counted;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
   ControlView<Space> control;
   Kokkos::View<double*, Memory> sums;  // N, force of the soil on each rigid in this step
   Kokkos::View<char*, Memory>

@@ -33,6 +33,10 @@ void update_particles(State<Space, T, Dim>& s, double dt);
 template <class Space, class T, int Dim>
 void move_rigids(State<Space, T, Dim>& s, double dt);
 
+/// Coordinates of the rigids' points, where their mass gives a normal, from where the rigids are.
+template <class Space, class T, int Dim>
+void move_rigid_points(State<Space, T, Dim>& s);
+
 /// Copy of the control block on the host. Waits for the steps before it.
 template <class Space, class T, int Dim>
 Control look(const State<Space, T, Dim>& s);

@@ -51,6 +51,7 @@ struct UpdateNodes {
   Kokkos::View<Vertex*, typename Space::memory_space> vertices;
   Kokkos::View<int*, typename Space::memory_space> near_slots;
   Kokkos::View<double*, typename Space::memory_space> forces;
+  Kokkos::View<std::uint64_t*, typename Space::memory_space> counted;
   Vector<T, Dim> g;
   T dt, damping, mass_cut;
   double spacing;
@@ -65,6 +66,8 @@ struct UpdateNodes {
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int k) {
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
       update<true>(slot * cells + k, force + k);
+      if (counted.extent(0) == 0 || (counted(slot) >> k & 1) != 0) return;
+      for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank tells it
     });
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, value_count), [&](int v) {
@@ -216,6 +219,7 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
                 s.vertices,
                 s.near_slots,
                 s.slot_forces,
+                s.counted,
                 {},
                 T(dt),
                 T(s.damping),

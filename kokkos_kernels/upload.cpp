@@ -1,6 +1,8 @@
 #include "upload.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "velocity_gradients.hpp"
@@ -22,7 +24,7 @@ void fill_view(View& view, const std::string& label, int count, Get&& get) {
 template <class Space, class T, int Dim, class Points_>
 void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<double>& position,
                   Sorted<Space, Points_>& set, Fault& fault) {
-  const int count = set.points.count;
+  const int count = set.points.all = set.points.count;
   std::vector<long> address(count);
   std::vector<Vector<T, Dim>> coordinate(count);
   for (int p = 0; p < count; ++p) {
@@ -61,6 +63,12 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
   place_points(s.grid, s.spacing, position, s.soil, fault);
 
   const auto in_body = [&](int p) { return p - first[body_of[p]]; };
+  const auto id_of = [&](int p) {
+    const BodyInput& body = bodies[body_of[p]];
+    return body.id.empty() ? p : body.id[in_body(p)];
+  };
+  fill_view(soil.id, "mpm::id", soil.count, id_of);
+  if (fault.kind != FaultKind::none) fault.particle = id_of(fault.particle);
   fill_view(soil.body, "mpm::body", soil.count,
             [&](int p) { return static_cast<std::uint16_t>(body_of[p]); });
   fill_view(soil.velocity, "mpm::velocity", soil.count, [&](int p) {
@@ -104,7 +112,9 @@ void upload_affine(State<Space, T, Dim>& s, const std::vector<BodyInput>& bodies
   for (const BodyInput& body : bodies) {
     std::vector<double> cells = body.position;
     for (double& x : cells) x /= s.spacing;
-    if (body.particle_velocity.empty())
+    if (!body.velocity_gradient.empty())
+      gradient.insert(gradient.end(), body.velocity_gradient.begin(), body.velocity_gradient.end());
+    else if (body.particle_velocity.empty())
       gradient.resize(gradient.size() + cells.size() * Dim);
     else
       for (const double g : velocity_gradients(cells, body.particle_velocity, Dim)) gradient.push_back(g);
@@ -236,33 +246,26 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   return fault;
 }
 
-template <class Space, class T, int Dim, class Points_>
-std::vector<double> positions_of(const State<Space, T, Dim>& s, const Points_& points) {
-  const auto x_p = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.coordinate);
-  const auto cell = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.cell);
-  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
-  const auto origin = Kokkos::create_mirror_view_and_copy(
-      Kokkos::HostSpace(), Kokkos::subview(s.patches.origin, Kokkos::make_pair(0, s.patches.slots)));
-  std::vector<double> position(std::size_t(points.count) * Dim);
-  for (int p = 0; p < points.count; ++p) {
-    const Coord<Dim> from = origin(cell(p) / Patch<Dim>::cells), in = coord_of<Dim>(cell(p));
-    for (int d = 0; d < Dim; ++d)
-      position[std::size_t(id(p)) * Dim + d] = (double(from[d] + in[d]) + double(x_p(p)[d])) * s.spacing;
-  }
-  return position;
-}
-
 template <class Space, class T, int Dim>
 SoilFields download_soil(const State<Space, T, Dim>& s) {
   const auto& soil = s.soil.points;
+  const auto host_of = [&](const auto& view) {
+    const auto held = Kokkos::subview(view, Kokkos::make_pair(0, soil.count));
+    return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), held);
+  };
   SoilFields fields;
-  fields.position = positions_of(s, soil);
-  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), soil.id);
+  const auto id = host_of(soil.id);
+  fields.id.assign(id.data(), id.data() + soil.count);
+  std::vector<int> by_id(soil.count);  // particles in the order of id
+  std::iota(by_id.begin(), by_id.end(), 0);
+  std::sort(by_id.begin(), by_id.end(), [&](int p, int q) { return fields.id[p] < fields.id[q]; });
+  std::sort(fields.id.begin(), fields.id.end());
+
   const auto spread = [&](const auto& view, int width, std::vector<double>& out, auto&& component) {
-    const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
-    out.resize(std::size_t(soil.count) * width);
-    for (int p = 0; p < soil.count; ++p)
-      for (int k = 0; k < width; ++k) out[std::size_t(id(p)) * width + k] = component(host(p), k);
+    const auto host = host_of(view);
+    out.reserve(std::size_t(soil.count) * width);
+    for (const int p : by_id)
+      for (int k = 0; k < width; ++k) out.push_back(component(host(p), k));
   };
   const auto part = [](const auto& value, int k) { return double(value[k]); };
   const auto whole = [](const auto& value, int) { return double(value); };
@@ -270,6 +273,16 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
   spread(soil.stress, sym_size<Dim>, fields.stress, part);
   spread(soil.volume, 1, fields.volume, whole);
   spread(soil.plastic_strain, 1, fields.plastic_strain, whole);
+
+  const auto x_p = host_of(soil.coordinate);
+  const auto cell = host_of(soil.cell);
+  const auto origin = Kokkos::create_mirror_view_and_copy(
+      Kokkos::HostSpace(), Kokkos::subview(s.patches.origin, Kokkos::make_pair(0, s.patches.slots)));
+  for (const int p : by_id) {
+    const Coord<Dim> from = origin(cell(p) / Patch<Dim>::cells), in = coord_of<Dim>(cell(p));
+    for (int d = 0; d < Dim; ++d)
+      fields.position.push_back((double(from[d] + in[d]) + double(x_p(p)[d])) * s.spacing);
+  }
   return fields;
 }
 
@@ -279,8 +292,8 @@ std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int 
   const auto home = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.home);
   const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
-  std::vector<double> position(std::size_t(points.count) * Dim);
-  for (int p = 0; p < points.count; ++p)
+  std::vector<double> position(std::size_t(points.all) * Dim);
+  for (int p = 0; p < points.all; ++p)
     for (int d = 0; d < Dim; ++d)
       position[std::size_t(id(p)) * Dim + d] = home(p)[d] * s.spacing + rigids(rigid).displacement[d];
   return position;

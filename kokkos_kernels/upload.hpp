@@ -33,6 +33,8 @@ struct BodyInput {
   std::vector<double> stress;             // Pa [sym_size N], or empty for none
   std::vector<double> particle_velocity;  // m/s [Dim N], or empty where `velocity` holds for all
   std::vector<double> plastic_strain;     // - [N], or empty for none
+  std::vector<double> velocity_gradient;  // m/s a cell [Dim^2 N], or empty where the velocities tell it
+  std::vector<int> id;                    // [N], or empty where they are counted from 0
   double particle_volume = 0;             // m3
   double half_length = 0.25;              // cells
   double density = 0;                     // kg/m3
@@ -75,8 +77,10 @@ template <class Space, class T, int Dim>
 Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
              const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids);
 
-/// Fields of the soil on the host in the order of creation, as wide as SymTensor and Vector are.
+/// Fields of the soil on the host, as wide as SymTensor and Vector are: on one rank in the order of creation,
+/// on several those of this rank's particles, in the order of `id`.
 struct SoilFields {
+  std::vector<int> id;           // rising
   std::vector<double> position;  // m from the mesh's lower corner
   std::vector<double> velocity, stress, volume, plastic_strain;
 };

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "output/remembered.hpp"
+#include "parallel/together.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {
@@ -27,12 +28,12 @@ std::optional<double> time_of_steps(Stepper& stepper, double dt) {
   Batch batch;
   if (stepper.advance(k_first, dt, &batch) != PETSC_SUCCESS || batch.steps < k_first) return std::nullopt;
   std::optional<double> best;
-  const double start = seconds_now();
-  for (long steps = 1; steps <= k_most && seconds_now() - start < k_enough; steps *= 2) {
-    const double before = seconds_now();
+  double all = 0;
+  for (long steps = 1; steps <= k_most && all < k_enough; steps *= 2) {
     if (stepper.advance(steps, dt, &batch) != PETSC_SUCCESS) return std::nullopt;
     if (batch.steps < steps) break;  // a rebuild is due
-    const double took = (seconds_now() - before) / steps;
+    const double took = batch.seconds / steps;
+    all += batch.seconds;
     best = std::min(best.value_or(took), took);
   }
   return best;
@@ -40,8 +41,9 @@ std::optional<double> time_of_steps(Stepper& stepper, double dt) {
 
 /// Tries one strategy; adds what it took to `told`. A strategy whose lists do not fit into memory is left
 /// out.
-std::optional<double> try_strategy(const Config& config, Model model, double dt, std::string* told) {
-  const auto stepper = make_stepper(config);
+std::optional<double> try_strategy(const Config& config, MPI_Comm comm, Model model, double dt,
+                                   std::string* told) {
+  const auto stepper = make_stepper(config, comm);
   Failure failure;
   if (stepper->set_up(std::move(model), &failure) != PETSC_SUCCESS || !failure.what.empty())
     return std::nullopt;
@@ -59,9 +61,11 @@ PetscErrorCode Simulation::Body::choose_strategy(const Model& model, const std::
   std::size_t coordinates = 1;
   for (const BodyParticles& body : model.bodies) coordinates += body.position.size();
   const int size = static_cast<int>(std::lround(std::log2(double(coordinates) / config.dim)));
+  const int ranks = size_of(comm);
   const std::string key =
       formatted("mpm %s, %s, %s, %dD, 2^%d particles", k_version, device.c_str(),
-                config.precision == Precision::single ? "single" : "double", config.dim, size);
+                config.precision == Precision::single ? "single" : "double", config.dim, size) +
+      (ranks > 1 ? formatted(", %d ranks", ranks) : "");
   std::string told;
   const auto fastest = [&] {
     Config trial = config;
@@ -69,13 +73,20 @@ PetscErrorCode Simulation::Body::choose_strategy(const Model& model, const std::
     PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);  // what a trial cannot do, the run may
     for (const P2G strategy : candidates(config.backend)) {
       trial.p2g.strategy = strategy;
-      const auto seconds = try_strategy(trial, model, dt, &told);
+      const auto seconds = try_strategy(trial, comm, model, dt, &told);
       if (seconds && (best.second == P2G::automatic || *seconds < best.first)) best = {*seconds, strategy};
     }
     PetscPopErrorHandler();
     return best.second == P2G::automatic ? 0.0 : 1.0 + static_cast<int>(best.second);
   };
-  const double kept = remembered("fastest_strategy", key, fastest);
+  double kept = 0;  // what rank 0 remembers; if it does not, all try
+  if (rank_of(comm) == 0) kept = remembered("fastest_strategy", key, [] { return 0.0; });
+  PetscCall(share_numbers(comm, 1, &kept));
+  if (kept == 0) {
+    kept = fastest();
+    PetscCall(share_numbers(comm, 1, &kept));
+    if (rank_of(comm) == 0) remembered("fastest_strategy", key, [&] { return kept; });
+  }
   if (kept >= 1 && kept <= static_cast<int>(P2G::automatic))
     config.p2g.strategy = static_cast<P2G>(int(kept) - 1);
   if (!told.empty())

@@ -64,10 +64,26 @@ double free_host_memory() {
   return 0;
 }
 
-std::string memory_fault(const Config& config) {
+/// The part of the whole need that falls to one rank, or to the ranks of one node that share its memory.
+MemoryNeed need_here(const Config& config, MPI_Comm comm, bool shared) {
+  MemoryNeed need = memory_need(config);
+  int ranks = 1, here = 1;
+  MPI_Comm_size(comm, &ranks);
+  if (ranks == 1) return need;
+  MPI_Comm node = MPI_COMM_NULL;
+  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+  MPI_Comm_size(node, &here);
+  MPI_Comm_free(&node);
+  need.device *= double(shared ? here : 1) / ranks;
+  // Every rank makes the whole lattice before it keeps its own; rank 0 puts the frames together.
+  need.host += here * need.particles * config.dim * sizeof(double);
+  return need;
+}
+
+std::string memory_fault(const Config& config, MPI_Comm comm) {
   constexpr double k_most_particles = 2147483647;  // they are numbered by int
-  const MemoryNeed need = memory_need(config);
   const bool shared = config.backend != Backend::cuda;
+  const MemoryNeed need = need_here(config, comm, shared);
   const double device = free_memory(config.backend), host = free_host_memory();
   const double on_device = need.device + (shared ? need.host : 0);
   std::string why;

@@ -1,6 +1,8 @@
 #pragma once
 // Whether a run fits into memory, before anything is made.
 
+#include <mpi.h>
+
 #include <string>
 
 #include "mpm/config.hpp"
@@ -20,6 +22,7 @@ double free_memory(Backend backend);
 double free_host_memory();
 
 /// Why a run cannot fit, as a line for the user; empty if it can.
-std::string memory_fault(const Config& config);
+/// On several ranks it is that of the rank that asks; its node holds others too. Collective.
+std::string memory_fault(const Config& config, MPI_Comm comm = MPI_COMM_SELF);
 
 }  // namespace mpm

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "output/files.hpp"
+#include "parallel/together.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {
@@ -50,9 +52,8 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     else
       steps = 1;
     Batch batch;
-    const double before = seconds_now();
     PetscCall(stepper->advance(steps, step_dt, &batch));
-    const double took = seconds_now() - before;
+    const double took = batch.seconds;
     stepping += took;
     batch_limit = std::max(1L, static_cast<long>(k_look_every * batch.steps / std::max(took, 1e-9)));
     estimate = batch.estimate;
@@ -95,6 +96,8 @@ PetscErrorCode Simulation::Body::rebuild(const Batch& batch) {
   const double before = seconds_now();
   PetscCall(stepper->rebuild(&failure));
   stepping += seconds_now() - before;
+  if (const std::string news = stepper->take_news(); !news.empty())
+    PetscCall(log.print("step %ld: %s", step, news.c_str()));
   if (!failure.what.empty()) PetscCall(fail(failure.what));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,17 +109,18 @@ PetscErrorCode Simulation::Body::write_row() {
   row.time = schedule.time_of(step);
   row.dt = step > 0 ? schedule.step_size(step - 1) : dt;
   row.wall_time = wall();
-  stepper->measure(row.time - last_row_time, &row);
+  PetscCall(stepper->measure(row.time - last_row_time, &row));
   last_row_time = row.time;
-  PetscCall(history.write(row));
+  PetscCall(agree(comm, rank_of(comm) == 0 ? history.write(row) : PETSC_SUCCESS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode Simulation::Body::write_frame() {
   PetscFunctionBeginUser;
+  if (config.output.partition) PetscCall(write_partition());
   if (!config.output.frames) PetscFunctionReturn(PETSC_SUCCESS);
   Snapshot snapshot;
-  stepper->snapshot(&snapshot);
+  PetscCall(stepper->snapshot(&snapshot));
   snapshot.step = step;
   snapshot.time = schedule.time_of(step);
   PetscCall(frames.write(std::move(snapshot)));
@@ -132,10 +136,24 @@ PetscErrorCode Simulation::Body::write_last_output() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Which rank owns what, as rows of partition.csv.
+PetscErrorCode Simulation::Body::write_partition() {
+  PetscFunctionBeginUser;
+  std::vector<OwnedPatch> patches;
+  PetscCall(stepper->ownership(&patches));
+  for (const OwnedPatch& p : patches)
+    partition_rows += formatted("%ld,%.9g,%d,%d,%d,%d,%d\n", step, schedule.time_of(step), p.place[0],
+                                p.place[1], p.place[2], p.particles, p.rank);
+  const std::string path = config.output.directory + "/partition.csv";
+  const std::string head = "step,time,patch_x,patch_y,patch_z,particles,rank\n";
+  PetscCall(agree(comm, rank_of(comm) == 0 ? replace_file(path, head + partition_rows) : PETSC_SUCCESS));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode Simulation::Body::finish() {
   PetscFunctionBeginUser;
   PetscCall(frames.settle());
-  PetscCall(history.close());
+  PetscCall(agree(comm, history.close()));
   if (step > began.step) {
     PetscCall(
         log.line(format_performance({.functions = stepper->times(),
@@ -151,13 +169,14 @@ PetscErrorCode Simulation::Body::finish() {
                                      .device = device_name(config.backend),
                                      .memory = double(stepper->memory()),
                                      .bandwidth = bandwidth})));
+    if (const std::string ranks = stepper->ranks_report(); !ranks.empty()) PetscCall(log.line(ranks));
   }
   const char* how = outcome == Outcome::finished  ? "finished"
                     : outcome == Outcome::stopped ? "stopped"
                                                   : "failed";
   PetscCall(log.print("%s after %ld steps at time %g s; results are in %s", how, step, schedule.time_of(step),
                       config.output.directory.c_str()));
-  PetscCall(log.close());
+  PetscCall(agree(comm, log.close()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -38,6 +38,7 @@ struct Simulation::Body {
   FrameQueue frames;
 
   long step = 0;
+  std::string partition_rows;                                       // of partition.csv
   double last_row_time = 0;                                         // s
   double wall_start = 0;                                            // s
   double bandwidth = 0;                                             // bytes/s of the device's copy
@@ -69,6 +70,8 @@ struct Simulation::Body {
   PetscErrorCode write_row();
   PetscErrorCode write_frame();
   PetscErrorCode write_last_output();
+  PetscErrorCode write_partition();
+  PetscErrorCode share_errors();
   PetscErrorCode finish();
 
   // simulation_checkpoint.cpp

@@ -6,6 +6,7 @@
 #include "checkpoint/changes.hpp"
 #include "checkpoint/folder.hpp"
 #include "output/files.hpp"
+#include "parallel/together.hpp"
 #include "signals.hpp"
 #include "simulation_body.hpp"
 
@@ -115,7 +116,7 @@ PetscErrorCode Simulation::Body::resume() {
   since_rebuild = began.since_rebuild, rebuilds = began.rebuilds;
   longest = began.longest, shortest = began.shortest;
   bool rebuilt = false;
-  PetscCall(stepper->restore(restart->state, since_rebuild, &rebuilt));
+  PetscCall(stepper->restore(std::move(restart->state), since_rebuild, &rebuilt));
   if (rebuilt) since_rebuild = 0;
   for (const std::string& line : passed_over) PetscCall(log.line(line));
   PetscCall(log.print("goes on from %s: step %ld, time %.9g s", restart_file.c_str(), step, began.time));
@@ -125,13 +126,15 @@ PetscErrorCode Simulation::Body::resume() {
                          ? "backend, precision, strategy and ranks are the same, and so will be the bits"
                          : changes + ": results will be the same up to round-off"));
   int removed = 0;
-  PetscCall(go_back_to(config.output.directory, step, restart->frames, &removed));
+  const bool first = rank_of(comm) == 0;
+  PetscCall(agree(
+      comm, first ? go_back_to(config.output.directory, step, restart->frames, &removed) : PETSC_SUCCESS));
   if (removed > 0)
     PetscCall(log.print("%d files that were written later, or not finished, were removed", removed));
   if (history_rows.empty())
     PetscCall(log.line("there is no history.csv to go on with: a new one begins here"));
-  PetscCall(history.open(config, history_rows));
-  PetscCall(frames.resume(config, restart->frames));
+  PetscCall(agree(comm, first ? history.open(config, history_rows) : PETSC_SUCCESS));
+  PetscCall(frames.resume(config, restart->frames, comm));
   restart.reset();
   history_rows.clear();
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -166,10 +169,14 @@ PetscErrorCode Simulation::Body::write_checkpoint() {
   c.run = {step,     schedule.time_of(step), dt,       last_row_time, wall(),
            stepping, since_rebuild,          rebuilds, longest,       shortest};
   PetscCall(frames.settle());
-  PetscCall(history.settle(&c.history));
-  PetscCallCXX(c.state = stepper->save());
+  const bool first = rank_of(comm) == 0;
+  PetscCall(agree(comm, first ? history.settle(&c.history) : PETSC_SUCCESS));
+  double mark[2] = {double(c.history.bytes), double(c.history.crc)};
+  PetscCall(share_numbers(comm, 2, mark));
+  c.history = {static_cast<long>(mark[0]), static_cast<std::uint32_t>(mark[1])};
+  PetscCall(stepper->save(&c.state));
   PetscCall(mpm::write_checkpoint(comm, checkpoint_path(folder, step), std::move(c)));
-  PetscCall(keep_last_checkpoints(folder));
+  PetscCall(agree(comm, first ? keep_last_checkpoints(folder) : PETSC_SUCCESS));
   checkpointed = step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,11 +4,14 @@
 #include <cstdio>
 
 #include "input/particle_file.hpp"
+#include "input/text.hpp"
 #include "memory_need.hpp"
 #include "mesh/background.hpp"
 #include "output/files.hpp"
 #include "output/remembered.hpp"
 #include "output/run_options.hpp"
+#include "parallel/distribute.hpp"
+#include "parallel/together.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {
@@ -28,27 +31,33 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
   Body& b = *body_;
   b.comm = comm;
   b.report = arguments;
-  PetscMPIInt ranks = 1;
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
   PetscCall(read_options(prefix, available_backends(), b.config, b.report));
   if (b.report.help) {
     PetscCall(print_help(comm, b.report));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (ranks > 1)
-    b.report.errors = {"mpm: started with " + std::to_string(ranks) +
-                       " ranks, takes 1: runs over several ranks are not there yet"};
   if (b.report.errors.empty()) b.check_mesh();
   if (b.report.errors.empty()) PetscCall(b.choose_time_step());
   if (b.report.errors.empty())
-    if (const std::string fault = memory_fault(b.config); !fault.empty()) b.report.errors.push_back(fault);
+    if (const std::string fault = memory_fault(b.config, comm); !fault.empty())
+      b.report.errors.push_back(fault);
   if (b.report.errors.empty() && !b.config.output.restart.empty()) PetscCall(b.read_restart());
+  PetscCall(b.share_errors());
   if (!b.report.errors.empty()) {
     PetscCall(print_errors(comm, b.report));
     b.outcome = Outcome::bad_input;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   b.ready = true;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The mistakes that the lowest rank with any has found, on every rank.
+PetscErrorCode Simulation::Body::share_errors() {
+  PetscFunctionBeginUser;
+  std::string text = join(report.errors, "\n");
+  PetscCall(share_text(comm, &text));
+  if (!text.empty()) report.errors = {text};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,43 +101,48 @@ PetscErrorCode Simulation::Body::choose_time_step() {
 
 PetscErrorCode Simulation::Body::start() {
   PetscFunctionBeginUser;
-  stepper = make_stepper(config);
+  stepper = make_stepper(config, comm);
   PetscCheck(stepper, comm, PETSC_ERR_SUP,
              "This program was built without this backend, precision or dimension");
   PetscCall(log.start(comm, config.output.progress));
+  const int ranks = size_of(comm);
+  const bool first = rank_of(comm) == 0;
   int removed = 0;
   if (restart)
-    PetscCall(make_folder(config.output.directory));
+    PetscCall(agree(comm, first ? make_folder(config.output.directory) : PETSC_SUCCESS));
   else
-    PetscCall(prepare_output_folder(config.output.directory, &removed));
-  PetscCall(
-      log.line(format_header(k_version, kokkos_version(),
-                             std::string(word_of(config.backend)) + ", " + device_name(config.backend), 1)));
-  PetscCall(log.open(config.output.directory, restart.has_value()));
+    PetscCall(agree(comm, first ? prepare_output_folder(config.output.directory, &removed) : PETSC_SUCCESS));
+  PetscCall(log.line(format_header(k_version, kokkos_version(),
+                                   std::string(word_of(config.backend)) + ", " + device_name(config.backend),
+                                   ranks)));
+  PetscCall(agree(comm, log.open(config.output.directory, restart.has_value())));
   if (removed > 0)
     PetscCall(log.print("%d files of an earlier run were removed from %s", removed,
                         config.output.directory.c_str()));
   PetscCall(log.line("options in force\n" + format_options(report.options)));
-  PetscCall(write_options_json(config.output.directory, k_version, report.options));
+  PetscCall(agree(
+      comm, first ? write_options_json(config.output.directory, k_version, report.options) : PETSC_SUCCESS));
 
   const Backend backend = config.backend;
   const std::string processor = backend == Backend::cuda ? "" : processor_name();
   const std::string device =
       formatted("%s, %s %s", word_of(backend), device_name(backend).c_str(), processor.c_str());
-  bandwidth = remembered("copy_bandwidth", device, [&] { return copy_bandwidth(backend); });
+  if (first) bandwidth = remembered("copy_bandwidth", device, [&] { return copy_bandwidth(backend); });
   Model model;
   Failure failure;
   PetscCall(load(&model));
   if (restart) keep_strategy();
   if (config.p2g.strategy == P2G::automatic) PetscCall(choose_strategy(model, device));
-  stepper = make_stepper(config);
+  stepper = make_stepper(config, comm);
   PetscCall(stepper->set_up(std::move(model), &failure));
   if (!failure.what.empty()) {
     PetscCall(fail(failure.what));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(log.print("%ld particles in %d patches, %.1f MB on the device; strategy %s", stepper->particles(),
-                      stepper->patches(), stepper->memory() / 1e6, stepper->strategy().c_str()));
+  PetscCall(log.print("%ld particles in %d patches, %.1f MB on the device%s; strategy %s",
+                      stepper->particles(), stepper->patches(), stepper->memory() / 1e6, ranks > 1 ? "s" : "",
+                      stepper->strategy().c_str()));
+  if (const std::string report = stepper->ranks_report(); !report.empty()) PetscCall(log.line(report));
   PetscCall(log.print("time step %.9g s, Courant number %.4f; %ld steps to %g s", dt,
                       dt / critical_time_step(config), schedule.last_step(),
                       schedule.time_of(schedule.last_step())));
@@ -137,8 +151,9 @@ PetscErrorCode Simulation::Body::start() {
     wall_start = seconds_now();
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(history.open(config));
-  frames.open(config.output.directory, config.precision, {config.output.fields, config.output.compression});
+  PetscCall(agree(comm, first ? history.open(config) : PETSC_SUCCESS));
+  frames.open(config.output.directory, config.precision, {config.output.fields, config.output.compression},
+              comm);
   wall_start = seconds_now();
   PetscCall(write_row());
   PetscCall(write_frame());
@@ -150,7 +165,7 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   PetscFunctionBeginUser;
   BackgroundMesh mesh;
   PetscCall(mesh.create(comm, config.mesh, config.dim));
-  PetscCall(mesh.patches_with_ring(model->patches));
+  model->patches = mesh.patches_with_ring();
   for (const auto& body : config.bodies) {
     const bool listed = body.shape.kind == ShapeKind::particles;
     BodyParticles& particles = model->bodies.emplace_back();
@@ -163,6 +178,7 @@ PetscErrorCode Simulation::Body::load(Model* model) {
     for (BodyParticles& particles : *all)
       for (std::size_t k = 0; k < particles.position.size(); ++k)
         particles.position[k] -= config.mesh.lower[k % config.dim];
+  PetscCall(distribute(comm, config, mesh, model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

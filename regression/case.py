@@ -71,8 +71,9 @@ class Case:
         return "\n\n".join(self.module.__doc__.split("\n\n")[1:]).strip()
 
 
-def run_program(binary, case, run, variant, folder, more=""):
-    """Runs the program once, in a variant (back end, precision, ...); its output as a Run, and the time it took, s."""
+def run_program(binary, case, run, variant, folder, more="", ranks=1):
+    """Runs the program once, in a variant (back end, precision, ...) and on so many ranks; its output as a Run, and the
+    time it took, s."""
     backend, precision = variant[:2]
     folder.mkdir(parents=True, exist_ok=True)
     start = folder / f"{run}.start.h5"
@@ -80,6 +81,8 @@ def run_program(binary, case, run, variant, folder, more=""):
     if hasattr(case.module, "prepare"):
         case.module.prepare(run, start, options)
     command = [str(binary), "-options_file", case.deck, *options, "-output_dir", str(folder / run), "-progress", "off"]
+    if ranks > 1:
+        command = [launcher(), "-n", str(ranks), "--bind-to", "none", *command]
     begin = time.time()
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
     if done.returncode != 0:
@@ -87,7 +90,13 @@ def run_program(binary, case, run, variant, folder, more=""):
     return Run(folder / run), time.time() - begin
 
 
+def launcher():
+    """The mpirun of a bundle, or that of the machine."""
+    bundled = ROOT / "bin" / "mpirun"
+    return str(bundled) if bundled.exists() else "mpirun"
+
+
 def environment():
-    """Open MPI refuses root unless told; threads that wait give way to those of other runs."""
-    return {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_PROC_BIND": "false",
+    """Open MPI refuses root, and more ranks than cores, unless told; threads that wait give way to those of other runs."""
+    return {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_PROC_BIND": "false",
             "OMP_WAIT_POLICY": "passive", **os.environ}

@@ -14,10 +14,9 @@ namespace mpm {
 ///   list(path, vector)            numbers that every rank holds whole
 ///   text(path, string)            any length
 ///   points(path, points, block)  a set of points, of which each rank holds a block
-/// `soil` and `rigids` tell the blocks of the sets.
+/// `soil` tells the block of the particles.
 template <class Archive>
-void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& soil,
-                std::vector<IdBlock>& rigids) {
+void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& soil) {
   archive.value("version", c.version), archive.value("dim", c.dim), archive.value("ranks", c.ranks);
   archive.value("backend", c.backend), archive.value("precision", c.precision);
   archive.value("strategy", c.strategy), archive.value("step", c.run.step), archive.value("time", c.run.time);
@@ -33,20 +32,17 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
   archive.points("soil", c.state.soil, soil);
   std::vector<double> motion;
   for (const SavedRigid& rigid : c.state.rigids)
-    for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse})
+    for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse, &rigid.binned})
       motion.insert(motion.end(), vector->begin(), vector->end());
   archive.list("rigids", motion);
-  constexpr std::size_t k_motion = 9;
+  constexpr std::size_t k_motion = 12;
   c.state.rigids.resize(motion.size() / k_motion);
   for (std::size_t k = 0; k < c.state.rigids.size() * k_motion; ++k) {
     SavedRigid& rigid = c.state.rigids[k / k_motion];
-    std::array<double, 3>* vectors[] = {&rigid.displacement, &rigid.velocity, &rigid.impulse};
+    std::array<double, 3>* vectors[] = {&rigid.displacement, &rigid.velocity, &rigid.impulse, &rigid.binned};
     (*vectors[k % k_motion / 3])[k % 3] = motion[k];
   }
-  c.state.rigid_points.resize(c.state.rigids.size());
-  rigids.resize(c.state.rigids.size());
-  for (std::size_t r = 0; r < rigids.size(); ++r)
-    archive.points("rigid_" + std::to_string(r), c.state.rigid_points[r], rigids[r]);
+  archive.list("bounds", c.state.bounds), archive.list("owners", c.state.owners);
   archive.list("impulse_address", c.state.impulse.address);
   archive.list("impulse", c.state.impulse.values);
 }

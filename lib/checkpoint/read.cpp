@@ -169,8 +169,7 @@ std::string read_items(const std::string& path, int rank, int ranks, Checkpoint&
   Reader reader(file.id, rank, ranks);
   std::string options;
   IdBlock soil;
-  std::vector<IdBlock> rigids;
-  go_through(reader, checkpoint, options, soil, rigids);
+  go_through(reader, checkpoint, options, soil);
   if (!reader.fault().empty()) return "a checkpoint with a sound " + reader.fault();
   return options_of_text(options, checkpoint.options) ? "" : "a checkpoint with sound options";
 }

@@ -60,12 +60,10 @@ std::string state_fault(const SavedState& state, const Config& config) {
   if (!std::all_of(state.impulse.values.begin(), state.impulse.values.end(), finite))
     return "a checkpoint with a sound impulse";
   for (const SavedRigid& rigid : state.rigids)
-    for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse})
+    for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse, &rigid.binned})
       if (!std::all_of(vector->begin(), vector->end(), finite)) return "a checkpoint with sound rigids";
-  std::string fault = points_fault(state.soil, config, "soil");
-  for (std::size_t r = 0; r < rigids && fault.empty(); ++r)
-    fault = points_fault(state.rigid_points[r], config, config.rigids[r].name);
-  return fault;
+  if (!std::all_of(state.bounds.begin(), state.bounds.end(), finite)) return "a checkpoint with sound bounds";
+  return points_fault(state.soil, config, "soil");
 }
 
 }  // namespace mpm

@@ -89,18 +89,16 @@ class Writer {
 };
 
 /// All items, to a file that is open.
-std::string write_items(hid_t file, hid_t transfer, bool speaks, Checkpoint& checkpoint, IdBlock& soil,
-                        std::vector<IdBlock>& rigids) {
+std::string write_items(hid_t file, hid_t transfer, bool speaks, Checkpoint& checkpoint, IdBlock& soil) {
   Writer writer(file, transfer, speaks);
   std::string options = text_of_options(checkpoint.options);
-  go_through(writer, checkpoint, options, soil, rigids);
+  go_through(writer, checkpoint, options, soil);
   return writer.fault();
 }
 
 /// On one rank HDF5 makes the file in memory, for it does not survive a disk that fills while it writes: its
 /// close fails, and its clean-up at the end of the program then crashes.
-PetscErrorCode write_alone(const std::string& path, Checkpoint& checkpoint, IdBlock& soil,
-                           std::vector<IdBlock>& rigids) {
+PetscErrorCode write_alone(const std::string& path, Checkpoint& checkpoint, IdBlock& soil) {
   constexpr size_t k_growth = 16 << 20;  // bytes
   PetscFunctionBeginUser;
   std::string image;
@@ -109,7 +107,7 @@ PetscErrorCode write_alone(const std::string& path, Checkpoint& checkpoint, IdBl
     H5Pset_fapl_core(access.id, k_growth, /*backing_store*/ false);
     Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id), H5Fclose);
     PetscCheck(file.id >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at creation of %s", path.c_str());
-    const std::string fault = write_items(file.id, H5P_DEFAULT, true, checkpoint, soil, rigids);
+    const std::string fault = write_items(file.id, H5P_DEFAULT, true, checkpoint, soil);
     PetscCheck(fault.empty(), PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s of %s", fault.c_str(),
                path.c_str());
     checkpoint.state = {};
@@ -134,23 +132,23 @@ PetscErrorCode all_well(MPI_Comm comm, const std::string& fault, bool* well) {
 
 /// Several ranks write one file through MPI-IO, each its rows of every set.
 std::string write_rows(MPI_Comm comm, int rank, const std::string& path, Checkpoint& checkpoint,
-                       IdBlock& soil, std::vector<IdBlock>& rigids) {
+                       IdBlock& soil) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose), transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
   if (H5Pset_fapl_mpio(access.id, comm, MPI_INFO_NULL) < 0 ||
       H5Pset_dxpl_mpio(transfer.id, H5FD_MPIO_COLLECTIVE) < 0)
     return "MPI-IO";
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id);
   if (file < 0) return "creation";
-  std::string fault = write_items(file, transfer.id, rank == 0, checkpoint, soil, rigids);
+  std::string fault = write_items(file, transfer.id, rank == 0, checkpoint, soil);
   if (H5Fclose(file) < 0 && fault.empty()) fault = "closing";
   return fault;
 }
 
 PetscErrorCode write_together(MPI_Comm comm, int rank, const std::string& path, Checkpoint& checkpoint,
-                              IdBlock& soil, std::vector<IdBlock>& rigids) {
+                              IdBlock& soil) {
   PetscFunctionBeginUser;
   const std::string temporary = path + ".tmp";
-  std::string fault = write_rows(comm, rank, temporary, checkpoint, soil, rigids);
+  std::string fault = write_rows(comm, rank, temporary, checkpoint, soil);
   bool well = true;
   PetscCall(all_well(comm, fault, &well));
   PetscCheck(well, comm, PETSC_ERR_LIB, "HDF5 failed at %s of %s", fault.c_str(), path.c_str());
@@ -172,15 +170,12 @@ PetscErrorCode write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoi
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
   SavedState& state = checkpoint.state;
   IdBlock soil;
-  std::vector<IdBlock> rigids(state.rigid_points.size());
   PetscCall(bring_to_blocks(comm, state.soil, &soil));
-  for (size_t r = 0; r < rigids.size(); ++r)
-    PetscCall(bring_to_blocks(comm, state.rigid_points[r], &rigids[r]));
-  PetscCall(gather_impulse(comm, static_cast<int>(rigids.size()), state.impulse));
+  PetscCall(gather_impulse(comm, static_cast<int>(state.rigids.size()), state.impulse));
   if (ranks == 1)
-    PetscCall(write_alone(path, checkpoint, soil, rigids));
+    PetscCall(write_alone(path, checkpoint, soil));
   else
-    PetscCall(write_together(comm, rank, path, checkpoint, soil, rigids));
+    PetscCall(write_together(comm, rank, path, checkpoint, soil));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -53,6 +53,21 @@ void read_p2g(OptionReader& in, P2GConfig& p2g) {
              p2g.rebuild_interval);
 }
 
+void read_partition(OptionReader& in, PartitionConfig& partition) {
+  in.section("Several ranks");
+  in.word({.name = "partition",
+           .meaning = "how patches are given to ranks: boxes of the mesh, or parts that METIS cuts by their load"},
+          Words<PartitionKind>{{"box", PartitionKind::box}, {"metis", PartitionKind::metis}}, partition.kind);
+  if (partition.kind == PartitionKind::metis || in.listing())
+    in.number({.name = "rebalance_threshold",
+               .meaning = "largest over mean work of the ranks above which patches change hands, with metis",
+               .unit = "-",
+               .range = {.lowest = 1, .open_lowest = true}},
+              partition.rebalance_threshold);
+  else
+    in.not_taken("rebalance_threshold", "-partition is not metis");
+}
+
 void read_time(OptionReader& in, TimeConfig& time) {
   in.section("Time");
   in.number(
@@ -191,6 +206,8 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
        .unit = "s",
        .range = k_positive},
       output.wall_time_limit);
+  in.word({.name = "output_partition", .meaning = "on: partition.csv tells at each frame which rank owns what"},
+          Words<bool>{{"on", true}, {"off", false}}, output.partition);
   in.word({.name = "progress", .meaning = "auto: a live line on a terminal, else a line each 10 %"},
           Words<Progress>{{"auto", Progress::automatic}, {"on", Progress::on}, {"off", Progress::off}},
           output.progress);
@@ -206,6 +223,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   if (in.errors() != errors) return;  // it decides what all others take
   read_run(in, backends, config);
   read_p2g(in, config.p2g);
+  read_partition(in, config.partition);
   const bool sound = read_mesh(in, config.dim, config.mesh);
   read_time(in, config.time);
   read_physics(in, config);

@@ -5,6 +5,7 @@
 #include <petscdmda.h>
 
 #include "mpm/config.hpp"
+#include "parallel/patch_grid.hpp"
 
 namespace mpm {
 
@@ -13,6 +14,10 @@ constexpr int patch_edge(int dim) { return dim == 2 ? 8 : 4; }
 
 /// Patches that a mesh has, with the ring outside it.
 double patch_count(const MeshConfig& mesh, int dim);
+
+/// Along how many ranks each direction of a box of patches is cut: as many ranks as can have a patch each, at
+/// most `ranks`, with the smallest area between them.
+std::array<int, 3> ranks_along(int ranks, const std::array<int, 3>& patches);
 
 /// Owns a DMDA and tells what kernels need of it.
 class BackgroundMesh {
@@ -25,10 +30,16 @@ class BackgroundMesh {
   /// Makes the DMDA of the mesh's patches, with a ring of neighbours. Collective.
   PetscErrorCode create(MPI_Comm comm, const MeshConfig& mesh, int dim);
   /// Patches along each direction, with the ring outside the mesh that particles at a wall reach.
-  PetscErrorCode patches_with_ring(std::array<int, 3>& patches) const;
+  std::array<int, 3> patches_with_ring() const;
+  /// The rank that the DMDA gives each patch, the ring outside included: that of the patch beside it.
+  /// Collective.
+  PetscErrorCode owners(Owners* owners) const;
 
  private:
-  DM da_ = nullptr;
+  DM da_ = nullptr;  // on the ranks that it is cut for: all, or as many as there are patches for
+  MPI_Comm whole_ = MPI_COMM_NULL, cut_ = MPI_COMM_NULL;
+  int dim_ = 2;
+  std::array<int, 3> patches_{1, 1, 1}, ranks_{1, 1, 1};  // of the mesh, along each direction
 };
 
 }  // namespace mpm

@@ -1,5 +1,7 @@
 #include "output/frame_queue.hpp"
 
+#include "parallel/together.hpp"
+
 namespace mpm {
 namespace {
 
@@ -12,14 +14,17 @@ constexpr std::launch k_launch = std::launch::async;
 
 }  // namespace
 
-void FrameQueue::open(const std::string& folder, Precision precision, const FrameStyle& style) {
-  frames_.open(folder, precision, style);
+void FrameQueue::open(const std::string& folder, Precision precision, const FrameStyle& style,
+                      MPI_Comm comm) {
+  frames_.open(folder, precision, style, comm);
+  beside_ = size_of(comm) == 1;
   count_ = 0;
 }
 
-PetscErrorCode FrameQueue::resume(const Config& config, long count) {
+PetscErrorCode FrameQueue::resume(const Config& config, long count, MPI_Comm comm) {
   PetscFunctionBeginUser;
-  PetscCall(frames_.resume(config, count));
+  PetscCall(frames_.resume(config, count, comm));
+  beside_ = size_of(comm) == 1;
   count_ = frames_.count();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -36,8 +41,9 @@ PetscErrorCode FrameQueue::write(Snapshot&& snapshot) {
   PetscFunctionBeginUser;
   PetscCall(wait());
   snapshot_ = std::move(snapshot);
-  PetscCallCXX(result_ = std::async(k_launch, [this] { return frames_.write(snapshot_); }));
+  PetscCallCXX(result_ = std::async(beside_ ? k_launch : std::launch::deferred, [this] { return frames_.write(snapshot_); }));
   ++count_;
+  if (!beside_) PetscCall(wait());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

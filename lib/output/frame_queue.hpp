@@ -1,7 +1,7 @@
 #pragma once
 // Frames written on a thread beside the run, so that steps go on while a frame is put together, compressed
 // and brought to the disk. One frame is on its way at a time; nothing else of the run may call HDF5
-// meanwhile, so who does settles first.
+// meanwhile, so who does settles first. Several ranks write a frame at once: MPI is not for two threads here.
 
 #include <future>
 
@@ -12,8 +12,9 @@ namespace mpm {
 class FrameQueue {
  public:
   /// As Frames has them.
-  void open(const std::string& folder, Precision precision, const FrameStyle& style);
-  PetscErrorCode resume(const Config& config, long count);
+  void open(const std::string& folder, Precision precision, const FrameStyle& style,
+            MPI_Comm comm = PETSC_COMM_SELF);
+  PetscErrorCode resume(const Config& config, long count, MPI_Comm comm = PETSC_COMM_SELF);
   /// Takes a frame. What failed with the one before is told now.
   PetscErrorCode write(Snapshot&& snapshot);
   /// Waits until every frame that was taken is on the disk.
@@ -25,6 +26,7 @@ class FrameQueue {
   PetscErrorCode wait();
 
   Frames frames_;
+  bool beside_ = true;  // the run
   Snapshot snapshot_;  // on its way
   long count_ = 0;
   std::future<PetscErrorCode> result_;  // last: it waits for its thread before the others go

@@ -1,14 +1,24 @@
 #include "output/frames.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <optional>
 
 #include "numbers.hpp"
 #include "output/files.hpp"
 #include "output/hdf5_handle.hpp"
+#include "parallel/together.hpp"
 
 namespace mpm {
+namespace fs = std::filesystem;
+
 namespace {
 
 /// The groups that have a field.
@@ -82,6 +92,24 @@ PetscErrorCode write_unit(hid_t dataset, const std::string& path, const std::str
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// A dataset whose numbers come later, from all ranks: its place in the file is fixed now.
+PetscErrorCode reserve_field(hid_t group, const std::string& path, const Field& field, hsize_t count, hid_t type,
+                             long long* offset) {
+  PetscFunctionBeginUser;
+  const hsize_t sizes[2] = {count, static_cast<hsize_t>(field.components)};
+  Handle space(H5Screate_simple(field.components == 1 ? 1 : 2, sizes, nullptr), H5Sclose);
+  PetscCall(check(space.id, path, field.name));
+  Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  PetscCall(check(how.id, path, field.name));
+  PetscCall(check(H5Pset_alloc_time(how.id, H5D_ALLOC_TIME_EARLY), path, field.name));
+  PetscCall(check(H5Pset_fill_time(how.id, H5D_FILL_TIME_NEVER), path, field.name));
+  Handle data(H5Dcreate2(group, field.name, type, space.id, H5P_DEFAULT, how.id, H5P_DEFAULT), H5Dclose);
+  PetscCall(check(data.id, path, field.name));
+  PetscCall(write_unit(data.id, path, field.unit));
+  *offset = static_cast<long long>(H5Dget_offset(data.id));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /// One dataset, N x components, or N where there is one component.
 PetscErrorCode write_field(hid_t group, const std::string& path, const Field& field,
                            const ParticleSnapshot& particles, hid_t type, int compression) {
@@ -104,8 +132,10 @@ PetscErrorCode write_field(hid_t group, const std::string& path, const Field& fi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// slabs: where the numbers belong, for those of several ranks; null where they are all here.
 PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSnapshot& particles, Of kind,
-                           Precision precision, const FrameStyle& style) {
+                           Precision precision, const FrameStyle& style,
+                           std::vector<FrameSlab>* slabs = nullptr, std::size_t body = 0) {
   PetscFunctionBeginUser;
   const char* name = particles.name.c_str();
   Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
@@ -115,19 +145,26 @@ PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSn
     if (!is_written(field, kind, style)) continue;
     const bool number = field.values == &ParticleSnapshot::number;
     const hid_t type = number ? H5T_STD_I64LE : &field == k_fields ? H5T_IEEE_F64LE : real;
-    PetscCall(write_field(group.id, path, field, particles, type, style.compression));
+    if (slabs == nullptr) {
+      PetscCall(write_field(group.id, path, field, particles, type, style.compression));
+      continue;
+    }
+    FrameSlab slab{body, field.values, field.components, static_cast<int>(H5Tget_size(type)), 0};
+    PetscCall(reserve_field(group.id, path, field, particles.total, type, &slab.offset));
+    slabs->push_back(slab);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode write_groups(hid_t file, const std::string& path, const Snapshot& snapshot,
-                            Precision precision, const FrameStyle& style) {
+                            Precision precision, const FrameStyle& style,
+                            std::vector<FrameSlab>* slabs = nullptr) {
   PetscFunctionBeginUser;
   const long long step = snapshot.step;
   PetscCall(write_attribute(file, path, "time", H5T_NATIVE_DOUBLE, &snapshot.time));
   PetscCall(write_attribute(file, path, "step", H5T_NATIVE_LLONG, &step));
-  for (const ParticleSnapshot& body : snapshot.bodies)
-    PetscCall(write_group(file, path, body, Of::bodies, precision, style));
+  for (std::size_t b = 0; b < snapshot.bodies.size(); ++b)
+    PetscCall(write_group(file, path, snapshot.bodies[b], Of::bodies, precision, style, slabs, b));
   for (const ParticleSnapshot& rigid : snapshot.rigids)
     PetscCall(write_group(file, path, rigid, Of::all, precision, style));
   for (const ParticleSnapshot& nodes : snapshot.nodes)
@@ -152,6 +189,16 @@ PetscErrorCode frame_image(const std::string& path, const Snapshot& snapshot, Pr
   PetscCall(check(size, path, "size"));
   image->resize(static_cast<size_t>(size));
   PetscCall(check(H5Fget_file_image(file.id, image->data(), image->size()), path, "image"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The structure of a frame as a file of its own; `path` is for messages.
+PetscErrorCode make_layout(const std::string& name, const std::string& path, const Snapshot& snapshot,
+                           Precision precision, const FrameStyle& style, std::vector<FrameSlab>* slabs) {
+  PetscFunctionBeginUser;
+  Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  PetscCall(check(file.id, path, "creation"));
+  PetscCall(write_groups(file.id, path, snapshot, precision, style, slabs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -282,6 +329,24 @@ std::vector<std::string> frame_field_names() {
   return names;
 }
 
+PetscErrorCode lay_out_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
+                             const FrameStyle& style,                             int* descriptor, std::vector<FrameSlab>* slabs) {
+  PetscFunctionBeginUser;
+  std::error_code error;
+  const std::string memory = "/dev/shm";  // holes take no memory
+  std::string name =
+      (fs::is_directory(memory, error) ? memory : fs::temp_directory_path(error).string()) + "/mpm_frame_XXXXXX";
+  *descriptor = ::mkostemp(name.data(), O_CLOEXEC);
+  PetscCheck(*descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", name.c_str(),
+             std::strerror(errno));
+  const auto forget = [&](PetscErrorCode result) {
+    ::unlink(name.c_str());
+    return result;
+  };
+  PetscCall(forget(make_layout(name, path, snapshot, precision, style, slabs)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
                            const FrameStyle& style) {
   PetscFunctionBeginUser;
@@ -291,30 +356,34 @@ PetscErrorCode write_frame(const std::string& path, const Snapshot& snapshot, Pr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void Frames::open(const std::string& folder, Precision precision, const FrameStyle& style) {
+void Frames::open(const std::string& folder, Precision precision, const FrameStyle& style, MPI_Comm comm) {
   style_ = style;
+  comm_ = comm;
   folder_ = folder;
   precision_ = precision;
   entries_.clear();
   count_ = 0;
 }
 
-PetscErrorCode Frames::resume(const Config& config, long count) {
+PetscErrorCode Frames::resume(const Config& config, long count, MPI_Comm comm) {
   PetscFunctionBeginUser;
-  open(config.output.directory, config.precision, {config.output.fields, config.output.compression});
+  open(config.output.directory, config.precision, {config.output.fields, config.output.compression}, comm);
   std::vector<std::string> names;
   for (const BodyConfig& body : config.bodies) names.push_back(body.name);
   for (const RigidConfig& rigid : config.rigids) names.push_back(rigid.name);
   names.push_back(k_nodes);
-  for (; count_ < count; ++count_)
-    if (auto entry = read_entry(folder_, file_name(count_), names)) entries_.push_back(std::move(*entry));
-  if (!entries_.empty()) PetscCall(write_index());
+  count_ = static_cast<int>(count);
+  if (rank_of(comm_) == 0)
+    for (int n = 0; n < count_; ++n)
+      if (auto entry = read_entry(folder_, file_name(n), names)) entries_.push_back(std::move(*entry));
+  PetscCall(agree(comm_, entries_.empty() ? PETSC_SUCCESS : write_index()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode Frames::settle() const {
   PetscFunctionBeginUser;
-  if (count_ > 0) PetscCall(bring_to_disk(folder_ + "/frames"));
+  const bool due = count_ > 0 && rank_of(comm_) == 0;
+  PetscCall(agree(comm_, due ? bring_to_disk(folder_ + "/frames") : PETSC_SUCCESS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -328,19 +397,23 @@ PetscErrorCode Frames::write_index() const {
 PetscErrorCode Frames::write(const Snapshot& snapshot) {
   PetscFunctionBeginUser;
   const std::string file = file_name(count_);
-  PetscCall(write_frame(folder_ + "/" + file, snapshot, precision_, style_));
+  if (size_of(comm_) == 1)
+    PetscCall(write_frame(folder_ + "/" + file, snapshot, precision_, style_));
+  else
+    PetscCall(write_frame_together(comm_, folder_ + "/" + file, snapshot, precision_, style_));
 
   FrameEntry entry{file, snapshot.time, {}};
   const std::vector<std::string>& fields = style_.fields;
   for (const auto& body : snapshot.bodies)
-    entry.groups.push_back({body.name, static_cast<long>(body.position.size() / 3), true, fields});
+    entry.groups.push_back(
+        {body.name, body.total < 0 ? static_cast<long>(body.position.size() / 3) : body.total, true, fields});
   for (const auto& rigid : snapshot.rigids)
     entry.groups.push_back({rigid.name, static_cast<long>(rigid.position.size() / 3), false, fields});
   for (const auto& nodes : snapshot.nodes)
     entry.groups.push_back({nodes.name, static_cast<long>(nodes.position.size() / 3), false});
   entries_.push_back(std::move(entry));
   ++count_;
-  PetscCall(write_index());
+  PetscCall(agree(comm_, rank_of(comm_) == 0 ? write_index() : PETSC_SUCCESS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

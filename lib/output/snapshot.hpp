@@ -13,6 +13,9 @@ namespace mpm {
 /// empty for rigids.
 struct ParticleSnapshot {
   std::string name;
+  std::vector<int> id;  // of the particles of this rank, in the body; empty where they follow one another
+  long first = 0;       // on several ranks: number in the body of the first particle here,
+  long total = -1;      // and of all of them; negative where all are here
   std::vector<double> position;        // m     [3 N]
   std::vector<double> velocity;        // m/s   [3 N]
   std::vector<double> grid_velocity;   // m/s   [3 N], of the nodes, interpolated to the particles

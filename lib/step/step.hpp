@@ -1,6 +1,7 @@
 #pragma once
 // One time step, in the paper's words.
 
+#include "parallel/ranks.hpp"
 #include "particle_to_node.hpp"
 #include "step/timers.hpp"
 #include "step_kernels.hpp"
@@ -70,32 +71,51 @@ void sum_present_soil(State<Space, T, Dim>& s) {
 
 /// Function 5: velocities by XPIC or APIC where they are chosen, then the update of the soil's particles.
 template <class Space, class T, int Dim>
-void nodes_to_soil(State<Space, T, Dim>& s, double dt) {
+PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T, Dim>* ranks) {
+  PetscFunctionBeginUser;
   for (int pass = 0; pass < s.xpic_order; ++pass) {
     if (pass > 0) {
       Kokkos::deep_copy(s.space, s.nodes.rest, T(0));
       interpolate<RestSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, {s.soil.points, rest_of(s)},
                                              s.nodes.rest);
+      if (ranks) PetscCall(ranks->add_rest(s));
     }
     xpic_pass(s, pass);
   }
   if (s.affine) take_affine(s);
   update_particles(s, dt);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Function 6, under the forces of all ranks.
+template <class Space, class T, int Dim>
+PetscErrorCode move_rigids(State<Space, T, Dim>& s, double dt, Ranks<Space, T, Dim>* ranks) {
+  PetscFunctionBeginUser;
+  const int near = s.near_count;
+  if (ranks) PetscCall(ranks->add_forces(s));
+  move_rigids(s, dt);
+  s.near_count = near;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// Advances one explicit step of dt [s]. Does nothing while s.control is paused. The rebuild, function 7, is
-/// the caller's, when the movement bound says so.
+/// the caller's, when the movement bound says so. ranks is null on one rank.
 template <class Space, class T, int Dim>
-PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt) {
+PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt,
+                    Ranks<Space, T, Dim>* ranks = nullptr) {
   PetscFunctionBeginUser;
+  PetscErrorCode failed = PETSC_SUCCESS;
   const auto wait = [&] { s.space.fence("mpm::step"); };
   const auto run = [&](Function f, auto&& work) { return timers.run(f, work, wait); };
   PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));             // 1 initialise nodal variables
   PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s); }));  // 2 rigid bodies to nodes
   PetscCall(run(Function::soil_to_nodes, [&] { soil_to_nodes(s); }));     // 3 soil particles to nodes
+  if (ranks) PetscCall(ranks->add_soil(s));                               //   the sum over ranks
   PetscCall(run(Function::nodes, [&] { update_nodes(s, dt); }));          // 4 velocities, walls, contact
-  PetscCall(run(Function::particles, [&] { nodes_to_soil(s, dt); }));     // 5 stress update, movement
-  PetscCall(run(Function::rigids, [&] { move_rigids(s, dt); }));          // 6 move the rigid bodies
+  PetscCall(run(Function::particles, [&] { failed = nodes_to_soil(s, dt, ranks); }));  // 5 stress, movement
+  PetscCall(failed);
+  PetscCall(run(Function::rigids, [&] { failed = move_rigids(s, dt, ranks); }));  // 6 move the rigid bodies
+  PetscCall(failed);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -35,11 +35,11 @@ const char* word_of(Backend backend) {
   }
 }
 
-std::unique_ptr<Stepper> make_stepper(const Config& config) {
+std::unique_ptr<Stepper> make_stepper(const Config& config, MPI_Comm comm) {
 #define MPM_CHOOSE(Space, T, Dim)                                              \
   if (config.backend == backend_of<Space> && config.dim == Dim &&              \
       (config.precision == Precision::single) == (sizeof(T) == sizeof(float))) \
-    return std::make_unique<TypedStepper<Space, T, Dim>>(config);
+    return std::make_unique<TypedStepper<Space, T, Dim>>(config, comm);
   MPM_FOR_EACH(MPM_CHOOSE)
 #undef MPM_CHOOSE
   return nullptr;

@@ -11,6 +11,7 @@
 #include "mpm/config.hpp"
 #include "output/performance.hpp"
 #include "output/snapshot.hpp"
+#include "parallel/patch_grid.hpp"
 #include "saved_state.hpp"
 
 namespace mpm {
@@ -23,12 +24,16 @@ struct BodyParticles {
   std::vector<double> velocity;        // m/s [dim N], or empty where the body's own holds for all
   std::vector<double> stress;          // Pa [4 N in 2D, 6 N in 3D], likewise
   std::vector<double> plastic_strain;  // - [N], or empty for none
+  long total = 0;                      // of all ranks; 0: those above
+  std::vector<int> id;                 // on several ranks: of each particle here, among those of all bodies
+  std::vector<double> velocity_gradient;  // m/s a cell [dim^2 N], where the neighbours may be on other ranks
 };
 
 /// Everything that a stepper starts from.
 struct Model {
   std::array<int, 3> patches{};  // with the ring outside the mesh
   std::vector<BodyParticles> bodies, rigids;
+  Owners owners;  // on several ranks: of each patch
 };
 
 /// Why the run cannot go on.
@@ -42,9 +47,17 @@ struct Batch {
   bool rebuild = false;  // the movement bound passed the margin: rebuild before the next step
   long estimate = 1;     // steps that the bound will probably still allow
   double bound = 0;      // cells
+  double seconds = 0;    // of wall time, on the slowest rank
   Failure failure;
 };
 
+/// A patch that holds particles.
+struct OwnedPatch {
+  std::array<int, 3> place{};  // along each direction, from 0 at the mesh's lower corner
+  int particles = 0, rank = 0;
+};
+
+/// The time step of all ranks together: every function but `strategy` is collective, and tells of all ranks.
 class Stepper {
  public:
   virtual ~Stepper() = default;
@@ -55,13 +68,20 @@ class Stepper {
   /// Bins, patches and lists anew.
   virtual PetscErrorCode rebuild(Failure* failure) = 0;
   /// Rows of the history; `interval` [s] is the time since the last call, over which the forces are a mean.
-  virtual void measure(double interval, HistoryRow* row) = 0;
-  virtual void snapshot(Snapshot* snapshot) = 0;
+  virtual PetscErrorCode measure(double interval, HistoryRow* row) = 0;
+  /// The frame; on several ranks each has a range of the particles of a body.
+  virtual PetscErrorCode snapshot(Snapshot* snapshot) = 0;
+  /// Rows of partition.csv, on rank 0: the patches that hold particles, with these and their rank.
+  virtual PetscErrorCode ownership(std::vector<OwnedPatch>* patches) = 0;
+  /// What the log should tell of the rebuilds since the last call, and of the ranks at the end.
+  virtual std::string take_news() = 0;
+  virtual std::string ranks_report() const = 0;
   /// All that this rank's part of the state is, between two steps, with no rebuild due.
-  virtual SavedState save() const = 0;
+  /// Collective.
+  virtual PetscErrorCode save(SavedState* saved) const = 0;
   /// Puts a saved state in the place of what set_up made from the same input. `rebuilt`: it was saved for
   /// lists of another margin, so that bins and lists had to be made anew.
-  virtual PetscErrorCode restore(const SavedState& saved, long since_rebuild, bool* rebuilt) = 0;
+  virtual PetscErrorCode restore(SavedState&& saved, long since_rebuild, bool* rebuilt) = 0;
   virtual std::vector<FunctionTime> times() const = 0;
   virtual long particles() const = 0;        // of the soil
   virtual int patches() const = 0;           // active ones
@@ -69,8 +89,8 @@ class Stepper {
   virtual std::string strategy() const = 0;  // the word of -p2g that runs
 };
 
-/// The stepper for config.backend, precision and dim; null where that is not compiled in.
-std::unique_ptr<Stepper> make_stepper(const Config& config);
+/// The stepper for config.backend, precision and dim on the ranks of comm; null where that is not compiled in.
+std::unique_ptr<Stepper> make_stepper(const Config& config, MPI_Comm comm = PETSC_COMM_SELF);
 
 /// The backends compiled in, the slowest first.
 std::vector<Backend> available_backends();

@@ -1,7 +1,9 @@
 #include "step/typed_stepper.hpp"
+#include "parallel/gather.hpp"
 #include "step/surface_input.hpp"
 #include "step/traffic.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace mpm {
@@ -35,6 +37,8 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
     for (std::size_t p = 0; p < in.strength.size(); ++p)
       in.stress.insert(in.stress.end(), body.stress.begin(), body.stress.begin() + sym_size<Dim>);
   in.material = body.material;
+  in.id = std::move(particles.id);
+  in.velocity_gradient = std::move(particles.velocity_gradient);
   return in;
 }
 
@@ -91,7 +95,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   for (const auto& m : config_.materials) materials.push_back({model_index(m.model), m.parameters});
   std::vector<BodyInput> bodies;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    first_.push_back(b == 0 ? 0 : first_.back() + static_cast<long>(bodies.back().strength.size()));
+    first_.push_back(total_);
+    const long here = static_cast<long>(model.bodies[b].position.size()) / Dim;
+    total_ += std::max(model.bodies[b].total, here);
     bodies.push_back(body_input<Dim>(config_, config_.bodies[b], std::move(model.bodies[b])));
   }
   std::vector<RigidInput> rigids;
@@ -108,20 +114,36 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   Fault fault{};
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
   *failure = describe(fault);
+  PetscCall(share(failure));
+  if (!model.owners.empty() && failure->what.empty()) {
+    ranks_ = std::make_unique<Ranks<Space, T, Dim>>();
+    PetscCallCXX(PetscCall(ranks_->start(comm_, config_.partition, model.owners, state_)));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Before a step on a device: whether it is one of those that are timed. After it: none is.
+template <class Space, class T, int Dim>
+void TypedStepper<Space, T, Dim>::sample(bool on) {
+  if (!is_device<Space>) return;
+  const bool due = on && steps_enqueued_++ % k_sample_every == k_sample_every - 1;
+  if (due) state_.space.fence("mpm::before a step that is timed");
+  timers_.sample(due);
 }
 
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch* batch) {
   PetscFunctionBeginUser;
+  if (ranks_) {
+    PetscCall(advance_together(steps, dt, batch));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  const double start = WorkClock::wall();
   restart_count(state_);
   for (long n = 0; n < steps; ++n) {
-    if (is_device<Space> && steps_enqueued_++ % k_sample_every == k_sample_every - 1) {
-      state_.space.fence("mpm::before a step that is timed");
-      timers_.sample(true);
-    }
+    sample(true);
     PetscCall(step(state_, timers_, dt));
-    if (is_device<Space>) timers_.sample(false);
+    sample(false);
   }
   const Control control = look(state_);
   batch->steps = control.steps;
@@ -130,12 +152,17 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch
   batch->rebuild = control.paused != 0 && control.fault_count == 0;
   const double left = (config_.p2g.margin - control.bound) / std::max(control.increment, 1e-300);
   batch->estimate = static_cast<long>(std::min(left, 1e9)) + 1;
+  batch->seconds = WorkClock::wall() - start;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
   PetscFunctionBeginUser;
+  if (ranks_) {
+    PetscCall(rebuild_together(failure));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   const bool sampling = timers_.sampling();
   timers_.sample(true);
   Control control{};
@@ -151,47 +178,48 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
 }
 
 template <class Space, class T, int Dim>
-void TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
+PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
+  PetscFunctionBeginUser;
   row->bodies.clear(), row->rigids.clear();
-  sum_present_soil(state_);
+  PetscCall(sum_soil());
   for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
-    const BodyMeasure m = mpm::measure(state_, b);
-    const long rank = m.count - m.count / 1000;  // of the 99.9 % quantile, the nearest one above
     BodyRow body;
-    for (int d = 0; d < Dim; ++d) {
-      body.lower[d] = m.lower[d] + config_.mesh.lower[d];
-      body.upper[d] = m.upper[d] + config_.mesh.lower[d];
-      body.momentum[d] = m.momentum[d];
-      body.quantile[d] = ranked_coordinate(state_, b, d, rank, m) + config_.mesh.lower[d];
-      body.centre[d] = m.centre[d] + config_.mesh.lower[d];
-    }
-    body.kinetic_energy = m.kinetic_energy;
-    body.grid_velocity = largest_grid_speed(state_, b);
+    PetscCall(measure_body(b, &body));
     row->bodies.push_back(body);
   }
   for (const Rigid<Dim>& r : take_rigids(state_)) {
     RigidRow rigid;
+    double impulse[Dim];
+    for (int d = 0; d < Dim; ++d) impulse[d] = r.impulse[d];
+    if (ranks_ && !ranks_->forces_shared())
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, impulse, Dim, MPI_DOUBLE, MPI_SUM, comm_));
     for (int d = 0; d < Dim; ++d) {
       rigid.displacement[d] = r.displacement[d];
       rigid.velocity[d] = r.velocity[d];
-      rigid.force[d] = interval > 0 ? r.impulse[d] / interval : 0;
+      rigid.force[d] = interval > 0 ? impulse[d] / interval : 0;
     }
     row->rigids.push_back(rigid);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 template <class Space, class T, int Dim>
-void TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
+PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
+  PetscFunctionBeginUser;
   const SoilFields soil = download_soil(state_);
-  sum_present_soil(state_);
+  PetscCall(sum_soil());
   const std::vector<double> grid_velocity = grid_velocities(state_);
   out->bodies.clear(), out->rigids.clear(), out->nodes.clear();
   for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
-    const std::size_t from = first_[b];
-    const std::size_t to =
-        b + 1 < first_.size() ? first_[b + 1] : static_cast<std::size_t>(state_.soil.points.count);
+    const auto place_of = [&](long id) {
+      return std::lower_bound(soil.id.begin(), soil.id.end(), id) - soil.id.begin();
+    };
+    const std::size_t from = place_of(first_[b]),
+                      to = place_of(b + 1 < first_.size() ? first_[b + 1] : total_);
     ParticleSnapshot body;
     body.name = config_.bodies[b].name;
+    for (std::size_t p = from; p < to && ranks_; ++p)
+      body.id.push_back(soil.id[p] - static_cast<int>(first_[b]));
     body.position.assign(3 * (to - from), 0);
     body.velocity = body.grid_velocity = body.position;
     body.stress.assign(6 * (to - from), 0);
@@ -206,6 +234,8 @@ void TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     }
     body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
     body.plastic_strain.assign(soil.plastic_strain.begin() + from, soil.plastic_strain.begin() + to);
+    if (ranks_)
+      PetscCall(order_particles(comm_, (b + 1 < first_.size() ? first_[b + 1] : total_) - first_[b], &body));
     out->bodies.push_back(std::move(body));
   }
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.rigids);
@@ -222,21 +252,40 @@ void TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
       }
     out->rigids.push_back(std::move(rigid));
   }
-  if (config_.output.nodes) out->nodes = {node_snapshot<Dim>(download_nodes(state_), config_.mesh.lower)};
+  if (config_.output.nodes) {
+    out->nodes = {node_snapshot<Dim>(download_nodes(state_), config_.mesh.lower)};
+    if (ranks_) PetscCall(gather_nodes(comm_, &out->nodes[0]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode TypedStepper<Space, T, Dim>::restore(const SavedState& saved, long since_rebuild,
-                                                    bool* rebuilt) {
+PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscFunctionBeginUser;
-  const int particles = state_.soil.points.count;
-  std::string unfit;
-  PetscCallCXX(unfit = restore_state(state_, saved));
-  PetscCheck(unfit.empty() && state_.soil.points.count == particles, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
-             "The checkpoint does not fit to what the options describe: %s",
-             unfit.empty() ? "the number of particles" : unfit.c_str());
+  PetscCallCXX(*saved = save_state(state_));
+  if (ranks_) PetscCall(ranks_->save(saved));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long since_rebuild, bool* rebuilt) {
+  PetscFunctionBeginUser;
+  const double bound = saved.bound;
+  Failure unfit;
+  PetscCallCXX(unfit.what = take_saved(state_, saved));
+  if (sum_over_ranks(state_.soil.points.count) != total_ && unfit.what.empty())
+    unfit.what = "the number of particles";
+  PetscCall(share(&unfit));
+  PetscCheck(unfit.what.empty(), comm_, PETSC_ERR_ARG_SIZ,
+             "The checkpoint does not fit to what the options describe: %s", unfit.what.c_str());
+  if (ranks_) {
+    PetscCallCXX(PetscCall(ranks_->restore(state_, saved)));
+  } else {
+    PetscCallCXX(list_saved(state_));
+    PetscCallCXX(finish_saved(state_, saved));
+  }
   const auto& forced = config_.p2g.rebuild_interval;
-  *rebuilt = saved.bound > config_.p2g.margin || (forced && since_rebuild >= *forced);
+  *rebuilt = bound > config_.p2g.margin || (forced && since_rebuild >= *forced);
   Failure failure;
   if (*rebuilt) PetscCall(rebuild(&failure));
   PetscCheck(failure.what.empty(), PETSC_COMM_SELF, PETSC_ERR_FP, "The checkpoint's %s",
@@ -249,8 +298,9 @@ std::vector<FunctionTime> TypedStepper<Space, T, Dim>::times() const {
   std::vector<FunctionTime> times;
   for (int n = 0; n < k_functions; ++n) {
     const Function f = static_cast<Function>(n);
-    times.push_back(
-        {name_of(f), timers_.calls(f), timers_.seconds(f), timers_.calls(f) * bytes_of(f, state_)});
+    double figures[2] = {timers_.seconds(f), timers_.calls(f) * bytes_of(f, state_)};
+    if (ranks_) MPI_Allreduce(MPI_IN_PLACE, figures, 2, MPI_DOUBLE, MPI_MAX, comm_);
+    times.push_back({name_of(f), timers_.calls(f), figures[0], figures[1]});
   }
   return times;
 }

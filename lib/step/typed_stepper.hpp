@@ -20,29 +20,44 @@ int model_index(const std::string& name);
 template <class Space, class T, int Dim>
 class TypedStepper final : public Stepper {
  public:
-  explicit TypedStepper(const Config& config) : config_(config) {}
+  TypedStepper(const Config& config, MPI_Comm comm) : config_(config), comm_(comm) {}
 
   PetscErrorCode set_up(Model&& model, Failure* failure) override;
   PetscErrorCode advance(long steps, double dt, Batch* batch) override;
   PetscErrorCode rebuild(Failure* failure) override;
-  void measure(double interval, HistoryRow* row) override;
-  void snapshot(Snapshot* snapshot) override;
-  SavedState save() const override { return save_state(state_); }
-  PetscErrorCode restore(const SavedState& saved, long since_rebuild, bool* rebuilt) override;
+  PetscErrorCode measure(double interval, HistoryRow* row) override;
+  PetscErrorCode snapshot(Snapshot* snapshot) override;
+  PetscErrorCode ownership(std::vector<OwnedPatch>* patches) override;
+  std::string take_news() override { return ranks_ ? ranks_->take_news() : ""; }
+  std::string ranks_report() const override;
+  PetscErrorCode save(SavedState* saved) const override;
+  PetscErrorCode restore(SavedState&& saved, long since_rebuild, bool* rebuilt) override;
   std::vector<FunctionTime> times() const override;
-  long particles() const override { return state_.soil.points.count; }
-  int patches() const override { return state_.patches.slots; }
-  std::size_t memory() const override { return memory_of(state_); }
+  long particles() const override { return total_; }
+  int patches() const override { return static_cast<int>(sum_over_ranks(state_.patches.slots)); }
+  std::size_t memory() const override;
   std::string strategy() const override;
 
  private:
   Failure describe(const Fault& fault) const;
+  /// What advance and rebuild are on several ranks.
+  PetscErrorCode advance_together(long steps, double dt, Batch* batch);
+  PetscErrorCode rebuild_together(Failure* failure);
+  /// The failure of the lowest rank that has one, on every rank.
+  PetscErrorCode share(Failure* failure) const;
+  PetscErrorCode sum_soil();
+  PetscErrorCode measure_body(int body, BodyRow* row);
+  double sum_over_ranks(double own) const;
+  void sample(bool on);
 
   Config config_;
+  MPI_Comm comm_;
   State<Space, T, Dim> state_;
+  std::unique_ptr<Ranks<Space, T, Dim>> ranks_;  // null on one rank
   Timers timers_;
   long steps_enqueued_ = 0;
   std::vector<long> first_;  // id of the first particle of each body
+  long total_ = 0;           // particles of all ranks
 };
 
 }  // namespace mpm

@@ -35,7 +35,6 @@ Checkpoint some_checkpoint() {
   c.run.step = 3;
   c.state.soil = {{0, 1, 2}, {387, 388, 389}, {{"coordinate", 2, 8, {0, 0, .5, .5, 1, 1}}, {"body", 1, 2, {0, 1, 0}},
                                                {"stress", 4, 8, std::vector<double>(12, 1)}}};
-  c.state.rigid_points = {{{0, 1}, {387, 388}, {{"coordinate", 2, 8, {0, 0, 1, 1}}, {"home", 2, 8, {1, 1, 2, 2}}}}};
   c.state.rigids.resize(1);
   c.state.impulse = {{387}, {1}};
   return c;

@@ -67,7 +67,7 @@ SavedPoints some_points(long total) {
   return points;
 }
 
-constexpr long k_soil = 1003, k_rigid = 17;
+constexpr long k_soil = 1003;
 
 Checkpoint some_checkpoint() {
   Checkpoint c{"0.9",
@@ -85,8 +85,9 @@ Checkpoint some_checkpoint() {
   c.history = {4096, 0xdeadbeef};
   c.state.bound = 0.1, c.state.increment = 1.0 / 3;
   c.state.soil = some_points(k_soil);
-  c.state.rigid_points = {some_points(k_rigid), some_points(k_rigid)};
-  c.state.rigids = {{{1, 2, 0}, {3, 4, 0}, {5, 6, 0}}, {{-1, -2, 0}, {-3, -4, 0}, {-5, -6, 0}}};
+  c.state.rigids = {{{1, 2, 0}, {3, 4, 0}, {5, 6, 0}, {7, 8, 0}},
+                    {{-1, -2, 0}, {-3, -4, 0}, {-5, -6, 0}, {-7, -8, 0}}};
+  c.state.bounds = {0.25, 0.5, 0.75}, c.state.owners = {0, 2, 1, 0};
   if (rank_of_this() == 0) c.state.impulse = {{7, 5}, {70, 71, 50, 51}};
   return c;
 }
@@ -158,7 +159,9 @@ TEST_CASE("a checkpoint reads as it was written, whichever rank had which point"
   check_points(read.state.soil, k_soil);
   REQUIRE(read.state.rigids.size() == 2);
   CHECK((read.state.rigids[0].velocity[1] == 4 && read.state.rigids[1].impulse[0] == -5));
-  for (const SavedPoints& points : read.state.rigid_points) check_points(points, k_rigid);
+  CHECK(read.state.rigids[1].binned[1] == -8);
+  CHECK(read.state.bounds == std::vector<double>{0.25, 0.5, 0.75});
+  CHECK(read.state.owners == std::vector<long>{0, 2, 1, 0});
   CHECK(read.state.impulse.address == std::vector<long>{5, 7});
   CHECK(read.state.impulse.values == std::vector<double>{50, 51, 70, 71});
   CHECK(!fs::exists(path + ".tmp"));
@@ -245,7 +248,7 @@ TEST_CASE("a state that no kernel could take is refused", "[checkpoint]") {
   config.bodies.resize(2);
   config.rigids.resize(1);
   SavedState sound;
-  sound.rigids.resize(1), sound.rigid_points.resize(1);
+  sound.rigids.resize(1);
   sound.soil.address = {(1 + 5) * 64 + 3};  // the first patch of the mesh: 5 patches a row with the ring
   sound.soil.fields = {{"coordinate", 2, 8, {0.25, 1.2}}, {"body", 1, 2, {1}}};
   REQUIRE(state_fault(sound, config).empty());

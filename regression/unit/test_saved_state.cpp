@@ -31,9 +31,9 @@ bool same(const SavedState& a, const SavedState& b) {
   bool equal = a.bound == b.bound && a.increment == b.increment && same(a.soil, b.soil) &&
                a.impulse.address == b.impulse.address && a.impulse.values == b.impulse.values;
   for (std::size_t r = 0; r < a.rigids.size(); ++r)
-    equal = equal && same(a.rigid_points[r], b.rigid_points[r]) &&
-            a.rigids[r].displacement == b.rigids[r].displacement &&
-            a.rigids[r].velocity == b.rigids[r].velocity && a.rigids[r].impulse == b.rigids[r].impulse;
+    equal = equal && a.rigids[r].displacement == b.rigids[r].displacement &&
+            a.rigids[r].binned == b.rigids[r].binned && a.rigids[r].velocity == b.rigids[r].velocity &&
+            a.rigids[r].impulse == b.rigids[r].impulse;
   return equal;
 }
 

@@ -101,10 +101,20 @@ struct P2GConfig {
   std::optional<int> rebuild_interval;  // steps
 };
 
+/// How patches are given to ranks (-partition): boxes of the mesh, or parts of the graph of patches that METIS
+/// cuts.
+enum class PartitionKind { box, metis };
+
+struct PartitionConfig {
+  PartitionKind kind = PartitionKind::box;
+  double rebalance_threshold = 1.1;  // -, largest over mean work of the ranks above which METIS cuts anew
+};
+
 enum class Progress { automatic, on, off };
 
 struct OutputConfig {
   std::string directory;
+  bool partition = false;            // partition.csv: which rank owns what, at each frame
   bool frames = true;               // of the particles; without them a run writes its history only
   std::vector<std::string> fields;  // of the frames, beside the position; empty for all
   int compression = 0;              // of the frames, level of HDF5's deflate filter
@@ -124,6 +134,7 @@ struct Config {
   Backend backend = Backend::serial;
   Precision precision = Precision::double_;
   P2GConfig p2g;
+  PartitionConfig partition;
   MeshConfig mesh;
   Vec3 gravity{};  // m/s2
   TimeConfig time;

@@ -1,0 +1,65 @@
+#include "halo.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+void pack_nodes(const State<Space, T, Dim>& s, const HaloLists<Space>& lists, const HaloField<T>& field,
+                int width, T* out) {
+  const auto node = lists.node;
+  Kokkos::parallel_for(
+      "mpm::pack_nodes", light(Kokkos::RangePolicy<Space>(s.space, 0, lists.sent * field.size)),
+      KOKKOS_LAMBDA(int m) {
+        const int n = m / field.size, k = m % field.size;
+        out[std::size_t(n) * width + field.offset + k] =
+            field.values[std::size_t(node(n)) * field.size + k];
+      });
+}
+
+template <class Space, class T, int Dim>
+void sum_shares(const State<Space, T, Dim>& s, const HaloLists<Space>& lists, const HaloField<T>& field,
+                int width, const T* in) {
+  const auto node = lists.shared_node, begin = lists.begin, source = lists.source;
+  Kokkos::parallel_for(
+      "mpm::sum_shares", light(Kokkos::RangePolicy<Space>(s.space, 0, lists.shared * field.size)),
+      KOKKOS_LAMBDA(int m) {
+        const int n = m / field.size, k = m % field.size;
+        T& value = field.values[std::size_t(node(n)) * field.size + k];
+        const T own = value;
+        T sum = 0;
+        for (int e = begin(n); e < begin(n + 1); ++e)
+          sum += source(e) < 0 ? own : in[std::size_t(source(e)) * width + field.offset + k];
+        value = sum;
+      });
+}
+
+template <class Space, class T, int Dim>
+void sum_rigid_forces(State<Space, T, Dim>& s) {
+  const auto forces = s.slot_forces, sums = s.sums;
+  const int values = Dim * static_cast<int>(s.rigid_points.size()), slots = s.near_count;
+  Kokkos::parallel_for(
+      "mpm::sum_rigid_forces", light(Kokkos::RangePolicy<Space>(s.space, 0, values)), KOKKOS_LAMBDA(int v) {
+        double sum = 0;
+        for (int n = 0; n < slots; ++n) sum += forces(n * values + v);
+        sums(v) = sum;
+      });
+}
+
+template <class Space, class T, int Dim>
+void put_rigid_forces(State<Space, T, Dim>& s) {
+  const auto forces = s.slot_forces, sums = s.sums;
+  Kokkos::parallel_for(
+      "mpm::put_rigid_forces", light(Kokkos::RangePolicy<Space>(s.space, 0, sums.extent(0))),
+      KOKKOS_LAMBDA(int v) { forces(v) = sums(v); });
+  s.near_count = 1;
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                \
+  template void pack_nodes(const State<Space, T, Dim>&, const HaloLists<Space>&, const HaloField<T>&, \
+                           int, T*);                                                                  \
+  template void sum_shares(const State<Space, T, Dim>&, const HaloLists<Space>&, const HaloField<T>&, \
+                           int, const T*);                                                            \
+  template void sum_rigid_forces(State<Space, T, Dim>&);                                              \
+  template void put_rigid_forces(State<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

@@ -1,0 +1,48 @@
+#pragma once
+// Nodes that several ranks reach: their shares go out in one buffer, and what comes in is summed.
+
+#include "spaces.hpp"
+#include "state.hpp"
+
+namespace mpm {
+
+/// Which nodes are shared. The lists are made on the host at every rebuild, alike on all ranks that share a
+/// node.
+template <class Space>
+struct HaloLists {
+  using Memory = typename Space::memory_space;
+  int sent = 0, shared = 0;
+  Kokkos::View<int*, Memory> node;         // of each entry that goes out, neighbour by neighbour [sent]
+  Kokkos::View<int*, Memory> shared_node;  // each shared node once [shared]
+  Kokkos::View<int*, Memory> begin;        // first source of a shared node [shared + 1]
+  Kokkos::View<int*, Memory> source;       // in the order of ranks: an entry that came in, -1 for the own share
+};
+
+/// A nodal field as rows of `size` values, and where a row begins in an entry of the buffer.
+template <class T>
+struct HaloField {
+  T* values;
+  int size, offset;
+};
+
+/// Writes the nodes' values to the entries of `out`, of `width` values each.
+template <class Space, class T, int Dim>
+void pack_nodes(const State<Space, T, Dim>& s, const HaloLists<Space>& lists, const HaloField<T>& field,
+                int width, T* out);
+
+/// Replaces each shared node's own share by the sum over the ranks that reach it, in the order of ranks: the
+/// same bits on each of them.
+template <class Space, class T, int Dim>
+void sum_shares(const State<Space, T, Dim>& s, const HaloLists<Space>& lists, const HaloField<T>& field,
+                int width, const T* in);
+
+/// Force of the soil on each rigid in this step, summed over the nodes that this rank answers for, to s.sums
+/// [N].
+template <class Space, class T, int Dim>
+void sum_rigid_forces(State<Space, T, Dim>& s);
+
+/// Brings the forces of all ranks back: move_rigids then finds in s.slot_forces s.sums alone.
+template <class Space, class T, int Dim>
+void put_rigid_forces(State<Space, T, Dim>& s);
+
+}  // namespace mpm

@@ -1,0 +1,15 @@
+#pragma once
+// The particles of a model, each on the rank that owns its patch.
+
+#include "mesh/background.hpp"
+#include "mpm/config.hpp"
+#include "step/stepper.hpp"
+
+namespace mpm {
+
+/// Gives every patch an owner (Model::owners) and keeps of the bodies' particles those of this rank; every
+/// rank has made all of them. Particles keep the id that they would have on one rank. Rigids stay whole.
+/// Collective; does nothing on one rank.
+PetscErrorCode distribute(MPI_Comm comm, const Config& config, const BackgroundMesh& mesh, Model* model);
+
+}  // namespace mpm

@@ -1,0 +1,85 @@
+#include "parallel/gather.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "parallel/together.hpp"
+
+namespace mpm {
+namespace {
+
+/// The fields of a body's particles and their widths.
+struct Part {
+  std::vector<double> ParticleSnapshot::*values;
+  int width;
+};
+constexpr Part k_parts[] = {{&ParticleSnapshot::position, 3},      {&ParticleSnapshot::velocity, 3},
+                            {&ParticleSnapshot::grid_velocity, 3}, {&ParticleSnapshot::stress, 6},
+                            {&ParticleSnapshot::volume, 1},        {&ParticleSnapshot::plastic_strain, 1}};
+
+}  // namespace
+
+PetscErrorCode order_particles(MPI_Comm comm, long total, ParticleSnapshot* body) {
+  PetscFunctionBeginUser;
+  const int ranks = size_of(comm), rank = rank_of(comm);
+  const auto begin = [&](int r) { return total * r / ranks; };
+  const std::size_t here = body->id.size();
+  std::vector<int> to(here);  // rank of each particle
+  for (std::size_t p = 0; p < here; ++p) {
+    to[p] = static_cast<int>(body->id[p] * long(ranks) / std::max(total, 1L));
+    while (body->id[p] >= begin(to[p] + 1)) ++to[p];
+  }
+  body->first = begin(rank);
+  body->total = total;
+  for (const auto& [values, width] : k_parts) {  // field by field: one of them at a time is there twice
+    const std::size_t row = width * sizeof(double), size = sizeof(double) + row;
+    std::vector<std::vector<char>> out(ranks);
+    for (std::size_t p = 0; p < here; ++p) {
+      const double id = body->id[p];
+      const char* const name = reinterpret_cast<const char*>(&id);
+      const char* const numbers = reinterpret_cast<const char*>(&(body->*values)[p * width]);
+      out[to[p]].insert(out[to[p]].end(), name, name + sizeof id);
+      out[to[p]].insert(out[to[p]].end(), numbers, numbers + row);
+    }
+    std::vector<char> in;
+    PetscCall(exchange_records(comm, size, out, &in));
+    std::vector<double>& own = body->*values;
+    own.assign((begin(rank + 1) - begin(rank)) * width, 0);
+    for (std::size_t at = 0; at < in.size(); at += size) {
+      double id = 0;
+      std::memcpy(&id, &in[at], sizeof id);
+      std::memcpy(&own[(static_cast<std::size_t>(id) - body->first) * width], &in[at + sizeof id], row);
+    }
+  }
+  body->id.clear();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode gather_nodes(MPI_Comm comm, ParticleSnapshot* nodes) {
+  using Record = std::array<double, 8>;  // number, mass, position, velocity
+  PetscFunctionBeginUser;
+  std::vector<std::vector<char>> out(size_of(comm));
+  for (std::size_t n = 0; n < nodes->number.size(); ++n) {
+    Record record{nodes->number[n], nodes->mass[n]};
+    std::copy_n(&nodes->position[3 * n], 3, &record[2]);
+    std::copy_n(&nodes->velocity[3 * n], 3, &record[5]);
+    const char* const bytes = reinterpret_cast<const char*>(&record);
+    out[0].insert(out[0].end(), bytes, bytes + sizeof record);
+  }
+  std::vector<char> in;
+  PetscCall(exchange_records(comm, sizeof(Record), out, &in));
+  std::vector<Record> all(in.size() / sizeof(Record));
+  if (!all.empty()) std::memcpy(all.data(), in.data(), in.size());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  nodes->number.clear(), nodes->mass.clear(), nodes->position.clear(), nodes->velocity.clear();
+  for (const Record& record : all) {
+    nodes->number.push_back(record[0]), nodes->mass.push_back(record[1]);
+    nodes->position.insert(nodes->position.end(), &record[2], &record[2] + 3);
+    nodes->velocity.insert(nodes->velocity.end(), &record[5], &record[5] + 3);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm

@@ -1,0 +1,62 @@
+#pragma once
+// The movement bound over all ranks, found without waiting: each step posts a reduction that the next step
+// ends, so that what is known of the others is some steps old, and a reserve stands for those steps.
+
+#include <petscsys.h>
+
+#include <array>
+#include <optional>
+
+namespace mpm {
+
+/// What the ranks must know of each other before the next step.
+struct BoundReport {
+  double bound = 0;      // cells, that any point can have moved since the last rebuild
+  double increment = 0;  // cells, of the last step
+  double stopped = 0;    // 1: a rank does no more steps, for its bound passed the margin or for a fault
+};
+
+/// Whether lists must be rebuilt before the next step, where `report` is `late` steps old. Speeds may have
+/// doubled since.
+inline bool rebuild_due(const BoundReport& report, double margin, int late) {
+  constexpr double k_growth = 2;
+  return !(report.bound + late * k_growth * report.increment <= margin);
+}
+
+class GlobalBound {
+ public:
+  /// Steps between what a report says and the step that it decides on: the report posted in a step is of the
+  /// steps before it, and is looked at one step later.
+  static constexpr int k_late = 2;
+
+  GlobalBound() = default;
+  GlobalBound(const GlobalBound&) = delete;
+  GlobalBound& operator=(const GlobalBound&) = delete;
+
+  /// Starts the reduction of this rank's report.
+  PetscErrorCode post(MPI_Comm comm, const BoundReport& own);
+  /// Ends the reduction of the report before the last one that was posted; `known` is false where there is
+  /// none.
+  PetscErrorCode last_but_one(bool* known, BoundReport* all);
+  /// What this rank posted last, if its reduction is under way.
+  std::optional<BoundReport> pending() const {
+    const Reduction& r = reductions_[last_];
+    if (!r.posted) return std::nullopt;
+    return BoundReport{r.own[0], r.own[1], r.own[2]};
+  }
+  /// Ends what is under way.
+  PetscErrorCode drain();
+  /// The largest of all, waited for.
+  static PetscErrorCode now(MPI_Comm comm, BoundReport* report);
+
+ private:
+  struct Reduction {
+    std::array<double, 3> own{}, all{};
+    MPI_Request request = MPI_REQUEST_NULL;
+    bool posted = false;
+  };
+  std::array<Reduction, 2> reductions_;
+  int last_ = 0;
+};
+
+}  // namespace mpm

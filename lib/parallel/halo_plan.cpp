@@ -1,0 +1,115 @@
+#include "parallel/halo_plan.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <utility>
+
+#include "mesh/background.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr int k_nodes = 64;  // of a patch, in 2D and in 3D
+
+/// Nodes of a patch, a bit each, that the particles of the patch at `offset` from it reach: the window of a
+/// patch goes from node -1 to node edge + 1 (patches.hpp).
+std::uint64_t reached_from(const std::array<int, 3>& offset, int dim) {
+  const int edge = patch_edge(dim);
+  std::uint64_t mask = 0;
+  for (int n = 0; n < k_nodes; ++n) {
+    bool reached = true;
+    for (int d = 0, rest = n; d < dim; ++d, rest /= edge) {
+      const int c = rest % edge;
+      reached = reached && (offset[d] == 0 || (offset[d] < 0 ? c <= 1 : c == edge - 1));
+    }
+    if (reached) mask |= std::uint64_t(1) << n;
+  }
+  return mask;
+}
+
+/// What each rank reaches of a patch.
+using Reach = std::vector<std::pair<int, std::uint64_t>>;  // by rank, rising
+
+class Planner {
+ public:
+  Planner(const PatchGrid& grid, const Owners& owners, const std::vector<std::uint8_t>& occupied, int own)
+      : grid_(grid), owners_(owners), occupied_(occupied), own_(own) {
+    for (int k = 0; k < 27; ++k) masks_[k] = reached_from({k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}, grid.dim);
+  }
+
+  /// What the ranks reach of patch n.
+  const Reach& reach_of(long n) {
+    reach_.clear();
+    grid_.for_each_around(n, [&](long other, const std::array<int, 3>& offset) {
+      if (!occupied_[other]) return;
+      const int rank = owners_[other];
+      auto at = std::find_if(reach_.begin(), reach_.end(), [&](const auto& r) { return r.first >= rank; });
+      if (at == reach_.end() || at->first != rank) at = reach_.insert(at, {rank, 0});
+      at->second |= masks_[(offset[2] + 1) * 9 + (offset[1] + 1) * 3 + offset[0] + 1];
+    });
+    return reach_;
+  }
+
+  /// Adds the shared nodes of one slot.
+  void add(int slot, const Reach& reach) {
+    std::uint64_t mine = 0, others = 0, below = 0;
+    for (const auto& [rank, mask] : reach) {
+      (rank == own_ ? mine : others) |= mask;
+      if (rank < own_) below |= mask;
+    }
+    plan_.counted.push_back(mine & ~below);
+    for (std::uint64_t left = mine & others; left != 0; left &= left - 1) {
+      const int place = std::countr_zero(left);
+      plan_.shared.push_back(slot * k_nodes + place);
+      for (const auto& [rank, mask] : reach) {
+        if ((mask >> place & 1) == 0) continue;
+        std::vector<int>& list = lists_[rank];
+        sources_.push_back({rank, static_cast<int>(list.size())});
+        if (rank != own_) list.push_back(slot * k_nodes + place);
+      }
+      ends_.push_back(static_cast<int>(sources_.size()));
+    }
+  }
+
+  HaloPlan finish() {
+    lists_.erase(own_);
+    plan_.begin = {0};
+    std::map<int, int> begin;
+    for (const auto& [rank, list] : lists_) {
+      begin[rank] = plan_.begin.back();
+      plan_.neighbours.push_back(rank);
+      plan_.node.insert(plan_.node.end(), list.begin(), list.end());
+      plan_.begin.push_back(static_cast<int>(plan_.node.size()));
+    }
+    plan_.first = {0};
+    plan_.first.insert(plan_.first.end(), ends_.begin(), ends_.end());
+    for (const auto& [rank, place] : sources_)
+      plan_.source.push_back(rank == own_ ? -1 : begin[rank] + place);
+    return std::move(plan_);
+  }
+
+ private:
+  const PatchGrid& grid_;
+  const Owners& owners_;
+  const std::vector<std::uint8_t>& occupied_;
+  int own_;
+  std::uint64_t masks_[27];
+  Reach reach_;
+  HaloPlan plan_;
+  std::map<int, std::vector<int>> lists_;     // nodes by rank
+  std::vector<std::pair<int, int>> sources_;  // rank, entry of its list
+  std::vector<int> ends_;                     // of the sources of a shared node
+};
+
+}  // namespace
+
+HaloPlan plan_halo(const PatchGrid& grid, const Owners& owners, const std::vector<std::uint8_t>& occupied,
+                   const std::vector<long>& slots, int own) {
+  Planner planner(grid, owners, occupied, own);
+  for (std::size_t slot = 0; slot < slots.size(); ++slot)
+    planner.add(static_cast<int>(slot), planner.reach_of(slots[slot]));
+  return planner.finish();
+}
+
+}  // namespace mpm

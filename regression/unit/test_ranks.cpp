@@ -1,0 +1,236 @@
+// Several ranks against one: run by mpirun on 2, 3 and 4 ranks (and on 1, where there is nothing to share).
+
+#include <mpi.h>
+
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <limits>
+
+#include "clouds.hpp"
+#include "parallel/ranks.hpp"
+#include "parallel/together.hpp"
+#include "step/step.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+/// An owner for each patch, drawn at random: far more neighbours than any real partition has.
+Owners random_owners(long patches, int ranks, int seed) {
+  Dice dice{std::mt19937_64(seed)};
+  Owners owners;
+  for (long n = 0; n < patches; ++n) owners.push_back(dice.below(ranks));
+  return owners;
+}
+
+/// Every n-th particle of a cloud, with the ids that they have in it.
+template <int Dim>
+Cloud share_of_cloud(const Cloud& whole, int rank, int ranks) {
+  const auto keep = [&](std::vector<double>& values, int width) {
+    std::vector<double> kept;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (static_cast<int>(k / width % ranks) == rank) kept.push_back(values[k]);
+    values = kept;
+  };
+  Cloud own = whole;
+  int first = 0;
+  for (BodyInput& body : own.bodies) {
+    const int count = static_cast<int>(body.strength.size());
+    for (int p = rank; p < count; p += ranks) body.id.push_back(first + p);
+    first += count;
+    keep(body.position, Dim), keep(body.strength, 1), keep(body.particle_velocity, Dim);
+    keep(body.stress, sym_size<Dim>);
+  }
+  return own;
+}
+
+/// A cloud on all ranks together, brought to its owners, and the same on each rank alone.
+template <class B>
+struct Pair {
+  StateOf<B> alone, here;
+  Ranks<typename B::Space, typename B::real, B::dim> ranks;
+
+  Pair(const Cloud& cloud, const PartitionConfig& config, int seed) {
+    const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
+    alone = state_of<B>(cloud, P2G::gather);
+    here = state_of<B>(share_of_cloud<B::dim>(cloud, rank, size), P2G::gather);
+    const Owners owners = random_owners(alone.grid.patch_count(), size, seed);
+    REQUIRE(ranks.start(MPI_COMM_WORLD, config, owners, here) == PETSC_SUCCESS);
+  }
+};
+
+/// Values of a field at all nodes of the grid where `reached`, `empty` elsewhere.
+template <class State_, class Field>
+std::vector<double> dense(const State_& s, const Field& field, int size, const std::vector<char>& reached,
+                          double empty) {
+  constexpr int cells = 64;
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), field);
+  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
+  std::vector<double> all(s.grid.patch_count() * cells * size, empty);
+  for (int i = 0; i < s.patches.node_count(); ++i)
+    for (int k = 0; k < size && reached[i]; ++k)
+      all[(s.grid.patch_of(origin(i / cells)) * cells + i % cells) * size + k] = host(i, k);
+  return all;
+}
+
+/// Which nodes hold mass.
+template <class State_>
+std::vector<char> with_mass(const State_& s) {
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.soil);
+  std::vector<char> reached;
+  for (int i = 0; i < s.patches.node_count(); ++i) reached.push_back(host(i, 0) != 0);
+  return reached;
+}
+
+/// Fields of all particles by id, from all ranks.
+template <class State_>
+std::vector<double> particles_of(const State_& s, long total, MPI_Comm comm) {
+  const SoilFields f = download_soil(s);
+  const std::size_t width = f.id.empty() ? 0 : (f.position.size() + f.velocity.size() + f.stress.size()) / f.id.size() + 3;
+  unsigned long all_width = width;
+  MPI_Allreduce(MPI_IN_PLACE, &all_width, 1, MPI_UNSIGNED_LONG, MPI_MAX, comm);
+  std::vector<double> values(total * all_width);
+  for (std::size_t p = 0; p < f.id.size(); ++p) {
+    double* to = &values[f.id[p] * all_width];
+    const auto put = [&](const std::vector<double>& from) {
+      const std::size_t n = from.size() / f.id.size();
+      for (std::size_t k = 0; k < n; ++k) *to++ = from[p * n + k];
+    };
+    put(f.position), put(f.velocity), put(f.stress), put(f.volume), put(f.plastic_strain);
+    *to = 1;  // how often the id is there
+  }
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
+  return values;
+}
+
+double apart(const std::vector<double>& a, const std::vector<double>& b) {
+  REQUIRE(a.size() == b.size());
+  double largest = 0, difference = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    largest = std::max(largest, std::abs(b[k]));
+    difference = std::max(difference, std::abs(a[k] - b[k]));
+  }
+  return difference / largest;
+}
+
+}  // namespace
+
+TEST_CASE("nodal sums of several ranks are those of one, with the same bits wherever a node is shared",
+          "[halo]") {
+  for_each_reference([](auto build) {
+    using B = decltype(build);
+    for (const int seed : {1, 2}) {
+      Pair<B> pair(random_cloud<B::dim>(seed), {}, seed);
+      auto& s = pair.here;
+      sum_present_soil(pair.alone);
+      sum_present_soil(s);
+      const std::vector<char> reached = with_mass(s);
+      REQUIRE(pair.ranks.add_soil(s) == PETSC_SUCCESS);
+      REQUIRE(pair.ranks.drain() == PETSC_SUCCESS);
+      const int size = SoilShare<B::dim>::size;
+      constexpr double far = std::numeric_limits<double>::max();
+      std::vector<double> least = dense(s, s.nodes.soil, size, reached, far),
+                          most = dense(s, s.nodes.soil, size, reached, -far);
+      const int count = static_cast<int>(least.size());
+      MPI_Allreduce(MPI_IN_PLACE, least.data(), count, MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
+      MPI_Allreduce(MPI_IN_PLACE, most.data(), count, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+      long differing = 0;
+      for (int k = 0; k < count; ++k) {
+        if (least[k] == far) least[k] = most[k] = 0;  // no rank reaches it
+        differing += least[k] != most[k];
+      }
+      CHECK(differing == 0);
+      CHECK(apart(least, dense(pair.alone, pair.alone.nodes.soil, size, with_mass(pair.alone), 0)) < 1e-13);
+    }
+  });
+}
+
+TEST_CASE("every particle is on the rank that owns its patch, once, with all its fields", "[migration]") {
+  for_each_reference([](auto build) {
+    using B = decltype(build);
+    for (const bool affine : {false, true}) {
+      Cloud cloud = random_cloud<B::dim>(4);
+      cloud.affine = affine;
+      Pair<B> pair(cloud, {}, 5);
+      const long total = pair.alone.soil.points.count;
+      CHECK(particles_of(pair.here, total, MPI_COMM_WORLD) == particles_of(pair.alone, total, MPI_COMM_SELF));
+      const auto address =
+          Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), pair.here.soil.points.cell);
+      const auto origin =
+          Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), pair.here.patches.origin);
+      for (int p = 0; p < pair.here.soil.points.count; ++p) {
+        const long patch = pair.here.grid.patch_of(origin(address(p) / Patch<B::dim>::cells));
+        REQUIRE(pair.ranks.owners()[patch] == rank_of(MPI_COMM_WORLD));
+      }
+    }
+  });
+}
+
+TEST_CASE("steps, rebuilds and patches that change hands leave the particles as on one rank", "[migration]") {
+  for_each_reference([](auto build) {
+    using B = decltype(build);
+    for (const int kind : {0, 1, 2}) {  // FLIP, XPIC, APIC
+      Cloud cloud = random_cloud<B::dim>(3, Wall::roller);
+      cloud.gravity = {0, -9.81, 0};
+      cloud.f_bar_share = 0.5;
+      if (kind == 1) cloud.xpic_order = 3, cloud.flip_share = 0;
+      if (kind == 2) cloud.affine = true, cloud.flip_share = 0;
+      Pair<B> pair(cloud, {PartitionKind::metis, 1.0001}, 6);
+      Timers timers;
+      REQUIRE(timers.create() == PETSC_SUCCESS);
+      for (int n = 1; n <= 12; ++n) {
+        REQUIRE(step(pair.alone, timers, 2e-4) == PETSC_SUCCESS);
+        REQUIRE(step(pair.here, timers, 2e-4, &pair.ranks) == PETSC_SUCCESS);
+        REQUIRE(pair.ranks.drain() == PETSC_SUCCESS);
+        if (n % 4 != 0) continue;
+        rebuild(pair.alone);
+        locate(pair.here);
+        REQUIRE(pair.ranks.rebuild(pair.here) == PETSC_SUCCESS);
+      }
+      const long total = pair.alone.soil.points.count;
+      CHECK(apart(particles_of(pair.here, total, MPI_COMM_WORLD),
+                  particles_of(pair.alone, total, MPI_COMM_SELF)) < 1e-11);
+      const auto here = take_rigids(pair.here), alone = take_rigids(pair.alone);
+      for (int d = 0; d < B::dim; ++d)
+        CHECK(std::abs(here[1].velocity[d] - alone[1].velocity[d]) < 1e-11);
+    }
+  });
+}
+
+TEST_CASE("friction's impulses follow the nodes to the ranks that come to reach them", "[migration]") {
+  for_each_reference([](auto build) {
+    using B = decltype(build);
+    Pair<B> pair(random_cloud<B::dim>(7), {PartitionKind::metis, 1.0001}, 9);
+    const auto set = [](auto& s) {  // a value that tells the node
+      const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
+      const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
+      for (int i = 0; i < s.patches.node_count(); ++i)
+        for (int r = 0; r < 2; ++r)
+          host(r, i) = 1 + r + s.grid.patch_of(origin(i / Patch<B::dim>::cells)) * 64. + i % Patch<B::dim>::cells;
+      Kokkos::deep_copy(s.nodes.impulse, host);
+    };
+    set(pair.here);
+    locate(pair.here);
+    REQUIRE(pair.ranks.rebuild(pair.here) == PETSC_SUCCESS);
+    const auto now = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), pair.here.nodes.impulse);
+    StateOf<B> wanted = pair.here;
+    Kokkos::resize(wanted.nodes.impulse, 0, 0);
+    wanted.nodes.impulse = decltype(wanted.nodes.impulse)("impulse", now.extent(0), now.extent(1));
+    set(wanted);
+    const auto expected = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), wanted.nodes.impulse);
+    sum_present_soil(pair.here);
+    const std::vector<char> reached = with_mass(pair.here);
+    for (int i = 0; i < pair.here.patches.node_count(); ++i)
+      if (reached[i]) REQUIRE((now(0, i) == expected(0, i) && now(1, i) == expected(1, i)));
+  });
+}
+
+TEST_CASE("ranks agree on an error and on the words of one of them", "[halo]") {
+  const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
+  CHECK(agree(MPI_COMM_WORLD, rank == size - 1 ? PETSC_ERR_FILE_WRITE : PETSC_SUCCESS) == PETSC_ERR_FILE_WRITE);
+  CHECK(agree(MPI_COMM_WORLD, PETSC_SUCCESS) == PETSC_SUCCESS);
+  std::string text = rank == 0 && size > 1 ? "" : "rank " + std::to_string(rank);
+  REQUIRE(share_text(MPI_COMM_WORLD, &text) == PETSC_SUCCESS);
+  CHECK(text == (size > 1 ? "rank 1" : "rank 0"));
+}
