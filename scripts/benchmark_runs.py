@@ -85,7 +85,7 @@ def read_log(text):
 
     steps = int(find(r"^(?:finished|failed) after (\d+) steps")[1])
     rows = re.findall(r"^  ([a-z][a-z ,]+?) +\d+ +([\d.]+) +[\d.]+ %", text, re.M)
-    count, megabytes, strategy = find(r"^(\d+) particles in \d+ patches, ([\d.]+) MB on the device; strategy (\w+)").groups()
+    count, megabytes, strategy = find(r"^(\d+) particles in \d+ patches, ([\d.]+) MB on the devices?; strategy (\w+)").groups()
     rate = find(r"^([\d.e+-]+) us a step without output")
     copy = find(r"a copy reads and writes ([\d.]+) GB/s; the steps move ([\d.]+)")
     return {"us": float(rate[1]), "steps": steps, "count": int(count), "ran": strategy,
