@@ -174,7 +174,7 @@ struct HostParticles {
           const int place = k[0] + across * (k[1] + (Dim == 3 ? across * k[Dim - 1] : 0));
           struct {
             Node v;
-            const Node& operator[](int) const { return v; }
+            KOKKOS_INLINE_FUNCTION const Node& operator[](int) const { return v; }
           } node{Node::load(first + place * k_node)};
           return node;
         },
