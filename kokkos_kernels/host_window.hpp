@@ -13,14 +13,18 @@ namespace mpm {
 /// in the window, and from the number `node`, `count` nodes.
 template <int Dim, class Around, class F>
 void for_each_run(const Around& around, int slot, F&& f) {
-  constexpr int edge = Patch<Dim>::edge, across = Patch<Dim>::window_edge;
+  constexpr int edge = Patch<Dim>::edge, across = Patch<Dim>::window_edge, log_edge = Patch<Dim>::log_edge;
   for (int row = 0; row < Patch<Dim>::window; row += across) {
-    Coord<Dim> c = window_coord<Dim>(row);
-    f(row, number_at<Around, Dim>(around, slot, c), 1);
-    c[0] = 0;
-    f(row + 1, number_at<Around, Dim>(around, slot, c), edge);
-    c[0] = edge;
-    f(row + 1 + edge, number_at<Around, Dim>(around, slot, c), 2);
+    const Coord<Dim> c = window_coord<Dim>(row);
+    int which = 0, place = 0;  // as in number_at, which asks node by node
+    for (int d = Dim - 1; d > 0; --d) {
+      which = (which + (c[d] >> log_edge) + 1) * 3;
+      place = (place + (c[d] & (edge - 1))) << log_edge;
+    }
+    const auto node = [&](int x) { return around(slot, which + x) * Patch<Dim>::cells + place; };
+    f(row, node(0) + edge - 1, std::integral_constant<int, 1>{});
+    f(row + 1, node(1), std::integral_constant<int, edge>{});
+    f(row + 1 + edge, node(2), std::integral_constant<int, 2>{});
   }
 }
 
