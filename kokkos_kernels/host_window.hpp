@@ -67,25 +67,24 @@ KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field
     store_some(a, count, to);
 }
 
-/// Calls f(slot) for the slots that hold points, each by one thread: in the order of the points, or colour by
-/// colour where f adds to the nodes that patches share; one thread alone needs no colours.
+/// Calls f(slot) for the slots that hold points, each by one thread: colour by colour, so that those at work
+/// share no node, and always the same part of each colour by the same thread, in whose cache the part then
+/// is. One thread alone needs no colours and takes the slots in the order of the points.
 template <class Space, int Dim, class F>
-void for_each_slot(const char* label, const Space& space, const Bins<Space>& bins, int slots, bool colours,
-                   const F& f) {
-  using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>;
+void for_each_slot(const char* label, const Space& space, const Bins<Space>& bins, int slots, const F& f) {
+  using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Static>>;
   constexpr int cells = Patch<Dim>::cells;
   const auto begin = bins.begin;
-  if (!colours || backend_of<Space> == Backend::serial) {
-    Kokkos::parallel_for(label, Range(space, 0, slots, Kokkos::ChunkSize(1)), [=](int slot) {
+  if constexpr (backend_of<Space> == Backend::serial) {
+    Kokkos::parallel_for(label, Range(space, 0, slots), [=](int slot) {
       if (begin(slot * cells) < begin((slot + 1) * cells)) f(slot);
     });
-    return;
+  } else {
+    const auto by_colour = bins.by_colour;
+    for (int colour = 0; colour < Patch<Dim>::colours; ++colour)
+      Kokkos::parallel_for(label, Range(space, bins.colour_begin[colour], bins.colour_begin[colour + 1]),
+                           [=](int n) { f(by_colour(n)); });
   }
-  const auto by_colour = bins.by_colour;
-  for (int colour = 0; colour < Patch<Dim>::colours; ++colour)
-    Kokkos::parallel_for(
-        label, Range(space, bins.colour_begin[colour], bins.colour_begin[colour + 1], Kokkos::ChunkSize(1)),
-        [=](int n) { f(by_colour(n)); });
 }
 
 /// Whether the points [from, to) are all of one body.
