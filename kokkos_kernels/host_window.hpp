@@ -81,9 +81,11 @@ void for_each_slot(const char* label, const Space& space, const Bins<Space>& bin
     });
   } else {
     const auto by_colour = bins.by_colour;
-    for (int colour = 0; colour < Patch<Dim>::colours; ++colour)
-      Kokkos::parallel_for(label, Range(space, bins.colour_begin[colour], bins.colour_begin[colour + 1]),
-                           [=](int n) { f(by_colour(n)); });
+    for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
+      const int first = bins.colour_begin[colour], last = bins.colour_begin[colour + 1];
+      if (first < last)
+        Kokkos::parallel_for(label, Range(space, first, last), [=](int n) { f(by_colour(n)); });
+    }
   }
 }
 
