@@ -116,7 +116,7 @@ struct HostTile {
     }
   }
   KOKKOS_FORCEINLINE_FUNCTION static Point point(const Stage& stage, int e) {
-    Point q;
+    Point q{};  // its half length has been used
     T* const value = reinterpret_cast<T*>(&q) + 2;
     unrolled<k_point>([&](auto k) { value[k] = stage.value[k][e]; });
     return q;
