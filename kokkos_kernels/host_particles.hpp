@@ -60,9 +60,9 @@ struct HostParticles {
   /// What the particles of some cells take from the nodes, in their order, each value apart.
   struct alignas(R) Stage {
     T motion[k_motion][k_pitch], gradient[Dim * Dim][k_pitch];  // m/s, m/s2; 1/s
-    T mean[k_pitch];                                            // 1/s, dilatation rate of the particle's cell
-    int base[k_pitch];                                          // window_base of its cell
-    bool one_body;                                              // all particles of the patch
+    T mean[k_pitch];    // 1/s, dilatation rate of the particle's cell; first its share of it
+    int base[k_pitch];  // window_base of its cell
+    bool one_body;      // all particles of the patch
   };
 
   Soil<Space, T, Dim> soil;
@@ -77,7 +77,7 @@ struct HostParticles {
   /// The particles of a slot. Returns the largest component of their movements [cells].
   T operator()(int slot) const {
     alignas(Node) T nodes[window][k_node];
-    for_each_run<Dim>(around, slot, [&](int place, int node, int count) {
+    for_each_run<Dim>(around, slot, [&](int place, int node, auto count) {
       for (int n = 0; n < count; ++n)
         for (int k = 0; k < k_motion; ++k) nodes[place + n][k] = motion(node + n, k);
     });
@@ -105,6 +105,7 @@ struct HostParticles {
       for (int p = begin(slot * cells + k); p < begin(slot * cells + k + 1); ++p)
         stage.base[p - from] = window_base<Dim>(k);
     take(nodes, from, to, stage);
+    if (by.f_bar > 0) weigh_dilatation(from, to, stage);
     for (int k = c; k < end; ++k) {
       T volume = 0, sum = 0;
       const int first = begin(slot * cells + k), last = begin(slot * cells + k + 1);
@@ -123,16 +124,16 @@ struct HostParticles {
     for (int pass = by.f_bar > 0 ? 0 : 1; pass < 2; ++pass)
       for (int first = from; first < to; first += k_room) {
         const int last = Kokkos::min(first + k_room, to);
-        for (int n = 0; n < k_room; ++n) {
-          stage.base[n] = window_base<Dim>(c);
-          stage.mean[n] = volume > 0 ? sum / volume : T(0);
-        }
+        for (int n = 0; n < k_room; ++n) stage.base[n] = window_base<Dim>(c);
         take(nodes, first, last, stage);
-        if (pass == 0)
+        if (pass == 0) {
+          weigh_dilatation(first, last, stage);
           add_dilatation(first, last, stage, first, volume, sum);
-        else
-          for (int p = first; p < last; p += W)
-            move_block(p, Kokkos::min(W, last - p), slot, stage, p - first, moved);
+          continue;
+        }
+        for (int n = 0; n < k_room; ++n) stage.mean[n] = volume > 0 ? sum / volume : T(0);
+        for (int p = first; p < last; p += W)
+          move_block(p, Kokkos::min(W, last - p), slot, stage, p - first, moved);
       }
   }
 
@@ -174,7 +175,7 @@ struct HostParticles {
           const int place = k[0] + across * (k[1] + (Dim == 3 ? across * k[Dim - 1] : 0));
           struct {
             Node v;
-            const Node& operator[](int) const { return v; }
+            KOKKOS_INLINE_FUNCTION const Node& operator[](int) const { return v; }
           } node{Node::load(first + place * k_node)};
           return node;
         },
@@ -184,14 +185,21 @@ struct HostParticles {
       for (int d = 0; d < Dim; ++d) stage.gradient[i * Dim + d][n] = gradient[0][d][i] * by.inv_spacing;
   }
 
+  /// Volume times dilatation rate of the particles [from, to) [m3/s], all of the stage, to stage.mean.
+  void weigh_dilatation(int from, int to, Stage& stage) const {
+    for (int p = from; p < to; p += W) {
+      R volume[1], rate = 0;
+      load_field(soil.volume, p, Kokkos::min(W, to - p), volume);
+      for (int d = 0; d < Dim; ++d) rate += R::load(stage.gradient[d * (Dim + 1)] + (p - from));
+      (rate * volume[0]).store(stage.mean + (p - from));
+    }
+  }
   /// Adds the volumes [m3] of the particles [first, last), and with their dilatation rates [m3/s]. from: the
   /// first particle of the stage.
   void add_dilatation(int first, int last, const Stage& stage, int from, T& volume, T& sum) const {
     for (int p = first; p < last; ++p) {
-      T rate = 0;
-      for (int d = 0; d < Dim; ++d) rate += stage.gradient[d * (Dim + 1)][p - from];
       volume += soil.volume(p);
-      sum += soil.volume(p) * rate;
+      sum += stage.mean[p - from];
     }
   }
 
@@ -253,13 +261,12 @@ void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by) {
   const HostParticles<Space, T, Dim> particles{
       set.points, set.bins.begin, s.patches.around, s.patches.origin, s.nodes.motion, s.control,
       by,         s.spacing};
-  for_each_slot<Space, Dim>("mpm::update_particles", s.space, set.bins, s.patches.slots, false,
-                            [=](int slot) {
-                              if (control().paused) return;
-                              const T moved = particles(slot);
-                              if (moved > Kokkos::atomic_load(&control().moved))
-                                Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
-                            });
+  for_each_slot<Space, Dim>("mpm::update_particles", s.space, set.bins, s.patches.slots, [=](int slot) {
+    if (control().paused) return;
+    const T moved = particles(slot);
+    if (moved > Kokkos::atomic_load(&control().moved))
+      Kokkos::atomic_max(&control().moved, static_cast<double>(moved));
+  });
 }
 
 }  // namespace mpm

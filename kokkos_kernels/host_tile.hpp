@@ -59,10 +59,24 @@ struct HostTile {
         if (next >= end) break;
       }
     }
-    for_each_run<Dim>(around, slot, [&](int place, int node, int count) {
+    for_each_run<Dim>(around, slot,
+                      [&](int place, int node, auto count) { give_run<count>(sums, place, node); });
+  }
+
+  /// Adds `count` nodes that lie together, from `place` in the window, to those from number `node` on.
+  template <int count>
+  void give_run(const T (&sums)[size][window], int place, int node) const {
+    T given[count * size];
+    if constexpr (count >= k_row) {
+      Lanes<T, count> values[size];
+      for (int k = 0; k < size; ++k) values[k] = Lanes<T, count>::load(&sums[k][place]);
+      store_groups(values, given);
+    } else {
       for (int n = 0; n < count; ++n)
-        for (int k = 0; k < size; ++k) out(node + n, k) += sums[k][place + n];
-    });
+        for (int k = 0; k < size; ++k) given[n * size + k] = sums[k][place + n];
+    }
+    T* const to = &out(node, 0);  // values of a node together, then those of the next
+    for (int n = 0; n < count * size; ++n) to[n] += given[n];
   }
 
   /// Puts `count` particles from p on to the stage from n on; their weights at once.
@@ -102,7 +116,7 @@ struct HostTile {
     }
   }
   KOKKOS_FORCEINLINE_FUNCTION static Point point(const Stage& stage, int e) {
-    Point q;
+    Point q{};  // its half length has been used
     T* const value = reinterpret_cast<T*>(&q) + 2;
     unrolled<k_point>([&](auto k) { value[k] = stage.value[k][e]; });
     return q;
@@ -183,7 +197,7 @@ void sum_on_host(const Interpolation<Source>& it) {
   const HostTile<Source> tile{it.source, it.bins.begin, it.patches.around, it.out};
   const auto control = it.control;
   for_each_slot<typename Source::Space, Source::dim>("mpm::reduce_by_tile", it.space, it.bins,
-                                                     it.patches.slots, true, [=](int slot) {
+                                                     it.patches.slots, [=](int slot) {
                                                        if (!control().paused) tile(slot);
                                                      });
 }

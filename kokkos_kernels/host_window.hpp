@@ -13,14 +13,18 @@ namespace mpm {
 /// in the window, and from the number `node`, `count` nodes.
 template <int Dim, class Around, class F>
 void for_each_run(const Around& around, int slot, F&& f) {
-  constexpr int edge = Patch<Dim>::edge, across = Patch<Dim>::window_edge;
+  constexpr int edge = Patch<Dim>::edge, across = Patch<Dim>::window_edge, log_edge = Patch<Dim>::log_edge;
   for (int row = 0; row < Patch<Dim>::window; row += across) {
-    Coord<Dim> c = window_coord<Dim>(row);
-    f(row, number_at<Around, Dim>(around, slot, c), 1);
-    c[0] = 0;
-    f(row + 1, number_at<Around, Dim>(around, slot, c), edge);
-    c[0] = edge;
-    f(row + 1 + edge, number_at<Around, Dim>(around, slot, c), 2);
+    const Coord<Dim> c = window_coord<Dim>(row);
+    int which = 0, place = 0;  // as in number_at, which asks node by node
+    for (int d = Dim - 1; d > 0; --d) {
+      which = (which + (c[d] >> log_edge) + 1) * 3;
+      place = (place + (c[d] & (edge - 1))) << log_edge;
+    }
+    const auto node = [&](int x) { return around(slot, which + x) * Patch<Dim>::cells + place; };
+    f(row, node(0) + edge - 1, std::integral_constant<int, 1>{});
+    f(row + 1, node(1), std::integral_constant<int, edge>{});
+    f(row + 1 + edge, node(2), std::integral_constant<int, 2>{});
   }
 }
 
@@ -63,25 +67,26 @@ KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field
     store_some(a, count, to);
 }
 
-/// Calls f(slot) for the slots that hold points, each by one thread: in the order of the points, or colour by
-/// colour where f adds to the nodes that patches share; one thread alone needs no colours.
+/// Calls f(slot) for the slots that hold points, each by one thread: colour by colour, so that those at work
+/// share no node, and always the same part of each colour by the same thread, in whose cache the part then
+/// is. One thread alone needs no colours and takes the slots in the order of the points.
 template <class Space, int Dim, class F>
-void for_each_slot(const char* label, const Space& space, const Bins<Space>& bins, int slots, bool colours,
-                   const F& f) {
-  using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>;
+void for_each_slot(const char* label, const Space& space, const Bins<Space>& bins, int slots, const F& f) {
+  using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Static>>;
   constexpr int cells = Patch<Dim>::cells;
   const auto begin = bins.begin;
-  if (!colours || backend_of<Space> == Backend::serial) {
-    Kokkos::parallel_for(label, Range(space, 0, slots, Kokkos::ChunkSize(1)), [=](int slot) {
+  if constexpr (backend_of<Space> == Backend::serial) {
+    Kokkos::parallel_for(label, Range(space, 0, slots), [=](int slot) {
       if (begin(slot * cells) < begin((slot + 1) * cells)) f(slot);
     });
-    return;
+  } else {
+    const auto by_colour = bins.by_colour;
+    for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
+      const int first = bins.colour_begin[colour], last = bins.colour_begin[colour + 1];
+      if (first < last)
+        Kokkos::parallel_for(label, Range(space, first, last), [=](int n) { f(by_colour(n)); });
+    }
   }
-  const auto by_colour = bins.by_colour;
-  for (int colour = 0; colour < Patch<Dim>::colours; ++colour)
-    Kokkos::parallel_for(
-        label, Range(space, bins.colour_begin[colour], bins.colour_begin[colour + 1], Kokkos::ChunkSize(1)),
-        [=](int n) { f(by_colour(n)); });
 }
 
 /// Whether the points [from, to) are all of one body.

@@ -3,8 +3,7 @@
 
 namespace mpm {
 
-// On the host patches go colour by colour (windows of one colour share no node); on a device all at once, by
-// atomic additions to the nodes.
+// On a device all patches at once, by atomic additions to the nodes.
 template <class Source>
 void sum_on_device(const Interpolation<Source>& it) {
   using Space = typename Source::Space;
