@@ -12,6 +12,10 @@ namespace mpm {
 PetscErrorCode Simulation::run() {
   PetscFunctionBeginUser;
   Body& b = *body_;
+  if (b.config.dry_run) {
+    PetscCall(b.dry_run());
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(b.start());
   while (b.outcome == Outcome::finished && b.step < b.schedule.last_step()) {
     PetscCall(b.advance_to(b.schedule.next_stop(b.step)));
@@ -115,6 +119,7 @@ PetscErrorCode Simulation::Body::write_row() {
 PetscErrorCode Simulation::Body::write_frame() {
   PetscFunctionBeginUser;
   if (!config.output.frames) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(frames.wait());  // the memory for one frame is enough
   Snapshot snapshot;
   stepper->snapshot(&snapshot);
   snapshot.step = step;

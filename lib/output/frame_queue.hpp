@@ -14,16 +14,16 @@ class FrameQueue {
   /// As Frames has them.
   void open(const std::string& folder, Precision precision, const FrameStyle& style);
   PetscErrorCode resume(const Config& config, long count);
-  /// Takes a frame. What failed with the one before is told now.
+  /// Takes a frame.
   PetscErrorCode write(Snapshot&& snapshot);
-  /// Waits until every frame that was taken is on the disk.
+  /// Waits until the frame on its way is written, and lets its memory go. What failed with it is told now.
+  PetscErrorCode wait();
+  /// The same, and brings all to the disk.
   PetscErrorCode settle();
   /// Frames taken.
   long count() const { return count_; }
 
  private:
-  PetscErrorCode wait();
-
   Frames frames_;
   Snapshot snapshot_;  // on its way
   long count_ = 0;
