@@ -165,6 +165,28 @@ class Checks:
         for path, text in before.items():
             assert path.read_bytes() == text, f"{path} was touched"
 
+    def check_dry_run(self):
+        """Tells what the run takes, and writes nothing."""
+        folder = fresh(self.base / "dry")
+        done = self.go(folder, "-dry_run")
+        for word in ("particles     640", "memory", "time step     0.0002", "steps         120", "output", "wall time"):
+            assert word in done.stdout, word
+        assert not folder.exists()
+
+    def check_sweep(self):
+        """A table of runs comes to one file and one picture; the same command again makes nothing anew."""
+        folder, table = fresh(self.base / "sweep"), self.base / "table.csv"
+        table.write_text('clay_su,plate_velocity\n800,"0.5,-1"\n1200,"0,-1"\n')
+        words = [sys.executable, HERE.parent.parent / "scripts/sweep", table, "-options_file", DECK, "-backend", "serial",
+                 "-p2g", "tile", "-time_max_steps", "40", "--mpm", self.binary, "--out", folder]
+        for told in ("finished", "finished before"):
+            done = subprocess.run(list(map(str, words)), env=ENVIRONMENT, capture_output=True, text=True)
+            assert done.returncode == 0 and done.stdout.count(told) == 2, done.stdout + done.stderr
+        lines = (folder / "histories.csv").read_text().splitlines()
+        assert lines[0].startswith("run,clay_su,plate_velocity,step,time") and lines[-1].startswith("1,1200,")
+        assert len(lines) == 1 + sum(len(rows(folder / f"run_000{n}")) - 1 for n in (0, 1))
+        assert (folder / "sweep.png").stat().st_size > 5000
+
     # --- damaged checkpoints ------------------------------------------------------------------------------
 
     def check_damaged_checkpoint(self):

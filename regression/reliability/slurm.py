@@ -69,7 +69,7 @@ class Slurm:
         port = 20000 + os.getpid() % 20000
         (base / "slurm.conf").write_text(CONFIGURATION.format(base=base, host=host, cores=os.cpu_count(), port=port,
                                                               other_port=port + 1))
-        (base / "cgroup.conf").write_text("CgroupPlugin=disabled\n")
+        (base / "cgroup.conf").write_text("CgroupPlugin=autodetect\nIgnoreSystemd=yes\n")
         self.environment = {**ENVIRONMENT, "SLURM_CONF": str(base / "slurm.conf")}
 
     def __enter__(self):
