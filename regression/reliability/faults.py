@@ -137,6 +137,24 @@ class Checks:
             self.go(folder, "-restart", "latest", "-checkpoint_interval", 10, "-history_interval", 1e-5)
             assert len(rows(folder)) == 122
 
+    def check_second_signal(self):
+        """A second signal ends the program at once. It is stopped in between, lest it be done before."""
+        ended = []
+        for _ in range(8):
+            folder = fresh(self.base / "twice")
+            process = subprocess.Popen(command(self.binary, DECK, folder, *OPTIONS, "-mesh_spacing", 0.02, "-time_step", 5e-5,
+                                               "-checkpoint_interval", 10), env=ENVIRONMENT, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+            while not (folder / "history.csv").exists() and process.poll() is None:
+                time.sleep(0.001)
+            for sent, wait in ((signal.SIGTERM, 0.002), (signal.SIGSTOP, 0.1), (signal.SIGTERM, 0), (signal.SIGCONT, 0)):
+                process.send_signal(sent)
+                time.sleep(wait)
+            ended.append(process.wait(timeout=60))
+            assert not faults_of_folder(folder)
+        assert set(ended) <= {-signal.SIGTERM, 75} and -signal.SIGTERM in ended, ended
+        return f"{ended.count(-signal.SIGTERM)} of {len(ended)} were still running"
+
     def check_wall_time_limit(self):
         """A chain of runs that each stop at the limit ends as one that does not."""
         whole, folder, runs = self.base / "few", fresh(self.base / "chain"), 0

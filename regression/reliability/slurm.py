@@ -122,7 +122,7 @@ def main():
     steps = str(max(1000, int(200 * arguments.seconds / (time.time() - began))))
     run(arguments.binary, DECK, base / "whole", *OPTIONS, "-time_max_steps", steps)
     with Slurm(base) as slurm:
-        limits = f"--cpus-per-task=1 --time=1 --signal=USR1@10 --output={base}/job-%j.log"
+        limits = f"--cpus-per-task=1 --time=1 --signal=B:USR1@10 --output={base}/job-%j.log"
         slurm.call("sbatch", *limits.split(), str(ROOT / "scripts/slurm/cpu_node.sbatch"), str(DECK), *OPTIONS, "-time_max_steps",
                    steps, environment={"MPM": str(pathlib.Path(arguments.binary).resolve()),
                                           "MPM_SCRIPTS": str(ROOT / "scripts"), "MPM_OUTPUT": str(base / "chain"),

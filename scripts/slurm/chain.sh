@@ -1,8 +1,9 @@
 # The part that all job scripts here share; they set launch and backend and source it. The first argument of the
 # job is the options file, the others are options of mpm.
 #
-# Slurm sends SIGUSR1 to the steps of the job before the time limit (--signal). The program then writes a
-# checkpoint and ends with 75: the job is submitted again as it was. So it is when the program went down with the
+# Slurm sends SIGUSR1 to this shell before the time limit (--signal=B:), which hands it to the launcher, and that
+# to the program, whatever launches it. The program then writes a checkpoint and ends with 75: the job is
+# submitted again as it was. So it is when the program went down with the
 # node or was killed (a status above 128), as long as there is a new checkpoint to go on from. 0: the run is
 # done. 1 (the system), 2 (input) and 3 (computation) would come again, and end the chain.
 
@@ -23,8 +24,16 @@ again() {
 from=$(last_checkpoint)
 restart=()
 if [ -n "$from" ]; then restart=(-restart latest); fi
-"${launch[@]}" "$program" -options_file "$deck" -output_dir "$folder" -backend "$backend" "${restart[@]}" "$@"
+# MPM_LAUNCH names another launcher, as "srun --mpi=pmix --cpu-bind=cores"; Debian's Open MPI knows no srun.
+${MPM_LAUNCH:-$launch} "$program" -options_file "$deck" -output_dir "$folder" -backend "$backend" "${restart[@]}" "$@" &
+child=$!
+trap 'kill -USR1 $child' USR1
+wait $child
 status=$?
+while kill -0 $child 2>/dev/null; do  # the trap has ended the wait, not the program
+  wait $child
+  status=$?
+done
 to=$(last_checkpoint)
 echo "job $SLURM_JOB_ID: exit status $status, from ${from:-the start} to ${to:-no checkpoint}"
 case $status in
