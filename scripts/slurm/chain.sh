@@ -3,9 +3,9 @@
 #
 # Slurm sends SIGUSR1 to this shell before the time limit (--signal=B:), which hands it to the launcher, and that
 # to the program, whatever launches it. The program then writes a checkpoint and ends with 75: the job is
-# submitted again as it was. So it is when the program went down with the
-# node or was killed (a status above 128), as long as there is a new checkpoint to go on from. 0: the run is
-# done. 1 (the system), 2 (input) and 3 (computation) would come again, and end the chain.
+# submitted again as it was. So it is when the program was killed (a status above 128), as long as there is a new
+# checkpoint to go on from. 0: the run is done. 1 (the system), 2 (input) and 3 (computation) would come again, and
+# end the chain.
 
 deck=$1
 shift
@@ -27,10 +27,10 @@ if [ -n "$from" ]; then restart=(-restart latest); fi
 # MPM_LAUNCH names another launcher, as "srun --mpi=pmix --cpu-bind=cores"; Debian's Open MPI knows no srun.
 ${MPM_LAUNCH:-$launch} "$program" -options_file "$deck" -output_dir "$folder" -backend "$backend" "${restart[@]}" "$@" &
 child=$!
-trap 'kill -USR1 $child' USR1
-wait $child
-status=$?
-while kill -0 $child 2>/dev/null; do  # the trap has ended the wait, not the program
+told=yes
+trap 'told=yes; kill -USR1 $child' USR1
+while [ $told = yes ]; do  # a signal ends the wait, not the program
+  told=no
   wait $child
   status=$?
 done
