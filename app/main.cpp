@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -21,10 +22,12 @@ namespace {
 
 constexpr int k_system_failure = 1;  // exit status of what neither the input nor the computation explains
 
-/// One line instead of PETSc's page, where an error is met first.
+/// One line instead of PETSc's page, where an error is met first; a full disk is often met by rows and by frames,
+/// which are written beside the run.
 PetscErrorCode tell_in_one_line(MPI_Comm, int, const char*, const char*, PetscErrorCode error,
                                 PetscErrorType type, const char* message, void*) {
-  if (type == PETSC_ERROR_INITIAL)
+  static std::atomic_flag told;
+  if (type == PETSC_ERROR_INITIAL && !told.test_and_set())
     std::fprintf(stderr, "mpm: %s\n", message != nullptr ? message : "the system failed");
   return error;
 }

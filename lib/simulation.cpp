@@ -14,6 +14,10 @@ namespace mpm {
 PetscErrorCode Simulation::run() {
   PetscFunctionBeginUser;
   Body& b = *body_;
+  if (b.config.dry_run) {
+    PetscCall(b.dry_run());
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(b.start());
   while (b.outcome == Outcome::finished && b.step < b.schedule.last_step()) {
     PetscCall(b.advance_to(b.schedule.next_stop(b.step)));
@@ -119,6 +123,7 @@ PetscErrorCode Simulation::Body::write_frame() {
   PetscFunctionBeginUser;
   if (config.output.partition) PetscCall(write_partition());
   if (!config.output.frames) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(frames.wait());  // the memory for one frame is enough
   Snapshot snapshot;
   PetscCall(stepper->snapshot(&snapshot));
   snapshot.step = step;

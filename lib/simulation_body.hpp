@@ -74,6 +74,11 @@ struct Simulation::Body {
   PetscErrorCode share_errors();
   PetscErrorCode finish();
 
+  // simulation_dry_run.cpp
+  PetscErrorCode dry_run();
+  PetscErrorCode tell_need();
+  PetscErrorCode time_steps(double* seconds);
+
   // simulation_checkpoint.cpp
   std::vector<std::string> restart_files() const;
   PetscErrorCode read_restart();

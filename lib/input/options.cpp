@@ -28,6 +28,10 @@ void read_run(OptionReader& in, const std::vector<Backend>& backends, Config& co
           in.listing() ? all : compiled, config.backend);
   in.word({.name = "precision", .meaning = "arithmetic of the fields"},
           Words<Precision>{{"double", Precision::double_}, {"single", Precision::single}}, config.precision);
+  in.flag({.name = "dry_run",
+           .meaning =
+               "tells particles, memory, steps, output and about how long the run takes, and writes nothing"},
+          config.dry_run);
 }
 
 void read_p2g(OptionReader& in, P2GConfig& p2g) {

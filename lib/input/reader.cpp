@@ -209,6 +209,16 @@ bool OptionReader::text(const Option& option, std::string& value) {
   return true;
 }
 
+bool OptionReader::flag(const Option& option, bool& value) {
+  const std::string takes = "on, off or no value";
+  const std::string* given = find(option, takes, value ? "on" : "off");
+  if (!given) return false;
+  if (!given->empty() && *given != "on" && *given != "off") return fail(option, takes);
+  value = *given != "off";
+  keep(option, value ? "on" : "off", false);
+  return true;
+}
+
 bool OptionReader::list_of(const Option& option, const std::string& takes, std::vector<std::string>& value) {
   const std::string* given = find(option, takes, "");
   if (!given) return false;

@@ -63,6 +63,8 @@ class OptionReader {
   /// 4 numbers in 2D (plane strain), 6 in 3D; the others stay.
   bool tensor(const Option& option, int dim, Sym6& value);
   bool text(const Option& option, std::string& value);
+  /// An option that needs no value: on where it stands alone, on or off.
+  bool flag(const Option& option, bool& value);
   /// A list of any length; `takes` says of what, since only the caller can check it. Where a piece is empty,
   /// which is reported, the value still holds all pieces.
   bool list_of(const Option& option, const std::string& takes, std::vector<std::string>& value);

@@ -31,9 +31,10 @@ PetscErrorCode FrameQueue::resume(const Config& config, long count, MPI_Comm com
 
 PetscErrorCode FrameQueue::wait() {
   PetscFunctionBeginUser;
-  // What failed has been told where it failed.
-  if (result_.valid())
-    if (const PetscErrorCode failed = result_.get()) PetscFunctionReturn(failed);
+  if (!result_.valid()) PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscErrorCode failed = result_.get();
+  snapshot_ = {};
+  if (failed) PetscFunctionReturn(failed);  // it has been told where it failed
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,16 +15,16 @@ class FrameQueue {
   void open(const std::string& folder, Precision precision, const FrameStyle& style,
             MPI_Comm comm = PETSC_COMM_SELF);
   PetscErrorCode resume(const Config& config, long count, MPI_Comm comm = PETSC_COMM_SELF);
-  /// Takes a frame. What failed with the one before is told now.
+  /// Takes a frame.
   PetscErrorCode write(Snapshot&& snapshot);
-  /// Waits until every frame that was taken is on the disk.
+  /// Waits until the frame on its way is written, and lets its memory go. What failed with it is told now.
+  PetscErrorCode wait();
+  /// The same, and brings all to the disk.
   PetscErrorCode settle();
   /// Frames taken.
   long count() const { return count_; }
 
  private:
-  PetscErrorCode wait();
-
   Frames frames_;
   bool beside_ = true;  // the run
   Snapshot snapshot_;  // on its way

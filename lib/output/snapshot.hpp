@@ -34,7 +34,7 @@ inline constexpr const char* k_nodes = "nodes";
 struct Snapshot {
   double time = 0;  // s
   long step = 0;
-  std::vector<ParticleSnapshot> bodies, rigids, nodes;
+  std::vector<ParticleSnapshot> bodies, rigids, nodes{};
 };
 
 /// One row of the history for one body.

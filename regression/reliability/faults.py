@@ -137,6 +137,24 @@ class Checks:
             self.go(folder, "-restart", "latest", "-checkpoint_interval", 10, "-history_interval", 1e-5)
             assert len(rows(folder)) == 122
 
+    def check_second_signal(self):
+        """A second signal ends the program at once. It is stopped in between, lest it be done before."""
+        ended = []
+        for _ in range(8):
+            folder = fresh(self.base / "twice")
+            process = subprocess.Popen(command(self.binary, DECK, folder, *OPTIONS, "-mesh_spacing", 0.02, "-time_step", 5e-5,
+                                               "-checkpoint_interval", 10), env=ENVIRONMENT, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+            while not (folder / "history.csv").exists() and process.poll() is None:
+                time.sleep(0.001)
+            for sent, wait in ((signal.SIGTERM, 0.002), (signal.SIGSTOP, 0.1), (signal.SIGTERM, 0), (signal.SIGCONT, 0)):
+                process.send_signal(sent)
+                time.sleep(wait)
+            ended.append(process.wait(timeout=60))
+            assert not faults_of_folder(folder)
+        assert set(ended) <= {-signal.SIGTERM, 75} and -signal.SIGTERM in ended, ended
+        return f"{ended.count(-signal.SIGTERM)} of {len(ended)} were still running"
+
     def check_wall_time_limit(self):
         """A chain of runs that each stop at the limit ends as one that does not."""
         whole, folder, runs = self.base / "few", fresh(self.base / "chain"), 0
@@ -164,6 +182,28 @@ class Checks:
             self.expect_line(done, option)
         for path, text in before.items():
             assert path.read_bytes() == text, f"{path} was touched"
+
+    def check_dry_run(self):
+        """Tells what the run takes, and writes nothing."""
+        folder = fresh(self.base / "dry")
+        done = self.go(folder, "-dry_run")
+        for word in ("particles     640", "memory", "time step     0.0002", "steps         120", "output", "wall time"):
+            assert word in done.stdout, word
+        assert not folder.exists()
+
+    def check_sweep(self):
+        """A table of runs comes to one file and one picture; the same command again makes nothing anew."""
+        folder, table = fresh(self.base / "sweep"), self.base / "table.csv"
+        table.write_text('clay_su,plate_velocity\n800,"0.5,-1"\n1200,"0,-1"\n')
+        words = [sys.executable, HERE.parent.parent / "scripts/sweep", table, "-options_file", DECK, "-backend", "serial",
+                 "-p2g", "tile", "-time_max_steps", "40", "--mpm", self.binary, "--out", folder]
+        for told in ("finished", "finished before"):
+            done = subprocess.run(list(map(str, words)), env=ENVIRONMENT, capture_output=True, text=True)
+            assert done.returncode == 0 and done.stdout.count(told) == 2, done.stdout + done.stderr
+        lines = (folder / "histories.csv").read_text().splitlines()
+        assert lines[0].startswith("run,clay_su,plate_velocity,step,time") and lines[-1].startswith("1,1200,")
+        assert len(lines) == 1 + sum(len(rows(folder / f"run_000{n}")) - 1 for n in (0, 1))
+        assert (folder / "sweep.png").stat().st_size > 5000
 
     # --- damaged checkpoints ------------------------------------------------------------------------------
 

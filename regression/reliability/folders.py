@@ -20,7 +20,7 @@ def command(binary, deck, folder, *options):
 def run(binary, deck, folder, *options, status=0, environment=None, prefix=()):
     """Runs to the end and checks the exit status; returns what was printed (stdout, stderr)."""
     done = subprocess.run([*prefix, *command(binary, deck, folder, *options)], capture_output=True, text=True,
-                          errors="replace", env={**ENVIRONMENT, **(environment or {})}, timeout=600)
+                          errors="replace", env={**ENVIRONMENT, **(environment or {})}, timeout=1800)
     if status is not None and done.returncode != status:
         raise AssertionError(f"exit status {done.returncode} instead of {status} of {options}:\n"
                              f"{done.stdout[-1500:]}\n{done.stderr}")

@@ -147,6 +147,7 @@ struct Config {
   std::vector<BodyConfig> bodies;
   std::vector<RigidConfig> rigids;
   OutputConfig output;
+  bool dry_run = false;  // tell what the run would take, and do not run
 };
 
 }  // namespace mpm

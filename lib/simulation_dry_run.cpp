@@ -1,0 +1,115 @@
+// -dry_run: what a run would take, from its model in numbers and a short trial. Writes nothing.
+
+#include <algorithm>
+#include <cmath>
+
+#include "memory_need.hpp"
+#include "simulation_body.hpp"
+
+namespace mpm {
+namespace {
+
+/// Bytes of a frame of these particles.
+double frame_bytes(const Snapshot& snapshot, const Config& config) {
+  const double real = config.precision == Precision::single ? 4 : 8;
+  double bytes = 0;
+  for (const auto* groups : {&snapshot.bodies, &snapshot.rigids, &snapshot.nodes})
+    for (const ParticleSnapshot& group : *groups) {
+      bytes += 8.0 * group.position.size();
+      for (const auto* field : {&group.velocity, &group.grid_velocity, &group.stress, &group.volume,
+                                &group.plastic_strain, &group.mass, &group.number})
+        bytes += real * field->size();
+    }
+  return bytes;
+}
+
+double checkpoint_bytes(const SavedState& state) {
+  const auto of_points = [](const SavedPoints& points) {
+    double bytes = 8.0 * points.address.size();
+    for (const SavedField& field : points.fields) bytes += double(field.bytes) * field.values.size();
+    return bytes;
+  };
+  double bytes = of_points(state.soil) + 8.0 * (state.impulse.address.size() + state.impulse.values.size());
+  for (const SavedPoints& points : state.rigid_points) bytes += of_points(points);
+  return bytes;
+}
+
+}  // namespace
+
+/// Wall time of a step [s], from as many as a short trial allows; 0 where no step could be made.
+PetscErrorCode Simulation::Body::time_steps(double* seconds) {
+  PetscFunctionBeginUser;
+  constexpr double k_enough = 1;  // s
+  constexpr long k_most = 500, k_first = 2;
+  long done = 0;
+  double before = seconds_now();
+  for (long steps = k_first; done < std::min(k_most, schedule.last_whole_step()); steps *= 2) {
+    Batch batch;
+    PetscCall(stepper->advance(std::min(steps, k_most - done), dt, &batch));
+    done += batch.steps;
+    if (done == k_first) before = seconds_now();  // the very first load kernels
+    if (!batch.failure.what.empty()) {
+      step = done;
+      PetscCall(fail("in the trial: " + batch.failure.what));
+      break;
+    }
+    Failure failure;
+    if (batch.rebuild) PetscCall(stepper->rebuild(&failure));
+    if (!failure.what.empty() || batch.steps == 0 || seconds_now() - before > k_enough) break;
+  }
+  *seconds = done > k_first ? (seconds_now() - before) / (done - k_first) : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Simulation::Body::dry_run() {
+  PetscFunctionBeginUser;
+  stepper = make_stepper(config);
+  PetscCheck(stepper, comm, PETSC_ERR_SUP,
+             "This program was built without this backend, precision or dimension");
+  PetscCall(log.start(comm, config.output.progress));
+  PetscCall(log.line(format_header(k_version, kokkos_version(),
+                                   std::string(word_of(config.backend)) + ", " + device_name(config.backend),
+                                   ranks())));
+  Model model;
+  Failure failure;
+  PetscCall(load(&model));
+  PetscCall(stepper->set_up(std::move(model), &failure));
+  if (!failure.what.empty()) PetscCall(fail(failure.what));
+  if (outcome == Outcome::finished) PetscCall(tell_need());
+  PetscCall(log.line("a dry run: nothing was written"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Simulation::Body::tell_need() {
+  PetscFunctionBeginUser;
+  constexpr double k_row = 20;  // bytes of a number in the history
+  const double end = schedule.time_of(schedule.last_step());
+  const double frames_written = config.output.frames ? std::floor(end / config.output.interval) + 1 : 0;
+  const double rows = std::floor(end / config.output.history_interval) + 1;
+  const double columns =
+      4 + config.bodies.size() * (2.0 + 5 * config.dim) + config.rigids.size() * 3.0 * config.dim;
+  const MemoryNeed need = memory_need(config);
+  Snapshot snapshot;
+  stepper->snapshot(&snapshot);
+  const double frame = frame_bytes(snapshot, config), checkpoint = checkpoint_bytes(stepper->save());
+  PetscCall(log.print("particles     %ld in %d patches, on %d rank%s", stepper->particles(),
+                      stepper->patches(), ranks(), ranks() == 1 ? "" : "s"));
+  PetscCall(log.print("memory        %.4g MB on the device, about %.4g MB beside on the host, a rank",
+                      stepper->memory() / 1e6, need.host / ranks() / 1e6));
+  PetscCall(log.print("time step     %.9g s, Courant number %.4f", dt, dt / critical_time_step(config)));
+  PetscCall(log.print("steps         %ld to %g s", schedule.last_step(), end));
+  PetscCall(log.print(
+      "output        %.0f frames of %.4g MB%s, %.0f rows of about %.0f bytes: %.4g MB; two checkpoints "
+      "of %.4g MB",
+      frames_written, frame / 1e6, config.output.compression > 0 ? " before compression" : "", rows,
+      k_row * columns, (frames_written * frame + rows * k_row * columns) / 1e6, checkpoint / 1e6));
+  double seconds = 0;
+  PetscCall(time_steps(&seconds));
+  if (outcome != Outcome::finished || seconds == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(log.print("wall time     about %s: %.4g us a step with strategy %s, without output",
+                      format_duration(seconds * schedule.last_step()).c_str(), 1e6 * seconds,
+                      stepper->strategy().c_str()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm
