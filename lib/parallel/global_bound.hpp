@@ -17,9 +17,9 @@ struct BoundReport {
 };
 
 /// Whether lists must be rebuilt before the next step, where `report` is `late` steps old. Speeds may have
-/// doubled since.
+/// grown by half since.
 inline bool rebuild_due(const BoundReport& report, double margin, int late) {
-  constexpr double k_growth = 2;
+  constexpr double k_growth = 1.5;
   return !(report.bound + late * k_growth * report.increment <= margin);
 }
 
