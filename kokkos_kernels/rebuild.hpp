@@ -71,13 +71,15 @@ struct SortedPart<Matrix<T, Dim>> {
 template <class Value>
 using PartOf = typename SortedPart<Value>::type;
 
-/// Makes a view hold at least n entries; its content is lost when it grows.
+/// Makes a view hold at least n entries; its content is lost when it grows. What has grown once may grow
+/// again, and gets some room for it.
 template <class View>
 void ensure(View& view, std::size_t n) {
   if (view.extent(0) >= n) return;
   const std::string label = view.label();
+  const bool grows = view.extent(0) > 0;
   view = View();  // the old memory goes before the new one comes
-  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), n + n / 16);
+  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), grows ? n + n / 16 : n);
 }
 
 }  // namespace mpm

@@ -207,9 +207,9 @@ void sort_and_list(State<Space, T, Dim>& s) {
   if (s.xpic_order > 0) ensure(s.nodes.rest, nodes);
   if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
-    s.nodes.rigid =
-        decltype(s.nodes.rigid)(Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing),
-                                s.rigid_points.size(), nodes + nodes / 16);
+    s.nodes.rigid = decltype(s.nodes.rigid)(
+        Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),
+        nodes + (s.nodes.rigid.extent(1) > 0 ? nodes / 16 : 0));
   const auto control = s.control;
   Kokkos::parallel_for(
       "mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
