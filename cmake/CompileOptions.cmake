@@ -2,7 +2,8 @@
 
 # errno after sqrt() is read by no one, and keeps loops from being vectorised.
 # Contraction to fused multiply-adds is off in strict C++ mode by default.
-set(host_options -fno-math-errno -ffp-contract=fast -Wall)
+# Vectors wider than the processor's (lanes.hpp) never pass between object files: no word of their ABI.
+set(host_options -fno-math-errno -ffp-contract=fast -Wall -Wno-psabi)
 if(MPM_ARCH)
   list(APPEND host_options -march=${MPM_ARCH})
 endif()
