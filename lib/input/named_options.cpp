@@ -24,6 +24,7 @@ struct Names {
 
   explicit Names(const OptionReader& in) {
     for (const auto& option : in.known()) reserved.insert(split(option, '_')[0]);
+    reserved.erase("wall");  // of -wall_time_limit, which no rigid of that good name has
     for (const auto& option : petsc_names()) reserved.insert(split(option, '_')[0]);
   }
   /// What is wrong with a name; empty where nothing is.
