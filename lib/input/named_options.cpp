@@ -23,9 +23,8 @@ struct Names {
   std::set<std::string> used, reserved;
 
   explicit Names(const OptionReader& in) {
-    const std::string own = "wall_time_limit";  // "wall" is a good name, and none has a time limit
-    for (const auto& option : in.known())
-      if (option != own) reserved.insert(split(option, '_')[0]);
+    for (const auto& option : in.known()) reserved.insert(split(option, '_')[0]);
+    reserved.erase("wall");  // of -wall_time_limit, which no rigid of that good name has
     for (const auto& option : petsc_names()) reserved.insert(split(option, '_')[0]);
   }
   /// What is wrong with a name; empty where nothing is.

@@ -130,7 +130,7 @@ def main():
         until = time.time() + arguments.wait
         while slurm.call("squeue", "-h") and time.time() < until:
             time.sleep(1)
-    told = [line for log in sorted(base.glob("job-*.log")) for line in log.read_text().splitlines()
+    told = [line for log in sorted(base.glob("job-*.log"), key=lambda path: int(path.stem[4:])) for line in log.read_text().splitlines()
             if line.startswith("job ")]
     print("\n".join(told))
     stopped = sum("exit status 75" in line for line in told)

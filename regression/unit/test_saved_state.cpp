@@ -3,6 +3,7 @@
 #include <catch2/catch_test_macros.hpp>
 
 #include <algorithm>
+#include <cstring>
 #include <random>
 
 #include "compare.hpp"
@@ -19,10 +20,15 @@ bool gives_same_bits(P2G how) {
   return std::is_same_v<typename B::Space, Kokkos::Serial> || how == P2G::gather || how == P2G::sequential;
 }
 
+/// The same bits: where a test's cloud has burst, not-a-numbers too.
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
 bool same(const SavedPoints& a, const SavedPoints& b) {
   if (a.id != b.id || a.address != b.address || a.fields.size() != b.fields.size()) return false;
   for (std::size_t k = 0; k < a.fields.size(); ++k)
-    if (a.fields[k].name != b.fields[k].name || a.fields[k].values != b.fields[k].values) return false;
+    if (a.fields[k].name != b.fields[k].name || !same(a.fields[k].values, b.fields[k].values)) return false;
   return true;
 }
 
@@ -83,6 +89,12 @@ TEST_CASE("a run from a saved state has the bits of the run that was saved", "[s
       CHECK(same(save_state(again), save_state(whole)));
       if (!gives_same_bits<B>(how)) continue;
       run_steps(whole, dt, 120), run_steps(again, dt, 120);
+      if (look(whole).fault_count > 0) {  // the cloud has burst: in the same step, of the same particle
+        CHECK(look(again).fault_count == look(whole).fault_count);
+        CHECK(look(again).fault.particle == look(whole).fault.particle);
+        CHECK(look(again).steps + 37 == look(whole).steps);
+        continue;
+      }
       CHECK(same(save_state(again), save_state(whole)));
     }
   });
