@@ -11,6 +11,7 @@
 #include "parallel/ranks.hpp"
 #include "parallel/together.hpp"
 #include "step/step.hpp"
+#include "velocity_gradients.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -40,6 +41,12 @@ Cloud share_of_cloud(const Cloud& whole, int rank, int ranks) {
     const int count = static_cast<int>(body.strength.size());
     for (int p = rank; p < count; p += ranks) body.id.push_back(first + p);
     first += count;
+    if (whole.affine) {  // from all neighbours of a particle
+      std::vector<double> cells = body.position;
+      for (double& x : cells) x /= whole.grid.spacing;
+      body.velocity_gradient = velocity_gradients(cells, body.particle_velocity, Dim);
+      keep(body.velocity_gradient, Dim * Dim);
+    }
     keep(body.position, Dim), keep(body.strength, 1), keep(body.particle_velocity, Dim);
     keep(body.stress, sym_size<Dim>);
   }
