@@ -78,12 +78,12 @@ PetscErrorCode Ranks<Space, T, Dim>::add(State_& s, std::initializer_list<HaloFi
   s.space.fence("mpm::halo");
   const double packed = WorkClock::wall();
   clock_.pause();
-  PetscCall(exchange_.start(mpi_type<T>(), width, host_out_.data(), host_in_.data()));
+  if (width > 0) PetscCall(exchange_.start(mpi_type<T>(), width, host_out_.data(), host_in_.data()));
   if (with_bound) {
     const Control& c = seen_();
     PetscCall(bound_.post(comm_, {c.bound, c.increment, c.paused != 0 ? 1.0 : 0.0}));
   }
-  PetscCall(exchange_.finish());
+  if (width > 0) PetscCall(exchange_.finish());
   clock_.go_on();
   const double received = WorkClock::wall();
   if (values > 0 && is_device<Space>) Kokkos::deep_copy(s.space, head(in_, values), head(host_in_, values));

@@ -16,14 +16,15 @@ const char* name_of(Function f) {
 
 PetscErrorCode Timers::create() {
   PetscFunctionBeginUser;
-  PetscClassId id;
-  PetscCall(PetscClassIdRegister("mpm", &id));
+  PetscClassId id = 0;  // registered once: PETSc has room for so many
   for (int n = 0; n < k_functions; ++n) {
     const char* name = name_of(static_cast<Function>(n));
     PetscBool known = PETSC_FALSE;
     PetscCall(PetscLogEventGetId(name, &events_[n]));
     known = events_[n] >= 0 ? PETSC_TRUE : PETSC_FALSE;
-    if (!known) PetscCall(PetscLogEventRegister(name, id, &events_[n]));
+    if (known) continue;
+    if (id == 0) PetscCall(PetscClassIdRegister("mpm", &id));
+    PetscCall(PetscLogEventRegister(name, id, &events_[n]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

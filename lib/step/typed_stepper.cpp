@@ -110,12 +110,14 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.flip_share = config_.flip_share;
   if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;
   state_.affine = config_.velocity_update == VelocityUpdate::apic;
-  state_.f_bar_share = config_.f_bar_share;
+  // On several ranks the pressure of a cell is averaged once all its particles are here.
+  state_.f_bar_share = model.owners.empty() ? config_.f_bar_share : 0;
   Fault fault{};
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
   *failure = describe(fault);
   PetscCall(share(failure));
   if (!model.owners.empty() && failure->what.empty()) {
+    state_.f_bar_share = config_.f_bar_share;
     ranks_ = std::make_unique<Ranks<Space, T, Dim>>();
     PetscCallCXX(PetscCall(ranks_->start(comm_, config_.partition, model.owners, state_)));
   }

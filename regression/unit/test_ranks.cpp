@@ -2,6 +2,7 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,7 @@
 #include "parallel/ranks.hpp"
 #include "parallel/together.hpp"
 #include "step/step.hpp"
+#include "velocity_gradients.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -39,10 +41,27 @@ Cloud share_of_cloud(const Cloud& whole, int rank, int ranks) {
     const int count = static_cast<int>(body.strength.size());
     for (int p = rank; p < count; p += ranks) body.id.push_back(first + p);
     first += count;
+    if (whole.affine) {  // from all neighbours of a particle
+      std::vector<double> cells = body.position;
+      for (double& x : cells) x /= whole.grid.spacing;
+      body.velocity_gradient = velocity_gradients(cells, body.particle_velocity, Dim);
+      keep(body.velocity_gradient, Dim * Dim);
+    }
     keep(body.position, Dim), keep(body.strength, 1), keep(body.particle_velocity, Dim);
     keep(body.stress, sym_size<Dim>);
   }
   return own;
+}
+
+/// Moves particles at the walls inwards, so that none leaves the mesh in a few steps.
+template <int Dim>
+void keep_inside(Cloud& cloud) {
+  constexpr double k_inside = 0.3;  // cells
+  for (BodyInput& body : cloud.bodies)
+    for (std::size_t k = 0; k < body.position.size(); ++k) {
+      const double end = (cloud.grid.cells[k % Dim] - k_inside) * cloud.grid.spacing;
+      body.position[k] = std::clamp(body.position[k], k_inside * cloud.grid.spacing, end);
+    }
 }
 
 /// A cloud on all ranks together, brought to its owners, and the same on each rank alone.
@@ -54,7 +73,10 @@ struct Pair {
   Pair(const Cloud& cloud, const PartitionConfig& config, int seed) {
     const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
     alone = state_of<B>(cloud, P2G::gather);
-    here = state_of<B>(share_of_cloud<B::dim>(cloud, rank, size), P2G::gather);
+    Cloud share = share_of_cloud<B::dim>(cloud, rank, size);
+    share.f_bar_share = 0;  // a cell's particles are still on several ranks
+    here = state_of<B>(share, P2G::gather);
+    here.f_bar_share = cloud.f_bar_share;
     const Owners owners = random_owners(alone.grid.patch_count(), size, seed);
     REQUIRE(ranks.start(MPI_COMM_WORLD, config, owners, here) == PETSC_SUCCESS);
   }
@@ -87,7 +109,8 @@ std::vector<char> with_mass(const State_& s) {
 template <class State_>
 std::vector<double> particles_of(const State_& s, long total, MPI_Comm comm) {
   const SoilFields f = download_soil(s);
-  const std::size_t width = f.id.empty() ? 0 : (f.position.size() + f.velocity.size() + f.stress.size()) / f.id.size() + 3;
+  const std::size_t vectors = f.position.size() + f.velocity.size() + f.stress.size();
+  const std::size_t width = f.id.empty() ? 0 : vectors / f.id.size() + 3;
   unsigned long all_width = width;
   MPI_Allreduce(MPI_IN_PLACE, &all_width, 1, MPI_UNSIGNED_LONG, MPI_MAX, comm);
   std::vector<double> values(total * all_width);
@@ -173,24 +196,29 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
     for (const int kind : {0, 1, 2}) {  // FLIP, XPIC, APIC
       Cloud cloud = random_cloud<B::dim>(3, Wall::roller);
       cloud.gravity = {0, -9.81, 0};
+      keep_inside<B::dim>(cloud);
       cloud.f_bar_share = 0.5;
       if (kind == 1) cloud.xpic_order = 3, cloud.flip_share = 0;
       if (kind == 2) cloud.affine = true, cloud.flip_share = 0;
       Pair<B> pair(cloud, {PartitionKind::metis, 1.0001}, 6);
+      constexpr double k_dt = 1e-5;  // s: lone particles bear stresses that throw them far
       Timers timers;
       REQUIRE(timers.create() == PETSC_SUCCESS);
       for (int n = 1; n <= 12; ++n) {
-        REQUIRE(step(pair.alone, timers, 2e-4) == PETSC_SUCCESS);
-        REQUIRE(step(pair.here, timers, 2e-4, &pair.ranks) == PETSC_SUCCESS);
+        REQUIRE(step(pair.alone, timers, k_dt) == PETSC_SUCCESS);
+        REQUIRE(step(pair.here, timers, k_dt, &pair.ranks) == PETSC_SUCCESS);
         REQUIRE(pair.ranks.drain() == PETSC_SUCCESS);
         if (n % 4 != 0) continue;
         rebuild(pair.alone);
         locate(pair.here);
         REQUIRE(pair.ranks.rebuild(pair.here) == PETSC_SUCCESS);
       }
+      INFO(B::name() << ", velocity update " << kind);
       const long total = pair.alone.soil.points.count;
-      CHECK(apart(particles_of(pair.here, total, MPI_COMM_WORLD),
-                  particles_of(pair.alone, total, MPI_COMM_SELF)) < 1e-11);
+      const auto a = particles_of(pair.here, total, MPI_COMM_WORLD);
+      const auto b = particles_of(pair.alone, total, MPI_COMM_SELF);
+      CHECK((look(pair.here).fault_count == 0 && look(pair.alone).fault_count == 0));
+      CHECK(apart(a, b) < 1e-11);
       const auto here = take_rigids(pair.here), alone = take_rigids(pair.alone);
       for (int d = 0; d < B::dim; ++d)
         CHECK(std::abs(here[1].velocity[d] - alone[1].velocity[d]) < 1e-11);
