@@ -22,8 +22,8 @@ namespace {
 
 constexpr int k_system_failure = 1;  // exit status of what neither the input nor the computation explains
 
-/// One line instead of PETSc's page, where an error is met first; a full disk is often met by rows and by frames,
-/// which are written beside the run.
+/// One line instead of PETSc's page, where an error is met first; a full disk is often met by rows and by
+/// frames, which are written beside the run.
 PetscErrorCode tell_in_one_line(MPI_Comm, int, const char*, const char*, PetscErrorCode error,
                                 PetscErrorType type, const char* message, void*) {
   static std::atomic_flag told;
@@ -41,7 +41,8 @@ PetscErrorCode run(const mpm::InputReport& arguments, mpm::Outcome* outcome) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What several ranks on a node must not each take whole, where the user has not chosen: a device each, in turn
+/// What several ranks on a node must not each take whole, where the user has not chosen: a device each, in
+/// turn
 /// (--kokkos-device-id, KOKKOS_DEVICE_ID), and a part of the cores (OMP_NUM_THREADS, KOKKOS_NUM_THREADS). One
 /// of them speaks for all of what Kokkos warns of.
 void share_node() {

@@ -10,8 +10,7 @@ void pack_nodes(const State<Space, T, Dim>& s, const HaloLists<Space>& lists, co
       "mpm::pack_nodes", light(Kokkos::RangePolicy<Space>(s.space, 0, lists.sent * field.size)),
       KOKKOS_LAMBDA(int m) {
         const int n = m / field.size, k = m % field.size;
-        out[std::size_t(n) * width + field.offset + k] =
-            field.values[std::size_t(node(n)) * field.size + k];
+        out[std::size_t(n) * width + field.offset + k] = field.values[std::size_t(node(n)) * field.size + k];
       });
 }
 
@@ -53,12 +52,12 @@ void put_rigid_forces(State<Space, T, Dim>& s) {
   s.near_count = 1;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                \
-  template void pack_nodes(const State<Space, T, Dim>&, const HaloLists<Space>&, const HaloField<T>&, \
-                           int, T*);                                                                  \
-  template void sum_shares(const State<Space, T, Dim>&, const HaloLists<Space>&, const HaloField<T>&, \
-                           int, const T*);                                                            \
-  template void sum_rigid_forces(State<Space, T, Dim>&);                                              \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                     \
+  template void pack_nodes(const State<Space, T, Dim>&, const HaloLists<Space>&, const HaloField<T>&, int, \
+                           T*);                                                                            \
+  template void sum_shares(const State<Space, T, Dim>&, const HaloLists<Space>&, const HaloField<T>&, int, \
+                           const T*);                                                                      \
+  template void sum_rigid_forces(State<Space, T, Dim>&);                                                   \
   template void put_rigid_forces(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -15,7 +15,7 @@ struct HaloLists {
   Kokkos::View<int*, Memory> node;         // of each entry that goes out, neighbour by neighbour [sent]
   Kokkos::View<int*, Memory> shared_node;  // each shared node once [shared]
   Kokkos::View<int*, Memory> begin;        // first source of a shared node [shared + 1]
-  Kokkos::View<int*, Memory> source;       // in the order of ranks: an entry that came in, -1 for the own share
+  Kokkos::View<int*, Memory> source;  // in the order of ranks: an entry that came in, -1 for the own share
 };
 
 /// A nodal field as rows of `size` values, and where a row begins in an entry of the buffer.

@@ -125,8 +125,8 @@ double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long ra
   return x;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                            \
-  template BodyMeasure measure(const State<Space, T, Dim>&, int); \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                               \
+  template BodyMeasure measure(const State<Space, T, Dim>&, int);                                    \
   template double ranked_coordinate(const State<Space, T, Dim>&, int, int, long, const BodyMeasure&, \
                                     const OverRanks&);
 MPM_FOR_EACH(MPM_INSTANTIATE)

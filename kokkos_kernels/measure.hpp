@@ -26,8 +26,8 @@ struct OverRanks {
 };
 
 /// The rank-th smallest coordinate (1 <= rank <= m.count) of a body's particles along d [m from the mesh's
-/// lower corner]; m is the measure of the whole body. It is a particle's coordinate, at most 2^-24 of the body's extent
-/// above the exact one, and the same whatever the number of threads.
+/// lower corner]; m is the measure of the whole body. It is a particle's coordinate, at most 2^-24 of the
+/// body's extent above the exact one, and the same whatever the number of threads.
 template <class Space, class T, int Dim>
 double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
                          const OverRanks& over = {});

@@ -28,9 +28,8 @@ void pack_part(const Space& space, const View& view, std::size_t place, std::siz
                const Kokkos::View<char*, typename Space::memory_space>& records) {
   using Value = typename View::value_type;
   Kokkos::parallel_for(
-      "mpm::pack_part", Kokkos::RangePolicy<Space>(space, 0, which.extent(0)), KOKKOS_LAMBDA(int n) {
-        *reinterpret_cast<Value*>(&records(n * size + place)) = view(which(n));
-      });
+      "mpm::pack_part", Kokkos::RangePolicy<Space>(space, 0, which.extent(0)),
+      KOKKOS_LAMBDA(int n) { *reinterpret_cast<Value*>(&records(n * size + place)) = view(which(n)); });
 }
 
 template <class Space, class View>
@@ -89,13 +88,12 @@ std::vector<char> take_particles(State<Space, T, Dim>& s, const std::vector<int>
   const int count = static_cast<int>(particles.size());
   if (count == 0) return {};
   const Kokkos::View<int*, Memory> which("mpm::which", count);
-  Kokkos::deep_copy(which, Kokkos::View<const int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
-                               particles.data(), count));
+  Kokkos::deep_copy(
+      which, Kokkos::View<const int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(particles.data(), count));
   const std::size_t size = record_size(s);
   const Kokkos::View<char*, Memory> records("mpm::records", count * size);
-  for_each_part(s, [&](const auto& view, std::size_t place) {
-    pack_part(s.space, view, place, size, which, records);
-  });
+  for_each_part(
+      s, [&](const auto& view, std::size_t place) { pack_part(s.space, view, place, size, which, records); });
   const auto address = s.soil.address;
   Kokkos::parallel_for(
       "mpm::forget_leavers", Kokkos::RangePolicy<Space>(s.space, 0, count),
@@ -138,8 +136,7 @@ std::vector<int> count_by_patch(const State<Space, T, Dim>& s) {
   const Kokkos::View<int*, typename Space::memory_space> counts("mpm::count_by_patch", s.grid.patch_count());
   const auto address = s.soil.address;
   Kokkos::parallel_for(
-      "mpm::count_by_patch", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.all),
-      KOKKOS_LAMBDA(int p) {
+      "mpm::count_by_patch", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.all), KOKKOS_LAMBDA(int p) {
         if (address(p) >= 0) Kokkos::atomic_inc(&counts(address(p) / Patch<Dim>::cells));
       });
   s.space.fence("mpm::count_by_patch");
@@ -147,13 +144,13 @@ std::vector<int> count_by_patch(const State<Space, T, Dim>& s) {
   return {host.data(), host.data() + host.extent(0)};
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                   \
-  template std::size_t record_size(const State<Space, T, Dim>&);                                         \
-  template std::vector<Leaver> find_leavers(const State<Space, T, Dim>&,                                 \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                     \
+  template std::size_t record_size(const State<Space, T, Dim>&);                                           \
+  template std::vector<Leaver> find_leavers(const State<Space, T, Dim>&,                                   \
                                             const Kokkos::View<int*, typename Space::memory_space>&, int); \
-  template std::vector<char> take_particles(State<Space, T, Dim>&, const std::vector<int>&);             \
-  template void add_particles(State<Space, T, Dim>&, const std::vector<char>&);                          \
-  template void reserve_particles(State<Space, T, Dim>&, int);                                           \
+  template std::vector<char> take_particles(State<Space, T, Dim>&, const std::vector<int>&);               \
+  template void add_particles(State<Space, T, Dim>&, const std::vector<char>&);                            \
+  template void reserve_particles(State<Space, T, Dim>&, int);                                             \
   template std::vector<int> count_by_patch(const State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -74,8 +74,8 @@ void put_impulses(State<Space, T, Dim>& s, const NodeImpulses<T>& impulses) {
   s.space.fence("mpm::put_impulses");
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                     \
-  template NodeImpulses<T> list_impulses(const State<Space, T, Dim>&);     \
+#define MPM_INSTANTIATE(Space, T, Dim)                                 \
+  template NodeImpulses<T> list_impulses(const State<Space, T, Dim>&); \
   template void put_impulses(State<Space, T, Dim>&, const NodeImpulses<T>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

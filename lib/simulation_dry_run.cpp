@@ -4,17 +4,19 @@
 #include <cmath>
 
 #include "memory_need.hpp"
+#include "parallel/together.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {
 namespace {
 
-/// Bytes of a frame of these particles.
-double frame_bytes(const Snapshot& snapshot, const Config& config) {
+/// Bytes of a frame, of which each rank has a part of the bodies, and rank 0 all of the rest.
+double frame_bytes(const Snapshot& snapshot, const Config& config, bool first) {
   const double real = config.precision == Precision::single ? 4 : 8;
   double bytes = 0;
   for (const auto* groups : {&snapshot.bodies, &snapshot.rigids, &snapshot.nodes})
     for (const ParticleSnapshot& group : *groups) {
+      if (!first && groups != &snapshot.bodies) continue;
       bytes += 8.0 * group.position.size();
       for (const auto* field : {&group.velocity, &group.grid_velocity, &group.stress, &group.volume,
                                 &group.plastic_strain, &group.mass, &group.number})
@@ -29,9 +31,7 @@ double checkpoint_bytes(const SavedState& state) {
     for (const SavedField& field : points.fields) bytes += double(field.bytes) * field.values.size();
     return bytes;
   };
-  double bytes = of_points(state.soil) + 8.0 * (state.impulse.address.size() + state.impulse.values.size());
-  for (const SavedPoints& points : state.rigid_points) bytes += of_points(points);
-  return bytes;
+  return of_points(state.soil) + 8.0 * (state.impulse.address.size() + state.impulse.values.size());
 }
 
 }  // namespace
@@ -42,12 +42,12 @@ PetscErrorCode Simulation::Body::time_steps(double* seconds) {
   constexpr double k_enough = 1;  // s
   constexpr long k_most = 500, k_first = 2;
   long done = 0;
-  double before = seconds_now();
+  double took = 0;  // of all ranks, so that they end alike
   for (long steps = k_first; done < std::min(k_most, schedule.last_whole_step()); steps *= 2) {
     Batch batch;
     PetscCall(stepper->advance(std::min(steps, k_most - done), dt, &batch));
     done += batch.steps;
-    if (done == k_first) before = seconds_now();  // the very first load kernels
+    took = done == k_first ? 0 : took + batch.seconds;  // the very first load kernels
     if (!batch.failure.what.empty()) {
       step = done;
       PetscCall(fail("in the trial: " + batch.failure.what));
@@ -55,15 +55,15 @@ PetscErrorCode Simulation::Body::time_steps(double* seconds) {
     }
     Failure failure;
     if (batch.rebuild) PetscCall(stepper->rebuild(&failure));
-    if (!failure.what.empty() || batch.steps == 0 || seconds_now() - before > k_enough) break;
+    if (!failure.what.empty() || batch.steps == 0 || took > k_enough) break;
   }
-  *seconds = done > k_first ? (seconds_now() - before) / (done - k_first) : 0;
+  *seconds = done > k_first ? took / (done - k_first) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode Simulation::Body::dry_run() {
   PetscFunctionBeginUser;
-  stepper = make_stepper(config);
+  stepper = make_stepper(config, comm);
   PetscCheck(stepper, comm, PETSC_ERR_SUP,
              "This program was built without this backend, precision or dimension");
   PetscCall(log.start(comm, config.output.progress));
@@ -90,12 +90,16 @@ PetscErrorCode Simulation::Body::tell_need() {
       4 + config.bodies.size() * (2.0 + 5 * config.dim) + config.rigids.size() * 3.0 * config.dim;
   const MemoryNeed need = memory_need(config);
   Snapshot snapshot;
-  stepper->snapshot(&snapshot);
-  const double frame = frame_bytes(snapshot, config), checkpoint = checkpoint_bytes(stepper->save());
+  SavedState state;
+  PetscCall(stepper->snapshot(&snapshot));
+  PetscCall(stepper->save(&state));
+  double bytes[2] = {frame_bytes(snapshot, config, rank_of(comm) == 0), checkpoint_bytes(state)};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bytes, 2, MPI_DOUBLE, MPI_SUM, comm));
+  const auto [frame, checkpoint] = bytes;
   PetscCall(log.print("particles     %ld in %d patches, on %d rank%s", stepper->particles(),
                       stepper->patches(), ranks(), ranks() == 1 ? "" : "s"));
   PetscCall(log.print("memory        %.4g MB on the device, about %.4g MB beside on the host, a rank",
-                      stepper->memory() / 1e6, need.host / ranks() / 1e6));
+                      stepper->memory() / ranks() / 1e6, need.host / ranks() / 1e6));
   PetscCall(log.print("time step     %.9g s, Courant number %.4f", dt, dt / critical_time_step(config)));
   PetscCall(log.print("steps         %ld to %g s", schedule.last_step(), end));
   PetscCall(log.print(

@@ -60,7 +60,8 @@ void read_p2g(OptionReader& in, P2GConfig& p2g) {
 void read_partition(OptionReader& in, PartitionConfig& partition) {
   in.section("Several ranks");
   in.word({.name = "partition",
-           .meaning = "how patches are given to ranks: boxes of the mesh, or parts that METIS cuts by their load"},
+           .meaning =
+               "how patches are given to ranks: boxes of the mesh, or parts that METIS cuts by their load"},
           Words<PartitionKind>{{"box", PartitionKind::box}, {"metis", PartitionKind::metis}}, partition.kind);
   if (partition.kind == PartitionKind::metis || in.listing())
     in.number({.name = "rebalance_threshold",
@@ -210,8 +211,9 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
        .unit = "s",
        .range = k_positive},
       output.wall_time_limit);
-  in.word({.name = "output_partition", .meaning = "on: partition.csv tells at each frame which rank owns what"},
-          Words<bool>{{"on", true}, {"off", false}}, output.partition);
+  in.word(
+      {.name = "output_partition", .meaning = "on: partition.csv tells at each frame which rank owns what"},
+      Words<bool>{{"on", true}, {"off", false}}, output.partition);
   in.word({.name = "progress", .meaning = "auto: a live line on a terminal, else a line each 10 %"},
           Words<Progress>{{"auto", Progress::automatic}, {"on", Progress::on}, {"off", Progress::off}},
           output.progress);

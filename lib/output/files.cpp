@@ -17,8 +17,9 @@ namespace {
 
 /// Is this a file that we (or scripts/plot) write into an output folder (or its temporary form)?
 bool is_ours(const std::string& name, bool in_frames) {
-  constexpr const char* names[] = {"history.csv", "mpm.log",   "options.json", "particles.xdmf",
-                                   "partition.csv", "curve.png",   "field.png", "runout.png",   "velocity.png"};
+  constexpr const char* names[] = {"history.csv",    "mpm.log",       "options.json",
+                                   "particles.xdmf", "partition.csv", "curve.png",
+                                   "field.png",      "runout.png",    "velocity.png"};
   const std::string suffix = ".tmp";
   const std::string stem = name.ends_with(suffix) ? name.substr(0, name.size() - suffix.size()) : name;
   if (in_frames) return stem.starts_with("frame_") && stem.ends_with(".h5");

@@ -14,22 +14,24 @@ namespace mpm {
 PetscErrorCode make_folder(const std::string& folder);
 
 /// Makes the output folder and its `frames`, and removes what an earlier run left there under our names
-/// (history.csv, mpm.log, options.json, particles.xdmf, frames/frame_*.h5, checkpoint_*.h5, the plots' pictures and
-/// temporary files), nothing else. Call it once the input is known to be valid. `removed` [number of files] is for the
-/// log; it may be null.
+/// (history.csv, mpm.log, options.json, particles.xdmf, frames/frame_*.h5, checkpoint_*.h5, the plots'
+/// pictures and temporary files), nothing else. Call it once the input is known to be valid. `removed`
+/// [number of files] is for the log; it may be null.
 PetscErrorCode prepare_output_folder(const std::string& folder, int* removed);
 
 /// Writes `contents` under a temporary name, brings it to the disk and renames it to `path`. If any of this
 /// fails the temporary file is removed and a former `path` stays as it was.
 PetscErrorCode replace_file(const std::string& path, std::string_view contents);
 
-/// Writes a new file of these parts and brings it to the disk: some file systems report a full disk only then.
+/// Writes a new file of these parts and brings it to the disk: some file systems report a full disk only
+/// then.
 PetscErrorCode write_new_file(const std::string& path, std::initializer_list<std::string_view> parts);
 
 /// Renames a file and brings its new name to the disk.
 PetscErrorCode rename_file(const std::string& from, const std::string& to);
 
-/// Brings a file, or the names in a folder, to the disk; a system that cannot do that for a folder is passed over.
+/// Brings a file, or the names in a folder, to the disk; a system that cannot do that for a folder is passed
+/// over.
 PetscErrorCode bring_to_disk(const std::string& path);
 
 /// Writes all of `contents` to a file descriptor, in one call where the system lets it; `path` is for the

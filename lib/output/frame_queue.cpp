@@ -42,7 +42,8 @@ PetscErrorCode FrameQueue::write(Snapshot&& snapshot) {
   PetscFunctionBeginUser;
   PetscCall(wait());
   snapshot_ = std::move(snapshot);
-  PetscCallCXX(result_ = std::async(beside_ ? k_launch : std::launch::deferred, [this] { return frames_.write(snapshot_); }));
+  PetscCallCXX(result_ = std::async(beside_ ? k_launch : std::launch::deferred,
+                                    [this] { return frames_.write(snapshot_); }));
   ++count_;
   if (!beside_) PetscCall(wait());
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -27,7 +27,7 @@ class FrameQueue {
  private:
   Frames frames_;
   bool beside_ = true;  // the run
-  Snapshot snapshot_;  // on its way
+  Snapshot snapshot_;   // on its way
   long count_ = 0;
   std::future<PetscErrorCode> result_;  // last: it waits for its thread before the others go
 };

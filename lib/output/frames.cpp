@@ -93,8 +93,8 @@ PetscErrorCode write_unit(hid_t dataset, const std::string& path, const std::str
 }
 
 /// A dataset whose numbers come later, from all ranks: its place in the file is fixed now.
-PetscErrorCode reserve_field(hid_t group, const std::string& path, const Field& field, hsize_t count, hid_t type,
-                             long long* offset) {
+PetscErrorCode reserve_field(hid_t group, const std::string& path, const Field& field, hsize_t count,
+                             hid_t type, long long* offset) {
   PetscFunctionBeginUser;
   const hsize_t sizes[2] = {count, static_cast<hsize_t>(field.components)};
   Handle space(H5Screate_simple(field.components == 1 ? 1 : 2, sizes, nullptr), H5Sclose);
@@ -330,12 +330,12 @@ std::vector<std::string> frame_field_names() {
 }
 
 PetscErrorCode lay_out_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
-                             const FrameStyle& style,                             int* descriptor, std::vector<FrameSlab>* slabs) {
+                             const FrameStyle& style, int* descriptor, std::vector<FrameSlab>* slabs) {
   PetscFunctionBeginUser;
   std::error_code error;
   const std::string memory = "/dev/shm";  // holes take no memory
-  std::string name =
-      (fs::is_directory(memory, error) ? memory : fs::temp_directory_path(error).string()) + "/mpm_frame_XXXXXX";
+  std::string name = (fs::is_directory(memory, error) ? memory : fs::temp_directory_path(error).string()) +
+                     "/mpm_frame_XXXXXX";
   *descriptor = ::mkostemp(name.data(), O_CLOEXEC);
   PetscCheck(*descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", name.c_str(),
              std::strerror(errno));

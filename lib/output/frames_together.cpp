@@ -1,5 +1,6 @@
-// A frame of several ranks. Its structure is made by HDF5 in the memory of rank 0; the numbers are written by all
-// ranks, each to its place, by MPI-IO. HDF5 itself never touches the disk: it does not survive one that fills.
+// A frame of several ranks. Its structure is made by HDF5 in the memory of rank 0; the numbers are written by
+// all ranks, each to its place, by MPI-IO. HDF5 itself never touches the disk: it does not survive one that
+// fills.
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -76,10 +77,12 @@ PetscErrorCode write_slab(MPI_File file, const FrameSlab& slab, const ParticleSn
   const int count = static_cast<int>(values.size());
   const MPI_Offset at = slab.offset + MPI_Offset(slab.bytes) * slab.components * body.first;
   if (slab.bytes == sizeof(double)) {
-    PetscCall(check_io(MPI_File_write_at_all(file, at, values.data(), count, MPI_DOUBLE, MPI_STATUS_IGNORE), path));
+    PetscCall(
+        check_io(MPI_File_write_at_all(file, at, values.data(), count, MPI_DOUBLE, MPI_STATUS_IGNORE), path));
   } else {
     const std::vector<float> single(values.begin(), values.end());
-    PetscCall(check_io(MPI_File_write_at_all(file, at, single.data(), count, MPI_FLOAT, MPI_STATUS_IGNORE), path));
+    PetscCall(
+        check_io(MPI_File_write_at_all(file, at, single.data(), count, MPI_FLOAT, MPI_STATUS_IGNORE), path));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -89,7 +92,8 @@ PetscErrorCode write_slabs(MPI_Comm comm, const std::string& path, const Snapsho
                            const std::vector<FrameSlab>& slabs) {
   PetscFunctionBeginUser;
   MPI_File file;
-  PetscCall(agree(comm, check_io(MPI_File_open(comm, path.c_str(), MPI_MODE_WRONLY, MPI_INFO_NULL, &file), path)));
+  PetscCall(
+      agree(comm, check_io(MPI_File_open(comm, path.c_str(), MPI_MODE_WRONLY, MPI_INFO_NULL, &file), path)));
   PetscErrorCode failed = PETSC_SUCCESS;
   for (const FrameSlab& slab : slabs) {
     if (slab.offset < 0) continue;
@@ -105,8 +109,8 @@ PetscErrorCode write_slabs(MPI_Comm comm, const std::string& path, const Snapsho
 PetscErrorCode finish_file(int* made, const std::string& temporary, const std::string& path) {
   PetscFunctionBeginUser;
   const bool whole = ::fsync(*made) == 0 || errno == EINVAL;
-  PetscCheck(whole && std::rename(temporary.c_str(), path.c_str()) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
-             "Cannot write %s: %s", path.c_str(), std::strerror(errno));
+  PetscCheck(whole && std::rename(temporary.c_str(), path.c_str()) == 0, PETSC_COMM_SELF,
+             PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path.c_str(), std::strerror(errno));
   PetscCall(close_file(made, path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -120,7 +124,8 @@ PetscErrorCode write_frame_together(MPI_Comm comm, const std::string& path, cons
   const bool first = rank_of(comm) == 0;
   std::vector<FrameSlab> slabs;
   int made = -1;
-  PetscErrorCode failed = agree(comm, first ? start_file(temporary, snapshot, precision, style, &slabs, &made) : PETSC_SUCCESS);
+  PetscErrorCode failed =
+      agree(comm, first ? start_file(temporary, snapshot, precision, style, &slabs, &made) : PETSC_SUCCESS);
   if (!failed) {
     long count = static_cast<long>(slabs.size());
     MPI_Bcast(&count, 1, MPI_LONG, 0, comm);

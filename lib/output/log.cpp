@@ -119,7 +119,8 @@ PetscErrorCode Log::open(const std::string& folder, bool goes_on) {
   PetscFunctionBeginUser;
   if (!speaks_) PetscFunctionReturn(PETSC_SUCCESS);
   path_ = folder + "/mpm.log";
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | (goes_on ? 0 : O_TRUNC) | O_APPEND | O_CLOEXEC, 0666);
+  descriptor_ =
+      ::open(path_.c_str(), O_WRONLY | O_CREAT | (goes_on ? 0 : O_TRUNC) | O_APPEND | O_CLOEXEC, 0666);
   PetscCheck(descriptor_ >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", path_.c_str(),
              std::strerror(errno));
   PetscCall(write_all(descriptor_, pending_, path_));

@@ -29,8 +29,8 @@ struct ParticleSnapshot {
 /// The name of the group of nodes.
 inline constexpr const char* k_nodes = "nodes";
 
-/// One frame: bodies first, then rigids, in the order of the options, then nodes that hold soil, if they are asked
-/// for (position, velocity, mass and number).
+/// One frame: bodies first, then rigids, in the order of the options, then nodes that hold soil, if they are
+/// asked for (position, velocity, mass and number).
 struct Snapshot {
   double time = 0;  // s
   long step = 0;

@@ -7,7 +7,8 @@
 
 namespace mpm {
 
-/// The patches of the mesh with the ring outside it, numbered as Grid::patch_of does: first direction fastest.
+/// The patches of the mesh with the ring outside it, numbered as Grid::patch_of does: first direction
+/// fastest.
 struct PatchGrid {
   int dim = 2;
   std::array<int, 3> patches{1, 1, 1};
@@ -20,7 +21,8 @@ struct PatchGrid {
     return {static_cast<int>(n % patches[0]), static_cast<int>(n / patches[0] % patches[1]),
             static_cast<int>(n / patches[0] / patches[1])};
   }
-  /// Calls f(number, offset) for the patches round n, itself included; offset is -1, 0 or 1 in each direction.
+  /// Calls f(number, offset) for the patches round n, itself included; offset is -1, 0 or 1 in each
+  /// direction.
   template <class F>
   void for_each_around(long n, F&& f) const {
     const std::array<int, 3> at = place(n);

@@ -97,7 +97,7 @@ class Ranks {
   HaloLists<Space> lists_;
   NodeExchange exchange_;
   int neighbours_ = 0;
-  Kokkos::View<T*, Memory> out_, in_;           // entries, neighbour by neighbour
+  Kokkos::View<T*, Memory> out_, in_;             // entries, neighbour by neighbour
   Kokkos::View<T*, Staging> host_out_, host_in_;  // the same where MPI reads and writes them
   Kokkos::View<Control, Staging> seen_;
   GlobalBound bound_;

@@ -89,7 +89,8 @@ class Stepper {
   virtual std::string strategy() const = 0;  // the word of -p2g that runs
 };
 
-/// The stepper for config.backend, precision and dim on the ranks of comm; null where that is not compiled in.
+/// The stepper for config.backend, precision and dim on the ranks of comm; null where that is not compiled
+/// in.
 std::unique_ptr<Stepper> make_stepper(const Config& config, MPI_Comm comm = PETSC_COMM_SELF);
 
 /// The backends compiled in, the slowest first.

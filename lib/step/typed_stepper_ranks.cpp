@@ -27,14 +27,15 @@ std::size_t TypedStepper<Space, T, Dim>::memory() const {
       sum_over_ranks(static_cast<double>(memory_of(state_) + (ranks_ ? ranks_->memory() : 0))));
 }
 
-/// Steps until all are done, or until the ranks know, all at the same step, that lists must be rebuilt or that
-/// one of them cannot go on. What they know of each other is some steps old; a rank whose bound has passed the
-/// margin does no more steps, so that no particle is ever looked for where it is not.
+/// Steps until all are done, or until the ranks know, all at the same step, that lists must be rebuilt or
+/// that one of them cannot go on. What they know of each other is some steps old; a rank whose bound has
+/// passed the margin does no more steps, so that no particle is ever looked for where it is not.
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double dt, Batch* batch) {
   PetscFunctionBeginUser;
   const double start = WorkClock::wall(), margin = config_.p2g.margin;
-  const int late = config_.p2g.rebuild_interval ? 0 : GlobalBound::k_late;  // a forced interval has no reserve
+  const int late =
+      config_.p2g.rebuild_interval ? 0 : GlobalBound::k_late;  // a forced interval has no reserve
   restart_count(state_);
   ranks_->clock().go_on();
   long done = 0;
@@ -68,7 +69,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
       batch->failure = describe(own.fault);
     else if (missed && !config_.p2g.rebuild_interval)
       batch->failure.what = formatted(
-          "a particle moved %.3g cells since the last rebuild, and the lists hold for %.3g: its speed grew more "
+          "a particle moved %.3g cells since the last rebuild, and the lists hold for %.3g: its speed grew "
+          "more "
           "than by half while the ranks exchanged their bounds; lower -time_courant or -p2g_margin",
           own.bound, margin);
     PetscCall(share(&batch->failure));
@@ -148,11 +150,13 @@ template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::ownership(std::vector<OwnedPatch>* patches) {
   PetscFunctionBeginUser;
   const auto origin = Kokkos::create_mirror_view_and_copy(
-      Kokkos::HostSpace(), Kokkos::subview(state_.patches.origin, Kokkos::make_pair(0, state_.patches.slots)));
+      Kokkos::HostSpace(),
+      Kokkos::subview(state_.patches.origin, Kokkos::make_pair(0, state_.patches.slots)));
   const auto begin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.soil.bins.begin);
   std::vector<char> own, all;
   for (int slot = 0; slot < state_.patches.slots; ++slot) {
-    OwnedPatch patch{{}, begin((slot + 1) * Patch<Dim>::cells) - begin(slot * Patch<Dim>::cells), rank_of(comm_)};
+    OwnedPatch patch{
+        {}, begin((slot + 1) * Patch<Dim>::cells) - begin(slot * Patch<Dim>::cells), rank_of(comm_)};
     if (patch.particles == 0) continue;
     for (int d = 0; d < Dim; ++d) patch.place[d] = origin(slot)[d] / Patch<Dim>::edge;
     const char* const bytes = reinterpret_cast<const char*>(&patch);
@@ -178,27 +182,28 @@ std::string TypedStepper<Space, T, Dim>::ranks_report() const {
   MPI_Allreduce(MPI_IN_PLACE, sum.data(), 7, MPI_DOUBLE, MPI_SUM, comm_);
   const int ranks = size_of(comm_);
   const auto balance = [&](int k) { return sum[k] > 0 ? high[k] * ranks / sum[k] : 1.0; };
-  std::string text = formatted("%d ranks: %.0f to %.0f particles a rank, largest over mean %.3f\n", ranks, low[3],
-                               high[3], balance(3));
-  text += formatted("  halo of at most %.0f nodes with %.0f neighbours, %.1f kB sent a step\n", high[5], high[4],
-                    high[6] / 1e3);
+  std::string text = formatted("%d ranks: %.0f to %.0f particles a rank, largest over mean %.3f\n", ranks,
+                               low[3], high[3], balance(3));
+  text += formatted("  halo of at most %.0f nodes with %.0f neighbours, %.1f kB sent a step\n", high[5],
+                    high[4], high[6] / 1e3);
   if (high[0] > 0)
     text += formatted(
-        "  compute %.3f to %.3f s a rank, largest over mean %.3f; halo (pack and sum) %.3f to %.3f s, wait %.3f to "
+        "  compute %.3f to %.3f s a rank, largest over mean %.3f; halo (pack and sum) %.3f to %.3f s, wait "
+        "%.3f to "
         "%.3f s\n",
         low[0], high[0], balance(0), low[2], high[2], low[1], high[1]);
   return text;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                        \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::share(Failure*) const;                                 \
-  template double TypedStepper<Space, T, Dim>::sum_over_ranks(double) const;                                  \
-  template std::size_t TypedStepper<Space, T, Dim>::memory() const;                                           \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long, double, Batch*);                \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure*);                            \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::sum_soil();                                            \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int, BodyRow*);                           \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::ownership(std::vector<OwnedPatch>*);                   \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                         \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::share(Failure*) const;                  \
+  template double TypedStepper<Space, T, Dim>::sum_over_ranks(double) const;                   \
+  template std::size_t TypedStepper<Space, T, Dim>::memory() const;                            \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long, double, Batch*); \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure*);             \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::sum_soil();                             \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int, BodyRow*);            \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::ownership(std::vector<OwnedPatch>*);    \
   template std::string TypedStepper<Space, T, Dim>::ranks_report() const;
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

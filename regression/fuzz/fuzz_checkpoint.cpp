@@ -1,6 +1,6 @@
 // A file that is given to -restart. Input that begins with an even byte is the file itself, with or without a
-// sound seal. Otherwise a sound checkpoint is changed, item by item, as the bytes say: items go, or get another
-// type, size or value. Reading must refuse it or give a state that passes every check; never crash.
+// sound seal. Otherwise a sound checkpoint is changed, item by item, as the bytes say: items go, or get
+// another type, size or value. Reading must refuse it or give a state that passes every check; never crash.
 
 #include <hdf5.h>
 
@@ -16,9 +16,9 @@ using namespace mpm;
 
 constexpr const char* k_attributes[] = {"version", "dim",  "ranks", "backend", "precision", "strategy",
                                         "step",    "time", "wall",  "frames",  "bound",     "history_bytes"};
-constexpr const char* k_datasets[] = {"options",       "soil/address",    "soil/coordinate", "soil/body",
-                                      "soil/stress",   "rigids",          "impulse_address", "impulse",
-                                      "rigid_0/address", "rigid_0/home", "soil",            "rigid_0"};
+constexpr const char* k_datasets[] = {
+    "options",         "soil/address", "soil/coordinate", "soil/body",    "soil/stress", "rigids",
+    "impulse_address", "impulse",      "rigid_0/address", "rigid_0/home", "soil",        "rigid_0"};
 
 Config some_config() {
   Config config;
@@ -33,8 +33,11 @@ Checkpoint some_checkpoint() {
   c.version = "0", c.backend = "serial", c.precision = "double", c.strategy = "gather";
   c.options = {{"-gravity", "0,-10", "m/s2", false}};
   c.run.step = 3;
-  c.state.soil = {{0, 1, 2}, {387, 388, 389}, {{"coordinate", 2, 8, {0, 0, .5, .5, 1, 1}}, {"body", 1, 2, {0, 1, 0}},
-                                               {"stress", 4, 8, std::vector<double>(12, 1)}}};
+  c.state.soil = {{0, 1, 2},
+                  {387, 388, 389},
+                  {{"coordinate", 2, 8, {0, 0, .5, .5, 1, 1}},
+                   {"body", 1, 2, {0, 1, 0}},
+                   {"stress", 4, 8, std::vector<double>(12, 1)}}};
   c.state.rigids.resize(1);
   c.state.impulse = {{387}, {1}};
   return c;
@@ -77,7 +80,8 @@ void change(hid_t file, Bytes& bytes) {
   } else {
     const char* name = k_datasets[bytes.next() % std::size(k_datasets)];
     H5Ldelete(file, name, H5P_DEFAULT);
-    const hid_t data = what & 0x20 ? -1 : H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t data =
+        what & 0x20 ? -1 : H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     if (data >= 0) H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), H5Dclose(data);
   }
   H5Sclose(space);
@@ -94,7 +98,8 @@ void look_at(Checkpoint& c) {
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
   fuzz::begin();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  if (write_checkpoint(PETSC_COMM_SELF, fuzz::path_of("sound.h5"), some_checkpoint()) != PETSC_SUCCESS) _exit(1);
+  if (write_checkpoint(PETSC_COMM_SELF, fuzz::path_of("sound.h5"), some_checkpoint()) != PETSC_SUCCESS)
+    _exit(1);
   return 0;
 }
 

@@ -1,4 +1,5 @@
-// An options file of any bytes: read and checked, or refused with lines that say why; never a crash or a hang.
+// An options file of any bytes: read and checked, or refused with lines that say why; never a crash or a
+// hang.
 
 #include "input/options.hpp"
 #include "session.hpp"

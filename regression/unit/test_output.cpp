@@ -270,9 +270,9 @@ TEST_CASE("a frame that does not fit leaves nothing, and the frames before it st
 
 TEST_CASE("an earlier run's files go, others stay", "[output]") {
   const Folder folder;
-  for (const char* name : {"history.csv", "mpm.log", "runout.png", "velocity.png", "frames/frame_00007.h5",
-                           "frames/frame_00008.h5.tmp", "checkpoint_100.h5", "notes.txt",
-                           "my_checkpoint_100.h5"})
+  for (const char* name :
+       {"history.csv", "mpm.log", "runout.png", "velocity.png", "frames/frame_00007.h5",
+        "frames/frame_00008.h5.tmp", "checkpoint_100.h5", "notes.txt", "my_checkpoint_100.h5"})
     std::ofstream(folder / name) << "old";
   int removed = 0;
   REQUIRE(prepare_output_folder(folder.path, &removed) == PETSC_SUCCESS);

@@ -107,7 +107,8 @@ TEST_CASE("two ranks list the nodes that they share alike, and these are all of 
     }
 }
 
-TEST_CASE("the sources of a shared node are its ranks in their order, its own share among them", "[partition]") {
+TEST_CASE("the sources of a shared node are its ranks in their order, its own share among them",
+          "[partition]") {
   const Scene scene = random_scene(2, 4, 3);
   for (int r = 0; r < 4; ++r) {
     const HaloPlan plan = plan_halo(scene.grid, scene.owners, scene.occupied, scene.slots, r);

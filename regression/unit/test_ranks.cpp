@@ -180,8 +180,7 @@ TEST_CASE("every particle is on the rank that owns its patch, once, with all its
       CHECK(particles_of(pair.here, total, MPI_COMM_WORLD) == particles_of(pair.alone, total, MPI_COMM_SELF));
       const auto address =
           Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), pair.here.soil.points.cell);
-      const auto origin =
-          Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), pair.here.patches.origin);
+      const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), pair.here.patches.origin);
       for (int p = 0; p < pair.here.soil.points.count; ++p) {
         const long patch = pair.here.grid.patch_of(origin(address(p) / Patch<B::dim>::cells));
         REQUIRE(pair.ranks.owners()[patch] == rank_of(MPI_COMM_WORLD));
@@ -220,8 +219,7 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
       CHECK((look(pair.here).fault_count == 0 && look(pair.alone).fault_count == 0));
       CHECK(apart(a, b) < 1e-11);
       const auto here = take_rigids(pair.here), alone = take_rigids(pair.alone);
-      for (int d = 0; d < B::dim; ++d)
-        CHECK(std::abs(here[1].velocity[d] - alone[1].velocity[d]) < 1e-11);
+      for (int d = 0; d < B::dim; ++d) CHECK(std::abs(here[1].velocity[d] - alone[1].velocity[d]) < 1e-11);
     }
   });
 }
@@ -235,7 +233,8 @@ TEST_CASE("friction's impulses follow the nodes to the ranks that come to reach 
       const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
       for (int i = 0; i < s.patches.node_count(); ++i)
         for (int r = 0; r < 2; ++r)
-          host(r, i) = 1 + r + s.grid.patch_of(origin(i / Patch<B::dim>::cells)) * 64. + i % Patch<B::dim>::cells;
+          host(r, i) =
+              1 + r + s.grid.patch_of(origin(i / Patch<B::dim>::cells)) * 64. + i % Patch<B::dim>::cells;
       Kokkos::deep_copy(s.nodes.impulse, host);
     };
     set(pair.here);
@@ -256,7 +255,8 @@ TEST_CASE("friction's impulses follow the nodes to the ranks that come to reach 
 
 TEST_CASE("ranks agree on an error and on the words of one of them", "[halo]") {
   const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
-  CHECK(agree(MPI_COMM_WORLD, rank == size - 1 ? PETSC_ERR_FILE_WRITE : PETSC_SUCCESS) == PETSC_ERR_FILE_WRITE);
+  CHECK(agree(MPI_COMM_WORLD, rank == size - 1 ? PETSC_ERR_FILE_WRITE : PETSC_SUCCESS) ==
+        PETSC_ERR_FILE_WRITE);
   CHECK(agree(MPI_COMM_WORLD, PETSC_SUCCESS) == PETSC_SUCCESS);
   std::string text = rank == 0 && size > 1 ? "" : "rank " + std::to_string(rank);
   REQUIRE(share_text(MPI_COMM_WORLD, &text) == PETSC_SUCCESS);

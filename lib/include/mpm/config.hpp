@@ -101,8 +101,8 @@ struct P2GConfig {
   std::optional<int> rebuild_interval;  // steps
 };
 
-/// How patches are given to ranks (-partition): boxes of the mesh, or parts of the graph of patches that METIS
-/// cuts.
+/// How patches are given to ranks (-partition): boxes of the mesh, or parts of the graph of patches that
+/// METIS cuts.
 enum class PartitionKind { box, metis };
 
 struct PartitionConfig {
@@ -114,7 +114,7 @@ enum class Progress { automatic, on, off };
 
 struct OutputConfig {
   std::string directory;
-  bool partition = false;            // partition.csv: which rank owns what, at each frame
+  bool partition = false;           // partition.csv: which rank owns what, at each frame
   bool frames = true;               // of the particles; without them a run writes its history only
   std::vector<std::string> fields;  // of the frames, beside the position; empty for all
   int compression = 0;              // of the frames, level of HDF5's deflate filter
