@@ -222,7 +222,7 @@ TEST_CASE("soil and a rigid that hits it keep their momentum", "[contact]") {
   });
 }
 
-TEST_CASE("any number of rigids fits, and those out of touch change nothing", "[contact]") {
+TEST_CASE("any number of rigids fits, and those out of touch change nothing but round-off", "[contact]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     Cloud cloud = pressed<B::dim>();
@@ -236,6 +236,9 @@ TEST_CASE("any number of rigids fits, and those out of touch change nothing", "[
       cloud.rigids.push_back(rigid_of<B::dim>(lattice<B::dim>({0, 15, 0}, {1, 16, 1}, 2, 0.1), 2, 0.1));
     const auto among_others = velocity_after();
     INFO(build.name());
-    for (int d = 0; d < B::dim; ++d) CHECK(among_others[d] == alone[d]);
+    double largest = 0;
+    for (int d = 0; d < B::dim; ++d) largest = std::max(largest, std::abs(alone[d]));
+    for (int d = 0; d < B::dim; ++d)
+      CHECK(std::abs(among_others[d] - alone[d]) <= B::of(1e-14, 1e-6) * largest);
   });
 }
