@@ -113,6 +113,30 @@ class Checks:
         self.go(folder, "-restart", checkpoints(folder)[0])
         assert not differences(self.whole, folder)
 
+    def check_several_ranks(self):
+        """Several ranks go on to the same bits too, and another number of ranks goes on up to round-off."""
+        def go(ranks, folder, *options):
+            return run(self.binary, DECK, folder, *OPTIONS, "-backend", "serial", "-p2g", "gather", *options,
+                       prefix=("mpirun", "-n", str(ranks), "--bind-to", "none"),
+                       environment={"OMPI_MCA_rmaps_base_oversubscribe": "1"})
+
+        for ranks in (2, 3):
+            whole, halves = fresh(self.base / f"whole_{ranks}"), fresh(self.base / f"halves_{ranks}")
+            go(ranks, whole, "-time_max_steps", 400)
+            go(ranks, halves, "-time_max_steps", 200)
+            others = self.base / f"other_than_{ranks}"
+            shutil.copytree(halves, others)
+            done = go(ranks, halves, "-time_max_steps", 400, "-restart", "latest")
+            assert "so will be the bits" in done.stdout, done.stdout[-2000:]
+            assert not differences(whole, halves), differences(whole, halves)
+            done = go(5 - ranks, others, "-time_max_steps", 400, "-restart", "latest")
+            assert "same up to round-off" in done.stdout, done.stdout[-2000:]
+            ours, theirs = rows(whole), rows(others)
+            assert [row[0] for row in ours] == [row[0] for row in theirs]
+            x, y = (float(r[-1][r[0].index("stone_y")]) for r in (ours, theirs))
+            assert abs(x - y) < 1e-9, (ranks, x, y)
+        return "2 and 3 ranks"
+
     def check_other_folder(self):
         """A checkpoint of another folder brings its rows along."""
         folder = fresh(self.base / "elsewhere")
