@@ -4,7 +4,8 @@ the history, over a scale of the field. Needs numpy and h5py.
 The scale is the largest value of the field in the reference, but not less than what round-off of the others makes of it.
 With the impedance Z = rho c of the stiffest body, the stress S = max(|sigma|, Z |v|) and the speed S / Z belong together:
 a field that should be zero (the stress of a body that flies freely, the velocity of one at rest) differs by round-off of
-these. An energy has at least the scale M (S / Z)^2 / 2, a force on a rigid S on the face of a cell, a displacement a cell.
+these. An energy has at least the scale M (S / Z)^2 / 2, a force on a rigid S on the face of a cell, a place (such as a
+centre of mass that symmetry puts at the origin) or displacement a cell.
 """
 
 import numpy as np
@@ -41,7 +42,6 @@ class Scales:
         self.strain = self.stress / min(run.number(f"{name}_young") for name in run.words("materials"))
         self.momentum = mass(run, groups) * self.velocity
         self.force = self.stress * self.spacing ** (run.number("dim", 2) - 1)
-        self.rigids = run.words("rigids")
 
     def of_field(self, name):
         return {"velocity": self.velocity, "grid_velocity": self.velocity, "stress": self.stress,
@@ -56,7 +56,7 @@ class Scales:
             return self.velocity
         if "force" in name:
             return self.force
-        return self.spacing if name[:-2] in self.rigids else 0  # a rigid's displacement
+        return 0 if name in ("step", "time", "dt") else self.spacing  # a body's place, a rigid's displacement
 
 
 def relative(values, reference, scale):
