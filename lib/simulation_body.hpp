@@ -57,6 +57,7 @@ struct Simulation::Body {
 
   void check_mesh();
   PetscErrorCode choose_time_step();
+  PetscErrorCode begin();
   PetscErrorCode start();
   PetscErrorCode load(Model* model);
   PetscErrorCode load_shape(const std::string& name, const Shape& shape, const std::vector<Shape>& cut_out,

@@ -63,13 +63,7 @@ PetscErrorCode Simulation::Body::time_steps(double* seconds) {
 
 PetscErrorCode Simulation::Body::dry_run() {
   PetscFunctionBeginUser;
-  stepper = make_stepper(config, comm);
-  PetscCheck(stepper, comm, PETSC_ERR_SUP,
-             "This program was built without this backend, precision or dimension");
-  PetscCall(log.start(comm, config.output.progress));
-  PetscCall(log.line(format_header(k_version, kokkos_version(),
-                                   std::string(word_of(config.backend)) + ", " + device_name(config.backend),
-                                   ranks())));
+  PetscCall(begin());
   Model model;
   Failure failure;
   PetscCall(load(&model));

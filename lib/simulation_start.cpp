@@ -104,22 +104,28 @@ PetscErrorCode Simulation::Body::choose_time_step() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Simulation::Body::start() {
+/// A stepper for these options, and the log's first lines, to the terminal until the file is open.
+PetscErrorCode Simulation::Body::begin() {
   PetscFunctionBeginUser;
   stepper = make_stepper(config, comm);
   PetscCheck(stepper, comm, PETSC_ERR_SUP,
              "This program was built without this backend, precision or dimension");
   PetscCall(log.start(comm, config.output.progress));
-  const int ranks = size_of(comm);
+  PetscCall(log.line(format_header(k_version, kokkos_version(),
+                                   std::string(word_of(config.backend)) + ", " + device_name(config.backend),
+                                   ranks())));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode Simulation::Body::start() {
+  PetscFunctionBeginUser;
+  PetscCall(begin());
   const bool first = rank_of(comm) == 0;
   int removed = 0;
   if (restart)
     PetscCall(agree(comm, first ? make_folder(config.output.directory) : PETSC_SUCCESS));
   else
     PetscCall(agree(comm, first ? prepare_output_folder(config.output.directory, &removed) : PETSC_SUCCESS));
-  PetscCall(log.line(format_header(k_version, kokkos_version(),
-                                   std::string(word_of(config.backend)) + ", " + device_name(config.backend),
-                                   ranks)));
   PetscCall(agree(comm, log.open(config.output.directory, restart.has_value())));
   if (removed > 0)
     PetscCall(log.print("%d files of an earlier run were removed from %s", removed,
@@ -145,8 +151,8 @@ PetscErrorCode Simulation::Body::start() {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(log.print("%ld particles in %d patches, %.1f MB on the device%s; strategy %s",
-                      stepper->particles(), stepper->patches(), stepper->memory() / 1e6, ranks > 1 ? "s" : "",
-                      stepper->strategy().c_str()));
+                      stepper->particles(), stepper->patches(), stepper->memory() / 1e6,
+                      ranks() > 1 ? "s" : "", stepper->strategy().c_str()));
   if (const std::string report = stepper->ranks_report(); !report.empty()) PetscCall(log.line(report));
   PetscCall(log.print("time step %.9g s, Courant number %.4f; %ld steps to %g s", dt,
                       dt / critical_time_step(config), schedule.last_step(),

@@ -222,7 +222,8 @@ TEST_CASE("soil and a rigid that hits it keep their momentum", "[contact]") {
   });
 }
 
-TEST_CASE("any number of rigids fits, and those out of touch change nothing but round-off", "[contact]") {
+TEST_CASE("any number of rigids fits, and those out of touch change nothing but the round-off of atomic sums",
+          "[contact]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     Cloud cloud = pressed<B::dim>();
@@ -238,7 +239,7 @@ TEST_CASE("any number of rigids fits, and those out of touch change nothing but 
     INFO(build.name());
     double largest = 0;
     for (int d = 0; d < B::dim; ++d) largest = std::max(largest, std::abs(alone[d]));
-    for (int d = 0; d < B::dim; ++d)
-      CHECK(std::abs(among_others[d] - alone[d]) <= B::of(1e-14, 1e-6) * largest);
+    const double allowed = is_device<typename B::Space> ? B::of(1e-14, 1e-6) * largest : 0;  // atomic sums
+    for (int d = 0; d < B::dim; ++d) CHECK(std::abs(among_others[d] - alone[d]) <= allowed);
   });
 }
