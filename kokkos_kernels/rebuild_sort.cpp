@@ -140,22 +140,45 @@ void sort_points(State<Space, T, Dim>& s) {
   for (auto& set : s.rigid_points) sort_set(s.space, set, s.patches, s.marks, s.spare);
 }
 
+/// Distance [cells] of a surface from the middle of a patch, beyond which it touches no node that particles
+/// of the patch reach, until the next rebuild: half the diagonal of their window, the reach of a contact (a
+/// cell along each axis), and the movement till then.
+template <int Dim>
+double far_from_patch(double margin) {
+  constexpr double half = Patch<Dim>::edge / 2 + 1, step_beyond_margin = 0.5;
+  return std::sqrt(static_cast<double>(Dim)) * (half + 1) + margin + step_beyond_margin;
+}
+
 template <class Space, class T, int Dim>
 void mark_near_rigids(State<Space, T, Dim>& s) {
   ensure(s.near_rigid, s.patches.slots);
   const auto near = s.near_rigid;
   const auto around = s.patches.around;
+  const auto origin = s.patches.origin;
+  const auto rigids = s.rigids;
+  const auto vertices = s.vertices;
+  const auto grid = s.grid;
+  const double spacing = s.spacing, far = far_from_patch<Dim>(s.p2g.margin) * spacing;
   const int slots = s.patches.slots;
   Kokkos::deep_copy(s.space, near, 0);
-  for (const auto& set : s.rigid_points) {
-    const auto begin = set.bins.begin;
+  for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
+    const auto begin = s.rigid_points[r].bins.begin;
     Kokkos::parallel_for(
         "mpm::mark_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
+          bool holds = false;
           for (int k = 0; k < Patch<Dim>::around; ++k) {
             const int other = around(slot, k);
-            if (other >= 0 && begin(other * Patch<Dim>::cells) < begin((other + 1) * Patch<Dim>::cells))
-              near(slot) = 1;
+            holds |= other >= 0 && begin(other * Patch<Dim>::cells) < begin((other + 1) * Patch<Dim>::cells);
           }
+          if (!holds) return;
+          const Rigid<Dim>& rigid = rigids(r);
+          Vector<double, Dim> middle;  // bodies go on beyond the mesh
+          for (int d = 0; d < Dim; ++d) {
+            const int at = origin(slot)[d] + Patch<Dim>::edge / 2;
+            middle[d] = Kokkos::max(0, Kokkos::min(at, grid.cells[d])) * spacing - rigid.displacement[d];
+          }
+          if (rigid.surface_normal && distance_to(rigid.surface, vertices, middle).value > far) return;
+          near(slot) = 1;
         });
   }
   ensure(s.near_slots, slots);
@@ -163,8 +186,9 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
   Kokkos::parallel_scan(
       "mpm::list_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots),
       KOKKOS_LAMBDA(int slot, int& n, bool last) {
-        if (last && near(slot) != 0) list(n) = slot;
-        n += near(slot);
+        if (near(slot) == 0) return;
+        if (last) list(n) = slot, near(slot) = n + 1;
+        ++n;
       },
       s.near_count);
   ensure(s.slot_forces, std::size_t(s.near_count) * Dim * s.rigid_points.size());

@@ -17,14 +17,6 @@ void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>&
                                                    s.p2g.mosaic_cells});
 }
 
-/// The strategy for the points of rigids. They are few in many cells of a patch or many in few: where `tile`
-/// would leave most of a GPU's threads idle, a thread a point does not.
-template <class Space>
-P2G strategy_of_rigids(P2G chosen_for_soil) {
-  const bool tile = chosen(chosen_for_soil, backend_of<Space>) == P2G::tile;
-  return is_device<Space> && tile ? P2G::atomic : chosen_for_soil;
-}
-
 /// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not tell them.
 template <class Space, class T, int Dim>
 void rigids_to_nodes(const State<Space, T, Dim>& s) {
@@ -34,7 +26,7 @@ void rigids_to_nodes(const State<Space, T, Dim>& s) {
     const NodeField<Space, T, RigidShare<Dim>::size> out =
         Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL);
     interpolate<RigidSource<Space, T, Dim>>(s, strategy_of_rigids<Space>(s.p2g.strategy), set.bins,
-                                            {set.points}, out);
+                                            {set.points, s.rigids, r, s.patches.origin, s.spacing}, out);
   }
 }
 
