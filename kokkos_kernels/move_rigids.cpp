@@ -23,15 +23,21 @@ KOKKOS_INLINE_FUNCTION double move_rigid(Rigid<Dim>& rigid, const double* contac
   return furthest;
 }
 
-/// Counts the step and adds what any point can have moved to the bound; moved_rigid, margin [cells].
+/// Counts the step and adds what any point can have moved to the bound; moved_rigid, margin [cells]; late:
+/// State::rebuild_late.
 template <class T>
-KOKKOS_INLINE_FUNCTION void end_step(Control& c, double moved_rigid, double margin) {
+KOKKOS_INLINE_FUNCTION void end_step(Control& c, double moved_rigid, double margin, int late) {
   constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
   c.increment = Kokkos::fmax(c.moved, moved_rigid) + epsilon;
   c.moved = 0;
   c.bound += c.increment;
   ++c.steps;
-  if (!(c.bound <= margin) || c.fault_count > 0) c.paused = 1;
+  const bool now = c.due_in == 1;
+  if (c.due_in > 0)
+    --c.due_in;
+  else if (late > 0 && rebuild_due(c.bound, c.increment, margin, late))
+    c.due_in = late;
+  if (now || !(c.bound <= margin) || c.fault_count > 0) c.paused = 1;
 }
 
 template <class Space, class T, int Dim>
@@ -66,6 +72,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
   const auto origin = s.patches.origin;
   const double spacing = s.spacing, margin = s.p2g.margin;
   const int count = static_cast<int>(s.rigid_points.size()), values = Dim * count, slots = s.near_count;
+  const int late = s.rebuild_late;
 
   Kokkos::parallel_for(
       "mpm::move_rigids", light(Team(s.space, 1, threads)),
@@ -83,7 +90,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
           double furthest = 0;  // m
           for (int r = 0; r < count; ++r)
             furthest = Kokkos::fmax(furthest, move_rigid(rigids(r), &sums(r * Dim), dt));
-          end_step<T>(control(), furthest / spacing, margin);
+          end_step<T>(control(), furthest / spacing, margin, late);
         });
       });
 

@@ -200,36 +200,30 @@ UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
 }
 
 template <bool Sums, class Space, class T, int Dim>
-void launch_update(State<Space, T, Dim>& s, double dt) {
+void launch_update(State<Space, T, Dim>& s, double dt, const Part<Space>& part) {
   using Update = UpdateParticles<Space, T, Dim, Sums>;
   const auto& set = s.soil;
   const UpdateScalars<T> by = update_scalars(s, dt);
   const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
       reinterpret_cast<T*>(s.spare.data()), set.points.count);
-  Update update{{set.points, s.grid.inv_spacing},
-                set.bins.begin,
-                set.bins.by_colour,
-                s.patches.around,
-                s.patches.origin,
-                s.nodes.motion,
-                s.nodes.soil,
-                s.control,
-                dilatation,
-                by,
-                s.spacing,
-                0,
-                set.points.bodies.extent(0) == 1};
-  const auto launch = [&](int first, int last) {
-    update.first = first;
-    Kokkos::parallel_for("mpm::update_particles",
-                         light(typename Update::Team(s.space, last - first, team_threads<Space>)
-                                   .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
-                         update);
-  };
-  if (Sums)
-    for_each_launch<Space, Dim>(set.bins, launch);
-  else
-    launch(0, set.bins.colour_begin[Patch<Dim>::colours]);
+  const Update update{{set.points, s.grid.inv_spacing},
+                      set.bins.begin,
+                      set.bins.by_colour,
+                      s.patches.around,
+                      s.patches.origin,
+                      s.nodes.motion,
+                      s.nodes.soil,
+                      s.control,
+                      dilatation,
+                      by,
+                      s.spacing,
+                      part.first,
+                      set.points.bodies.extent(0) == 1};
+  if (part.first == part.last) return;
+  Kokkos::parallel_for("mpm::update_particles",
+                       light(typename Update::Team(part.space, part.last - part.first, team_threads<Space>)
+                                 .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
+                       update);
 }
 
 }  // namespace
@@ -241,20 +235,26 @@ bool sums_ahead(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt) {
+void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const Part<Space>& part) {
   s.soil_summed = sums_ahead(s);
   if constexpr (is_device<Space>) {
     if constexpr (sums_fit<Space, T, Dim>)
-      if (s.soil_summed) return launch_update<true>(s, dt);
-    launch_update<false>(s, dt);
+      if (s.soil_summed) return launch_update<true>(s, dt, part);
+    launch_update<false>(s, dt, part);
   } else {
     move_on_host(s, update_scalars(s, dt));
   }
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                   \
-  template bool sums_ahead(const State<Space, T, Dim>&); \
-  template void update_particles(State<Space, T, Dim>&, double);
+template <class Space, class T, int Dim>
+void update_particles(State<Space, T, Dim>& s, double dt) {
+  update_particles(s, dt, Part<Space>{s.space, 0, s.soil.bins.colour_begin[Patch<Dim>::colours]});
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                           \
+  template bool sums_ahead(const State<Space, T, Dim>&);         \
+  template void update_particles(State<Space, T, Dim>&, double); \
+  template void update_particles(State<Space, T, Dim>&, double, const Part<Space>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm
