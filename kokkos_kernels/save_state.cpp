@@ -172,7 +172,8 @@ void restore_control(State<Space, T, Dim>& s, const SavedState& saved) {
   const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
   control().bound = saved.bound;
   control().increment = saved.increment;
-  control().due_in = saved.bounds.size() == 1 ? static_cast<int>(saved.bounds[0]) : 0;
+  const bool counts = s.rebuild_late > 0 && saved.bounds.size() == 1;
+  control().due_in = counts ? static_cast<int>(saved.bounds[0]) : 0;
   control().paused = 0;
   Kokkos::deep_copy(s.control, control);
 }

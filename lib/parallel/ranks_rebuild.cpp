@@ -245,6 +245,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved) {
   PetscFunctionBeginUser;
   const std::size_t width = k_bounds + 3 * saved.rigids.size();
+  bound_.set_sum(saved.bound);
   const auto sound = [&](long r) { return r >= 0 && r < size_; };
   if (saved.bounds.size() != size_ * width || saved.owners.size() != owners_.size() ||
       !std::all_of(saved.owners.begin(), saved.owners.end(), sound)) {
@@ -267,7 +268,9 @@ template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved) {
   PetscFunctionBeginUser;
   long moved = 0;
+  const double last = saved.increment;
   PetscCall(take_own(saved));
+  if (is_device<Space> && overlaps(s)) bound_.set_sum(bound_.sum() + last);  // its report was not posted yet
   reserve_particles(s, std::max(s.soil.points.all, k_least_room));
   PetscCall(migrate(s, &moved));
   list_saved(s);

@@ -201,7 +201,7 @@ std::string TypedStepper<Space, T, Dim>::ranks_report() const {
         "%.3f to "
         "%.3f s\n",
         low[0], high[0], balance(0), low[2], high[2], low[1], high[1]);
-  if (high[0] > 0 && ranks_->overlaps(state_))
+  if (high[0] > 0 && is_device<Space> && ranks_->overlaps(state_))
     text += formatted("  devices held up by the halo for %.3f to %.3f s of it\n", low[7], high[7]);
   return text;
 }
