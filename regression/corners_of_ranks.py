@@ -53,8 +53,8 @@ def decks(dim):
                                     + box("soil", (0.4, 0.2), (1.2, 1.0), dim, f"-soil_velocity {velocity(0.5, 0.2, dim)}"), 100),
         "one patch thick": (mesh(0.8 * 6, 0.8, 0.8 / patch, dim) + soil
                             + box("soil", (0.2, 0.2), (4.0, 0.6), dim, f"-soil_velocity {velocity(0.5, 0.1, dim)}"), 100),
-        "across all ranks": (mesh(6.4, 1.6, 0.2, dim) + soil + "-p2g_margin 0.2 -time_courant 0.4 "
-                             + box("soil", (0.4, 0.4), (1.2, 1.2), dim, f"-soil_velocity {velocity(12, 0, dim)}"), 600),
+        "across all ranks": (mesh(6.4, 1.6, 0.2, dim) + soil + "-time_courant 0.4 "
+                             + box("soil", (0.4, 0.4), (1.2, 1.2), dim, f"-soil_velocity {velocity(5, 0, dim)}"), 420),
         "meeting at a cut": (mesh(6.4, 1.6, 0.2, dim) + "-bodies soil,other -soil_material soft -other_material soft "
                              + box("soil", (2.0, 0.4), (3.0, 1.2), dim, f"-soil_velocity {velocity(2, 0, dim)}")
                              + box("other", (3.4, 0.4), (4.4, 1.2), dim, f"-other_velocity {velocity(-2, 0, dim)}")
