@@ -23,23 +23,25 @@ template <class T>
 struct HaloField {
   T* values;
   int size, offset;
+  const int* read = nullptr;  // by slot: 0 where nobody here reads the field; null: it is read everywhere
 };
 
 /// Writes the nodes' values to the entries of `out`, of `width` values each.
-template <class Space, class T, int Dim>
-void pack_nodes(const State<Space, T, Dim>& s, const HaloLists<Space>& lists, const HaloField<T>& field,
-                int width, T* out);
+template <class Space, class T>
+void pack_nodes(const Space& space, const HaloLists<Space>& lists, const HaloField<T>& field, int width,
+                T* out);
 
 /// Replaces each shared node's own share by the sum over the ranks that reach it, in the order of ranks: the
-/// same bits on each of them.
-template <class Space, class T, int Dim>
-void sum_shares(const State<Space, T, Dim>& s, const HaloLists<Space>& lists, const HaloField<T>& field,
-                int width, const T* in);
+/// same bits on each of them. Where nobody here reads it the share becomes 0: no kernel does that there, and
+/// the next share must not add to it.
+template <class Space, class T>
+void sum_shares(const Space& space, const HaloLists<Space>& lists, const HaloField<T>& field, int width,
+                const T* in);
 
 /// Force of the soil on each rigid in this step, summed over the nodes that this rank answers for, to s.sums
 /// [N].
 template <class Space, class T, int Dim>
-void sum_rigid_forces(State<Space, T, Dim>& s);
+void sum_rigid_forces(const State<Space, T, Dim>& s, const Space& space);
 
 /// Brings the forces of all ranks back: move_rigids then finds in s.slot_forces s.sums alone.
 template <class Space, class T, int Dim>

@@ -75,12 +75,15 @@ void for_each_slot(const char* label, const Space& space, const Bins<Space>& bin
   using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Static>>;
   constexpr int cells = Patch<Dim>::cells;
   const auto begin = bins.begin;
+  const auto by_colour = bins.by_colour;
   if constexpr (backend_of<Space> == Backend::serial) {
+    if (bins.some)
+      return Kokkos::parallel_for(label, Range(space, bins.colour_begin[0], bins.colour_begin[1]),
+                                  [=](int n) { f(by_colour(n)); });
     Kokkos::parallel_for(label, Range(space, 0, slots), [=](int slot) {
       if (begin(slot * cells) < begin((slot + 1) * cells)) f(slot);
     });
   } else {
-    const auto by_colour = bins.by_colour;
     for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
       const int first = bins.colour_begin[colour], last = bins.colour_begin[colour + 1];
       if (first < last)

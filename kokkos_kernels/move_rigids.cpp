@@ -26,14 +26,20 @@ KOKKOS_INLINE_FUNCTION double move_rigid(Rigid<Dim>& rigid, const double* contac
   return furthest;
 }
 
-/// Counts the step and adds what any point can have moved to the bound; moved, margin [cells].
+/// Counts the step and adds what any point can have moved to the bound; moved, margin [cells]; late:
+/// State::rebuild_late.
 template <class T>
-KOKKOS_INLINE_FUNCTION void end_step(Control& c, double moved, double margin) {
+KOKKOS_INLINE_FUNCTION void end_step(Control& c, double moved, double margin, int late) {
   constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
   c.increment = moved + epsilon;
   c.bound += c.increment;
   ++c.steps;
-  if (!(c.bound <= margin) || c.fault_count > 0) c.paused = 1;
+  const bool now = c.due_in == 1;
+  if (c.due_in > 0)
+    --c.due_in;
+  else if (late > 0 && rebuild_due(c.bound, c.increment, margin, late))
+    c.due_in = late;
+  if (now || !(c.bound <= margin) || c.fault_count > 0) c.paused = 1;
 }
 
 template <class Space, class T, int Dim>
@@ -59,6 +65,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
   const auto rigids = s.rigids;
   const double spacing = s.spacing, margin = s.p2g.margin;
   const int count = static_cast<int>(s.rigid_points.size()), values = Dim * count, slots = s.near_count;
+  const int late = s.rebuild_late;
   const std::size_t bytes = scratch_bytes<double>(warps * (values + 1));
   const int level = bytes > 32 * 1024 ? 1 : 0;
 
@@ -94,7 +101,7 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
           moved = 0;
           for (int w = 0; w < warps; ++w) moved = Kokkos::fmax(moved, part[values * warps + w]);
           for (int r = 0; r < count; ++r) moved = Kokkos::fmax(moved, part[r * Dim * warps]);
-          end_step<T>(control(), moved, margin);
+          end_step<T>(control(), moved, margin, late);
         });
       });
 

@@ -88,11 +88,20 @@ struct Fault {
 struct Control {
   double bound;      // cells that any point can have moved since the last rebuild
   double increment;  // of the last step
-  int paused;        // the bound passed the margin, or a fault
+  int due_in;        // steps to a rebuild that is due; 0: none is
+  int paused;        // the bound passed the margin, a rebuild is due, or a fault
   int steps;         // steps done since the host last looked
   int fault_count;
   Fault fault;
 };
+
+/// Whether lists must be rebuilt `late` steps after the one that these are of [cells]; speeds may grow by
+/// half until then. Several ranks know of each other only so late; one rank rebuilds at the same steps all
+/// the same.
+KOKKOS_INLINE_FUNCTION bool rebuild_due(double bound, double increment, double margin, int late) {
+  constexpr double k_growth = 1.5;
+  return !(bound + late * k_growth * increment <= margin);
+}
 
 template <class Space>
 using ControlView = Kokkos::View<Control, typename Space::memory_space>;

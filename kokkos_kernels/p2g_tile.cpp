@@ -16,14 +16,16 @@ void sum_on_device(const Interpolation<Source>& it) {
   const auto by_colour = it.bins.by_colour;
   const auto out = it.out;
   const auto control = it.control;
+  const int first = it.bins.colour_begin[0], teams = it.bins.colour_begin[Patch<Dim>::colours] - first;
+  if (teams == 0) return;
 
   Kokkos::parallel_for(
       "mpm::reduce_by_tile",
-      light(Team(it.space, it.bins.colour_begin[Patch<Dim>::colours], team_threads<Space>)
+      light(Team(it.space, teams, team_threads<Space>)
                 .set_scratch_size(0, Kokkos::PerTeam(Tile_::bytes() + k_scratch_slack))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (control().paused) return;
-        const int slot = by_colour(team.league_rank());
+        const int slot = by_colour(first + team.league_rank());
         if (source.skips(slot)) return;
         Scratch scratch(team, Tile_::bytes());
         const Tile_ tile(scratch);

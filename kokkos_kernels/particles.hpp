@@ -74,13 +74,34 @@ void for_each_field(RigidPoints<Space, T, Dim>& s, F&& f) {
 template <class Space>
 struct Bins {
   using Memory = typename Space::memory_space;
-  Kokkos::View<int*, Memory> begin;       // first point of a cell [cells + 1]
-  Kokkos::View<int*, Memory> by_colour;   // slots that hold points, ordered by colour
-  int colour_begin[8 + 1] = {};           // ranges of by_colour
+  Kokkos::View<int*, Memory> begin;      // first point of a cell [cells + 1]
+  Kokkos::View<int*, Memory> by_colour;  // slots that hold points, ordered by colour
+  int colour_begin[8 + 1] = {};          // ranges of by_colour
+  int border = 0;     // of by_colour, on several ranks: slots in front that share nodes with other ranks, all
+                      // colours of them; but with OpenMP, where colours come first
+  bool some = false;  // not all slots: bins_of
   Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]
   Kokkos::View<int*, Memory> list;        // gather: points that may reach the node, in order
   Kokkos::View<long*, Memory> blocks;     // mosaic: blocks that hold points, ordered by colour
   int block_begin[8 + 1] = {};            // mosaic: ranges of blocks by colour
 };
+
+/// Some of the slots that hold points, [first, last) of Bins::by_colour, and the queue that works on them.
+/// Where colours do not matter: on a device, and with one thread.
+template <class Space>
+struct Part {
+  Space space;
+  int first, last;
+};
+
+/// The bins with these slots alone.
+template <class Space>
+Bins<Space> bins_of(const Bins<Space>& all, const Part<Space>& part) {
+  Bins<Space> bins = all;
+  bins.some = true;
+  bins.colour_begin[0] = part.first;
+  for (int colour = 1; colour <= 8; ++colour) bins.colour_begin[colour] = part.last;
+  return bins;
+}
 
 }  // namespace mpm

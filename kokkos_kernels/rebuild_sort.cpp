@@ -238,6 +238,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   Kokkos::parallel_for(
       "mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
         control().bound = 0;
+        control().due_in = 0;
         control().paused = control().fault_count > 0;
       });
 }

@@ -38,7 +38,8 @@ struct SavedImpulse {
 
 struct SavedState {
   double bound = 0, increment = 0;  // cells, of Control; the largest of all ranks
-  std::vector<double> bounds;       // cells, of each of several ranks: what Ranks::save puts there
+  std::vector<double> bounds;       // of each of several ranks: what Ranks::save puts there; of one rank:
+                                    // Control::due_in, where a rebuild is due
   std::vector<long> owners;         // rank of each patch of the grid; empty on one rank
   SavedPoints soil;
   std::vector<SavedRigid> rigids;

@@ -60,6 +60,7 @@ struct State {
   bool affine = false;            // APIC: Soil::affine is in use; flip_share is then 0
   double f_bar_share = 0;         // -
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
+  int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them
   bool soil_summed = false;       // nodes.soil holds the sums of the soil as it is, made by the step before
   bool rigid_moves = false;       // some rigid is not fixed
   bool mass_normals = false;      // some rigid's normals are those of its mass gradient

@@ -27,6 +27,9 @@ void update_nodes(State<Space, T, Dim>& s, double dt);
 /// nodes. dt [s].
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt);
+/// The same for some of the slots, where sums_ahead.
+template <class Space, class T, int Dim>
+void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part);
 
 /// 6. Moves the rigid bodies (Eq. 7), counts the step, and adds what any point can have moved to the bound.
 /// dt [s].

@@ -60,6 +60,7 @@ struct UpdateParticles {
   Kokkos::View<T*, Memory, Kokkos::MemoryUnmanaged> dilatation;  // 1/s, by particle
   UpdateScalars<T> by;
   double spacing;
+  int first;      // of slots
   bool one_body;  // no particle needs to be asked which its body is
 
   static constexpr std::size_t bytes() {
@@ -67,7 +68,7 @@ struct UpdateParticles {
   }
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
-    const int paused = control().paused, slot = slots(team.league_rank());  // both asked for at once
+    const int paused = control().paused, slot = slots(first + team.league_rank());  // both asked for at once
     if (paused) return;
     const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
     const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
@@ -182,7 +183,7 @@ UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
 }
 
 template <bool Sums, class Space, class T, int Dim>
-void launch_update(State<Space, T, Dim>& s, double dt) {
+void launch_update(State<Space, T, Dim>& s, double dt, const Part<Space>& part) {
   using Update = UpdateParticles<Space, T, Dim, Sums>;
   const auto& set = s.soil;
   const UpdateScalars<T> by = update_scalars(s, dt);
@@ -200,11 +201,11 @@ void launch_update(State<Space, T, Dim>& s, double dt) {
                       dilatation,
                       by,
                       s.spacing,
+                      part.first,
                       set.points.bodies.extent(0) == 1};
-  const int teams = set.bins.colour_begin[Patch<Dim>::colours];
-  if (teams == 0) return;
+  if (part.first == part.last) return;
   Kokkos::parallel_for("mpm::update_particles",
-                       light(typename Update::Team(s.space, teams, team_threads<Space>)
+                       light(typename Update::Team(part.space, part.last - part.first, team_threads<Space>)
                                  .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
                        update);
 }
@@ -218,20 +219,26 @@ bool sums_ahead(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt) {
+void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const Part<Space>& part) {
   s.soil_summed = sums_ahead(s);
   if constexpr (is_device<Space>) {
     if constexpr (sums_fit<Space, T, Dim>)
-      if (s.soil_summed) return launch_update<true>(s, dt);
-    launch_update<false>(s, dt);
+      if (s.soil_summed) return launch_update<true>(s, dt, part);
+    launch_update<false>(s, dt, part);
   } else {
     move_on_host(s, update_scalars(s, dt));
   }
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                   \
-  template bool sums_ahead(const State<Space, T, Dim>&); \
-  template void update_particles(State<Space, T, Dim>&, double);
+template <class Space, class T, int Dim>
+void update_particles(State<Space, T, Dim>& s, double dt) {
+  update_particles(s, dt, Part<Space>{s.space, 0, s.soil.bins.colour_begin[Patch<Dim>::colours]});
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                           \
+  template bool sums_ahead(const State<Space, T, Dim>&);         \
+  template void update_particles(State<Space, T, Dim>&, double); \
+  template void update_particles(State<Space, T, Dim>&, double, const Part<Space>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

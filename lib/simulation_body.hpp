@@ -61,10 +61,10 @@ struct Simulation::Body {
   PetscErrorCode start();
   PetscErrorCode load(Model* model);
   PetscErrorCode load_shape(const std::string& name, const Shape& shape, const std::vector<Shape>& cut_out,
-                            BodyParticles* particles);
+                            LatticePart part, BodyParticles* particles);
   PetscErrorCode load_file(const BodyConfig& body, BodyParticles* particles);
   PetscErrorCode choose_strategy(const Model& model, const std::string& device);
-  PetscErrorCode log_shape(const std::string& name, const Lattice& lattice);
+  PetscErrorCode log_shape(const std::string& name, const Lattice& lattice, bool in_parts);
   PetscErrorCode fail(const std::string& what);
   PetscErrorCode advance_to(long target);
   PetscErrorCode rebuild(const Batch& batch);

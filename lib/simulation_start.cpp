@@ -181,10 +181,11 @@ PetscErrorCode Simulation::Body::load(Model* model) {
     const bool listed = body.shape.kind == ShapeKind::particles;
     BodyParticles& particles = model->bodies.emplace_back();
     PetscCall(listed ? load_file(body, &particles)
-                     : load_shape("body " + body.name, body.shape, cut_out_of(config, body), &particles));
+                     : load_shape("body " + body.name, body.shape, cut_out_of(config, body),
+                                  {rank_of(comm), ranks()}, &particles));
   }
   for (const auto& rigid : config.rigids)
-    PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, &model->rigids.emplace_back()));
+    PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, {}, &model->rigids.emplace_back()));
   for (auto* all : {&model->bodies, &model->rigids})
     for (BodyParticles& particles : *all)
       for (std::size_t k = 0; k < particles.position.size(); ++k)
@@ -193,13 +194,14 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Particles of a shape's lattice. Their positions are absolute, as in a file.
+/// Particles of a shape's lattice, or this rank's part of them. Their positions are absolute, as in a file.
 PetscErrorCode Simulation::Body::load_shape(const std::string& name, const Shape& shape,
-                                            const std::vector<Shape>& cut_out, BodyParticles* particles) {
+                                            const std::vector<Shape>& cut_out, LatticePart part,
+                                            BodyParticles* particles) {
   PetscFunctionBeginUser;
   Lattice lattice;
-  PetscCall(fill(shape, config.mesh, config.dim, lattice, cut_out));
-  PetscCall(log_shape(name, lattice));
+  PetscCall(fill(shape, config.mesh, config.dim, lattice, cut_out, part));
+  PetscCall(log_shape(name, lattice, part.of > 1));
   particles->position = std::move(lattice.position);
   particles->spacing = lattice.spacing;
   particles->particle_volume = lattice.particle_volume;
@@ -226,15 +228,18 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode Simulation::Body::log_shape(const std::string& name, const Lattice& lattice) {
+/// in_parts: each rank has a part of the lattice.
+PetscErrorCode Simulation::Body::log_shape(const std::string& name, const Lattice& lattice, bool in_parts) {
   PetscFunctionBeginUser;
-  const long count = static_cast<long>(lattice.position.size()) / config.dim;
+  long counts[2] = {static_cast<long>(lattice.position.size()) / config.dim, lattice.cut_out};
+  if (in_parts) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_LONG, MPI_SUM, comm));
+  const auto [count, cut_out] = counts;
   const char* unit = config.dim == 2 ? "m2" : "m3";
   PetscCall(log.print("%s: %ld particles stand for %.6g %s, the shape has %.6g %s", name.c_str(), count,
                       count * lattice.particle_volume, unit, lattice.shape_volume, unit));
-  if (lattice.cut_out > 0)
-    PetscCall(log.print("%s: %ld particles, %.6g %s, were cut out", name.c_str(), lattice.cut_out,
-                        lattice.cut_out * lattice.particle_volume, unit));
+  if (cut_out > 0)
+    PetscCall(log.print("%s: %ld particles, %.6g %s, were cut out", name.c_str(), cut_out,
+                        cut_out * lattice.particle_volume, unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -21,6 +21,8 @@ bool may_change(const std::string& name) {
                                    "-p2g_mosaic_cells",
                                    "-p2g_rebuild_interval",
                                    "-partition",
+                                   "-halo_path",
+                                   "-halo_overlap",
                                    "-time_end",
                                    "-time_max_steps",
                                    "-history_interval",

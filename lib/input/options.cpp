@@ -71,6 +71,22 @@ void read_partition(OptionReader& in, PartitionConfig& partition) {
               partition.rebalance_threshold);
   else
     in.not_taken("rebalance_threshold", "-partition is not metis");
+  in.word(
+      {.name = "halo_path",
+       .meaning = "how sums of nodes travel between ranks: host: through the host's memory, on a GPU pinned; "
+                  "device: by an MPI that takes GPU memory; peer: straight into the other's memory, between "
+                  "GPUs by CUDA IPC, on one node; auto: on GPUs the first of device, peer and host that "
+                  "works, else host"},
+      Words<HaloPath>{{"auto", HaloPath::automatic},
+                      {"host", HaloPath::host},
+                      {"device", HaloPath::device},
+                      {"peer", HaloPath::peer}},
+      partition.halo_path);
+  in.word({.name = "halo_overlap",
+           .meaning =
+               "on: with -p2g tile, where kernels run on a GPU or on one thread, sums of nodes travel while "
+               "patches that no other rank waits for are computed"},
+          Words<bool>{{"on", true}, {"off", false}}, partition.halo_overlap);
 }
 
 void read_time(OptionReader& in, TimeConfig& time) {

@@ -34,6 +34,12 @@ struct Sites {
       last[d] = std::lround(whole ? to : std::ceil(to + 0.5));
     }
   }
+  /// Only part of the rows or layers.
+  void cut(LatticePart part, int dim) {
+    const long from = first[dim - 1], count = last[dim - 1] - from;
+    first[dim - 1] = from + count * part.number / part.of;
+    last[dim - 1] = from + count * (part.number + 1) / part.of;
+  }
   Vec3 corner(long i, long j, long k, int dim) const {
     return {origin[0] + i * edge, origin[1] + j * edge, dim == 3 ? origin[2] + k * edge : 0};
   }
@@ -71,8 +77,9 @@ bool any_site(const Shape& shape, const MeshConfig& mesh, int dim, const Sites& 
 
 /// As any_site, with the place of each particle.
 template <class Visit>
-bool any_particle(const Shape& shape, const MeshConfig& mesh, int dim, Visit&& visit) {
-  const Sites sites(shape, mesh, dim);
+bool any_particle(const Shape& shape, const MeshConfig& mesh, int dim, LatticePart part, Visit&& visit) {
+  Sites sites(shape, mesh, dim);
+  sites.cut(part, dim);
   const int n = sites.particles;
   return any_site(shape, mesh, dim, sites, [&](long i, long j, long k) {
     for (int c = 0; c < (dim == 3 ? n : 1); ++c)
@@ -110,7 +117,7 @@ std::vector<Shape> cut_out_of(const Config& config, const BodyConfig& body) {
 }
 
 PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice& lattice,
-                    const std::vector<Shape>& cut_out) {
+                    const std::vector<Shape>& cut_out, LatticePart part) {
   PetscFunctionBeginUser;
   PetscCheck(shape.kind != ShapeKind::particles, PETSC_COMM_SELF, PETSC_ERR_SUP,
              "A list of particles has no lattice");
@@ -119,10 +126,11 @@ PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice
   lattice.particle_volume = std::pow(lattice.spacing, dim);
   lattice.shape_volume = shape_volume(shape, mesh, dim);
   auto& position = lattice.position;
-  const auto expected = static_cast<std::size_t>(1.01 * lattice.shape_volume / lattice.particle_volume);
+  const auto expected =
+      static_cast<std::size_t>(1.01 * lattice.shape_volume / lattice.particle_volume / part.of);
   PetscCallCXX(position.reserve(dim * expected));
   Holes holes(cut_out, mesh, dim);
-  PetscCallCXX(any_particle(shape, mesh, dim, [&](const Vec3& x) {
+  PetscCallCXX(any_particle(shape, mesh, dim, part, [&](const Vec3& x) {
     if (holes.hold(x))
       ++lattice.cut_out;
     else
@@ -134,7 +142,7 @@ PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice
 
 bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim, const std::vector<Shape>& cut_out) {
   Holes holes(cut_out, mesh, dim);
-  return any_particle(shape, mesh, dim, [&](const Vec3& x) { return !holes.hold(x); });
+  return any_particle(shape, mesh, dim, {}, [&](const Vec3& x) { return !holes.hold(x); });
 }
 
 }  // namespace mpm

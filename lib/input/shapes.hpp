@@ -19,6 +19,12 @@ struct Lattice {
   long cut_out = 0;            // particles left out
 };
 
+/// Which part of a lattice one rank makes: of so many equal lots of rows or, in 3D, layers, that of this
+/// number. The parts one after the other are the lattice.
+struct LatticePart {
+  int number = 0, of = 1;
+};
+
 /// Fills a shape with particles, shape.particles_per_cell in each direction of a cell.
 /// Fill::centre: the lattice points in the shape. The lattice of a box starts at the box's own lower corner
 /// and turns with it; that of another shape is the mesh's. Fill::cell: all particles of every mesh cell that
@@ -26,7 +32,7 @@ struct Lattice {
 /// "In" includes the boundary, with a tolerance of 1e-9 of the mesh spacing, so that round-off never decides.
 /// ShapeKind::particles has no lattice (PETSC_ERR_SUP).
 PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice& lattice,
-                    const std::vector<Shape>& cut_out = {});
+                    const std::vector<Shape>& cut_out = {}, LatticePart part = {});
 
 /// Whether fill() would give at least one particle; stops at the first.
 bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim,

@@ -1,8 +1,11 @@
 #include "parallel/distribute.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
+#include "input/shapes.hpp"
 #include "parallel/partition.hpp"
 #include "parallel/together.hpp"
 #include "velocity_gradients.hpp"
@@ -20,15 +23,86 @@ long patch_of(const std::vector<double>& position, std::size_t p, const PatchGri
   return grid.number(at);
 }
 
-/// Keeps `width` numbers of each of these particles; an empty list stays so.
-void keep(const std::vector<int>& particles, int width, std::vector<double>& values) {
-  if (values.empty()) return;
-  std::vector<double> kept;
-  kept.reserve(particles.size() * width);
-  for (const int p : particles)
-    kept.insert(kept.end(), values.begin() + std::size_t(p) * width,
-                values.begin() + std::size_t(p + 1) * width);
-  values = std::move(kept);
+/// The fields of a body's particles, and how many numbers of each a particle has.
+struct Field {
+  std::vector<double> BodyParticles::*values;
+  int width;
+};
+std::array<Field, 5> fields_of(int dim) {
+  return {{{&BodyParticles::position, dim},
+           {&BodyParticles::velocity, dim},
+           {&BodyParticles::stress, dim == 2 ? 4 : 6},
+           {&BodyParticles::plastic_strain, 1},
+           {&BodyParticles::velocity_gradient, dim * dim}}};
+}
+
+/// Of a body of which every rank has all particles: this rank's part.
+void keep_part(LatticePart part, int dim, BodyParticles& body) {
+  const long count = static_cast<long>(body.position.size()) / dim;
+  const long from = count * part.number / part.of, to = count * (part.number + 1) / part.of;
+  for (const auto& [values, width] : fields_of(dim)) {
+    std::vector<double>& all = body.*values;
+    if (!all.empty()) all = std::vector<double>(all.begin() + from * width, all.begin() + to * width);
+  }
+}
+
+/// Counts the particles of a body over all ranks; their ids follow each other from `first` on, which moves
+/// behind them.
+PetscErrorCode number_particles(MPI_Comm comm, int dim, int* first, BodyParticles* body) {
+  PetscFunctionBeginUser;
+  const long here = static_cast<long>(body->position.size()) / dim;
+  long before = 0;
+  PetscCallMPI(MPI_Exscan(&here, &before, 1, MPI_LONG, MPI_SUM, comm));
+  if (rank_of(comm) == 0) before = 0;  // MPI leaves it undefined
+  PetscCallMPI(MPI_Allreduce(&here, &body->total, 1, MPI_LONG, MPI_SUM, comm));
+  body->id.resize(here);
+  std::iota(body->id.begin(), body->id.end(), *first + static_cast<int>(before));
+  *first += static_cast<int>(body->total);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Rows of `width` numbers to the ranks `to`; what comes is in the order of ranks, and so of ids.
+template <class Number>
+PetscErrorCode send_rows(MPI_Comm comm, const std::vector<int>& to, int width, std::vector<Number>* values) {
+  PetscFunctionBeginUser;
+  const std::size_t size = width * sizeof(Number);
+  std::vector<std::vector<char>> out(size_of(comm));
+  for (std::size_t p = 0; p < to.size(); ++p) {
+    const char* const row = reinterpret_cast<const char*>(&(*values)[p * width]);
+    out[to[p]].insert(out[to[p]].end(), row, row + size);
+  }
+  std::vector<char> in;
+  PetscCall(exchange_records(comm, size, out, &in));
+  values->resize(in.size() / sizeof(Number));
+  std::copy(in.begin(), in.end(), reinterpret_cast<char*>(values->data()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode send_to_owners(MPI_Comm comm, const PatchGrid& grid, double spacing, const Owners& owners,
+                              BodyParticles* body) {
+  PetscFunctionBeginUser;
+  std::vector<int> to;
+  for (std::size_t p = 0; p < body->id.size(); ++p)
+    to.push_back(owners[patch_of(body->position, p, grid, spacing)]);
+  for (const auto& [values, width] : fields_of(grid.dim)) {
+    int present = !(body->*values).empty();  // on some rank: this one may have no particle yet
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &present, 1, MPI_INT, MPI_MAX, comm));
+    if (present) PetscCall(send_rows(comm, to, width, &(body->*values)));
+  }
+  PetscCall(send_rows(comm, to, 1, &body->id));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Particles of all bodies and ranks in each patch.
+PetscErrorCode count_loads(MPI_Comm comm, const PatchGrid& grid, double spacing, const Model& model,
+                           Loads* loads) {
+  PetscFunctionBeginUser;
+  loads->assign(grid.count(), 0);
+  for (const BodyParticles& body : model.bodies)
+    for (std::size_t p = 0; p < body.id.size(); ++p) ++(*loads)[patch_of(body.position, p, grid, spacing)];
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, loads->data(), static_cast<int>(loads->size()), MPI_DOUBLE, MPI_SUM, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// What follows from all particles of a body, before most of them go.
@@ -43,30 +117,30 @@ void take_gradients(const Config& config, BodyParticles& body) {
 
 PetscErrorCode distribute(MPI_Comm comm, const Config& config, const BackgroundMesh& mesh, Model* model) {
   PetscFunctionBeginUser;
-  const int dim = config.dim, rank = rank_of(comm);
+  const int dim = config.dim;
+  const double spacing = config.mesh.spacing;
   const PatchGrid grid{dim, model->patches};
   for (BodyParticles& body : model->bodies) body.total = static_cast<long>(body.position.size()) / dim;
   if (size_of(comm) == 1) PetscFunctionReturn(PETSC_SUCCESS);
 
+  int first = 0;  // id of the body's first particle
+  for (std::size_t b = 0; b < model->bodies.size(); ++b) {
+    BodyParticles& body = model->bodies[b];
+    if (config.bodies[b].shape.kind == ShapeKind::particles) {
+      take_gradients(config, body);
+      keep_part({rank_of(comm), size_of(comm)}, dim, body);
+    }
+    PetscCall(number_particles(comm, dim, &first, &body));
+  }
   if (config.partition.kind == PartitionKind::metis) {
-    Loads loads(grid.count());
-    for (const BodyParticles& body : model->bodies)
-      for (long p = 0; p < body.total; ++p) ++loads[patch_of(body.position, p, grid, config.mesh.spacing)];
+    Loads loads;
+    PetscCall(count_loads(comm, grid, spacing, *model, &loads));
     PetscCall(cut_graph(comm, grid, loads, {}, &model->owners));
   } else {
     PetscCall(mesh.owners(&model->owners));
   }
-  int first = 0;  // id of the body's first particle
-  for (BodyParticles& body : model->bodies) {
-    take_gradients(config, body);
-    std::vector<int> own;
-    for (int p = 0; p < body.total; ++p)
-      if (model->owners[patch_of(body.position, p, grid, config.mesh.spacing)] == rank) own.push_back(p);
-    for (const int p : own) body.id.push_back(first + p);
-    keep(own, dim, body.position), keep(own, dim, body.velocity), keep(own, 1, body.plastic_strain);
-    keep(own, dim == 2 ? 4 : 6, body.stress), keep(own, dim * dim, body.velocity_gradient);
-    first += static_cast<int>(body.total);
-  }
+  for (BodyParticles& body : model->bodies)
+    PetscCall(send_to_owners(comm, grid, spacing, model->owners, &body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

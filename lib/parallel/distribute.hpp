@@ -7,9 +7,9 @@
 
 namespace mpm {
 
-/// Gives every patch an owner (Model::owners) and keeps of the bodies' particles those of this rank; every
-/// rank has made all of them. Particles keep the id that they would have on one rank. Rigids stay whole.
-/// Collective; does nothing on one rank.
+/// Gives every patch an owner (Model::owners) and every rank the particles of its patches. Each has made its
+/// part of every lattice (LatticePart), and has all particles of a file. Particles get the id that they would
+/// have on one rank. Rigids stay whole. Collective; does nothing on one rank.
 PetscErrorCode distribute(MPI_Comm comm, const Config& config, const BackgroundMesh& mesh, Model* model);
 
 }  // namespace mpm

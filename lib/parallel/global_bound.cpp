@@ -17,8 +17,10 @@ PetscErrorCode GlobalBound::last_but_one(bool* known, BoundReport* all) {
   Reduction& r = reductions_[1 - last_];
   *known = r.posted;
   if (r.posted) PetscCallMPI(MPI_Wait(&r.request, MPI_STATUS_IGNORE));
+  const bool stepped = r.posted && r.all[0] > 0;  // else it is of the time before the first step
   r.posted = false;
-  *all = {r.all[0], r.all[1], r.all[2]};
+  if (stepped) sum_ += r.all[1];
+  *all = {sum_, r.all[1], r.all[2]};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

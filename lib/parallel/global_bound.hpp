@@ -16,13 +16,6 @@ struct BoundReport {
   double stopped = 0;    // 1: a rank does no more steps, for its bound passed the margin or for a fault
 };
 
-/// Whether lists must be rebuilt before the next step, where `report` is `late` steps old. Speeds may have
-/// grown by half since.
-inline bool rebuild_due(const BoundReport& report, double margin, int late) {
-  constexpr double k_growth = 1.5;
-  return !(report.bound + late * k_growth * report.increment <= margin);
-}
-
 class GlobalBound {
  public:
   /// Steps between what a report says and the step that it decides on: the report posted in a step is of the
@@ -36,7 +29,7 @@ class GlobalBound {
   /// Starts the reduction of this rank's report.
   PetscErrorCode post(MPI_Comm comm, const BoundReport& own);
   /// Ends the reduction of the report before the last one that was posted; `known` is false where there is
-  /// none.
+  /// none. Its bound is the sum of the largest increments, as it is on one rank.
   PetscErrorCode last_but_one(bool* known, BoundReport* all);
   /// What this rank posted last, if its reduction is under way.
   std::optional<BoundReport> pending() const {
@@ -44,6 +37,9 @@ class GlobalBound {
     if (!r.posted) return std::nullopt;
     return BoundReport{r.own[0], r.own[1], r.own[2]};
   }
+  /// The sum of the largest increments since the lists were built, as far as it is known.
+  double sum() const { return sum_; }
+  void set_sum(double sum) { sum_ = sum; }
   /// Ends what is under way.
   PetscErrorCode drain();
   /// The largest of all, waited for.
@@ -57,6 +53,7 @@ class GlobalBound {
   };
   std::array<Reduction, 2> reductions_;
   int last_ = 0;
+  double sum_ = 0;  // cells
 };
 
 }  // namespace mpm

@@ -4,17 +4,17 @@
 
 #include <petscsys.h>
 
-#include <initializer_list>
 #include <string>
 #include <utility>
 
 #include "halo.hpp"
 #include "migrate.hpp"
 #include "mpm/config.hpp"
-#include "parallel/exchange.hpp"
 #include "parallel/global_bound.hpp"
 #include "parallel/halo_plan.hpp"
+#include "parallel/transport.hpp"
 #include "parallel/work_clock.hpp"
+#include "queues.hpp"
 #include "saved_state.hpp"
 #include "share_impulse.hpp"
 
@@ -23,9 +23,14 @@ namespace mpm {
 /// Particles there is room for at least, so that every field has its views.
 inline constexpr int k_least_room = 16;
 
+/// Whether shares are sent before all patches are computed.
+template <class Space, class T, int Dim>
+bool sends_ahead(const State<Space, T, Dim>& s, const PartitionConfig& config);
+
 /// What a rank reports of itself at the end.
 struct RankReport {
   double work = 0, halo = 0, wait = 0;  // s: kernels; packing, copying and summing shares; waiting for others
+  double held = 0;                      // s, of it the time for which a device had nothing else to do
   double particles = 0, neighbours = 0, shared_nodes = 0;
   double sent = 0;  // bytes a step
 };
@@ -38,8 +43,22 @@ class Ranks {
   /// Brings the particles to the ranks that own their patches and makes the lists. After upload. Collective.
   PetscErrorCode start(MPI_Comm comm, const PartitionConfig& config, const Owners& owners, State_& s);
 
-  /// Function 3, the sum over ranks: the shares of soil and boundary, in one message a neighbour.
+  /// Function 3, the sum over ranks: the shares of soil and boundary, in one message a neighbour. Where they
+  /// were sent ahead it ends what is under way.
   PetscErrorCode add_soil(State_& s);
+
+  /// Whether the step sends ahead: it computes the border patches, whose nodes other ranks reach too, on a
+  /// queue of their own, calls send_ahead, and computes the inner patches while the shares travel.
+  bool overlaps(const State_& s) const { return sends_ahead(s, config_); }
+  /// The two parts. The border's queue goes on from where that of the state is now.
+  Part<Space> border(const State_& s);
+  Part<Space> inner(const State_& s) const;
+  /// Sends the shares, which border(s) has summed.
+  PetscErrorCode send_ahead(State_& s);
+  /// What s.space is given behind this call finds the border's particles as they are then.
+  void join(const State_& s) { border_there_.hold(s.space); }
+  /// Whether the border's shares have been sent since the last add_soil.
+  bool sent_ahead() const { return ahead_ != Ahead::nothing; }
   /// The same of what XPIC interpolates once more.
   PetscErrorCode add_rest(State_& s);
   /// After sum_present_soil: the soil's shares, for what is measured between two steps.
@@ -48,7 +67,6 @@ class Ranks {
   PetscErrorCode add_forces(State_& s);
   /// The movement bound of all ranks as it was some steps ago (GlobalBound::k_late).
   PetscErrorCode look_back(bool* known, BoundReport* all) { return bound_.last_but_one(known, all); }
-
   /// Ends the reductions under way.
   PetscErrorCode drain() { return bound_.drain(); }
 
@@ -67,6 +85,8 @@ class Ranks {
   /// Whether the rigids' impulses are already those of all ranks.
   bool forces_shared() const { return forces_shared_; }
   WorkClock& clock() { return clock_; }
+  /// How shares travel, in words.
+  std::string halo_words(const State_& s) const;
   RankReport report(const State_& s) const;
   std::size_t memory() const;
   /// What the log should tell since the last call; empty where there is nothing.
@@ -74,10 +94,30 @@ class Ranks {
 
  private:
   using Memory = typename Space::memory_space;
-  /// Memory that MPI reads: the device's own where that is the host's.
+  /// Memory of the host that a device writes to.
   using Staging = std::conditional_t<is_device<Space>, Kokkos::SharedHostPinnedSpace, Memory>;
+  /// Fields that travel together, next to each other in an entry.
+  struct Fields {
+    HaloField<T> of[2];
+    int count = 0, width = 0;
+    void add(T* values, int size, const int* read = nullptr) {
+      of[count++] = {values, size, width, read};
+      width += size;
+    }
+  };
+  enum class Ahead { nothing, under_way, added };  // of the shares that were sent ahead
 
-  PetscErrorCode add(State_& s, std::initializer_list<HaloField<T>> fields, int width, bool with_bound);
+  Fields soil_fields(const State_& s, bool soil, bool boundary) const;
+  PetscErrorCode send(const Space& space, const Fields& fields);
+  PetscErrorCode exchange(const Space& space, int width, bool with_bound);
+  void sum(const Space& space, const Fields& fields);
+  PetscErrorCode add(const Space& space, const Fields& fields, bool with_bound);
+  PetscErrorCode end_ahead(State_& s, bool with_bound);
+  /// What is known and under way of the steps before a rebuild.
+  PetscErrorCode forget();
+  PetscErrorCode post_bound();
+  void note_bound(State_& s, bool wait);
+  void put_border_first(State_& s, std::vector<int> held, const std::vector<long>& slots);
   PetscErrorCode take_own(SavedState& saved);
   PetscErrorCode rebalance(State_& s);
   PetscErrorCode choose_owners(State_& s, const std::vector<double>& figures, double imbalance, bool timed);
@@ -95,17 +135,20 @@ class Ranks {
   std::vector<std::uint8_t> occupied_;  // by patch, on all ranks together
 
   HaloLists<Space> lists_;
-  NodeExchange exchange_;
+  Transport<Space, T> transport_;
   int neighbours_ = 0;
-  Kokkos::View<T*, Memory> out_, in_;             // entries, neighbour by neighbour
-  Kokkos::View<T*, Staging> host_out_, host_in_;  // the same where MPI reads and writes them
+  SideQueue<Space> side_;  // of the border's kernels and of the halo
+  Ahead ahead_ = Ahead::nothing;
+  Fields on_their_way_;
+  Mark<Space> nodes_there_, border_there_, packing_, packed_, adding_, added_, idle_;
   Kokkos::View<Control, Staging> seen_;
   GlobalBound bound_;
   bool present_added_ = false;  // nodes.soil holds the sums over ranks of the soil as it is
   bool forces_shared_ = false;
 
   WorkClock clock_;
-  double halo_ = 0;    // s, packing and summing shares, where that can be seen: on the host
+  double halo_ = 0;    // s, packing and summing shares; on a device where they were sent ahead
+  double held_ = 0;    // s, a device's that waited for it
   double futile_ = 0;  // imbalance that a new cut could not mend
   std::string news_;
 };

@@ -31,7 +31,7 @@ auto on_host(const View& view, int n) {
                                              Kokkos::subview(view, Kokkos::make_pair(0, n)));
 }
 
-constexpr int k_bounds = 5;       // bound, increment, whether a report is under way, the two numbers of it
+constexpr int k_bounds = 6;  // bound, increment, whether a report is under way, the two numbers of it, sum
 constexpr double k_worth = 0.02;  // least gain in balance for which patches change hands
 
 }  // namespace
@@ -40,7 +40,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::rebuild(State_& s) {
   PetscFunctionBeginUser;
   clock_.stop();
-  PetscCall(bound_.drain());
+  PetscCall(forget());
   NodeImpulses<T> impulses;
   if (s.has_friction) impulses = list_impulses(s);
   PetscCall(rebalance(s));
@@ -51,6 +51,7 @@ PetscErrorCode Ranks<Space, T, Dim>::rebuild(State_& s) {
   PetscCall(make_lists(s));
   if (s.has_friction) PetscCall(share_impulses(s, impulses));
   present_added_ = false;
+  note_bound(s, true);
   if (!news_.empty())
     news_ += formatted("; %ld particles changed their rank, %.3g s", moved, WorkClock::wall() - before);
   clock_.stop();
@@ -160,12 +161,25 @@ PetscErrorCode Ranks<Space, T, Dim>::make_lists(State_& s) {
   ensure(s.slot_forces, s.sums.extent(0));
 
   const int width = std::max(SoilShare<Dim>::size + BoundaryShare<Dim>::size, Dim);
-  ensure(out_, plan.node.size() * width);
-  ensure(in_, plan.node.size() * width);
-  host_out_ = Kokkos::create_mirror_view(Kokkos::WithoutInitializing, Staging(), out_);
-  host_in_ = Kokkos::create_mirror_view(Kokkos::WithoutInitializing, Staging(), in_);
-  PetscCall(exchange_.set_up(comm_, plan.neighbours, plan.begin));
+  PetscCall(transport_.set_up(plan.neighbours, plan.begin, width));
+  if (overlaps(s)) put_border_first(s, std::vector<int>(held.data(), held.data() + holding), slots);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Orders the slots that hold particles, `held`, so that those come first that reach nodes of other ranks'
+/// particles: two patches that touch share some.
+template <class Space, class T, int Dim>
+void Ranks<Space, T, Dim>::put_border_first(State_& s, std::vector<int> held,
+                                            const std::vector<long>& slots) {
+  const auto inner = std::stable_partition(held.begin(), held.end(), [&](int slot) {
+    bool touches = false;
+    grid_.for_each_around(slots[slot], [&](long other, const std::array<int, 3>&) {
+      touches = touches || (occupied_[other] != 0 && owners_[other] != rank_);
+    });
+    return touches;
+  });
+  s.soil.bins.border = static_cast<int>(inner - held.begin());
+  fill(s.soil.bins.by_colour, held);
 }
 
 /// Sends the impulses of the nodes that this rank answered for to all ranks that reach them now.
@@ -206,8 +220,12 @@ template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::save(SavedState* saved) const {
   PetscFunctionBeginUser;
   const std::optional<BoundReport> report = bound_.pending();
-  std::vector<double> own{saved->bound, saved->increment, report ? 1.0 : 0.0, report ? report->bound : 0,
-                          report ? report->increment : 0};
+  std::vector<double> own{saved->bound,
+                          saved->increment,
+                          report ? 1.0 : 0.0,
+                          report ? report->bound : 0,
+                          report ? report->increment : 0,
+                          bound_.sum()};
   for (const SavedRigid& rigid : saved->rigids)
     own.insert(own.end(), rigid.impulse.begin(), rigid.impulse.end());
   const int width = static_cast<int>(own.size());
@@ -227,6 +245,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved) {
   PetscFunctionBeginUser;
   const std::size_t width = k_bounds + 3 * saved.rigids.size();
+  bound_.set_sum(saved.bound);
   const auto sound = [&](long r) { return r >= 0 && r < size_; };
   if (saved.bounds.size() != size_ * width || saved.owners.size() != owners_.size() ||
       !std::all_of(saved.owners.begin(), saved.owners.end(), sound)) {
@@ -238,6 +257,7 @@ PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved) {
   send_owners_to_device();
   const double* const own = &saved.bounds[rank_ * width];
   saved.bound = own[0], saved.increment = own[1];
+  bound_.set_sum(own[5]);
   for (std::size_t r = 0; r < saved.rigids.size(); ++r)
     std::copy_n(own + k_bounds + 3 * r, 3, saved.rigids[r].impulse.begin());
   if (own[2] != 0) PetscCall(bound_.post(comm_, {own[3], own[4], 0}));
@@ -248,13 +268,16 @@ template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved) {
   PetscFunctionBeginUser;
   long moved = 0;
+  const double last = saved.increment;
   PetscCall(take_own(saved));
+  if (is_device<Space> && overlaps(s)) bound_.set_sum(bound_.sum() + last);  // its report was not posted yet
   reserve_particles(s, std::max(s.soil.points.all, k_least_room));
   PetscCall(migrate(s, &moved));
   list_saved(s);
   PetscCall(make_lists(s));
   present_added_ = false;
   finish_saved(s, saved);
+  note_bound(s, true);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

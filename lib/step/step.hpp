@@ -12,9 +12,14 @@ namespace mpm {
 /// Interpolation of one source by the strategy that the user chose.
 template <class Source, class Space, class T, int Dim>
 void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>& bins, const Source& source,
-                 const NodeField<Space, T, Source::size>& out) {
-  particle_to_node(strategy, Interpolation<Source>{s.space, s.grid, s.patches, bins, source, out, s.control,
+                 const NodeField<Space, T, Source::size>& out, const Space& space) {
+  particle_to_node(strategy, Interpolation<Source>{space, s.grid, s.patches, bins, source, out, s.control,
                                                    s.p2g.mosaic_cells});
+}
+template <class Source, class Space, class T, int Dim>
+void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>& bins, const Source& source,
+                 const NodeField<Space, T, Source::size>& out) {
+  interpolate(s, strategy, bins, source, out, s.space);
 }
 
 /// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not tell them.
@@ -39,17 +44,42 @@ void prepare_nodes(State<Space, T, Dim>& s) {
 /// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
 /// needs it. The first ones may be there already.
 template <class Space, class T, int Dim>
-void soil_to_nodes(const State<Space, T, Dim>& s) {
-  const auto& set = s.soil;
+void soil_to_nodes(const State<Space, T, Dim>& s, const Bins<Space>& bins, const Space& space) {
+  const auto& points = s.soil.points;
   const P2G how = s.p2g.strategy;
   if (s.affine)
-    interpolate<AffineSource<Space, T, Dim>>(s, how, set.bins, {{set.points, s.grid.inv_spacing}},
-                                             s.nodes.soil);
+    interpolate<AffineSource<Space, T, Dim>>(s, how, bins, {{points, s.grid.inv_spacing}}, s.nodes.soil,
+                                             space);
   else if (!s.soil_summed)
-    interpolate<SoilSource<Space, T, Dim>>(s, how, set.bins, {set.points, s.grid.inv_spacing}, s.nodes.soil);
+    interpolate<SoilSource<Space, T, Dim>>(s, how, bins, {points, s.grid.inv_spacing}, s.nodes.soil, space);
   if (s.soil_boundary)
-    interpolate<BoundarySource<Space, T, Dim>>(
-        s, how, set.bins, {set.points, s.grid.inv_spacing, s.near_rigid}, s.nodes.boundary);
+    interpolate<BoundarySource<Space, T, Dim>>(s, how, bins, {points, s.grid.inv_spacing, s.near_rigid},
+                                               s.nodes.boundary, space);
+}
+template <class Space, class T, int Dim>
+void soil_to_nodes(const State<Space, T, Dim>& s) {
+  soil_to_nodes(s, s.soil.bins, s.space);
+}
+template <class Space, class T, int Dim>
+void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
+  soil_to_nodes(s, bins_of(s.soil.bins, part), part.space);
+}
+
+/// The same on several ranks: where the others wait for it first, unless that has gone out already, and the
+/// rest while it travels.
+template <class Space, class T, int Dim>
+PetscErrorCode soil_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks) {
+  PetscFunctionBeginUser;
+  if (!ranks || !ranks->overlaps(s)) {
+    soil_to_nodes(s);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!ranks->sent_ahead()) {
+    soil_to_nodes(s, ranks->border(s));
+    PetscCall(ranks->send_ahead(s));
+  }
+  soil_to_nodes(s, ranks->inner(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own.
@@ -59,6 +89,20 @@ void sum_present_soil(State<Space, T, Dim>& s) {
   if (s.soil_summed) return;
   reset_nodes(s);
   soil_to_nodes(s);
+}
+
+/// The update where it goes on to the sums of the next step: first the particles whose sums other ranks wait
+/// for, which travel while the rest is computed.
+template <class Space, class T, int Dim>
+PetscErrorCode update_and_send(State<Space, T, Dim>& s, double dt, Ranks<Space, T, Dim>& ranks) {
+  PetscFunctionBeginUser;
+  const Part<Space> border = ranks.border(s);
+  update_particles(s, dt, border);
+  soil_to_nodes(s, border);  // the boundary
+  PetscCall(ranks.send_ahead(s));
+  update_particles(s, dt, ranks.inner(s));
+  ranks.join(s);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// Function 5: velocities by XPIC or APIC where they are chosen, then the update of the soil's particles.
@@ -75,7 +119,10 @@ PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T,
     xpic_pass(s, pass);
   }
   if (s.affine) take_affine(s);
-  update_particles(s, dt);
+  if (ranks && ranks->overlaps(s) && sums_ahead(s))
+    PetscCall(update_and_send(s, dt, *ranks));
+  else
+    update_particles(s, dt);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,9 +148,10 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt,
   const auto run = [&](Function f, auto&& work) { return timers.run(f, work, wait); };
   PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));             // 1 initialise nodal variables
   PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s); }));  // 2 rigid bodies to nodes
-  PetscCall(run(Function::soil_to_nodes, [&] { soil_to_nodes(s); }));     // 3 soil particles to nodes
-  if (ranks) PetscCall(ranks->add_soil(s));                               //   the sum over ranks
-  PetscCall(run(Function::nodes, [&] { update_nodes(s, dt); }));          // 4 velocities, walls, contact
+  PetscCall(run(Function::soil_to_nodes, [&] { failed = soil_to_nodes(s, ranks); }));  // 3 soil to nodes
+  PetscCall(failed);
+  if (ranks) PetscCall(ranks->add_soil(s));                       //   the sum over ranks
+  PetscCall(run(Function::nodes, [&] { update_nodes(s, dt); }));  // 4 velocities, walls, contact
   PetscCall(run(Function::particles, [&] { failed = nodes_to_soil(s, dt, ranks); }));  // 5 stress, movement
   PetscCall(failed);
   PetscCall(run(Function::rigids, [&] { failed = move_rigids(s, dt, ranks); }));  // 6 move the rigid bodies

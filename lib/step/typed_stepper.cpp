@@ -106,6 +106,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
 
   state_.p2g = {config_.p2g.strategy, config_.p2g.margin, config_.p2g.mosaic_cells};
   for (int d = 0; d < Dim; ++d) state_.gravity[d] = config_.gravity[d];
+  if (model.owners.empty() && !config_.p2g.rebuild_interval) state_.rebuild_late = rebuild_late();
   state_.damping = config_.damping;
   state_.flip_share = config_.flip_share;
   if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;

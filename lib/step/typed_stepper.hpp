@@ -40,6 +40,7 @@ class TypedStepper final : public Stepper {
 
  private:
   Failure describe(const Fault& fault) const;
+  int rebuild_late() const;
   /// What advance and rebuild are on several ranks.
   PetscErrorCode advance_together(long steps, double dt, Batch* batch);
   PetscErrorCode rebuild_together(Failure* failure);

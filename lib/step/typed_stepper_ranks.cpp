@@ -27,6 +27,15 @@ std::size_t TypedStepper<Space, T, Dim>::memory() const {
       sum_over_ranks(static_cast<double>(memory_of(state_) + (ranks_ ? ranks_->memory() : 0))));
 }
 
+/// Steps from the sign that lists must be rebuilt to the rebuild: what a rank knows of the others is so old.
+/// Where a device sends shares ahead the host does not wait for the whole of a step. On one rank it is the
+/// same, for F-bar means other particles after a rebuild: so all numbers of ranks rebuild at the same steps.
+template <class Space, class T, int Dim>
+int TypedStepper<Space, T, Dim>::rebuild_late() const {
+  const bool ahead = is_device<Space> && sends_ahead(state_, config_.partition);
+  return GlobalBound::k_late + (ahead ? 1 : 0);
+}
+
 /// Steps until all are done, or until the ranks know, all at the same step, that lists must be rebuilt or
 /// that one of them cannot go on. What they know of each other is some steps old; a rank whose bound has
 /// passed the margin does no more steps, so that no particle is ever looked for where it is not.
@@ -34,8 +43,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double dt, Batch* batch) {
   PetscFunctionBeginUser;
   const double start = WorkClock::wall(), margin = config_.p2g.margin;
-  const int late =
-      config_.p2g.rebuild_interval ? 0 : GlobalBound::k_late;  // a forced interval has no reserve
+  const int late = config_.p2g.rebuild_interval ? 0 : rebuild_late();  // a forced interval has no reserve
   restart_count(state_);
   ranks_->clock().go_on();
   long done = 0;
@@ -47,7 +55,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
     BoundReport all;
     bool known = false;
     PetscCall(ranks_->look_back(&known, &all));
-    due = known && (all.stopped > 0 || rebuild_due(all, margin, late));
+    due = known && (all.stopped > 0 || (late > 0 && rebuild_due(all.bound, all.increment, margin, late)));
   }
   const Control own = look(state_);
   ranks_->clock().pause();
@@ -76,7 +84,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
     PetscCall(share(&batch->failure));
   }
   // Where a batch ends must not matter, so what is known by now decides nothing but with a forced interval.
-  batch->rebuild = batch->failure.what.empty() && (late == 0 ? rebuild_due(now, margin, late) : due);
+  batch->rebuild = batch->failure.what.empty() && (late == 0 ? rebuild_due(now.bound, 0, margin, 0) : due);
   batch->seconds = WorkClock::wall() - start;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &batch->seconds, 1, MPI_DOUBLE, MPI_MAX, comm_));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,27 +183,31 @@ template <class Space, class T, int Dim>
 std::string TypedStepper<Space, T, Dim>::ranks_report() const {
   if (!ranks_) return {};
   const RankReport r = ranks_->report(state_);
-  std::array<double, 7> low{r.work, r.wait, r.halo, r.particles, r.neighbours, r.shared_nodes, r.sent},
+  std::array<double, 8> low{r.work,       r.wait,         r.halo, r.particles,
+                            r.neighbours, r.shared_nodes, r.sent, r.held},
       high = low, sum = low;
-  MPI_Allreduce(MPI_IN_PLACE, low.data(), 7, MPI_DOUBLE, MPI_MIN, comm_);
-  MPI_Allreduce(MPI_IN_PLACE, high.data(), 7, MPI_DOUBLE, MPI_MAX, comm_);
-  MPI_Allreduce(MPI_IN_PLACE, sum.data(), 7, MPI_DOUBLE, MPI_SUM, comm_);
+  MPI_Allreduce(MPI_IN_PLACE, low.data(), 8, MPI_DOUBLE, MPI_MIN, comm_);
+  MPI_Allreduce(MPI_IN_PLACE, high.data(), 8, MPI_DOUBLE, MPI_MAX, comm_);
+  MPI_Allreduce(MPI_IN_PLACE, sum.data(), 8, MPI_DOUBLE, MPI_SUM, comm_);
   const int ranks = size_of(comm_);
   const auto balance = [&](int k) { return sum[k] > 0 ? high[k] * ranks / sum[k] : 1.0; };
   std::string text = formatted("%d ranks: %.0f to %.0f particles a rank, largest over mean %.3f\n", ranks,
                                low[3], high[3], balance(3));
-  text += formatted("  halo of at most %.0f nodes with %.0f neighbours, %.1f kB sent a step\n", high[5],
-                    high[4], high[6] / 1e3);
+  text += formatted("  halo of at most %.0f nodes with %.0f neighbours, %.1f kB sent a step, %s\n", high[5],
+                    high[4], high[6] / 1e3, ranks_->halo_words(state_).c_str());
   if (high[0] > 0)
     text += formatted(
         "  compute %.3f to %.3f s a rank, largest over mean %.3f; halo (pack and sum) %.3f to %.3f s, wait "
         "%.3f to "
         "%.3f s\n",
         low[0], high[0], balance(0), low[2], high[2], low[1], high[1]);
+  if (high[0] > 0 && is_device<Space> && ranks_->overlaps(state_))
+    text += formatted("  devices held up by the halo for %.3f to %.3f s of it\n", low[7], high[7]);
   return text;
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                         \
+  template int TypedStepper<Space, T, Dim>::rebuild_late() const;                              \
   template PetscErrorCode TypedStepper<Space, T, Dim>::share(Failure*) const;                  \
   template double TypedStepper<Space, T, Dim>::sum_over_ranks(double) const;                   \
   template std::size_t TypedStepper<Space, T, Dim>::memory() const;                            \

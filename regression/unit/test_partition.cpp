@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "mesh/background.hpp"
-#include "parallel/global_bound.hpp"
 #include "parallel/halo_plan.hpp"
 #include "parallel/partition.hpp"
 
@@ -191,12 +190,4 @@ TEST_CASE("boxes of ranks have a patch each, and as small a cut as there is", "[
   CHECK(ranks_along(8, {8, 8, 8}) == std::array<int, 3>{2, 2, 2});
   CHECK(ranks_along(7, {3, 3, 1}) == std::array<int, 3>{2, 3, 1});  // six of seven
   CHECK(ranks_along(5, {1, 1, 1}) == std::array<int, 3>{1, 1, 1});
-}
-
-TEST_CASE("lists are rebuilt in time, with a reserve for what is not yet known", "[partition]") {
-  const double margin = 0.5, speed = 0.01;
-  CHECK_FALSE(rebuild_due({0.40, speed, 0}, margin, GlobalBound::k_late));
-  CHECK(rebuild_due({0.475, speed, 0}, margin, GlobalBound::k_late));
-  CHECK_FALSE(rebuild_due({0.475, speed, 0}, margin, 0));
-  CHECK(rebuild_due({NAN, speed, 0}, margin, 0));
 }

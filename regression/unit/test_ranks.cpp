@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
 #include <cmath>
 #include <limits>
 
@@ -70,12 +71,12 @@ struct Pair {
   StateOf<B> alone, here;
   Ranks<typename B::Space, typename B::real, B::dim> ranks;
 
-  Pair(const Cloud& cloud, const PartitionConfig& config, int seed) {
+  Pair(const Cloud& cloud, const PartitionConfig& config, int seed, P2G how = P2G::gather) {
     const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
-    alone = state_of<B>(cloud, P2G::gather);
+    alone = state_of<B>(cloud, how);
     Cloud share = share_of_cloud<B::dim>(cloud, rank, size);
     share.f_bar_share = 0;  // a cell's particles are still on several ranks
-    here = state_of<B>(share, P2G::gather);
+    here = state_of<B>(share, how);
     here.f_bar_share = cloud.f_bar_share;
     const Owners owners = random_owners(alone.grid.patch_count(), size, seed);
     REQUIRE(ranks.start(MPI_COMM_WORLD, config, owners, here) == PETSC_SUCCESS);
@@ -190,7 +191,15 @@ TEST_CASE("every particle is on the rank that owns its patch, once, with all its
 }
 
 TEST_CASE("steps, rebuilds and patches that change hands leave the particles as on one rank", "[migration]") {
-  for_each_reference([](auto build) {
+  struct Way {
+    P2G strategy;
+    HaloPath path;
+    bool overlap;
+  };
+  const Way way = GENERATE(Way{P2G::gather, HaloPath::host, true}, Way{P2G::tile, HaloPath::host, true},
+                           Way{P2G::tile, HaloPath::device, true}, Way{P2G::tile, HaloPath::peer, true},
+                           Way{P2G::tile, HaloPath::peer, false});
+  for_each_reference([&](auto build) {
     using B = decltype(build);
     for (const int kind : {0, 1, 2}) {  // FLIP, XPIC, APIC
       Cloud cloud = random_cloud<B::dim>(3, Wall::roller);
@@ -199,7 +208,7 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
       cloud.f_bar_share = 0.5;
       if (kind == 1) cloud.xpic_order = 3, cloud.flip_share = 0;
       if (kind == 2) cloud.affine = true, cloud.flip_share = 0;
-      Pair<B> pair(cloud, {PartitionKind::metis, 1.0001}, 6);
+      Pair<B> pair(cloud, {PartitionKind::metis, 1.0001, way.path, way.overlap}, 6, way.strategy);
       constexpr double k_dt = 1e-5;  // s: lone particles bear stresses that throw them far
       Timers timers;
       REQUIRE(timers.create() == PETSC_SUCCESS);
@@ -212,7 +221,7 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
         locate(pair.here);
         REQUIRE(pair.ranks.rebuild(pair.here) == PETSC_SUCCESS);
       }
-      INFO(B::name() << ", velocity update " << kind);
+      INFO(B::name() << ", velocity update " << kind << ", path " << static_cast<int>(way.path));
       const long total = pair.alone.soil.points.count;
       const auto a = particles_of(pair.here, total, MPI_COMM_WORLD);
       const auto b = particles_of(pair.alone, total, MPI_COMM_SELF);
@@ -261,4 +270,32 @@ TEST_CASE("ranks agree on an error and on the words of one of them", "[halo]") {
   std::string text = rank == 0 && size > 1 ? "" : "rank " + std::to_string(rank);
   REQUIRE(share_text(MPI_COMM_WORLD, &text) == PETSC_SUCCESS);
   CHECK(text == (size > 1 ? "rank 1" : "rank 0"));
+}
+
+TEST_CASE("lists are rebuilt in time, with a reserve for what is not yet known", "[halo]") {
+  const double margin = 0.5, speed = 0.01;
+  CHECK_FALSE(rebuild_due(0.40, speed, margin, GlobalBound::k_late));
+  CHECK(rebuild_due(0.475, speed, margin, GlobalBound::k_late));
+  CHECK_FALSE(rebuild_due(0.475, speed, margin, 0));
+  CHECK(rebuild_due(NAN, speed, margin, 0));
+}
+
+TEST_CASE("the bound of all ranks is the sum of what the fastest of each step moved, as on one rank",
+          "[migration]") {
+  const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
+  const auto increment = [&](int step, int r) { return step % size == r ? 0.03 : 0.01; };
+  GlobalBound bound;
+  double own = 0, all_steps = 0;
+  for (int step = 1; step <= 10; ++step) {  // posts what was before it: first the time before a rebuild
+    BoundReport all;
+    bool known = false;
+    const double last = step > 1 ? increment(step - 1, rank) : 0.3;
+    if (step > 1) own += last;
+    REQUIRE(bound.post(MPI_COMM_WORLD, {own, last, 0}) == PETSC_SUCCESS);
+    REQUIRE(bound.last_but_one(&known, &all) == PETSC_SUCCESS);
+    if (step > 2) all_steps += 0.03;
+    CHECK(known == (step > 1));
+    CHECK(all.bound == all_steps);
+  }
+  REQUIRE(bound.drain() == PETSC_SUCCESS);
 }

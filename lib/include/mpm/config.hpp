@@ -105,9 +105,15 @@ struct P2GConfig {
 /// METIS cuts.
 enum class PartitionKind { box, metis };
 
+/// How the shares of nodes travel from rank to rank (-halo_path): through the host's memory, by MPI from
+/// where kernels run, or straight into the other rank's memory.
+enum class HaloPath { automatic, host, device, peer };
+
 struct PartitionConfig {
   PartitionKind kind = PartitionKind::box;
   double rebalance_threshold = 1.1;  // -, largest over mean work of the ranks above which METIS cuts anew
+  HaloPath halo_path = HaloPath::automatic;
+  bool halo_overlap = true;  // shares travel while other patches are computed
 };
 
 enum class Progress { automatic, on, off };

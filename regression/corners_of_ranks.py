@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+"""Corner cases of several ranks: small runs that must give on 2 to 8 ranks what they give on one.
+
+    regression/corners_of_ranks.py PROGRAM [--ranks 2,4] [--dims 2,3] [--precisions double]
+
+More ranks than patches; a mesh one patch thick; a body that crosses the parts of all ranks, which fill and empty again; two
+bodies and two rigids, one of them free, that meet at the cut of two ranks. Each with `-partition box` and `metis`, whose
+threshold is so low that patches change hands, and with `tile`, `gather` and whichever is the fastest. Bounds: those of
+compare.py. Needs numpy and h5py.
+"""
+
+import argparse
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import case as cases  # noqa: E402
+import differences  # noqa: E402
+from compare import BOUNDS  # noqa: E402
+from results import Run, read_frame  # noqa: E402
+
+COMMON = ("-materials soft -soft_model linear_elastic -soft_density 1000 -soft_young 1e6 -soft_poisson 0.3"
+          " -mesh_xmin free -mesh_xmax free -time_end 1 -output_interval 1e9 -history_interval 1e9")
+
+
+def box(name, lower, upper, dim, more=""):
+    """Options of a box from what it reaches in 2D; it is 0.8 m deep in 3D."""
+    deep = ["", ""] if dim == 2 else [",0.8", ",1.6"]
+    return (f"-{name}_shape box -{name}_lower {lower[0]},{lower[1]}{deep[0]} -{name}_upper {upper[0]},{upper[1]}{deep[1]} {more} ")
+
+
+def mesh(length, height, spacing, dim):
+    depth = "" if dim == 2 else ",2.4"
+    return f"-dim {dim} -mesh_lower 0,0{depth and ',0'} -mesh_upper {length},{height}{depth} -mesh_spacing {spacing} "
+
+
+def velocity(vx, vy, dim):
+    return f"{vx},{vy}" + (",0.1" if dim == 3 else "")
+
+
+def decks(dim):
+    """{name: (options, steps)}. A patch has 8 cells an edge in 2D, 4 in 3D."""
+    patch = 8 if dim == 2 else 4
+    soil = "-bodies soil -soil_material soft "
+    return {
+        "more ranks than patches": (mesh(1.6, 1.6, 0.2, dim) + soil
+                                    + box("soil", (0.4, 0.2), (1.2, 1.0), dim, f"-soil_velocity {velocity(0.5, 0.2, dim)}"), 100),
+        "one patch thick": (mesh(0.8 * 6, 0.8, 0.8 / patch, dim) + soil
+                            + box("soil", (0.2, 0.2), (4.0, 0.6), dim, f"-soil_velocity {velocity(0.5, 0.1, dim)}"), 100),
+        "across all ranks": (mesh(6.4, 1.6, 0.2, dim) + soil + "-time_courant 0.4 "
+                             + box("soil", (0.4, 0.4), (1.2, 1.2), dim, f"-soil_velocity {velocity(5, 0, dim)}"), 420),
+        "meeting at a cut": (mesh(6.4, 1.6, 0.2, dim) + "-bodies soil,other -soil_material soft -other_material soft "
+                             + box("soil", (2.0, 0.4), (3.0, 1.2), dim, f"-soil_velocity {velocity(2, 0, dim)}")
+                             + box("other", (3.4, 0.4), (4.4, 1.2), dim, f"-other_velocity {velocity(-2, 0, dim)}")
+                             + "-rigids lid,floor " + box("lid", (2.4, 1.2), (4.0, 1.4), dim, "-lid_motion dynamic -lid_density 500 -lid_friction 0.3")
+                             + box("floor", (1.0, 0.2), (5.4, 0.4), dim, "-floor_friction 0.3") + "-gravity 0,-9.81" + (",0" if dim == 3 else ""), 200),
+    }
+
+
+def run(program, options, ranks, folder):
+    command = [str(program), *shlex.split(options), "-output_dir", str(folder), "-progress", "off"]
+    if ranks > 1:
+        command = [cases.launcher(), "-n", str(ranks), "--bind-to", "none", *command]
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=600,
+                          env={"OMP_NUM_THREADS": "1", **cases.environment()})
+    if done.returncode != 0:
+        raise cases.ProgramFailed(f"{shlex.join(command)}: exit status {done.returncode}\n{done.stdout[-1500:]}")
+    return Run(folder)
+
+
+def rebuilds(folder):
+    """What the log tells of rebuilds, whose steps are those of one rank."""
+    return re.findall(r"were rebuilt.*", (folder / "mpm.log").read_text())
+
+
+def moves(done):
+    """Whether the soil moves at the end: a run which does nothing is no success."""
+    return abs(read_frame(done.frame)[1]["soil"]["velocity"]).max() > 0
+
+
+def check(given, folder):
+    wrong = 0
+    for dim in map(int, given.dims.split(",")):
+        for name, (deck, steps) in decks(dim).items():
+            for precision in given.precisions.split(","):
+                for strategy in ("tile", "gather", "auto"):
+                    options = f"{COMMON} {deck} -backend {given.backend} -precision {precision} -p2g {strategy} -time_max_steps {steps}"
+                    alone = run(given.program, options, 1, folder / "alone")
+                    assert moves(alone), name
+                    for ranks in map(int, given.ranks.split(",")):
+                        for partition in ("box", "metis -rebalance_threshold 1.01"):
+                            wrong += compare(given, f"{options} -partition {partition}", ranks, alone, folder / "several",
+                                             f"{dim}D {name}, {precision}, {strategy}, {ranks} ranks, {partition.split()[0]}", precision)
+    return wrong
+
+
+def compare(given, options, ranks, alone, folder, title, precision):
+    bound = BOUNDS[100][precision]
+    try:
+        apart, where = differences.largest(run(given.program, options, ranks, folder), alone)
+        if rebuilds(folder) != rebuilds(folder.parent / "alone"):
+            apart, where = float("inf"), f"rebuilds: {rebuilds(folder)}, alone {rebuilds(folder.parent / 'alone')}"
+    except (cases.ProgramFailed, subprocess.TimeoutExpired) as error:
+        apart, where = float("inf"), str(error)
+    print(f"{'pass' if apart <= bound else 'FAIL'} {title}: {apart:.2g} apart at {where}", flush=True)
+    return not apart <= bound
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=Path)
+    parser.add_argument("--ranks", default="2,4")
+    parser.add_argument("--dims", default="2,3")
+    parser.add_argument("--precisions", default="double")
+    parser.add_argument("--backend", default="serial")
+    given = parser.parse_args()
+    given.program = given.program.resolve()
+    with tempfile.TemporaryDirectory() as folder:
+        wrong = check(given, Path(folder))
+    print("all agree" if wrong == 0 else f"{wrong} differ")
+    return wrong != 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
