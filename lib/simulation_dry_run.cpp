@@ -107,6 +107,7 @@ PetscErrorCode Simulation::Body::tell_need() {
   PetscCall(log.print("wall time     about %s: %.4g us a step with strategy %s, without output",
                       format_duration(seconds * schedule.last_step()).c_str(), 1e6 * seconds,
                       stepper->strategy().c_str()));
+  if (const std::string batches = stepper->batches_report(); !batches.empty()) PetscCall(log.line(batches));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

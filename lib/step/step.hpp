@@ -1,6 +1,7 @@
 #pragma once
 // One time step, in the paper's words.
 
+#include "batches.hpp"
 #include "parallel/ranks.hpp"
 #include "particle_to_node.hpp"
 #include "step/timers.hpp"
@@ -48,16 +49,18 @@ void prepare_nodes(State<Space, T, Dim>& s) {
 /// needs it. The first ones may be there already.
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s) {
-  const auto& set = s.soil;
   const P2G how = s.p2g.strategy;
-  if (s.affine)
-    interpolate<AffineSource<Space, T, Dim>>(s, how, set.bins, {{set.points, s.grid.inv_spacing}},
+  for_all_soil(s, [&](const auto& set) {
+    if (s.affine)
+      interpolate<AffineSource<Space, T, Dim>>(s, how, set.bins, {{set.points, s.grid.inv_spacing}},
+                                               s.nodes.soil);
+    else if (!s.soil_summed)
+      interpolate<SoilSource<Space, T, Dim>>(s, how, set.bins, {set.points, s.grid.inv_spacing},
                                              s.nodes.soil);
-  else if (!s.soil_summed)
-    interpolate<SoilSource<Space, T, Dim>>(s, how, set.bins, {set.points, s.grid.inv_spacing}, s.nodes.soil);
-  if (s.soil_boundary)
-    interpolate<BoundarySource<Space, T, Dim>>(
-        s, how, set.bins, {set.points, s.grid.inv_spacing, s.near_rigid}, s.nodes.boundary);
+    if (s.soil_boundary)
+      interpolate<BoundarySource<Space, T, Dim>>(
+          s, how, set.bins, {set.points, s.grid.inv_spacing, s.near_rigid}, s.nodes.boundary);
+  });
 }
 
 /// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own.
@@ -83,7 +86,10 @@ PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T,
     xpic_pass(s, pass);
   }
   if (s.affine) take_affine(s);
-  update_particles(s, dt);
+  if (s.batches.in_use())
+    update_by_batches(s, dt);
+  else
+    update_particles(s, dt);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
