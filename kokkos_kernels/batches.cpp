@@ -4,6 +4,7 @@
 #include <array>
 
 #include "download.hpp"
+#include "particle_to_node.hpp"
 #include "rebuild.hpp"
 #include "step_kernels.hpp"
 
@@ -11,10 +12,10 @@ namespace mpm {
 namespace {
 
 constexpr int k_turns = 3;  // places that batches share: one copied in, one updated, one copied out
-constexpr int k_most_places = 16;
+constexpr int k_most_places = 64;
 /// Particles of a batch below which starting kernels and copies takes longer than they do.
 template <class Space>
-constexpr int k_worth = is_device<Space> ? 1 << 18 : 1;
+constexpr int k_worth = is_device<Space> ? 1 << 18 : 1 << 10;
 constexpr long k_apart_every = 50, k_first_apart = 2;  // steps that are taken apart
 
 /// Cuts memory into arrays; without memory it only counts.
@@ -170,6 +171,20 @@ void give_places(State<Space, T, Dim>& s, std::size_t bytes_of_place) {
   }
 }
 
+/// Whether a batch that was updated is summed to the nodes while it is there, where update_particles does not
+/// do so itself. The threads of a processor sum colour by colour, and not batch by batch.
+template <class Space>
+constexpr bool sums_in_batches = backend_of<Space> != Backend::openmp;
+
+/// The batch that s.soil now is, to the nodes.
+template <class Space, class T, int Dim>
+void sum_batch(const State<Space, T, Dim>& s) {
+  using Source = SoilSource<Space, T, Dim>;
+  const Source source{s.soil.points, s.grid.inv_spacing};
+  particle_to_node(s.p2g.strategy, Interpolation<Source>{s.space, s.grid, s.patches, s.soil.bins, source,
+                                                         s.nodes.soil, s.control, s.p2g.mosaic_cells});
+}
+
 template <class Space>
 std::vector<Space> streams_beside(const Space& space) {
   if constexpr (is_device<Space>)
@@ -247,6 +262,11 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
     seconds += timer.seconds();
   };
   const Kokkos::Timer timer;
+  const bool sums = sums_in_batches<Space> && !sums_ahead(s);
+  if (sums) {
+    reset_nodes(s);
+    s.space.fence("mpm::before the sums of batches");
+  }
   const auto whole = s.soil;
   const auto spare = s.spare;
   const Space space = s.space;
@@ -258,6 +278,7 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
     timed(stream, cost.kernel_seconds, [&] {
       s.soil = batch.set, s.spare = batch.spare, s.space = stream;
       update_particles(s, dt);
+      if (sums) sum_batch(s);
       s.soil = whole, s.spare = spare, s.space = space;
     });
     timed(stream, cost.out_seconds, [&] {
@@ -265,6 +286,7 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
     });
   }
   b.loaded = true;
+  s.soil_summed = s.soil_summed || sums;
   for (const Space& stream : b.streams) stream.fence("mpm::update_by_batches");
   space.fence("mpm::update_by_batches");
   cost.apart += apart;
