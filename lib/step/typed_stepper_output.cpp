@@ -129,28 +129,28 @@ std::string TypedStepper<Space, T, Dim>::batches_report() const {
     most = std::max(most, batch.last - batch.first);
     stay += batch.stays;
   }
-  const int batches = static_cast<int>(b.all.size());
+  const int batches = static_cast<int>(b.all.size()), turns = batches - stay;
   std::string text = formatted(
-      "%d batches of at most %d particles: %d stay on the device, %d go through %d places in each step; %.4g "
-      "of %.4g GiB of the device, %.4g GiB of the host",
-      batches, most, stay, batches - stay, b.places - stay, memory_of(state_) / k_gib, b.limit / k_gib,
+      "%d batches of at most %d particles: %d stay on the device, %d take turns in %d places; "
+      "%.4g of %.4g GiB of the device, %.4g GiB of the host",
+      batches, most, stay, turns, b.places - stay, memory_of(state_) / k_gib, b.limit / k_gib,
       b.store.extent(0) / k_gib);
   const BatchCost& c = b.cost;
-  if (c.steps <= c.apart || c.apart == 0 || stepping_ <= 0) return text;
+  if (turns == 0 || c.apart == 0 || c.steps == c.apart || stepping_ <= 0) return text;
   // Means of a step; what copies and kernels take alone is from the steps that were taken apart.
   const double in = c.copied_in / c.steps, out = c.copied_out / c.steps;
-  const double update = c.seconds / (c.steps - c.apart), kernels = c.kernel_seconds / c.apart;
-  const double step = update + std::max(0.0, stepping_ - c.seconds - c.apart * update) / c.steps;
-  const auto rate = [&](double bytes, double seconds) {
-    return seconds > 0 ? bytes * c.apart / seconds / 1e9 : 0.0;
-  };
-  return text +
-         formatted(
-             "\n  a step copies %.4g MB to the device and %.4g MB back; %.1f and %.1f GB/s alone\n"
-             "  the update of the particles takes %.4g us of a step of %.4g us, its kernels alone %.4g "
-             "us: with the copies a step takes %.3g times as long",
-             in / 1e6, out / 1e6, rate(in, c.in_seconds), rate(out, c.out_seconds), 1e6 * update, 1e6 * step,
-             1e6 * kernels, step / std::max(step - update + kernels, 1e-12));
+  const double in_alone = c.in_seconds / c.apart, out_alone = c.out_seconds / c.apart;
+  const double kernels = c.kernel_seconds / c.apart, update = c.seconds / (c.steps - c.apart);
+  const double beside = std::max(0.0, stepping_ - c.seconds - c.apart * (in_alone + kernels + out_alone));
+  const double step = update + beside / c.steps;
+  text += formatted("\n  a step copies %.4g MB to the device and %.4g MB back, alone at %.1f and %.1f GB/s",
+                    in / 1e6, out / 1e6, in / in_alone / 1e9, out / out_alone / 1e9);
+  text += formatted(
+      "\n  with them the update of the particles takes %.4g us, %.1f %% of a step; its kernels alone "
+      "%.4g us",
+      1e6 * update, 100 * update / step, 1e6 * kernels);
+  return text + formatted("\n  a step of %.4g us takes %.3g times as long as without copies", 1e6 * step,
+                          step / (step - update + kernels));
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                               \
