@@ -1,6 +1,7 @@
 // The order of the points: by slot, by cell in it, by id in the cell. A counting sort, then each cell's few
 // points are put in order of id, so that the result does not depend on how threads ran.
 
+#include "batches.hpp"
 #include "rebuild.hpp"
 
 namespace mpm {
@@ -80,6 +81,30 @@ void permute(const Space& space, const Field& field, const Order& order, int cou
   }
 }
 
+template <class Space, class Points_, class Order, class Spare>
+void permute_fields(const Space& space, Points_& points, const Order& order, const Spare& spare) {
+  const auto field = [&](const auto& view) { permute(space, view, order, points.all, spare); };
+  field(points.coordinate), field(points.cell), field(points.id);
+  for_each_field(points, field);
+}
+/// Points that live in memory of the host are moved there by its own threads: a device would read and write
+/// it in pieces.
+template <class Space, class Points_, class Spare>
+void permute_fields(const Space& space, Sorted<Space, Points_>& set, const Spare& spare) {
+  if constexpr (is_device<Space>) {
+    const bool at_host = set.order.use_count() == 0;  // memory of Batches::store
+    if (at_host) {
+      const Kokkos::DefaultHostExecutionSpace threads;
+      const Kokkos::View<int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> order(set.order.data(),
+                                                                                 set.order.extent(0));
+      space.fence("mpm::before the host's threads");
+      permute_fields(threads, set.points, order, spare);
+      return threads.fence("mpm::permute_fields");
+    }
+  }
+  permute_fields(space, set.points, set.order, spare);
+}
+
 /// Slots that hold points, ordered by the colour of their patch.
 template <class Space, class Points_, int Dim>
 void slots_by_colour(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches) {
@@ -87,6 +112,7 @@ void slots_by_colour(const Space& space, Sorted<Space, Points_>& set, const Patc
   const auto by_colour = set.bins.by_colour;
   const auto begin = set.bins.begin;
   const auto origin = patches.origin;
+  set.bins.first_slot = 0, set.bins.last_slot = patches.slots;
   set.bins.colour_begin[0] = 0;
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
     const int first = set.bins.colour_begin[colour];
@@ -111,19 +137,11 @@ void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Spa
               const Kokkos::View<int*, typename Space::memory_space>& marks, Spare& spare) {
   const int cells = patches.node_count();
   auto& points = set.points;
-  std::size_t widest =
-      std::max(sizeof(int), sizeof(PartOf<typename decltype(points.coordinate)::value_type>));
-  for_each_field(points, [&](const auto& field) {
-    widest = std::max(widest, sizeof(PartOf<typename std::decay_t<decltype(field)>::value_type>));
-  });
-  ensure(spare, widest * points.all);
+  ensure(spare, spare_of_point(points) * points.all);
 
   count_by_cell(space, set, patches.slot_of, marks, cells, Patch<Dim>::cells);
   order_points(space, set, spare, cells);
-  permute(space, points.coordinate, set.order, points.all, spare);
-  permute(space, points.cell, set.order, points.all, spare);
-  permute(space, points.id, set.order, points.all, spare);
-  for_each_field(points, [&](const auto& field) { permute(space, field, set.order, points.all, spare); });
+  permute_fields(space, set, spare);
   Kokkos::View<int, Kokkos::HostSpace> held("mpm::held");
   Kokkos::deep_copy(space, held, Kokkos::subview(set.bins.begin, cells));
   space.fence("mpm::sort_set");
@@ -234,6 +252,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
     s.nodes.rigid = decltype(s.nodes.rigid)(
         Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),
         nodes + (s.nodes.rigid.extent(1) > 0 ? nodes / 16 : 0));
+  if (s.batches.in_use()) plan_batches(s);
   const auto control = s.control;
   Kokkos::parallel_for(
       "mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {

@@ -5,19 +5,9 @@
 #include <vector>
 
 #include "nodes.hpp"
-#include "particles.hpp"
+#include "soil_batches.hpp"
 
 namespace mpm {
-
-/// A set of points with what orders it.
-template <class Space, class Points_>
-struct Sorted {
-  Points_ points;
-  Bins<Space> bins;
-  Kokkos::View<long*, typename Space::memory_space>
-      address;  // scratch of a rebuild: Grid::address_of each point
-  Kokkos::View<int*, typename Space::memory_space> order;  // scratch of a rebuild: former place of each point
-};
 
 /// Strategy and what its lists are built with.
 struct P2GPlan {
@@ -34,6 +24,7 @@ struct State {
   Grid<T, Dim> grid;
   Patches<Space, Dim> patches;
   Sorted<Space, Soil<Space, T, Dim>> soil;
+  Batches<Space, T, Dim> batches;  // of the soil, where the device's memory does not hold it all
   std::vector<Sorted<Space, RigidPoints<Space, T, Dim>>> rigid_points;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   Kokkos::View<Vertex*, Memory> vertices;  // of the rigids' polygons

@@ -1,6 +1,7 @@
 #pragma once
 // One time step, in the paper's words.
 
+#include "batches.hpp"
 #include "parallel/ranks.hpp"
 #include "particle_to_node.hpp"
 #include "step/timers.hpp"
@@ -44,8 +45,8 @@ void prepare_nodes(State<Space, T, Dim>& s) {
 /// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
 /// needs it. The first ones may be there already.
 template <class Space, class T, int Dim>
-void soil_to_nodes(const State<Space, T, Dim>& s, const Bins<Space>& bins, const Space& space) {
-  const auto& points = s.soil.points;
+void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& points, const Bins<Space>& bins,
+                   const Space& space) {
   const P2G how = s.p2g.strategy;
   if (s.affine)
     interpolate<AffineSource<Space, T, Dim>>(s, how, bins, {{points, s.grid.inv_spacing}}, s.nodes.soil,
@@ -58,11 +59,11 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Bins<Space>& bins, const
 }
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s) {
-  soil_to_nodes(s, s.soil.bins, s.space);
+  for_all_soil(s, [&](const auto& set) { soil_to_nodes(s, set.points, set.bins, s.space); });
 }
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
-  soil_to_nodes(s, bins_of(s.soil.bins, part), part.space);
+  soil_to_nodes(s, s.soil.points, bins_of(s.soil.bins, part), part.space);
 }
 
 /// The same on several ranks: where the others wait for it first, unless that has gone out already, and the
@@ -121,6 +122,8 @@ PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T,
   if (s.affine) take_affine(s);
   if (ranks && ranks->overlaps(s) && sums_ahead(s))
     PetscCall(update_and_send(s, dt, *ranks));
+  else if (s.batches.in_use())
+    update_by_batches(s, dt);
   else
     update_particles(s, dt);
   PetscFunctionReturn(PETSC_SUCCESS);
