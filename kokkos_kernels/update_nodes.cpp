@@ -208,7 +208,15 @@ struct UpdateNodes {
 };
 
 template <class Space, class T, int Dim>
-void update_nodes(State<Space, T, Dim>& s, double dt) {
+bool nodes_apart(const State<Space, T, Dim>& s) {
+  // Patches that a GPU has all at once take one launch. More go faster if those far from rigids, which need
+  // few registers, have their own.
+  constexpr int k_few = is_device<Space> ? 2000 : 0;
+  return !s.rigid_points.empty() && s.near_count > 0 && s.patches.slots >= k_few;
+}
+
+template <class Space, class T, int Dim>
+void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue) {
   using Team = NodeTeam<Space, Dim>;
   using Member = typename Team::member_type;
   using Update = UpdateNodes<Space, T, Dim>;
@@ -238,16 +246,13 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
   const std::size_t near_bytes = scratch_bytes<double>(values * Update::cells) + k_scratch_slack;
   constexpr std::size_t k_fast = 32 * 1024;  // bytes that every back end has; some thirty rigids need more
   update.scratch_level = near_bytes > k_fast ? 1 : 0;
-  const auto some_near = [&](int teams) {
+  const auto some_near = [&](const Space& space, int teams) {
     return light(
-        Team(s.space, teams, threads).set_scratch_size(update.scratch_level, Kokkos::PerTeam(near_bytes)));
+        Team(space, teams, threads).set_scratch_size(update.scratch_level, Kokkos::PerTeam(near_bytes)));
   };
-  // Patches that a GPU has all at once take one launch. More go faster if those far from rigids, which need
-  // few registers, have their own.
-  constexpr int k_few = is_device<Space> ? 2000 : 0;
-  if (values > 0 && s.patches.slots < k_few)
+  if (s.near_count > 0 && !nodes_apart(s))
     return Kokkos::parallel_for(
-        "mpm::update_nodes", some_near(s.patches.slots), KOKKOS_LAMBDA(const Member& team) {
+        "mpm::update_nodes", some_near(s.space, s.patches.slots), KOKKOS_LAMBDA(const Member& team) {
           if (control().paused) return;
           const int slot = team.league_rank(), n = near(slot);
           n > 0 ? update.update_near(team, slot, n - 1) : update.update_far(team, slot);
@@ -257,17 +262,18 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
         const int slot = team.league_rank();
         if (!control().paused && (values == 0 || near(slot) == 0)) update.update_far(team, slot);
       });
-  if (values > 0 && s.near_count > 0)
+  if (nodes_apart(s))
     Kokkos::parallel_for(
-        "mpm::update_nodes_near_rigids", some_near(s.near_count), KOKKOS_LAMBDA(const Member& team) {
+        "mpm::update_nodes_near_rigids", some_near(queue, s.near_count), KOKKOS_LAMBDA(const Member& team) {
           const int n = team.league_rank();
           if (!control().paused) update.update_near(team, near_slots(n), n);
         });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)              \
-  template void reset_nodes(State<Space, T, Dim>&); \
-  template void update_nodes(State<Space, T, Dim>&, double);
+#define MPM_INSTANTIATE(Space, T, Dim)                                     \
+  template void reset_nodes(State<Space, T, Dim>&);                        \
+  template void update_nodes(State<Space, T, Dim>&, double, const Space&); \
+  template bool nodes_apart(const State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

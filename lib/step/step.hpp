@@ -4,6 +4,7 @@
 #include "batches.hpp"
 #include "parallel/ranks.hpp"
 #include "particle_to_node.hpp"
+#include "step/beside.hpp"
 #include "step/timers.hpp"
 #include "step_kernels.hpp"
 #include "velocity_update.hpp"
@@ -25,14 +26,15 @@ void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>&
 
 /// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not tell them.
 template <class Space, class T, int Dim>
-void rigids_to_nodes(const State<Space, T, Dim>& s) {
+void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& queue) {
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& set = s.rigid_points[r];
     if (set.points.surface_normal) continue;
     const NodeField<Space, T, RigidShare<Dim>::size> out =
         Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL);
     interpolate<RigidSource<Space, T, Dim>>(s, strategy_of_rigids<Space>(s.p2g.strategy), set.bins,
-                                            {set.points, s.rigids, r, s.patches.origin, s.spacing}, out);
+                                            {set.points, s.rigids, r, s.patches.origin, s.spacing}, out,
+                                            queue);
   }
 }
 
@@ -58,8 +60,8 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& poi
                                                s.nodes.boundary, space);
 }
 template <class Space, class T, int Dim>
-void soil_to_nodes(const State<Space, T, Dim>& s) {
-  for_all_soil(s, [&](const auto& set) { soil_to_nodes(s, set.points, set.bins, s.space); });
+void soil_to_nodes(const State<Space, T, Dim>& s, const Space& queue) {
+  for_all_soil(s, [&](const auto& set) { soil_to_nodes(s, set.points, set.bins, queue); });
 }
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
@@ -69,10 +71,10 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
 /// The same on several ranks: where the others wait for it first, unless that has gone out already, and the
 /// rest while it travels.
 template <class Space, class T, int Dim>
-PetscErrorCode soil_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks) {
+PetscErrorCode soil_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks, const Space& queue) {
   PetscFunctionBeginUser;
   if (!ranks || !ranks->overlaps(s)) {
-    soil_to_nodes(s);
+    soil_to_nodes(s, queue);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (!ranks->sent_ahead()) {
@@ -89,7 +91,7 @@ template <class Space, class T, int Dim>
 void sum_present_soil(State<Space, T, Dim>& s) {
   if (s.soil_summed) return;
   reset_nodes(s);
-  soil_to_nodes(s);
+  soil_to_nodes(s, s.space);
 }
 
 /// The update where it goes on to the sums of the next step: first the particles whose sums other ranks wait
@@ -141,20 +143,26 @@ PetscErrorCode move_rigids(State<Space, T, Dim>& s, double dt, Ranks<Space, T, D
 }
 
 /// Advances one explicit step of dt [s]. Does nothing while s.control is paused. The rebuild, function 7, is
-/// the caller's, when the movement bound says so. ranks is null on one rank.
+/// the caller's, when the movement bound says so. ranks is null on one rank. Where the soil's sums are there
+/// already, what contact waits for may go `beside` the nodes far from it; where functions are timed, they do
+/// not.
 template <class Space, class T, int Dim>
-PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt,
-                    Ranks<Space, T, Dim>* ranks = nullptr) {
+PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Space, T, Dim>* ranks = nullptr,
+                    Beside<Space>* beside = nullptr) {
   PetscFunctionBeginUser;
   PetscErrorCode failed = PETSC_SUCCESS;
   const auto wait = [&] { s.space.fence("mpm::step"); };
   const auto run = [&](Function f, auto&& work) { return timers.run(f, work, wait); };
-  PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));             // 1 initialise nodal variables
-  PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s); }));  // 2 rigid bodies to nodes
-  PetscCall(run(Function::soil_to_nodes, [&] { failed = soil_to_nodes(s, ranks); }));  // 3 soil to nodes
+  const bool apart = beside && s.soil_summed && nodes_apart(s) && !s.batches.in_use() && !timers.sampling();
+  const Space& queue = apart ? beside->fork(s.space) : s.space;
+  PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));  // 1 initialise nodal variables
+  PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, queue); }));  // 2 rigid bodies to nodes
+  PetscCall(
+      run(Function::soil_to_nodes, [&] { failed = soil_to_nodes(s, ranks, queue); }));  // 3 soil to nodes
   PetscCall(failed);
-  if (ranks) PetscCall(ranks->add_soil(s));                       //   the sum over ranks
-  PetscCall(run(Function::nodes, [&] { update_nodes(s, dt); }));  // 4 velocities, walls, contact
+  if (ranks) PetscCall(ranks->add_soil(s));                              //   the sum over ranks
+  PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, queue); }));  // 4 velocities, walls, contact
+  if (apart) beside->join(s.space);
   PetscCall(run(Function::particles, [&] { failed = nodes_to_soil(s, dt, ranks); }));  // 5 stress, movement
   PetscCall(failed);
   PetscCall(run(Function::rigids, [&] { failed = move_rigids(s, dt, ranks); }));  // 6 move the rigid bodies

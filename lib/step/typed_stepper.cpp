@@ -129,7 +129,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch
   restart_count(state_);
   for (long n = 0; n < steps; ++n) {
     sample(true);
-    PetscCall(step(state_, timers_, dt));
+    PetscCall(step<Space, T, Dim>(state_, timers_, dt, nullptr, is_device<Space> ? &beside_ : nullptr));
     sample(false);
   }
   const Control control = look(state_);

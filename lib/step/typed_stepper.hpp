@@ -59,6 +59,7 @@ class TypedStepper final : public Stepper {
   MPI_Comm comm_;
   State<Space, T, Dim> state_;
   std::unique_ptr<Ranks<Space, T, Dim>> ranks_;  // null on one rank
+  Beside<Space> beside_;
   Timers timers_;
   long steps_enqueued_ = 0;
   double stepping_ = 0;      // s of wall time in advance
