@@ -17,6 +17,9 @@ namespace mpm {
 template <class Space>
 using HostMemory = std::conditional_t<is_device<Space>, Kokkos::SharedHostPinnedSpace, Kokkos::HostSpace>;
 
+/// Places that batches share: one is copied in, one updated, one copied out.
+inline constexpr int k_turns = 3;
+
 /// A range of patches whose particles are on the device together.
 template <class Space, class T, int Dim>
 struct SoilBatch {
@@ -26,6 +29,16 @@ struct SoilBatch {
   Sorted<Space, Soil<Space, T, Dim>> set;  // the place, by the particles' own numbers; its patches
   Kokkos::View<char*, typename Space::memory_space> spare;  // dilatations, by these numbers too
 };
+
+/// Calls f(home, there, changes) for the fields that the update of the particles looks at.
+template <class Home, class There, class F>
+void for_each_of_step(Home& home, There& there, F&& f) {
+  f(home.coordinate, there.coordinate, true), f(home.velocity, there.velocity, true);
+  f(home.stress, there.stress, true), f(home.volume, there.volume, true);
+  f(home.plastic_strain, there.plastic_strain, true);
+  f(home.strength, there.strength, false), f(home.cell, there.cell, false);
+  if (home.bodies.extent(0) > 1) f(home.body, there.body, false);
+}
 
 /// What the batches cost, summed over the steps that were done. Those that were taken apart, each copy and
 /// kernel waited for, tell what these take alone.
