@@ -75,7 +75,8 @@ class Ranks {
   PetscErrorCode save(SavedState* saved) const;
   /// After take_saved: the points to their owners, which are those of the checkpoint if it is of as many
   /// ranks, the lists, and the rest of the state; `saved` becomes this rank's own. Collective.
-  PetscErrorCode restore(State_& s, SavedState& saved);
+  /// as_saved: it is of as many ranks. Else these know of each other too late where a rebuild was near.
+  PetscErrorCode restore(State_& s, SavedState& saved, bool* as_saved);
 
   /// After locate: patches and particles to their owners, order and lists. Collective.
   PetscErrorCode rebuild(State_& s);
@@ -118,7 +119,7 @@ class Ranks {
   PetscErrorCode post_bound();
   void note_bound(State_& s, bool wait);
   void put_border_first(State_& s, std::vector<int> held, const std::vector<long>& slots);
-  PetscErrorCode take_own(SavedState& saved);
+  PetscErrorCode take_own(SavedState& saved, bool* as_saved);
   PetscErrorCode rebalance(State_& s);
   PetscErrorCode choose_owners(State_& s, const std::vector<double>& figures, double imbalance, bool timed);
   PetscErrorCode migrate(State_& s, long* moved);

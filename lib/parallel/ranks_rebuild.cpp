@@ -242,13 +242,14 @@ PetscErrorCode Ranks<Space, T, Dim>::save(SavedState* saved) const {
 
 /// The part of a checkpoint that differs from rank to rank: that of this rank, if it is of as many.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved) {
+PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved, bool* as_saved) {
   PetscFunctionBeginUser;
   const std::size_t width = k_bounds + 3 * saved.rigids.size();
   bound_.set_sum(saved.bound);
   const auto sound = [&](long r) { return r >= 0 && r < size_; };
-  if (saved.bounds.size() != size_ * width || saved.owners.size() != owners_.size() ||
-      !std::all_of(saved.owners.begin(), saved.owners.end(), sound)) {
+  *as_saved = saved.bounds.size() == size_ * width && saved.owners.size() == owners_.size() &&
+              std::all_of(saved.owners.begin(), saved.owners.end(), sound);
+  if (!*as_saved) {
     for (SavedRigid& rigid : saved.rigids)
       if (rank_ > 0 && !forces_shared_) rigid.impulse = {};  // rank 0 has those of all
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -265,11 +266,11 @@ PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved) {
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved) {
+PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved, bool* as_saved) {
   PetscFunctionBeginUser;
   long moved = 0;
   const double last = saved.increment;
-  PetscCall(take_own(saved));
+  PetscCall(take_own(saved, as_saved));
   if (is_device<Space> && overlaps(s)) bound_.set_sum(bound_.sum() + last);  // its report was not posted yet
   reserve_particles(s, std::max(s.soil.points.all, k_least_room));
   PetscCall(migrate(s, &moved));
@@ -281,11 +282,11 @@ PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                       \
-  template PetscErrorCode Ranks<Space, T, Dim>::save(SavedState*) const;                     \
-  template PetscErrorCode Ranks<Space, T, Dim>::restore(State<Space, T, Dim>&, SavedState&); \
-  template PetscErrorCode Ranks<Space, T, Dim>::rebuild(State<Space, T, Dim>&);              \
-  template PetscErrorCode Ranks<Space, T, Dim>::migrate(State<Space, T, Dim>&, long*);       \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                              \
+  template PetscErrorCode Ranks<Space, T, Dim>::save(SavedState*) const;                            \
+  template PetscErrorCode Ranks<Space, T, Dim>::restore(State<Space, T, Dim>&, SavedState&, bool*); \
+  template PetscErrorCode Ranks<Space, T, Dim>::rebuild(State<Space, T, Dim>&);                     \
+  template PetscErrorCode Ranks<Space, T, Dim>::migrate(State<Space, T, Dim>&, long*);              \
   template PetscErrorCode Ranks<Space, T, Dim>::make_lists(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
