@@ -3,17 +3,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
 #include <span>
 
 #include "output/hdf5_handle.hpp"
+#include "output/shared_file.hpp"
 
 namespace mpm {
-namespace fs = std::filesystem;
-
 namespace {
 
 constexpr long k_piece = 1 << 16;  // rows, at most
@@ -261,13 +256,8 @@ PetscErrorCode pack_slab(const std::string& path, const std::vector<double>& val
 PetscErrorCode lay_out_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
                              const FrameStyle& style, int* descriptor, std::vector<FrameSlab>* slabs) {
   PetscFunctionBeginUser;
-  std::error_code error;
-  const std::string memory = "/dev/shm";  // holes take no memory
-  std::string name = (fs::is_directory(memory, error) ? memory : fs::temp_directory_path(error).string()) +
-                     "/mpm_frame_XXXXXX";
-  *descriptor = ::mkostemp(name.data(), O_CLOEXEC);
-  PetscCheck(*descriptor >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot open %s: %s", name.c_str(),
-             std::strerror(errno));
+  std::string name;
+  PetscCall(open_layout(&name, descriptor));
   Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   ::unlink(name.c_str());
   PetscCall(check(file.id, path, "creation"));
