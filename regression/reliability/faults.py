@@ -17,7 +17,7 @@ import time
 
 import numpy as np
 
-from folders import (ENVIRONMENT, checkpoints, command, contents, differences, faults_of_folder, frames, fresh,
+from folders import (ENVIRONMENT, change_sealed, checkpoints, command, contents, differences, faults_of_folder, frames, fresh,
                      is_whole, rows, run)
 
 HERE = pathlib.Path(__file__).parent
@@ -279,6 +279,19 @@ class Checks:
                 assert "is passed over" in done.stdout
                 assert not differences(self.whole, folder)
         return f"{flips} flipped bits, {cuts} cuts"
+
+    def check_mischievous_checkpoint(self):
+        """A checkpoint whose seal is right and whose numbers cannot be: one line, nothing touched."""
+        folder = self.base / "mischief"
+        for name, value in (("frames", 10**12), ("frames", -1), ("step", -5), ("since_rebuild", -1), ("history_bytes", -1),
+                            ("history_bytes", 10**17), ("bound", np.nan), ("bound", 1e300), ("time", np.inf)):
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(self.whole, folder)
+            latest = checkpoints(folder)[-1]
+            change_sealed(latest, lambda file: file.attrs.modify(name, np.asarray(value, file.attrs[name].dtype)))
+            assert is_whole(latest)
+            self.expect_line(self.go(folder, "-restart", latest, status=2), "takes")
+            assert rows(folder) == rows(self.whole), name
 
     def check_no_checkpoint(self):
         """Rubbish, a frame, a folder, nothing: one line, nothing touched."""
