@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1",  # ranks share cores
                "OMPI_MCA_ess_singleton_isolated": "1",  # no daemon beside each run
                "OMP_PROC_BIND": "false", "OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "1"),
                "MALLOC_PERTURB_": "165"}
