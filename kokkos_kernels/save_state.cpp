@@ -69,8 +69,12 @@ SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
   if (!s.has_friction) return saved;
   const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
   const auto impulse = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
+  // Of several ranks one answers for a node: what the others have there may be long out of date.
+  const auto counted = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.counted);
   const int rigids = static_cast<int>(s.rigid_points.size());
   const auto holds_some = [&](int i) {
+    if (counted.extent(0) > 0 && (counted(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0)
+      return false;
     for (int r = 0; r < rigids; ++r)
       if (impulse(r, i) != 0 || std::signbit(impulse(r, i))) return true;
     return false;

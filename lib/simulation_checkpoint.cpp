@@ -67,7 +67,8 @@ PetscErrorCode Simulation::Body::check_restart() {
   PetscFunctionBeginUser;
   const RunState& run = restart->run;
   const long last = schedule.last_step();
-  if (run.step < 0 || run.since_rebuild < 0 || restart->frames < 0 || restart->history.bytes < 0)
+  if (run.step < 0 || run.since_rebuild < 0 || restart->history.bytes < 0 || restart->frames < 0 ||
+      restart->frames - 1 > run.step)  // one a step
     report.errors.push_back("mpm: -restart: given \"" + config.output.restart +
                             "\", takes a checkpoint with a sound step");
   else if (run.step > last)

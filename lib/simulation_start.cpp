@@ -41,11 +41,6 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
   if (b.report.errors.empty())
     if (const std::string fault = memory_fault(b.config, comm); !fault.empty())
       b.report.errors.push_back(fault);
-  if (size_of(comm) > 1 && b.config.output.compression > 0)
-    b.report.errors.push_back(
-        formatted("mpm: -output_compression: given \"%d\", takes 0 on several ranks, which write their parts "
-                  "of a frame as they are",
-                  b.config.output.compression));
   if (b.report.errors.empty() && !b.config.output.restart.empty()) PetscCall(b.read_restart());
   PetscCall(b.share_errors());
   if (!b.report.errors.empty()) {

@@ -13,6 +13,7 @@
 #include "checksum.hpp"
 #include "output/files.hpp"
 #include "output/log.hpp"
+#include "parallel/together.hpp"
 
 namespace mpm {
 namespace {
@@ -43,7 +44,7 @@ bool checksum_of(int descriptor, long from, long bytes, std::uint32_t* crc) {
 }
 
 /// Bytes of an open file; -1 if there is none.
-long size_of(int descriptor) {
+long bytes_in(int descriptor) {
   return descriptor < 0 ? -1 : static_cast<long>(::lseek(descriptor, 0, SEEK_END));
 }
 
@@ -82,6 +83,17 @@ PetscErrorCode verify(const std::string& path, long bytes, std::uint32_t crc) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Behind the bytes of an open file, and on the disk.
+PetscErrorCode append_seal(int descriptor, const std::string& path, long bytes, std::uint32_t crc) {
+  PetscFunctionBeginUser;
+  PetscCheck(::lseek(descriptor, 0, SEEK_END) == bytes, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
+             "Cannot write %s", path.c_str());
+  PetscCall(write_all(descriptor, seal_of(bytes, crc), path));
+  PetscCheck(::fsync(descriptor) == 0 || errno == EINVAL, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
+             "Cannot write %s: %s", path.c_str(), std::strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 }  // namespace
 
 std::string seal_of(long bytes, std::uint32_t crc) { return formatted(k_form, bytes, crc); }
@@ -105,17 +117,12 @@ PetscErrorCode seal_file(MPI_Comm comm, const std::string& path) {
   PetscMPIInt rank = 0;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   const Descriptor file{::open(path.c_str(), O_RDWR | O_CLOEXEC)};
-  const long bytes = size_of(file.id);
+  const long bytes = bytes_in(file.id);
   std::uint32_t crc = 0;
   bool whole = true;
   PetscCall(common_checksum(comm, file.id, bytes, &crc, &whole));
   PetscCheck(whole, comm, PETSC_ERR_FILE_READ, "Cannot read %s again", path.c_str());
-  if (rank > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(::lseek(file.id, 0, SEEK_END) == bytes, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s",
-             path.c_str());
-  PetscCall(write_all(file.id, seal_of(bytes, crc), path));
-  PetscCheck(::fsync(file.id) == 0 || errno == EINVAL, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
-             "Cannot write %s: %s", path.c_str(), std::strerror(errno));
+  PetscCall(agree(comm, rank == 0 ? append_seal(file.id, path, bytes, crc) : PETSC_SUCCESS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,7 +132,7 @@ PetscErrorCode check_seal(MPI_Comm comm, const std::string& path, std::string* f
   const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
   const int reason = errno;
   const std::string blank = seal_of(0, 0);
-  const long length = static_cast<long>(blank.size()), bytes = size_of(file.id) - length;
+  const long length = static_cast<long>(blank.size()), bytes = bytes_in(file.id) - length;
   std::string seal(blank.size(), ' ');
   std::uint32_t crc = 0;
   bool whole = true;

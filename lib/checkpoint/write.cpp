@@ -1,19 +1,30 @@
+#include <unistd.h>
+
 #include <algorithm>
+#include <list>
 
 #include "checkpoint/archive.hpp"
 #include "checkpoint/id_blocks.hpp"
 #include "checkpoint/sealed_file.hpp"
 #include "output/files.hpp"
 #include "output/hdf5_handle.hpp"
+#include "output/shared_file.hpp"
+#include "parallel/together.hpp"
 
 namespace mpm {
 namespace {
 
-/// Writes items into an open file; every rank calls all. The first item that fails is kept.
+/// The rows of this rank that are not in its layout of the file, and what had to be changed for them.
+struct SharedRows {
+  std::vector<Stretch> stretches;
+  std::list<std::vector<char>> changed;
+};
+
+/// Writes items into an open file. The first item that fails is kept.
 class Writer {
  public:
-  /// `transfer`: how rows of a block are written; of lists only `speaks` writes.
-  Writer(hid_t file, hid_t transfer, bool speaks) : file_(file), transfer_(transfer), speaks_(speaks) {}
+  /// `shared`: of several ranks, which all make the same layout; null where all rows are here.
+  explicit Writer(hid_t file, SharedRows* shared = nullptr) : file_(file), shared_(shared) {}
 
   void value(const char* name, int x) { attribute(name, H5T_STD_I32LE, H5T_NATIVE_INT, &x); }
   void value(const char* name, long x) { attribute(name, H5T_STD_I64LE, H5T_NATIVE_LONG, &x); }
@@ -60,37 +71,51 @@ class Writer {
     Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
     Handle data(H5Dcreate2(file_, path, type, space.id, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
     check(data.id, path);
-    if (data.id >= 0 && count > 0 && speaks_)
-      check(H5Dwrite(data.id, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, x), path);
+    if (data.id >= 0 && count > 0) check(H5Dwrite(data.id, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, x), path);
   }
-  /// A dataset of all rows, of which this rank writes its block.
   void rows(const std::string& path, hid_t type, hid_t memory, int width, const IdBlock& block,
             const void* x) {
-    const hsize_t components = static_cast<hsize_t>(width);
-    const hsize_t all[2] = {static_cast<hsize_t>(block.total), components};
-    const hsize_t own[2] = {static_cast<hsize_t>(block.count), components};
-    const hsize_t first[2] = {static_cast<hsize_t>(block.first), 0};
-    Handle there(H5Screate_simple(2, all, nullptr), H5Sclose),
-        here(H5Screate_simple(2, own, nullptr), H5Sclose);
-    Handle data(H5Dcreate2(file_, path.c_str(), type, there.id, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+    const hsize_t sizes[2] = {static_cast<hsize_t>(block.total), static_cast<hsize_t>(width)};
+    Handle space(H5Screate_simple(2, sizes, nullptr), H5Sclose);
+    Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    if (shared_ != nullptr)  // its place in the file is fixed now
+      check(std::min(H5Pset_alloc_time(layout.id, H5D_ALLOC_TIME_EARLY),
+                     H5Pset_fill_time(layout.id, H5D_FILL_TIME_NEVER)),
+            path);
+    Handle data(H5Dcreate2(file_, path.c_str(), type, space.id, H5P_DEFAULT, layout.id, H5P_DEFAULT),
                 H5Dclose);
     check(data.id, path);
     if (data.id < 0 || block.total == 0) return;
-    check(block.count > 0 ? H5Sselect_hyperslab(there.id, H5S_SELECT_SET, first, nullptr, own, nullptr)
-                          : H5Sselect_none(there.id),
-          path);
-    if (block.count == 0) check(H5Sselect_none(here.id), path);
-    check(H5Dwrite(data.id, memory, here.id, there.id, transfer_, x), path);
+    if (shared_ == nullptr)
+      check(H5Dwrite(data.id, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, x), path);
+    else
+      keep_rows(H5Dget_offset(data.id), path, type, memory, width, block, x);
+  }
+  /// The rows of this rank as they will be in the file.
+  void keep_rows(haddr_t offset, const std::string& path, hid_t type, hid_t memory, int width,
+                 const IdBlock& block, const void* x) {
+    Stretch stretch{.offset = static_cast<long long>(offset), .rows = block.count, .data = x};
+    stretch.width = static_cast<int>(H5Tget_size(type)) * width;
+    stretch.size = stretch.width * static_cast<long long>(block.total);
+    stretch.place = stretch.offset + stretch.width * static_cast<long long>(block.first);
+    if (H5Tequal(memory, type) <= 0 && block.count > 0) {
+      const size_t count = static_cast<size_t>(block.count) * width;
+      const char* const first = static_cast<const char*>(x);
+      auto& changed = shared_->changed.emplace_back(first, first + count * H5Tget_size(memory));
+      check(H5Tconvert(memory, type, count, changed.data(), nullptr, H5P_DEFAULT), path);
+      stretch.data = changed.data();
+    }
+    shared_->stretches.push_back(stretch);
   }
 
-  hid_t file_, transfer_;
-  bool speaks_;
+  hid_t file_;
+  SharedRows* shared_;
   std::string fault_;
 };
 
 /// All items, to a file that is open.
-std::string write_items(hid_t file, hid_t transfer, bool speaks, Checkpoint& checkpoint, IdBlock& soil) {
-  Writer writer(file, transfer, speaks);
+std::string write_items(hid_t file, Checkpoint& checkpoint, IdBlock& soil, SharedRows* shared = nullptr) {
+  Writer writer(file, shared);
   std::string options = text_of_options(checkpoint.options);
   go_through(writer, checkpoint, options, soil);
   return writer.fault();
@@ -107,7 +132,7 @@ PetscErrorCode write_alone(const std::string& path, Checkpoint& checkpoint, IdBl
     H5Pset_fapl_core(access.id, k_growth, /*backing_store*/ false);
     Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id), H5Fclose);
     PetscCheck(file.id >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at creation of %s", path.c_str());
-    const std::string fault = write_items(file.id, H5P_DEFAULT, true, checkpoint, soil);
+    const std::string fault = write_items(file.id, checkpoint, soil);
     PetscCheck(fault.empty(), PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s of %s", fault.c_str(),
                path.c_str());
     checkpoint.state = {};
@@ -121,43 +146,45 @@ PetscErrorCode write_alone(const std::string& path, Checkpoint& checkpoint, IdBl
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Whether all ranks have no fault; the fault of this rank is kept.
-PetscErrorCode all_well(MPI_Comm comm, const std::string& fault, bool* well) {
+/// Every rank makes the same layout, and so knows where its rows go; that of rank 0 becomes the file.
+PetscErrorCode lay_out(const std::string& path, Checkpoint& checkpoint, IdBlock& soil, int* layout,
+                       SharedRows* shared) {
   PetscFunctionBeginUser;
-  int good = fault.empty() ? 1 : 0;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &good, 1, MPI_INT, MPI_MIN, comm));
-  *well = good != 0;
+  std::string name;
+  PetscCall(open_layout(&name, layout));
+  Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  ::unlink(name.c_str());
+  PetscCheck(file.id >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at creation of %s", path.c_str());
+  const std::string fault = write_items(file.id, checkpoint, soil, shared);
+  PetscCheck(fault.empty(), PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s of %s", fault.c_str(),
+             path.c_str());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Several ranks write one file through MPI-IO, each its rows of every set.
-std::string write_rows(MPI_Comm comm, int rank, const std::string& path, Checkpoint& checkpoint,
-                       IdBlock& soil) {
-  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose), transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
-  if (H5Pset_fapl_mpio(access.id, comm, MPI_INFO_NULL) < 0 ||
-      H5Pset_dxpl_mpio(transfer.id, H5FD_MPIO_COLLECTIVE) < 0)
-    return "MPI-IO";
-  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id);
-  if (file < 0) return "creation";
-  std::string fault = write_items(file, transfer.id, rank == 0, checkpoint, soil);
-  if (H5Fclose(file) < 0 && fault.empty()) fault = "closing";
-  return fault;
+/// The file under its temporary name becomes the checkpoint, once it reads as it was written.
+PetscErrorCode finish_file(MPI_Comm comm, const std::string& temporary, const std::string& path) {
+  PetscFunctionBeginUser;
+  std::string fault;
+  PetscCall(seal_file(comm, temporary));
+  PetscCall(check_seal(comm, temporary, &fault));
+  PetscCall(share_text(comm, &fault));
+  PetscCheck(fault.empty(), comm, PETSC_ERR_FILE_READ, "%s does not read as it was written: %s", path.c_str(),
+             fault.c_str());
+  PetscCall(agree(comm, rank_of(comm) == 0 ? rename_file(temporary, path) : PETSC_SUCCESS));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode write_together(MPI_Comm comm, int rank, const std::string& path, Checkpoint& checkpoint,
-                              IdBlock& soil) {
+PetscErrorCode write_together(MPI_Comm comm, const std::string& path, Checkpoint& checkpoint, IdBlock& soil) {
   PetscFunctionBeginUser;
   const std::string temporary = path + ".tmp";
-  std::string fault = write_rows(comm, rank, temporary, checkpoint, soil);
-  bool well = true;
-  PetscCall(all_well(comm, fault, &well));
-  PetscCheck(well, comm, PETSC_ERR_LIB, "HDF5 failed at %s of %s", fault.c_str(), path.c_str());
-  PetscCall(seal_file(comm, temporary));
-  PetscCallMPI(MPI_Barrier(comm));
-  PetscCall(check_seal(comm, temporary, &fault));
-  PetscCheck(fault.empty(), comm, PETSC_ERR_FILE_READ, "%s does not read as it was written", path.c_str());
-  if (rank == 0) PetscCall(rename_file(temporary, path));
-  PetscCallMPI(MPI_Barrier(comm));
+  SharedRows shared;
+  int layout = -1;
+  PetscErrorCode failed = agree(comm, lay_out(path, checkpoint, soil, &layout, &shared));
+  if (!failed) failed = write_shared_file(comm, temporary, layout, shared.stretches);
+  if (layout >= 0) ::close(layout);
+  if (!failed) failed = finish_file(comm, temporary, path);
+  if (failed && rank_of(comm) == 0) ::unlink(temporary.c_str());
+  PetscCall(failed);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,17 +192,14 @@ PetscErrorCode write_together(MPI_Comm comm, int rank, const std::string& path, 
 
 PetscErrorCode write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint&& checkpoint) {
   PetscFunctionBeginUser;
-  PetscMPIInt rank = 0, ranks = 1;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
   SavedState& state = checkpoint.state;
   IdBlock soil;
   PetscCall(bring_to_blocks(comm, state.soil, &soil));
   PetscCall(gather_impulse(comm, static_cast<int>(state.rigids.size()), state.impulse));
-  if (ranks == 1)
+  if (size_of(comm) == 1)
     PetscCall(write_alone(path, checkpoint, soil));
   else
-    PetscCall(write_together(comm, rank, path, checkpoint, soil));
+    PetscCall(write_together(comm, path, checkpoint, soil));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,7 +7,7 @@
 #include "input/groups.hpp"
 #include "input/reader.hpp"
 #include "input/text.hpp"
-#include "output/frames.hpp"
+#include "output/frame_fields.hpp"
 
 namespace mpm {
 namespace {

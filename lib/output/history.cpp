@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -62,8 +63,10 @@ std::string format_history_row(const HistoryRow& row, int dim) {
 
 HistoryMark mark_of(const std::string& path, long bytes, std::string* text) {
   std::ifstream file(path, std::ios::binary);
-  std::string start(static_cast<size_t>(bytes), '\0');
-  file.read(start.data(), bytes);
+  file.seekg(0, std::ios::end);
+  std::string start(static_cast<size_t>(std::clamp<long>(file.tellg(), 0, bytes)), '\0');
+  file.seekg(0);
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<size_t>(file.gcount()));
   const HistoryMark mark{static_cast<long>(start.size()), checksum(0, start)};
   if (text) *text = std::move(start);

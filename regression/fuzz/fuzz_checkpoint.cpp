@@ -1,6 +1,7 @@
-// A file that is given to -restart. Input that begins with an even byte is the file itself, with or without a
-// sound seal. Otherwise a sound checkpoint is changed, item by item, as the bytes say: items go, or get
-// another type, size or value. Reading must refuse it or give a state that passes every check; never crash.
+// A file that is given to -restart. The first byte of the input says which: the bytes behind it are the file
+// itself; or bytes of a sound checkpoint, its seal too, are changed where they say, which must be found out;
+// or its items are changed as they say (they go, or get another type, size or value) and the seal is left
+// out. Reading must refuse it or give a state that passes every check; never crash.
 
 #include <hdf5.h>
 
@@ -14,11 +15,13 @@ namespace {
 
 using namespace mpm;
 
-constexpr const char* k_attributes[] = {"version", "dim",  "ranks", "backend", "precision", "strategy",
-                                        "step",    "time", "wall",  "frames",  "bound",     "history_bytes"};
+constexpr const char* k_attributes[] = {
+    "version",  "dim",      "ranks",    "backend",       "precision",     "strategy",    "step",
+    "time",     "wall",     "dt",       "frames",        "bound",         "increment",   "longest",
+    "shortest", "rebuilds", "stepping", "since_rebuild", "history_bytes", "history_crc", "last_row_time"};
 constexpr const char* k_datasets[] = {
-    "options",         "soil/address", "soil/coordinate", "soil/body",    "soil/stress", "rigids",
-    "impulse_address", "impulse",      "rigid_0/address", "rigid_0/home", "soil",        "rigid_0"};
+    "options", "soil/address", "soil/coordinate", "soil/body",       "soil/stress", "rigids",
+    "bounds",  "owners",       "impulse",         "impulse_address", "soil",        "soil/new"};
 
 Config some_config() {
   Config config;
@@ -39,6 +42,7 @@ Checkpoint some_checkpoint() {
                    {"body", 1, 2, {0, 1, 0}},
                    {"stress", 4, 8, std::vector<double>(12, 1)}}};
   c.state.rigids.resize(1);
+  c.state.bounds = {1, 2, 3}, c.state.owners = {0, 1, 0};
   c.state.impulse = {{387}, {1}};
   return c;
 }
@@ -75,7 +79,7 @@ void change(hid_t file, Bytes& bytes) {
     const hid_t item = what & 0x20 ? -1 : H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
     if (item >= 0) H5Awrite(item, type, values), H5Aclose(item);
   } else if (what & 0x80) {
-    const hid_t data = H5Dopen2(file, k_datasets[bytes.next() % 10], H5P_DEFAULT);
+    const hid_t data = H5Dopen2(file, k_datasets[bytes.next() % (std::size(k_datasets) - 2)], H5P_DEFAULT);
     if (data >= 0) H5Dwrite(data, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), H5Dclose(data);
   } else {
     const char* name = k_datasets[bytes.next() % std::size(k_datasets)];
@@ -87,10 +91,35 @@ void change(hid_t file, Bytes& bytes) {
   H5Sclose(space);
 }
 
+std::string read_file(const std::string& path) {
+  std::string text(1 << 20, '\0');
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  text.resize(std::fread(text.data(), 1, text.size(), file));
+  std::fclose(file);
+  return text;
+}
+
 void look_at(Checkpoint& c) {
   const Config config = some_config();
   (void)state_fault(c.state, config);
   (void)contradictions(c, some_checkpoint().options, "FILE");
+}
+
+/// Reads the file as -restart does; what is wrong with it.
+std::string read_whole(const std::string& path) {
+  Checkpoint c;
+  std::string fault;
+  if (read_checkpoint(PETSC_COMM_SELF, path, c, &fault) != PETSC_SUCCESS) __builtin_trap();
+  if (fault.empty()) look_at(c);
+  return fault;
+}
+
+void change_items(const std::string& path, Bytes bytes) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  for (int n = 0; n < 8 && bytes.size > 0; ++n) change(file, bytes);
+  H5Fclose(file);
+  Checkpoint c;
+  if (read_items(path, bytes.next() % 3, 3, c).empty()) look_at(c);
 }
 
 }  // namespace
@@ -104,25 +133,22 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  static const std::string sound = read_file(fuzz::path_of("sound.h5"));
   const std::string path = fuzz::path_of("file.h5");
-  Checkpoint c;
-  std::string fault;
-  if (size == 0 || data[0] % 2 == 0) {
-    fuzz::write_file(path, data, size);
-    if (read_checkpoint(PETSC_COMM_SELF, path, c, &fault) != PETSC_SUCCESS) __builtin_trap();
-    if (fault.empty()) look_at(c);
+  Bytes bytes{data, size};
+  const int how = bytes.next() % 3;
+  if (how == 0) {
+    fuzz::write_file(path, bytes.data, bytes.size);
+    (void)read_whole(path);
     return 0;
   }
-  Bytes bytes{data + 1, size - 1};
-  std::string sound(1 << 20, '\0');
-  std::FILE* from = std::fopen(fuzz::path_of("sound.h5").c_str(), "rb");
-  sound.resize(std::fread(sound.data(), 1, sound.size(), from));
-  std::fclose(from);
-  fuzz::write_file(path, reinterpret_cast<const uint8_t*>(sound.data()), sound.size());
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  for (int n = 0; n < 8 && bytes.size > 0; ++n) change(file, bytes);
-  H5Fclose(file);
-  fault = read_items(path, bytes.next() % 3, 3, c);
-  if (fault.empty()) look_at(c);
+  std::string text = sound;
+  if (how == 1)
+    while (bytes.size > 0) text[bytes.value<uint32_t>() % text.size()] = static_cast<char>(bytes.next());
+  fuzz::write_file(path, reinterpret_cast<const uint8_t*>(text.data()), text.size());
+  if (how == 2)
+    change_items(path, bytes);
+  else if (read_whole(path).empty() != (text == sound))
+    __builtin_trap();
   return 0;
 }

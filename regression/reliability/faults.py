@@ -15,7 +15,9 @@ import sys
 import tempfile
 import time
 
-from folders import (ENVIRONMENT, checkpoints, command, contents, differences, faults_of_folder, frames, fresh,
+import numpy as np
+
+from folders import (ENVIRONMENT, change_sealed, checkpoints, command, contents, differences, faults_of_folder, frames, fresh,
                      is_whole, rows, run)
 
 HERE = pathlib.Path(__file__).parent
@@ -113,13 +115,13 @@ class Checks:
         self.go(folder, "-restart", checkpoints(folder)[0])
         assert not differences(self.whole, folder)
 
+    def go_on_ranks(self, ranks, folder, *options, **how):
+        return run(self.binary, DECK, folder, *OPTIONS, *options, **how,
+                   prefix=("mpirun", "-n", str(ranks), "--bind-to", "none"))
+
     def check_several_ranks(self):
         """Several ranks go on to the same bits too, and another number of ranks goes on up to round-off."""
-        def go(ranks, folder, *options):
-            return run(self.binary, DECK, folder, *OPTIONS, "-backend", "serial", "-p2g", "gather", *options,
-                       prefix=("mpirun", "-n", str(ranks), "--bind-to", "none"),
-                       environment={"OMPI_MCA_rmaps_base_oversubscribe": "1"})
-
+        go = self.go_on_ranks
         for ranks in (2, 3):
             whole, halves = fresh(self.base / f"whole_{ranks}"), fresh(self.base / f"halves_{ranks}")
             go(ranks, whole, "-time_max_steps", 400)
@@ -136,6 +138,43 @@ class Checks:
             x, y = (float(r[-1][r[0].index("stone_y")]) for r in (ours, theirs))
             assert abs(x - y) < 1e-9, (ranks, x, y)
         return "2 and 3 ranks"
+
+    def check_restarts_of_ranks(self):
+        """A restart from a checkpoint that a restart has written, and so on: every one from the last but one."""
+        whole, folder = fresh(self.base / "whole_of_ranks"), fresh(self.base / "again_and_again")
+        self.go_on_ranks(2, whole, "-time_max_steps", 200)
+        for last in (75, 105, 165, 200):
+            again = ("-restart", checkpoints(folder)[0]) if checkpoints(folder) else ()
+            self.go_on_ranks(2, folder, *again, "-time_max_steps", last)
+        steps = {row[0] for row in rows(whole)}  # the ends of runs have rows and frames of their own
+        assert [row for row in rows(folder) if row[0] in steps] == rows(whole)
+        items = ("soil", "rigids", "impulse", "bound")
+        one, two = (contents(checkpoints(each)[-1]) for each in (whole, folder))
+        different = [key for key in one if key.lstrip("@").startswith(items) and one[key] != two.get(key)]
+        assert not different, different
+
+    def check_frames_of_ranks(self):
+        """Frames hold the same whatever the number of ranks, and compressed ones the same bits as others."""
+        options = ("-output_nodes", "on", "-output_interval", 4e-3)
+        alone = None
+        for ranks in (1, 2, 3):
+            plain, packed = fresh(self.base / "plain"), fresh(self.base / "packed")
+            self.go_on_ranks(ranks, plain, *options)
+            self.go_on_ranks(ranks, packed, *options, "-output_compression", 1)
+            assert len(frames(plain)) > 3 and not differences(plain, packed), differences(plain, packed)
+            here = [contents(path) for path in frames(plain)]
+            alone = alone or here
+            for k, (one, other) in enumerate(zip(alone, here, strict=True)):
+                assert one.keys() == other.keys(), one.keys() ^ other.keys()
+                for key in one:
+                    if "/" not in key or "@" in key:  # time, step, units
+                        assert one[key] == other[key], (ranks, key)
+                        continue
+                    assert one[key][:2] == other[key][:2], (ranks, key, one[key][:2], other[key][:2])
+                    a, b = (np.frombuffer(of[key][2], of[key][1]) for of in (one, other))
+                    apart = np.abs(a - b).max() / max(np.abs(a).max(), 1e-300)
+                    assert apart <= (0 if k == 0 and "soil" in key else 1e-9), (ranks, k, key, apart)
+        return "1, 2 and 3 ranks"
 
     def check_other_folder(self):
         """A checkpoint of another folder brings its rows along."""
@@ -254,6 +293,19 @@ class Checks:
                 assert not differences(self.whole, folder)
         return f"{flips} flipped bits, {cuts} cuts"
 
+    def check_mischievous_checkpoint(self):
+        """A checkpoint whose seal is right and whose numbers cannot be: one line, nothing touched."""
+        folder = self.base / "mischief"
+        for name, value in (("frames", 10**12), ("frames", -1), ("step", -5), ("since_rebuild", -1), ("history_bytes", -1),
+                            ("history_bytes", 10**17), ("bound", np.nan), ("bound", 1e300), ("time", np.inf)):
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(self.whole, folder)
+            latest = checkpoints(folder)[-1]
+            change_sealed(latest, lambda file: file.attrs.modify(name, np.asarray(value, file.attrs[name].dtype)))
+            assert is_whole(latest)
+            self.expect_line(self.go(folder, "-restart", latest, status=2), "takes")
+            assert rows(folder) == rows(self.whole), name
+
     def check_no_checkpoint(self):
         """Rubbish, a frame, a folder, nothing: one line, nothing touched."""
         rubbish = self.base / "rubbish.h5"
@@ -283,23 +335,29 @@ class Checks:
         point = self.base / "disk"
         point.mkdir()
         tried = 0
+        ways = [(self.go, ()), (lambda *words, **how: self.go_on_ranks(2, *words, **how), ("-output_compression", 1))]
         for size in (130, 280) if self.short else (60, 130, 200, 280, 360, 440):
-            if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}k", "none", point],
-                              capture_output=True).returncode != 0:
-                return "left out: no file system can be mounted here; injected faults do the same"
-            try:
-                folder = point / "out"
-                done = self.go(folder, status=1)
-                self.expect_line(done, "No space left on device", str(folder))
-                self.expect_intact(folder)
-                kept = self.base / "kept"
-                shutil.rmtree(kept, ignore_errors=True)
-                shutil.copytree(folder, kept)
-                self.expect_end(kept)
-                tried += 1
-            finally:
-                subprocess.run(["umount", point], check=True)
-        return f"{tried} sizes"
+            for go, options in ways:
+                if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}k", "none", point],
+                                  capture_output=True).returncode != 0:
+                    return "left out: no file system can be mounted here; injected faults do the same"
+                try:
+                    folder = point / "out"
+                    done = go(folder, *options, status=1)
+                    told = [line for line in done.stderr.splitlines() if line.startswith("mpm: ")]  # mpirun tells more
+                    assert len(told) == 1 and "No space left on device" in told[0] and str(folder) in told[0], done.stderr
+                    self.expect_intact(folder)
+                    kept = self.base / "kept"
+                    shutil.rmtree(kept, ignore_errors=True)
+                    shutil.copytree(folder, kept)
+                    if go == self.go:
+                        self.expect_end(kept)
+                    else:
+                        go(kept, *options, *(("-restart", "latest") if checkpoints(kept) else ()))
+                    tried += 1
+                finally:
+                    subprocess.run(["umount", point], check=True)
+        return f"{tried} times, on 1 and 2 ranks"
 
     def check_injected_faults(self):
         """Calls of the system that fail, one after another through the run."""

@@ -1,13 +1,16 @@
 """Runs of the program, and what their output folders hold."""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
+import zlib
 
 import h5py
 import numpy as np
 
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+               "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1",  # ranks share cores
                "OMPI_MCA_ess_singleton_isolated": "1",  # no daemon beside each run
                "OMP_PROC_BIND": "false", "OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "1"),
                "MALLOC_PERTURB_": "165"}
@@ -74,13 +77,24 @@ def checkpoints(folder):
     return sorted(pathlib.Path(folder).glob("checkpoint_*.h5"), key=lambda path: int(path.stem.split("_")[1]))
 
 
+SEAL = re.compile(rb"\nmpm checkpoint, (\d{20}) bytes before this line, crc32 ([0-9a-f]{8})\n\Z")
+
+
 def is_whole(path):
     """Whether a checkpoint has the length and checksum that its last line tells."""
-    import re
-    import zlib
     data = path.read_bytes()
-    seal = re.search(rb"\nmpm checkpoint, (\d{20}) bytes before this line, crc32 ([0-9a-f]{8})\n\Z", data)
+    seal = SEAL.search(data)
     return bool(seal) and int(seal[1]) == seal.start() and int(seal[2], 16) == zlib.crc32(data[:seal.start()])
+
+
+def change_sealed(path, change):
+    """Changes the items of a checkpoint, and seals it again."""
+    data = path.read_bytes()
+    path.write_bytes(data[:SEAL.search(data).start()])
+    with h5py.File(path, "r+") as file:
+        change(file)
+    data = path.read_bytes()
+    path.write_bytes(data + b"\nmpm checkpoint, %020d bytes before this line, crc32 %08x\n" % (len(data), zlib.crc32(data)))
 
 
 def faults_of_folder(folder):

@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """Kills a run (SIGKILL) at random moments and goes on from the last checkpoint, over and over.
 
-    kill.py MPM [--kills 200] [--seed 1] [--folder FOLDER]
+    kill.py MPM [--kills 200] [--seed 1] [--ranks 1] [--folder FOLDER]
 
 After each kill every file of the output folder must be whole or absent, no checkpoint that was there may have gone
 without a later one, and at most one interval may be lost; the end must be, bit by bit, that of a run that was never
-killed. As many runs are made as the kills take.
+killed. As many runs are made as the kills take. On several ranks all are killed, and the launcher before them.
 """
 import argparse
+import os
 import pathlib
 import random
+import signal
 import subprocess
 import sys
 import tempfile
@@ -22,10 +24,27 @@ OPTIONS = ("-backend", "serial", "-p2g", "gather")
 INTERVAL = 10  # steps between checkpoints in small.opts
 
 
-def start(binary, folder):
+def launcher(ranks):
+    return ("mpirun", "-n", str(ranks), "--bind-to", "none") if ranks > 1 else ()
+
+
+def options(ranks):
+    return OPTIONS if ranks == 1 else (*OPTIONS, "-time_max_steps", 200)  # ranks that share cores are slow
+
+
+def start(binary, folder, ranks):
     again = ("-restart", "latest") if checkpoints(folder) else ()
-    return subprocess.Popen(command(binary, HERE / "small.opts", folder, *OPTIONS, *again), env=ENVIRONMENT,
-                            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen([*launcher(ranks), *command(binary, HERE / "small.opts", folder, *options(ranks), *again)],
+                            env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+
+def kill(process):
+    """SIGKILL to a process and its children."""
+    children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    process.kill()
+    for child in children:
+        os.kill(int(child), signal.SIGKILL)
+    process.communicate()
 
 
 def step_of(path):
@@ -51,24 +70,24 @@ def main():
     parser.add_argument("binary")
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--folder")
     arguments = parser.parse_args()
     chance = random.Random(arguments.seed)
     base = pathlib.Path(arguments.folder or tempfile.mkdtemp(prefix="mpm_kill_"))
     reference, folder = fresh(base / "whole"), fresh(base / "killed")
     began = time.time()
-    run(arguments.binary, HERE / "small.opts", reference, *OPTIONS)
+    run(arguments.binary, HERE / "small.opts", reference, *options(arguments.ranks), prefix=launcher(arguments.ranks))
     whole = time.time() - began  # s
     kills = in_checkpoint = unfinished = ends = 0
     while kills < arguments.kills or ends == 0:
         before = [step_of(path) for path in checkpoints(folder)]
-        process = start(arguments.binary, folder)
+        process = start(arguments.binary, folder, arguments.ranks)
         delay = chance.uniform(0, whole / 2) if kills < arguments.kills else 600
         try:
             _, told = process.communicate(timeout=delay)
         except subprocess.TimeoutExpired:
-            process.kill()
-            process.communicate()
+            kill(process)
             kills += 1
             left = list(folder.rglob("*.tmp"))
             unfinished += bool(left)

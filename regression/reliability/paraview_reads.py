@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """ParaView's own reader opens the frames, and draws them.
 
-    paraview_reads.py MPM [--picture FILE]
+    paraview_reads.py MPM [--benchmarks] [--precisions double,single] [--pictures FOLDER]
 
-Needs Debian's python3-paraview; ends with 77, which ctest takes for left out, without it. The picture is drawn where there is a
+Needs Debian's python3-paraview; ends with 77, which ctest takes for left out, without it. Pictures are drawn where there is a
 display, or xvfb makes one, and left out with a line where ParaView cannot draw.
 """
+import argparse
 import os
 import pathlib
 import shutil
@@ -15,10 +16,12 @@ import tempfile
 
 import h5py
 import numpy as np
+from matplotlib import image
 
 from folders import run
 
 HERE = pathlib.Path(__file__).parent
+INPUTS = HERE.parent.parent / "inputs"
 
 try:
     from paraview import servermanager, simple
@@ -59,39 +62,102 @@ def check_frame(reader, time, path):
     return sum(len(np.asarray(read.Points)) for read in found.values())
 
 
-def draw(index, picture):
-    """In a process of its own: ParaView aborts where it finds no display."""
-    reader = simple.XDMFReader(FileNames=[index])
-    view = simple.CreateRenderView(ViewSize=[900, 600])
-    shown = simple.Show(reader, view)
-    simple.ColorBy(shown, ("POINTS", "velocity"))
-    shown.PointSize = 4
-    view.InteractionMode = "2D"
-    simple.ResetCamera(view)
-    simple.SaveScreenshot(picture, view)
-    assert pathlib.Path(picture).stat().st_size > 5000, "the picture is empty"
+def last_frame(folder, field):
+    """Lower and upper corner of all points, m; how far particles are apart; what 99 % of the field do not exceed."""
+    with h5py.File(sorted((folder / "frames").glob("*.h5"))[-1]) as file:
+        points = np.concatenate([group["position"][:] for name, group in file.items() if name != "nodes"])
+        bodies = [group for group in file.values() if "volume" in group]
+        apart = min(group["volume"][:].mean() for group in bodies)**0.5
+        values = np.concatenate([group[field][:] for group in bodies])
+    return points.min(0), points.max(0), apart, np.quantile(np.linalg.norm(values.reshape(len(values), -1), axis=1), 0.99)
+
+
+def put(item, **properties):
+    for name, value in properties.items():
+        setattr(item, name, value)
+
+
+def draw(folder, picture, field):
+    """The last frame, in a process of its own: ParaView aborts where it finds no display."""
+    index = str(folder / "particles.xdmf")
+    grids = list(simple.XDMFReader(FileNames=[index]).GridStatus)  # ParaView numbers the grids of later frames: soil[1]
+    lower, upper, apart, most = last_frame(folder, field)
+    margin = 40  # pixels
+    pixel = max((upper[0] - lower[0]) / 1120, (upper[1] - lower[1]) / 700)  # m
+    width, height = (int((upper[k] - lower[k]) / pixel) + (2 + 3 * k) * margin for k in (0, 1))
+    width, height = max(width, 600), max(height, 300)
+    view = simple.CreateRenderView(ViewSize=[width, height], InteractionMode="2D", OrientationAxesVisibility=0,
+                                   UseColorPaletteForBackground=0, Background=[1, 1, 1], CameraParallelProjection=1)
+    for name in sorted({grid.split("[")[0] for grid in grids} - {"nodes"}):
+        reader = simple.XDMFReader(FileNames=[index], GridStatus=[grid for grid in grids if grid.split("[")[0] == name])
+        time = reader.TimestepValues[-1]
+        reader.UpdatePipeline(time)
+        shown = simple.Show(reader, view, PointSize=max(2.0, 1.6 * apart / pixel), AmbientColor=[0.3] * 3, DiffuseColor=[0.3] * 3)
+        if field not in reader.PointData.keys():
+            continue
+        simple.ColorBy(shown, ("POINTS", field))
+        shown.SetScalarBarVisibility(view, True)
+        colours = simple.GetColorTransferFunction(field)
+        colours.ApplyPreset("Viridis (matplotlib)")
+        colours.RescaleTransferFunction(0, most)
+        bar = simple.GetScalarBar(colours, view)
+        put(bar, Orientation="Horizontal", WindowLocation="Lower Center", ScalarBarLength=0.4, Title=f"{field} at {time:g} s",
+                ComponentTitle="", RangeLabelFormat="%.2g", TitleColor=[0] * 3, LabelColor=[0] * 3)
+    view.ViewTime = time
+    middle = (lower + upper) / 2 - [0, 1.2 * margin * pixel, 0]  # room for the scale below
+    put(view, CameraFocalPoint=list(middle), CameraPosition=[*middle[:2], 1], CameraParallelScale=height * pixel / 2)
+    simple.SaveScreenshot(str(picture), view)
+    share = np.mean(np.any(image.imread(picture)[..., :3] < 0.95, axis=2))
+    assert share > 0.05, f"only {share:.1%} of the picture are drawn"
+
+
+def try_to_draw(folder, picture, field):
+    """Whether there is a picture; where ParaView has no display, there is none. xvfb does not always come up in time."""
+    display = [] if "DISPLAY" in os.environ or not shutil.which("xvfb-run") else ["xvfb-run", "-a"]
+    for _ in range(5):
+        done = subprocess.run([*display, sys.executable, __file__, "--draw", str(folder), str(picture), field],
+                              capture_output=True, text=True)
+        if done.returncode == 0:
+            return True
+        assert "Error" not in done.stderr.splitlines()[-1], done.stderr
+    return False
+
+
+def look_at(binary, deck, field, pictures, *options):
+    with tempfile.TemporaryDirectory(prefix="mpm_paraview_") as temporary:
+        folder = pathlib.Path(temporary) / "out"
+        run(binary, deck, folder, *options)
+        reader = simple.XDMFReader(FileNames=[str(folder / "particles.xdmf")])
+        paths = sorted((folder / "frames").glob("*.h5"))
+        times = list(reader.TimestepValues)
+        assert len(times) == len(paths), (times, len(paths))
+        points = sum(check_frame(reader, time, path) for time, path in zip(times, paths))
+        picture = (pictures or folder) / f"{deck.stem}.png"
+        drawn = try_to_draw(folder, picture, field)
+    print(f"{deck.stem}: {len(paths)} frames, {points} points: ParaView reads the same numbers, and "
+          + (f"draws them{f' ({picture})' if pictures else ''}" if drawn else "cannot draw here"), flush=True)
 
 
 def main():
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="mpm_paraview_"))
-    run(sys.argv[1], HERE / "small.opts", folder / "out", "-backend", "serial", "-time_max_steps", 100,
-        "-output_nodes", "on", "-output_compression", 1)
-    reader = simple.XDMFReader(FileNames=[str(folder / "out/particles.xdmf")])
-    paths = sorted((folder / "out/frames").glob("*.h5"))
-    times = list(reader.TimestepValues)
-    assert len(times) == len(paths), (times, len(paths))
-    points = sum(check_frame(reader, time, path) for time, path in zip(times, paths))
-    picture = sys.argv[3] if sys.argv[2:3] == ["--picture"] else str(folder / "picture.png")
-    display = [] if "DISPLAY" in os.environ or not shutil.which("xvfb-run") else ["xvfb-run", "-a"]
-    drawn = subprocess.run([*display, sys.executable, __file__, "--draw", str(folder / "out/particles.xdmf"), picture],
-                           capture_output=True).returncode == 0
-    print(f"{len(paths)} frames, {points} points: ParaView reads the same numbers, and "
-          + (f"draws {picture}" if drawn else "the picture is left out: it cannot draw here"))
-    shutil.rmtree(folder)
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("binary")
+    parser.add_argument("--benchmarks", action="store_true", help="the footing and the landslide too, to their ends")
+    parser.add_argument("--pictures", type=pathlib.Path, help="a folder to keep the pictures in")
+    parser.add_argument("--precisions", default="double")
+    arguments = parser.parse_args()
+    if arguments.pictures:
+        arguments.pictures.mkdir(parents=True, exist_ok=True)
+    look = lambda *words: look_at(arguments.binary, words[0], words[1], arguments.pictures, *words[2:])
+    for precision in arguments.precisions.split(","):
+        look(HERE / "small.opts", "velocity", "-backend", "serial", "-time_max_steps", 100, "-output_nodes", "on",
+             "-output_compression", 1, "-precision", precision)
+    if arguments.benchmarks:
+        look(INPUTS / "footing_coarse.opts", "plastic_strain", "-output_interval", 0.5)
+        look(INPUTS / "landslide_coarse.opts", "grid_velocity", "-output_interval", 1, "-time_end", 8)
 
 
 if __name__ == "__main__":
     if sys.argv[1] == "--draw":
-        draw(*sys.argv[2:])
+        draw(pathlib.Path(sys.argv[2]), sys.argv[3], sys.argv[4])
     else:
         main()

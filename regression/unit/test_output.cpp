@@ -22,6 +22,7 @@
 #include "output/performance.hpp"
 #include "output/remembered.hpp"
 #include "output/run_options.hpp"
+#include "parallel/together.hpp"
 
 using namespace mpm;
 using Catch::Matchers::ContainsSubstring;
@@ -103,6 +104,26 @@ ParticleSnapshot some_particles(const std::string& name, int count, bool body) {
 
 Snapshot some_snapshot() {
   return {0.5, 42, {some_particles("soil", 5, true)}, {some_particles("plate", 2, false)}};
+}
+
+/// Leaves of a body what one of several ranks has.
+void take_share(ParticleSnapshot& body, int rank, int ranks) {
+  body.total = static_cast<long>(body.volume.size());
+  body.first = body.total * rank / ranks;
+  const long end = body.total * (rank + 1) / ranks;
+  const auto cut = [&](std::vector<double>& values, int width) {
+    values = {values.begin() + body.first * width, values.begin() + end * width};
+  };
+  cut(body.position, 3), cut(body.velocity, 3), cut(body.grid_velocity, 3), cut(body.stress, 6);
+  cut(body.volume, 1), cut(body.plastic_strain, 1);
+}
+
+/// A path that all ranks know.
+std::string shared_path(MPI_Comm comm, const std::string& name) {
+  std::string path = fs::temp_directory_path() / ("mpm_" + std::to_string(::getpid()) + "_" + name);
+  if (rank_of(comm) != 0) path.clear();
+  REQUIRE(share_text(comm, &path) == PETSC_SUCCESS);
+  return path;
 }
 
 /// A dataset as doubles, with its shape and the bytes of a number in the file.
@@ -266,6 +287,52 @@ TEST_CASE("a frame that does not fit leaves nothing, and the frames before it st
   CHECK(!fs::exists(folder / "frames/frame_00001.h5"));
   CHECK(contents(folder / "particles.xdmf") == index);
   REQUIRE(frames.write(some_snapshot()) == PETSC_SUCCESS);
+}
+
+TEST_CASE("a frame of several ranks holds what one of a single rank holds", "[frames_together]") {
+  const MPI_Comm comm = MPI_COMM_WORLD;
+  const int rank = rank_of(comm), ranks = size_of(comm);
+  const std::string one = shared_path(comm, "one.h5"), together = shared_path(comm, "together.h5");
+  // None, fewer than ranks, some, and more than a piece.
+  const int count = GENERATE(0, 1, 5, 1000, 200001);
+  const int compression = GENERATE(0, 1, 9);
+  const Precision precision = GENERATE(Precision::double_, Precision::single);
+  const FrameStyle style{GENERATE(0, 1) ? std::vector<std::string>{"stress"} : std::vector<std::string>{},
+                         compression};
+  Snapshot whole = some_snapshot();
+  whole.bodies = {some_particles("soil", count, true), some_particles("rock", 7, true)};
+  for (int k = 0; k < count; ++k) whole.bodies[0].stress[k] = std::sin(1e5 * k);  // not to be compressed
+  Snapshot part = whole;
+  for (ParticleSnapshot& body : part.bodies) take_share(body, rank, ranks);
+  REQUIRE(write_frame_together(comm, together, part, precision, style) == PETSC_SUCCESS);
+  if (rank == 0) {
+    REQUIRE(write_frame(one, whole, precision, style) == PETSC_SUCCESS);
+    for (const char* name : {"soil/position", "soil/stress", "rock/stress", "plate/position"}) {
+      const Dataset a = read_dataset(one, name), b = read_dataset(together, name);
+      CHECK(a.values == b.values);
+      CHECK(a.shape == b.shape);
+      CHECK(a.bytes == b.bytes);
+    }
+    if (count == 200001 && compression > 0)
+      CHECK(fs::file_size(together) < 1.1 * static_cast<double>(fs::file_size(one)));
+    CHECK(!fs::exists(together + ".tmp"));
+    fs::remove(one), fs::remove(together);
+  }
+  MPI_Barrier(comm);
+}
+
+TEST_CASE("a frame that several ranks cannot write fails on all of them and leaves nothing",
+          "[frames_together]") {
+  const MPI_Comm comm = MPI_COMM_WORLD;
+  const std::string folder = shared_path(comm, "none");
+  Snapshot part = some_snapshot();
+  take_share(part.bodies[0], rank_of(comm), size_of(comm));
+  REQUIRE(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr) == PETSC_SUCCESS);
+  for (const int compression : {0, 1})
+    CHECK(write_frame_together(comm, folder + "/frame.h5", part, Precision::double_, {{}, compression}) ==
+          PETSC_ERR_FILE_WRITE);
+  REQUIRE(PetscPopErrorHandler() == PETSC_SUCCESS);
+  CHECK(!fs::exists(folder));
 }
 
 TEST_CASE("an earlier run's files go, others stay", "[output]") {

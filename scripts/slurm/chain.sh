@@ -1,3 +1,4 @@
+# shellcheck shell=bash disable=SC2154,SC2012
 # The part that all job scripts here share; they set launch and backend and source it. The first argument of the
 # job is the options file, the others are options of mpm.
 #
@@ -40,7 +41,7 @@ case $status in
   0) exit 0 ;;
   75) ;;
   *)
-    if [ $status -lt 128 ] || [ "$to" = "$from" ]; then exit $status; fi
+    if [ "$status" -lt 128 ] || [ "$to" = "$from" ]; then exit "$status"; fi
     ;;
 esac
 again "$@"

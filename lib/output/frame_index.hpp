@@ -1,0 +1,32 @@
+#pragma once
+// particles.xdmf, the index of the frames for ParaView and VTK.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mpm {
+
+/// What the index says of one frame.
+struct FrameEntry {
+  struct Group {
+    std::string name;
+    long count = 0;                     // particles
+    bool body = false;                  // has stress, volume and plastic_strain
+    std::vector<std::string> fields{};  // that it has; empty for all
+  };
+  std::string file;  // relative to the output folder
+  double time = 0;   // s
+  std::vector<Group> groups;
+};
+
+/// The text of particles.xdmf: a temporal collection of spatial collections with one grid a body or rigid.
+/// The index shows stress as six scalars, stress_xx to stress_zx. `real_bytes` is 8 or 4, the size of every
+/// field but position, which is always 8.
+std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes);
+
+/// What the index says of a frame of an earlier part of the run; nothing where it is no longer there.
+std::optional<FrameEntry> read_entry(const std::string& folder, const std::string& name,
+                                     const std::vector<std::string>& groups);
+
+}  // namespace mpm
