@@ -187,7 +187,21 @@ void drift(const Points_& points, double margin) {
 template <class Space, class T, int Dim>
 void drift_within_margin(State<Space, T, Dim>& s) {
   drift<T, Dim>(s.soil.points, s.p2g.margin);
-  for (auto& set : s.rigid_points) drift<T, Dim>(set.points, s.p2g.margin);
+  const auto origin = on_host(s.patches.origin);
+  const auto rigids = on_host(s.rigids);
+  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
+    const auto& points = s.rigid_points[r].points;
+    drift<T, Dim>(points, s.p2g.margin);
+    // Their homes go with them: a strategy may bring a point to where its body is.
+    const auto coordinate = on_host(points.coordinate);
+    const auto cell = on_host(points.cell);
+    const auto home = on_host(points.home);
+    for (int p = 0; p < points.count; ++p)
+      for (int d = 0; d < Dim; ++d)
+        home(p)[d] = coordinate(p)[d] + origin(cell(p) / Patch<Dim>::cells)[d] + coord_of<Dim>(cell(p))[d] -
+                     rigids(r).displacement[d] / s.spacing;
+    Kokkos::deep_copy(points.home, home);
+  }
 }
 
 }  // namespace mpm::test
