@@ -25,7 +25,7 @@ void mark_soil(const State<Space, T, Dim>& s, const Marks& marks) {
   const auto address = s.soil.address;
   Kokkos::parallel_for(
       "mpm::mark_soil", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.all), KOKKOS_LAMBDA(int p) {
-        if (address(p) >= 0) marks(address(p) / Patch<Dim>::cells) = k_soil;
+        if (address(p) >= 0) Kokkos::atomic_store(&marks(address(p) / Patch<Dim>::cells), k_soil);
       });
 }
 
