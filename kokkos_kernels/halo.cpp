@@ -1,4 +1,6 @@
 #include "halo.hpp"
+#include "warp.hpp"
+#include "window.hpp"
 
 namespace mpm {
 
@@ -39,11 +41,25 @@ template <class Space, class T, int Dim>
 void sum_rigid_forces(const State<Space, T, Dim>& s, const Space& space) {
   const auto forces = s.slot_forces, sums = s.sums;
   const int values = Dim * static_cast<int>(s.rigid_points.size()), slots = s.near_count;
+  if (values == 0) return;
+  using Team = Kokkos::TeamPolicy<Space>;
+  constexpr int threads = is_device<Space> ? 256 : 1, warps = (threads + k_warp - 1) / k_warp;
   Kokkos::parallel_for(
-      "mpm::sum_rigid_forces", light(Kokkos::RangePolicy<Space>(space, 0, values)), KOKKOS_LAMBDA(int v) {
+      "mpm::sum_rigid_forces",
+      light(Team(space, values, threads)
+                .set_scratch_size(0, Kokkos::PerTeam(scratch_bytes<double>(warps) + k_scratch_slack))),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        const int v = team.league_rank(), thread = team.team_rank();
+        double* const part = scratch<double>(team, warps);
         double sum = 0;
-        for (int n = 0; n < slots; ++n) sum += forces(n * values + v);
-        sums(v) = sum;
+        for (int n = thread; n < slots; n += threads) sum += forces(n * values + v);
+        sum = sum_of_warp(sum);
+        if (thread % k_warp == 0) part[thread / k_warp] = sum;
+        team.team_barrier();
+        Kokkos::single(Kokkos::PerTeam(team), [&] {
+          sums(v) = part[0];
+          for (int w = 1; w < warps; ++w) sums(v) += part[w];
+        });
       });
 }
 

@@ -71,7 +71,7 @@ KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field
 /// share no node, and always the same part of each colour by the same thread, in whose cache the part then
 /// is. One thread alone needs no colours and takes the slots in the order of the points.
 template <class Space, int Dim, class F>
-void for_each_slot(const char* label, const Space& space, const Bins<Space>& bins, int slots, const F& f) {
+void for_each_slot(const char* label, const Space& space, const Bins<Space>& bins, const F& f) {
   using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Static>>;
   constexpr int cells = Patch<Dim>::cells;
   const auto begin = bins.begin;
@@ -80,7 +80,7 @@ void for_each_slot(const char* label, const Space& space, const Bins<Space>& bin
     if (bins.some)
       return Kokkos::parallel_for(label, Range(space, bins.colour_begin[0], bins.colour_begin[1]),
                                   [=](int n) { f(by_colour(n)); });
-    Kokkos::parallel_for(label, Range(space, 0, slots), [=](int slot) {
+    Kokkos::parallel_for(label, Range(space, bins.first_slot, bins.last_slot), [=](int slot) {
       if (begin(slot * cells) < begin((slot + 1) * cells)) f(slot);
     });
   } else {

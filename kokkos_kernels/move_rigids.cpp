@@ -1,4 +1,7 @@
+#include "particle_to_node.hpp"
 #include "step_kernels.hpp"
+#include "warp.hpp"
+#include "window.hpp"
 
 namespace mpm {
 
@@ -23,13 +26,12 @@ KOKKOS_INLINE_FUNCTION double move_rigid(Rigid<Dim>& rigid, const double* contac
   return furthest;
 }
 
-/// Counts the step and adds what any point can have moved to the bound; moved_rigid, margin [cells]; late:
+/// Counts the step and adds what any point can have moved to the bound; moved, margin [cells]; late:
 /// State::rebuild_late.
 template <class T>
-KOKKOS_INLINE_FUNCTION void end_step(Control& c, double moved_rigid, double margin, int late) {
+KOKKOS_INLINE_FUNCTION void end_step(Control& c, double moved, double margin, int late) {
   constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
-  c.increment = Kokkos::fmax(c.moved, moved_rigid) + epsilon;
-  c.moved = 0;
+  c.increment = moved + epsilon;
   c.bound += c.increment;
   ++c.steps;
   const bool now = c.due_in == 1;
@@ -42,59 +44,68 @@ KOKKOS_INLINE_FUNCTION void end_step(Control& c, double moved_rigid, double marg
 
 template <class Space, class T, int Dim>
 void move_rigid_points(State<Space, T, Dim>& s) {
-  const auto origin = s.patches.origin;
-  const auto rigids = s.rigids;
-  const double spacing = s.spacing;
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto points = s.rigid_points[r].points;
     if (points.surface_normal) continue;  // only a rebuild asks for them, and finds them itself
-    const auto home = points.home;
+    const RigidSource<Space, T, Dim> source{points, s.rigids, r, s.patches.origin, s.spacing};
     Kokkos::parallel_for(  // also while the steps are paused: it gives the same again
         "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(s.space, 0, points.count)),
-        KOKKOS_LAMBDA(int p) {
-          const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells),
-                           cell = coord_of<Dim>(points.cell(p));
-          for (int d = 0; d < Dim; ++d)
-            points.coordinate(p)[d] =
-                static_cast<T>(home(p)[d] + rigids(r).displacement[d] / spacing - from[d] - cell[d]);
-        });
+        KOKKOS_LAMBDA(int p) { source.move(p); });
   }
 }
 
 template <class Space, class T, int Dim>
 void move_rigids(State<Space, T, Dim>& s, double dt) {
   using Team = Kokkos::TeamPolicy<Space>;
-  constexpr int threads = is_device<Space> ? 128 : 1;
+  constexpr int threads = is_device<Space> ? 256 : 1, warps = (threads + k_warp - 1) / k_warp;
   const auto control = s.control;
+  const auto movements = s.movements;
   const auto sums = s.sums;
   const auto forces = s.slot_forces;
   const auto rigids = s.rigids;
-  const auto origin = s.patches.origin;
   const double spacing = s.spacing, margin = s.p2g.margin;
   const int count = static_cast<int>(s.rigid_points.size()), values = Dim * count, slots = s.near_count;
   const int late = s.rebuild_late;
+  const std::size_t bytes = scratch_bytes<double>(warps * (values + 1));
+  const int level = bytes > 32 * 1024 ? 1 : 0;
 
   Kokkos::parallel_for(
-      "mpm::move_rigids", light(Team(s.space, 1, threads)),
+      "mpm::move_rigids",
+      light(Team(s.space, 1, threads).set_scratch_size(level, Kokkos::PerTeam(bytes + k_scratch_slack))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (control().paused) return;
+        const int thread = team.team_rank(), warp = thread / k_warp;
+        double* const part = scratch<double>(team, warps * (values + 1), level);  // [values and moved][warps]
+        const auto keep = [&](int v, double of_warp) {
+          if (thread % k_warp == 0) part[v * warps + warp] = of_warp;
+        };
         for (int v = 0; v < values; ++v) {  // in an order that is always the same
           double sum = 0;
-          Kokkos::parallel_reduce(
-              Kokkos::TeamThreadRange(team, slots),
-              [&](int n, double& part) { part += forces(n * values + v); }, sum);
-          Kokkos::single(Kokkos::PerTeam(team), [&] { sums(v) = sum; });
+          for (int n = thread; n < slots; n += threads) sum += forces(n * values + v);
+          keep(v, sum_of_warp(sum));
         }
+        double moved = 0;  // cells
+        for (int n = thread; n < movements.places; n += threads)
+          moved = Kokkos::fmax(moved, movements.take(n));
+        keep(values, largest_of_warp(moved));
         team.team_barrier();  // also: no thread looks at `paused` any more
+        Kokkos::parallel_for(Kokkos::TeamThreadRange(team, count), [&](int r) {
+          for (int v = r * Dim; v < (r + 1) * Dim; ++v) {
+            sums(v) = 0;
+            for (int w = 0; w < warps; ++w) sums(v) += part[v * warps + w];
+          }
+          part[r * Dim * warps] = move_rigid(rigids(r), &sums(r * Dim), dt) / spacing;
+        });
+        team.team_barrier();
         Kokkos::single(Kokkos::PerTeam(team), [&] {
-          double furthest = 0;  // m
-          for (int r = 0; r < count; ++r)
-            furthest = Kokkos::fmax(furthest, move_rigid(rigids(r), &sums(r * Dim), dt));
-          end_step<T>(control(), furthest / spacing, margin, late);
+          moved = 0;
+          for (int w = 0; w < warps; ++w) moved = Kokkos::fmax(moved, part[values * warps + w]);
+          for (int r = 0; r < count; ++r) moved = Kokkos::fmax(moved, part[r * Dim * warps]);
+          end_step<T>(control(), moved, margin, late);
         });
       });
 
-  if (s.rigid_moves) move_rigid_points(s);
+  if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s);
 }
 
 template <class Space, class T, int Dim>

@@ -1,7 +1,10 @@
 #pragma once
 // Nodal fields, the rigid bodies' state, and the control block that lives on the device.
 
+#include <cstdint>
+
 #include "patches.hpp"
+#include "spaces.hpp"
 #include "surface.hpp"
 #include "types.hpp"
 
@@ -85,7 +88,6 @@ struct Fault {
 struct Control {
   double bound;      // cells that any point can have moved since the last rebuild
   double increment;  // of the last step
-  double moved;      // cells, the largest movement of a particle in this step
   int due_in;        // steps to a rebuild that is due; 0: none is
   int paused;        // the bound passed the margin, a rebuild is due, or a fault
   int steps;         // steps done since the host last looked
@@ -103,6 +105,25 @@ KOKKOS_INLINE_FUNCTION bool rebuild_due(double bound, double increment, double m
 
 template <class Space>
 using ControlView = Kokkos::View<Control, typename Space::memory_space>;
+
+/// The largest movement of a particle in the present step [cells]. Each patch notes that of its own at one of
+/// several places, since all at one would wait for each other.
+template <class Space>
+struct Movements {
+  static constexpr int places = is_device<Space> ? 256 : 16;
+  // Of numbers that are not negative the bits have the same order, and integers a GPU compares in its memory.
+  Kokkos::View<std::uint64_t[places], typename Space::memory_space> bits;
+
+  KOKKOS_INLINE_FUNCTION void note(int slot, double moved) const {
+    Kokkos::atomic_max(&bits(slot % places), Kokkos::bit_cast<std::uint64_t>(moved));
+  }
+  /// What was noted at a place, which then begins anew.
+  KOKKOS_INLINE_FUNCTION double take(int place) const {
+    const double moved = Kokkos::bit_cast<double>(bits(place));
+    bits(place) = 0;
+    return moved;
+  }
+};
 
 /// Notes a fault; the first one is kept.
 template <class ControlView_>

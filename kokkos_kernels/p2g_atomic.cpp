@@ -2,6 +2,12 @@
 
 namespace mpm {
 
+/// Brings a point to where it is now, if its source knows.
+template <class Source>
+KOKKOS_INLINE_FUNCTION void move_point([[maybe_unused]] const Source& source, [[maybe_unused]] int p) {
+  if constexpr (requires { source.move(p); }) source.move(p);
+}
+
 template <class Source>
 void scatter_atomic(const Interpolation<Source>& it) {
   using T = typename Source::real;
@@ -14,6 +20,7 @@ void scatter_atomic(const Interpolation<Source>& it) {
       light(Kokkos::RangePolicy<typename Source::Space>(it.space, 0, source.points.count)),
       KOKKOS_LAMBDA(int p) {
         if (control().paused) return;
+        move_point(source, p);
         give_to_nodes(source, around, p, [&](int i, int k, T v) { Kokkos::atomic_add(&out(i, k), v); });
       });
 }

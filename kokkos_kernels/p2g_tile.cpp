@@ -16,28 +16,27 @@ void sum_on_device(const Interpolation<Source>& it) {
   const auto by_colour = it.bins.by_colour;
   const auto out = it.out;
   const auto control = it.control;
+  const int first = it.bins.colour_begin[0], teams = it.bins.colour_begin[Patch<Dim>::colours] - first;
+  if (teams == 0) return;
 
-  for_each_launch<Space, Dim>(it.bins, [&](int first, int last) {
-    Kokkos::parallel_for(
-        "mpm::reduce_by_tile",
-        light(Team(it.space, last - first, team_threads<Space>)
-                  .set_scratch_size(0, Kokkos::PerTeam(Tile_::bytes() + k_scratch_slack))),
-        KOKKOS_LAMBDA(const typename Team::member_type& team) {
-          if (control().paused) return;
-          const int slot = by_colour(first + team.league_rank());
-          if (source.skips(slot)) return;
-          Scratch scratch(team, Tile_::bytes());
-          const Tile_ tile(scratch);
-          number_window<Dim>(team, around, slot, tile.number);
-          tile.clear(team);
-          team.team_barrier();
-          const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
-          tile.add(team, cell_begin, [&](int p) {
-            return typename Tile_::Entry{source.points.coordinate(p), source.load(p)};
-          });
-          tile.give_window(team, out);
+  Kokkos::parallel_for(
+      "mpm::reduce_by_tile",
+      light(Team(it.space, teams, team_threads<Space>)
+                .set_scratch_size(0, Kokkos::PerTeam(Tile_::bytes() + k_scratch_slack))),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (control().paused) return;
+        const int slot = by_colour(first + team.league_rank());
+        if (source.skips(slot)) return;
+        Scratch scratch(team, Tile_::bytes());
+        const Tile_ tile(scratch);
+        for_each_of_window<Dim>(team, around, slot, [&](int n, int number) { tile.set_node(n, number); });
+        tile.clear(team, [&](int c) { return begin(slot * cells + c); });
+        team.team_barrier();
+        tile.add(team, [&](int p) {
+          return typename Tile_::Entry{source.points.coordinate(p), source.load(p)};
         });
-  });
+        tile.give_window(team, out);
+      });
 }
 
 template <class Source>

@@ -27,6 +27,16 @@ struct Interpolation {
 /// The strategy that `auto` stands for on a backend.
 constexpr P2G chosen(P2G how, Backend) { return how == P2G::automatic ? P2G::tile : how; }
 
+/// The strategy for the points of rigids. They are few in many cells of a patch or many in few: where `tile`
+/// would leave most of a GPU's threads idle, a thread a point does not.
+template <class Space>
+P2G strategy_of_rigids(P2G chosen_for_soil) {
+  const bool tile = chosen(chosen_for_soil, backend_of<Space>) == P2G::tile;
+  return is_device<Space> && tile ? P2G::atomic : chosen_for_soil;
+}
+/// Whether a strategy moves the points of a rigid itself, since it takes each of them once.
+constexpr bool moves_points(P2G how) { return how == P2G::atomic; }
+
 template <class Source>
 void scatter_sequential(const Interpolation<Source>&);  // one thread, particle by particle
 template <class Source>

@@ -57,16 +57,21 @@ struct RigidPoints : Points<Space, T, Dim> {
   bool surface_normal = false;                      // contact does not ask for their mass at the nodes
 };
 
-/// Applies f to every view that holds one entry a particle, but coordinate, cell and id. The one list of
-/// fields: sorting, output and checkpoints follow it.
+/// Applies f to the name and the view of every field that holds one entry a particle, but coordinate, cell
+/// and id. The one list of fields: sorting, output and checkpoints follow it.
 template <class Space, class T, int Dim, class F>
-void for_each_field(Soil<Space, T, Dim>& s, F&& f) {
-  f(s.velocity), f(s.stress), f(s.volume), f(s.plastic_strain), f(s.strength), f(s.body);
-  if (s.affine.extent(0) > 0) f(s.affine);
+void for_each_named_field(Soil<Space, T, Dim>& s, F&& f) {
+  f("velocity", s.velocity), f("stress", s.stress), f("volume", s.volume);
+  f("plastic_strain", s.plastic_strain), f("strength", s.strength), f("body", s.body);
+  if (s.affine.extent(0) > 0) f("affine", s.affine);
 }
 template <class Space, class T, int Dim, class F>
-void for_each_field(RigidPoints<Space, T, Dim>& s, F&& f) {
-  f(s.home);
+void for_each_named_field(RigidPoints<Space, T, Dim>& s, F&& f) {
+  f("home", s.home);
+}
+template <class Points_, class F>
+void for_each_field(Points_& points, F&& f) {
+  for_each_named_field(points, [&](const char*, auto& field) { f(field); });
 }
 
 /// Ranges of points by cell, and the lists of the strategies that need them. Valid while no point has moved
@@ -75,6 +80,7 @@ template <class Space>
 struct Bins {
   using Memory = typename Space::memory_space;
   Kokkos::View<int*, Memory> begin;      // first point of a cell [cells + 1]
+  int first_slot = 0, last_slot = 0;     // slots that may hold points: [first_slot, last_slot)
   Kokkos::View<int*, Memory> by_colour;  // slots that hold points, ordered by colour
   int colour_begin[8 + 1] = {};          // ranges of by_colour
   int border = 0;     // of by_colour, on several ranks: slots in front that share nodes with other ranks, all
@@ -103,5 +109,15 @@ Bins<Space> bins_of(const Bins<Space>& all, const Part<Space>& part) {
   for (int colour = 1; colour <= 8; ++colour) bins.colour_begin[colour] = part.last;
   return bins;
 }
+
+/// A set of points with what orders it.
+template <class Space, class Points_>
+struct Sorted {
+  Points_ points;
+  Bins<Space> bins;
+  Kokkos::View<long*, typename Space::memory_space>
+      address;  // scratch of a rebuild: Grid::address_of each point
+  Kokkos::View<int*, typename Space::memory_space> order;  // scratch of a rebuild: former place of each point
+};
 
 }  // namespace mpm

@@ -1,6 +1,8 @@
 #pragma once
 // Function 7: bins, patch table and lists anew, before a particle can have moved further than the margin.
 
+#include <algorithm>
+
 #include "spaces.hpp"
 #include "state.hpp"
 
@@ -70,6 +72,17 @@ struct SortedPart<Matrix<T, Dim>> {
 };
 template <class Value>
 using PartOf = typename SortedPart<Value>::type;
+
+/// Bytes of scratch memory that sorting takes a point.
+template <class Points_>
+std::size_t spare_of_point(Points_& points) {
+  std::size_t widest =
+      std::max(sizeof(int), sizeof(PartOf<typename decltype(points.coordinate)::value_type>));
+  for_each_field(points, [&](const auto& field) {
+    widest = std::max(widest, sizeof(PartOf<typename std::decay_t<decltype(field)>::value_type>));
+  });
+  return widest;
+}
 
 /// Makes a view hold at least n entries; its content is lost when it grows. What has grown once may grow
 /// again, and gets some room for it.

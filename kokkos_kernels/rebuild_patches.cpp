@@ -1,5 +1,6 @@
 // Where the points are, and which patches are active.
 
+#include "batches.hpp"
 #include "rebuild.hpp"
 
 namespace mpm {
@@ -82,6 +83,7 @@ void locate_rigids(State<Space, T, Dim>& s) {
 
 template <class Space, class T, int Dim>
 void locate(State<Space, T, Dim>& s) {
+  collect_soil(s);
   const auto grid = s.grid;
   const auto origin = s.patches.origin;
   const auto control = s.control;

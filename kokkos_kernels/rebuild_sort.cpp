@@ -1,6 +1,7 @@
 // The order of the points: by slot, by cell in it, by id in the cell. A counting sort, then each cell's few
 // points are put in order of id, so that the result does not depend on how threads ran.
 
+#include "batches.hpp"
 #include "rebuild.hpp"
 
 namespace mpm {
@@ -80,6 +81,30 @@ void permute(const Space& space, const Field& field, const Order& order, int cou
   }
 }
 
+template <class Space, class Points_, class Order, class Spare>
+void permute_fields(const Space& space, Points_& points, const Order& order, const Spare& spare) {
+  const auto field = [&](const auto& view) { permute(space, view, order, points.all, spare); };
+  field(points.coordinate), field(points.cell), field(points.id);
+  for_each_field(points, field);
+}
+/// Points that live in memory of the host are moved there by its own threads: a device would read and write
+/// it in pieces.
+template <class Space, class Points_, class Spare>
+void permute_fields(const Space& space, Sorted<Space, Points_>& set, const Spare& spare) {
+  if constexpr (is_device<Space>) {
+    const bool at_host = set.order.use_count() == 0;  // memory of Batches::store
+    if (at_host) {
+      const Kokkos::DefaultHostExecutionSpace threads;
+      const Kokkos::View<int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> order(set.order.data(),
+                                                                                 set.order.extent(0));
+      space.fence("mpm::before the host's threads");
+      permute_fields(threads, set.points, order, spare);
+      return threads.fence("mpm::permute_fields");
+    }
+  }
+  permute_fields(space, set.points, set.order, spare);
+}
+
 /// Slots that hold points, ordered by the colour of their patch.
 template <class Space, class Points_, int Dim>
 void slots_by_colour(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches) {
@@ -87,6 +112,7 @@ void slots_by_colour(const Space& space, Sorted<Space, Points_>& set, const Patc
   const auto by_colour = set.bins.by_colour;
   const auto begin = set.bins.begin;
   const auto origin = patches.origin;
+  set.bins.first_slot = 0, set.bins.last_slot = patches.slots;
   set.bins.colour_begin[0] = 0;
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
     const int first = set.bins.colour_begin[colour];
@@ -111,19 +137,11 @@ void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Spa
               const Kokkos::View<int*, typename Space::memory_space>& marks, Spare& spare) {
   const int cells = patches.node_count();
   auto& points = set.points;
-  std::size_t widest =
-      std::max(sizeof(int), sizeof(PartOf<typename decltype(points.coordinate)::value_type>));
-  for_each_field(points, [&](const auto& field) {
-    widest = std::max(widest, sizeof(PartOf<typename std::decay_t<decltype(field)>::value_type>));
-  });
-  ensure(spare, widest * points.all);
+  ensure(spare, spare_of_point(points) * points.all);
 
   count_by_cell(space, set, patches.slot_of, marks, cells, Patch<Dim>::cells);
   order_points(space, set, spare, cells);
-  permute(space, points.coordinate, set.order, points.all, spare);
-  permute(space, points.cell, set.order, points.all, spare);
-  permute(space, points.id, set.order, points.all, spare);
-  for_each_field(points, [&](const auto& field) { permute(space, field, set.order, points.all, spare); });
+  permute_fields(space, set, spare);
   Kokkos::View<int, Kokkos::HostSpace> held("mpm::held");
   Kokkos::deep_copy(space, held, Kokkos::subview(set.bins.begin, cells));
   space.fence("mpm::sort_set");
@@ -140,22 +158,45 @@ void sort_points(State<Space, T, Dim>& s) {
   for (auto& set : s.rigid_points) sort_set(s.space, set, s.patches, s.marks, s.spare);
 }
 
+/// Distance [cells] of a surface from the middle of a patch, beyond which it touches no node that particles
+/// of the patch reach, until the next rebuild: half the diagonal of their window, the reach of a contact (a
+/// cell along each axis), and the movement till then.
+template <int Dim>
+double far_from_patch(double margin) {
+  constexpr double half = Patch<Dim>::edge / 2 + 1, step_beyond_margin = 0.5;
+  return std::sqrt(static_cast<double>(Dim)) * (half + 1) + margin + step_beyond_margin;
+}
+
 template <class Space, class T, int Dim>
 void mark_near_rigids(State<Space, T, Dim>& s) {
   ensure(s.near_rigid, s.patches.slots);
   const auto near = s.near_rigid;
   const auto around = s.patches.around;
+  const auto origin = s.patches.origin;
+  const auto rigids = s.rigids;
+  const auto vertices = s.vertices;
+  const auto grid = s.grid;
+  const double spacing = s.spacing, far = far_from_patch<Dim>(s.p2g.margin) * spacing;
   const int slots = s.patches.slots;
   Kokkos::deep_copy(s.space, near, 0);
-  for (const auto& set : s.rigid_points) {
-    const auto begin = set.bins.begin;
+  for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
+    const auto begin = s.rigid_points[r].bins.begin;
     Kokkos::parallel_for(
         "mpm::mark_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
+          bool holds = false;
           for (int k = 0; k < Patch<Dim>::around; ++k) {
             const int other = around(slot, k);
-            if (other >= 0 && begin(other * Patch<Dim>::cells) < begin((other + 1) * Patch<Dim>::cells))
-              near(slot) = 1;
+            holds |= other >= 0 && begin(other * Patch<Dim>::cells) < begin((other + 1) * Patch<Dim>::cells);
           }
+          if (!holds) return;
+          const Rigid<Dim>& rigid = rigids(r);
+          Vector<double, Dim> middle;  // bodies go on beyond the mesh
+          for (int d = 0; d < Dim; ++d) {
+            const int at = origin(slot)[d] + Patch<Dim>::edge / 2;
+            middle[d] = Kokkos::max(0, Kokkos::min(at, grid.cells[d])) * spacing - rigid.displacement[d];
+          }
+          if (rigid.surface_normal && distance_to(rigid.surface, vertices, middle).value > far) return;
+          near(slot) = 1;
         });
   }
   ensure(s.near_slots, slots);
@@ -163,8 +204,9 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
   Kokkos::parallel_scan(
       "mpm::list_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots),
       KOKKOS_LAMBDA(int slot, int& n, bool last) {
-        if (last && near(slot) != 0) list(n) = slot;
-        n += near(slot);
+        if (near(slot) == 0) return;
+        if (last) list(n) = slot, near(slot) = n + 1;
+        ++n;
       },
       s.near_count);
   ensure(s.slot_forces, std::size_t(s.near_count) * Dim * s.rigid_points.size());
@@ -210,6 +252,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
     s.nodes.rigid = decltype(s.nodes.rigid)(
         Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),
         nodes + (s.nodes.rigid.extent(1) > 0 ? nodes / 16 : 0));
+  if (s.batches.in_use()) plan_batches(s);
   const auto control = s.control;
   Kokkos::parallel_for(
       "mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {

@@ -24,20 +24,12 @@ using Number = decltype(number_of(std::declval<Value>()));
 template <class Value>
 constexpr int components_of = sizeof(Value) / sizeof(Number<Value>);
 
-/// The name of a view without the prefix that all labels have.
 template <class View>
-std::string name_of_view(const View& view) {
-  const std::string label = view.label();
-  const auto colons = label.rfind("::");
-  return colons == std::string::npos ? label : label.substr(colons + 2);
-}
-
-template <class View>
-SavedField save_field(const View& view, int count) {
+SavedField save_field(const std::string& name, const View& view, int count) {
   using Value = typename View::non_const_value_type;
   constexpr int n = components_of<Value>;
   const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
-  SavedField field{name_of_view(view), n, static_cast<int>(sizeof(Number<Value>)), {}};
+  SavedField field{name, n, static_cast<int>(sizeof(Number<Value>)), {}};
   field.values.resize(std::size_t(count) * n);
   const auto* numbers = reinterpret_cast<const Number<Value>*>(host.data());
   std::copy(numbers, numbers + field.values.size(), field.values.begin());
@@ -63,8 +55,11 @@ SavedPoints save_points(const Grid_& grid, const Patches_& patches, Points_ poin
   const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
   saved.id.assign(id.data(), id.data() + points.count);
   saved.address = addresses_of(grid, patches, points.cell, points.count);
-  saved.fields.push_back(save_field(points.coordinate, points.count));
-  for_each_field(points, [&](const auto& field) { saved.fields.push_back(save_field(field, points.count)); });
+  const auto save = [&](const char* name, const auto& field) {
+    saved.fields.push_back(save_field(name, field, points.count));
+  };
+  save("coordinate", points.coordinate);
+  for_each_named_field(points, save);
   return saved;
 }
 
@@ -89,17 +84,23 @@ SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
   return saved;
 }
 
+/// Makes a view hold n entries; its content is lost where it had another number.
+template <class View>
+void resize(View& view, std::size_t n) {
+  const std::string label = view.label();
+  if (view.extent(0) != n) view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), n);
+}
+
 /// Puts a saved field into a view of `count` entries. False where there is none of its name and size.
 template <class View>
-bool restore_field(View& view, const SavedPoints& saved, int count) {
+bool restore_field(const std::string& name, View& view, const SavedPoints& saved, int count) {
   using Value = typename View::non_const_value_type;
   constexpr int n = components_of<Value>;
-  const std::string label = view.label(), name = name_of_view(view);
   const auto field = std::find_if(saved.fields.begin(), saved.fields.end(),
                                   [&](const SavedField& f) { return f.name == name; });
   if (field == saved.fields.end() || field->components != n || field->values.size() != std::size_t(count) * n)
     return false;
-  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), count);
+  resize(view, count);
   const auto host = Kokkos::create_mirror_view(view);
   auto* numbers = reinterpret_cast<Number<Value>*>(host.data());
   for (std::size_t k = 0; k < field->values.size(); ++k)
@@ -110,8 +111,7 @@ bool restore_field(View& view, const SavedPoints& saved, int count) {
 
 template <class View>
 void restore_whole(View& view, const std::vector<long>& values) {
-  const std::string label = view.label();
-  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), values.size());
+  resize(view, values.size());
   const auto host = Kokkos::create_mirror_view(view);
   for (std::size_t p = 0; p < values.size(); ++p)
     host(p) = static_cast<typename View::non_const_value_type>(values[p]);
@@ -124,11 +124,11 @@ std::string restore_points(Sorted<Space, Points_>& set, const SavedPoints& saved
   auto& points = set.points;
   points.count = points.all = static_cast<int>(saved.id.size());
   std::string missing;
-  const auto restore = [&](auto& view) {
-    if (!restore_field(view, saved, points.count)) missing = name_of_view(view);
+  const auto restore = [&](const char* name, auto& view) {
+    if (!restore_field(name, view, saved, points.count)) missing = name;
   };
-  restore(points.coordinate);
-  for_each_field(points, restore);
+  restore("coordinate", points.coordinate);
+  for_each_named_field(points, restore);
   restore_whole(points.id, saved.id);
   restore_whole(set.address, saved.address);
   restore_whole(points.cell, saved.address);  // sorting gives the cells; only the length counts

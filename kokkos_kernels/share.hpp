@@ -7,7 +7,9 @@
 
 namespace mpm {
 
-// A Point holds what a particle gives, as plain T, so that a strategy may keep it value by value.
+// A Point holds what a particle gives, as plain T, so that a strategy may keep it value by value. Each value
+// of a node's share goes with the weight, or with components of its gradient, which takes(value, d) tells:
+//   S factor(q, value)   or   sum over d of dS/dx_d slope(q, value, d)
 
 /// Soil to nodes, Eqs (1), (2), (4): m_i = sum S m_p, p_i = sum S m_p v_p, f_i = - sum V_p sigma_p grad S.
 /// The weight, Eq. (5), is m_i g and is added at the node.
@@ -45,15 +47,14 @@ struct SoilSource {
       q.stress_volume[k] = scale * stress[k < Dim ? k : k + 3 - Dim];
     return q;
   }
-  template <class W, class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, W w, const Vector<W, Dim>& grad, Add&& add) {
-    add(SoilShare<Dim>::mass, w * q.mass);
-    for (int d = 0; d < Dim; ++d) add(SoilShare<Dim>::momentum + d, w * q.momentum[d]);
-    for (int d = 0; d < Dim; ++d) {
-      W f = q.stress_volume[place(d, 0)] * grad[0];
-      for (int e = 1; e < Dim; ++e) f += q.stress_volume[place(d, e)] * grad[e];
-      add(SoilShare<Dim>::force + d, f);
-    }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int) {
+    return value >= SoilShare<Dim>::force;
+  }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
+    return value == SoilShare<Dim>::mass ? q.mass : q.momentum[value - SoilShare<Dim>::momentum];
+  }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int value, int d) {
+    return q.stress_volume[place(value - SoilShare<Dim>::force, d)];
   }
 };
 
@@ -71,19 +72,14 @@ struct AffineSource : SoilSource<Space_, T, Dim> {
     for (int k = 0; k < Dim * Dim; ++k) q.affine[k] = q.mass * this->points.affine(p)[k];
     return q;
   }
-  /// offset [cells] from the particle to the node.
+  /// What comes to the share of a node with weight w, `offset` [cells] from the particle.
   template <class W, class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, W w, const Vector<W, Dim>& grad,
-                                          const Vector<W, Dim>& offset, Add&& add) {
-    Base::give(q, w, grad, [&](int value, W share) {
-      const int d = value - SoilShare<Dim>::momentum;
-      if (d >= 0 && d < Dim) {
-        W more = q.affine[d * Dim] * offset[0];
-        for (int e = 1; e < Dim; ++e) more += q.affine[d * Dim + e] * offset[e];
-        share += w * more;
-      }
-      add(value, share);
-    });
+  KOKKOS_INLINE_FUNCTION static void give_more(const Point& q, W w, const Vector<W, Dim>& offset, Add&& add) {
+    for (int d = 0; d < Dim; ++d) {
+      W more = q.affine[d * Dim] * offset[0];
+      for (int e = 1; e < Dim; ++e) more += q.affine[d * Dim + e] * offset[e];
+      add(SoilShare<Dim>::momentum + d, w * more);
+    }
   }
 };
 
@@ -107,10 +103,9 @@ struct RestSource {
     for (int d = 0; d < Dim; ++d) q.momentum[d] = body.mass * rest(p)[d];
     return q;
   }
-  template <class W, class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, W w, const Vector<W, Dim>&, Add&& add) {
-    for (int d = 0; d < Dim; ++d) add(d, w * q.momentum[d]);
-  }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.momentum[value]; }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
 /// The soil's boundary at a node, sum grad S V_p: by Gauss' theorem the integral of S_i n over it, n out of
@@ -135,15 +130,15 @@ struct BoundarySource {
     const T volume = points.volume(p);
     return {points.bodies(points.body(p)).half_length, volume * inv_spacing, volume};
   }
-  template <class W, class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, W w, const Vector<W, Dim>& grad, Add&& add) {
-    for (int d = 0; d < Dim; ++d) add(BoundaryShare<Dim>::area + d, grad[d] * q.area);
-    add(BoundaryShare<Dim>::volume, w * q.volume);
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
+    return value == BoundaryShare<Dim>::area + d;
   }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.volume; }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.area; }
 };
 
 /// Rigid body to nodes: m_i^R = sum S m_p and the mass gradient n_i^R = sum grad S m_p (Eq. 3; it points out
-/// of the body).
+/// of the body). A strategy may move() a point before it gives.
 template <class Space_, class T, int Dim>
 struct RigidSource {
   using Space = Space_;
@@ -154,24 +149,52 @@ struct RigidSource {
     T mass;
   };
   RigidPoints<Space, T, Dim> points;
+  Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
+  int rigid;  // whose points they are
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  double spacing;
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int) const { return {points.half_length, points.mass}; }
-  template <class W, class Add>
-  KOKKOS_INLINE_FUNCTION static void give(const Point& q, W w, const Vector<W, Dim>& grad, Add&& add) {
-    add(RigidShare<Dim>::mass, w * q.mass);
-    for (int d = 0; d < Dim; ++d) add(RigidShare<Dim>::normal + d, grad[d] * q.mass);
+  /// Brings point p to where its body is now.
+  KOKKOS_INLINE_FUNCTION void move(int p) const {
+    const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(points.cell(p));
+    for (int d = 0; d < Dim; ++d)
+      points.coordinate(p)[d] =
+          static_cast<T>(points.home(p)[d] + rigids(rigid).displacement[d] / spacing - from[d] - cell[d]);
   }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
+    return value == RigidShare<Dim>::normal + d;
+  }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.mass; }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.mass; }
 };
 
-/// Source::give, with the offset() from the particle to the node [cells] where the source takes one.
-template <class Source, class T, int Dim, class Offset, class Add>
-KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, T w, const Vector<T, Dim>& grad,
-                                 Offset&& offset, Add&& add) {
-  if constexpr (requires { Source::takes_offset; })
-    Source::give(q, w, grad, offset(), add);
-  else
-    Source::give(q, w, grad, add);
+/// The first component of the gradient, from d on, that goes into a value of the share; Source::dim if none.
+template <class Source>
+KOKKOS_INLINE_FUNCTION constexpr int first_taken(int value, int d = 0) {
+  while (d < Source::dim && !Source::takes(value, d)) ++d;
+  return d;
+}
+
+/// The share of a node with weight w and its gradient `grad` [1/cell], by add(value, share). offset() [cells]
+/// from the particle to the node is asked for where the source takes one.
+template <class Source, class W, int Dim, class Offset, class Add>
+KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, W w, const Vector<W, Dim>& grad,
+                                 [[maybe_unused]] Offset&& offset, Add&& add) {
+  unrolled<Source::size>([&](auto value) {
+    constexpr int first = first_taken<Source>(value);
+    if constexpr (first == Dim) {
+      add(value, w * Source::factor(q, value));
+    } else {
+      W share = grad[first] * Source::slope(q, value, first);
+      unrolled<Dim>([&](auto d) {
+        if constexpr (d > first && Source::takes(value, d)) share += grad[d] * Source::slope(q, value, d);
+      });
+      add(value, share);
+    }
+  });
+  if constexpr (requires { Source::takes_offset; }) Source::give_more(q, w, offset(), add);
 }
 
 /// Applies X(Source) to every source of a space, real type and dimension.

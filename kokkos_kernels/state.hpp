@@ -5,19 +5,9 @@
 #include <vector>
 
 #include "nodes.hpp"
-#include "particles.hpp"
+#include "soil_batches.hpp"
 
 namespace mpm {
-
-/// A set of points with what orders it.
-template <class Space, class Points_>
-struct Sorted {
-  Points_ points;
-  Bins<Space> bins;
-  Kokkos::View<long*, typename Space::memory_space>
-      address;  // scratch of a rebuild: Grid::address_of each point
-  Kokkos::View<int*, typename Space::memory_space> order;  // scratch of a rebuild: former place of each point
-};
 
 /// Strategy and what its lists are built with.
 struct P2GPlan {
@@ -34,11 +24,12 @@ struct State {
   Grid<T, Dim> grid;
   Patches<Space, Dim> patches;
   Sorted<Space, Soil<Space, T, Dim>> soil;
+  Batches<Space, T, Dim> batches;  // of the soil, where the device's memory does not hold it all
   std::vector<Sorted<Space, RigidPoints<Space, T, Dim>>> rigid_points;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   Kokkos::View<Vertex*, Memory> vertices;  // of the rigids' polygons
-  Kokkos::View<int*, Memory> near_rigid;   // by slot: 1 where it or one around it holds points of a rigid
-  Kokkos::View<int*, Memory> near_slots;   // those slots
+  Kokkos::View<int*, Memory> near_slots;   // where a rigid may touch a node that the slot's particles reach
+  Kokkos::View<int*, Memory> near_rigid;   // by slot: its place among those, from 1 on; 0 elsewhere
   int near_count = 0;
   Kokkos::View<double*, Memory>
       slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
@@ -46,6 +37,7 @@ struct State {
   Kokkos::View<std::uint64_t*, Memory>
       counted;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
   ControlView<Space> control;
+  Movements<Space> movements;
   Kokkos::View<double*, Memory> sums;  // N, force of the soil on each rigid in this step
   Kokkos::View<char*, Memory>
       spare;  // scratch of a rebuild: one field in its new order; of a step: dilatations, XPIC

@@ -18,9 +18,16 @@ bool sums_ahead(const State<Space, T, Dim>& s);
 
 /// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
 /// contact forces in s.slot_forces. Where sums_ahead, it leaves the nodal sums at zero, which is function 1
-/// of the next step. dt [s].
+/// of the next step. dt [s]. queue: that of the nodes near rigids, if nodes_apart; the others are on s.space.
 template <class Space, class T, int Dim>
-void update_nodes(State<Space, T, Dim>& s, double dt);
+void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue);
+template <class Space, class T, int Dim>
+void update_nodes(State<Space, T, Dim>& s, double dt) {
+  update_nodes(s, dt, s.space);
+}
+/// Whether the nodes near rigids have a kernel of their own.
+template <class Space, class T, int Dim>
+bool nodes_apart(const State<Space, T, Dim>& s);
 
 /// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves
 /// the furthest movement of a particle in s.control. Where sums_ahead, adds the soil as it then is to the

@@ -1,38 +1,52 @@
 #pragma once
-// The strategy `tile`: a team sums the shares of its patch's particles in scratch memory, then adds the
-// window to the nodes. On a device a thread sums a row of nodes in registers; a thread of the host takes
-// particle by particle.
+// The strategy `tile` on a device: a team sums the shares of its patch's particles in scratch memory, then
+// adds the window to the nodes. The particles pass over a stage, and a thread sums four nodes of a row in
+// registers. host_tile.hpp is the loop shape of a processor.
 
 #include <cstring>
 
+#include "warp.hpp"
 #include "window.hpp"
 
 namespace mpm {
 
 template <class Source>
-struct Tile {
+class Tile {
+ public:
   using T = typename Source::real;
   using Space = typename Source::Space;
   using Point = typename Source::Point;
   static constexpr int Dim = Source::dim, size = Source::size, window = Patch<Dim>::window;
-  static constexpr bool device = is_device<Space>;
 
   /// A particle on its way to the nodes.
   struct Entry {
     Vector<T, Dim> x;  // cells
     Point point;
   };
-  // The stage keeps of an entry, each value apart: for each axis the first and last weight and the last
-  // derivative, of which the others follow; the point, without its half length; x where the source asks for
-  // it.
+
+ private:
+  static constexpr int edge = Patch<Dim>::edge, across = Patch<Dim>::window_edge, cells = Patch<Dim>::cells;
+  static constexpr int k_reach = 4;  // nodes that the particles of a cell reach along an axis
+  static constexpr int k_layers = Dim == 3 ? k_reach : 1;
+  // In 3D layer by layer of cells: a particle then reaches four layers of nodes, each with its own threads.
+  static constexpr int k_lots = Dim == 3 ? edge : 1;
   static constexpr bool k_offset = requires { Source::takes_offset; };
-  static constexpr int k_point = sizeof(Point) / sizeof(T) - 2;
+  static constexpr int k_point = sizeof(Point) / sizeof(T) - 2;  // without its half length
   static constexpr int k_values = 3 * Dim + k_point + (k_offset ? Dim : 0);
-  static constexpr int k_bank = 128 / sizeof(T);  // values in a line of scratch memory
-  static constexpr int pitch_of(int entries) { return entries + entries / k_bank; }
+
+  // The stage keeps of an entry, in units that are read at once and lie apart: for each axis, the first one
+  // last, the weight of the first node and that of the last, with the derivative of the last, of which the
+  // others follow; the point; x where the source asks for it. The sign of the first weight tells where the
+  // first node is: it is negative for node 0 of the cell, and positive for node -1.
+  static constexpr int k_unit = 16 / sizeof(T), k_units = (k_values + k_unit - 1) / k_unit;
+  struct alignas(16) Unit {
+    T c[k_unit];
+  };
+  // A place is left free after eight, so that cells of four and eight particles are in different banks.
+  KOKKOS_INLINE_FUNCTION static constexpr int place(int n) { return n + n / 8; }
   static constexpr std::size_t bytes_of(int entries) {
-    return scratch_bytes<T>(size * window) + scratch_bytes<T>(k_values * pitch_of(entries)) +
-           scratch_bytes<int>(pitch_of(entries)) + scratch_bytes<int>(window);
+    return scratch_bytes<Unit>(k_units * place(entries)) + scratch_bytes<T>(size * window) +
+           scratch_bytes<int>(cells + 1) + scratch_bytes<int>(window);
   }
   /// Entries that the stage has room for: somewhat more than a patch or layer of 2^Dim particles a cell
   /// holds.
@@ -41,177 +55,178 @@ struct Tile {
     while (!scratch_fits<Space, T, Dim>(bytes_of(entries))) entries -= 32;
     return entries;
   }
-  static constexpr int capacity = device ? room() : 0, pitch = pitch_of(capacity);
-  static_assert(!device || capacity >= 32, "a team of this size has no room for the particles");
+  static constexpr int capacity = room(), pitch = place(capacity);
+  static_assert(capacity >= 32, "a team of this size has no room for the particles");
 
-  int* number;  // of the nodes of the window [window]
-  T* sums;      // device [size][window], host [window][size]
-  T* stage;     // [k_values][pitch]
-  int* firsts;  // [pitch], bit d: AxisWeights::first along d is 0, not -1
+  Unit* stage_;  // [k_units][pitch]
+  T* sums_;      // [window][size]
+  int* begin_;   // first particle of each cell [cells + 1]
+  int* to_;      // number of each node of the window, less its place in it [window]
 
+ public:
   static constexpr std::size_t bytes() { return bytes_of(capacity); }
 
   KOKKOS_INLINE_FUNCTION explicit Tile(Scratch& scratch)
-      : number(scratch.take<int>(window)),
-        sums(scratch.take<T>(size * window)),
-        stage(scratch.take<T>(k_values * pitch)),
-        firsts(scratch.take<int>(pitch)) {}
+      : stage_(scratch.take<Unit>(k_units * pitch)),
+        sums_(scratch.take<T>(size * window)),
+        begin_(scratch.take<int>(cells + 1)),
+        to_(scratch.take<int>(window)) {}
 
-  KOKKOS_INLINE_FUNCTION T& sum(int node, int value) const {
-    return sums[device ? value * window + node : node * size + value];
-  }
+  /// Before all else, as clear(), and the team must wait for both: the number of node n of the window.
+  KOKKOS_INLINE_FUNCTION void set_node(int n, int number) const { to_[n] = number - n; }
 
-  template <class Team>
-  KOKKOS_INLINE_FUNCTION void clear(const Team& team) const {
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int n) { sums[n] = 0; });
+  /// begin(c): first particle of cell c of the patch.
+  template <class Team, class Begin>
+  KOKKOS_INLINE_FUNCTION void clear(const Team& team, const Begin& begin) const {
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells + 1), [&](int c) { begin_[c] = begin(c); });
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int n) { sums_[n] = 0; });
   }
 
   /// Gives the particles of the patch to the window. load(p) makes the entry of particle p; it is called once
-  /// for each. begin: first particle of a cell of the patch.
-  template <class Team, class Begin, class Load>
-  KOKKOS_INLINE_FUNCTION void add(const Team& team, const Begin& begin, const Load& load) const {
-    if constexpr (device) {
-      // In 3D layer by layer of cells: a particle then reaches four layers of nodes, each with its own
-      // threads.
-      constexpr int layers = Dim == 3 ? Patch<Dim>::edge : 1, cells = Patch<Dim>::cells / layers;
-      for (int layer = 0; layer < layers; ++layer) {
-        const int end = begin((layer + 1) * cells);
-        for (int first = begin(layer * cells); first < end; first += capacity) {
-          const int last = Kokkos::min(first + capacity, end);
-          Kokkos::parallel_for(Kokkos::TeamThreadRange(team, first, last),
-                               [&](int p) { put(p - first, load(p)); });
-          team.team_barrier();
-          add_rows(team, begin, layer, first, last);
-        }
-      }
-    } else {
-      for (int c = 0; c < Patch<Dim>::cells; ++c)
-        for (int p = begin(c); p < begin(c + 1); ++p) add_particle(coord_of<Dim>(c), load(p));
-    }
-  }
-
-  /// Adds the window to the nodes of these numbers; on a device other teams do so too.
-  template <class Team, class Field>
-  KOKKOS_INLINE_FUNCTION void give_window(const Team& team, const Field& out) const {
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int m) {
-      const int n = m / size, k = m % size;  // neighbours in memory by neighbouring threads
-      const T own = sum(n, k);
-      if (own == 0) return;
-      if constexpr (device)
-        Kokkos::atomic_add(&out(number[n], k), own);
-      else
-        out(number[n], k) += own;
-    });
-  }
-
- private:
-  KOKKOS_INLINE_FUNCTION static int place(int n) { return n + n / k_bank; }
-  KOKKOS_INLINE_FUNCTION void put(int n, const Entry& entry) const {
-    T* value = stage + place(n);
-    int late = 0;
-    for (int d = 0; d < Dim; ++d, value += 3 * pitch) {
-      const AxisWeights<T> a = axis_weights_near(entry.x[d], entry.point.half_length);
-      value[0] = a.w[0], value[pitch] = a.w[2], value[2 * pitch] = a.g[2];
-      late |= (a.first + 1) << d;
-    }
-    T point[k_point + 2];
-    memcpy(point, &entry.point, sizeof point);
-    for (int k = 0; k < k_point; ++k, value += pitch) *value = point[k + 2];
-    for (int d = 0; d < Dim && k_offset; ++d, value += pitch) *value = entry.x[d];
-    firsts[place(n)] = late;
-  }
-  /// The weights of an entry of the stage along d.
-  KOKKOS_INLINE_FUNCTION AxisWeights<T> axis(int n, int d) const {
-    const T* const value = stage + place(n) + 3 * d * pitch;
-    const T w_0 = value[0], w_2 = value[pitch], g_2 = value[2 * pitch];
-    return {0, {w_0, 1 - w_0 - w_2, w_2}, {g_2 - 1, 1 - 2 * g_2, g_2}};
-  }
-  KOKKOS_INLINE_FUNCTION Point point(int n) const {
-    T value[k_point + 2] = {};
-    for (int k = 0; k < k_point; ++k) value[k + 2] = stage[place(n) + (3 * Dim + k) * pitch];
-    Point q;
-    memcpy(&q, value, sizeof q);
-    return q;
-  }
-
-  /// A thread sums a row of nodes over the particles of a column of cells, those [first, last) on the stage:
-  /// four nodes along the first axis, which they reach from the same cell there. Then the threads of a row
-  /// add their first nodes, their second ones, and so on: no two the same at once, always in this order.
-  template <class Team, class Begin>
-  KOKKOS_INLINE_FUNCTION void add_rows(const Team& team, const Begin& begin, int layer, int first,
-                                       int last) const {
-    constexpr int edge = Patch<Dim>::edge, across = Patch<Dim>::window_edge;
-    constexpr int items = edge * across * (Dim == 3 ? 4 : 1);
-    for (int start = 0; start < items; start += team.team_size()) {
-      const int item = start + team.team_rank(), column = item % edge, row = item / edge % across,
-                above = item / (edge * across);
-      T own[4][size] = {};
-      for (int b = 0; b < 4 && item < items; ++b) {
-        const int cell = (layer * edge + row - b) * edge + column;
-        if (row - b < 0 || row - b >= edge) continue;
-        const int end = Kokkos::min(begin(cell + 1), last) - first;
-        for (int n = Kokkos::max(begin(cell), first) - first; n < end; ++n) add_entry(n, b, above, own);
-      }
-      for (int a = 0; a < 4; ++a) {
-        if (item < items) {
-          const int node = ((Dim == 3 ? layer + above : 0) * across + row) * across + column + a;
-          for (int k = 0; k < size; ++k) sum(node, k) += own[a][k];
-        }
+  /// for each.
+  template <class Team, class Load>
+  KOKKOS_INLINE_FUNCTION void add(const Team& team, const Load& load) const {
+    for (int lot = 0; lot < k_lots; ++lot) {
+      const int end = begin_[(lot + 1) * (cells / k_lots)];
+      for (int first = begin_[lot * (cells / k_lots)]; first < end; first += capacity) {
+        const int last = Kokkos::min(first + capacity, end);
+        Kokkos::parallel_for(Kokkos::TeamThreadRange(team, first, last),
+                             [&](int p) { put(place(p - first), load(p)); });
+        team.team_barrier();
+        add_rows(team, lot, first, last);
         team.team_barrier();
       }
     }
   }
 
-  /// Adds entry n of the stage to four nodes in a row, that of number b along the second axis and `above`
-  /// along the third one of those that its cell reaches, counted from 0.
-  KOKKOS_INLINE_FUNCTION void add_entry(int n, int b, int above, T (&own)[4][size]) const {
-    const int late = firsts[place(n)];
-    const int at[3] = {0, b, above};
-    T w = 1, grad[Dim] = {};  // of the row: weight, and weight with one factor derived
+  /// Adds the window to the nodes; other teams do so too.
+  template <class Team, class Field>
+  KOKKOS_INLINE_FUNCTION void give_window(const Team& team, const Field& out) const {
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int m) {
+      const T own = sums_[m];  // neighbours in memory by neighbouring threads
+      if (own != 0) Kokkos::atomic_add(out.data() + (m + size * static_cast<long>(to_[m / size])), own);
+    });
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION void put(int n, const Entry& entry) const {
+    T value[k_units * k_unit] = {};
+    for (int d = 0; d < Dim; ++d) {
+      const AxisWeights<T> a = axis_weights_near(entry.x[d], entry.point.half_length);
+      T* const axis = value + 3 * (d == 0 ? Dim - 1 : d - 1);
+      axis[0] = a.first == 0 ? -a.w[0] : a.w[0], axis[1] = a.w[2], axis[2] = a.g[2];
+    }
+    T point[k_point + 2];
+    memcpy(point, &entry.point, sizeof point);
+    for (int k = 0; k < k_point; ++k) value[3 * Dim + k] = point[k + 2];
+    for (int d = 0; d < Dim && k_offset; ++d) value[3 * Dim + k_point + d] = entry.x[d];
+    for (int u = 0; u < k_units; ++u) {
+      Unit unit;  // written at once
+      for (int k = 0; k < k_unit; ++k) unit.c[k] = value[u * k_unit + k];
+      stage_[u * pitch + n] = unit;
+    }
+  }
+
+  /// Weight and derivative of one node along an axis.
+  struct Weight {
+    T w, g;
+  };
+  /// Those of the three nodes that a particle reaches, of an entry's values for the axis.
+  KOKKOS_INLINE_FUNCTION static Weight weight(const T* axis, int k) {
+    const T w_0 = Kokkos::fabs(axis[0]);
+    return k == 0   ? Weight{w_0, axis[2] - 1}
+           : k == 1 ? Weight{1 - w_0 - axis[1], 1 - 2 * axis[2]}
+           : k == 2 ? Weight{axis[1], axis[2]}
+                    : Weight{0, 0};
+  }
+
+  /// A thread sums a row of nodes over the particles of a column of cells, those [first, last) on the stage:
+  /// four nodes along the first axis, which they reach from the same cell there. Then the threads of a row,
+  /// all of one warp, add their first nodes, their second ones, and so on: no two the same at once, always in
+  /// this order.
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION void add_rows(const Team& team, int layer, int first, int last) const {
+    constexpr int items = edge * across * k_layers;
+    for (int start = 0; start < items; start += team.team_size()) {
+      const int item = start + team.team_rank(), column = item % edge, row = item / edge % across,
+                above = item / (edge * across);
+      T own[k_reach][size] = {};
+      unrolled<k_reach>([&](auto b) {
+        const int line = row - b;
+        if (item >= items || line < 0 || line >= edge) return;
+        const int cell = (layer * edge + line) * edge + column;
+        const int end = Kokkos::min(begin_[cell + 1], last) - first;
+        for (int n = Kokkos::max(begin_[cell], first) - first; n < end; ++n)
+          add_entry<b>(stage_ + place(n), above, own);
+      });
+      T* const to = sums_ + (((Dim == 3 ? layer + above : 0) * across + row) * across + column) * size;
+      for (int a = 0; a < k_reach; ++a) {
+        if (item < items)
+          for (int k = 0; k < size; ++k) to[a * size + k] += own[a][k];
+        sync_warp();
+      }
+    }
+  }
+
+  /// Adds an entry of the stage to four nodes in a row, that of number b along the second axis and `above`
+  /// along the third one of those that its cell reaches.
+  template <int b>
+  KOKKOS_INLINE_FUNCTION static void add_entry(const Unit* entry, int above, T (&own)[k_reach][size]) {
+    T value[k_units * k_unit];
+    const auto fetch = [&](int u) {
+      const Unit unit = entry[u * pitch];
+      for (int k = 0; k < k_unit; ++k) value[u * k_unit + k] = unit.c[k];
+    };
+    constexpr int few = (3 * Dim + k_unit - 1) / k_unit;  // units that hold the weights
+    for (int u = 0; u < few; ++u) fetch(u);
+    Weight s[Dim];  // along the second axis on
     for (int d = 1; d < Dim; ++d) {
-      const int k = at[d] - (late >> d & 1);
-      if (k < 0 || k > 2) return;
-      const AxisWeights<T> a = axis(n, d);
-      const T s = k == 0 ? a.w[0] : (k == 1 ? a.w[1] : a.w[2]),
-              ds = k == 0 ? a.g[0] : (k == 1 ? a.g[1] : a.g[2]);
-      for (int e = 1; e < d; ++e) grad[e] *= s;
-      grad[d] = ds * w;
-      w *= s;
+      const T* const axis = value + 3 * (d - 1);
+      const int k = d == 1 ? b : above;
+      s[d] = std::signbit(axis[0]) ? weight(axis, k - 1) : weight(axis, k);
+      if (s[d].w == 0 && s[d].g == 0) return;
     }
-    if (late & 1)
-      add_along<1>(n, at, w, grad, own);
+    for (int u = few; u < k_units; ++u) fetch(u);
+    T w = s[1].w, grad[Dim] = {0, s[1].g};  // of the row: weight, and weight with one factor derived
+    if constexpr (Dim == 3) grad[1] *= s[2].w, grad[2] = w * s[2].g, w *= s[2].w;
+    if (std::signbit(value[3 * (Dim - 1)]))
+      add_along<1>(value, {0, b, above}, w, grad, own);
     else
-      add_along<0>(n, at, w, grad, own);
+      add_along<0>(value, {0, b, above}, w, grad, own);
   }
 
-  /// The three nodes of add_entry that the particle reaches, from number `Late` on.
-  template <int Late>
-  KOKKOS_INLINE_FUNCTION void add_along(int n, const int (&at)[3], T w, const T (&grad)[Dim],
-                                        T (&own)[4][size]) const {
-    const AxisWeights<T> along = axis(n, 0);
-    const Point q = point(n);
-    for (int k = 0; k < 3; ++k) {
-      Vector<T, Dim> g;
-      g[0] = along.g[k] * w;
-      for (int d = 1; d < Dim; ++d) g[d] = along.w[k] * grad[d];
-      const auto offset = [&] {
-        Vector<T, Dim> r;
-        for (int d = 0; d < Dim; ++d)
-          r[d] = (d == 0 ? k + Late : at[d]) - 1 - stage[place(n) + (3 * Dim + k_point + d) * pitch];
-        return r;
-      };
-      give<Source>(q, along.w[k] * w, g, offset, [&](int value, T v) { own[k + Late][value] += v; });
-    }
-  }
-
-  KOKKOS_INLINE_FUNCTION void add_particle(const Coord<Dim>& cell, const Entry& entry) const {
-    with_weights_near(entry.x, entry.point.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-      for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
-        const int node = window_place(cell, a, k);
-        const auto offset = [&] { return offset_to(entry.x, a, k); };
-        give<Source>(entry.point, w, grad, offset, [&](int value, T v) { sum(node, value) += v; });
+  /// The three nodes of add_entry that the particle reaches, from number `late` on.
+  template <int late>
+  KOKKOS_INLINE_FUNCTION static void add_along(const T* value, const Vector<int, 3>& at, T w,
+                                               const T (&grad)[Dim], T (&own)[k_reach][size]) {
+    T values[k_point + 2] = {};
+    for (int k = 0; k < k_point; ++k) values[k + 2] = value[3 * Dim + k];
+    Point q;
+    memcpy(&q, values, sizeof q);
+    // What of each value goes with the weight along the row, and what with its derivative.
+    T along[size] = {}, slope[size] = {};
+    unrolled<size>([&](auto v) {
+      constexpr int first = first_taken<Source>(v);
+      if constexpr (first == Dim) along[v] = w * Source::factor(q, v);
+      if constexpr (first == 0) slope[v] = w * Source::slope(q, v, 0);
+      unrolled<Dim>([&](auto d) {
+        if constexpr (d > 0 && Source::takes(v, d)) along[v] += grad[d] * Source::slope(q, v, d);
       });
     });
+    for (int k = 0; k < 3; ++k) {
+      const Weight s = weight(value + 3 * (Dim - 1), k);
+      unrolled<size>([&](auto v) {
+        constexpr int first = first_taken<Source>(v);
+        if constexpr (first == Dim || first_taken<Source>(v, 1) < Dim) own[k + late][v] += s.w * along[v];
+        if constexpr (first == 0) own[k + late][v] += s.g * slope[v];
+      });
+      if constexpr (k_offset) {
+        Vector<T, Dim> offset;
+        for (int d = 0; d < Dim; ++d)
+          offset[d] = (d == 0 ? k + late : at[d]) - 1 - value[3 * Dim + k_point + d];
+        Source::give_more(q, s.w * w, offset, [&](int v, T more) { own[k + late][v] += more; });
+      }
+    }
   }
 };
 

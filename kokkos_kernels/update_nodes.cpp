@@ -10,6 +10,10 @@ namespace mpm {
 template <class Space, int Dim>
 inline constexpr int node_threads = is_device<Space> ? Patch<Dim>::cells : 1;
 
+/// So many of them share a multiprocessor that contact, which needs many registers, hides what it waits for.
+template <class Space, int Dim>
+using NodeTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, 12>>;
+
 /// Sets the sums of a slot's nodes to zero, neighbours in memory by neighbouring threads.
 template <class Team, class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const Nodes<Space, T, Dim>& nodes, int slot,
@@ -41,7 +45,7 @@ void reset_nodes(State<Space, T, Dim>& s) {
 /// The node's part of the step.
 template <class Space, class T, int Dim>
 struct UpdateNodes {
-  using Member = typename Kokkos::TeamPolicy<Space>::member_type;
+  using Member = typename NodeTeam<Space, Dim>::member_type;
   static constexpr int cells = Patch<Dim>::cells;
   int value_count;
   Grid<T, Dim> grid;
@@ -49,7 +53,6 @@ struct UpdateNodes {
   Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   Kokkos::View<Vertex*, typename Space::memory_space> vertices;
-  Kokkos::View<int*, typename Space::memory_space> near_slots;
   Kokkos::View<double*, typename Space::memory_space> forces;
   Kokkos::View<std::uint64_t*, typename Space::memory_space> counted;
   Vector<T, Dim> g;
@@ -58,10 +61,9 @@ struct UpdateNodes {
   bool has_boundary, has_friction, has_mass_normals, clears;
   int scratch_level;
 
-  /// The nodes of slot number n of those near a rigid. Leaves the force on each rigid [N] in `forces`; it is
-  /// summed in the order of the nodes.
-  KOKKOS_INLINE_FUNCTION void update_near(const Member& team, int n) const {
-    const int slot = near_slots(n);
+  /// The nodes of a slot, number n of those near a rigid. Leaves the force on each rigid [N] in `forces`; it
+  /// is summed in the order of the nodes.
+  KOKKOS_INLINE_FUNCTION void update_near(const Member& team, int slot, int n) const {
     double* const force = scratch<double>(team, value_count * cells, scratch_level);
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int k) {
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
@@ -206,8 +208,17 @@ struct UpdateNodes {
 };
 
 template <class Space, class T, int Dim>
-void update_nodes(State<Space, T, Dim>& s, double dt) {
-  using Team = Kokkos::TeamPolicy<Space>;
+bool nodes_apart(const State<Space, T, Dim>& s) {
+  // Patches that a GPU has all at once take one launch. More go faster if those far from rigids, which need
+  // few registers, have their own.
+  constexpr int k_few = is_device<Space> ? 2000 : 0;
+  return !s.rigid_points.empty() && s.near_count > 0 && s.patches.slots >= k_few;
+}
+
+template <class Space, class T, int Dim>
+void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue) {
+  using Team = NodeTeam<Space, Dim>;
+  using Member = typename Team::member_type;
   using Update = UpdateNodes<Space, T, Dim>;
   constexpr int threads = node_threads<Space, Dim>;
   const int values = Dim * static_cast<int>(s.rigid_points.size());
@@ -217,7 +228,6 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
                 s.patches.origin,
                 s.rigids,
                 s.vertices,
-                s.near_slots,
                 s.slot_forces,
                 s.counted,
                 {},
@@ -231,31 +241,39 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
                 sums_ahead(s),
                 0};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
-  const auto near = s.near_rigid;
+  const auto near = s.near_rigid, near_slots = s.near_slots;
   const auto control = s.control;
-  Kokkos::parallel_for(
-      "mpm::update_nodes", light(Team(s.space, s.patches.slots, threads)),
-      KOKKOS_LAMBDA(const typename Team::member_type& team) {
-        const int slot = team.league_rank();
-        if (control().paused || (values > 0 && near(slot) != 0)) return;
-        update.update_far(team, slot);
-      });
-  if (values == 0 || s.near_count == 0) return;
   const std::size_t near_bytes = scratch_bytes<double>(values * Update::cells) + k_scratch_slack;
   constexpr std::size_t k_fast = 32 * 1024;  // bytes that every back end has; some thirty rigids need more
   update.scratch_level = near_bytes > k_fast ? 1 : 0;
+  const auto some_near = [&](const Space& space, int teams) {
+    return light(
+        Team(space, teams, threads).set_scratch_size(update.scratch_level, Kokkos::PerTeam(near_bytes)));
+  };
+  if (s.near_count > 0 && !nodes_apart(s))
+    return Kokkos::parallel_for(
+        "mpm::update_nodes", some_near(s.space, s.patches.slots), KOKKOS_LAMBDA(const Member& team) {
+          if (control().paused) return;
+          const int slot = team.league_rank(), n = near(slot);
+          n > 0 ? update.update_near(team, slot, n - 1) : update.update_far(team, slot);
+        });
   Kokkos::parallel_for(
-      "mpm::update_nodes_near_rigids",
-      light(Team(s.space, s.near_count, threads)
-                .set_scratch_size(update.scratch_level, Kokkos::PerTeam(near_bytes))),
-      KOKKOS_LAMBDA(const typename Team::member_type& team) {
-        if (!control().paused) update.update_near(team, team.league_rank());
+      "mpm::update_nodes", light(Team(s.space, s.patches.slots, threads)), KOKKOS_LAMBDA(const Member& team) {
+        const int slot = team.league_rank();
+        if (!control().paused && (values == 0 || near(slot) == 0)) update.update_far(team, slot);
       });
+  if (nodes_apart(s))
+    Kokkos::parallel_for(
+        "mpm::update_nodes_near_rigids", some_near(queue, s.near_count), KOKKOS_LAMBDA(const Member& team) {
+          const int n = team.league_rank();
+          if (!control().paused) update.update_near(team, near_slots(n), n);
+        });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)              \
-  template void reset_nodes(State<Space, T, Dim>&); \
-  template void update_nodes(State<Space, T, Dim>&, double);
+#define MPM_INSTANTIATE(Space, T, Dim)                                     \
+  template void reset_nodes(State<Space, T, Dim>&);                        \
+  template void update_nodes(State<Space, T, Dim>&, double, const Space&); \
+  template bool nodes_apart(const State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -42,11 +42,12 @@ struct UpdateParticles {
   static constexpr int cells = Patch<Dim>::cells, window = Patch<Dim>::window;
   static constexpr int threads = team_threads<Space>;
   /// What is left of a tile where nothing is summed.
-  struct Numbers {
-    int* number;
-    KOKKOS_INLINE_FUNCTION explicit Numbers(Scratch& scratch) : number(scratch.take<int>(window)) {}
+  struct Nothing {
+    KOKKOS_INLINE_FUNCTION explicit Nothing(Scratch&) {}
+    KOKKOS_INLINE_FUNCTION void set_node(int, int) const {}
+    static constexpr std::size_t bytes() { return 0; }
   };
-  using TileOrNumbers = std::conditional_t<Sums, Tile_, Numbers>;
+  using TileOrNothing = std::conditional_t<Sums, Tile_, Nothing>;
 
   Source source;
   Kokkos::View<int*, Memory> begin, slots;
@@ -55,6 +56,7 @@ struct UpdateParticles {
   NodeField<Space, T, NodeMotion<Dim>::size> motion;
   NodeField<Space, T, SoilShare<Dim>::size> out;
   ControlView<Space> control;
+  Movements<Space> movements;
   Kokkos::View<T*, Memory, Kokkos::MemoryUnmanaged> dilatation;  // 1/s, by particle
   UpdateScalars<T> by;
   double spacing;
@@ -62,73 +64,53 @@ struct UpdateParticles {
   bool one_body;  // no particle needs to be asked which its body is
 
   static constexpr std::size_t bytes() {
-    return scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) + scratch_bytes<T>(threads) +
-           (Sums ? Tile_::bytes() : scratch_bytes<int>(window));
+    return scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) + TileOrNothing::bytes();
   }
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
-    if (control().paused) return;
-    const int slot = slots(first + team.league_rank());
+    const int paused = control().paused, slot = slots(first + team.league_rank());  // both asked for at once
+    if (paused) return;
+    const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
     const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
     Scratch scratch(team, bytes());
     MotionValues<T, Dim>* const nodes = scratch.take<MotionValues<T, Dim>>(window);
     T* const mean = scratch.take<T>(cells);
-    T* const furthest = scratch.take<T>(threads);
-    const TileOrNumbers tile(scratch);
-    prefetch_particle(begin(slot * cells) + team.team_rank(), begin((slot + 1) * cells));
-    load_window(team, slot, tile.number, nodes);
+    const TileOrNothing tile(scratch);
+    prefetch_particles(begin(slot * cells) + team.team_rank(), begin((slot + 1) * cells));
+    for_each_of_window<Dim>(team, around, slot, [&](int n, int number) {
+      tile.set_node(n, number);
+      nodes[n] = *reinterpret_cast<const MotionValues<T, Dim>*>(&motion(number, 0));
+    });
     T moved = 0;
-    const auto particle = [&](int p) { return step_particle(nodes, mean, slot, p, moved); };
+    const auto particle = [&](int p) { return step_particle(nodes, mean, slot, p, body, moved); };
     if constexpr (Sums) {
-      tile.clear(team);
+      tile.clear(team, cell_begin);
       team.team_barrier();
       if (by.f_bar > 0) average_dilatation(team, slot, nodes, mean);
-      tile.add(team, cell_begin, particle);
-      note_movement(team, moved, furthest);
+      tile.add(team, particle);
+      note_movement(team, slot, moved);
       tile.give_window(team, out);
     } else {
       team.team_barrier();
       if (by.f_bar > 0) average_dilatation(team, slot, nodes, mean);
       Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), particle);
-      note_movement(team, moved, furthest);
+      note_movement(team, slot, moved);
     }
   }
 
-  /// Asks the memory for what the first particle of a thread holds, before its nodes are there.
-  KOKKOS_INLINE_FUNCTION void prefetch_particle(int p, int end) const {
-    if (!is_device<Space> || p >= end) return;
+  /// Asks the memory for what the particles of a thread hold, before their nodes are there.
+  KOKKOS_INLINE_FUNCTION void prefetch_particles(int p, int end) const {
     const auto& soil = source.points;
-    prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
-    prefetch(&soil.volume(p)), prefetch(&soil.strength(p)), prefetch(&soil.plastic_strain(p));
+    for (; is_device<Space> && p < end; p += threads) {
+      prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
+      prefetch(&soil.volume(p)), prefetch(&soil.strength(p)), prefetch(&soil.plastic_strain(p));
+    }
   }
 
-  /// Brings the largest of the team's movements [cells] to s.control. A reduction by Kokkos would take
-  /// longer.
-  KOKKOS_INLINE_FUNCTION void note_movement(const Member& team, T moved, T* furthest) const {
-    constexpr int few = threads < 16 ? 1 : 16;
-    furthest[team.team_rank()] = moved;
-    team.team_barrier();
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, few), [&](int n) {
-      for (int k = n + few; k < threads; k += few) furthest[n] = Kokkos::fmax(furthest[n], furthest[k]);
-    });
-    team.team_barrier();
-    Kokkos::single(Kokkos::PerTeam(team), [&] {
-      T most = furthest[0];
-      for (int n = 1; n < few; ++n) most = Kokkos::fmax(most, furthest[n]);
-      if (most > Kokkos::atomic_load(&control().moved))
-        Kokkos::atomic_max(&control().moved, static_cast<double>(most));
-    });
-  }
-
-  /// Numbers and motion of the nodes of the slot's window.
-  KOKKOS_INLINE_FUNCTION void load_window(const Member& team, int slot, int* number,
-                                          MotionValues<T, Dim>* nodes) const {
-    using Around = decltype(Patches<Space, Dim>::around);
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
-      const int i = number_at<Around, Dim>(around, slot, window_coord<Dim>(n));
-      number[n] = i;
-      nodes[n] = *reinterpret_cast<const MotionValues<T, Dim>*>(&motion(i, 0));
-    });
+  /// Notes the largest of the movements [cells] of each warp.
+  KOKKOS_INLINE_FUNCTION void note_movement(const Member& team, int slot, T moved) const {
+    const T most = largest_of_warp(moved);
+    if (team.team_rank() % k_warp == 0) movements.note(slot, most);
   }
 
   /// Mean dilatation rate of each cell [1/s], weighted by volume.
@@ -157,9 +139,10 @@ struct UpdateParticles {
 
   /// Moves particle p; `moved` [cells] becomes the largest movement so far. Returns what it then gives.
   KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const MotionValues<T, Dim>* nodes, const T* mean,
-                                                             int slot, int p, T& moved) const {
+                                                             int slot, int p, const BodyProperties<T>& common,
+                                                             T& moved) const {
     const auto& soil = source.points;
-    const BodyProperties<T> body = soil.bodies(one_body ? 0 : soil.body(p));
+    const BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
     const int place = soil.cell(p) - slot * cells;
     const Coord<Dim> cell = coord_of<Dim>(place);
     Particle<T, Dim> q{soil.coordinate(p),
@@ -214,6 +197,7 @@ void launch_update(State<Space, T, Dim>& s, double dt, const Part<Space>& part) 
                       s.nodes.motion,
                       s.nodes.soil,
                       s.control,
+                      s.movements,
                       dilatation,
                       by,
                       s.spacing,

@@ -1,5 +1,5 @@
 #pragma once
-// From a description on the host to a State on the device, and back.
+// From a description on the host to a State on the device.
 
 #include <array>
 #include <vector>
@@ -76,27 +76,5 @@ struct RigidInput {
 template <class Space, class T, int Dim>
 Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
              const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids);
-
-/// Fields of the soil on the host, as wide as SymTensor and Vector are: on one rank in the order of creation,
-/// on several those of this rank's particles, in the order of `id`.
-struct SoilFields {
-  std::vector<int> id;           // rising
-  std::vector<double> position;  // m from the mesh's lower corner
-  std::vector<double> velocity, stress, volume, plastic_strain;
-};
-template <class Space, class T, int Dim>
-SoilFields download_soil(const State<Space, T, Dim>& s);
-
-/// Positions [m from the mesh's lower corner] of a rigid's particles in the order of creation.
-template <class Space, class T, int Dim>
-std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int rigid);
-
-/// The rigids on the host; their impulse is taken: it is set to zero on the device.
-template <class Space, class T, int Dim>
-std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s);
-
-/// Bytes of device memory that the state holds.
-template <class Space, class T, int Dim>
-std::size_t memory_of(const State<Space, T, Dim>& s);
 
 }  // namespace mpm

@@ -37,12 +37,11 @@ KOKKOS_INLINE_FUNCTION Coord<Dim> window_coord(int n) {
   return c;
 }
 
-/// Numbers of the nodes of a slot's window, to number[window].
-template <int Dim, class Team, class Around>
-KOKKOS_INLINE_FUNCTION void number_window(const Team& team, const Around& around, int slot, int* number) {
-  Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Dim>::window), [&](int n) {
-    number[n] = number_at<Around, Dim>(around, slot, window_coord<Dim>(n));
-  });
+/// Calls f(place in the window, number) for every node of a slot's window.
+template <int Dim, class Team, class Around, class F>
+KOKKOS_INLINE_FUNCTION void for_each_of_window(const Team& team, const Around& around, int slot, F&& f) {
+  Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Dim>::window),
+                       [&](int n) { f(n, number_at<Around, Dim>(around, slot, window_coord<Dim>(n))); });
 }
 
 /// The weights along every axis of a particle that is near the cell where it was binned.
@@ -51,16 +50,6 @@ KOKKOS_INLINE_FUNCTION void with_weights_near(const Vector<T, Dim>& x, const Hal
   AxisWeights<T> a[Dim];
   for (int d = 0; d < Dim; ++d) a[d] = axis_weights_near(x[d], half);
   f(a);
-}
-
-/// Calls launch(first, last) for ranges of Bins::by_colour whose windows may be added to the nodes at once:
-/// on a device that is all, by atomic additions, on the host a colour.
-template <class Space, int Dim, class Launch>
-void for_each_launch(const Bins<Space>& bins, Launch&& launch) {
-  constexpr int colours = Patch<Dim>::colours, step = is_device<Space> ? colours : 1;
-  for (int colour = 0; colour < colours; colour += step)
-    if (bins.colour_begin[colour] < bins.colour_begin[colour + step])
-      launch(bins.colour_begin[colour], bins.colour_begin[colour + step]);
 }
 
 /// Bytes that the first of a team's scratch memory may have to move up, to a place for groups of 16 bytes.

@@ -1,5 +1,6 @@
 #include "memory_need.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -11,17 +12,23 @@
 namespace mpm {
 namespace {
 
-/// Bytes on the device of so many particles that fill so many cells.
+/// Bytes of so many particles that fill so many cells: the soil's, which -device_memory_limit keeps on the
+/// host, and the nodes'.
 template <class T, int Dim>
-double on_device(const Config& config, double particles, double cells) {
+void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   constexpr double k_ring = 1.1;  // the patches round the soil
-  double bytes = particles * Footprint<T, Dim>::particle + k_ring * cells * Footprint<T, Dim>::node;
+  double a_particle = Footprint<T, Dim>::particle;
   if (config.p2g.strategy == P2G::gather) {
     // a particle is in the lists of the nodes that it may reach before the margin is used up
     const double reach = 2 * (1.25 + config.p2g.margin);
-    bytes += sizeof(int) * particles * std::pow(reach, Dim);
+    a_particle += sizeof(int) * std::pow(reach, Dim);
   }
-  return bytes;
+  const double soil = need.particles * a_particle;
+  need.nodes = k_ring * cells * Footprint<T, Dim>::node;
+  need.device = soil + need.nodes;
+  if (!config.device_memory_limit) return;
+  need.device = std::min(need.device, *config.device_memory_limit * k_gib);
+  need.host += soil;
 }
 
 }  // namespace
@@ -40,11 +47,11 @@ MemoryNeed memory_need(const Config& config) {
     need.particles += in_body * std::pow(body.shape.particles_per_cell, config.dim);
   }
   const bool single = config.precision == Precision::single;
-  need.device = config.dim == 2 ? (single ? on_device<float, 2>(config, need.particles, cells)
-                                          : on_device<double, 2>(config, need.particles, cells))
-                                : (single ? on_device<float, 3>(config, need.particles, cells)
-                                          : on_device<double, 3>(config, need.particles, cells));
   need.host = need.particles * (config.output.frames ? k_framed : k_made);
+  if (config.dim == 2)
+    single ? add_bytes<float, 2>(config, cells, need) : add_bytes<double, 2>(config, cells, need);
+  else
+    single ? add_bytes<float, 3>(config, cells, need) : add_bytes<double, 3>(config, cells, need);
   return need;
 }
 
@@ -80,7 +87,27 @@ MemoryNeed need_here(const Config& config, MPI_Comm comm, bool shared) {
   return need;
 }
 
+/// What -device_memory_limit asks that cannot be, as a line for the user; empty if there is nothing.
+static std::string limit_fault(const Config& config, MPI_Comm comm) {
+  if (!config.device_memory_limit) return {};
+  constexpr double k_sure = 0.8;  // of an estimate; what is nearer is known once the particles are there
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  const double least = k_sure * memory_need(config).nodes / k_gib, free = free_memory(config.backend) / k_gib;
+  std::string takes;
+  if (ranks > 1)
+    takes = "no limit on several ranks: each holds its part of the particles";
+  else if (*config.device_memory_limit < least)
+    takes = formatted("at least %.4g GiB, for the nodes alone", least);
+  else if (config.backend == Backend::cuda && free > 0 && *config.device_memory_limit > free)
+    takes = formatted("at most the %.4g GiB that are free", free);
+  if (takes.empty()) return {};
+  return formatted("mpm: -device_memory_limit: given \"%g\", takes %s", *config.device_memory_limit,
+                   takes.c_str());
+}
+
 std::string memory_fault(const Config& config, MPI_Comm comm) {
+  if (const std::string fault = limit_fault(config, comm); !fault.empty()) return fault;
   constexpr double k_most_particles = 2147483647;  // they are numbered by int
   const bool shared = config.backend != Backend::cuda;
   const MemoryNeed need = need_here(config, comm, shared);
@@ -90,9 +117,10 @@ std::string memory_fault(const Config& config, MPI_Comm comm) {
   if (need.particles > k_most_particles)
     why = formatted("%.0f is the most", k_most_particles);
   else if (device > 0 && on_device > device)
-    why = formatted("%s they need about %.4g GB, and %.4g GB are free",
-                    shared ? "in main memory" : ("on " + device_name(config.backend)).c_str(),
-                    on_device / 1e9, device / 1e9);
+    why =
+        formatted("%s they need about %.4g GB, and %.4g GB are free%s",
+                  shared ? "in main memory" : ("on " + device_name(config.backend)).c_str(), on_device / 1e9,
+                  device / 1e9, shared ? "" : "; with -device_memory_limit they go there in batches");
   else if (!shared && host > 0 && need.host > host)
     why = formatted("the host needs about %.4g GB for them, and %.4g GB are free%s", need.host / 1e9,
                     host / 1e9, config.output.frames ? " (less is needed with -output_frames off)" : "");

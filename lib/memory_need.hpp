@@ -13,6 +13,7 @@ namespace mpm {
 struct MemoryNeed {
   double particles = 0;  // of the bodies' lattices; those of files are few enough to be read
   double device = 0;     // bytes, where the kernels run
+  double nodes = 0;      // bytes of that which are not the particles'
   double host = 0;       // bytes beside, while particles are made and frames are written
 };
 MemoryNeed memory_need(const Config& config);

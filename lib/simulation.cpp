@@ -175,6 +175,7 @@ PetscErrorCode Simulation::Body::finish() {
                                      .memory = double(stepper->memory()),
                                      .bandwidth = bandwidth})));
     if (const std::string ranks = stepper->ranks_report(); !ranks.empty()) PetscCall(log.line(ranks));
+    if (const std::string batches = stepper->batches_report(); !batches.empty()) PetscCall(log.line(batches));
   }
   const char* how = outcome == Outcome::finished  ? "finished"
                     : outcome == Outcome::stopped ? "stopped"

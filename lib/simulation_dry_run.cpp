@@ -103,6 +103,7 @@ PetscErrorCode Simulation::Body::tell_need() {
       k_row * columns, (frames_written * frame + rows * k_row * columns) / 1e6, checkpoint / 1e6));
   double seconds = 0;
   PetscCall(time_steps(&seconds));
+  if (const std::string batches = stepper->batches_report(); !batches.empty()) PetscCall(log.line(batches));
   if (outcome != Outcome::finished || seconds == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(log.print("wall time     about %s: %.4g us a step with strategy %s, without output",
                       format_duration(seconds * schedule.last_step()).c_str(), 1e6 * seconds,

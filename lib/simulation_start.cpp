@@ -154,6 +154,7 @@ PetscErrorCode Simulation::Body::start() {
                       stepper->particles(), stepper->patches(), stepper->memory() / 1e6,
                       ranks() > 1 ? "s" : "", stepper->strategy().c_str()));
   if (const std::string report = stepper->ranks_report(); !report.empty()) PetscCall(log.line(report));
+  if (const std::string report = stepper->batches_report(); !report.empty()) PetscCall(log.line(report));
   PetscCall(log.print("time step %.9g s, Courant number %.4f; %ld steps to %g s", dt,
                       dt / critical_time_step(config), schedule.last_step(),
                       schedule.time_of(schedule.last_step())));

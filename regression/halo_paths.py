@@ -109,7 +109,7 @@ def main():
     parser.add_argument("--no-checks", action="store_true")
     parser.add_argument("--no-times", action="store_true")
     given = parser.parse_args()
-    given.binary = given.binary.resolve()
+    given.binary = given.binary.absolute()  # a link tells the launcher of a bundle what to start
     with tempfile.TemporaryDirectory() as folder:
         wrong = 0 if given.no_checks else check(given, Path(folder))
         wrong += 0 if given.no_times else times(given, Path(folder))

@@ -16,6 +16,7 @@ namespace {
 bool may_change(const std::string& name) {
   constexpr const char* names[] = {"-backend",
                                    "-precision",
+                                   "-device_memory_limit",
                                    "-p2g",
                                    "-p2g_margin",
                                    "-p2g_mosaic_cells",

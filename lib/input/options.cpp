@@ -28,6 +28,12 @@ void read_run(OptionReader& in, const std::vector<Backend>& backends, Config& co
           in.listing() ? all : compiled, config.backend);
   in.word({.name = "precision", .meaning = "arithmetic of the fields"},
           Words<Precision>{{"double", Precision::double_}, {"single", Precision::single}}, config.precision);
+  in.number({.name = "device_memory_limit",
+             .meaning = "what the run may take of its device's memory; more soil goes through it in batches, "
+                        "from the host's memory",
+             .unit = "GiB",
+             .range = k_positive},
+            config.device_memory_limit);
   in.flag({.name = "dry_run",
            .meaning =
                "tells particles, memory, steps, output and about how long the run takes, and writes nothing"},
@@ -55,6 +61,16 @@ void read_p2g(OptionReader& in, P2GConfig& p2g) {
               .unit = "steps",
               .range = {.lowest = 1}},
              p2g.rebuild_interval);
+}
+
+/// What goes in batches; `auto` is then `tile`.
+void check_batches(OptionReader& in, Config& config) {
+  if (!config.device_memory_limit) return;
+  P2G& strategy = config.p2g.strategy;
+  if (strategy == P2G::automatic) strategy = P2G::tile;
+  if (strategy != P2G::tile) in.reject("device_memory_limit", "-p2g tile or auto: no other goes in batches");
+  if (config.velocity_update == VelocityUpdate::xpic || config.velocity_update == VelocityUpdate::apic)
+    in.reject("device_memory_limit", "-velocity_update flip or pic: no other goes in batches");
 }
 
 void read_partition(OptionReader& in, PartitionConfig& partition) {
@@ -249,6 +265,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   const bool sound = read_mesh(in, config.dim, config.mesh);
   read_time(in, config.time);
   read_physics(in, config);
+  check_batches(in, config);
   read_output(in, options_file, config.time.end, config.output);
   read_named(in, sound ? &config.mesh : nullptr, config);
   const auto named_nodes = [](const auto& thing) { return thing.name == k_nodes; };

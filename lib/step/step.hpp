@@ -1,8 +1,10 @@
 #pragma once
 // One time step, in the paper's words.
 
+#include "batches.hpp"
 #include "parallel/ranks.hpp"
 #include "particle_to_node.hpp"
+#include "step/beside.hpp"
 #include "step/timers.hpp"
 #include "step_kernels.hpp"
 #include "velocity_update.hpp"
@@ -22,24 +24,17 @@ void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>&
   interpolate(s, strategy, bins, source, out, s.space);
 }
 
-/// The strategy for the points of rigids. They are few in many cells of a patch or many in few: where `tile`
-/// would leave most of a GPU's threads idle, a thread a point does not.
-template <class Space>
-P2G strategy_of_rigids(P2G chosen_for_soil) {
-  const bool tile = chosen(chosen_for_soil, backend_of<Space>) == P2G::tile;
-  return is_device<Space> && tile ? P2G::atomic : chosen_for_soil;
-}
-
 /// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not tell them.
 template <class Space, class T, int Dim>
-void rigids_to_nodes(const State<Space, T, Dim>& s) {
+void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& queue) {
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& set = s.rigid_points[r];
     if (set.points.surface_normal) continue;
     const NodeField<Space, T, RigidShare<Dim>::size> out =
         Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL);
     interpolate<RigidSource<Space, T, Dim>>(s, strategy_of_rigids<Space>(s.p2g.strategy), set.bins,
-                                            {set.points}, out);
+                                            {set.points, s.rigids, r, s.patches.origin, s.spacing}, out,
+                                            queue);
   }
 }
 
@@ -52,8 +47,8 @@ void prepare_nodes(State<Space, T, Dim>& s) {
 /// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
 /// needs it. The first ones may be there already.
 template <class Space, class T, int Dim>
-void soil_to_nodes(const State<Space, T, Dim>& s, const Bins<Space>& bins, const Space& space) {
-  const auto& points = s.soil.points;
+void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& points, const Bins<Space>& bins,
+                   const Space& space) {
   const P2G how = s.p2g.strategy;
   if (s.affine)
     interpolate<AffineSource<Space, T, Dim>>(s, how, bins, {{points, s.grid.inv_spacing}}, s.nodes.soil,
@@ -65,21 +60,21 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Bins<Space>& bins, const
                                                s.nodes.boundary, space);
 }
 template <class Space, class T, int Dim>
-void soil_to_nodes(const State<Space, T, Dim>& s) {
-  soil_to_nodes(s, s.soil.bins, s.space);
+void soil_to_nodes(const State<Space, T, Dim>& s, const Space& queue) {
+  for_all_soil(s, [&](const auto& set) { soil_to_nodes(s, set.points, set.bins, queue); });
 }
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
-  soil_to_nodes(s, bins_of(s.soil.bins, part), part.space);
+  soil_to_nodes(s, s.soil.points, bins_of(s.soil.bins, part), part.space);
 }
 
 /// The same on several ranks: where the others wait for it first, unless that has gone out already, and the
 /// rest while it travels.
 template <class Space, class T, int Dim>
-PetscErrorCode soil_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks) {
+PetscErrorCode soil_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks, const Space& queue) {
   PetscFunctionBeginUser;
   if (!ranks || !ranks->overlaps(s)) {
-    soil_to_nodes(s);
+    soil_to_nodes(s, queue);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (!ranks->sent_ahead()) {
@@ -96,7 +91,7 @@ template <class Space, class T, int Dim>
 void sum_present_soil(State<Space, T, Dim>& s) {
   if (s.soil_summed) return;
   reset_nodes(s);
-  soil_to_nodes(s);
+  soil_to_nodes(s, s.space);
 }
 
 /// The update where it goes on to the sums of the next step: first the particles whose sums other ranks wait
@@ -129,6 +124,8 @@ PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T,
   if (s.affine) take_affine(s);
   if (ranks && ranks->overlaps(s) && sums_ahead(s))
     PetscCall(update_and_send(s, dt, *ranks));
+  else if (s.batches.in_use())
+    update_by_batches(s, dt);
   else
     update_particles(s, dt);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -146,20 +143,26 @@ PetscErrorCode move_rigids(State<Space, T, Dim>& s, double dt, Ranks<Space, T, D
 }
 
 /// Advances one explicit step of dt [s]. Does nothing while s.control is paused. The rebuild, function 7, is
-/// the caller's, when the movement bound says so. ranks is null on one rank.
+/// the caller's, when the movement bound says so. ranks is null on one rank. Where the soil's sums are there
+/// already, what contact waits for may go `beside` the nodes far from it; where functions are timed, they do
+/// not.
 template <class Space, class T, int Dim>
-PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt,
-                    Ranks<Space, T, Dim>* ranks = nullptr) {
+PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Space, T, Dim>* ranks = nullptr,
+                    Beside<Space>* beside = nullptr) {
   PetscFunctionBeginUser;
   PetscErrorCode failed = PETSC_SUCCESS;
   const auto wait = [&] { s.space.fence("mpm::step"); };
   const auto run = [&](Function f, auto&& work) { return timers.run(f, work, wait); };
-  PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));             // 1 initialise nodal variables
-  PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s); }));  // 2 rigid bodies to nodes
-  PetscCall(run(Function::soil_to_nodes, [&] { failed = soil_to_nodes(s, ranks); }));  // 3 soil to nodes
+  const bool apart = beside && s.soil_summed && nodes_apart(s) && !s.batches.in_use() && !timers.sampling();
+  const Space& queue = apart ? beside->fork(s.space) : s.space;
+  PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));  // 1 initialise nodal variables
+  PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, queue); }));  // 2 rigid bodies to nodes
+  PetscCall(
+      run(Function::soil_to_nodes, [&] { failed = soil_to_nodes(s, ranks, queue); }));  // 3 soil to nodes
   PetscCall(failed);
-  if (ranks) PetscCall(ranks->add_soil(s));                       //   the sum over ranks
-  PetscCall(run(Function::nodes, [&] { update_nodes(s, dt); }));  // 4 velocities, walls, contact
+  if (ranks) PetscCall(ranks->add_soil(s));                              //   the sum over ranks
+  PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, queue); }));  // 4 velocities, walls, contact
+  if (apart) beside->join(s.space);
   PetscCall(run(Function::particles, [&] { failed = nodes_to_soil(s, dt, ranks); }));  // 5 stress, movement
   PetscCall(failed);
   PetscCall(run(Function::rigids, [&] { failed = move_rigids(s, dt, ranks); }));  // 6 move the rigid bodies

@@ -87,6 +87,8 @@ class Stepper {
   virtual int patches() const = 0;           // active ones
   virtual std::size_t memory() const = 0;    // bytes on the device
   virtual std::string strategy() const = 0;  // the word of -p2g that runs
+  /// What the log should tell of the batches of -device_memory_limit, and of their cost so far.
+  virtual std::string batches_report() const = 0;
 };
 
 /// The stepper for config.backend, precision and dim on the ranks of comm; null where that is not compiled

@@ -1,5 +1,4 @@
 #include "step/typed_stepper.hpp"
-#include "parallel/gather.hpp"
 #include "step/surface_input.hpp"
 #include "step/traffic.hpp"
 
@@ -40,22 +39,6 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   in.id = std::move(particles.id);
   in.velocity_gradient = std::move(particles.velocity_gradient);
   return in;
-}
-
-/// Vectors with three components, positions from the origin.
-template <int Dim>
-ParticleSnapshot node_snapshot(NodeFields&& nodes, const Vec3& lower) {
-  ParticleSnapshot out;
-  out.name = k_nodes;
-  out.position.assign(3 * nodes.mass.size(), 0);
-  out.velocity = out.position;
-  for (std::size_t n = 0; n < nodes.mass.size(); ++n)
-    for (int d = 0; d < Dim; ++d) {
-      out.position[3 * n + d] = nodes.position[n * Dim + d] + lower[d];
-      out.velocity[3 * n + d] = nodes.velocity[n * Dim + d];
-    }
-  out.mass = std::move(nodes.mass), out.number = std::move(nodes.number);
-  return out;
 }
 
 RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParticles&& particles) {
@@ -107,6 +90,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.p2g = {config_.p2g.strategy, config_.p2g.margin, config_.p2g.mosaic_cells};
   for (int d = 0; d < Dim; ++d) state_.gravity[d] = config_.gravity[d];
   if (model.owners.empty() && !config_.p2g.rebuild_interval) state_.rebuild_late = rebuild_late();
+  state_.batches.limit = config_.device_memory_limit.value_or(0) * k_gib;
   state_.damping = config_.damping;
   state_.flip_share = config_.flip_share;
   if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;
@@ -115,7 +99,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.f_bar_share = model.owners.empty() ? config_.f_bar_share : 0;
   Fault fault{};
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
-  *failure = describe(fault);
+  *failure = fault.kind == FaultKind::none ? too_small() : describe(fault);
   PetscCall(share(failure));
   if (!model.owners.empty() && failure->what.empty()) {
     state_.f_bar_share = config_.f_bar_share;
@@ -145,7 +129,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch
   restart_count(state_);
   for (long n = 0; n < steps; ++n) {
     sample(true);
-    PetscCall(step(state_, timers_, dt));
+    PetscCall(step<Space, T, Dim>(state_, timers_, dt, nullptr, is_device<Space> ? &beside_ : nullptr));
     sample(false);
   }
   const Control control = look(state_);
@@ -156,6 +140,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch
   const double left = (config_.p2g.margin - control.bound) / std::max(control.increment, 1e-300);
   batch->estimate = static_cast<long>(std::min(left, 1e9)) + 1;
   batch->seconds = WorkClock::wall() - start;
+  stepping_ += batch->seconds;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,95 +161,14 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
   };
   PetscCallCXX(PetscCall(timers_.run(Function::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
   timers_.sample(sampling);
-  *failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-template <class Space, class T, int Dim>
-PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
-  PetscFunctionBeginUser;
-  row->bodies.clear(), row->rigids.clear();
-  PetscCall(sum_soil());
-  for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
-    BodyRow body;
-    PetscCall(measure_body(b, &body));
-    row->bodies.push_back(body);
-  }
-  for (const Rigid<Dim>& r : take_rigids(state_)) {
-    RigidRow rigid;
-    double impulse[Dim];
-    for (int d = 0; d < Dim; ++d) impulse[d] = r.impulse[d];
-    if (ranks_ && !ranks_->forces_shared())
-      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, impulse, Dim, MPI_DOUBLE, MPI_SUM, comm_));
-    for (int d = 0; d < Dim; ++d) {
-      rigid.displacement[d] = r.displacement[d];
-      rigid.velocity[d] = r.velocity[d];
-      rigid.force[d] = interval > 0 ? impulse[d] / interval : 0;
-    }
-    row->rigids.push_back(rigid);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-template <class Space, class T, int Dim>
-PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
-  PetscFunctionBeginUser;
-  const SoilFields soil = download_soil(state_);
-  PetscCall(sum_soil());
-  const std::vector<double> grid_velocity = grid_velocities(state_);
-  out->bodies.clear(), out->rigids.clear(), out->nodes.clear();
-  for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
-    const auto place_of = [&](long id) {
-      return std::lower_bound(soil.id.begin(), soil.id.end(), id) - soil.id.begin();
-    };
-    const std::size_t from = place_of(first_[b]),
-                      to = place_of(b + 1 < first_.size() ? first_[b + 1] : total_);
-    ParticleSnapshot body;
-    body.name = config_.bodies[b].name;
-    for (std::size_t p = from; p < to && ranks_; ++p)
-      body.id.push_back(soil.id[p] - static_cast<int>(first_[b]));
-    body.position.assign(3 * (to - from), 0);
-    body.velocity = body.grid_velocity = body.position;
-    body.stress.assign(6 * (to - from), 0);
-    for (std::size_t p = from; p < to; ++p) {
-      for (int d = 0; d < Dim; ++d) {
-        body.position[3 * (p - from) + d] = soil.position[p * Dim + d] + config_.mesh.lower[d];
-        body.velocity[3 * (p - from) + d] = soil.velocity[p * Dim + d];
-        body.grid_velocity[3 * (p - from) + d] = grid_velocity[p * Dim + d];
-      }
-      for (int k = 0; k < sym_size<Dim>; ++k)
-        body.stress[6 * (p - from) + k] = soil.stress[p * sym_size<Dim> + k];
-    }
-    body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
-    body.plastic_strain.assign(soil.plastic_strain.begin() + from, soil.plastic_strain.begin() + to);
-    if (ranks_)
-      PetscCall(order_particles(comm_, (b + 1 < first_.size() ? first_[b + 1] : total_) - first_[b], &body));
-    out->bodies.push_back(std::move(body));
-  }
-  const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.rigids);
-  for (std::size_t r = 0; r < config_.rigids.size(); ++r) {
-    const std::vector<double> position = download_rigid_positions(state_, static_cast<int>(r));
-    ParticleSnapshot rigid;
-    rigid.name = config_.rigids[r].name;
-    rigid.position.assign(3 * (position.size() / Dim), 0);
-    rigid.velocity = rigid.position;
-    for (std::size_t p = 0; p < position.size() / Dim; ++p)
-      for (int d = 0; d < Dim; ++d) {
-        rigid.position[3 * p + d] = position[p * Dim + d] + config_.mesh.lower[d];
-        rigid.velocity[3 * p + d] = rigids(r).velocity[d];
-      }
-    out->rigids.push_back(std::move(rigid));
-  }
-  if (config_.output.nodes) {
-    out->nodes = {node_snapshot<Dim>(download_nodes(state_), config_.mesh.lower)};
-    if (ranks_) PetscCall(gather_nodes(comm_, &out->nodes[0]));
-  }
+  *failure = control.fault_count > 0 ? describe(control.fault) : too_small();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscFunctionBeginUser;
+  collect_soil(state_);
   PetscCallCXX(*saved = save_state(state_));
   if (ranks_) PetscCall(ranks_->save(saved));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -291,8 +195,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   const auto& forced = config_.p2g.rebuild_interval;
   const bool near = !as_saved && !forced && rebuild_due(bound, increment, margin, rebuild_late());
   *rebuilt = bound > margin || near || (forced && since_rebuild >= *forced);
-  Failure failure;
-  if (*rebuilt) PetscCall(rebuild(&failure));
+  Failure failure = too_small();
+  if (*rebuilt && failure.what.empty()) PetscCall(rebuild(&failure));
   PetscCheck(failure.what.empty(), PETSC_COMM_SELF, PETSC_ERR_FP, "The checkpoint's %s",
              failure.what.c_str());
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "download.hpp"
 #include "download_nodes.hpp"
 #include "grid_velocity.hpp"
 #include "measure.hpp"
@@ -37,10 +38,13 @@ class TypedStepper final : public Stepper {
   int patches() const override { return static_cast<int>(sum_over_ranks(state_.patches.slots)); }
   std::size_t memory() const override;
   std::string strategy() const override;
+  std::string batches_report() const override;
 
  private:
   Failure describe(const Fault& fault) const;
   int rebuild_late() const;
+  /// Why the soil cannot go in batches, if it should and cannot.
+  Failure too_small() const;
   /// What advance and rebuild are on several ranks.
   PetscErrorCode advance_together(long steps, double dt, Batch* batch);
   PetscErrorCode rebuild_together(Failure* failure);
@@ -55,8 +59,10 @@ class TypedStepper final : public Stepper {
   MPI_Comm comm_;
   State<Space, T, Dim> state_;
   std::unique_ptr<Ranks<Space, T, Dim>> ranks_;  // null on one rank
+  Beside<Space> beside_;
   Timers timers_;
   long steps_enqueued_ = 0;
+  double stepping_ = 0;      // s of wall time in advance
   std::vector<long> first_;  // id of the first particle of each body
   long total_ = 0;           // particles of all ranks
 };

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "step_kernels.hpp"
+#include "download.hpp"
 #include "upload.hpp"
 
 namespace mpm::test {
@@ -74,6 +75,7 @@ struct Cloud {
   double flip_share = 1, damping = 0, f_bar_share = 0;
   int xpic_order = 0;
   bool affine = false;
+  double memory_limit = 0;  // bytes, for batches of the soil
 };
 
 template <class B>
@@ -88,6 +90,7 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typenam
   s.affine = cloud.affine;
   s.damping = cloud.damping;
   s.f_bar_share = cloud.f_bar_share;
+  s.batches.limit = cloud.memory_limit;
   if (upload(s, cloud.grid, cloud.materials, cloud.bodies, cloud.rigids).kind != FaultKind::none)
     throw std::runtime_error("a particle of the test lies outside the mesh");
   return s;

@@ -25,8 +25,8 @@ NodeField<Space, T, RigidShare<Dim>::size> rigid_field(const State<Space, T, Dim
 template <class Space, class T, int Dim>
 void interpolate(State<Space, T, Dim>& s) {
   reset_nodes(s);
-  rigids_to_nodes(s);
-  soil_to_nodes(s);
+  rigids_to_nodes(s, s.space);
+  soil_to_nodes(s, s.space);
 }
 
 /// One step, without timing it.

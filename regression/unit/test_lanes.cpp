@@ -214,7 +214,9 @@ TEST_CASE("particles that move many at once move as one by one", "[lanes]") {
         const auto moved = moved_fields<B>(s);
         INFO(build.name() << " seed " << seed);
         CHECK(look(s).fault_count == 0);
-        CHECK(look(s).moved > 0);
+        double furthest = 0;
+        for (int n = 0; n < s.movements.places; ++n) furthest = std::max(furthest, s.movements.take(n));
+        CHECK(furthest > 0);
         for (std::size_t k = 0; k < moved.size(); ++k) {
           INFO("field " << k);
           CHECK(largest_difference(moved[k], expected[k]) < B::of(1e-12, 2e-5));

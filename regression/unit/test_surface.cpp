@@ -7,6 +7,7 @@
 #include "compare.hpp"
 #include "contact.hpp"
 #include "step/surface_input.hpp"
+#include "window.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -132,6 +133,8 @@ TEST_CASE("the soil's boundary sums to the area of each face, wherever the block
       cloud.bodies = {body_of<Dim>(lattice<Dim>(low, high, 2, spacing), 2, spacing, 1)};
       cloud.rigids = {rigid_of<Dim>(lattice<Dim>({0, 0, 0}, {16, 16, 16}, 1, spacing), 1, spacing)};
       cloud.rigids[0].surface_normal = true;
+      for (int d = 0; d < 3; ++d)
+        cloud.rigids[0].surface.half[d] = cloud.rigids[0].surface.centre[d] = 8 * spacing;
       for (P2G how : k_strategies) {
         auto s = state_of<B>(cloud, how);
         interpolate(s);
@@ -191,6 +194,48 @@ TEST_CASE("soil pressed into a thin plate is stopped by the face that it is at",
       CHECK(held == 2);
       CHECK(fastest < B::of(1e-12, 1e-5));
     }
+  });
+}
+
+TEST_CASE("a patch counts as near a rigid if its particles reach a node that the rigid may touch",
+          "[surface]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    const double spacing = 0.1, margin = 0.5;
+    int left_out = 0;
+    for (const double low : {20.0, 20.7, 23.0, 26.5}) {
+      Cloud cloud;
+      cloud.grid = grid_of<Dim>({48, 48, 48}, spacing, Wall::free);
+      cloud.materials = clays();
+      cloud.bodies = {body_of<Dim>(lattice<Dim>({4, 4, 4}, {20, 44, 12}, 1, spacing), 1, spacing, 1)};
+      std::array<double, 3> from{2, 2, 2}, to{24, 24, 14};
+      from[Dim - 1] = low, to[Dim - 1] = low + 2;
+      cloud.rigids = {plate_of<Dim>(from, to, spacing)};
+      const auto s = state_of<B>(cloud);
+      const auto near = on_host(s.near_rigid), soil_begin = on_host(s.soil.bins.begin);
+      const auto around = on_host(s.patches.around);
+      const auto rigid_begin = on_host(s.rigid_points[0].bins.begin);
+      const auto origin = on_host(s.patches.origin);
+      constexpr int cells = Patch<Dim>::cells;
+      for (int slot = 0; slot < s.patches.slots; ++slot) {
+        if (near(slot) != 0 || soil_begin(slot * cells) == soil_begin((slot + 1) * cells)) continue;
+        for (int k = 0; k < Patch<Dim>::around; ++k) {
+          const int other = around(slot, k);
+          left_out += other >= 0 && rigid_begin(other * cells) < rigid_begin((other + 1) * cells);
+        }
+        for (int n = 0; n < Patch<Dim>::window; ++n) {
+          const Coord<Dim> at = window_coord<Dim>(n);
+          Vector<double, Dim> x;
+          for (int d = 0; d < Dim; ++d) x[d] = (origin(slot)[d] + at[d]) * spacing;
+          const auto rigid = on_host(s.rigids)(0);
+          CHECK(distance_to(rigid.surface, on_host(s.vertices), x).value >
+                (std::sqrt(double(Dim)) + margin) * spacing);
+        }
+      }
+    }
+    INFO(build.name());
+    CHECK(left_out > 0);
   });
 }
 

@@ -134,11 +134,14 @@ struct OutputConfig {
   std::string restart;                    // the checkpoint to go on from, or "latest"; empty: from the start
 };
 
+inline constexpr double k_gib = 1024.0 * 1024 * 1024;  // bytes
+
 /// Everything that a run needs to know.
 struct Config {
   int dim = 2;
   Backend backend = Backend::serial;
   Precision precision = Precision::double_;
+  std::optional<double> device_memory_limit;  // GiB, of the run on its device: more soil goes in batches
   P2GConfig p2g;
   PartitionConfig partition;
   MeshConfig mesh;

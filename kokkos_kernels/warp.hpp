@@ -1,0 +1,31 @@
+#pragma once
+// The lanes of a warp of a GPU. On the host what follows only compiles.
+
+#include <Kokkos_Core.hpp>
+
+namespace mpm {
+
+inline constexpr int k_warp = 32;  // lanes
+
+/// The largest of the values of all lanes, each >= 0.
+KOKKOS_INLINE_FUNCTION float largest_of_warp(float value) {
+  KOKKOS_IF_ON_DEVICE((return __uint_as_float(__reduce_max_sync(0xffffffffu, __float_as_uint(value)));))
+  KOKKOS_IF_ON_HOST((return value;))
+}
+KOKKOS_INLINE_FUNCTION double largest_of_warp(double value) {
+  KOKKOS_IF_ON_DEVICE((for (int mask = k_warp / 2; mask > 0; mask /= 2) value =
+                           Kokkos::fmax(value, __shfl_xor_sync(0xffffffffu, value, mask));))
+  return value;
+}
+
+/// The sum of the values of all lanes, in an order that is always the same.
+KOKKOS_INLINE_FUNCTION double sum_of_warp(double value) {
+  KOKKOS_IF_ON_DEVICE(
+      (for (int mask = k_warp / 2; mask > 0; mask /= 2) value += __shfl_xor_sync(0xffffffffu, value, mask);))
+  return value;
+}
+
+/// What the lanes wrote to scratch memory is there for all of them.
+KOKKOS_INLINE_FUNCTION void sync_warp() { KOKKOS_IF_ON_DEVICE((__syncwarp();)) }
+
+}  // namespace mpm

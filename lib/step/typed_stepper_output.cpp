@@ -1,0 +1,163 @@
+// What the stepper tells of the state: rows of the history, frames, the cost of batches.
+
+#include <algorithm>
+
+#include "output/log.hpp"
+#include "parallel/gather.hpp"
+#include "step/typed_stepper.hpp"
+
+namespace mpm {
+namespace {
+
+/// Vectors with three components, positions from the origin.
+template <int Dim>
+ParticleSnapshot node_snapshot(NodeFields&& nodes, const Vec3& lower) {
+  ParticleSnapshot out;
+  out.name = k_nodes;
+  out.position.assign(3 * nodes.mass.size(), 0);
+  out.velocity = out.position;
+  for (std::size_t n = 0; n < nodes.mass.size(); ++n)
+    for (int d = 0; d < Dim; ++d) {
+      out.position[3 * n + d] = nodes.position[n * Dim + d] + lower[d];
+      out.velocity[3 * n + d] = nodes.velocity[n * Dim + d];
+    }
+  out.mass = std::move(nodes.mass), out.number = std::move(nodes.number);
+  return out;
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
+  PetscFunctionBeginUser;
+  row->bodies.clear(), row->rigids.clear();
+  collect_soil(state_);
+  PetscCall(sum_soil());
+  for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
+    BodyRow body;
+    PetscCall(measure_body(b, &body));
+    row->bodies.push_back(body);
+  }
+  for (const Rigid<Dim>& r : take_rigids(state_)) {
+    RigidRow rigid;
+    double impulse[Dim];
+    for (int d = 0; d < Dim; ++d) impulse[d] = r.impulse[d];
+    if (ranks_ && !ranks_->forces_shared())
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, impulse, Dim, MPI_DOUBLE, MPI_SUM, comm_));
+    for (int d = 0; d < Dim; ++d) {
+      rigid.displacement[d] = r.displacement[d];
+      rigid.velocity[d] = r.velocity[d];
+      rigid.force[d] = interval > 0 ? impulse[d] / interval : 0;
+    }
+    row->rigids.push_back(rigid);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
+  PetscFunctionBeginUser;
+  collect_soil(state_);
+  const SoilFields soil = download_soil(state_);
+  PetscCall(sum_soil());
+  const std::vector<double> grid_velocity = grid_velocities(state_);
+  out->bodies.clear(), out->rigids.clear(), out->nodes.clear();
+  for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
+    const auto place_of = [&](long id) {
+      return std::lower_bound(soil.id.begin(), soil.id.end(), id) - soil.id.begin();
+    };
+    const std::size_t from = place_of(first_[b]),
+                      to = place_of(b + 1 < first_.size() ? first_[b + 1] : total_);
+    ParticleSnapshot body;
+    body.name = config_.bodies[b].name;
+    for (std::size_t p = from; p < to && ranks_; ++p)
+      body.id.push_back(soil.id[p] - static_cast<int>(first_[b]));
+    body.position.assign(3 * (to - from), 0);
+    body.velocity = body.grid_velocity = body.position;
+    body.stress.assign(6 * (to - from), 0);
+    for (std::size_t p = from; p < to; ++p) {
+      for (int d = 0; d < Dim; ++d) {
+        body.position[3 * (p - from) + d] = soil.position[p * Dim + d] + config_.mesh.lower[d];
+        body.velocity[3 * (p - from) + d] = soil.velocity[p * Dim + d];
+        body.grid_velocity[3 * (p - from) + d] = grid_velocity[p * Dim + d];
+      }
+      for (int k = 0; k < sym_size<Dim>; ++k)
+        body.stress[6 * (p - from) + k] = soil.stress[p * sym_size<Dim> + k];
+    }
+    body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
+    body.plastic_strain.assign(soil.plastic_strain.begin() + from, soil.plastic_strain.begin() + to);
+    if (ranks_)
+      PetscCall(order_particles(comm_, (b + 1 < first_.size() ? first_[b + 1] : total_) - first_[b], &body));
+    out->bodies.push_back(std::move(body));
+  }
+  const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.rigids);
+  for (std::size_t r = 0; r < config_.rigids.size(); ++r) {
+    const std::vector<double> position = download_rigid_positions(state_, static_cast<int>(r));
+    ParticleSnapshot rigid;
+    rigid.name = config_.rigids[r].name;
+    rigid.position.assign(3 * (position.size() / Dim), 0);
+    rigid.velocity = rigid.position;
+    for (std::size_t p = 0; p < position.size() / Dim; ++p)
+      for (int d = 0; d < Dim; ++d) {
+        rigid.position[3 * p + d] = position[p * Dim + d] + config_.mesh.lower[d];
+        rigid.velocity[3 * p + d] = rigids(r).velocity[d];
+      }
+    out->rigids.push_back(std::move(rigid));
+  }
+  if (config_.output.nodes) {
+    out->nodes = {node_snapshot<Dim>(download_nodes(state_), config_.mesh.lower)};
+    if (ranks_) PetscCall(gather_nodes(comm_, &out->nodes[0]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+Failure TypedStepper<Space, T, Dim>::too_small() const {
+  const auto& b = state_.batches;
+  if (b.limit >= b.least) return {};
+  constexpr double k_above = 1.0005;  // so that what is told takes no less
+  return {formatted("-device_memory_limit: given %.4g GiB, takes at least %.4g GiB for these particles",
+                    b.limit / k_gib, k_above * b.least / k_gib)};
+}
+
+template <class Space, class T, int Dim>
+std::string TypedStepper<Space, T, Dim>::batches_report() const {
+  const auto& b = state_.batches;
+  if (!b.in_use() || b.all.empty()) return {};
+  int most = 0, stay = 0;
+  for (const auto& batch : b.all) {
+    most = std::max(most, batch.last - batch.first);
+    stay += batch.stays;
+  }
+  const int batches = static_cast<int>(b.all.size()), turns = batches - stay;
+  std::string text = formatted(
+      "%d batches of at most %d particles: %d stay on the device, %d take turns in %d places; "
+      "%.4g of %.4g GiB of the device, %.4g GiB of the host",
+      batches, most, stay, turns, b.places - stay, memory_of(state_) / k_gib, b.limit / k_gib,
+      b.store.extent(0) / k_gib);
+  const BatchCost& c = b.cost;
+  if (turns == 0 || c.apart == 0 || c.steps == c.apart || stepping_ <= 0) return text;
+  // Means of a step; what copies and kernels take alone is from the steps that were taken apart.
+  const double in = c.copied_in / c.steps, out = c.copied_out / c.steps;
+  const double in_alone = c.in_seconds / c.apart, out_alone = c.out_seconds / c.apart;
+  const double kernels = c.kernel_seconds / c.apart, update = c.seconds / (c.steps - c.apart);
+  const double beside = std::max(0.0, stepping_ - c.seconds - c.apart * (in_alone + kernels + out_alone));
+  const double step = update + beside / c.steps;
+  text += formatted("\n  a step copies %.4g MB to the device and %.4g MB back, alone at %.1f and %.1f GB/s",
+                    in / 1e6, out / 1e6, in / in_alone / 1e9, out / out_alone / 1e9);
+  text += formatted(
+      "\n  with them the update of the particles takes %.4g us, %.1f %% of a step; its kernels alone "
+      "%.4g us",
+      1e6 * update, 100 * update / step, 1e6 * kernels);
+  return text + formatted("\n  a step of %.4g us takes %.3g times as long as without copies", 1e6 * step,
+                          step / (step - update + kernels));
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                               \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::measure(double, HistoryRow*); \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot*);          \
+  template Failure TypedStepper<Space, T, Dim>::too_small() const;                   \
+  template std::string TypedStepper<Space, T, Dim>::batches_report() const;
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm
