@@ -120,7 +120,11 @@ void build_for(const State<Space, T, Dim>& s, const Source& source, Bins<Space>&
 template <class Space, class T, int Dim>
 void build_lists(State<Space, T, Dim>& s) {
   build_for(s, SoilSource<Space, T, Dim>{s.soil.points, s.grid.inv_spacing}, s.soil.bins);
-  for (auto& set : s.rigid_points) build_for(s, RigidSource<Space, T, Dim>{set.points}, set.bins);
+  for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
+    auto& set = s.rigid_points[r];
+    const RigidSource<Space, T, Dim> source{set.points, s.rigids, r, s.patches.origin, s.spacing};
+    build_for(s, source, set.bins);
+  }
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim) template void build_lists(State<Space, T, Dim>&);
