@@ -231,8 +231,11 @@ PetscErrorCode Ranks<Space, T, Dim>::save(SavedState* saved) const {
   const int width = static_cast<int>(own.size());
   saved->bounds.resize(std::size_t(size_) * width);
   PetscCallMPI(MPI_Allgather(own.data(), width, MPI_DOUBLE, saved->bounds.data(), width, MPI_DOUBLE, comm_));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &saved->bound, 1, MPI_DOUBLE, MPI_MAX, comm_));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &saved->increment, 1, MPI_DOUBLE, MPI_MAX, comm_));
+  // For other numbers of ranks: the largest increments of all steps, as one rank sums them.
+  double late[2] = {report && report->bound > 0 ? report->increment : 0, saved->increment};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, late, 2, MPI_DOUBLE, MPI_MAX, comm_));
+  saved->increment = late[1];
+  saved->bound = bound_.sum() + late[0] + late[1];
   for (SavedRigid& rigid : saved->rigids)
     if (!forces_shared_)
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rigid.impulse.data(), 3, MPI_DOUBLE, MPI_SUM, comm_));
@@ -245,7 +248,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved, bool* as_saved) {
   PetscFunctionBeginUser;
   const std::size_t width = k_bounds + 3 * saved.rigids.size();
-  bound_.set_sum(saved.bound);
+  bound_.set_sum(saved.bound - saved.increment);  // which the first step reports
   const auto sound = [&](long r) { return r >= 0 && r < size_; };
   *as_saved = saved.bounds.size() == size_ * width && saved.owners.size() == owners_.size() &&
               std::all_of(saved.owners.begin(), saved.owners.end(), sound);
