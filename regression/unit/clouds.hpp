@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "step_kernels.hpp"
 #include "download.hpp"
+#include "step_kernels.hpp"
 #include "upload.hpp"
 
 namespace mpm::test {
