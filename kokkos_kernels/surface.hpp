@@ -33,8 +33,10 @@ struct Distance {
   Vector<double, Dim> normal;
 };
 
+inline constexpr double k_on_edge = 1e-9;  // m, less is round-off and tells no direction
+
 /// A product of n intervals, given by how far the point is beyond each (`beyond` [m], negative inside) and
-/// the outward direction of each; corners rounded by `radius` [m].
+/// the outward direction of each; corners rounded by `radius` [m]. On an edge the first of its faces counts.
 template <int N>
 KOKKOS_INLINE_FUNCTION double distance_to_product(const Vector<double, N>& beyond, double radius,
                                                   Vector<double, N>& share) {
@@ -43,10 +45,10 @@ KOKKOS_INLINE_FUNCTION double distance_to_product(const Vector<double, N>& beyon
   for (int d = 0; d < N; ++d) {
     share[d] = Kokkos::fmax(0.0, beyond[d] + radius);
     outside += share[d] * share[d];
-    if (beyond[d] > beyond[nearest]) nearest = d;
+    if (beyond[d] > beyond[nearest] + k_on_edge) nearest = d;
   }
   outside = Kokkos::sqrt(outside);
-  if (outside > 0) {
+  if (outside > k_on_edge) {
     for (int d = 0; d < N; ++d) share[d] /= outside;
     return outside - radius;
   }
@@ -69,12 +71,11 @@ KOKKOS_INLINE_FUNCTION Distance<2> distance_to_polygon(const Vertices& vertices,
     const double ex = b.x - a.x, ez = b.z - a.z, length2 = ex * ex + ez * ez;
     const double along = Kokkos::fmin(1.0, Kokkos::fmax(0.0, ((x - a.x) * ex + (z - a.z) * ez) / length2));
     const double dx = x - a.x - along * ex, dz = z - a.z - along * ez, square = dx * dx + dz * dz;
-    if (square >= least) continue;
+    if (square + k_on_edge * k_on_edge >= least) continue;  // a vertex is the first edge's
     least = square, to_x = dx, to_z = dz;
     edge_x = ez / Kokkos::sqrt(length2), edge_z = -ex / Kokkos::sqrt(length2);
   }
   const double length = Kokkos::sqrt(least), sign = inside ? -1 : 1;
-  constexpr double k_on_edge = 1e-9;  // m, there the edge's own normal counts
   if (length > k_on_edge) return {sign * length, {sign * to_x / length, sign * to_z / length}};
   const double out = turn > 0 ? 1 : -1;
   return {0, {out * edge_x, out * edge_z}};

@@ -174,6 +174,9 @@ struct UpdateNodes {
     return x;
   }
 
+  /// Area of a cell's face [m^2; m in 2D].
+  KOKKOS_INLINE_FUNCTION T face() const { return Dim == 2 ? grid.spacing : grid.spacing * grid.spacing; }
+
   /// Inward unit normal from the rigid's mass gradient; false where it is out of touch.
   KOKKOS_INLINE_FUNCTION bool mass_normal(const Rigid<Dim>& rigid, int i, int r, unsigned sides,
                                           Vector<T, Dim>& n) const {
@@ -196,8 +199,10 @@ struct UpdateNodes {
       against += boundary[d] * out[d];
     }
     if (to.value > reach * spacing) return false;
-    if (against > 0) {
-      const T length = Kokkos::sqrt(dot(boundary, boundary));
+    // Not at a right angle, as a footing's edge is to the soil under it: there round-off would decide.
+    constexpr T k_facing = T(0.1), k_bounds = T(1e-3);  // cosine; of a cell's face, less is the soil's interior
+    const T length = Kokkos::sqrt(dot(boundary, boundary));
+    if (against > -k_facing * length && length > k_bounds * face()) {
       Vector<double, Dim> x = place(rigid, at);
       for (int d = 0; d < Dim; ++d) x[d] -= spacing * boundary[d] / length;
       out = distance_to(rigid.surface, vertices, x).normal;

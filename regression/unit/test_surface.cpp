@@ -197,6 +197,54 @@ TEST_CASE("soil pressed into a thin plate is stopped by the face that it is at",
   });
 }
 
+TEST_CASE("round-off does not choose the face at an edge or a vertex of a surface", "[surface]") {
+  const Shape square = polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  for (const double a : {-1e-13, 0., 1e-13})
+    for (const double b : {-1e-13, 0., 1e-13}) {
+      CHECK(is<2>(distance<2>(square, {1 + a, 1 + b}), 0, {1, 0}));
+      Vector<double, 2> n;
+      distance_to_product<2>({a, b}, 0, n);
+      CHECK((n[0] == 1 && n[1] == 0));
+    }
+}
+
+TEST_CASE("soil of which only a part is under a plate is pushed alike on both sides of their plane of symmetry",
+          "[surface]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    if constexpr (B::dim == 3) {
+      // The plate's corners lie above the soil's edges, and are at a right angle to the soil's boundary there.
+      const double spacing = 0.1;
+      Cloud cloud;
+      cloud.grid = grid_of<3>({20, 20, 20}, spacing, Wall::free);
+      cloud.materials = clays();
+      cloud.bodies = {body_of<3>(lattice<3>({6, 6, 6}, {14, 14, 10}, 2, spacing), 2, spacing, 1)};
+      cloud.bodies[0].velocity[2] = 1;
+      cloud.rigids = {plate_of<3>({10, 6, 10}, {16, 14, 12}, spacing)};
+      cloud.rigids[0].surface.radius = spacing / 2;
+      for (P2G how : k_strategies) {
+        auto s = state_of<B>(cloud, how);
+        interpolate(s);
+        update_nodes(s, 1e-6);
+        const Table motion = nodes_of(s, s.nodes.motion);
+        double apart = 0, slowest = 1;
+        for (int x = 5; x <= 15; ++x)
+          for (int y = 5; y < 10; ++y)
+            for (int d = 0; d < 3; ++d) {
+              const auto v = [&](int y) {
+                return motion.value[s.grid.address_of({x, y, 10}) * motion.width + d];
+              };
+              apart = std::max(apart, std::fabs(v(y) - (d == 1 ? -1 : 1) * v(20 - y)));
+              if (d == 2 && x < 14 && y > 6) slowest = std::min(slowest, std::fabs(v(y)));
+            }
+        INFO(build.name() << ' ' << strategy_name(how));
+        CHECK(apart < B::of(1e-12, 1e-5));
+        CHECK(slowest < B::of(1e-12, 1e-5));
+      }
+    }
+  });
+}
+
 TEST_CASE("a patch counts as near a rigid if its particles reach a node that the rigid may touch",
           "[surface]") {
   for_each_build([](auto build) {
