@@ -208,12 +208,14 @@ TEST_CASE("round-off does not choose the face at an edge or a vertex of a surfac
     }
 }
 
-TEST_CASE("soil of which only a part is under a plate is pushed alike on both sides of their plane of symmetry",
-          "[surface]") {
+TEST_CASE(
+    "soil of which only a part is under a plate is pushed alike on both sides of their plane of symmetry",
+    "[surface]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     if constexpr (B::dim == 3) {
-      // The plate's corners lie above the soil's edges, and are at a right angle to the soil's boundary there.
+      // The plate's corners lie above the soil's edges, and are at a right angle to the soil's boundary
+      // there.
       const double spacing = 0.1;
       Cloud cloud;
       cloud.grid = grid_of<3>({20, 20, 20}, spacing, Wall::free);
