@@ -89,7 +89,7 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
     });
   }
   b.loaded = true;
-  s.soil_summed = s.soil_summed || sums;
+  s.summed.soil = s.summed.soil || sums;
   for (const Space& stream : b.streams) stream.fence("mpm::update_by_batches");
   space.fence("mpm::update_by_batches");
   cost.apart += apart;

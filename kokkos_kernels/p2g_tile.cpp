@@ -27,15 +27,9 @@ void sum_on_device(const Interpolation<Source>& it) {
         if (control().paused) return;
         const int slot = by_colour(first + team.league_rank());
         if (source.skips(slot)) return;
-        Scratch scratch(team, Tile_::bytes());
-        const Tile_ tile(scratch);
-        for_each_of_window<Dim>(team, around, slot, [&](int n, int number) { tile.set_node(n, number); });
-        tile.clear(team, [&](int c) { return begin(slot * cells + c); });
-        team.team_barrier();
-        tile.add(team, [&](int p) {
-          return typename Tile_::Entry{source.points.coordinate(p), source.load(p)};
-        });
-        tile.give_window(team, out);
+        sum_patch(
+            team, Scratch(team, Tile_::bytes()), source, around, slot,
+            [&](int c) { return begin(slot * cells + c); }, out);
       });
 }
 

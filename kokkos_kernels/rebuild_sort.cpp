@@ -242,7 +242,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   if (!s.rigid_points.empty()) mark_near_rigids(s);
   if (s.f_bar_share > 0) average_pressure(s);
 
-  s.soil_summed = false;
+  s.summed = {};
   const int nodes = s.patches.node_count();
   ensure(s.nodes.soil, nodes);
   ensure(s.nodes.motion, nodes);

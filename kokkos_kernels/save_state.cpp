@@ -230,7 +230,7 @@ void finish_saved(State<Space, T, Dim>& s, const SavedState& saved) {
   move_rigid_points(s);
   restore_nodes(s, saved.impulse);
   restore_control(s, saved);
-  s.soil_summed = false;
+  s.summed = {};
   s.space.fence("mpm::restore_state");
 }
 

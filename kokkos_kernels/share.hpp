@@ -156,12 +156,13 @@ struct RigidSource {
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int) const { return {points.half_length, points.mass}; }
-  /// Brings point p to where its body is now.
-  KOKKOS_INLINE_FUNCTION void move(int p) const {
+  /// Brings point p to where its body is now, or where it has another displacement [m].
+  KOKKOS_INLINE_FUNCTION void move(int p) const { move(p, rigids(rigid).displacement); }
+  KOKKOS_INLINE_FUNCTION void move(int p, const Vector<double, Dim>& displacement) const {
     const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(points.cell(p));
     for (int d = 0; d < Dim; ++d)
       points.coordinate(p)[d] =
-          static_cast<T>(points.home(p)[d] + rigids(rigid).displacement[d] / spacing - from[d] - cell[d]);
+          static_cast<T>(points.home(p)[d] + displacement[d] / spacing - from[d] - cell[d]);
   }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
     return value == RigidShare<Dim>::normal + d;

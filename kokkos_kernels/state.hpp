@@ -16,6 +16,11 @@ struct P2GPlan {
   int mosaic_cells = 3;
 };
 
+/// Which nodal fields hold the sums of what they are of, as it is now.
+struct Summed {
+  bool soil = false, boundary = false, rigids = false;
+};
+
 template <class Space, class T, int Dim>
 struct State {
   using Memory = typename Space::memory_space;
@@ -38,6 +43,7 @@ struct State {
       counted;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
   ControlView<Space> control;
   Movements<Space> movements;
+  Kokkos::View<int, Memory> arrived;   // teams of a step's last kernel that are done
   Kokkos::View<double*, Memory> sums;  // N, force of the soil on each rigid in this step
   Kokkos::View<char*, Memory>
       spare;  // scratch of a rebuild: one field in its new order; of a step: dilatations, XPIC
@@ -52,7 +58,7 @@ struct State {
   double f_bar_share = 0;         // -
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them
-  bool soil_summed = false;       // nodes.soil holds the sums of the soil as it is, made by the step before
+  Summed summed;                  // what the step before has summed already
   bool rigid_moves = false;       // some rigid is not fixed
   bool mass_normals = false;      // some rigid's normals are those of its mass gradient
   bool soil_boundary = false;     // some contact needs the soil's boundary at the nodes

@@ -6,11 +6,17 @@
 
 namespace mpm {
 
+/// Whether a device has all patches at once, so that a step should take few launches.
+template <class Space, class T, int Dim>
+bool few_patches(const State<Space, T, Dim>& s) {
+  return is_device<Space> && s.patches.slots < 2000;
+}
+
 /// 1. Sets the nodal sums to zero.
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s);
 
-/// Whether update_particles goes on to function 3 of the next step: particles then pass through memory once a
+/// Whether update_particles goes on to function 3 of the next step, the soil's boundary included: particles then pass through memory once a
 /// step. So it is on a GPU with the strategy `tile`, where a velocity update does not need the nodal sums
 /// again and the scratch memory holds both.
 template <class Space, class T, int Dim>
@@ -28,6 +34,13 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
 /// Whether the nodes near rigids have a kernel of their own.
 template <class Space, class T, int Dim>
 bool nodes_apart(const State<Space, T, Dim>& s);
+
+/// Whether one launch can do function 5 with function 3 of the next step, function 6, and function 2 of the
+/// next step.
+template <class Space, class T, int Dim>
+bool ends_at_once(const State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void update_and_end(State<Space, T, Dim>& s, double dt);
 
 /// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves
 /// the furthest movement of a particle in s.control. Where sums_ahead, adds the soil as it then is to the

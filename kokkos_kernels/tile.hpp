@@ -230,4 +230,18 @@ class Tile {
   }
 };
 
+/// A team gives the points of a slot to the nodes. cell_begin(c): the first point of cell c of the patch.
+template <class Source, class Team, class Around, class Begin, class Field>
+KOKKOS_INLINE_FUNCTION void sum_patch(const Team& team, Scratch scratch, const Source& source,
+                                      const Around& around, int slot, const Begin& cell_begin,
+                                      const Field& out) {
+  using Tile_ = Tile<Source>;
+  const Tile_ tile(scratch);
+  for_each_of_window<Source::dim>(team, around, slot, [&](int n, int number) { tile.set_node(n, number); });
+  tile.clear(team, cell_begin);
+  team.team_barrier();
+  tile.add(team, [&](int p) { return typename Tile_::Entry{source.points.coordinate(p), source.load(p)}; });
+  tile.give_window(team, out);
+}
+
 }  // namespace mpm

@@ -2,6 +2,7 @@
 
 #include "contact.hpp"
 #include "step_kernels.hpp"
+#include "warp.hpp"
 #include "window.hpp"
 
 namespace mpm {
@@ -30,7 +31,7 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const Nodes<Space, T, D
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s) {
   using Team = Kokkos::TeamPolicy<Space>;
-  s.soil_summed = false;
+  s.summed = {};
   const auto nodes = s.nodes;
   const auto control = s.control;
   const int rigids = s.mass_normals ? static_cast<int>(s.rigid_points.size()) : 0;
@@ -46,7 +47,7 @@ void reset_nodes(State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 struct UpdateNodes {
   using Member = typename NodeTeam<Space, Dim>::member_type;
-  static constexpr int cells = Patch<Dim>::cells;
+  static constexpr int cells = Patch<Dim>::cells, threads = node_threads<Space, Dim>;
   int value_count;
   Grid<T, Dim> grid;
   Nodes<Space, T, Dim> nodes;
@@ -61,8 +62,8 @@ struct UpdateNodes {
   bool has_boundary, has_friction, has_mass_normals, clears;
   int scratch_level;
 
-  /// The nodes of a slot, number n of those near a rigid. Leaves the force on each rigid [N] in `forces`; it
-  /// is summed in the order of the nodes.
+  /// The nodes of a slot, number n of those near a rigid. Leaves the force on each rigid [N] in `forces`,
+  /// summed in an order that is always the same.
   KOKKOS_INLINE_FUNCTION void update_near(const Member& team, int slot, int n) const {
     double* const force = scratch<double>(team, value_count * cells, scratch_level);
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int k) {
@@ -72,11 +73,13 @@ struct UpdateNodes {
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank tells it
     });
     team.team_barrier();
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, value_count), [&](int v) {
+    const int thread = team.team_rank(), lanes = Kokkos::min(k_warp, threads);
+    for (int v = thread / k_warp; v < value_count; v += (threads + k_warp - 1) / k_warp) {  // a warp each
       double sum = 0;
-      for (int k = 0; k < cells; ++k) sum += force[v * cells + k];
-      forces(n * value_count + v) = sum;
-    });
+      for (int k = thread % k_warp; k < cells; k += lanes) sum += force[v * cells + k];
+      sum = sum_of_warp(sum);
+      if (thread % k_warp == 0) forces(n * value_count + v) = sum;
+    }
     if (clears) clear_sums(team, nodes, slot, has_boundary, has_mass_normals ? rigids.extent(0) : 0);
   }
 
@@ -215,10 +218,9 @@ struct UpdateNodes {
 
 template <class Space, class T, int Dim>
 bool nodes_apart(const State<Space, T, Dim>& s) {
-  // Patches that a GPU has all at once take one launch. More go faster if those far from rigids, which need
-  // few registers, have their own.
-  constexpr int k_few = is_device<Space> ? 2000 : 0;
-  return !s.rigid_points.empty() && s.near_count > 0 && s.patches.slots >= k_few;
+  // Patches far from rigids need few registers: where they are many, they go faster with a launch of their
+  // own.
+  return !s.rigid_points.empty() && s.near_count > 0 && !few_patches(s);
 }
 
 template <class Space, class T, int Dim>

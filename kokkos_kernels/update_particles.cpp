@@ -1,10 +1,14 @@
 #include "advance.hpp"
+#include "end_step.hpp"
 #include "host_particles.hpp"
 #include "step_kernels.hpp"
 #include "tile.hpp"
 
 namespace mpm {
 namespace {
+
+constexpr int k_rigids_at_once = 4;  // whose points travel as arguments of one launch
+constexpr int k_few_slots = 1200;    // teams of patches that an H200 has at once
 
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const MotionValues<T, Dim>* window,
@@ -30,11 +34,12 @@ KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const MotionValues<T, Dim>* windo
   return sum * inv_spacing;
 }
 
-/// A team moves the particles of a patch. If Sums, it adds them where they now are to the nodes for the next
-/// step, as the strategy `tile` does: a particle is read and written once a step.
+/// A team moves the particles of a patch, or of a part of one. If Sums, it adds them where they now are to
+/// the nodes for the next step, as the strategy `tile` does: a particle is read and written once a step.
 template <class Space, class T, int Dim, bool Sums>
 struct UpdateParticles {
   using Source = SoilSource<Space, T, Dim>;
+  using Boundary = BoundarySource<Space, T, Dim>;
   using Tile_ = Tile<Source>;
   using Team = PatchTeam<Space, T, Dim>;
   using Member = typename Team::member_type;
@@ -55,28 +60,43 @@ struct UpdateParticles {
   Kokkos::View<Coord<Dim>*, Memory> origin;
   NodeField<Space, T, NodeMotion<Dim>::size> motion;
   NodeField<Space, T, SoilShare<Dim>::size> out;
+  NodeField<Space, T, BoundaryShare<Dim>::size> boundary;
+  Kokkos::View<int*, Memory> near_rigid;
   ControlView<Space> control;
   Movements<Space> movements;
   Kokkos::View<T*, Memory, Kokkos::MemoryUnmanaged> dilatation;  // 1/s, by particle
   UpdateScalars<T> by;
   double spacing;
   int first;      // of slots
+  int parts;      // of a patch, each a team's
   bool one_body;  // no particle needs to be asked which its body is
+  bool has_boundary;
 
   static constexpr std::size_t bytes() {
-    return scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) + TileOrNothing::bytes();
+    const std::size_t own =
+        scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) + TileOrNothing::bytes();
+    return Sums && Tile<Boundary>::bytes() > own ? Tile<Boundary>::bytes() : own;
   }
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
     const int paused = control().paused, slot = slots(first + team.league_rank());  // both asked for at once
-    if (paused) return;
+    if (!paused) update(team, Scratch(team, bytes()), slot, 0);
+  }
+
+  /// Part number `part` of a slot's patch; all: bytes().
+  KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot, int part) const {
     const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
-    const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
-    Scratch scratch(team, bytes());
+    const int low = begin(slot * cells + part * (cells / parts)),
+              high = begin(slot * cells + (part + 1) * (cells / parts));
+    // Cells of other parts are as good as empty.
+    const auto cell_begin = [&](int c) {
+      return Kokkos::min(Kokkos::max(begin(slot * cells + c), low), high);
+    };
+    Scratch scratch = all;
     MotionValues<T, Dim>* const nodes = scratch.take<MotionValues<T, Dim>>(window);
     T* const mean = scratch.take<T>(cells);
     const TileOrNothing tile(scratch);
-    prefetch_particles(begin(slot * cells) + team.team_rank(), begin((slot + 1) * cells));
+    prefetch_particles(low + team.team_rank(), high);
     for_each_of_window<Dim>(team, around, slot, [&](int n, int number) {
       tile.set_node(n, number);
       nodes[n] = *reinterpret_cast<const MotionValues<T, Dim>*>(&motion(number, 0));
@@ -86,14 +106,19 @@ struct UpdateParticles {
     if constexpr (Sums) {
       tile.clear(team, cell_begin);
       team.team_barrier();
-      if (by.f_bar > 0) average_dilatation(team, slot, nodes, mean);
+      if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
       tile.add(team, particle);
-      note_movement(team, slot, moved);
+      note_movement(team, slot * parts + part, moved);
       tile.give_window(team, out);
+      if (has_boundary && near_rigid(slot) != 0) {
+        team.team_barrier();
+        sum_patch(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, around, slot,
+                  cell_begin, boundary);
+      }
     } else {
       team.team_barrier();
-      if (by.f_bar > 0) average_dilatation(team, slot, nodes, mean);
-      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), particle);
+      if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
+      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, low, high), particle);
       note_movement(team, slot, moved);
     }
   }
@@ -114,11 +139,11 @@ struct UpdateParticles {
   }
 
   /// Mean dilatation rate of each cell [1/s], weighted by volume.
-  KOKKOS_INLINE_FUNCTION void average_dilatation(const Member& team, int slot,
+  template <class Begin>
+  KOKKOS_INLINE_FUNCTION void average_dilatation(const Member& team, const Begin& cell_begin,
                                                  const MotionValues<T, Dim>* nodes, T* mean) const {
     const auto& soil = source.points;
-    const int from = begin(slot * cells), to = begin((slot + 1) * cells);
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, from, to), [&](int p) {
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), [&](int p) {
       with_weights_near(soil.coordinate(p), soil.bodies(one_body ? 0 : soil.body(p)).half_length,
                         [&](const AxisWeights<T>(&a)[Dim]) {
                           dilatation(p) = dilatation_from_nodes<T, Dim>(nodes, coord_of<Dim>(soil.cell(p)), a,
@@ -128,7 +153,7 @@ struct UpdateParticles {
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
       T volume = 0, sum = 0;
-      for (int p = begin(slot * cells + c); p < begin(slot * cells + c + 1); ++p) {
+      for (int p = cell_begin(c); p < cell_begin(c + 1); ++p) {
         volume += soil.volume(p);
         sum += soil.volume(p) * dilatation(p);
       }
@@ -171,6 +196,58 @@ struct UpdateParticles {
   }
 };
 
+/// The same by parts of patches, and the end of the step in one launch: the first teams move the points of
+/// rigids to where they will be and give their mass to the nodes, and the team that is done last moves the
+/// rigids and counts the step.
+template <class Space, class T, int Dim>
+struct UpdateAndEnd {
+  using Update = UpdateParticles<Space, T, Dim, true>;
+  using Member = typename Update::Member;
+  using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_rigids_at_once>;
+  static constexpr int threads = Update::threads;
+  Update update;
+  EndStep<Space, T, Dim> end;
+  Rigids rigids;
+  int rigid_count, rigid_teams;
+  decltype(Nodes<Space, T, Dim>::rigid) out;
+  Kokkos::View<int, typename Space::memory_space> arrived;
+
+  KOKKOS_FUNCTION void operator()(const Member& team) const {
+    const int n = team.league_rank() - rigid_teams;
+    if (update.control().paused) return;
+    Scratch scratch(team, Update::bytes());
+    if (n < 0)
+      rigids_to_nodes(team, Scratch(scratch).template take<double>(0));
+    else
+      update.update(team, scratch, update.slots(update.first + n / update.parts), n % update.parts);
+    team.team_barrier();
+    int earlier = 0;
+    Kokkos::single(
+        Kokkos::PerTeam(team),
+        [&](int& teams) {
+          Kokkos::memory_fence();  // what this team noted is there for the last one
+          teams = Kokkos::atomic_fetch_add(&arrived(), 1);
+        },
+        earlier);
+    if (earlier + 1 < team.league_size()) return;
+    end(team, scratch.template take<double>(0));
+    arrived() = 0;
+  }
+
+  KOKKOS_INLINE_FUNCTION void rigids_to_nodes(const Member& team, double* part) const {
+    for (int k = 0; k < rigid_count; ++k) {
+      const auto& source = rigids[k];
+      const Vector<double, Dim> to = end.next_displacement(team, source.rigid, part);
+      const int all = rigid_teams * threads;
+      for (int p = team.league_rank() * threads + team.team_rank(); p < source.points.count; p += all) {
+        source.move(p, to);
+        give_to_nodes(source, update.around, p,
+                      [&](int i, int v, T value) { Kokkos::atomic_add(&out(source.rigid, i, v), value); });
+      }
+    }
+  }
+};
+
 /// Only on a device: a processor's caches hold the particles of a patch between the two functions anyway.
 template <class Space, class T, int Dim>
 inline constexpr bool sums_fit =
@@ -183,31 +260,45 @@ UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
 }
 
 template <bool Sums, class Space, class T, int Dim>
-void launch_update(State<Space, T, Dim>& s, double dt, const Part<Space>& part) {
-  using Update = UpdateParticles<Space, T, Dim, Sums>;
+UpdateParticles<Space, T, Dim, Sums> update_of(const State<Space, T, Dim>& s, double dt, int first,
+                                               int parts) {
   const auto& set = s.soil;
-  const UpdateScalars<T> by = update_scalars(s, dt);
   const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
       reinterpret_cast<T*>(s.spare.data()), set.points.count);
-  const Update update{{set.points, s.grid.inv_spacing},
-                      set.bins.begin,
-                      set.bins.by_colour,
-                      s.patches.around,
-                      s.patches.origin,
-                      s.nodes.motion,
-                      s.nodes.soil,
-                      s.control,
-                      s.movements,
-                      dilatation,
-                      by,
-                      s.spacing,
-                      part.first,
-                      set.points.bodies.extent(0) == 1};
-  if (part.first == part.last) return;
+  return {{set.points, s.grid.inv_spacing},
+          set.bins.begin,
+          set.bins.by_colour,
+          s.patches.around,
+          s.patches.origin,
+          s.nodes.motion,
+          s.nodes.soil,
+          s.nodes.boundary,
+          s.near_rigid,
+          s.control,
+          s.movements,
+          dilatation,
+          update_scalars(s, dt),
+          s.spacing,
+          first,
+          parts,
+          set.points.bodies.extent(0) == 1,
+          s.soil_boundary};
+}
+
+/// The launch of teams that work on patches.
+template <class Update, class Space, class Functor>
+void launch(const Space& space, int teams, const Functor& f) {
+  if (teams == 0) return;
   Kokkos::parallel_for("mpm::update_particles",
-                       light(typename Update::Team(part.space, part.last - part.first, team_threads<Space>)
+                       light(typename Update::Team(space, teams, Update::threads)
                                  .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
-                       update);
+                       f);
+}
+
+template <bool Sums, class Space, class T, int Dim>
+void launch_update(State<Space, T, Dim>& s, double dt, const Part<Space>& part) {
+  launch<UpdateParticles<Space, T, Dim, Sums>>(part.space, part.last - part.first,
+                                               update_of<Sums>(s, dt, part.first, 1));
 }
 
 }  // namespace
@@ -219,11 +310,46 @@ bool sums_ahead(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
+bool ends_at_once(const State<Space, T, Dim>& s) {
+  int with_points = 0;
+  for (const auto& set : s.rigid_points) with_points += !set.points.surface_normal;
+  const std::size_t bytes = EndStep<Space, T, Dim>(s, 0).room(team_threads<Space>) * sizeof(double);
+  return sums_ahead(s) && few_patches(s) && !s.batches.in_use() && with_points <= k_rigids_at_once &&
+         bytes <= UpdateParticles<Space, T, Dim, true>::bytes();
+}
+
+template <class Space, class T, int Dim>
+void update_and_end(State<Space, T, Dim>& s, double dt) {
+  if constexpr (sums_fit<Space, T, Dim>) {
+    using Update = UpdateParticles<Space, T, Dim, true>;
+    const auto& colours = s.soil.bins.colour_begin;
+    const int first = colours[0], slots = colours[Patch<Dim>::colours] - first;
+    const int parts = slots <= k_few_slots / 4 ? 4 : slots <= k_few_slots / 2 ? 2 : 1;
+    UpdateAndEnd<Space, T, Dim> f{update_of<true>(s, dt, first, parts),
+                                  EndStep<Space, T, Dim>(s, dt),
+                                  {},
+                                  0,
+                                  0,
+                                  s.nodes.rigid,
+                                  s.arrived};
+    for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
+      const auto& points = s.rigid_points[r].points;
+      if (points.surface_normal) continue;
+      f.rigids[f.rigid_count++] = {points, s.rigids, r, s.patches.origin, s.spacing};
+      f.rigid_teams += (points.count + Update::threads - 1) / Update::threads;
+    }
+    launch<Update>(s.space, slots * parts + f.rigid_teams, f);
+    s.summed = {true, s.soil_boundary, true};
+  }
+}
+
+template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const Part<Space>& part) {
-  s.soil_summed = sums_ahead(s);
+  const bool sums = sums_ahead(s);
+  s.summed = {sums, sums && s.soil_boundary, false};
   if constexpr (is_device<Space>) {
     if constexpr (sums_fit<Space, T, Dim>)
-      if (s.soil_summed) return launch_update<true>(s, dt, part);
+      if (sums) return launch_update<true>(s, dt, part);
     launch_update<false>(s, dt, part);
   } else {
     move_on_host(s, update_scalars(s, dt));
@@ -237,6 +363,8 @@ void update_particles(State<Space, T, Dim>& s, double dt) {
 
 #define MPM_INSTANTIATE(Space, T, Dim)                           \
   template bool sums_ahead(const State<Space, T, Dim>&);         \
+  template bool ends_at_once(const State<Space, T, Dim>&);       \
+  template void update_and_end(State<Space, T, Dim>&, double);   \
   template void update_particles(State<Space, T, Dim>&, double); \
   template void update_particles(State<Space, T, Dim>&, double, const Part<Space>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)

@@ -94,7 +94,7 @@ PetscErrorCode Ranks<Space, T, Dim>::add_soil(State_& s) {
   } else if (ahead_ == Ahead::added) {
     PetscCall(post_bound());
   } else {
-    const bool added = s.soil_summed && present_added_;  // where they were measured before the step
+    const bool added = s.summed.soil && present_added_;  // where they were measured before the step
     note_bound(s, false);
     PetscCall(add(s.space, soil_fields(s, !added, s.soil_boundary), true));
   }
@@ -116,7 +116,7 @@ PetscErrorCode Ranks<Space, T, Dim>::add_rest(State_& s) {
 template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::add_present_soil(State_& s) {
   PetscFunctionBeginUser;
-  if (s.soil_summed && present_added_) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s.summed.soil && present_added_) PetscFunctionReturn(PETSC_SUCCESS);
   clock_.go_on();
   if (ahead_ == Ahead::under_way) {
     PetscCall(end_ahead(s, false));

@@ -25,8 +25,10 @@ void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>&
 }
 
 /// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not tell them.
+/// They may be there already.
 template <class Space, class T, int Dim>
 void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& queue) {
+  if (s.summed.rigids) return;
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& set = s.rigid_points[r];
     if (set.points.surface_normal) continue;
@@ -41,11 +43,11 @@ void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& queue) {
 /// Function 1, where the step before has not done it.
 template <class Space, class T, int Dim>
 void prepare_nodes(State<Space, T, Dim>& s) {
-  if (!s.soil_summed) reset_nodes(s);
+  if (!s.summed.soil) reset_nodes(s);
 }
 
 /// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
-/// needs it. The first ones may be there already.
+/// needs it. Both may be there already.
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& points, const Bins<Space>& bins,
                    const Space& space) {
@@ -53,9 +55,9 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& poi
   if (s.affine)
     interpolate<AffineSource<Space, T, Dim>>(s, how, bins, {{points, s.grid.inv_spacing}}, s.nodes.soil,
                                              space);
-  else if (!s.soil_summed)
+  else if (!s.summed.soil)
     interpolate<SoilSource<Space, T, Dim>>(s, how, bins, {points, s.grid.inv_spacing}, s.nodes.soil, space);
-  if (s.soil_boundary)
+  if (s.soil_boundary && !s.summed.boundary)
     interpolate<BoundarySource<Space, T, Dim>>(s, how, bins, {points, s.grid.inv_spacing, s.near_rigid},
                                                s.nodes.boundary, space);
 }
@@ -89,7 +91,7 @@ PetscErrorCode soil_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* rank
 /// The lists hold, as they do for that step: s.control must not be paused.
 template <class Space, class T, int Dim>
 void sum_present_soil(State<Space, T, Dim>& s) {
-  if (s.soil_summed) return;
+  if (s.summed.soil) return;
   reset_nodes(s);
   soil_to_nodes(s, s.space);
 }
@@ -101,16 +103,16 @@ PetscErrorCode update_and_send(State<Space, T, Dim>& s, double dt, Ranks<Space, 
   PetscFunctionBeginUser;
   const Part<Space> border = ranks.border(s);
   update_particles(s, dt, border);
-  soil_to_nodes(s, border);  // the boundary
   PetscCall(ranks.send_ahead(s));
   update_particles(s, dt, ranks.inner(s));
   ranks.join(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Function 5: velocities by XPIC or APIC where they are chosen, then the update of the soil's particles.
+/// Function 5: velocities by XPIC or APIC where they are chosen, then the update of the soil's particles;
+/// with function 6 if `and_end`.
 template <class Space, class T, int Dim>
-PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T, Dim>* ranks) {
+PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T, Dim>* ranks, bool and_end) {
   PetscFunctionBeginUser;
   for (int pass = 0; pass < s.xpic_order; ++pass) {
     if (pass > 0) {
@@ -126,6 +128,8 @@ PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T,
     PetscCall(update_and_send(s, dt, *ranks));
   else if (s.batches.in_use())
     update_by_batches(s, dt);
+  else if (and_end)
+    update_and_end(s, dt);
   else
     update_particles(s, dt);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,8 +148,8 @@ PetscErrorCode move_rigids(State<Space, T, Dim>& s, double dt, Ranks<Space, T, D
 
 /// Advances one explicit step of dt [s]. Does nothing while s.control is paused. The rebuild, function 7, is
 /// the caller's, when the movement bound says so. ranks is null on one rank. Where the soil's sums are there
-/// already, what contact waits for may go `beside` the nodes far from it; where functions are timed, they do
-/// not.
+/// already, what contact waits for may go `beside` the nodes far from it, and a small problem's rigids move
+/// in the launch of its particles; where functions are timed, they do not.
 template <class Space, class T, int Dim>
 PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Space, T, Dim>* ranks = nullptr,
                     Beside<Space>* beside = nullptr) {
@@ -153,7 +157,7 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Sp
   PetscErrorCode failed = PETSC_SUCCESS;
   const auto wait = [&] { s.space.fence("mpm::step"); };
   const auto run = [&](Function f, auto&& work) { return timers.run(f, work, wait); };
-  const bool apart = beside && s.soil_summed && nodes_apart(s) && !s.batches.in_use() && !timers.sampling();
+  const bool apart = beside && s.summed.soil && nodes_apart(s) && !s.batches.in_use() && !timers.sampling();
   const Space& queue = apart ? beside->fork(s.space) : s.space;
   PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));  // 1 initialise nodal variables
   PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, queue); }));  // 2 rigid bodies to nodes
@@ -163,8 +167,11 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Sp
   if (ranks) PetscCall(ranks->add_soil(s));                              //   the sum over ranks
   PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, queue); }));  // 4 velocities, walls, contact
   if (apart) beside->join(s.space);
-  PetscCall(run(Function::particles, [&] { failed = nodes_to_soil(s, dt, ranks); }));  // 5 stress, movement
+  const bool at_once = !ranks && ends_at_once(s) && !timers.sampling();
+  PetscCall(run(Function::particles,
+                [&] { failed = nodes_to_soil(s, dt, ranks, at_once); }));  // 5 stress, movement
   PetscCall(failed);
+  if (at_once) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(run(Function::rigids, [&] { failed = move_rigids(s, dt, ranks); }));  // 6 move the rigid bodies
   PetscCall(failed);
   PetscFunctionReturn(PETSC_SUCCESS);

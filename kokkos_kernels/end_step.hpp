@@ -1,0 +1,139 @@
+#pragma once
+// The end of a step: the rigid bodies move, the step is counted, and what any point can have moved is added
+// to the bound. A team does it.
+
+#include "state.hpp"
+#include "warp.hpp"
+
+namespace mpm {
+
+/// Acceleration of a rigid [m/s2] under the force [N] of the soil on it (Eq. 7).
+template <int Dim>
+KOKKOS_INLINE_FUNCTION double acceleration(const Rigid<Dim>& rigid, int d, double contact) {
+  return rigid.dynamic ? (rigid.force[d] + contact) / rigid.mass : 0;
+}
+/// Its movement in a step [m], exactly where the force is constant.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION double movement(const Rigid<Dim>& rigid, int d, double contact, double dt) {
+  return dt * (rigid.velocity[d] + dt / 2 * acceleration(rigid, d, contact));
+}
+
+/// Moves a rigid by a step. contact [N] is the force of the soil on it. Returns the largest component of its
+/// movement [m].
+template <int Dim>
+KOKKOS_INLINE_FUNCTION double move_rigid(Rigid<Dim>& rigid, const double* contact, double dt) {
+  double furthest = 0;
+  for (int d = 0; d < Dim; ++d) {
+    const double a = acceleration(rigid, d, contact[d]), step = movement(rigid, d, contact[d], dt);
+    furthest = Kokkos::fmax(furthest, Kokkos::fabs(step));
+    rigid.displacement[d] += step;
+    rigid.impulse[d] += dt * contact[d];
+    rigid.velocity[d] += dt * a;
+  }
+  return furthest;
+}
+
+/// Counts the step and adds what any point can have moved to the bound; moved, margin [cells]; late:
+/// State::rebuild_late.
+template <class T>
+KOKKOS_INLINE_FUNCTION void count_step(Control& c, double moved, double margin, int late) {
+  constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
+  c.increment = moved + epsilon;
+  c.bound += c.increment;
+  ++c.steps;
+  const bool now = c.due_in == 1;
+  if (c.due_in > 0)
+    --c.due_in;
+  else if (late > 0 && rebuild_due(c.bound, c.increment, margin, late))
+    c.due_in = late;
+  if (now || !(c.bound <= margin) || Kokkos::atomic_load(&c.fault_count) > 0) c.paused = 1;
+}
+
+template <class Space, class T, int Dim>
+struct EndStep {
+  using Memory = typename Space::memory_space;
+  ControlView<Space> control;
+  Movements<Space> movements;
+  Kokkos::View<double*, Memory> sums, forces;  // N: of each rigid, and what the slots' nodes leave
+  Kokkos::View<Rigid<Dim>*, Memory> rigids;
+  double dt, spacing, margin;
+  int count, slots, late;  // rigids, slots that leave forces
+
+  EndStep(const State<Space, T, Dim>& s, double step)
+      : control(s.control),
+        movements(s.movements),
+        sums(s.sums),
+        forces(s.slot_forces),
+        rigids(s.rigids),
+        dt(step),
+        spacing(s.spacing),
+        margin(s.p2g.margin),
+        count(static_cast<int>(s.rigid_points.size())),
+        slots(s.near_count),
+        late(s.rebuild_late) {}
+
+  static constexpr int warps(int threads) { return (threads + k_warp - 1) / k_warp; }
+  /// Doubles that a team of so many threads needs.
+  int room(int threads) const { return warps(threads) * (Dim * count + 1); }
+
+  /// part: room(threads)
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION void operator()(const Team& team, double* part) const {
+    const int values = Dim * count, parts = warps(team.team_size());
+    sum_forces(team, 0, values, part);
+    double moved = 0;  // cells
+    for (int n = team.team_rank(); n < movements.places; n += team.team_size())
+      moved = Kokkos::fmax(moved, movements.take(n));
+    keep(team, largest_of_warp(moved), part + values * parts);
+    team.team_barrier();  // also: no thread looks at `paused` any more
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, count), [&](int r) {
+      for (int v = r * Dim; v < (r + 1) * Dim; ++v) sums(v) = total(part + v * parts, parts);
+      part[r * Dim * parts] = move_rigid(rigids(r), &sums(r * Dim), dt) / spacing;
+    });
+    team.team_barrier();
+    Kokkos::single(Kokkos::PerTeam(team), [&] {
+      moved = 0;
+      for (int w = 0; w < parts; ++w) moved = Kokkos::fmax(moved, part[values * parts + w]);
+      for (int r = 0; r < count; ++r) moved = Kokkos::fmax(moved, part[r * Dim * parts]);
+      count_step<T>(control(), moved, margin, late);
+    });
+  }
+
+  /// Displacement [m] that rigid r will have, to the same bits. part: room(threads).
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> next_displacement(const Team& team, int r, double* part) const {
+    const int parts = warps(team.team_size());
+    const Rigid<Dim>& rigid = rigids(r);
+    team.team_barrier();  // what was there before is done with
+    if (rigid.dynamic) sum_forces(team, r * Dim, Dim, part);
+    team.team_barrier();
+    Vector<double, Dim> to;
+    for (int d = 0; d < Dim; ++d)
+      to[d] = rigid.displacement[d] +
+              movement(rigid, d, rigid.dynamic ? total(part + d * parts, parts) : 0.0, dt);
+    return to;
+  }
+
+ private:
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION static void keep(const Team& team, double of_warp, double* part) {
+    if (team.team_rank() % k_warp == 0) part[team.team_rank() / k_warp] = of_warp;
+  }
+  /// Sums of the forces number `first` to first + n by warp, [n][warps], in an order that is always the same.
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION void sum_forces(const Team& team, int first, int n, double* part) const {
+    for (int v = 0; v < n; ++v) {
+      double sum = 0;
+      for (int k = team.team_rank(); k < slots; k += team.team_size())
+        sum += forces(k * Dim * count + first + v);
+      keep(team, sum_of_warp(sum), part + v * warps(team.team_size()));
+    }
+  }
+  KOKKOS_INLINE_FUNCTION static double total(const double* part, int parts) {
+    double sum = 0;
+    for (int w = 0; w < parts; ++w) sum += part[w];
+    return sum;
+  }
+};
+
+}  // namespace mpm
