@@ -164,7 +164,10 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Sp
   PetscCall(
       run(Function::soil_to_nodes, [&] { failed = soil_to_nodes(s, ranks, queue); }));  // 3 soil to nodes
   PetscCall(failed);
-  if (ranks) PetscCall(ranks->add_soil(s));                              //   the sum over ranks
+  if (ranks) {
+    PetscCall(ranks->add_soil(s));     //   the sum over ranks,
+    if (apart) beside->fork(s.space);  //   for which the nodes near rigids wait too
+  }
   PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, queue); }));  // 4 velocities, walls, contact
   if (apart) beside->join(s.space);
   const bool at_once = !ranks && ends_at_once(s) && !timers.sampling();

@@ -50,7 +50,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
   bool due = false;
   for (; done < steps && !due; ++done) {
     sample(true);
-    PetscCall(step(state_, timers_, dt, ranks_.get()));
+    PetscCall(step<Space, T, Dim>(state_, timers_, dt, ranks_.get(), is_device<Space> ? &beside_ : nullptr));
     sample(false);
     BoundReport all;
     bool known = false;
