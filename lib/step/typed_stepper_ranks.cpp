@@ -1,6 +1,7 @@
 // What the stepper does together with those of the other ranks.
 
 #include <algorithm>
+#include <limits>
 
 #include "output/log.hpp"
 #include "parallel/together.hpp"
@@ -67,7 +68,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
 
   batch->steps = done;
   batch->bound = now.bound;
-  batch->estimate = steps;
+  batch->estimate = std::numeric_limits<long>::max();  // it ends by itself
   batch->failure = {};
   if (now.stopped > 0) {
     long least = own.steps;
