@@ -57,6 +57,7 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
       steps = 1;
     Batch batch;
     PetscCall(stepper->advance(steps, step_dt, &batch));
+    ++looks;
     const double took = batch.seconds;
     stepping += took;
     batch_limit = std::max(1L, static_cast<long>(k_look_every * batch.steps / std::max(took, 1e-9)));
@@ -166,6 +167,7 @@ PetscErrorCode Simulation::Body::finish() {
                                      .stepping = stepping - began.stepping,
                                      .steps = step - began.step,
                                      .particles = stepper->particles(),
+                                     .looks = looks,
                                      .rebuilds = rebuilds,
                                      .shortest = shortest,
                                      .longest = longest,

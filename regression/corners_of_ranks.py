@@ -79,6 +79,11 @@ def rebuilds(folder):
     return re.findall(r"were rebuilt.*", (folder / "mpm.log").read_text())
 
 
+def looks(folder):
+    """How often the host looked at the steps: seldom, also on several ranks, or a device waits for it."""
+    return int(re.search(r"looked at by the host (\d+) times", (folder / "mpm.log").read_text())[1])
+
+
 def moves(done):
     """Whether the soil moves at the end: a run which does nothing is no success."""
     return abs(read_frame(done.frame)[1]["soil"]["velocity"]).max() > 0
@@ -95,17 +100,19 @@ def check(given, folder):
                     assert moves(alone), name
                     for ranks in map(int, given.ranks.split(",")):
                         for partition in ("box", "metis -rebalance_threshold 1.01"):
-                            wrong += compare(given, f"{options} -partition {partition}", ranks, alone, folder / "several",
+                            wrong += compare(given, f"{options} -partition {partition}", steps, ranks, alone, folder / "several",
                                              f"{dim}D {name}, {precision}, {strategy}, {ranks} ranks, {partition.split()[0]}", precision)
     return wrong
 
 
-def compare(given, options, ranks, alone, folder, title, precision):
+def compare(given, options, steps, ranks, alone, folder, title, precision):
     bound = BOUNDS[100][precision]
     try:
         apart, where = differences.largest(run(given.program, options, ranks, folder), alone)
         if rebuilds(folder) != rebuilds(folder.parent / "alone"):
             apart, where = float("inf"), f"rebuilds: {rebuilds(folder)}, alone {rebuilds(folder.parent / 'alone')}"
+        if looks(folder) > steps / 2:
+            apart, where = float("inf"), f"{looks(folder)} looks of the host at {steps} steps"
     except (cases.ProgramFailed, subprocess.TimeoutExpired) as error:
         apart, where = float("inf"), str(error)
     print(f"{'pass' if apart <= bound else 'FAIL'} {title}: {apart:.2g} apart at {where}", flush=True)

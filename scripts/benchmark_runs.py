@@ -41,7 +41,8 @@ class Setting:
             length = f"{self.particles / 25600:.12g}"  # m, B = 1 m; 4 B deep, cells of B/40, 4 particles each
             return f"-mesh_upper {length},4.45 -soil_upper {length},4"
         length = self.particles / 9216 * 4.8  # m, H = 4.8 m; cells of H/48, 4 particles each
-        return (f"-mesh_lower -4,-0.2 -mesh_upper {length + 8:.12g},5.3 -base_lower -4,-0.2 -base_upper {length + 8:.12g},0"
+        # The mesh begins 16 cells below the soil, so that the soil fills whole patches.
+        return (f"-mesh_lower -4,-1.6 -mesh_upper {length + 8:.12g},5.3 -base_lower -4,-0.2 -base_upper {length + 8:.12g},0"
                 f" -slide_polygon 0,0,{length:.12g},0,{length:.12g},4.8,0,4.8")
 
     def steps(self):

@@ -39,6 +39,7 @@ std::string format_performance(const Performance& p) {
   double bytes = 0;
   for (const FunctionTime& f : p.functions) bytes += f.bytes;
   std::string text = "time of the functions, and the least that they must move\n" + table_of(p);
+  if (p.looks > 0) text += formatted("%ld steps, looked at by the host %ld times\n", p.steps, p.looks);
   if (p.rebuilds > 0)
     text += formatted("bins and lists were rebuilt %ld times, after %ld to %ld steps, %.1f on average\n",
                       p.rebuilds, p.shortest, p.longest, p.interval);

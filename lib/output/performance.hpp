@@ -20,6 +20,7 @@ struct Performance {
   double wall = 0;                               // s, since the first step
   double stepping = 0;                           // s of it in steps and rebuilds
   long steps = 0, particles = 0;                 // particles of the soil
+  long looks = 0;                                // of the host at what the steps came to
   long rebuilds = 0, shortest = 0, longest = 0;  // steps between rebuilds
   double interval = 0;                           // the mean of them
   std::string strategy, device;                  // the word of -p2g; back end and device
@@ -30,7 +31,7 @@ struct Performance {
 /// The report, in lines (where the functions' times add up to more than the steps took, as on a device that
 /// is waited for after each function of a timed step, they are scaled down to it): a table of the functions
 /// with calls, seconds, share of the wall time, bytes moved, bytes per second and their share of the copy
-/// bandwidth; then rebuilds, memory, bandwidth and particle updates per second.
+/// bandwidth; then looks of the host, rebuilds, memory, bandwidth and particle updates per second.
 std::string format_performance(const Performance& p);
 
 }  // namespace mpm
