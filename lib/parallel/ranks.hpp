@@ -110,7 +110,7 @@ class Ranks {
 
   Fields soil_fields(const State_& s, bool soil, bool boundary) const;
   PetscErrorCode send(const Space& space, const Fields& fields);
-  PetscErrorCode exchange(const Space& space, int width, bool with_bound);
+  PetscErrorCode exchange(const Space& space, int width, bool with_bound, bool beside);
   void sum(const Space& space, const Fields& fields);
   PetscErrorCode add(const Space& space, const Fields& fields, bool with_bound);
   PetscErrorCode end_ahead(State_& s, bool with_bound);

@@ -37,17 +37,17 @@ PetscErrorCode Ranks<Space, T, Dim>::send(const Space& space, const Fields& fiel
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Once `space` has packed the shares: what comes in for them. The rest of the step waits for it, or goes on
-/// beside it.
+/// Once `space` has packed the shares: what comes in for them. The rest of the step waits for it, or a device
+/// goes on `beside` it: the host then waits, and is no measure of the device's work.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::exchange(const Space& space, int width, bool with_bound) {
+PetscErrorCode Ranks<Space, T, Dim>::exchange(const Space& space, int width, bool with_bound, bool beside) {
   PetscFunctionBeginUser;
   space.fence("mpm::halo is packed");
-  clock_.pause();
+  if (!beside) clock_.pause();
   if (width > 0 && is_device<Space>) PetscCall(transport_.start(width));
   if (with_bound) PetscCall(post_bound());
   if (width > 0) PetscCall(transport_.finish());
-  clock_.go_on();
+  if (!beside) clock_.go_on();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,7 +65,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::add(const Space& space, const Fields& fields, bool with_bound) {
   PetscFunctionBeginUser;
   PetscCall(send(space, fields));
-  PetscCall(exchange(space, fields.width, with_bound));
+  PetscCall(exchange(space, fields.width, with_bound, false));
   sum(space, fields);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -158,9 +158,11 @@ PetscErrorCode Ranks<Space, T, Dim>::send_ahead(State_& s) {
 template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::end_ahead(State_& s, bool with_bound) {
   PetscFunctionBeginUser;
-  PetscCall(exchange(side_.space(), on_their_way_.width, with_bound));
+  PetscCall(exchange(side_.space(), on_their_way_.width, with_bound, is_device<Space>));
   halo_ += seconds_between(packing_, packed_) + seconds_between(adding_, added_);  // these of the last time
-  held_ += std::max(0.0, seconds_between(idle_, added_));
+  const double held = std::max(0.0, seconds_between(idle_, added_));
+  held_ += held;
+  clock_.idled(held);
   idle_.set(s.space);
   adding_.set(side_.space());
   sum(side_.space(), on_their_way_);

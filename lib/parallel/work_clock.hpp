@@ -30,6 +30,8 @@ class WorkClock {
     pause();
     paused_ = false;
   }
+  /// So many seconds that counted as work a device had nothing to do.
+  void idled(double seconds) { work_ -= seconds, recent_ -= seconds, wait_ += seconds; }
   double work() const { return work_; }
   double wait() const { return wait_; }
   /// Work since the last forget.
