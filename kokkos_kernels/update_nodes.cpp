@@ -203,8 +203,8 @@ struct UpdateNodes {
     }
     if (to.value > reach * spacing) return false;
     // Not at a right angle, as a footing's edge is to the soil under it: there round-off would decide.
-    constexpr T k_facing = T(0.1),
-                k_bounds = T(1e-3);  // cosine; of a cell's face, less is the soil's interior
+    constexpr T k_facing = T(0.1);   // cosine
+    constexpr T k_bounds = T(1e-3);  // of a cell's face: less is the soil's interior
     const T length = Kokkos::sqrt(dot(boundary, boundary));
     if (against > -k_facing * length && length > k_bounds * face()) {
       Vector<double, Dim> x = place(rigid, at);

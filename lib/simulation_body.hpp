@@ -43,7 +43,7 @@ struct Simulation::Body {
   double wall_start = 0;                                            // s
   double bandwidth = 0;                                             // bytes/s of the device's copy
   double stepping = 0;                                              // s of wall time in steps and rebuilds
-  long looks = 0;  // at what the steps of a batch came to
+  long looks = 0;                                                   // at what the steps of a batch came to
   long since_rebuild = 0, rebuilds = 0, longest = 0, shortest = 0;  // steps between rebuilds
 
   double wall() const { return began.wall + seconds_now() - wall_start; }
