@@ -58,6 +58,7 @@ struct EndStep {
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   double dt, spacing, margin;
   int count, slots, late;  // rigids, slots that leave forces
+  bool summed;             // the forces are in `sums` already
 
   EndStep(const State<Space, T, Dim>& s, double step)
       : control(s.control),
@@ -70,7 +71,8 @@ struct EndStep {
         margin(s.p2g.margin),
         count(static_cast<int>(s.rigid_points.size())),
         slots(s.near_count),
-        late(s.rebuild_late) {}
+        late(s.rebuild_late),
+        summed(s.forces_summed) {}
 
   static constexpr int warps(int threads) { return (threads + k_warp - 1) / k_warp; }
   /// Doubles that a team of so many threads needs.
@@ -80,14 +82,14 @@ struct EndStep {
   template <class Team>
   KOKKOS_INLINE_FUNCTION void operator()(const Team& team, double* part) const {
     const int values = Dim * count, parts = warps(team.team_size());
-    sum_forces(team, 0, values, part);
+    if (!summed) sum_forces(team, 0, values, part);
     double moved = 0;  // cells
     for (int n = team.team_rank(); n < movements.places; n += team.team_size())
       moved = Kokkos::fmax(moved, movements.take(n));
     keep(team, largest_of_warp(moved), part + values * parts);
     team.team_barrier();  // also: no thread looks at `paused` any more
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, count), [&](int r) {
-      for (int v = r * Dim; v < (r + 1) * Dim; ++v) sums(v) = total(part + v * parts, parts);
+      for (int v = r * Dim; v < (r + 1) * Dim && !summed; ++v) sums(v) = total(part + v * parts, parts);
       part[r * Dim * parts] = move_rigid(rigids(r), &sums(r * Dim), dt) / spacing;
     });
     team.team_barrier();
@@ -97,6 +99,14 @@ struct EndStep {
       for (int r = 0; r < count; ++r) moved = Kokkos::fmax(moved, part[r * Dim * parts]);
       count_step<T>(control(), moved, margin, late);
     });
+  }
+
+  /// The team of a value sums it. part: room(threads)
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION void sum(const Team& team, int value, double* part) const {
+    sum_forces(team, value, 1, part);
+    team.team_barrier();
+    Kokkos::single(Kokkos::PerTeam(team), [&] { sums(value) = total(part, warps(team.team_size())); });
   }
 
   /// Displacement [m] that rigid r will have, to the same bits. part: room(threads).
@@ -122,11 +132,15 @@ struct EndStep {
   /// Sums of the forces number `first` to first + n by warp, [n][warps], in an order that is always the same.
   template <class Team>
   KOKKOS_INLINE_FUNCTION void sum_forces(const Team& team, int first, int n, double* part) const {
-    for (int v = 0; v < n; ++v) {
-      double sum = 0;
-      for (int k = team.team_rank(); k < slots; k += team.team_size())
-        sum += forces(k * Dim * count + first + v);
-      keep(team, sum_of_warp(sum), part + v * warps(team.team_size()));
+    constexpr int at_once = 4;  // that a thread asks the memory for
+    const int size = team.team_size();
+    for (int v = first; v < first + n; ++v) {
+      double sum[at_once] = {};
+      int k = team.team_rank();
+      for (; k + (at_once - 1) * size < slots; k += at_once * size)
+        for (int m = 0; m < at_once; ++m) sum[m] += forces((k + m * size) * Dim * count + v);
+      for (; k < slots; k += size) sum[0] += forces(k * Dim * count + v);
+      keep(team, sum_of_warp((sum[0] + sum[1]) + (sum[2] + sum[3])), part + (v - first) * warps(size));
     }
   }
   KOKKOS_INLINE_FUNCTION static double total(const double* part, int parts) {

@@ -37,49 +37,12 @@ void sum_shares(const Space& space, const HaloLists<Space>& lists, const HaloFie
       });
 }
 
-template <class Space, class T, int Dim>
-void sum_rigid_forces(const State<Space, T, Dim>& s, const Space& space) {
-  const auto forces = s.slot_forces, sums = s.sums;
-  const int values = Dim * static_cast<int>(s.rigid_points.size()), slots = s.near_count;
-  if (values == 0) return;
-  using Team = Kokkos::TeamPolicy<Space>;
-  constexpr int threads = is_device<Space> ? 256 : 1, warps = (threads + k_warp - 1) / k_warp;
-  Kokkos::parallel_for(
-      "mpm::sum_rigid_forces",
-      light(Team(space, values, threads)
-                .set_scratch_size(0, Kokkos::PerTeam(scratch_bytes<double>(warps) + k_scratch_slack))),
-      KOKKOS_LAMBDA(const typename Team::member_type& team) {
-        const int v = team.league_rank(), thread = team.team_rank();
-        double* const part = scratch<double>(team, warps);
-        double sum = 0;
-        for (int n = thread; n < slots; n += threads) sum += forces(n * values + v);
-        sum = sum_of_warp(sum);
-        if (thread % k_warp == 0) part[thread / k_warp] = sum;
-        team.team_barrier();
-        Kokkos::single(Kokkos::PerTeam(team), [&] {
-          sums(v) = part[0];
-          for (int w = 1; w < warps; ++w) sums(v) += part[w];
-        });
-      });
-}
-
-template <class Space, class T, int Dim>
-void put_rigid_forces(State<Space, T, Dim>& s) {
-  const auto forces = s.slot_forces, sums = s.sums;
-  Kokkos::parallel_for(
-      "mpm::put_rigid_forces", light(Kokkos::RangePolicy<Space>(s.space, 0, sums.extent(0))),
-      KOKKOS_LAMBDA(int v) { forces(v) = sums(v); });
-  s.near_count = 1;
-}
-
 // Once for both dimensions.
 #define MPM_HALO_2(Space, T)                                                                     \
   template void pack_nodes(const Space&, const HaloLists<Space>&, const HaloField<T>&, int, T*); \
   template void sum_shares(const Space&, const HaloLists<Space>&, const HaloField<T>&, int, const T*);
 #define MPM_HALO_3(Space, T)
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                \
-  MPM_HALO_##Dim(Space, T) template void sum_rigid_forces(const State<Space, T, Dim>&, const Space&); \
-  template void put_rigid_forces(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim) MPM_HALO_##Dim(Space, T)
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

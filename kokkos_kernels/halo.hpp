@@ -38,13 +38,4 @@ template <class Space, class T>
 void sum_shares(const Space& space, const HaloLists<Space>& lists, const HaloField<T>& field, int width,
                 const T* in);
 
-/// Force of the soil on each rigid in this step, summed over the nodes that this rank answers for, to s.sums
-/// [N].
-template <class Space, class T, int Dim>
-void sum_rigid_forces(const State<Space, T, Dim>& s, const Space& space);
-
-/// Brings the forces of all ranks back: move_rigids then finds in s.slot_forces s.sums alone.
-template <class Space, class T, int Dim>
-void put_rigid_forces(State<Space, T, Dim>& s);
-
 }  // namespace mpm

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "rebuild.hpp"
+
 namespace mpm {
 namespace {
 
@@ -22,10 +24,20 @@ std::size_t for_each_part(const State<Space, T, Dim>& s, F&& f) {
   return (size + k_widest - 1) / k_widest * k_widest;
 }
 
+template <class Value, class Space>
+using Unmanaged = Kokkos::View<Value*, typename Space::memory_space, Kokkos::MemoryUnmanaged>;
+
+/// Room for n values and `more` bytes in the scratch memory of sorting, which keeps its size: to ask a device
+/// for memory and give it back takes longer than all else that is done here.
+template <class Value, class Space, class T, int Dim>
+Unmanaged<Value, Space> scratch_of(State<Space, T, Dim>& s, std::size_t n, std::size_t more = 0) {
+  ensure(s.spare, n * sizeof(Value) + more);
+  return Unmanaged<Value, Space>(reinterpret_cast<Value*>(s.spare.data()), n);
+}
+
 template <class Space, class View>
 void pack_part(const Space& space, const View& view, std::size_t place, std::size_t size,
-               const Kokkos::View<int*, typename Space::memory_space>& which,
-               const Kokkos::View<char*, typename Space::memory_space>& records) {
+               const Unmanaged<int, Space>& which, const Unmanaged<char, Space>& records) {
   using Value = typename View::value_type;
   Kokkos::parallel_for(
       "mpm::pack_part", Kokkos::RangePolicy<Space>(space, 0, which.extent(0)),
@@ -34,7 +46,7 @@ void pack_part(const Space& space, const View& view, std::size_t place, std::siz
 
 template <class Space, class View>
 void unpack_part(const Space& space, const View& view, std::size_t place, std::size_t size, int first,
-                 int count, const Kokkos::View<char*, typename Space::memory_space>& records) {
+                 int count, const Unmanaged<char, Space>& records) {
   using Value = typename View::value_type;
   Kokkos::parallel_for(
       "mpm::unpack_part", Kokkos::RangePolicy<Space>(space, 0, count), KOKKOS_LAMBDA(int n) {
@@ -60,7 +72,7 @@ std::size_t record_size(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-std::vector<Leaver> find_leavers(const State<Space, T, Dim>& s,
+std::vector<Leaver> find_leavers(State<Space, T, Dim>& s,
                                  const Kokkos::View<int*, typename Space::memory_space>& owner, int own) {
   using Range = Kokkos::RangePolicy<Space>;
   const auto address = s.soil.address;
@@ -69,8 +81,8 @@ std::vector<Leaver> find_leavers(const State<Space, T, Dim>& s,
   Kokkos::parallel_reduce(
       "mpm::count_leavers", Range(s.space, 0, count),
       KOKKOS_LAMBDA(int p, int& n) { n += owner(address(p) / Patch<Dim>::cells) != own; }, found);
-  const Kokkos::View<Leaver*, typename Space::memory_space> leavers("mpm::leavers", found);
   if (found == 0) return {};
+  const Unmanaged<Leaver, Space> leavers = scratch_of<Leaver>(s, found);
   Kokkos::parallel_scan(
       "mpm::find_leavers", Range(s.space, 0, count), KOKKOS_LAMBDA(int p, int& n, bool last) {
         const int rank = owner(address(p) / Patch<Dim>::cells);
@@ -84,14 +96,13 @@ std::vector<Leaver> find_leavers(const State<Space, T, Dim>& s,
 
 template <class Space, class T, int Dim>
 std::vector<char> take_particles(State<Space, T, Dim>& s, const std::vector<int>& particles) {
-  using Memory = typename Space::memory_space;
   const int count = static_cast<int>(particles.size());
   if (count == 0) return {};
-  const Kokkos::View<int*, Memory> which("mpm::which", count);
+  const std::size_t size = record_size(s);  // a multiple of any alignment
+  const Unmanaged<char, Space> records = scratch_of<char>(s, count * size, count * sizeof(int));
+  const Unmanaged<int, Space> which(reinterpret_cast<int*>(records.data() + count * size), count);
   Kokkos::deep_copy(
       which, Kokkos::View<const int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(particles.data(), count));
-  const std::size_t size = record_size(s);
-  const Kokkos::View<char*, Memory> records("mpm::records", count * size);
   for_each_part(
       s, [&](const auto& view, std::size_t place) { pack_part(s.space, view, place, size, which, records); });
   const auto address = s.soil.address;
@@ -110,7 +121,7 @@ void add_particles(State<Space, T, Dim>& s, const std::vector<char>& records) {
   if (count == 0) return;
   const int first = s.soil.points.all;
   reserve_particles(s, first + count);
-  const Kokkos::View<char*, typename Space::memory_space> here("mpm::records", records.size());
+  const Unmanaged<char, Space> here = scratch_of<char>(s, records.size());
   Kokkos::deep_copy(here, Kokkos::View<const char*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
                               records.data(), records.size()));
   for_each_part(s, [&](const auto& view, std::size_t place) {
@@ -146,7 +157,7 @@ std::vector<int> count_by_patch(const State<Space, T, Dim>& s) {
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                                     \
   template std::size_t record_size(const State<Space, T, Dim>&);                                           \
-  template std::vector<Leaver> find_leavers(const State<Space, T, Dim>&,                                   \
+  template std::vector<Leaver> find_leavers(State<Space, T, Dim>&,                                         \
                                             const Kokkos::View<int*, typename Space::memory_space>&, int); \
   template std::vector<char> take_particles(State<Space, T, Dim>&, const std::vector<int>&);               \
   template void add_particles(State<Space, T, Dim>&, const std::vector<char>&);                            \

@@ -21,7 +21,7 @@ struct Leaver {
 /// Those whose patch (Sorted::address) the table `owner` gives to another rank than `own`, in the order of
 /// the particles.
 template <class Space, class T, int Dim>
-std::vector<Leaver> find_leavers(const State<Space, T, Dim>& s,
+std::vector<Leaver> find_leavers(State<Space, T, Dim>& s,
                                  const Kokkos::View<int*, typename Space::memory_space>& owner, int own);
 
 /// Records of these particles, in this order. The particles have no place here any more: the next sort drops

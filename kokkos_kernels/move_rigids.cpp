@@ -6,32 +6,63 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void move_rigid_points(State<Space, T, Dim>& s) {
+void move_rigid_points(State<Space, T, Dim>& s, const Space& queue) {
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto points = s.rigid_points[r].points;
     if (points.surface_normal) continue;  // only a rebuild asks for them, and finds them itself
     const RigidSource<Space, T, Dim> source{points, s.rigids, r, s.patches.origin, s.spacing};
     Kokkos::parallel_for(  // also while the steps are paused: it gives the same again
-        "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(s.space, 0, points.count)),
+        "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(queue, 0, points.count)),
         KOKKOS_LAMBDA(int p) { source.move(p); });
   }
 }
 
-template <class Space, class T, int Dim>
-void move_rigids(State<Space, T, Dim>& s, double dt) {
-  using Team = Kokkos::TeamPolicy<Space>;
-  constexpr int threads = is_device<Space> ? 256 : 1;
-  const EndStep<Space, T, Dim> end(s, dt);
+namespace {
+
+/// Teams of a thousand threads, which sum the forces of thousands of slots: `work` does what one of them
+/// does.
+template <class Space, class T, int Dim, class Work>
+void launch_end(const EndStep<Space, T, Dim>& end, const Space& queue, int teams, const Work& work) {
+  constexpr int threads = is_device<Space> ? 1024 : 1;
+  using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<threads, 1>>;
   const int room = end.room(threads);
   const std::size_t bytes = scratch_bytes<double>(room);
   const int level = bytes > 32 * 1024 ? 1 : 0;
   Kokkos::parallel_for(
-      "mpm::move_rigids",
-      light(Team(s.space, 1, threads).set_scratch_size(level, Kokkos::PerTeam(bytes + k_scratch_slack))),
+      "mpm::end_step",
+      light(Team(queue, teams, threads).set_scratch_size(level, Kokkos::PerTeam(bytes + k_scratch_slack))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
-        if (!end.control().paused) end(team, scratch<double>(team, room, level));
+        if (!end.control().paused) work(end, team, scratch<double>(team, room, level));
       });
-  if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s);
+}
+
+struct Sum {
+  template <class End, class Team>
+  KOKKOS_INLINE_FUNCTION void operator()(const End& end, const Team& team, double* part) const {
+    end.sum(team, team.league_rank(), part);
+  }
+};
+struct Move {
+  template <class End, class Team>
+  KOKKOS_INLINE_FUNCTION void operator()(const End& end, const Team& team, double* part) const {
+    end(team, part);
+  }
+};
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void sum_forces(State<Space, T, Dim>& s, const Space& queue) {
+  const int values = Dim * static_cast<int>(s.rigid_points.size());
+  if (values > 0) launch_end(EndStep<Space, T, Dim>(s, 0), queue, values, Sum{});
+  s.forces_summed = true;
+}
+
+template <class Space, class T, int Dim>
+void move_rigids(State<Space, T, Dim>& s, double dt, const Space& queue) {
+  launch_end(EndStep<Space, T, Dim>(s, dt), queue, 1, Move{});
+  s.forces_summed = false;
+  if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, queue);
 }
 
 template <class Space, class T, int Dim>
@@ -51,10 +82,11 @@ void restart_count(State<Space, T, Dim>& s) {
       KOKKOS_LAMBDA(int) { control().steps = 0; });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                      \
-  template void move_rigids(State<Space, T, Dim>&, double); \
-  template void move_rigid_points(State<Space, T, Dim>&);   \
-  template Control look(const State<Space, T, Dim>&);       \
+#define MPM_INSTANTIATE(Space, T, Dim)                                    \
+  template void sum_forces(State<Space, T, Dim>&, const Space&);          \
+  template void move_rigids(State<Space, T, Dim>&, double, const Space&); \
+  template void move_rigid_points(State<Space, T, Dim>&, const Space&);   \
+  template Control look(const State<Space, T, Dim>&);                     \
   template void restart_count(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -6,16 +6,18 @@
 
 namespace mpm {
 
-/// A place in a queue.
+/// A place in a queue. To note the time at it as well holds the queue up for a microsecond or two.
 template <class Space>
 class Mark {
  public:
+  enum Kind { untimed, timed };
+  explicit Mark(Kind = untimed) {}
   void set(const Space&) {}
   /// What the queue is given from now on waits for this mark.
   void hold(const Space&) const {}
 };
 
-/// Seconds from one mark to another that have both been passed; 0 where one of them was never set.
+/// Seconds from one timed mark to another that have both been passed; 0 where one of them was never set.
 template <class Space>
 double seconds_between(const Mark<Space>&, const Mark<Space>&) {
   return 0;
@@ -36,14 +38,15 @@ class SideQueue {
 template <>
 class Mark<Kokkos::Cuda> {
  public:
-  Mark() = default;
+  enum Kind { untimed, timed };
+  explicit Mark(Kind kind = untimed) : flags_(kind == timed ? cudaEventDefault : cudaEventDisableTiming) {}
   Mark(const Mark&) = delete;
   Mark& operator=(const Mark&) = delete;
   ~Mark() {
     if (event_ != nullptr) (void)cudaEventDestroy(event_);
   }
   void set(const Kokkos::Cuda& space) {
-    if (event_ == nullptr) KOKKOS_IMPL_CUDA_SAFE_CALL(cudaEventCreate(&event_));
+    if (event_ == nullptr) KOKKOS_IMPL_CUDA_SAFE_CALL(cudaEventCreateWithFlags(&event_, flags_));
     KOKKOS_IMPL_CUDA_SAFE_CALL(cudaEventRecord(event_, space.cuda_stream()));
   }
   void hold(const Kokkos::Cuda& space) const {
@@ -53,6 +56,7 @@ class Mark<Kokkos::Cuda> {
 
  private:
   cudaEvent_t event_ = nullptr;
+  unsigned flags_;
 };
 
 inline double seconds_between(const Mark<Kokkos::Cuda>& from, const Mark<Kokkos::Cuda>& to) {

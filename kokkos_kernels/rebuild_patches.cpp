@@ -19,13 +19,23 @@ KOKKOS_INLINE_FUNCTION long patch_around(const Grid<T, Dim>& grid, Coord<Dim> at
 
 constexpr int k_soil = 1, k_rigid = 2;  // what a patch is marked to hold
 
+/// Patch of point p, -1 where it has none or the point before lies in the same patch: most do, for they are
+/// in the order of the last rebuild, and one of them is enough to mark it.
+template <int Dim, class Address>
+KOKKOS_INLINE_FUNCTION long patch_if_first(const Address& address, int p) {
+  if (address(p) < 0) return -1;
+  const long own = address(p) / Patch<Dim>::cells;
+  return p > 0 && address(p - 1) >= 0 && address(p - 1) / Patch<Dim>::cells == own ? -1 : own;
+}
+
 /// Marks the patches that hold soil of this rank.
 template <class Space, class T, int Dim, class Marks>
 void mark_soil(const State<Space, T, Dim>& s, const Marks& marks) {
   const auto address = s.soil.address;
   Kokkos::parallel_for(
       "mpm::mark_soil", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.all), KOKKOS_LAMBDA(int p) {
-        if (address(p) >= 0) Kokkos::atomic_store(&marks(address(p) / Patch<Dim>::cells), k_soil);
+        const long own = patch_if_first<Dim>(address, p);
+        if (own >= 0) Kokkos::atomic_store(&marks(own), k_soil);
       });
 }
 
@@ -37,8 +47,8 @@ void mark_rigid(const State<Space, T, Dim>& s, const Sorted<Space, Points_>& set
   const auto grid = s.grid;
   Kokkos::parallel_for(
       "mpm::mark_rigid", Kokkos::RangePolicy<Space>(s.space, 0, set.points.all), KOKKOS_LAMBDA(int p) {
-        const long own = address(p) / Patch<Dim>::cells;
-        if (Kokkos::atomic_load(&marks(own)) != 0) return;
+        const long own = patch_if_first<Dim>(address, p);
+        if (own < 0 || Kokkos::atomic_load(&marks(own)) != 0) return;
         const Coord<Dim> at = grid.origin_of(own);
         for (int k = 0; k < Patch<Dim>::around; ++k) {
           const long other = patch_around(grid, at, k);

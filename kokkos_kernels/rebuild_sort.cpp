@@ -7,37 +7,55 @@
 namespace mpm {
 namespace {
 
+/// Bins behind those of the cells, for points of patches without a mark. They are many, so that threads do
+/// not wait for one another, and a patch has one, so that its points stay about together.
+constexpr int k_rest_bins = 1024;
+
+/// Numbers of points by bin become the first point of each, and of the one behind the last. A thread takes
+/// `together` bins at a time, of which there is a multiple.
+template <class Space, class Begin>
+void begin_of_bins(const Space& space, const Begin& begin, int bins, int together) {
+  const int groups = bins / together;
+  Kokkos::parallel_scan(
+      "mpm::begin_of_bins", Kokkos::RangePolicy<Space>(space, 0, groups),
+      KOKKOS_LAMBDA(int group, int& sum, bool last) {
+        for (int c = group * together; c < (group + 1) * together; ++c) {
+          const int n = begin(c);
+          if (last) begin(c) = sum;
+          sum += n;
+        }
+        if (last && group == groups - 1) begin(bins) = sum;
+      });
+}
+
 /// Cells of the points under the new patch table, counted and summed to ranges. Points of patches without a
 /// mark have none: they go behind the others.
 template <class Space, class Points_, class Slots>
 void count_by_cell(const Space& space, Sorted<Space, Points_>& set, const Slots& slot_of, const Slots& marks,
                    int cells, int cells_per_patch) {
   using Range = Kokkos::RangePolicy<Space>;
-  ensure(set.bins.begin, cells + 1);
+  const int bins = cells + k_rest_bins;
+  ensure(set.bins.begin, bins + 1);
   ensure(set.order, set.points.all);
   const auto begin = set.bins.begin, order = set.order;
   const auto cell = set.points.cell;
   const auto address = set.address;
   Kokkos::parallel_for(
-      "mpm::clear_bins", Range(space, 0, cells + 1), KOKKOS_LAMBDA(int c) { begin(c) = 0; });
+      "mpm::clear_bins", Range(space, 0, bins + 1), KOKKOS_LAMBDA(int c) { begin(c) = 0; });
   Kokkos::parallel_for(
       "mpm::count_by_cell", Range(space, 0, set.points.all), KOKKOS_LAMBDA(int p) {
         const long patch = address(p) / cells_per_patch;
         const bool held = address(p) >= 0 && marks(patch) != 0;
-        const int c =
-            held ? slot_of(patch) * cells_per_patch + static_cast<int>(address(p) % cells_per_patch) : cells;
+        const int c = held ? slot_of(patch) * cells_per_patch + static_cast<int>(address(p) % cells_per_patch)
+                           : cells + static_cast<int>((address(p) < 0 ? p : patch) % k_rest_bins);
         cell(p) = c;
         order(p) = Kokkos::atomic_fetch_add(&begin(c), 1);  // place in the cell, for now
       });
-  Kokkos::parallel_scan(
-      "mpm::begin_of_cells", Range(space, 0, cells + 1), KOKKOS_LAMBDA(int c, int& sum, bool last) {
-        const int n = begin(c);
-        if (last) begin(c) = sum;
-        sum += n;
-      });
+  begin_of_bins(space, begin, bins, cells_per_patch);
 }
 
-/// set.order becomes the former place of each point of the new order. `spare` is scratch.
+/// set.order becomes the former place of each point of the new order, and the points' cells are in it.
+/// `spare` is scratch.
 template <class Space, class Points_, class Spare>
 void order_points(const Space& space, Sorted<Space, Points_>& set, const Spare& spare, int cells) {
   using Range = Kokkos::RangePolicy<Space>;
@@ -57,6 +75,7 @@ void order_points(const Space& space, Sorted<Space, Points_>& set, const Spare& 
           for (; m > begin(c) && id(former(m - 1)) > id(p); --m) former(m) = former(m - 1);
           former(m) = p;
         }
+        for (int n = begin(c); n < begin(c + 1); ++n) cell(n) = c;
       });
   Kokkos::parallel_for(
       "mpm::keep_order", Range(space, 0, count), KOKKOS_LAMBDA(int p) { order(p) = former(p); });
@@ -81,11 +100,23 @@ void permute(const Space& space, const Field& field, const Order& order, int cou
   }
 }
 
+/// Whether a field is the same for all points, so that no order changes it.
+template <class Space, class T, int Dim>
+bool is_uniform(const Soil<Space, T, Dim>& soil, const void* field) {
+  return field == soil.body.data() && soil.bodies.extent(0) == 1;
+}
+template <class Space, class T, int Dim>
+bool is_uniform(const RigidPoints<Space, T, Dim>&, const void*) {
+  return false;
+}
+
 template <class Space, class Points_, class Order, class Spare>
 void permute_fields(const Space& space, Points_& points, const Order& order, const Spare& spare) {
   const auto field = [&](const auto& view) { permute(space, view, order, points.all, spare); };
-  field(points.coordinate), field(points.cell), field(points.id);
-  for_each_field(points, field);
+  field(points.coordinate), field(points.id);
+  for_each_field(points, [&](const auto& view) {
+    if (!is_uniform(points, view.data())) field(view);
+  });
 }
 /// Points that live in memory of the host are moved there by its own threads: a device would read and write
 /// it in pieces.
@@ -105,48 +136,72 @@ void permute_fields(const Space& space, Sorted<Space, Points_>& set, const Spare
   permute_fields(space, set.points, set.order, spare);
 }
 
-/// Slots that hold points, ordered by the colour of their patch.
+/// Numbers of slots of each colour that hold points, and of the points.
+template <int Dim>
+struct Held {
+  int slots[Patch<Dim>::colours] = {}, points = 0;
+  KOKKOS_INLINE_FUNCTION Held& operator+=(const Held& other) {
+    for (int colour = 0; colour < Patch<Dim>::colours; ++colour) slots[colour] += other.slots[colour];
+    points += other.points;
+    return *this;
+  }
+};
+
+/// Colour of the patch of a slot, -1 where it holds no points.
+template <class Space, int Dim>
+struct ColourOfSlot {
+  Kokkos::View<int*, typename Space::memory_space> begin;
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  KOKKOS_INLINE_FUNCTION int operator()(int slot) const {
+    if (begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells)) return -1;
+    int colour = 0;
+    for (int d = 0; d < Dim; ++d) colour |= ((origin(slot)[d] >> Patch<Dim>::log_edge) & 1) << d;
+    return colour;
+  }
+};
+
+/// What holds points: how many of them have a slot, and these slots, ordered by the colour of their patch.
 template <class Space, class Points_, int Dim>
-void slots_by_colour(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches) {
-  ensure(set.bins.by_colour, patches.slots);
-  const auto by_colour = set.bins.by_colour;
-  const auto begin = set.bins.begin;
-  const auto origin = patches.origin;
-  set.bins.first_slot = 0, set.bins.last_slot = patches.slots;
+void list_held(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches) {
+  using Range = Kokkos::RangePolicy<Space>;
+  const int slots = patches.slots;
+  ensure(set.bins.by_colour, slots);
+  const auto by_colour = set.bins.by_colour, begin = set.bins.begin;
+  const ColourOfSlot<Space, Dim> colour_of{begin, patches.origin};
+  Held<Dim> held, first;
+  Kokkos::parallel_reduce(
+      "mpm::count_held", Range(space, 0, slots),
+      KOKKOS_LAMBDA(int slot, Held<Dim>& n) {
+        const int colour = colour_of(slot);
+        if (colour >= 0) ++n.slots[colour];
+        if (slot == slots - 1) n.points = begin(slots * Patch<Dim>::cells);
+      },
+      held);
+  set.points.count = held.points;
+  set.bins.first_slot = 0, set.bins.last_slot = slots;
   set.bins.colour_begin[0] = 0;
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
-    const int first = set.bins.colour_begin[colour];
-    int found = 0;
-    Kokkos::parallel_scan(
-        "mpm::slots_by_colour", Kokkos::RangePolicy<Space>(space, 0, patches.slots),
-        KOKKOS_LAMBDA(int slot, int& n, bool last) {
-          int own = 0;
-          for (int d = 0; d < Dim; ++d) own |= ((origin(slot)[d] >> Patch<Dim>::log_edge) & 1) << d;
-          if (own != colour || begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells))
-            return;
-          if (last) by_colour(first + n) = slot;
-          ++n;
-        },
-        found);
-    set.bins.colour_begin[colour + 1] = first + found;
+    first.slots[colour] = set.bins.colour_begin[colour];
+    set.bins.colour_begin[colour + 1] = first.slots[colour] + held.slots[colour];
   }
+  Kokkos::parallel_scan(
+      "mpm::slots_by_colour", Range(space, 0, slots), KOKKOS_LAMBDA(int slot, Held<Dim>& n, bool last) {
+        const int colour = colour_of(slot);
+        if (colour < 0) return;
+        if (last) by_colour(first.slots[colour] + n.slots[colour]) = slot;
+        ++n.slots[colour];
+      });
 }
 
 template <class Space, class Points_, int Dim, class Spare>
 void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches,
               const Kokkos::View<int*, typename Space::memory_space>& marks, Spare& spare) {
   const int cells = patches.node_count();
-  auto& points = set.points;
-  ensure(spare, spare_of_point(points) * points.all);
-
+  ensure(spare, spare_of_point(set.points) * set.points.all);
   count_by_cell(space, set, patches.slot_of, marks, cells, Patch<Dim>::cells);
   order_points(space, set, spare, cells);
   permute_fields(space, set, spare);
-  Kokkos::View<int, Kokkos::HostSpace> held("mpm::held");
-  Kokkos::deep_copy(space, held, Kokkos::subview(set.bins.begin, cells));
-  space.fence("mpm::sort_set");
-  points.count = held();
-  slots_by_colour(space, set, patches);
+  list_held(space, set, patches);
 }
 
 }  // namespace

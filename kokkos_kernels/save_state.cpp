@@ -227,7 +227,7 @@ void list_saved(State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void finish_saved(State<Space, T, Dim>& s, const SavedState& saved) {
   restore_rigids(s, saved, false);
-  move_rigid_points(s);
+  move_rigid_points(s, s.space);
   restore_nodes(s, saved.impulse);
   restore_control(s, saved);
   s.summed = {};

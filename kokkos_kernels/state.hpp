@@ -59,10 +59,11 @@ struct State {
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them
   Summed summed;                  // what the step before has summed already
-  bool rigid_moves = false;       // some rigid is not fixed
-  bool mass_normals = false;      // some rigid's normals are those of its mass gradient
-  bool soil_boundary = false;     // some contact needs the soil's boundary at the nodes
-  bool has_friction = false;      // some contact has Coulomb friction
+  bool forces_summed = false;  // `sums` holds the forces of this step, of all ranks if a rigid moves by them
+  bool rigid_moves = false;    // some rigid is not fixed
+  bool mass_normals = false;   // some rigid's normals are those of its mass gradient
+  bool soil_boundary = false;  // some contact needs the soil's boundary at the nodes
+  bool has_friction = false;   // some contact has Coulomb friction
 };
 
 }  // namespace mpm

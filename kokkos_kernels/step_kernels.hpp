@@ -51,14 +51,22 @@ void update_particles(State<Space, T, Dim>& s, double dt);
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part);
 
+/// Forces of the soil on the rigids in this step, from s.slot_forces to s.sums [N]; else move_rigids does it.
+template <class Space, class T, int Dim>
+void sum_forces(State<Space, T, Dim>& s, const Space& queue);
+
 /// 6. Moves the rigid bodies (Eq. 7), counts the step, and adds what any point can have moved to the bound.
 /// dt [s].
 template <class Space, class T, int Dim>
-void move_rigids(State<Space, T, Dim>& s, double dt);
+void move_rigids(State<Space, T, Dim>& s, double dt, const Space& queue);
+template <class Space, class T, int Dim>
+void move_rigids(State<Space, T, Dim>& s, double dt) {
+  move_rigids(s, dt, s.space);
+}
 
 /// Coordinates of the rigids' points, where their mass gives a normal, from where the rigids are.
 template <class Space, class T, int Dim>
-void move_rigid_points(State<Space, T, Dim>& s);
+void move_rigid_points(State<Space, T, Dim>& s, const Space& queue);
 
 /// Copy of the control block on the host. Waits for the steps before it.
 template <class Space, class T, int Dim>

@@ -36,39 +36,20 @@ class Planner {
   Planner(const PatchGrid& grid, const Owners& owners, const std::vector<std::uint8_t>& occupied, int own)
       : grid_(grid), owners_(owners), occupied_(occupied), own_(own) {
     for (int k = 0; k < 27; ++k) masks_[k] = reached_from({k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}, grid.dim);
-  }
-
-  /// What the ranks reach of patch n.
-  const Reach& reach_of(long n) {
-    reach_.clear();
-    grid_.for_each_around(n, [&](long other, const std::array<int, 3>& offset) {
-      if (!occupied_[other]) return;
-      const int rank = owners_[other];
-      auto at = std::find_if(reach_.begin(), reach_.end(), [&](const auto& r) { return r.first >= rank; });
-      if (at == reach_.end() || at->first != rank) at = reach_.insert(at, {rank, 0});
-      at->second |= masks_[(offset[2] + 1) * 9 + (offset[1] + 1) * 3 + offset[0] + 1];
+    const long inside = grid.number({1, 1, grid.dim == 3 ? 1 : 0});
+    grid.for_each_around(inside, [&](long other, const std::array<int, 3>& offset) {
+      around_.push_back({other - inside, mask_of(offset)});
     });
-    return reach_;
   }
 
-  /// Adds the shared nodes of one slot.
-  void add(int slot, const Reach& reach) {
-    std::uint64_t mine = 0, others = 0, below = 0;
-    for (const auto& [rank, mask] : reach) {
-      (rank == own_ ? mine : others) |= mask;
-      if (rank < own_) below |= mask;
-    }
-    plan_.counted.push_back(mine & ~below);
-    for (std::uint64_t left = mine & others; left != 0; left &= left - 1) {
-      const int place = std::countr_zero(left);
-      plan_.shared.push_back(slot * k_nodes + place);
-      for (const auto& [rank, mask] : reach) {
-        if ((mask >> place & 1) == 0) continue;
-        std::vector<int>& list = lists_[rank];
-        sources_.push_back({rank, static_cast<int>(list.size())});
-        if (rank != own_) list.push_back(slot * k_nodes + place);
-      }
-      ends_.push_back(static_cast<int>(sources_.size()));
+  /// Adds a slot of patch n.
+  void add(int slot, long n) {
+    std::uint64_t mine = 0;
+    if (inside(n) && reach_alone(n, &mine)) {
+      plan_.counted.push_back(mine);
+      plan_.border.push_back(0);
+    } else {
+      add(slot, reach_of(n));
     }
   }
 
@@ -90,11 +71,69 @@ class Planner {
   }
 
  private:
+  std::uint64_t mask_of(const std::array<int, 3>& offset) const {
+    return masks_[(offset[2] + 1) * 9 + (offset[1] + 1) * 3 + offset[0] + 1];
+  }
+
+  /// Whether all patches round n are in the grid.
+  bool inside(long n) const {
+    const std::array<int, 3> at = grid_.place(n);
+    bool in = true;
+    for (int d = 0; d < grid_.dim; ++d) in = in && at[d] > 0 && at[d] < grid_.patches[d] - 1;
+    return in;
+  }
+
+  /// Whether no other rank reaches patch n, and what this one does; so it is for nearly all.
+  bool reach_alone(long n, std::uint64_t* mine) const {
+    for (const auto& [offset, mask] : around_) {
+      if (!occupied_[n + offset]) continue;
+      if (owners_[n + offset] != own_) return false;
+      *mine |= mask;
+    }
+    return true;
+  }
+
+  /// What the ranks reach of patch n.
+  const Reach& reach_of(long n) {
+    reach_.clear();
+    grid_.for_each_around(n, [&](long other, const std::array<int, 3>& offset) {
+      if (!occupied_[other]) return;
+      const int rank = owners_[other];
+      auto at = std::find_if(reach_.begin(), reach_.end(), [&](const auto& r) { return r.first >= rank; });
+      if (at == reach_.end() || at->first != rank) at = reach_.insert(at, {rank, 0});
+      at->second |= mask_of(offset);
+    });
+    return reach_;
+  }
+
+  /// Adds the shared nodes of one slot.
+  void add(int slot, const Reach& reach) {
+    std::uint64_t mine = 0, others = 0, below = 0;
+    for (const auto& [rank, mask] : reach) {
+      (rank == own_ ? mine : others) |= mask;
+      if (rank < own_) below |= mask;
+    }
+    plan_.counted.push_back(mine & ~below);
+    plan_.border.push_back(others != 0);
+    for (std::uint64_t left = mine & others; left != 0; left &= left - 1) {
+      const int place = std::countr_zero(left);
+      plan_.shared.push_back(slot * k_nodes + place);
+      for (const auto& [rank, mask] : reach) {
+        if ((mask >> place & 1) == 0) continue;
+        std::vector<int>& list = lists_[rank];
+        sources_.push_back({rank, static_cast<int>(list.size())});
+        if (rank != own_) list.push_back(slot * k_nodes + place);
+      }
+      ends_.push_back(static_cast<int>(sources_.size()));
+    }
+  }
+
   const PatchGrid& grid_;
   const Owners& owners_;
   const std::vector<std::uint8_t>& occupied_;
   int own_;
   std::uint64_t masks_[27];
+  std::vector<std::pair<long, std::uint64_t>> around_;  // patches round one inside: what to add to its number
   Reach reach_;
   HaloPlan plan_;
   std::map<int, std::vector<int>> lists_;     // nodes by rank
@@ -107,8 +146,7 @@ class Planner {
 HaloPlan plan_halo(const PatchGrid& grid, const Owners& owners, const std::vector<std::uint8_t>& occupied,
                    const std::vector<long>& slots, int own) {
   Planner planner(grid, owners, occupied, own);
-  for (std::size_t slot = 0; slot < slots.size(); ++slot)
-    planner.add(static_cast<int>(slot), planner.reach_of(slots[slot]));
+  for (std::size_t slot = 0; slot < slots.size(); ++slot) planner.add(static_cast<int>(slot), slots[slot]);
   return planner.finish();
 }
 

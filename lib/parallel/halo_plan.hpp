@@ -16,6 +16,7 @@ struct HaloPlan {
   std::vector<int> first;              // first source of a shared node [shared + 1]
   std::vector<int> source;             // in the order of ranks: the entry that came in, -1 for the own share
   std::vector<std::uint64_t> counted;  // by slot, a bit a node: reached by this rank and by none below it
+  std::vector<char> border;  // by slot: whether particles of other ranks are in the patches round it
 };
 
 /// Makes the plan of rank `own`.

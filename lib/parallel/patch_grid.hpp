@@ -18,8 +18,9 @@ struct PatchGrid {
     return (long(at[2]) * patches[1] + at[1]) * patches[0] + at[0];
   }
   std::array<int, 3> place(long n) const {
-    return {static_cast<int>(n % patches[0]), static_cast<int>(n / patches[0] % patches[1]),
-            static_cast<int>(n / patches[0] / patches[1])};
+    const long row = n / patches[0], layer = row / patches[1];
+    return {static_cast<int>(n - row * patches[0]), static_cast<int>(row - layer * patches[1]),
+            static_cast<int>(layer)};
   }
   /// Calls f(number, offset) for the patches round n, itself included; offset is -1, 0 or 1 in each
   /// direction.

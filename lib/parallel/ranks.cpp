@@ -43,7 +43,8 @@ PetscErrorCode Ranks<Space, T, Dim>::start(MPI_Comm comm, const PartitionConfig&
   PetscCall(migrate(s, &moved));
   sort_and_list(s);
   PetscCall(make_lists(s));
-  note_bound(s, true);
+  note_bound(s, s.space);
+  s.space.fence("mpm::note_bound");
   clock_.stop();
   clock_ = WorkClock(is_device<Space>);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -64,7 +65,7 @@ PetscErrorCode Ranks<Space, T, Dim>::add_forces(State_& s) {
   // The forces are there since the nodes are: where shares have been sent ahead nobody waits for inner
   // patches.
   const Space& space = sent_ahead() ? side_.space() : s.space;
-  sum_rigid_forces(s, space);
+  sum_forces(s, space);
   const auto sums = Kokkos::create_mirror_view(s.sums);
   Kokkos::deep_copy(space, sums, s.sums);
   space.fence("mpm::add_forces");
@@ -73,7 +74,6 @@ PetscErrorCode Ranks<Space, T, Dim>::add_forces(State_& s) {
       MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.extent(0)), MPI_DOUBLE, MPI_SUM, comm_));
   clock_.go_on();
   Kokkos::deep_copy(s.space, s.sums, sums);
-  put_rigid_forces(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

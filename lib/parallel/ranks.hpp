@@ -44,8 +44,10 @@ class Ranks {
   PetscErrorCode start(MPI_Comm comm, const PartitionConfig& config, const Owners& owners, State_& s);
 
   /// Function 3, the sum over ranks: the shares of soil and boundary, in one message a neighbour. Where they
-  /// were sent ahead it ends what is under way.
-  PetscErrorCode add_soil(State_& s);
+  /// were sent ahead it ends what is under way. What s.space and `queue` are given from now on finds the
+  /// sums. queue: that in which the rigids moved at the end of the step before.
+  PetscErrorCode add_soil(State_& s, const Space& queue);
+  PetscErrorCode add_soil(State_& s) { return add_soil(s, s.space); }
 
   /// Whether the step sends ahead: it computes the border patches, whose nodes other ranks reach too, on a
   /// queue of their own, calls send_ahead, and computes the inner patches while the shares travel.
@@ -110,15 +112,17 @@ class Ranks {
 
   Fields soil_fields(const State_& s, bool soil, bool boundary) const;
   PetscErrorCode send(const Space& space, const Fields& fields);
-  PetscErrorCode exchange(const Space& space, int width, bool with_bound, bool beside);
+  PetscErrorCode exchange(int width, bool with_bound);
   void sum(const Space& space, const Fields& fields);
   PetscErrorCode add(const Space& space, const Fields& fields, bool with_bound);
-  PetscErrorCode end_ahead(State_& s, bool with_bound);
+  PetscErrorCode end_ahead(const State_& s, const Space& queue, bool with_bound);
+  bool measures() const { return exchanges_ % k_measured_each == 0; }
+  void measure_ahead();
   /// What is known and under way of the steps before a rebuild.
   PetscErrorCode forget();
   PetscErrorCode post_bound();
-  void note_bound(State_& s, bool wait);
-  void put_border_first(State_& s, std::vector<int> held, const std::vector<long>& slots);
+  void note_bound(const State_& s, const Space& queue);
+  void put_border_first(State_& s, std::vector<int> held, const std::vector<char>& border);
   PetscErrorCode take_own(SavedState& saved, bool* as_saved);
   PetscErrorCode rebalance(State_& s);
   PetscErrorCode choose_owners(State_& s, const std::vector<double>& figures, double imbalance, bool timed);
@@ -141,7 +145,12 @@ class Ranks {
   SideQueue<Space> side_;  // of the border's kernels and of the halo
   Ahead ahead_ = Ahead::nothing;
   Fields on_their_way_;
-  Mark<Space> nodes_there_, border_there_, packing_, packed_, adding_, added_, idle_;
+  using Mark_ = Mark<Space>;
+  Mark_ nodes_there_, border_there_, added_;
+  Mark_ packing_{Mark_::timed}, packed_{Mark_::timed}, idle_{Mark_::timed}, adding_{Mark_::timed},
+      over_{Mark_::timed};  // of one exchange in k_measured_each
+  static constexpr int k_measured_each = 8;
+  long exchanges_ = 0;  // that were sent ahead
   Kokkos::View<Control, Staging> seen_;
   GlobalBound bound_;
   bool present_added_ = false;  // nodes.soil holds the sums over ranks of the soil as it is

@@ -37,17 +37,13 @@ PetscErrorCode Ranks<Space, T, Dim>::send(const Space& space, const Fields& fiel
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Once `space` has packed the shares: what comes in for them. The rest of the step waits for it, or a device
-/// goes on `beside` it: the host then waits, and is no measure of the device's work.
+/// Once the shares are packed: what comes in for them.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::exchange(const Space& space, int width, bool with_bound, bool beside) {
+PetscErrorCode Ranks<Space, T, Dim>::exchange(int width, bool with_bound) {
   PetscFunctionBeginUser;
-  space.fence("mpm::halo is packed");
-  if (!beside) clock_.pause();
   if (width > 0 && is_device<Space>) PetscCall(transport_.start(width));
   if (with_bound) PetscCall(post_bound());
   if (width > 0) PetscCall(transport_.finish());
-  if (!beside) clock_.go_on();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,7 +61,10 @@ template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::add(const Space& space, const Fields& fields, bool with_bound) {
   PetscFunctionBeginUser;
   PetscCall(send(space, fields));
-  PetscCall(exchange(space, fields.width, with_bound, false));
+  space.fence("mpm::halo is packed");
+  clock_.pause();
+  PetscCall(exchange(fields.width, with_bound));
+  clock_.go_on();
   sum(space, fields);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -80,25 +79,24 @@ PetscErrorCode Ranks<Space, T, Dim>::post_bound() {
 }
 
 template <class Space, class T, int Dim>
-void Ranks<Space, T, Dim>::note_bound(State_& s, bool wait) {
-  Kokkos::deep_copy(s.space, seen_, s.control);
-  if (wait) s.space.fence("mpm::note_bound");
+void Ranks<Space, T, Dim>::note_bound(const State_& s, const Space& queue) {
+  Kokkos::deep_copy(queue, seen_, s.control);
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::add_soil(State_& s) {
+PetscErrorCode Ranks<Space, T, Dim>::add_soil(State_& s, const Space& queue) {
   PetscFunctionBeginUser;
-  if (!is_device<Space>) note_bound(s, false);
+  if (!is_device<Space>) note_bound(s, queue);
   if (ahead_ == Ahead::under_way) {
-    PetscCall(end_ahead(s, true));
+    PetscCall(end_ahead(s, queue, true));
   } else if (ahead_ == Ahead::added) {
     PetscCall(post_bound());
   } else {
     const bool added = s.summed.soil && present_added_;  // where they were measured before the step
-    note_bound(s, false);
+    note_bound(s, s.space);
     PetscCall(add(s.space, soil_fields(s, !added, s.soil_boundary), true));
   }
-  if (ahead_ != Ahead::nothing) note_bound(s, false);  // for the next step
+  if (ahead_ != Ahead::nothing) note_bound(s, queue);  // for the next step
   ahead_ = Ahead::nothing;
   present_added_ = false;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -119,7 +117,7 @@ PetscErrorCode Ranks<Space, T, Dim>::add_present_soil(State_& s) {
   if (s.summed.soil && present_added_) PetscFunctionReturn(PETSC_SUCCESS);
   clock_.go_on();
   if (ahead_ == Ahead::under_way) {
-    PetscCall(end_ahead(s, false));
+    PetscCall(end_ahead(s, s.space, false));
     ahead_ = Ahead::added;
   } else if (ahead_ == Ahead::nothing) {
     PetscCall(add(s.space, soil_fields(s, true, false), false));
@@ -146,28 +144,41 @@ PetscErrorCode Ranks<Space, T, Dim>::send_ahead(State_& s) {
   PetscFunctionBeginUser;
   border_there_.set(side_.space());
   on_their_way_ = soil_fields(s, true, s.soil_boundary);
-  packing_.set(side_.space());
+  if (measures()) packing_.set(side_.space());
   PetscCall(send(side_.space(), on_their_way_));
-  packed_.set(side_.space());
+  if (measures()) packed_.set(side_.space());
   ahead_ = Ahead::under_way;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Adds what was sent ahead, while the inner patches may still be computed; what s.space is given from now on
-/// finds the sums.
+/// What the marks of the last exchange that was measured tell of all. A device was held up from when it had
+/// nothing left but to wait for the shares until they were added; the host, which waits beside it, is no
+/// measure of that.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::end_ahead(State_& s, bool with_bound) {
-  PetscFunctionBeginUser;
-  PetscCall(exchange(side_.space(), on_their_way_.width, with_bound, is_device<Space>));
-  halo_ += seconds_between(packing_, packed_) + seconds_between(adding_, added_);  // these of the last time
-  const double held = std::max(0.0, seconds_between(idle_, added_));
+void Ranks<Space, T, Dim>::measure_ahead() {
+  const double held = k_measured_each * std::max(0.0, seconds_between(idle_, over_));
+  halo_ += k_measured_each * (seconds_between(packing_, packed_) + seconds_between(adding_, over_));
   held_ += held;
   clock_.idled(held);
-  idle_.set(s.space);
-  adding_.set(side_.space());
-  sum(side_.space(), on_their_way_);
-  added_.set(side_.space());
+}
+
+/// Adds what was sent ahead, while the inner patches may still be computed.
+template <class Space, class T, int Dim>
+PetscErrorCode Ranks<Space, T, Dim>::end_ahead(const State_& s, const Space& queue, bool with_bound) {
+  PetscFunctionBeginUser;
+  const Space& side = side_.space();
+  side.fence("mpm::halo is packed");
+  if (!is_device<Space>) clock_.pause();
+  if (measures()) idle_.set(s.space);
+  PetscCall(exchange(on_their_way_.width, with_bound));
+  if (!is_device<Space>) clock_.go_on();
+  if (measures()) adding_.set(side);
+  sum(side, on_their_way_);
+  if (measures()) over_.set(side);
+  added_.set(side);
   added_.hold(s.space);
+  added_.hold(queue);
+  if (exchanges_++ % k_measured_each == 1 && is_device<Space>) measure_ahead();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -181,15 +192,15 @@ PetscErrorCode Ranks<Space, T, Dim>::forget() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                   \
-  template bool sends_ahead(const State<Space, T, Dim>&, const PartitionConfig&);        \
-  template void Ranks<Space, T, Dim>::note_bound(State<Space, T, Dim>&, bool);           \
-  template PetscErrorCode Ranks<Space, T, Dim>::add_soil(State<Space, T, Dim>&);         \
-  template PetscErrorCode Ranks<Space, T, Dim>::add_rest(State<Space, T, Dim>&);         \
-  template PetscErrorCode Ranks<Space, T, Dim>::add_present_soil(State<Space, T, Dim>&); \
-  template Part<Space> Ranks<Space, T, Dim>::border(const State<Space, T, Dim>&);        \
-  template Part<Space> Ranks<Space, T, Dim>::inner(const State<Space, T, Dim>&) const;   \
-  template PetscErrorCode Ranks<Space, T, Dim>::send_ahead(State<Space, T, Dim>&);       \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                         \
+  template bool sends_ahead(const State<Space, T, Dim>&, const PartitionConfig&);              \
+  template void Ranks<Space, T, Dim>::note_bound(const State<Space, T, Dim>&, const Space&);   \
+  template PetscErrorCode Ranks<Space, T, Dim>::add_soil(State<Space, T, Dim>&, const Space&); \
+  template PetscErrorCode Ranks<Space, T, Dim>::add_rest(State<Space, T, Dim>&);               \
+  template PetscErrorCode Ranks<Space, T, Dim>::add_present_soil(State<Space, T, Dim>&);       \
+  template Part<Space> Ranks<Space, T, Dim>::border(const State<Space, T, Dim>&);              \
+  template Part<Space> Ranks<Space, T, Dim>::inner(const State<Space, T, Dim>&) const;         \
+  template PetscErrorCode Ranks<Space, T, Dim>::send_ahead(State<Space, T, Dim>&);             \
   template PetscErrorCode Ranks<Space, T, Dim>::forget();
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -51,7 +51,8 @@ PetscErrorCode Ranks<Space, T, Dim>::rebuild(State_& s) {
   PetscCall(make_lists(s));
   if (s.has_friction) PetscCall(share_impulses(s, impulses));
   present_added_ = false;
-  note_bound(s, true);
+  note_bound(s, s.space);
+  s.space.fence("mpm::note_bound");
   if (!news_.empty())
     news_ += formatted("; %ld particles changed their rank, %.3g s", moved, WorkClock::wall() - before);
   clock_.stop();
@@ -158,26 +159,19 @@ PetscErrorCode Ranks<Space, T, Dim>::make_lists(State_& s) {
   fill(lists_.source, plan.source);
   ensure(s.counted, std::max<std::size_t>(plan.counted.size(), 1));  // of extent 0 it would mean one rank
   fill(s.counted, plan.counted);
-  ensure(s.slot_forces, s.sums.extent(0));
 
   const int width = std::max(SoilShare<Dim>::size + BoundaryShare<Dim>::size, Dim);
   PetscCall(transport_.set_up(plan.neighbours, plan.begin, width));
-  if (overlaps(s)) put_border_first(s, std::vector<int>(held.data(), held.data() + holding), slots);
+  if (overlaps(s)) put_border_first(s, std::vector<int>(held.data(), held.data() + holding), plan.border);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Orders the slots that hold particles, `held`, so that those come first that reach nodes of other ranks'
-/// particles: two patches that touch share some.
+/// Orders the slots that hold particles, `held`, so that those on the border (HaloPlan) come first.
 template <class Space, class T, int Dim>
 void Ranks<Space, T, Dim>::put_border_first(State_& s, std::vector<int> held,
-                                            const std::vector<long>& slots) {
-  const auto inner = std::stable_partition(held.begin(), held.end(), [&](int slot) {
-    bool touches = false;
-    grid_.for_each_around(slots[slot], [&](long other, const std::array<int, 3>&) {
-      touches = touches || (occupied_[other] != 0 && owners_[other] != rank_);
-    });
-    return touches;
-  });
+                                            const std::vector<char>& border) {
+  const auto inner =
+      std::stable_partition(held.begin(), held.end(), [&](int slot) { return border[slot] != 0; });
   s.soil.bins.border = static_cast<int>(inner - held.begin());
   fill(s.soil.bins.by_colour, held);
 }
@@ -281,7 +275,8 @@ PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved, bool*
   PetscCall(make_lists(s));
   present_added_ = false;
   finish_saved(s, saved);
-  note_bound(s, true);
+  note_bound(s, s.space);
+  s.space.fence("mpm::note_bound");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -137,19 +137,19 @@ PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T,
 
 /// Function 6, under the forces of all ranks.
 template <class Space, class T, int Dim>
-PetscErrorCode move_rigids(State<Space, T, Dim>& s, double dt, Ranks<Space, T, Dim>* ranks) {
+PetscErrorCode move_rigids(State<Space, T, Dim>& s, double dt, Ranks<Space, T, Dim>* ranks,
+                           Beside<Space>* beside) {
   PetscFunctionBeginUser;
-  const int near = s.near_count;
   if (ranks) PetscCall(ranks->add_forces(s));
-  move_rigids(s, dt);
-  s.near_count = near;
+  move_rigids(s, dt, beside ? beside->fork(s.space) : s.space);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// Advances one explicit step of dt [s]. Does nothing while s.control is paused. The rebuild, function 7, is
 /// the caller's, when the movement bound says so. ranks is null on one rank. Where the soil's sums are there
-/// already, what contact waits for may go `beside` the nodes far from it, and a small problem's rigids move
-/// in the launch of its particles; where functions are timed, they do not.
+/// already, what contact waits for, from the movement of the rigids on, may go `beside` the nodes far from
+/// it: these know of a pause a step late, and do then what the rebuild throws away. A small problem's rigids
+/// move in the launch of its particles. Where functions are timed, they have the device for themselves.
 template <class Space, class T, int Dim>
 PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Space, T, Dim>* ranks = nullptr,
                     Beside<Space>* beside = nullptr) {
@@ -157,25 +157,28 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Sp
   PetscErrorCode failed = PETSC_SUCCESS;
   const auto wait = [&] { s.space.fence("mpm::step"); };
   const auto run = [&](Function f, auto&& work) { return timers.run(f, work, wait); };
-  const bool apart = beside && s.summed.soil && nodes_apart(s) && !s.batches.in_use() && !timers.sampling();
+  const bool may_go_beside = beside && nodes_apart(s) && !s.batches.in_use() && !timers.sampling();
+  const bool moves_beside = may_go_beside && sums_ahead(s) && (!ranks || ranks->overlaps(s));
+  const bool apart = may_go_beside && s.summed.soil;
+  if (beside && !apart) beside->join(s.space);
   const Space& queue = apart ? beside->fork(s.space) : s.space;
   PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));  // 1 initialise nodal variables
   PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, queue); }));  // 2 rigid bodies to nodes
   PetscCall(
       run(Function::soil_to_nodes, [&] { failed = soil_to_nodes(s, ranks, queue); }));  // 3 soil to nodes
   PetscCall(failed);
-  if (ranks) {
-    PetscCall(ranks->add_soil(s));     //   the sum over ranks,
-    if (apart) beside->fork(s.space);  //   for which the nodes near rigids wait too
-  }
+  if (ranks) PetscCall(ranks->add_soil(s, queue));                       //   the sum over ranks
   PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, queue); }));  // 4 velocities, walls, contact
   if (apart) beside->join(s.space);
+  if (apart && moves_beside && !(ranks && ranks->forces_shared())) sum_forces(s, queue);
   const bool at_once = !ranks && ends_at_once(s) && !timers.sampling();
   PetscCall(run(Function::particles,
                 [&] { failed = nodes_to_soil(s, dt, ranks, at_once); }));  // 5 stress, movement
   PetscCall(failed);
   if (at_once) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(run(Function::rigids, [&] { failed = move_rigids(s, dt, ranks); }));  // 6 move the rigid bodies
+  PetscCall(run(Function::rigids, [&] {
+    failed = move_rigids(s, dt, ranks, moves_beside ? beside : nullptr);  // 6 move the rigid bodies
+  }));
   PetscCall(failed);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

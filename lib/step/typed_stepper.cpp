@@ -8,7 +8,7 @@
 namespace mpm {
 namespace {
 
-constexpr long k_sample_every = 50;  // steps between two timed ones on a device
+constexpr long k_sample_every = 200, k_first_sample = 20;  // steps between two timed ones on a device
 
 /// Absolute height of a particle [m]: the last direction is the vertical one.
 template <int Dim>
@@ -113,8 +113,11 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
 template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::sample(bool on) {
   if (!is_device<Space>) return;
-  const bool due = on && steps_enqueued_++ % k_sample_every == k_sample_every - 1;
-  if (due) state_.space.fence("mpm::before a step that is timed");
+  const bool due = on && steps_enqueued_++ % k_sample_every == k_first_sample - 1;
+  if (due) {
+    beside_.join(state_.space);
+    state_.space.fence("mpm::before a step that is timed");
+  }
   timers_.sample(due);
 }
 
@@ -132,6 +135,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch
     PetscCall(step<Space, T, Dim>(state_, timers_, dt, nullptr, is_device<Space> ? &beside_ : nullptr));
     sample(false);
   }
+  beside_.join(state_.space);
   const Control control = look(state_);
   batch->steps = control.steps;
   batch->bound = control.bound;

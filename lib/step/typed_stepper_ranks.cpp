@@ -58,6 +58,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
     PetscCall(ranks_->look_back(&known, &all));
     due = known && (all.stopped > 0 || (late > 0 && rebuild_due(all.bound, all.increment, margin, late)));
   }
+  beside_.join(state_.space);
   const Control own = look(state_);
   ranks_->clock().pause();
   const bool missed = own.steps != done;
