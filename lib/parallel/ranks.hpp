@@ -157,9 +157,10 @@ class Ranks {
   bool forces_shared_ = false;
 
   WorkClock clock_;
-  double halo_ = 0;    // s, packing and summing shares; on a device where they were sent ahead
-  double held_ = 0;    // s, a device's that waited for it
-  double futile_ = 0;  // imbalance that a new cut could not mend
+  double halo_ = 0;     // s, packing and summing shares; on a device where they were sent ahead
+  double held_ = 0;     // s, a device's that waited for it
+  double futile_ = 0;   // imbalance that a new cut could not mend
+  bool timed_ = false;  // the balance has been judged by measured work
   std::string news_;
 };
 

@@ -56,14 +56,14 @@ PetscErrorCode Ranks<Space, T, Dim>::rebuild(State_& s) {
   if (!news_.empty())
     news_ += formatted("; %ld particles changed their rank, %.3g s", moved, WorkClock::wall() - before);
   clock_.stop();
-  clock_.forget();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Gives patches to other ranks where that mends the balance of the work since the last rebuild.
+/// Gives patches to other ranks where that mends the balance of the work since it was judged last. What is
+/// too short to measure is kept for the next time; until the first time the particles tell the balance.
 template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::rebalance(State_& s) {
-  constexpr double k_measurable = 5e-3;  // s of work a rank, below which particles tell it better
+  constexpr double k_measurable = 0.05;  // s of work a rank
   PetscFunctionBeginUser;
   if (config_.kind != PartitionKind::metis) PetscFunctionReturn(PETSC_SUCCESS);
   std::vector<double> figures(2 * size_), work, particles;
@@ -76,6 +76,9 @@ PetscErrorCode Ranks<Space, T, Dim>::rebalance(State_& s) {
     all_work += work.back();
   }
   const bool timed = all_work > k_measurable * size_;
+  if (!timed && timed_) PetscFunctionReturn(PETSC_SUCCESS);
+  timed_ = timed;
+  if (timed) clock_.forget();
   const double imbalance = imbalance_of(timed ? work : particles);
   if (imbalance > config_.rebalance_threshold && imbalance > futile_ + k_worth)
     PetscCall(choose_owners(s, figures, imbalance, timed));
