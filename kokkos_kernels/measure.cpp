@@ -67,23 +67,32 @@ namespace mpm {
 
 template <class Space, class T, int Dim>
 BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
+  // A sum of as many equal numbers, one after the other, would gather round-off of their number. A device
+  // adds pair by pair.
+  constexpr int together = is_device<Space> ? 1 : 256;
   const auto soil = s.soil.points;
   const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
+  const int count = soil.count;
   Sum<Dim> total;
   Kokkos::parallel_reduce(
-      "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
-      KOKKOS_LAMBDA(int p, Sum<Dim>& sum) {
-        if (soil.body(p) != body) return;
+      "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, (count + together - 1) / together),
+      KOKKOS_LAMBDA(int part, Sum<Dim>& sum) {
+        Sum<Dim> own;
         const double mass = soil.bodies(body).mass;
-        for (int d = 0; d < Dim; ++d) {
-          const double x = position(p, d), v = soil.velocity(p)[d];
-          sum.m.lower[d] = Kokkos::fmin(sum.m.lower[d], x);
-          sum.m.upper[d] = Kokkos::fmax(sum.m.upper[d], x);
-          sum.m.momentum[d] += mass * v;
-          sum.m.centre[d] += x;
-          sum.m.kinetic_energy += mass * v * v / 2;
+        const int end = Kokkos::min(count, (part + 1) * together);
+        for (int p = part * together; p < end; ++p) {
+          if (soil.body(p) != body) continue;
+          for (int d = 0; d < Dim; ++d) {
+            const double x = position(p, d), v = soil.velocity(p)[d];
+            own.m.lower[d] = Kokkos::fmin(own.m.lower[d], x);
+            own.m.upper[d] = Kokkos::fmax(own.m.upper[d], x);
+            own.m.momentum[d] += mass * v;
+            own.m.centre[d] += x;
+            own.m.kinetic_energy += mass * v * v / 2;
+          }
+          ++own.m.count;
         }
-        ++sum.m.count;
+        sum += own;
       },
       Kokkos::Sum<Sum<Dim>>(total));
   for (int d = 0; d < Dim; ++d) total.m.centre[d] /= total.m.count;  // its particles are of one mass

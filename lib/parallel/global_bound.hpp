@@ -19,8 +19,8 @@ struct BoundReport {
 class GlobalBound {
  public:
   /// Steps between what a report says and the step that it decides on: the report posted in a step is of the
-  /// steps before it, and is looked at one step later.
-  static constexpr int k_late = 2;
+  /// step before the last one, whose end nobody has to wait for, and is looked at one step later.
+  static constexpr int k_late = 3;
 
   GlobalBound() = default;
   GlobalBound(const GlobalBound&) = delete;

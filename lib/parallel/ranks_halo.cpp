@@ -86,17 +86,15 @@ void Ranks<Space, T, Dim>::note_bound(const State_& s, const Space& queue) {
 template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::add_soil(State_& s, const Space& queue) {
   PetscFunctionBeginUser;
-  if (!is_device<Space>) note_bound(s, queue);
   if (ahead_ == Ahead::under_way) {
     PetscCall(end_ahead(s, queue, true));
   } else if (ahead_ == Ahead::added) {
     PetscCall(post_bound());
   } else {
     const bool added = s.summed.soil && present_added_;  // where they were measured before the step
-    note_bound(s, s.space);
     PetscCall(add(s.space, soil_fields(s, !added, s.soil_boundary), true));
   }
-  if (ahead_ != Ahead::nothing) note_bound(s, queue);  // for the next step
+  note_bound(s, queue);  // for the next step
   ahead_ = Ahead::nothing;
   present_added_ = false;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -31,7 +31,9 @@ auto on_host(const View& view, int n) {
                                              Kokkos::subview(view, Kokkos::make_pair(0, n)));
 }
 
-constexpr int k_bounds = 6;  // bound, increment, whether a report is under way, the two numbers of it, sum
+// Of a rank in SavedState::bounds: bound, increment, whether a report is under way, the two numbers of it,
+// sum, and the two numbers of the next report.
+constexpr int k_bounds = 8;
 constexpr double k_worth = 0.02;  // least gain in balance for which patches change hands
 
 }  // namespace
@@ -222,17 +224,20 @@ PetscErrorCode Ranks<Space, T, Dim>::save(SavedState* saved) const {
                           report ? 1.0 : 0.0,
                           report ? report->bound : 0,
                           report ? report->increment : 0,
-                          bound_.sum()};
+                          bound_.sum(),
+                          seen_().bound,
+                          seen_().increment};
   for (const SavedRigid& rigid : saved->rigids)
     own.insert(own.end(), rigid.impulse.begin(), rigid.impulse.end());
   const int width = static_cast<int>(own.size());
   saved->bounds.resize(std::size_t(size_) * width);
   PetscCallMPI(MPI_Allgather(own.data(), width, MPI_DOUBLE, saved->bounds.data(), width, MPI_DOUBLE, comm_));
   // For other numbers of ranks: the largest increments of all steps, as one rank sums them.
-  double late[2] = {report && report->bound > 0 ? report->increment : 0, saved->increment};
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, late, 2, MPI_DOUBLE, MPI_MAX, comm_));
-  saved->increment = late[1];
-  saved->bound = bound_.sum() + late[0] + late[1];
+  double late[3] = {report && report->bound > 0 ? report->increment : 0,
+                    seen_().bound > 0 ? seen_().increment : 0, saved->increment};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, late, 3, MPI_DOUBLE, MPI_MAX, comm_));
+  saved->increment = late[2];
+  saved->bound = bound_.sum() + late[0] + late[1] + late[2];
   for (SavedRigid& rigid : saved->rigids)
     if (!forces_shared_)
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rigid.impulse.data(), 3, MPI_DOUBLE, MPI_SUM, comm_));
@@ -259,6 +264,7 @@ PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved, bool* as_saved)
   const double* const own = &saved.bounds[rank_ * width];
   saved.bound = own[0], saved.increment = own[1];
   bound_.set_sum(own[5]);
+  seen_().bound = own[6], seen_().increment = own[7], seen_().paused = 0;
   for (std::size_t r = 0; r < saved.rigids.size(); ++r)
     std::copy_n(own + k_bounds + 3 * r, 3, saved.rigids[r].impulse.begin());
   if (own[2] != 0) PetscCall(bound_.post(comm_, {own[3], own[4], 0}));
@@ -269,17 +275,15 @@ template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved, bool* as_saved) {
   PetscFunctionBeginUser;
   long moved = 0;
-  const double last = saved.increment;
   PetscCall(take_own(saved, as_saved));
-  if (is_device<Space> && overlaps(s)) bound_.set_sum(bound_.sum() + last);  // its report was not posted yet
   reserve_particles(s, std::max(s.soil.points.all, k_least_room));
   PetscCall(migrate(s, &moved));
   list_saved(s);
   PetscCall(make_lists(s));
   present_added_ = false;
   finish_saved(s, saved);
-  note_bound(s, s.space);
-  s.space.fence("mpm::note_bound");
+  if (!*as_saved) note_bound(s, s.space);
+  s.space.fence("mpm::restore");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -89,7 +89,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
 
   state_.p2g = {config_.p2g.strategy, config_.p2g.margin, config_.p2g.mosaic_cells};
   for (int d = 0; d < Dim; ++d) state_.gravity[d] = config_.gravity[d];
-  if (model.owners.empty() && !config_.p2g.rebuild_interval) state_.rebuild_late = rebuild_late();
+  if (model.owners.empty() && !config_.p2g.rebuild_interval) state_.rebuild_late = GlobalBound::k_late;
   state_.batches.limit = config_.device_memory_limit.value_or(0) * k_gib;
   state_.damping = config_.damping;
   state_.flip_share = config_.flip_share;
@@ -197,7 +197,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
     PetscCallCXX(finish_saved(state_, saved));
   }
   const auto& forced = config_.p2g.rebuild_interval;
-  const bool near = !as_saved && !forced && rebuild_due(bound, increment, margin, rebuild_late());
+  const bool near = !as_saved && !forced && rebuild_due(bound, increment, margin, GlobalBound::k_late);
   *rebuilt = bound > margin || near || (forced && since_rebuild >= *forced);
   Failure failure = too_small();
   if (*rebuilt && failure.what.empty()) PetscCall(rebuild(&failure));

@@ -42,7 +42,6 @@ class TypedStepper final : public Stepper {
 
  private:
   Failure describe(const Fault& fault) const;
-  int rebuild_late() const;
   /// Why the soil cannot go in batches, if it should and cannot.
   Failure too_small() const;
   /// What advance and rebuild are on several ranks.

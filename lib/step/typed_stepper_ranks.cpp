@@ -28,15 +28,6 @@ std::size_t TypedStepper<Space, T, Dim>::memory() const {
       sum_over_ranks(static_cast<double>(memory_of(state_) + (ranks_ ? ranks_->memory() : 0))));
 }
 
-/// Steps from the sign that lists must be rebuilt to the rebuild: what a rank knows of the others is so old.
-/// Where a device sends shares ahead the host does not wait for the whole of a step. On one rank it is the
-/// same, for F-bar means other particles after a rebuild: so all numbers of ranks rebuild at the same steps.
-template <class Space, class T, int Dim>
-int TypedStepper<Space, T, Dim>::rebuild_late() const {
-  const bool ahead = is_device<Space> && sends_ahead(state_, config_.partition);
-  return GlobalBound::k_late + (ahead ? 1 : 0);
-}
-
 /// Steps until all are done, or until the ranks know, all at the same step, that lists must be rebuilt or
 /// that one of them cannot go on. What they know of each other is some steps old; a rank whose bound has
 /// passed the margin does no more steps, so that no particle is ever looked for where it is not.
@@ -44,7 +35,8 @@ template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double dt, Batch* batch) {
   PetscFunctionBeginUser;
   const double start = WorkClock::wall(), margin = config_.p2g.margin;
-  const int late = config_.p2g.rebuild_interval ? 0 : rebuild_late();  // a forced interval has no reserve
+  const int late =
+      config_.p2g.rebuild_interval ? 0 : GlobalBound::k_late;  // a forced interval has no reserve
   restart_count(state_);
   ranks_->clock().go_on();
   long done = 0;
@@ -209,7 +201,6 @@ std::string TypedStepper<Space, T, Dim>::ranks_report() const {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                         \
-  template int TypedStepper<Space, T, Dim>::rebuild_late() const;                              \
   template PetscErrorCode TypedStepper<Space, T, Dim>::share(Failure*) const;                  \
   template double TypedStepper<Space, T, Dim>::sum_over_ranks(double) const;                   \
   template std::size_t TypedStepper<Space, T, Dim>::memory() const;                            \
