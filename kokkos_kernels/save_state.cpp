@@ -176,8 +176,7 @@ void restore_control(State<Space, T, Dim>& s, const SavedState& saved) {
   const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
   control().bound = saved.bound;
   control().increment = saved.increment;
-  const bool counts = s.rebuild_late > 0 && saved.bounds.size() == 1;
-  control().due_in = counts ? static_cast<int>(saved.bounds[0]) : 0;
+  control().due_in = s.rebuild_late > 0 ? saved.due_in : 0;
   control().paused = 0;
   Kokkos::deep_copy(s.control, control);
 }
@@ -190,7 +189,7 @@ SavedState save_state(const State<Space, T, Dim>& s) {
   SavedState saved;
   const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
   saved.bound = control().bound, saved.increment = control().increment;
-  if (control().due_in > 0) saved.bounds = {double(control().due_in)};
+  saved.margin = s.p2g.margin, saved.due_in = control().due_in;
   saved.soil = save_points(s.grid, s.patches, s.soil.points);
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
   for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {

@@ -38,9 +38,10 @@ struct SavedImpulse {
 
 struct SavedState {
   double bound = 0, increment = 0;  // cells, of Control; the largest of all ranks
-  std::vector<double> bounds;       // of each of several ranks: what Ranks::save puts there; of one rank:
-                                    // Control::due_in, where a rebuild is due
-  std::vector<long> owners;         // rank of each patch of the grid; empty on one rank
+  double margin = 0;                // cells, that the bound was held against
+  int due_in = 0;                   // steps to a rebuild that is due, the same of all ranks; 0: none is
+  std::vector<double> bounds;  // of each of several ranks: what Ranks::save puts there; empty on one rank
+  std::vector<long> owners;    // rank of each patch of the grid; empty on one rank
   SavedPoints soil;
   std::vector<SavedRigid> rigids;
   SavedImpulse impulse;

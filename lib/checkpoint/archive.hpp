@@ -27,6 +27,7 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
   archive.value("history_bytes", c.history.bytes), archive.value("history_crc", c.history.crc);
   archive.value("frames", c.frames);
   archive.value("bound", c.state.bound), archive.value("increment", c.state.increment);
+  archive.value("margin", c.state.margin), archive.value("due_in", c.state.due_in);
   archive.text("options", options);
 
   archive.points("soil", c.state.soil, soil);

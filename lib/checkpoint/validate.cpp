@@ -6,6 +6,7 @@
 
 #include "checkpoint/changes.hpp"
 #include "mesh/background.hpp"
+#include "parallel/global_bound.hpp"
 
 namespace mpm {
 namespace {
@@ -49,6 +50,8 @@ std::string state_fault(const SavedState& state, const Config& config) {
   if (state.rigids.size() != config.rigids.size()) return "a checkpoint of as many rigids";
   if (!std::isfinite(state.bound) || !std::isfinite(state.increment) || state.bound < 0 || state.bound > 0.5)
     return "a checkpoint with a sound bound";
+  if (!std::isfinite(state.margin) || state.due_in < 0 || state.due_in > GlobalBound::k_late)
+    return "a checkpoint with a sound margin and due_in";
   const std::size_t rigids = config.rigids.size();
   if (state.impulse.values.size() != state.impulse.address.size() * rigids)
     return "a checkpoint with a sound impulse";

@@ -40,6 +40,11 @@ class GlobalBound {
   /// The sum of the largest increments since the lists were built, as far as it is known.
   double sum() const { return sum_; }
   void set_sum(double sum) { sum_ = sum; }
+  /// Steps to a rebuild that the reports before a checkpoint have made due; 0: none is.
+  int due_in() const { return due_in_; }
+  void set_due_in(int steps) { due_in_ = steps; }
+  /// Once a step: whether that rebuild is due now.
+  bool count_down() { return due_in_ > 0 && --due_in_ == 0; }
   /// Ends what is under way.
   PetscErrorCode drain();
   /// The largest of all, waited for.
@@ -54,6 +59,7 @@ class GlobalBound {
   std::array<Reduction, 2> reductions_;
   int last_ = 0;
   double sum_ = 0;  // cells
+  int due_in_ = 0;
 };
 
 }  // namespace mpm

@@ -69,6 +69,8 @@ class Ranks {
   PetscErrorCode add_forces(State_& s);
   /// The movement bound of all ranks as it was some steps ago (GlobalBound::k_late).
   PetscErrorCode look_back(bool* known, BoundReport* all) { return bound_.last_but_one(known, all); }
+  /// Once a step: whether a rebuild is due that was so before the checkpoint this run goes on from.
+  bool count_down() { return bound_.count_down(); }
   /// Ends the reductions under way.
   PetscErrorCode drain() { return bound_.drain(); }
 
@@ -77,8 +79,7 @@ class Ranks {
   PetscErrorCode save(SavedState* saved) const;
   /// After take_saved: the points to their owners, which are those of the checkpoint if it is of as many
   /// ranks, the lists, and the rest of the state; `saved` becomes this rank's own. Collective.
-  /// as_saved: it is of as many ranks. Else these know of each other too late where a rebuild was near.
-  PetscErrorCode restore(State_& s, SavedState& saved, bool* as_saved);
+  PetscErrorCode restore(State_& s, SavedState& saved);
 
   /// After locate: patches and particles to their owners, order and lists. Collective.
   PetscErrorCode rebuild(State_& s);
@@ -123,7 +124,7 @@ class Ranks {
   PetscErrorCode post_bound();
   void note_bound(const State_& s, const Space& queue);
   void put_border_first(State_& s, std::vector<int> held, const std::vector<char>& border);
-  PetscErrorCode take_own(SavedState& saved, bool* as_saved);
+  PetscErrorCode take_own(SavedState& saved);
   PetscErrorCode rebalance(State_& s);
   PetscErrorCode choose_owners(State_& s, const std::vector<double>& figures, double imbalance, bool timed);
   PetscErrorCode migrate(State_& s, long* moved);

@@ -185,6 +185,7 @@ PetscErrorCode Ranks<Space, T, Dim>::forget() {
   PetscFunctionBeginUser;
   PetscCall(bound_.drain());
   bound_.set_sum(0);
+  bound_.set_due_in(0);
   side_.space().fence("mpm::forget");
   ahead_ = Ahead::nothing;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -232,12 +232,19 @@ PetscErrorCode Ranks<Space, T, Dim>::save(SavedState* saved) const {
   const int width = static_cast<int>(own.size());
   saved->bounds.resize(std::size_t(size_) * width);
   PetscCallMPI(MPI_Allgather(own.data(), width, MPI_DOUBLE, saved->bounds.data(), width, MPI_DOUBLE, comm_));
-  // For other numbers of ranks: the largest increments of all steps, as one rank sums them.
-  double late[3] = {report && report->bound > 0 ? report->increment : 0,
-                    seen_().bound > 0 ? seen_().increment : 0, saved->increment};
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, late, 3, MPI_DOUBLE, MPI_MAX, comm_));
+  // For other numbers of ranks: the largest increments of the steps that are still to be looked at, as one
+  // rank sums them, and when the first of them lets lists be rebuilt.
+  double late[GlobalBound::k_late] = {report && report->bound > 0 ? report->increment : 0,
+                                      seen_().bound > 0 ? seen_().increment : 0, saved->increment};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, late, GlobalBound::k_late, MPI_DOUBLE, MPI_MAX, comm_));
   saved->increment = late[2];
-  saved->bound = bound_.sum() + late[0] + late[1] + late[2];
+  saved->bound = bound_.sum();
+  saved->due_in = bound_.due_in();
+  for (int k = 0; k < GlobalBound::k_late; ++k) {
+    saved->bound += late[k];
+    const bool due = late[k] > 0 && rebuild_due(saved->bound, late[k], saved->margin, GlobalBound::k_late);
+    if (due && saved->due_in == 0) saved->due_in = k + 1;
+  }
   for (SavedRigid& rigid : saved->rigids)
     if (!forces_shared_)
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rigid.impulse.data(), 3, MPI_DOUBLE, MPI_SUM, comm_));
@@ -247,14 +254,16 @@ PetscErrorCode Ranks<Space, T, Dim>::save(SavedState* saved) const {
 
 /// The part of a checkpoint that differs from rank to rank: that of this rank, if it is of as many.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved, bool* as_saved) {
+PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved) {
   PetscFunctionBeginUser;
   const std::size_t width = k_bounds + 3 * saved.rigids.size();
-  bound_.set_sum(saved.bound - saved.increment);  // which the first step reports
+  seen_() = {};
+  bound_.set_due_in(saved.due_in);
   const auto sound = [&](long r) { return r >= 0 && r < size_; };
-  *as_saved = saved.bounds.size() == size_ * width && saved.owners.size() == owners_.size() &&
-              std::all_of(saved.owners.begin(), saved.owners.end(), sound);
-  if (!*as_saved) {
+  const bool as_many = saved.bounds.size() == size_ * width && saved.owners.size() == owners_.size() &&
+                       std::all_of(saved.owners.begin(), saved.owners.end(), sound);
+  if (!as_many) {
+    bound_.set_sum(saved.bound - saved.increment);  // which the first step notes
     for (SavedRigid& rigid : saved.rigids)
       if (rank_ > 0 && !forces_shared_) rigid.impulse = {};  // rank 0 has those of all
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -264,7 +273,7 @@ PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved, bool* as_saved)
   const double* const own = &saved.bounds[rank_ * width];
   saved.bound = own[0], saved.increment = own[1];
   bound_.set_sum(own[5]);
-  seen_().bound = own[6], seen_().increment = own[7], seen_().paused = 0;
+  seen_().bound = own[6], seen_().increment = own[7];
   for (std::size_t r = 0; r < saved.rigids.size(); ++r)
     std::copy_n(own + k_bounds + 3 * r, 3, saved.rigids[r].impulse.begin());
   if (own[2] != 0) PetscCall(bound_.post(comm_, {own[3], own[4], 0}));
@@ -272,26 +281,25 @@ PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved, bool* as_saved)
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved, bool* as_saved) {
+PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved) {
   PetscFunctionBeginUser;
   long moved = 0;
-  PetscCall(take_own(saved, as_saved));
+  PetscCall(take_own(saved));
   reserve_particles(s, std::max(s.soil.points.all, k_least_room));
   PetscCall(migrate(s, &moved));
   list_saved(s);
   PetscCall(make_lists(s));
   present_added_ = false;
   finish_saved(s, saved);
-  if (!*as_saved) note_bound(s, s.space);
   s.space.fence("mpm::restore");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                              \
-  template PetscErrorCode Ranks<Space, T, Dim>::save(SavedState*) const;                            \
-  template PetscErrorCode Ranks<Space, T, Dim>::restore(State<Space, T, Dim>&, SavedState&, bool*); \
-  template PetscErrorCode Ranks<Space, T, Dim>::rebuild(State<Space, T, Dim>&);                     \
-  template PetscErrorCode Ranks<Space, T, Dim>::migrate(State<Space, T, Dim>&, long*);              \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                       \
+  template PetscErrorCode Ranks<Space, T, Dim>::save(SavedState*) const;                     \
+  template PetscErrorCode Ranks<Space, T, Dim>::restore(State<Space, T, Dim>&, SavedState&); \
+  template PetscErrorCode Ranks<Space, T, Dim>::rebuild(State<Space, T, Dim>&);              \
+  template PetscErrorCode Ranks<Space, T, Dim>::migrate(State<Space, T, Dim>&, long*);       \
   template PetscErrorCode Ranks<Space, T, Dim>::make_lists(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

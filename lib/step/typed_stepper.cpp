@@ -181,8 +181,14 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long since_rebuild, bool* rebuilt) {
   PetscFunctionBeginUser;
-  const double bound = saved.bound, increment = saved.increment, margin = config_.p2g.margin;
-  bool as_saved = true;
+  const double margin = config_.p2g.margin;
+  const auto& forced = config_.p2g.rebuild_interval;
+  if (forced) saved.due_in = 0;
+  // By another rule the rebuild may be due already.
+  const bool unforeseen = saved.due_in == 0 && saved.bound > 0 &&
+                          rebuild_due(saved.bound, saved.increment, margin, GlobalBound::k_late);
+  const bool near = !forced && (saved.margin > margin || unforeseen);
+  *rebuilt = saved.bound > margin || near || (forced && since_rebuild >= *forced);
   Failure unfit;
   PetscCallCXX(unfit.what = take_saved(state_, saved));
   if (sum_over_ranks(state_.soil.points.count) != total_ && unfit.what.empty())
@@ -191,14 +197,11 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   PetscCheck(unfit.what.empty(), comm_, PETSC_ERR_ARG_SIZ,
              "The checkpoint does not fit to what the options describe: %s", unfit.what.c_str());
   if (ranks_) {
-    PetscCallCXX(PetscCall(ranks_->restore(state_, saved, &as_saved)));
+    PetscCallCXX(PetscCall(ranks_->restore(state_, saved)));
   } else {
     PetscCallCXX(list_saved(state_));
     PetscCallCXX(finish_saved(state_, saved));
   }
-  const auto& forced = config_.p2g.rebuild_interval;
-  const bool near = !as_saved && !forced && rebuild_due(bound, increment, margin, GlobalBound::k_late);
-  *rebuilt = bound > margin || near || (forced && since_rebuild >= *forced);
   Failure failure = too_small();
   if (*rebuilt && failure.what.empty()) PetscCall(rebuild(&failure));
   PetscCheck(failure.what.empty(), PETSC_COMM_SELF, PETSC_ERR_FP, "The checkpoint's %s",

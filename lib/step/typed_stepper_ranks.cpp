@@ -48,7 +48,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
     BoundReport all;
     bool known = false;
     PetscCall(ranks_->look_back(&known, &all));
-    due = known && (all.stopped > 0 || (late > 0 && rebuild_due(all.bound, all.increment, margin, late)));
+    const bool passed = late > 0 && known && rebuild_due(all.bound, all.increment, margin, late);
+    due = ranks_->count_down() || passed || (known && all.stopped > 0);
   }
   beside_.join(state_.space);
   const Control own = look(state_);

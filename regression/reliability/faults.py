@@ -139,6 +139,23 @@ class Checks:
             assert abs(x - y) < 1e-9, (ranks, x, y)
         return "2 and 3 ranks"
 
+    def check_cuts_before_a_rebuild(self):
+        """A rebuild that is due when a run is cut comes at its step, on whatever number of ranks it goes on."""
+        whole = fresh(self.base / "uncut")
+        self.go_on_ranks(1, whole, "-time_max_steps", 400)
+        since = contents(checkpoints(whole)[-1])["@since_rebuild"]
+        rebuilt = 400 - int.from_bytes(since, sys.byteorder)
+        assert 50 < rebuilt < 400, rebuilt
+        pairs = {rebuilt - 1: (1, 2), rebuilt - 2: (2, 1), rebuilt - 3: (2, 3), rebuilt: (3, 2)}
+        for cut, (before, behind) in list(pairs.items())[:2 if self.short else 4]:
+            folder = fresh(self.base / "cut")
+            self.go_on_ranks(before, folder, "-time_max_steps", cut)
+            self.go_on_ranks(behind, folder, "-time_max_steps", 400, "-restart", "latest")
+            ours, theirs = rows(folder), rows(whole)
+            x, y = (float(r[-1][r[0].index("stone_y")]) for r in (ours, theirs))
+            assert abs(x - y) < 1e-12, (cut, before, behind, x, y)
+        return f"a rebuild at step {rebuilt}"
+
     def check_restarts_of_ranks(self):
         """A restart from a checkpoint that a restart has written, and so on: every one from the last but one."""
         whole, folder = fresh(self.base / "whole_of_ranks"), fresh(self.base / "again_and_again")

@@ -83,7 +83,7 @@ Checkpoint some_checkpoint() {
                {}};
   c.run = {1234, 0.1 + 0.2, 1e-4, 0.3, 17.5, 16.5, 3, 4, 5, 6};
   c.history = {4096, 0xdeadbeef};
-  c.state.bound = 0.1, c.state.increment = 1.0 / 3;
+  c.state.bound = 0.1, c.state.increment = 1.0 / 3, c.state.margin = 0.25, c.state.due_in = 2;
   c.state.soil = some_points(k_soil);
   c.state.rigids = {{{1, 2, 0}, {3, 4, 0}, {5, 6, 0}, {7, 8, 0}},
                     {{-1, -2, 0}, {-3, -4, 0}, {-5, -6, 0}, {-7, -8, 0}}};
@@ -154,6 +154,7 @@ TEST_CASE("a checkpoint reads as it was written, whichever rank had which point"
   CHECK((read.run.step == 1234 && read.run.time == 0.1 + 0.2 && read.run.since_rebuild == 3 &&
          read.run.shortest == 6));
   CHECK((read.state.bound == 0.1 && read.state.increment == 1.0 / 3));
+  CHECK((read.state.margin == 0.25 && read.state.due_in == 2));
   REQUIRE(read.options.size() == 2);
   CHECK((read.options[0].name == "-gravity" && read.options[0].value == "0,-10" && read.options[1].standard));
   check_points(read.state.soil, k_soil);
