@@ -88,6 +88,8 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add(s.patches.slot_of), add(s.patches.origin), add(s.patches.around), add(s.marks), add(s.spare);
   add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.boundary), add(s.nodes.impulse),
       add(s.near_rigid), add(s.vertices), add(s.nodes.rigid);
+  for (const auto* more : {&s.next_sums, &s.last_sums})
+    add(more->soil), add(more->boundary), add(more->rigid);
   add(s.batches.room), add(s.batches.slots);
   return bytes;
 }

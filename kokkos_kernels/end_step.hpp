@@ -129,6 +129,8 @@ struct EndStep {
   KOKKOS_INLINE_FUNCTION static void keep(const Team& team, double of_warp, double* part) {
     if (team.team_rank() % k_warp == 0) part[team.team_rank() / k_warp] = of_warp;
   }
+  /// Another team may have left it in this launch.
+  KOKKOS_INLINE_FUNCTION double force(int n) const { return Kokkos::atomic_load(&forces(n)); }
   /// Sums of the forces number `first` to first + n by warp, [n][warps], in an order that is always the same.
   template <class Team>
   KOKKOS_INLINE_FUNCTION void sum_forces(const Team& team, int first, int n, double* part) const {
@@ -138,8 +140,8 @@ struct EndStep {
       double sum[at_once] = {};
       int k = team.team_rank();
       for (; k + (at_once - 1) * size < slots; k += at_once * size)
-        for (int m = 0; m < at_once; ++m) sum[m] += forces((k + m * size) * Dim * count + v);
-      for (; k < slots; k += size) sum[0] += forces(k * Dim * count + v);
+        for (int m = 0; m < at_once; ++m) sum[m] += force((k + m * size) * Dim * count + v);
+      for (; k < slots; k += size) sum[0] += force(k * Dim * count + v);
       keep(team, sum_of_warp((sum[0] + sum[1]) + (sum[2] + sum[3])), part + (v - first) * warps(size));
     }
   }

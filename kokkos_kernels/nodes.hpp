@@ -42,16 +42,21 @@ struct alignas(group_alignment<T, NodeMotion<Dim>::size>) MotionValues {
   KOKKOS_INLINE_FUNCTION const T& operator[](int k) const { return c[k]; }
 };
 
+/// What particles and rigids give the nodes.
 template <class Space, class T, int Dim>
-struct Nodes {
+struct NodeSums {
   NodeField<Space, T, SoilShare<Dim>::size> soil;
+  NodeField<Space, T, BoundaryShare<Dim>::size> boundary;  // of the soil; allocated with rigids
+  Kokkos::View<T* * [RigidShare<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space>
+      rigid;  // [rigid][node]; allocated where a normal comes from the mass gradient
+};
+
+template <class Space, class T, int Dim>
+struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, NodeMotion<Dim>::size> motion;
   NodeField<Space, T, Dim> rest;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
       impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step
-  NodeField<Space, T, BoundaryShare<Dim>::size> boundary;  // of the soil; allocated with rigids
-  Kokkos::View<T* * [RigidShare<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space>
-      rigid;  // [rigid][node]; allocated where a normal comes from the mass gradient
 };
 
 /// A rigid body on the device.

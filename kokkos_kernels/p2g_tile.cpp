@@ -27,7 +27,7 @@ void sum_on_device(const Interpolation<Source>& it) {
         if (control().paused) return;
         const int slot = by_colour(first + team.league_rank());
         if (source.skips(slot)) return;
-        sum_patch(
+        sum_patch<team_threads<Space>>(
             team, Scratch(team, Tile_::bytes()), source, around, slot,
             [&](int c) { return begin(slot * cells + c); }, out);
       });

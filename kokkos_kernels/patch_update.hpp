@@ -33,16 +33,16 @@ KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const MotionValues<T, Dim>* windo
 
 /// A team moves the particles of a patch. If Sums, it adds them where they now are to
 /// the nodes for the next step, as the strategy `tile` does: a particle is read and written once a step.
-template <class Space, class T, int Dim, bool Sums>
+template <class Space, class T, int Dim, bool Sums, int Threads = team_threads<Space>>
 struct UpdateParticles {
   using Source = SoilSource<Space, T, Dim>;
   using Boundary = BoundarySource<Space, T, Dim>;
-  using Tile_ = Tile<Source>;
+  using Tile_ = Tile<Source, Threads>;
   using Team = PatchTeam<Space, T, Dim>;
   using Member = typename Team::member_type;
   using Memory = typename Space::memory_space;
   static constexpr int cells = Patch<Dim>::cells, window = Patch<Dim>::window;
-  static constexpr int threads = team_threads<Space>;
+  static constexpr int threads = Threads;
   /// What is left of a tile where nothing is summed.
   struct Nothing {
     KOKKOS_INLINE_FUNCTION explicit Nothing(Scratch&) {}
@@ -71,7 +71,7 @@ struct UpdateParticles {
   static constexpr std::size_t bytes() {
     const std::size_t own =
         scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) + TileOrNothing::bytes();
-    return Sums && Tile<Boundary>::bytes() > own ? Tile<Boundary>::bytes() : own;
+    return Sums && Tile<Boundary, Threads>::bytes() > own ? Tile<Boundary, Threads>::bytes() : own;
   }
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
@@ -79,8 +79,16 @@ struct UpdateParticles {
     if (!paused) update(team, Scratch(team, bytes()), slot);
   }
 
-  /// all: bytes()
   KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot) const {
+    update(team, all, slot, [&](int, int number) {
+      return *reinterpret_cast<const MotionValues<T, Dim>*>(&motion(number, 0));
+    });
+  }
+
+  /// all: bytes(). motion_of(n, number): what becomes of node n of the window.
+  template <class Motion>
+  KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot,
+                                     const Motion& motion_of) const {
     const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
     const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
     Scratch scratch = all;
@@ -90,7 +98,7 @@ struct UpdateParticles {
     prefetch_particles(cell_begin(0) + team.team_rank(), cell_begin(cells));
     for_each_of_window<Dim>(team, around, slot, [&](int n, int number) {
       tile.set_node(n, number);
-      nodes[n] = *reinterpret_cast<const MotionValues<T, Dim>*>(&motion(number, 0));
+      nodes[n] = motion_of(n, number);
     });
     T moved = 0;
     const auto particle = [&](int p) { return step_particle(nodes, mean, slot, p, body, moved); };
@@ -103,8 +111,8 @@ struct UpdateParticles {
       tile.give_window(team, out);
       if (has_boundary && near_rigid(slot) != 0) {
         team.team_barrier();
-        sum_patch(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, around, slot,
-                  cell_begin, boundary);
+        sum_patch<Threads>(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, around, slot,
+                           cell_begin, boundary);
       }
     } else {
       team.team_barrier();
@@ -186,5 +194,49 @@ struct UpdateParticles {
     return {q.x, source.point(body, q.v, q.material.stress, q.volume)};
   }
 };
+
+/// Only on a device: a processor's caches hold the particles of a patch between the two functions anyway.
+template <class Space, class T, int Dim>
+inline constexpr bool sums_fit = scratch_fits<Space, T, Dim>(UpdateParticles<Space, T, Dim, true>::bytes());
+
+template <class Space, class T, int Dim>
+UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
+  const double flip = s.xpic_order > 0 ? 1 : s.flip_share;  // XPIC has changed the velocities already
+  return {T(dt), s.grid.inv_spacing, T(flip), T(1 - flip), T(s.f_bar_share)};
+}
+
+template <class Update, class Space, class T, int Dim>
+Update update_of(const State<Space, T, Dim>& s, double dt, int first) {
+  const auto& set = s.soil;
+  const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
+      reinterpret_cast<T*>(s.spare.data()), set.points.count);
+  return {{set.points, s.grid.inv_spacing},
+          set.bins.begin,
+          set.bins.by_colour,
+          s.patches.around,
+          s.patches.origin,
+          s.nodes.motion,
+          s.nodes.soil,
+          s.nodes.boundary,
+          s.near_rigid,
+          s.control,
+          s.movements,
+          dilatation,
+          update_scalars(s, dt),
+          s.spacing,
+          first,
+          set.points.bodies.extent(0) == 1,
+          s.soil_boundary};
+}
+
+/// The launch of teams that work on patches.
+template <class Update, class Space, class Functor>
+void launch(const Space& space, int teams, const Functor& f) {
+  if (teams == 0) return;
+  Kokkos::parallel_for("mpm::update_particles",
+                       light(typename Update::Team(space, teams, Update::threads)
+                                 .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
+                       f);
+}
 
 }  // namespace mpm

@@ -39,6 +39,8 @@ struct State {
   Kokkos::View<double*, Memory>
       slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
   Nodes<Space, T, Dim> nodes;
+  NodeSums<Space, T, Dim> next_sums, last_sums;  // of whole_step: zero, and what is to be
+  bool next_zero = false;                        // `next_sums` fits and is zero
   Kokkos::View<std::uint64_t*, Memory>
       counted;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
   ControlView<Space> control;
@@ -61,6 +63,7 @@ struct State {
   Summed summed;                  // what the step before has summed already
   bool forces_summed = false;  // `sums` holds the forces of this step, of all ranks if a rigid moves by them
   bool rigid_moves = false;    // some rigid is not fixed
+  bool rigid_dynamic = false;  // some rigid moves by the forces on it
   bool mass_normals = false;   // some rigid's normals are those of its mass gradient
   bool soil_boundary = false;  // some contact needs the soil's boundary at the nodes
   bool has_friction = false;   // some contact has Coulomb friction

@@ -1,37 +1,11 @@
-#include <limits>
-
-#include "contact.hpp"
-#include "step_kernels.hpp"
-#include "warp.hpp"
-#include "window.hpp"
+#include "node_update.hpp"
 
 namespace mpm {
-
-/// Threads of a team that takes the nodes of a slot.
-template <class Space, int Dim>
-inline constexpr int node_threads = is_device<Space> ? Patch<Dim>::cells : 1;
-
-/// So many of them share a multiprocessor that contact, which needs many registers, hides what it waits for.
-template <class Space, int Dim>
-using NodeTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, 12>>;
-
-/// Sets the sums of a slot's nodes to zero, neighbours in memory by neighbouring threads.
-template <class Team, class Space, class T, int Dim>
-KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const Nodes<Space, T, Dim>& nodes, int slot,
-                                       bool boundary, int rigids) {
-  constexpr int cells = Patch<Dim>::cells;
-  const auto clear = [&](T* values, int count) {
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, count), [&](int n) { values[n] = 0; });
-  };
-  clear(&nodes.soil(slot * cells, 0), cells * SoilShare<Dim>::size);
-  if (boundary) clear(&nodes.boundary(slot * cells, 0), cells * BoundaryShare<Dim>::size);
-  for (int r = 0; r < rigids; ++r) clear(&nodes.rigid(r, slot * cells, 0), cells * RigidShare<Dim>::size);
-}
 
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s) {
   using Team = Kokkos::TeamPolicy<Space>;
-  s.summed = {};
+  s.summed = {}, s.next_zero = false;
   const auto nodes = s.nodes;
   const auto control = s.control;
   const int rigids = s.mass_normals ? static_cast<int>(s.rigid_points.size()) : 0;
@@ -42,179 +16,6 @@ void reset_nodes(State<Space, T, Dim>& s) {
         if (!control().paused) clear_sums(team, nodes, team.league_rank(), boundary, rigids);
       });
 }
-
-/// The node's part of the step.
-template <class Space, class T, int Dim>
-struct UpdateNodes {
-  using Member = typename NodeTeam<Space, Dim>::member_type;
-  static constexpr int cells = Patch<Dim>::cells, threads = node_threads<Space, Dim>;
-  int value_count;
-  Grid<T, Dim> grid;
-  Nodes<Space, T, Dim> nodes;
-  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
-  Kokkos::View<Vertex*, typename Space::memory_space> vertices;
-  Kokkos::View<double*, typename Space::memory_space> forces;
-  Kokkos::View<std::uint64_t*, typename Space::memory_space> counted;
-  Vector<T, Dim> g;
-  T dt, damping, mass_cut;
-  double spacing;
-  bool has_boundary, has_friction, has_mass_normals, clears;
-  int scratch_level;
-
-  /// The nodes of a slot, number n of those near a rigid. Leaves the force on each rigid [N] in `forces`,
-  /// summed in an order that is always the same.
-  KOKKOS_INLINE_FUNCTION void update_near(const Member& team, int slot, int n) const {
-    double* const force = scratch<double>(team, value_count * cells, scratch_level);
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int k) {
-      for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
-      update<true>(slot * cells + k, force + k);
-      if (counted.extent(0) == 0 || (counted(slot) >> k & 1) != 0) return;
-      for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank tells it
-    });
-    team.team_barrier();
-    const int thread = team.team_rank(), lanes = Kokkos::min(k_warp, threads);
-    for (int v = thread / k_warp; v < value_count; v += (threads + k_warp - 1) / k_warp) {  // a warp each
-      double sum = 0;
-      for (int k = thread % k_warp; k < cells; k += lanes) sum += force[v * cells + k];
-      sum = sum_of_warp(sum);
-      if (thread % k_warp == 0) forces(n * value_count + v) = sum;
-    }
-    if (clears) clear_sums(team, nodes, slot, has_boundary, has_mass_normals ? rigids.extent(0) : 0);
-  }
-
-  template <bool Near>
-  KOKKOS_INLINE_FUNCTION void update(int i, double* force) const {
-    using S = SoilShare<Dim>;
-    const T m_i = nodes.soil(i, S::mass);
-    Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
-    for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r)
-      nodes.impulse(r, i) *= k_memory<T>;
-    constexpr T k_floor = T(1e-12);  // of the cut: far less is at rest, lest 1 / m_i overflow
-    if (m_i > k_floor * mass_cut) {
-      const T inv_m = 1 / m_i;
-      const T inv_m_force = m_i > mass_cut ? inv_m : T(0);  // the force on less mass is round-off
-      for (int d = 0; d < Dim; ++d) {
-        v_old[d] = nodes.soil(i, S::momentum + d) * inv_m;       // Eq. (6)
-        T a = nodes.soil(i, S::force + d) * inv_m_force + g[d];  // Eq. (8)
-        a -= damping * Kokkos::fabs(a) * (v_old[d] > 0 ? T(1) : (v_old[d] < 0 ? T(-1) : T(0)));
-        v[d] = v_old[d] + a * dt;  // Eq. (9)
-      }
-      Coord<Dim> at = coord_of<Dim>(i);
-      const Coord<Dim> from = origin(i / Patch<Dim>::cells);
-      for (int d = 0; d < Dim; ++d) at[d] += from[d];
-      const unsigned sides = sides_of(grid, at);
-      apply_walls(grid, sides, v);
-      if constexpr (Near) {
-        for (int r = 0; r < static_cast<int>(rigids.extent(0)) && m_i > mass_cut; ++r)
-          touch(i, r, at, sides, m_i, v, force + r * Dim * cells);
-      }
-      apply_walls(grid, sides, v);
-    }
-    MotionValues<T, Dim> motion;
-    for (int d = 0; d < Dim; ++d) {
-      motion.c[NodeMotion<Dim>::velocity + d] = v[d];
-      motion.c[NodeMotion<Dim>::acceleration + d] = (v[d] - v_old[d]) / dt;  // feels contact and walls
-    }
-    *reinterpret_cast<MotionValues<T, Dim>*>(&nodes.motion(i, 0)) = motion;
-  }
-
-  /// The nodes of a slot far from every rigid.
-  KOKKOS_INLINE_FUNCTION void update_far(const Member& team, int slot) const {
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells),
-                         [&](int k) { update<false>(slot * cells + k, nullptr); });
-    team.team_barrier();
-    if (clears) clear_sums(team, nodes, slot, false, 0);
-  }
-
-  /// Contact with rigid r; adds the force of the soil on it (Eq. 10) to force[0], force[cells] ...
-  KOKKOS_INLINE_FUNCTION void touch(int i, int r, const Coord<Dim>& at, unsigned sides, T m_i,
-                                    Vector<T, Dim>& v, double* force) const {
-    using S = SoilShare<Dim>;
-    const Rigid<Dim>& rigid = rigids(r);
-    Vector<T, Dim> n, v_r, boundary = filled<T, Dim>(0);
-    for (int d = 0; d < Dim; ++d) {
-      v_r[d] = static_cast<T>(rigid.velocity[d]);
-      if (has_boundary) boundary[d] = nodes.boundary(i, BoundaryShare<Dim>::area + d);
-    }
-    Distance<Dim> to{};
-    if (rigid.surface_normal || rigid.reach > 0) to = distance_to(rigid.surface, vertices, place(rigid, at));
-    if (rigid.surface_normal ? !surface_normal(rigid, at, sides, boundary, to, n)
-                             : !mass_normal(rigid, i, r, sides, n))
-      return;
-    const T area = Kokkos::fmax(T(0), dot(boundary, n));
-    Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction) };
-    if (rigid.shear_limit < Kokkos::Experimental::infinity<double>::value)
-      interface.shear_speed = static_cast<T>(rigid.shear_limit) * area * dt / m_i;
-    T pressing = 0;
-    for (int d = 0; d < Dim; ++d) pressing += (nodes.soil(i, S::force + d) / m_i + g[d]) * n[d];
-    interface.pressing = pressing * dt;
-    interface.separates = rigid.separates;
-    // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
-    // well, the body would act thicker than it is.
-    interface.within_soil = rigid.surface_normal && to.value > spacing / 2;
-    if (rigid.reach > 0) {
-      const T depth = surface_depth(nodes.boundary(i, BoundaryShare<Dim>::volume) / grid.spacing, area);
-      const T gap = static_cast<T>(to.value) + depth * grid.spacing;
-      interface.penalty = penalty(gap, T(rigid.reach), T(rigid.exponent));
-      // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
-      if (gap > Kokkos::fmax(T(rigid.reach), grid.spacing / 2)) return;
-    }
-    if (has_friction) interface.stock = nodes.impulse(r, i) / m_i;
-    const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
-    if (has_friction) nodes.impulse(r, i) = interface.stock * m_i;
-    for (int d = 0; d < Dim; ++d) {
-      v[d] += change[d];
-      force[d * cells] -= static_cast<double>(m_i) * change[d] / dt;
-    }
-  }
-
-  /// Place of a node in the frame of a rigid's surface [m]. Bodies go on beyond the mesh.
-  KOKKOS_INLINE_FUNCTION Vector<double, Dim> place(const Rigid<Dim>& rigid, const Coord<Dim>& at) const {
-    Vector<double, Dim> x;
-    for (int d = 0; d < Dim; ++d)
-      x[d] = Kokkos::max(0, Kokkos::min(at[d], grid.cells[d])) * spacing - rigid.displacement[d];
-    return x;
-  }
-
-  /// Area of a cell's face [m^2; m in 2D].
-  KOKKOS_INLINE_FUNCTION T face() const { return Dim == 2 ? grid.spacing : grid.spacing * grid.spacing; }
-
-  /// Inward unit normal from the rigid's mass gradient; false where it is out of touch.
-  KOKKOS_INLINE_FUNCTION bool mass_normal(const Rigid<Dim>& rigid, int i, int r, unsigned sides,
-                                          Vector<T, Dim>& n) const {
-    const T m_r = nodes.rigid(r, i, RigidShare<Dim>::mass);
-    for (int d = 0; d < Dim; ++d) n[d] = nodes.rigid(r, i, RigidShare<Dim>::normal + d);
-    return m_r > rigid.mass_cut && inward_normal(grid, sides, m_r, n);
-  }
-
-  /// Inward unit normal from the rigid's own surface, to which the node has the distance `to`. Where the
-  /// soil's boundary says that the soil is at another face, as in a thin plate, the node looks from a cell's
-  /// edge further towards the soil. False where the rigid does not reach into the node's cells.
-  KOKKOS_INLINE_FUNCTION bool surface_normal(const Rigid<Dim>& rigid, const Coord<Dim>& at, unsigned sides,
-                                             const Vector<T, Dim>& boundary, const Distance<Dim>& to,
-                                             Vector<T, Dim>& n) const {
-    constexpr double k_overlap = 1e-3;  // cells: less is no touch
-    double reach = -k_overlap, against = 0;
-    Vector<double, Dim> out = to.normal;
-    for (int d = 0; d < Dim; ++d) {
-      reach += Kokkos::fabs(out[d]);
-      against += boundary[d] * out[d];
-    }
-    if (to.value > reach * spacing) return false;
-    // Not at a right angle, as a footing's edge is to the soil under it: there round-off would decide.
-    constexpr T k_facing = T(0.1);   // cosine
-    constexpr T k_bounds = T(1e-3);  // of a cell's face: less is the soil's interior
-    const T length = Kokkos::sqrt(dot(boundary, boundary));
-    if (against > -k_facing * length && length > k_bounds * face()) {
-      Vector<double, Dim> x = place(rigid, at);
-      for (int d = 0; d < Dim; ++d) x[d] -= spacing * boundary[d] / length;
-      out = distance_to(rigid.surface, vertices, x).normal;
-    }
-    for (int d = 0; d < Dim; ++d) n[d] = static_cast<T>(out[d]);
-    return inward_normal(grid, sides, T(1), n);
-  }
-};
 
 template <class Space, class T, int Dim>
 bool nodes_apart(const State<Space, T, Dim>& s) {
@@ -229,26 +30,8 @@ void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue) {
   using Member = typename Team::member_type;
   using Update = UpdateNodes<Space, T, Dim>;
   constexpr int threads = node_threads<Space, Dim>;
-  const int values = Dim * static_cast<int>(s.rigid_points.size());
-  Update update{values,
-                s.grid,
-                s.nodes,
-                s.patches.origin,
-                s.rigids,
-                s.vertices,
-                s.slot_forces,
-                s.counted,
-                {},
-                T(dt),
-                T(s.damping),
-                T(s.mass_cut),
-                s.spacing,
-                s.soil_boundary,
-                s.has_friction,
-                s.mass_normals,
-                sums_ahead(s),
-                0};
-  for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
+  Update update = node_update_of(s, dt);
+  const int values = update.value_count;
   const auto near = s.near_rigid, near_slots = s.near_slots;
   const auto control = s.control;
   const std::size_t near_bytes = scratch_bytes<double>(values * Update::cells) + k_scratch_slack;

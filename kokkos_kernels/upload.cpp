@@ -241,9 +241,10 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.mass_cut = std::numeric_limits<double>::max();
   for (const BodyInput& body : bodies)
     s.mass_cut = std::min(s.mass_cut, k_cut * body.density * body.particle_volume);
-  s.rigid_moves = s.mass_normals = s.soil_boundary = s.has_friction = false;
+  s.rigid_moves = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.has_friction = false;
   for (const RigidInput& rigid : rigids) {
     s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.velocity != std::array<double, 3>{};
+    s.rigid_dynamic = s.rigid_dynamic || rigid.dynamic;
     s.has_friction = s.has_friction || rigid.friction > 0;
     s.mass_normals = s.mass_normals || !rigid.surface_normal;
     s.soil_boundary = s.soil_boundary || rigid.surface_normal || rigid.shear_limit > 0 || rigid.reach > 0;

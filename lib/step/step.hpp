@@ -162,6 +162,11 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Sp
   const bool apart = may_go_beside && s.summed.soil;
   if (beside && !apart) beside->join(s.space);
   const Space& queue = apart ? beside->fork(s.space) : s.space;
+  const bool at_once = !ranks && ends_at_once(s) && !timers.sampling();
+  if (at_once && is_whole_step(s)) {
+    PetscCall(run(Function::particles, [&] { whole_step(s, dt); }));  // 4 to 6, and 1 to 3 of the next one
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));  // 1 initialise nodal variables
   PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, queue); }));  // 2 rigid bodies to nodes
   PetscCall(
@@ -171,7 +176,6 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Sp
   PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, queue); }));  // 4 velocities, walls, contact
   if (apart) beside->join(s.space);
   if (apart && moves_beside && !(ranks && ranks->forces_shared())) sum_forces(s, queue);
-  const bool at_once = !ranks && ends_at_once(s) && !timers.sampling();
   PetscCall(run(Function::particles,
                 [&] { failed = nodes_to_soil(s, dt, ranks, at_once); }));  // 5 stress, movement
   PetscCall(failed);

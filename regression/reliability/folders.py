@@ -4,14 +4,17 @@ import pathlib
 import re
 import shutil
 import subprocess
+import tempfile
 import zlib
 
 import h5py
 import numpy as np
 
+SESSIONS = tempfile.TemporaryDirectory(prefix="mpm_sessions_")
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1",  # ranks share cores
                "OMPI_MCA_ess_singleton_isolated": "1",  # no daemon beside each run
+               "OMPI_MCA_orte_tmpdir_base": SESSIONS.name,  # runs of another test may clear the common one
                "OMP_PROC_BIND": "false", "OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS", "1"),
                "MALLOC_PERTURB_": "165"}
 

@@ -1,0 +1,220 @@
+// Steps of small problems, whose time is that of launches and of waiting for memory: one launch does what
+// several do in large ones.
+
+#include "end_step.hpp"
+#include "node_update.hpp"
+#include "patch_update.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr int k_rigids_at_once = 4;  // whose points travel as arguments of one launch
+
+/// The launch: the first teams move the points of rigids to where they will be and give their mass to the
+/// nodes, the others take a slot each, and the team that is done last moves the rigids and counts the step.
+///
+/// If Whole, each slot's team finds by itself what becomes of the nodes that its particles reach, so that no
+/// team waits for another's; it keeps the motion of the slot's own nodes, and answers for the force that they
+/// leave on the rigids. The sums of three steps are apart: those that are read, those of the next step, and
+/// those of the last one, which are set to zero. Else the nodes have been updated before.
+template <class Space, class T, int Dim, bool Whole>
+struct StepAtOnce {
+  // A whole step has more to wait for, and so more threads to do it.
+  static constexpr int threads = is_device<Space> && Whole ? 2 * team_threads<Space> : team_threads<Space>;
+  using Update = UpdateParticles<Space, T, Dim, true, threads>;
+  using NodeUpdate = UpdateNodes<Space, T, Dim>;
+  using Member = typename Update::Member;
+  using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_rigids_at_once>;
+  static constexpr int cells = Patch<Dim>::cells;
+  using Bounds = Kokkos::LaunchBounds<threads, Whole ? 3 : teams_at_once<T, Dim>>;
+  using Team = Kokkos::TeamPolicy<Space, Bounds>;
+  Update update;
+  NodeUpdate nodes;
+  EndStep<Space, T, Dim> end;
+  Rigids rigids;
+  int rigid_count, rigid_teams;
+  NodeSums<Space, T, Dim> next, last;
+  Kokkos::View<int, typename Space::memory_space> arrived;
+
+  static constexpr std::size_t bytes(int values) {
+    return (Whole ? scratch_bytes<double>(values * cells) : 0) + Update::bytes();
+  }
+
+  KOKKOS_FUNCTION void operator()(const Member& team) const {
+    const int n = team.league_rank() - rigid_teams;
+    if (update.control().paused) return;
+    Scratch scratch(team, bytes(nodes.value_count));
+    if (n < 0)
+      rigids_to_nodes(team, Scratch(scratch).template take<double>(0));
+    else if constexpr (Whole)
+      step_slot(team, scratch, n);
+    else
+      update.update(team, scratch, update.slots(n));
+    team.team_barrier();
+    int earlier = 0;
+    Kokkos::single(
+        Kokkos::PerTeam(team),
+        [&](int& teams) {
+          Kokkos::memory_fence();  // what this team noted is there for the last one
+          teams = Kokkos::atomic_fetch_add(&arrived(), 1);
+        },
+        earlier);
+    if (earlier + 1 < team.league_size()) return;
+    end(team, scratch.template take<double>(0));
+    arrived() = 0;
+  }
+
+  KOKKOS_INLINE_FUNCTION void rigids_to_nodes(const Member& team, double* part) const {
+    for (int k = 0; k < rigid_count; ++k) {
+      const auto& source = rigids[k];
+      const Vector<double, Dim> to = end.next_displacement(team, source.rigid, part);
+      const int all = rigid_teams * threads;
+      for (int p = team.league_rank() * threads + team.team_rank(); p < source.points.count; p += all) {
+        source.move(p, to);
+        give_to_nodes(source, update.around, p, [&](int i, int v, T value) {
+          Kokkos::atomic_add(&next.rigid(source.rigid, i, v), value);
+        });
+      }
+    }
+  }
+
+  /// The nodes that matter to a slot, and its particles if it has any.
+  KOKKOS_INLINE_FUNCTION void step_slot(const Member& team, Scratch scratch, int slot) const {
+    const int near = nodes.value_count > 0 ? update.near_rigid(slot) : 0;
+    double* const force = scratch.take<double>(nodes.value_count * cells);
+    const Coord<Dim> from = update.origin(slot);
+    const auto motion_of = [&](const Coord<Dim>& place, int number) {
+      Coord<Dim> at = from;
+      bool own = true;
+      for (int d = 0; d < Dim; ++d)
+        at[d] += place[d], own = own && place[d] >= 0 && place[d] < Patch<Dim>::edge;
+      double* const told = own && near > 0 ? force + place_of<Dim>(place) : nullptr;
+      for (int v = 0; v < nodes.value_count && told != nullptr; ++v) told[v * cells] = 0;
+      const MotionValues<T, Dim> motion = near > 0 ? nodes.template motion<true>(number, at, told)
+                                                   : nodes.template motion<false>(number, at, nullptr);
+      if (own) nodes.keep(number, motion);
+      return motion;
+    };
+    if (update.begin(slot * cells) < update.begin((slot + 1) * cells))
+      update.update(team, scratch, slot,
+                    [&](int n, int number) { return motion_of(window_coord<Dim>(n), number); });
+    else
+      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells),
+                           [&](int k) { motion_of(coord_of<Dim>(k), slot * cells + k); });
+    clear_sums(team, last, slot, nodes.has_boundary, nodes.has_mass_normals ? nodes.rigids.extent_int(0) : 0);
+    if (near == 0) return;
+    team.team_barrier();
+    nodes.leave_forces(team, force, near - 1);
+  }
+};
+
+/// `next`: the sums of the next step.
+template <bool Whole, class Space, class T, int Dim>
+StepAtOnce<Space, T, Dim, Whole> step_at_once(const State<Space, T, Dim>& s, double dt,
+                                              const NodeSums<Space, T, Dim>& next) {
+  StepAtOnce<Space, T, Dim, Whole> f{update_of<typename StepAtOnce<Space, T, Dim, Whole>::Update>(s, dt, 0),
+                                     node_update_of(s, dt),
+                                     {s, dt},
+                                     {},
+                                     0,
+                                     0,
+                                     next,
+                                     s.last_sums,
+                                     s.arrived};
+  f.update.out = next.soil, f.update.boundary = next.boundary;
+  for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
+    const auto& points = s.rigid_points[r].points;
+    if (points.surface_normal) continue;
+    f.rigids[f.rigid_count++] = {points, s.rigids, r, s.patches.origin, s.spacing};
+    f.rigid_teams += (points.count + f.threads - 1) / f.threads;
+  }
+  return f;
+}
+
+template <class Space, class Functor>
+void launch_at_once(const Space& space, int slots, const Functor& f) {
+  static_assert(!is_device<Space> || sizeof(Functor) <= 4000, "CUDA sends arguments of 4 KiB with a launch");
+  typename Functor::Team team(space, f.rigid_teams + slots, Functor::threads);
+  Kokkos::parallel_for(
+      "mpm::step_at_once",
+      light(team.set_scratch_size(0, Kokkos::PerTeam(f.bytes(f.nodes.value_count) + k_scratch_slack))), f);
+}
+
+/// Makes sure that the sums of the next and of the last step have room, and that the next one's are zero.
+template <class Space, class T, int Dim>
+void prepare_sums(State<Space, T, Dim>& s) {
+  if (s.next_zero) return;
+  const auto prepare = [&](auto& view, const auto& like) {
+    if (view.layout() != like.layout())
+      view = std::decay_t<decltype(view)>(Kokkos::view_alloc(like.label(), Kokkos::WithoutInitializing),
+                                          like.layout());
+    Kokkos::deep_copy(s.space, view, T(0));
+  };
+  for (NodeSums<Space, T, Dim>* sums : {&s.next_sums, &s.last_sums}) {
+    prepare(sums->soil, s.nodes.soil);
+    prepare(sums->boundary, s.nodes.boundary);
+    prepare(sums->rigid, s.nodes.rigid);
+  }
+  s.next_zero = true;
+}
+
+/// Whether a launch of this kind has room for its rigids.
+template <bool Whole, class Space, class T, int Dim>
+bool has_room(const State<Space, T, Dim>& s) {
+  using Step = StepAtOnce<Space, T, Dim, Whole>;
+  int with_points = 0;
+  for (const auto& set : s.rigid_points) with_points += !set.points.surface_normal;
+  const int values = Dim * static_cast<int>(s.rigid_points.size());
+  const std::size_t parts = EndStep<Space, T, Dim>(s, 0).room(Step::threads) * sizeof(double);
+  return with_points <= k_rigids_at_once && parts <= Step::Update::bytes() &&
+         Step::bytes(values) <= k_team_bytes<Space> - k_scratch_slack - 8 * (Step::threads + 2);
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+bool ends_at_once(const State<Space, T, Dim>& s) {
+  if constexpr (is_device<Space> && sums_fit<Space, T, Dim>)
+    return s.soil.points.count > 0 && sums_ahead(s) && few_patches(s) && !s.batches.in_use() &&
+           has_room<false>(s);
+  return false;
+}
+
+template <class Space, class T, int Dim>
+void update_and_end(State<Space, T, Dim>& s, double dt) {
+  if constexpr (is_device<Space> && sums_fit<Space, T, Dim>) {
+    launch_at_once(s.space, s.soil.bins.colour_begin[Patch<Dim>::colours],
+                   step_at_once<false>(s, dt, NodeSums<Space, T, Dim>(s.nodes)));
+    s.summed = {true, s.soil_boundary, true};
+  }
+}
+
+template <class Space, class T, int Dim>
+bool is_whole_step(const State<Space, T, Dim>& s) {
+  // What friction keeps of the impulse at a node changes with each look at it.
+  const bool independent = !s.has_friction && !(s.rigid_dynamic && s.mass_normals);
+  const bool summed = s.summed.soil && s.summed.boundary == s.soil_boundary && s.summed.rigids;
+  if constexpr (sums_fit<Space, T, Dim>)
+    return independent && summed && s.xpic_order == 0 && !s.affine && has_room<true>(s);
+  return false;
+}
+
+template <class Space, class T, int Dim>
+void whole_step(State<Space, T, Dim>& s, double dt) {
+  if constexpr (sums_fit<Space, T, Dim>) {
+    prepare_sums(s);
+    launch_at_once(s.space, s.patches.slots, step_at_once<true>(s, dt, s.next_sums));
+    NodeSums<Space, T, Dim>& sums = s.nodes;
+    std::swap(sums, s.next_sums);  // and what was read is zero one step later
+    std::swap(s.next_sums, s.last_sums);
+  }
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                         \
+  template bool ends_at_once(const State<Space, T, Dim>&);     \
+  template void update_and_end(State<Space, T, Dim>&, double); \
+  template bool is_whole_step(const State<Space, T, Dim>&);    \
+  template void whole_step(State<Space, T, Dim>&, double);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm
