@@ -17,6 +17,7 @@ PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 sys.path.insert(0, str(SCRIPTS))
 import benchmark_runs as runs  # noqa: E402
 import benchmark_tables as tables  # noqa: E402
+import benchmark_threads as threads  # noqa: E402
 
 loader = importlib.machinery.SourceFileLoader("benchmark", str(SCRIPTS / "benchmark"))
 benchmark = importlib.util.module_from_spec(importlib.util.spec_from_loader("benchmark", loader))
@@ -48,6 +49,21 @@ class Benchmark(unittest.TestCase):
 
     def test_backends(self):
         self.assertIn("serial", runs.backends(PROGRAM))
+
+    def test_threads(self):
+        """A program of two threads, and two programs at once, by numbers of particles that the program finds too."""
+        if "openmp" not in runs.backends(PROGRAM):
+            self.skipTest("built without OpenMP")
+        for name, value in (("PARTICLES", 51200), ("UPDATES_A_THREAD", 1e5)):
+            self.addCleanup(setattr, threads, name, getattr(threads, name))
+            setattr(threads, name, value)
+        with tempfile.TemporaryDirectory() as folder:
+            found = threads.measure(PROGRAM, 2, "double", 1, pathlib.Path(folder) / "runs")
+        self.assertGreater(found["rate"], 0)
+        self.assertGreater(found["apart"], 0)
+        rows = threads.text_of([{**found, "ranks": 1, "rate": 20.0, "apart": 20.0},
+                                {**found, "ranks": 4, "rate": 60.0, "apart": 64.0, "copy": 100.0, "moved": 25.0}]).splitlines()
+        self.assertIn("| 4 | 60.0 | 75 % | 64.0 | 94 % | 25 % |", rows)
 
     def test_tables(self):
         measured = tables.Measured([result("serial", "double", "auto", 6000.0), result("cuda", "single", "auto", 15.0),

@@ -1,0 +1,87 @@
+"""How the threads of `-backend openmp` share a footing, and what as many programs at once do with a part of it each.
+
+Cores that are all at work run slower than one alone (their clock, their share of the memory's bandwidth), whatever the
+program. So the threads are held against single threads that are at work at the same time, each bound to a core, with as many
+particles as a thread has: what is lost against them is the program's own.
+"""
+
+import os
+import shlex
+import shutil
+import statistics
+import subprocess
+from datetime import date
+
+from benchmark_runs import HISTORY, ROOT, Setting, commit, environment, read_log
+
+PARTICLES = 737280       # of all threads: a strip of L/B = 28.8; more where a thread would have less than LEAST
+LEAST = 25600
+UPDATES_A_THREAD = 4e7   # particle updates of a run
+
+
+def counts(words):
+    """Numbers of threads: those given, or 1, 2, 4 ... and all cores."""
+    if words:
+        return [int(word) for word in words.split(",")]
+    cores = len(os.sched_getaffinity(0))
+    return sorted({n for n in (2**k for k in range(12)) if n <= cores} | {cores})
+
+
+def command(program, threads, particles, precision, steps, folder):
+    size = Setting("footing", particles, "openmp", precision, "tile").size()
+    options = (f"-options_file inputs/footing.opts -backend openmp -precision {precision} -p2g tile -time_max_steps {steps}"
+               f" {size} {HISTORY} -output_dir {folder}")
+    return [str(program), *shlex.split(options)], {**environment(), "OMP_NUM_THREADS": str(threads),
+                                                   "OMP_PROC_BIND": "spread" if threads > 1 else "false",
+                                                   "OMP_PLACES": "threads", "OMPI_MCA_ess_singleton_isolated": "1"}
+
+
+def run_at_once(program, programs, threads, particles, precision, folder):
+    """The logs of several programs at once, each of so many threads and particles and, if they are many, on a core."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    steps = max(3, round(UPDATES_A_THREAD * threads / particles))
+    cores = sorted(os.sched_getaffinity(0))
+    started = []
+    for n in range(programs):
+        words, env = command(program, threads, particles, precision, steps, folder / str(n))
+        bind = ["taskset", "-c", str(cores[n * len(cores) // programs])] if threads == 1 else []
+        started.append(subprocess.Popen([*bind, *words], cwd=ROOT, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                        text=True))
+    texts = [each.communicate()[0] for each in started]
+    for process, text in zip(started, texts):
+        if process.returncode != 0:
+            raise SystemExit(f"{shlex.join(process.args)}: exit status {process.returncode}\n{text[-2000:]}")
+    return [read_log((folder / str(n) / "mpm.log").read_text()) for n in range(programs)]
+
+
+def measure(program, threads, precision, repeats, folder):
+    """M particle updates/s of the threads, and of as many programs at once; medians of runs that take turns."""
+    together, apart = [], []
+    whole = max(PARTICLES, threads * LEAST)
+    part = whole // threads // 640 * 640  # 640: a column of cells
+    for _ in range(repeats):
+        (log,) = run_at_once(program, 1, threads, whole, precision, folder)
+        together.append(log["count"] / log["us"])
+        logs = run_at_once(program, threads, 1, part, precision, folder) if threads > 1 else [log]
+        apart.append(sum(each["count"] / each["us"] for each in logs))
+    return {"kind": "threads", "particles": whole, "ranks": threads, "backend": "openmp", "precision": precision,
+            "rate": statistics.median(together), "apart": statistics.median(apart), "device": log["device"],
+            "machine": log["machine"], "copy": log["copy"], "moved": log["moved"], "date": date.today().isoformat(),
+            "commit": commit()}
+
+
+def text_of(runs):
+    parts = []
+    for precision in dict.fromkeys(each["precision"] for each in runs):
+        mine = sorted((each for each in runs if each["precision"] == precision), key=lambda each: each["ranks"])
+        where, one = mine[0], mine[0]["rate"] / mine[0]["ranks"]
+        lines = ["| threads | M particle updates/s | over as many times the first row | programs at once, M updates/s | over those | "
+                 "share of the copy's bandwidth |", "| --- |" + " --- |" * 5]
+        for each in mine:
+            share = f"{100 * each['moved'] / each['copy']:.0f} %" if each.get("copy") else "-"
+            lines.append(f"| {each['ranks']} | {each['rate']:.1f} | {100 * each['rate'] / (one * each['ranks']):.0f} % | "
+                         f"{each['apart']:.1f} | {100 * each['rate'] / each['apart']:.0f} % | {share} |")
+        parts += [f"Footing, {where['particles']:,} particles, {precision} precision ({where['machine'].split(', ')[0]}; "
+                  f"{where['date']}, commit {where['commit']}):", "\n".join(lines)]
+    return "\n\n".join(parts)
