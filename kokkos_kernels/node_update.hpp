@@ -56,7 +56,7 @@ struct UpdateNodes {
     double* const force = scratch<double>(team, value_count * cells, scratch_level);
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int k) {
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
-      update<true>(slot * cells + k, force + k);
+      update(slot * cells + k, true, force + k);
       if (counted.extent(0) == 0 || (counted(slot) >> k & 1) != 0) return;
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank tells it
     });
@@ -77,26 +77,26 @@ struct UpdateNodes {
     }
   }
 
-  template <bool Near>
-  KOKKOS_INLINE_FUNCTION void update(int i, double* force) const {
+  KOKKOS_INLINE_FUNCTION void update(int i, bool near, double* force) const {
     Coord<Dim> at = coord_of<Dim>(i);
     const Coord<Dim> from = origin(i / cells);
     for (int d = 0; d < Dim; ++d) at[d] += from[d];
-    keep(i, motion<Near>(i, at, force));
+    keep(i, motion(i, at, near, force));
   }
   KOKKOS_INLINE_FUNCTION void keep(int i, const MotionValues<T, Dim>& motion) const {
     *reinterpret_cast<MotionValues<T, Dim>*>(&nodes.motion(i, 0)) = motion;
   }
 
-  /// What becomes of node i, which is `at`. Adds the force on component d of rigid r to force[(r Dim + d)
-  /// cells], unless it is null.
-  template <bool Near>
-  KOKKOS_INLINE_FUNCTION MotionValues<T, Dim> motion(int i, const Coord<Dim>& at, double* force) const {
+  /// What becomes of node i, which is `at`; near: a rigid may touch it. Adds component d of the force on
+  /// rigid r to force[(r Dim + d) cells], unless it is null.
+  KOKKOS_INLINE_FUNCTION MotionValues<T, Dim> motion(int i, const Coord<Dim>& at, bool near,
+                                                     double* force) const {
     using S = SoilShare<Dim>;
     T sum[S::size];  // all asked for at once
     for (int n = 0; n < S::size; ++n) sum[n] = nodes.soil(i, n);
     const T m_i = sum[S::mass];
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
+    MPM_ROLLED
     for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r)
       nodes.impulse(r, i) *= k_memory<T>;
     constexpr T k_floor = T(1e-12);  // of the cut: far less is at rest, lest 1 / m_i overflow
@@ -111,10 +111,10 @@ struct UpdateNodes {
       }
       const unsigned sides = sides_of(grid, at);
       apply_walls(grid, sides, v);
-      if constexpr (Near) {
-        for (int r = 0; r < static_cast<int>(rigids.extent(0)) && m_i > mass_cut; ++r)
-          touch(i, r, at, sides, m_i, v, force == nullptr ? force : force + r * Dim * cells);
-      }
+      const int touching = near && m_i > mass_cut ? static_cast<int>(rigids.extent(0)) : 0;
+      MPM_ROLLED
+      for (int r = 0; r < touching; ++r)
+        touch(i, r, at, sides, m_i, v, force == nullptr ? force : force + r * Dim * cells);
       apply_walls(grid, sides, v);
     }
     MotionValues<T, Dim> motion;
@@ -128,7 +128,7 @@ struct UpdateNodes {
   /// The nodes of a slot far from every rigid.
   KOKKOS_INLINE_FUNCTION void update_far(const Member& team, int slot) const {
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells),
-                         [&](int k) { update<false>(slot * cells + k, nullptr); });
+                         [&](int k) { update(slot * cells + k, false, nullptr); });
     team.team_barrier();
     if (clears) clear_sums(team, nodes, slot, false, 0);
   }
@@ -144,9 +144,11 @@ struct UpdateNodes {
       v_r[d] = static_cast<T>(rigid.velocity[d]);
       if (has_boundary) boundary[d] = nodes.boundary(i, BoundaryShare<Dim>::area + d);
     }
-    Distance<Dim> to{};
-    if (rigid.surface_normal || rigid.reach > 0) to = distance_to(rigid.surface, vertices, place(rigid, at));
-    if (rigid.surface_normal ? !surface_normal(rigid, at, sides, boundary, to, n)
+    double distance = 0;
+    Vector<double, Dim> out{};
+    const bool reaches =
+        rigid.surface_normal || rigid.reach > 0 ? look_at_surface(rigid, at, boundary, distance, out) : true;
+    if (rigid.surface_normal ? !(reaches && surface_normal(out, sides, n))
                              : !mass_normal(rigid, i, r, sides, n))
       return;
     const T area = Kokkos::fmax(T(0), dot(boundary, n));
@@ -159,10 +161,10 @@ struct UpdateNodes {
     interface.separates = rigid.separates;
     // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
     // well, the body would act thicker than it is.
-    interface.within_soil = rigid.surface_normal && to.value > spacing / 2;
+    interface.within_soil = rigid.surface_normal && distance > spacing / 2;
     if (rigid.reach > 0) {
       const T depth = surface_depth(nodes.boundary(i, BoundaryShare<Dim>::volume) / grid.spacing, area);
-      const T gap = static_cast<T>(to.value) + depth * grid.spacing;
+      const T gap = static_cast<T>(distance) + depth * grid.spacing;
       interface.penalty = penalty(gap, T(rigid.reach), T(rigid.exponent));
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
       if (gap > Kokkos::fmax(T(rigid.reach), grid.spacing / 2)) return;
@@ -195,29 +197,41 @@ struct UpdateNodes {
     return m_r > rigid.mass_cut && inward_normal(grid, sides, m_r, n);
   }
 
-  /// Inward unit normal from the rigid's own surface, to which the node has the distance `to`. Where the
-  /// soil's boundary says that the soil is at another face, as in a thin plate, the node looks from a cell's
-  /// edge further towards the soil. False where the rigid does not reach into the node's cells.
-  KOKKOS_INLINE_FUNCTION bool surface_normal(const Rigid<Dim>& rigid, const Coord<Dim>& at, unsigned sides,
-                                             const Vector<T, Dim>& boundary, const Distance<Dim>& to,
-                                             Vector<T, Dim>& n) const {
+  /// Distance [m] of a node from the rigid's own surface, and the normal out of it that contact takes. Where
+  /// the soil's boundary says that the soil is at another face, as in a thin plate, the node looks a second
+  /// time, from a cell's edge further towards the soil. False where the rigid does not reach into the node's
+  /// cells.
+  KOKKOS_INLINE_FUNCTION bool look_at_surface(const Rigid<Dim>& rigid, const Coord<Dim>& at,
+                                              const Vector<T, Dim>& boundary, double& distance,
+                                              Vector<double, Dim>& out) const {
     constexpr double k_overlap = 1e-3;  // cells: less is no touch
-    double reach = -k_overlap, against = 0;
-    Vector<double, Dim> out = to.normal;
-    for (int d = 0; d < Dim; ++d) {
-      reach += Kokkos::fabs(out[d]);
-      against += boundary[d] * out[d];
-    }
-    if (to.value > reach * spacing) return false;
     // Not at a right angle, as a footing's edge is to the soil under it: there round-off would decide.
     constexpr T k_facing = T(0.1);   // cosine
     constexpr T k_bounds = T(1e-3);  // of a cell's face: less is the soil's interior
-    const T length = Kokkos::sqrt(dot(boundary, boundary));
-    if (against > -k_facing * length && length > k_bounds * face()) {
-      Vector<double, Dim> x = place(rigid, at);
+    Vector<double, Dim> x = place(rigid, at);
+    bool reaches = true;
+    MPM_ROLLED
+    for (int look = 0; look < 2; ++look) {
+      const Distance<Dim> to = distance_to(rigid.surface, vertices, x);
+      out = to.normal;
+      if (look > 0) break;
+      distance = to.value;
+      double reach = -k_overlap, against = 0;
+      for (int d = 0; d < Dim; ++d) {
+        reach += Kokkos::fabs(out[d]);
+        against += boundary[d] * out[d];
+      }
+      reaches = distance <= reach * spacing;
+      const T length = Kokkos::sqrt(dot(boundary, boundary));
+      if (!reaches || !(against > -k_facing * length && length > k_bounds * face())) break;
       for (int d = 0; d < Dim; ++d) x[d] -= spacing * boundary[d] / length;
-      out = distance_to(rigid.surface, vertices, x).normal;
     }
+    return reaches;
+  }
+
+  /// The inward unit normal, of one out of the surface.
+  KOKKOS_INLINE_FUNCTION bool surface_normal(const Vector<double, Dim>& out, unsigned sides,
+                                             Vector<T, Dim>& n) const {
     for (int d = 0; d < Dim; ++d) n[d] = static_cast<T>(out[d]);
     return inward_normal(grid, sides, T(1), n);
   }

@@ -65,10 +65,12 @@ struct StepAtOnce {
   }
 
   KOKKOS_INLINE_FUNCTION void rigids_to_nodes(const Member& team, double* part) const {
+    MPM_ROLLED
     for (int k = 0; k < rigid_count; ++k) {
       const auto& source = rigids[k];
-      const Vector<double, Dim> to = end.next_displacement(team, source.rigid, part);
+      const Vector<double, Dim> to = end.template next_displacement<!Whole>(team, source.rigid, part);
       const int all = rigid_teams * threads;
+      MPM_ROLLED
       for (int p = team.league_rank() * threads + team.team_rank(); p < source.points.count; p += all) {
         source.move(p, to);
         give_to_nodes(source, update.around, p, [&](int i, int v, T value) {
@@ -83,24 +85,21 @@ struct StepAtOnce {
     const int near = nodes.value_count > 0 ? update.near_rigid(slot) : 0;
     double* const force = scratch.take<double>(nodes.value_count * cells);
     const Coord<Dim> from = update.origin(slot);
-    const auto motion_of = [&](const Coord<Dim>& place, int number) {
+    const bool empty = update.begin(slot * cells) == update.begin((slot + 1) * cells);
+    const auto motion_of = [&](int n, int number) {
+      const Coord<Dim> place = window_coord<Dim>(n);
       Coord<Dim> at = from;
       bool own = true;
       for (int d = 0; d < Dim; ++d)
         at[d] += place[d], own = own && place[d] >= 0 && place[d] < Patch<Dim>::edge;
+      if (empty && !own) return MotionValues<T, Dim>{};
       double* const told = own && near > 0 ? force + place_of<Dim>(place) : nullptr;
       for (int v = 0; v < nodes.value_count && told != nullptr; ++v) told[v * cells] = 0;
-      const MotionValues<T, Dim> motion = near > 0 ? nodes.template motion<true>(number, at, told)
-                                                   : nodes.template motion<false>(number, at, nullptr);
+      const MotionValues<T, Dim> motion = nodes.motion(number, at, near > 0, told);
       if (own) nodes.keep(number, motion);
       return motion;
     };
-    if (update.begin(slot * cells) < update.begin((slot + 1) * cells))
-      update.update(team, scratch, slot,
-                    [&](int n, int number) { return motion_of(window_coord<Dim>(n), number); });
-    else
-      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells),
-                           [&](int k) { motion_of(coord_of<Dim>(k), slot * cells + k); });
+    update.update(team, scratch, slot, motion_of);
     clear_sums(team, last, slot, nodes.has_boundary, nodes.has_mass_normals ? nodes.rigids.extent_int(0) : 0);
     if (near == 0) return;
     team.team_barrier();

@@ -63,6 +63,7 @@ KOKKOS_INLINE_FUNCTION Distance<2> distance_to_polygon(const Vertices& vertices,
   double least = Kokkos::Experimental::finite_max<double>::value, to_x = 0, to_z = 0, edge_x = 0, edge_z = 1;
   double turn = 0;  // twice the area: which way round the polygon goes
   bool inside = false;
+  MPM_ROLLED
   for (int k = 0; k < count; ++k) {
     const Vertex a = vertices(first + k), b = vertices(first + (k + 1 == count ? 0 : k + 1));
     turn += a.x * b.z - b.x * a.z;

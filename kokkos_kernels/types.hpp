@@ -5,6 +5,14 @@
 
 #include "lanes.hpp"
 
+/// Before a loop whose body is long and seldom runs: it stays one. A GPU fetches the instructions of a kernel
+/// from its memory, and copies of a loop's body cost more than they gain.
+#ifdef __CUDACC__
+#define MPM_ROLLED _Pragma("unroll 1")
+#else
+#define MPM_ROLLED
+#endif
+
 namespace mpm {
 
 /// Alignment at which a group of n values is read at once: pairs, and fours up to 16 bytes.

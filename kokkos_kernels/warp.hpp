@@ -25,6 +25,13 @@ KOKKOS_INLINE_FUNCTION double sum_of_warp(double value) {
   return value;
 }
 
+/// A value that other teams of the same launch may have written, as it is in the memory that all of them see.
+template <class T>
+KOKKOS_INLINE_FUNCTION T load_of_others(const T* value) {
+  KOKKOS_IF_ON_DEVICE((return __ldcg(value);))
+  KOKKOS_IF_ON_HOST((return Kokkos::atomic_load(value);))
+}
+
 /// What the lanes wrote to scratch memory is there for all of them.
 KOKKOS_INLINE_FUNCTION void sync_warp() { KOKKOS_IF_ON_DEVICE((__syncwarp();)) }
 
