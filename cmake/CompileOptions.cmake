@@ -7,8 +7,8 @@ set(host_options -fno-math-errno -ffp-contract=fast -Wall -Wno-psabi)
 if(MPM_ARCH)
   list(APPEND host_options -march=${MPM_ARCH})
 endif()
-# nvcc writes parentheses into the code that it hands to the host compiler.
-string(REPLACE ";" "," host_options_of_nvcc "${host_options};-Wno-parentheses")
+# nvcc writes parentheses and pragmas of its own into the code that it hands to the host compiler.
+string(REPLACE ";" "," host_options_of_nvcc "${host_options};-Wno-parentheses;-Wno-unknown-pragmas")
 add_compile_options(
   "$<$<COMPILE_LANGUAGE:CXX>:${host_options};-Wextra>"
   # No -Wextra for nvcc: it would speak of the code that nvcc generates.

@@ -7,7 +7,7 @@
 
 /// Before a loop whose body is long and seldom runs: it stays one. A GPU fetches the instructions of a kernel
 /// from its memory, and copies of a loop's body cost more than they gain.
-#ifdef __CUDA_ARCH__
+#ifdef __CUDACC__
 #define MPM_ROLLED _Pragma("unroll 1")
 #else
 #define MPM_ROLLED
