@@ -195,7 +195,7 @@ struct UpdateParticles {
   }
 };
 
-/// Only on a device: a processor's caches hold the particles of a patch between the two functions anyway.
+/// Whether a team has room for the update and the sums that follow.
 template <class Space, class T, int Dim>
 inline constexpr bool sums_fit = scratch_fits<Space, T, Dim>(UpdateParticles<Space, T, Dim, true>::bytes());
 
@@ -227,16 +227,6 @@ Update update_of(const State<Space, T, Dim>& s, double dt, int first) {
           first,
           set.points.bodies.extent(0) == 1,
           s.soil_boundary};
-}
-
-/// The launch of teams that work on patches.
-template <class Update, class Space, class Functor>
-void launch(const Space& space, int teams, const Functor& f) {
-  if (teams == 0) return;
-  Kokkos::parallel_for("mpm::update_particles",
-                       light(typename Update::Team(space, teams, Update::threads)
-                                 .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
-                       f);
 }
 
 }  // namespace mpm
