@@ -4,20 +4,15 @@
 namespace mpm {
 namespace {
 
-/// The launch of teams that work on patches.
-template <class Update, class Space, class Functor>
-void launch(const Space& space, int teams, const Functor& f) {
-  if (teams == 0) return;
-  Kokkos::parallel_for("mpm::update_particles",
-                       light(typename Update::Team(space, teams, Update::threads)
-                                 .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
-                       f);
-}
-
 template <bool Sums, class Space, class T, int Dim>
 void launch_update(State<Space, T, Dim>& s, double dt, const Part<Space>& part) {
   using Update = UpdateParticles<Space, T, Dim, Sums>;
-  launch<Update>(part.space, part.last - part.first, update_of<Update>(s, dt, part.first));
+  const int teams = part.last - part.first;
+  if (teams == 0) return;
+  Kokkos::parallel_for("mpm::update_particles",
+                       light(typename Update::Team(part.space, teams, Update::threads)
+                                 .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
+                       update_of<Update>(s, dt, part.first));
 }
 
 }  // namespace
