@@ -262,7 +262,7 @@ void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by) {
   const HostParticles<Space, T, Dim> particles{
       set.points, set.bins.begin, s.patches.around, s.patches.origin, s.nodes.motion, s.control,
       by,         s.spacing};
-  for_each_slot<Space, Dim>("mpm::update_particles", s.space, set.bins, [=](int slot) {
+  for_each_slot<false, Space, Dim>("mpm::update_particles", s.space, set.bins, [=](int slot) {
     if (control().paused) return;
     const T moved = particles(slot);
     movements.note(slot, moved);

@@ -196,9 +196,10 @@ template <class Source>
 void sum_on_host(const Interpolation<Source>& it) {
   const HostTile<Source> tile{it.source, it.bins.begin, it.patches.around, it.out};
   const auto control = it.control;
-  for_each_slot<typename Source::Space, Source::dim>("mpm::reduce_by_tile", it.space, it.bins, [=](int slot) {
-    if (!control().paused) tile(slot);
-  });
+  for_each_slot<true, typename Source::Space, Source::dim>("mpm::reduce_by_tile", it.space, it.bins,
+                                                           [=](int slot) {
+                                                             if (!control().paused) tile(slot);
+                                                           });
 }
 
 }  // namespace mpm

@@ -67,10 +67,11 @@ KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field
     store_some(a, count, to);
 }
 
-/// Calls f(slot) for the slots that hold points, each by one thread: colour by colour, so that those at work
-/// share no node, and always the same part of each colour by the same thread, in whose cache the part then
-/// is. One thread alone needs no colours and takes the slots in the order of the points.
-template <class Space, int Dim, class F>
+/// Calls f(slot) for the slots that hold points, each by one thread, and always the same part of each colour
+/// by the same thread, in whose cache the part then is. If Writes, threads wait for each other between
+/// colours, so that slots at work at the same time share no node. One thread alone needs no colours and takes
+/// the slots in the order of the points.
+template <bool Writes, class Space, int Dim, class F>
 void for_each_slot(const char* label, const Space& space, const Bins<Space>& bins, const F& f) {
   using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Static>>;
   constexpr int cells = Patch<Dim>::cells;
@@ -84,11 +85,20 @@ void for_each_slot(const char* label, const Space& space, const Bins<Space>& bin
       if (begin(slot * cells) < begin((slot + 1) * cells)) f(slot);
     });
   } else {
-    for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
-      const int first = bins.colour_begin[colour], last = bins.colour_begin[colour + 1];
-      if (first < last)
-        Kokkos::parallel_for(label, Range(space, first, last), [=](int n) { f(by_colour(n)); });
-    }
+    constexpr int colours = Patch<Dim>::colours;
+    const int threads = space.concurrency();
+    const auto some = [=](int first, int last) {  // of the colours
+      Kokkos::parallel_for(label, Range(space, 0, threads), [=](int thread) {
+        for (int colour = first; colour < last; ++colour) {
+          const long from = bins.colour_begin[colour], count = bins.colour_begin[colour + 1] - from;
+          const int end = static_cast<int>(from + count * (thread + 1) / threads);
+          for (int n = static_cast<int>(from + count * thread / threads); n < end; ++n) f(by_colour(n));
+        }
+      });
+    };
+    if (!Writes) return some(0, colours);
+    for (int colour = 0; colour < colours; ++colour)
+      if (bins.colour_begin[colour] < bins.colour_begin[colour + 1]) some(colour, colour + 1);
   }
 }
 
