@@ -96,9 +96,9 @@ void for_each_slot(const char* label, const Space& space, const Bins<Space>& bin
         }
       });
     };
-    if (!Writes) return some(0, colours);
-    for (int colour = 0; colour < colours; ++colour)
-      if (bins.colour_begin[colour] < bins.colour_begin[colour + 1]) some(colour, colour + 1);
+    constexpr int at_once = Writes ? 1 : colours;
+    for (int colour = 0; colour < colours; colour += at_once)
+      if (bins.colour_begin[colour] < bins.colour_begin[colour + at_once]) some(colour, colour + at_once);
   }
 }
 
