@@ -84,8 +84,11 @@ TEST_CASE("a step in one launch is the step function by function, across rebuild
           const bool by_mass = dynamic && !surface;  // then the points move by forces that are not there yet
           INFO(B::name() << (surface ? " surface" : " mass") << (dynamic ? " dynamic" : "") << " F-bar "
                          << f_bar);
-          if (by_mass) CHECK_FALSE(is_whole_step(one));
-          if (by_mass || !is_whole_step(one)) continue;
+          if (by_mass)
+            CHECK_FALSE(is_whole_step(one));
+          else
+            CHECK((is_whole_step(one) || B::dim == 3));  // in 3D a team may lack the memory
+          if (!is_whole_step(one)) continue;
           const int steps = 60, rebuilds = whole_steps(one, 2e-4, steps);
           CHECK(rebuilds > 1);
           CHECK(steps_by_function(two, 2e-4, steps) == rebuilds);
@@ -113,6 +116,7 @@ TEST_CASE("steps in one launch and function by function take turns", "[step_at_o
     auto one = state_of<B>(cloud, P2G::tile), two = state_of<B>(cloud, P2G::tile);
     interpolate(one);
     one.summed = {true, one.soil_boundary, true};
+    CHECK((is_whole_step(one) || B::dim == 3));
     if (!is_whole_step(one)) return;
     for (int n = 0; n < 4; ++n) {
       whole_steps(one, 2e-4, 5 + n);
