@@ -1,8 +1,6 @@
 #pragma once
 // What becomes of a node in a step (function 4): its velocity and acceleration, the walls, and contact.
 
-#include <limits>
-
 #include "contact.hpp"
 #include "step_kernels.hpp"
 #include "warp.hpp"
@@ -35,7 +33,7 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
 template <class Space, class T, int Dim>
 struct UpdateNodes {
   using Member = typename NodeTeam<Space, Dim>::member_type;
-  static constexpr int cells = Patch<Dim>::cells, threads = node_threads<Space, Dim>;
+  static constexpr int cells = Patch<Dim>::cells;
   int value_count;
   Grid<T, Dim> grid;
   Nodes<Space, T, Dim> nodes;

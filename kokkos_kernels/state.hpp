@@ -39,7 +39,7 @@ struct State {
   Kokkos::View<double*, Memory>
       slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
   Nodes<Space, T, Dim> nodes;
-  NodeSums<Space, T, Dim> next_sums, last_sums;  // of whole_step: zero, and what is to be
+  NodeSums<Space, T, Dim> next_sums, last_sums;  // of whole_step, which sets last_sums to zero
   bool next_zero = false;                        // `next_sums` fits and is zero
   Kokkos::View<std::uint64_t*, Memory>
       counted;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
