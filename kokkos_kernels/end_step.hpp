@@ -34,6 +34,11 @@ KOKKOS_INLINE_FUNCTION double move_rigid(Rigid<Dim>& rigid, const double* contac
   return furthest;
 }
 
+/// The two as they are at one moment, in the memory that all teams see.
+KOKKOS_INLINE_FUNCTION Signal signal_of(const Control& control) {
+  return Kokkos::bit_cast<Signal>(load_of_others(reinterpret_cast<const long long*>(&control.ended)));
+}
+
 /// Counts the step and adds what any point can have moved to the bound; moved, margin [cells]; late:
 /// State::rebuild_late.
 template <class T>
@@ -47,7 +52,7 @@ KOKKOS_INLINE_FUNCTION void count_step(Control& c, double moved, double margin, 
     --c.due_in;
   else if (late > 0 && rebuild_due(c.bound, c.increment, margin, late))
     c.due_in = late;
-  if (now || !(c.bound <= margin) || load_of_others(&c.fault_count) > 0) c.paused = 1;
+  if (now || !(c.bound <= margin) || load_of_others(&c.fault_count) > 0) c.paused |= Pause::due;
 }
 
 template <class Space, class T, int Dim>

@@ -33,6 +33,7 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
 template <class Space, class T, int Dim>
 struct UpdateNodes {
   using Member = typename NodeTeam<Space, Dim>::member_type;
+  using Sums = NodeSums<Space, T, Dim>;
   static constexpr int cells = Patch<Dim>::cells;
   int value_count;
   Grid<T, Dim> grid;
@@ -79,19 +80,19 @@ struct UpdateNodes {
     Coord<Dim> at = coord_of<Dim>(i);
     const Coord<Dim> from = origin(i / cells);
     for (int d = 0; d < Dim; ++d) at[d] += from[d];
-    keep(i, motion(i, at, near, force));
+    keep(i, motion(nodes, i, at, near, force));
   }
   KOKKOS_INLINE_FUNCTION void keep(int i, const MotionValues<T, Dim>& motion) const {
     *reinterpret_cast<MotionValues<T, Dim>*>(&nodes.motion(i, 0)) = motion;
   }
 
-  /// What becomes of node i, which is `at`; near: a rigid may touch it. Adds component d of the force on
-  /// rigid r to force[(r Dim + d) cells], unless it is null.
-  KOKKOS_INLINE_FUNCTION MotionValues<T, Dim> motion(int i, const Coord<Dim>& at, bool near,
+  /// What becomes of node i, which is `at`, under its sums; near: a rigid may touch it. Adds component d of
+  /// the force on rigid r to force[(r Dim + d) cells], unless it is null.
+  KOKKOS_INLINE_FUNCTION MotionValues<T, Dim> motion(const Sums& sums, int i, const Coord<Dim>& at, bool near,
                                                      double* force) const {
     using S = SoilShare<Dim>;
     T sum[S::size];  // all asked for at once
-    for (int n = 0; n < S::size; ++n) sum[n] = nodes.soil(i, n);
+    for (int n = 0; n < S::size; ++n) sum[n] = sums.soil(i, n);
     const T m_i = sum[S::mass];
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
     MPM_ROLLED
@@ -112,7 +113,7 @@ struct UpdateNodes {
       const int touching = near && m_i > mass_cut ? static_cast<int>(rigids.extent(0)) : 0;
       MPM_ROLLED
       for (int r = 0; r < touching; ++r)
-        touch(i, r, at, sides, m_i, v, force == nullptr ? force : force + r * Dim * cells);
+        touch(sums, i, r, at, sides, m_i, v, force == nullptr ? force : force + r * Dim * cells);
       apply_walls(grid, sides, v);
     }
     MotionValues<T, Dim> motion;
@@ -133,35 +134,35 @@ struct UpdateNodes {
 
   /// Contact with rigid r; adds the force of the soil on it (Eq. 10) to force[0], force[cells] ..., unless it
   /// is null.
-  KOKKOS_INLINE_FUNCTION void touch(int i, int r, const Coord<Dim>& at, unsigned sides, T m_i,
-                                    Vector<T, Dim>& v, double* force) const {
+  KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, int i, int r, const Coord<Dim>& at, unsigned sides,
+                                    T m_i, Vector<T, Dim>& v, double* force) const {
     using S = SoilShare<Dim>;
     const Rigid<Dim>& rigid = rigids(r);
     Vector<T, Dim> n, v_r, boundary = filled<T, Dim>(0);
     for (int d = 0; d < Dim; ++d) {
       v_r[d] = static_cast<T>(rigid.velocity[d]);
-      if (has_boundary) boundary[d] = nodes.boundary(i, BoundaryShare<Dim>::area + d);
+      if (has_boundary) boundary[d] = sums.boundary(i, BoundaryShare<Dim>::area + d);
     }
     double distance = 0;
     Vector<double, Dim> out{};
     const bool reaches =
         rigid.surface_normal || rigid.reach > 0 ? look_at_surface(rigid, at, boundary, distance, out) : true;
     if (rigid.surface_normal ? !(reaches && surface_normal(out, sides, n))
-                             : !mass_normal(rigid, i, r, sides, n))
+                             : !mass_normal(sums, rigid, i, r, sides, n))
       return;
     const T area = Kokkos::fmax(T(0), dot(boundary, n));
     Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction) };
     if (rigid.shear_limit < Kokkos::Experimental::infinity<double>::value)
       interface.shear_speed = static_cast<T>(rigid.shear_limit) * area * dt / m_i;
     T pressing = 0;
-    for (int d = 0; d < Dim; ++d) pressing += (nodes.soil(i, S::force + d) / m_i + g[d]) * n[d];
+    for (int d = 0; d < Dim; ++d) pressing += (sums.soil(i, S::force + d) / m_i + g[d]) * n[d];
     interface.pressing = pressing * dt;
     interface.separates = rigid.separates;
     // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
     // well, the body would act thicker than it is.
     interface.within_soil = rigid.surface_normal && distance > spacing / 2;
     if (rigid.reach > 0) {
-      const T depth = surface_depth(nodes.boundary(i, BoundaryShare<Dim>::volume) / grid.spacing, area);
+      const T depth = surface_depth(sums.boundary(i, BoundaryShare<Dim>::volume) / grid.spacing, area);
       const T gap = static_cast<T>(distance) + depth * grid.spacing;
       interface.penalty = penalty(gap, T(rigid.reach), T(rigid.exponent));
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
@@ -188,10 +189,10 @@ struct UpdateNodes {
   KOKKOS_INLINE_FUNCTION T face() const { return Dim == 2 ? grid.spacing : grid.spacing * grid.spacing; }
 
   /// Inward unit normal from the rigid's mass gradient; false where it is out of touch.
-  KOKKOS_INLINE_FUNCTION bool mass_normal(const Rigid<Dim>& rigid, int i, int r, unsigned sides,
-                                          Vector<T, Dim>& n) const {
-    const T m_r = nodes.rigid(r, i, RigidShare<Dim>::mass);
-    for (int d = 0; d < Dim; ++d) n[d] = nodes.rigid(r, i, RigidShare<Dim>::normal + d);
+  KOKKOS_INLINE_FUNCTION bool mass_normal(const Sums& sums, const Rigid<Dim>& rigid, int i, int r,
+                                          unsigned sides, Vector<T, Dim>& n) const {
+    const T m_r = sums.rigid(r, i, RigidShare<Dim>::mass);
+    for (int d = 0; d < Dim; ++d) n[d] = sums.rigid(r, i, RigidShare<Dim>::normal + d);
     return m_r > rigid.mass_cut && inward_normal(grid, sides, m_r, n);
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Nodal fields, the rigid bodies' state, and the control block that lives on the device.
 
+#include <cstddef>
 #include <cstdint>
 
 #include "patches.hpp"
@@ -89,16 +90,36 @@ struct Fault {
   double position[3];  // m from the mesh's lower corner
 };
 
+/// Why steps are paused, as bits.
+namespace Pause {
+inline constexpr int due = 1,  // the bound passed the margin, a rebuild is due, or a fault
+    last = 2,                  // within a launch of several steps: the one at hand is its last
+    apart = 4;                 // the teams of such a launch were not on the device together
+}  // namespace Pause
+
 /// What steers the steps between two looks of the host. A step does nothing while `paused`.
 struct Control {
   double bound;      // cells that any point can have moved since the last rebuild
   double increment;  // of the last step
+  int ended;         // steps that whole_steps has ended
+  int paused;        // Pause; beside `ended`, to be read with it
   int due_in;        // steps to a rebuild that is due; 0: none is
-  int paused;        // the bound passed the margin, a rebuild is due, or a fault
   int steps;         // steps done since the host last looked
   int fault_count;
   Fault fault;
 };
+
+/// How many teams of a launch have begun, and how many are done with their part of the step.
+struct Roll {
+  int begun, arrived;
+};
+
+/// What teams of one launch that wait for each other look at.
+struct Signal {
+  int ended, paused;
+};
+static_assert(offsetof(Control, ended) % sizeof(Signal) == 0 &&
+              offsetof(Control, paused) == offsetof(Control, ended) + sizeof(int));
 
 /// Whether lists must be rebuilt `late` steps after the one that these are of [cells]; speeds may grow by
 /// half until then. Several ranks know of each other only so late; one rank rebuilds at the same steps all

@@ -56,8 +56,7 @@ struct UpdateParticles {
   decltype(Patches<Space, Dim>::around) around;
   Kokkos::View<Coord<Dim>*, Memory> origin;
   NodeField<Space, T, NodeMotion<Dim>::size> motion;
-  NodeField<Space, T, SoilShare<Dim>::size> out;
-  NodeField<Space, T, BoundaryShare<Dim>::size> boundary;
+  NodeSums<Space, T, Dim> sums;  // of the next step
   Kokkos::View<int*, Memory> near_rigid;
   ControlView<Space> control;
   Movements<Space> movements;
@@ -80,15 +79,16 @@ struct UpdateParticles {
   }
 
   KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot) const {
-    update(team, all, slot, [&](int, int number) {
+    update(team, all, slot, sums, [&](int, int number) {
       return *reinterpret_cast<const MotionValues<T, Dim>*>(&motion(number, 0));
     });
   }
 
-  /// all: bytes(). motion_of(n, number): what becomes of node n of the window.
+  /// all: bytes(). out: the sums of the next step. motion_of(n, number): what becomes of node n of the
+  /// window.
   template <class Motion>
   KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot,
-                                     const Motion& motion_of) const {
+                                     const NodeSums<Space, T, Dim>& out, const Motion& motion_of) const {
     const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
     const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
     Scratch scratch = all;
@@ -108,11 +108,11 @@ struct UpdateParticles {
       if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
       tile.add(team, particle);
       note_movement(team, slot, moved);
-      tile.give_window(team, out);
+      tile.give_window(team, out.soil);
       if (has_boundary && near_rigid(slot) != 0) {
         team.team_barrier();
         sum_patch<Threads>(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, around, slot,
-                           cell_begin, boundary);
+                           cell_begin, out.boundary);
       }
     } else {
       team.team_barrier();
@@ -216,8 +216,7 @@ Update update_of(const State<Space, T, Dim>& s, double dt, int first) {
           s.patches.around,
           s.patches.origin,
           s.nodes.motion,
-          s.nodes.soil,
-          s.nodes.boundary,
+          s.nodes,
           s.near_rigid,
           s.control,
           s.movements,

@@ -39,13 +39,14 @@ struct State {
   Kokkos::View<double*, Memory>
       slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
   Nodes<Space, T, Dim> nodes;
-  NodeSums<Space, T, Dim> next_sums, last_sums;  // of whole_step, which sets last_sums to zero
+  NodeSums<Space, T, Dim> next_sums, last_sums;  // of whole_steps, which sets last_sums to zero
   bool next_zero = false;                        // `next_sums` fits and is zero
+  bool together = true;  // as far as is known the device holds all teams of whole_steps at once
   Kokkos::View<std::uint64_t*, Memory>
       counted;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
   ControlView<Space> control;
   Movements<Space> movements;
-  Kokkos::View<int, Memory> arrived;   // teams of a step's last kernel that are done
+  Kokkos::View<Roll, Memory> roll;
   Kokkos::View<double*, Memory> sums;  // N, force of the soil on each rigid in this step
   Kokkos::View<char*, Memory>
       spare;  // scratch of a rebuild: one field in its new order; of a step: dilatations, XPIC

@@ -8,70 +8,133 @@
 namespace mpm {
 namespace {
 
-constexpr int k_rigids_at_once = 4;  // whose points travel as arguments of one launch
+constexpr int k_rigids_at_once = 4;     // whose points travel as arguments of one launch
+constexpr long k_steps_at_once = 1000;  // of one launch: a device that also shows pictures must not wait long
+
+/// Looks at what other teams say until the launch gives up to have all of them on the device at once: some
+/// ms.
+constexpr int k_patience = 20'000;
 
 /// The launch: the first teams move the points of rigids to where they will be and give their mass to the
-/// nodes, the others take a slot each, and the team that is done last moves the rigids and counts the step.
+/// nodes, the others take a slot each, and the last one waits for all of them, moves the rigids and counts
+/// the step.
 ///
 /// If Whole, each slot's team finds by itself what becomes of the nodes that its particles reach, so that no
 /// team waits for another's; it keeps the motion of the slot's own nodes, and answers for the force that they
-/// leave on the rigids. The sums of three steps are apart: those that are read, those of the next step, and
-/// those of the last one, which are set to zero. Else the nodes have been updated before.
+/// leave on the rigids. Else the nodes have been updated before.
+///
+/// Whole steps follow one another in a launch: between two of them all teams wait for the last one. That
+/// needs all of them on the device at once. If some have not begun when others are done with the first step,
+/// that step is the launch's last one. That is for the last team to say, so it is one that has begun.
 template <class Space, class T, int Dim, bool Whole>
 struct StepAtOnce {
-  // A whole step has more to wait for, and so more threads to do it.
-  static constexpr int threads = is_device<Space> && Whole ? 2 * team_threads<Space> : team_threads<Space>;
-  using Update = UpdateParticles<Space, T, Dim, true, threads>;
+  static constexpr int threads = team_threads<Space>;
+  using Update = UpdateParticles<Space, T, Dim, true>;
   using NodeUpdate = UpdateNodes<Space, T, Dim>;
   using Member = typename Update::Member;
   using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_rigids_at_once>;
+  using Sums = NodeSums<Space, T, Dim>;
   static constexpr int cells = Patch<Dim>::cells;
-  using Bounds = Kokkos::LaunchBounds<threads, Whole ? 3 : teams_at_once<T, Dim>>;
+  using Bounds = Kokkos::LaunchBounds<threads, Whole ? 4 : teams_at_once<T, Dim>>;
   using Team = Kokkos::TeamPolicy<Space, Bounds>;
   Update update;
   NodeUpdate nodes;
   EndStep<Space, T, Dim> end;
   Rigids rigids;
-  int rigid_count, rigid_teams;
-  NodeSums<Space, T, Dim> next, last;
-  Kokkos::View<int, typename Space::memory_space> arrived;
+  int rigid_count, rigid_teams, steps;
+  // Of the step at hand, of the next one, and of the last one, which are set to zero. They take turns.
+  Kokkos::Array<Sums, 3> sums;
+  Kokkos::View<Roll, typename Space::memory_space> roll;
 
   static constexpr std::size_t bytes(int values) {
     return (Whole ? scratch_bytes<double>(values * cells) : 0) + Update::bytes();
   }
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
-    const int n = team.league_rank() - rigid_teams;
-    if (update.control().paused) return;
+    const Control& control = update.control();
+    const int before = control.ended, others = team.league_size() - 1;
+    if ((control.paused & ~Pause::last) != 0) return;
+    int part = team.league_rank();
+    if (steps > 1)
+      Kokkos::single(
+          Kokkos::PerTeam(team),
+          [&](int& taken) { taken = (Kokkos::atomic_fetch_add(&roll().begun, 1) + others) % (others + 1); },
+          part);
     Scratch scratch(team, bytes(nodes.value_count));
-    if (n < 0)
-      rigids_to_nodes(team, Scratch(scratch).template take<double>(0));
-    else if constexpr (Whole)
-      step_slot(team, scratch, n);
-    else
-      update.update(team, scratch, update.slots(n));
-    team.team_barrier();
-    int earlier = 0;
-    Kokkos::single(
-        Kokkos::PerTeam(team),
-        [&](int& teams) {
-          Kokkos::memory_fence();  // what this team noted is there for the last one
-          teams = Kokkos::atomic_fetch_add(&arrived(), 1);
-        },
-        earlier);
-    if (earlier + 1 < team.league_size()) return;
-    end(team, scratch.template take<double>(0));
-    arrived() = 0;
+    for (int k = 0; k < steps; ++k) {
+      int paused = 0;
+      if (part < others) {
+        step(team, scratch, part, k);
+        paused = arrive(team, before + k, k + 1 < steps);
+      } else {
+        paused = end_step(team, scratch, others, k == 0 && steps > 1);
+      }
+      if (paused != 0) return;
+    }
   }
 
-  KOKKOS_INLINE_FUNCTION void rigids_to_nodes(const Member& team, double* part) const {
+  KOKKOS_INLINE_FUNCTION void step(const Member& team, const Scratch& scratch, int part, int k) const {
+    const int n = part - rigid_teams;
+    if (n < 0)
+      rigids_to_nodes(team, part, Scratch(scratch).template take<double>(0), sums[(k + 1) % 3]);
+    else if constexpr (Whole)
+      step_slot(team, scratch, n, sums[k % 3], sums[(k + 1) % 3], sums[(k + 2) % 3]);
+    else
+      update.update(team, scratch, update.slots(n));
+  }
+
+  /// Says that the team is done with its part of a step, and waits for its end if there is another. Returns
+  /// why the steps are paused.
+  KOKKOS_INLINE_FUNCTION int arrive(const Member& team, int ended, bool waits) const {
+    team.team_barrier();
+    int paused = 0;
+    Kokkos::single(
+        Kokkos::PerTeam(team),
+        [&](int& why) {
+          Kokkos::memory_fence();  // what this team noted is there for the last one
+          Kokkos::atomic_inc(&roll().arrived);
+          Signal signal{ended, 0};
+          while (waits && signal.ended == ended && signal.paused == 0) signal = signal_of(update.control());
+          Kokkos::memory_fence();
+          why = signal.paused;
+        },
+        paused);
+    return paused;
+  }
+
+  /// Waits for all others and ends their step.
+  KOKKOS_INLINE_FUNCTION int end_step(const Member& team, Scratch scratch, int others, bool impatient) const {
+    Control& control = update.control();
+    Kokkos::single(Kokkos::PerTeam(team), [&] {
+      for (int looks = 0; load_of_others(&roll().arrived) < others; ++looks)
+        if (impatient && looks == k_patience) Kokkos::atomic_or(&control.paused, Pause::last);
+      Kokkos::memory_fence();
+    });
+    team.team_barrier();
+    end(team, scratch.template take<double>(0));
+    int paused = 0;
+    Kokkos::single(
+        Kokkos::PerTeam(team),
+        [&](int& why) {
+          if ((control.paused & Pause::last) != 0) control.paused += Pause::apart - Pause::last;
+          why = control.paused;
+          roll() = {};
+          Kokkos::memory_fence();
+          Kokkos::atomic_inc(&control.ended);
+        },
+        paused);
+    return paused;
+  }
+
+  KOKKOS_INLINE_FUNCTION void rigids_to_nodes(const Member& team, int part, double* room,
+                                              const Sums& next) const {
     MPM_ROLLED
     for (int k = 0; k < rigid_count; ++k) {
       const auto& source = rigids[k];
-      const Vector<double, Dim> to = end.template next_displacement<!Whole>(team, source.rigid, part);
+      const Vector<double, Dim> to = end.template next_displacement<!Whole>(team, source.rigid, room);
       const int all = rigid_teams * threads;
       MPM_ROLLED
-      for (int p = team.league_rank() * threads + team.team_rank(); p < source.points.count; p += all) {
+      for (int p = part * threads + team.team_rank(); p < source.points.count; p += all) {
         source.move(p, to);
         give_to_nodes(source, update.around, p, [&](int i, int v, T value) {
           Kokkos::atomic_add(&next.rigid(source.rigid, i, v), value);
@@ -81,7 +144,8 @@ struct StepAtOnce {
   }
 
   /// The nodes that matter to a slot, and its particles if it has any.
-  KOKKOS_INLINE_FUNCTION void step_slot(const Member& team, Scratch scratch, int slot) const {
+  KOKKOS_INLINE_FUNCTION void step_slot(const Member& team, Scratch scratch, int slot, const Sums& present,
+                                        const Sums& next, const Sums& last) const {
     const int near = nodes.value_count > 0 ? update.near_rigid(slot) : 0;
     double* const force = scratch.take<double>(nodes.value_count * cells);
     const Coord<Dim> from = update.origin(slot);
@@ -95,11 +159,11 @@ struct StepAtOnce {
       if (empty && !own) return MotionValues<T, Dim>{};
       double* const told = own && near > 0 ? force + place_of<Dim>(place) : nullptr;
       for (int v = 0; v < nodes.value_count && told != nullptr; ++v) told[v * cells] = 0;
-      const MotionValues<T, Dim> motion = nodes.motion(number, at, near > 0, told);
+      const MotionValues<T, Dim> motion = nodes.motion(present, number, at, near > 0, told);
       if (own) nodes.keep(number, motion);
       return motion;
     };
-    update.update(team, scratch, slot, motion_of);
+    update.update(team, scratch, slot, next, motion_of);
     clear_sums(team, last, slot, nodes.has_boundary, nodes.has_mass_normals ? nodes.rigids.extent_int(0) : 0);
     if (near == 0) return;
     team.team_barrier();
@@ -107,20 +171,17 @@ struct StepAtOnce {
   }
 };
 
-/// `next`: the sums of the next step.
 template <bool Whole, class Space, class T, int Dim>
-StepAtOnce<Space, T, Dim, Whole> step_at_once(const State<Space, T, Dim>& s, double dt,
-                                              const NodeSums<Space, T, Dim>& next) {
+StepAtOnce<Space, T, Dim, Whole> step_at_once(const State<Space, T, Dim>& s, double dt, int steps) {
   StepAtOnce<Space, T, Dim, Whole> f{update_of<typename StepAtOnce<Space, T, Dim, Whole>::Update>(s, dt, 0),
                                      node_update_of(s, dt),
                                      {s, dt},
                                      {},
                                      0,
                                      0,
-                                     next,
-                                     s.last_sums,
-                                     s.arrived};
-  f.update.out = next.soil, f.update.boundary = next.boundary;
+                                     steps,
+                                     {s.nodes, Whole ? s.next_sums : s.nodes, s.last_sums},
+                                     s.roll};
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& points = s.rigid_points[r].points;
     if (points.surface_normal) continue;
@@ -133,7 +194,7 @@ StepAtOnce<Space, T, Dim, Whole> step_at_once(const State<Space, T, Dim>& s, dou
 template <class Space, class Functor>
 void launch_at_once(const Space& space, int slots, const Functor& f) {
   static_assert(!is_device<Space> || sizeof(Functor) <= 4000, "CUDA sends arguments of 4 KiB with a launch");
-  typename Functor::Team team(space, f.rigid_teams + slots, Functor::threads);
+  typename Functor::Team team(space, f.rigid_teams + slots + 1, Functor::threads);
   Kokkos::parallel_for(
       "mpm::step_at_once",
       light(team.set_scratch_size(0, Kokkos::PerTeam(f.bytes(f.nodes.value_count) + k_scratch_slack))), f);
@@ -182,8 +243,7 @@ bool ends_at_once(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void update_and_end(State<Space, T, Dim>& s, double dt) {
   if constexpr (is_device<Space> && sums_fit<Space, T, Dim>) {
-    launch_at_once(s.space, s.soil.bins.colour_begin[Patch<Dim>::colours],
-                   step_at_once<false>(s, dt, NodeSums<Space, T, Dim>(s.nodes)));
+    launch_at_once(s.space, s.soil.bins.colour_begin[Patch<Dim>::colours], step_at_once<false>(s, dt, 1));
     s.summed = {true, s.soil_boundary, true};
   }
 }
@@ -199,21 +259,37 @@ bool is_whole_step(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void whole_step(State<Space, T, Dim>& s, double dt) {
+int whole_steps(State<Space, T, Dim>& s, double dt, long most) {
   if constexpr (sums_fit<Space, T, Dim>) {
+    const int steps = is_device<Space> && s.together ? static_cast<int>(std::min(most, k_steps_at_once)) : 1;
     prepare_sums(s);
-    launch_at_once(s.space, s.patches.slots, step_at_once<true>(s, dt, s.next_sums));
+    launch_at_once(s.space, s.patches.slots, step_at_once<true>(s, dt, steps));
     NodeSums<Space, T, Dim>& sums = s.nodes;
-    std::swap(sums, s.next_sums);  // and what was read is zero one step later
-    std::swap(s.next_sums, s.last_sums);
+    for (int n = 0; n < steps % 3; ++n) {
+      std::swap(sums, s.next_sums);  // and what was read is zero one step later
+      std::swap(s.next_sums, s.last_sums);
+    }
+    return steps;
   }
+  return 0;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                         \
-  template bool ends_at_once(const State<Space, T, Dim>&);     \
-  template void update_and_end(State<Space, T, Dim>&, double); \
-  template bool is_whole_step(const State<Space, T, Dim>&);    \
-  template void whole_step(State<Space, T, Dim>&, double);
+template <class Space, class T, int Dim>
+void go_on_apart(State<Space, T, Dim>& s) {
+  s.together = false;
+  s.summed = {};  // the host does not know whose turn the sums are
+  const auto control = s.control;
+  Kokkos::parallel_for(
+      "mpm::go_on_apart", Kokkos::RangePolicy<Space>(s.space, 0, 1),
+      KOKKOS_LAMBDA(int) { control().paused &= ~Pause::apart; });
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                           \
+  template bool ends_at_once(const State<Space, T, Dim>&);       \
+  template void update_and_end(State<Space, T, Dim>&, double);   \
+  template bool is_whole_step(const State<Space, T, Dim>&);      \
+  template int whole_steps(State<Space, T, Dim>&, double, long); \
+  template void go_on_apart(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

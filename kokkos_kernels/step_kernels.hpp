@@ -42,13 +42,19 @@ bool ends_at_once(const State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void update_and_end(State<Space, T, Dim>& s, double dt);
 
-/// Whether one launch can do a whole step: functions 4 to 6, and 1 to 3 of the next step. So it is where the
+/// Whether one launch can do whole steps: functions 4 to 6, and 1 to 3 of the next step. So it is where the
 /// sums of this step are there, no contact has friction, and no rigid moves by the force on it while the
 /// mass gradient tells its normals.
 template <class Space, class T, int Dim>
 bool is_whole_step(const State<Space, T, Dim>& s);
+/// As many of the next `most` steps as one launch may do; returns how many it will, if the steps are not
+/// paused before.
 template <class Space, class T, int Dim>
-void whole_step(State<Space, T, Dim>& s, double dt);
+int whole_steps(State<Space, T, Dim>& s, double dt, long most);
+/// Where steps are paused since the device does not hold all teams of a launch at once: they go on, one a
+/// launch.
+template <class Space, class T, int Dim>
+void go_on_apart(State<Space, T, Dim>& s);
 
 /// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves
 /// the furthest movement of a particle in s.control. Where sums_ahead, adds the soil as it then is to the

@@ -250,7 +250,7 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
     s.soil_boundary = s.soil_boundary || rigid.surface_normal || rigid.shear_limit > 0 || rigid.reach > 0;
   }
   s.control = ControlView<Space>("mpm::control");
-  s.arrived = decltype(s.arrived)("mpm::arrived");
+  s.roll = decltype(s.roll)("mpm::roll");
   s.movements.bits = decltype(s.movements.bits)("mpm::movements");
   s.sums = decltype(s.sums)("mpm::sums", Dim * rigids.size());
   upload_soil(s, materials, bodies, rigids, fault);

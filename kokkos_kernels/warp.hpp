@@ -25,10 +25,10 @@ KOKKOS_INLINE_FUNCTION double sum_of_warp(double value) {
   return value;
 }
 
-/// A value that other teams of the same launch may have written, as it is in the memory that all of them see.
+/// A value that other teams of the same launch may write, as it is now in the memory that all of them see.
 template <class T>
 KOKKOS_INLINE_FUNCTION T load_of_others(const T* value) {
-  KOKKOS_IF_ON_DEVICE((return __ldcg(value);))
+  KOKKOS_IF_ON_DEVICE((return *static_cast<const volatile T*>(value);))  // __ldcg is moved out of loops
   KOKKOS_IF_ON_HOST((return Kokkos::atomic_load(value);))
 }
 

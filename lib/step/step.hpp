@@ -149,10 +149,11 @@ PetscErrorCode move_rigids(State<Space, T, Dim>& s, double dt, Ranks<Space, T, D
 /// the caller's, when the movement bound says so. ranks is null on one rank. Where the soil's sums are there
 /// already, what contact waits for, from the movement of the rigids on, may go `beside` the nodes far from
 /// it: these know of a pause a step late, and do then what the rebuild throws away. A small problem's rigids
-/// move in the launch of its particles. Where functions are timed, they have the device for themselves.
+/// move in the launch of its particles, or whole steps are one launch, several of them if there are more
+/// `left`; what it does is taken off. Where functions are timed, they have the device for themselves.
 template <class Space, class T, int Dim>
 PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Space, T, Dim>* ranks = nullptr,
-                    Beside<Space>* beside = nullptr) {
+                    Beside<Space>* beside = nullptr, long* left = nullptr) {
   PetscFunctionBeginUser;
   PetscErrorCode failed = PETSC_SUCCESS;
   const auto wait = [&] { s.space.fence("mpm::step"); };
@@ -164,9 +165,14 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Sp
   const Space& queue = apart ? beside->fork(s.space) : s.space;
   const bool at_once = !ranks && ends_at_once(s) && !timers.sampling();
   if (at_once && is_whole_step(s)) {
-    PetscCall(run(Function::particles, [&] { whole_step(s, dt); }));  // 4 to 6, and 1 to 3 of the next one
+    int done = 0;
+    PetscCall(run(Function::particles, [&] {
+      done = whole_steps(s, dt, left ? *left : 1);
+    }));  // 4 to 6, and 1 to 3 of the next one
+    if (left) *left -= done;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (left) --*left;
   PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));  // 1 initialise nodal variables
   PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, queue); }));  // 2 rigid bodies to nodes
   PetscCall(

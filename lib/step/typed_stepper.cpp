@@ -109,11 +109,18 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Steps up to the next one that is timed, or that one.
+template <class Space, class T, int Dim>
+long TypedStepper<Space, T, Dim>::until_sample() const {
+  const long since = (steps_enqueued_ + k_sample_every - k_first_sample + 1) % k_sample_every;
+  return since == 0 ? 1 : k_sample_every - since;
+}
+
 /// Before a step on a device: whether it is one of those that are timed. After it: none is.
 template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::sample(bool on) {
   if (!is_device<Space>) return;
-  const bool due = on && steps_enqueued_++ % k_sample_every == k_first_sample - 1;
+  const bool due = on && steps_enqueued_ % k_sample_every == k_first_sample - 1;
   if (due) {
     beside_.join(state_.space);
     state_.space.fence("mpm::before a step that is timed");
@@ -130,17 +137,23 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch
   }
   const double start = WorkClock::wall();
   restart_count(state_);
-  for (long n = 0; n < steps; ++n) {
+  while (steps > 0) {
     sample(true);
-    PetscCall(step<Space, T, Dim>(state_, timers_, dt, nullptr, is_device<Space> ? &beside_ : nullptr));
+    const long most = std::min(steps, until_sample());
+    long left = most;
+    PetscCall(
+        step<Space, T, Dim>(state_, timers_, dt, nullptr, is_device<Space> ? &beside_ : nullptr, &left));
     sample(false);
+    steps -= most - left;
+    steps_enqueued_ += most - left;
   }
   beside_.join(state_.space);
   const Control control = look(state_);
+  if ((control.paused & Pause::apart) != 0) go_on_apart(state_);
   batch->steps = control.steps;
   batch->bound = control.bound;
   batch->failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
-  batch->rebuild = control.paused != 0 && control.fault_count == 0;
+  batch->rebuild = (control.paused & Pause::due) != 0 && control.fault_count == 0;
   const double left = (config_.p2g.margin - control.bound) / std::max(control.increment, 1e-300);
   batch->estimate = static_cast<long>(std::min(left, 1e9)) + 1;
   batch->seconds = WorkClock::wall() - start;

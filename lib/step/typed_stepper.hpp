@@ -53,6 +53,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode measure_body(int body, BodyRow* row);
   double sum_over_ranks(double own) const;
   void sample(bool on);
+  long until_sample() const;
 
   Config config_;
   MPI_Comm comm_;

@@ -45,6 +45,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
     sample(true);
     PetscCall(step<Space, T, Dim>(state_, timers_, dt, ranks_.get(), is_device<Space> ? &beside_ : nullptr));
     sample(false);
+    ++steps_enqueued_;
     BoundReport all;
     bool known = false;
     PetscCall(ranks_->look_back(&known, &all));

@@ -1,4 +1,4 @@
-// A whole step in one launch, as small problems have it on a GPU: the same as function by function.
+// Whole steps in one launch, as small problems have them on a GPU: the same as function by function.
 
 #include <catch2/catch_test_macros.hpp>
 
@@ -9,20 +9,25 @@ using namespace mpm::test;
 
 namespace {
 
-/// Steps in one launch each; the sums of the first one, and of each behind a rebuild, are made here.
+/// n steps, up to `most` in one launch; the sums of the first one, and of each behind a rebuild, are made
+/// here.
 template <class Space, class T, int Dim>
-int whole_steps(State<Space, T, Dim>& s, double dt, int n) {
+int steps_in_launches(State<Space, T, Dim>& s, double dt, int n, int most) {
   int rebuilds = 0;
-  for (; n > 0; --n) {
+  while (n > 0) {
     if (!is_whole_step(s)) {
       interpolate(s);
       s.summed = {true, s.soil_boundary, true};
     }
     REQUIRE(is_whole_step(s));
-    whole_step(s, dt);
+    restart_count(s);
+    const int asked = whole_steps(s, dt, std::min(n, most));
     const Control control = look(s);
     REQUIRE(control.fault_count == 0);
-    if (control.paused) rebuild(s), ++rebuilds;
+    REQUIRE((control.steps == asked || (control.paused != 0 && control.steps > 0)));
+    if ((control.paused & Pause::apart) != 0) go_on_apart(s);
+    if ((control.paused & Pause::due) != 0) rebuild(s), ++rebuilds;
+    n -= control.steps;
   }
   return rebuilds;
 }
@@ -76,6 +81,7 @@ TEST_CASE("a step in one launch is the step function by function, across rebuild
     for (const bool surface : {false, true}) {
       for (const bool dynamic : {false, true}) {
         for (const double f_bar : {0.0, 0.9}) {
+          const int most = f_bar > 0 ? 1 : 7;
           Cloud cloud = two_rigids<B::dim>(surface, dynamic);
           cloud.f_bar_share = f_bar;
           auto one = state_of<B>(cloud, P2G::tile), two = state_of<B>(cloud, P2G::tile);
@@ -89,7 +95,7 @@ TEST_CASE("a step in one launch is the step function by function, across rebuild
           else
             CHECK((is_whole_step(one) || B::dim == 3));  // in 3D a team may lack the memory
           if (!is_whole_step(one)) continue;
-          const int steps = 60, rebuilds = whole_steps(one, 2e-4, steps);
+          const int steps = 60, rebuilds = steps_in_launches(one, 2e-4, steps, most);
           CHECK(rebuilds > 1);
           CHECK(steps_by_function(two, 2e-4, steps) == rebuilds);
           CHECK(largest_difference(soil_fields(one), soil_fields(two)) < B::of(1e-10, 1e-3));
@@ -119,11 +125,32 @@ TEST_CASE("steps in one launch and function by function take turns", "[step_at_o
     CHECK((is_whole_step(one) || B::dim == 3));
     if (!is_whole_step(one)) return;
     for (int n = 0; n < 4; ++n) {
-      whole_steps(one, 2e-4, 5 + n);
+      steps_in_launches(one, 2e-4, 5 + n, 4);
       steps_by_function(one, 2e-4, 1 + n);
     }
     steps_by_function(two, 2e-4, 5 + 6 + 7 + 8 + 1 + 2 + 3 + 4);
     INFO(B::name());
     CHECK(largest_difference(soil_fields(one), soil_fields(two)) < B::of(1e-10, 1e-3));
+  });
+}
+
+TEST_CASE("teams that a device does not hold at once do one step a launch", "[step_at_once]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    if constexpr (B::dim == 2) {
+      Cloud cloud = two_rigids<2>(false, false);
+      constexpr double h = 0.1;
+      constexpr int width = 512, depth = 256;  // cells: 2,048 patches
+      cloud.grid = grid_of<2>({width, depth + 6, 5}, h, Wall::roller);
+      cloud.bodies = {body_of<2>(lattice<2>({0, 0, 0}, {double(width), double(depth), 5}, 2, h), 2, h, 1)};
+      cloud.bodies[0].velocity = {1, -0.5, 0};
+      cloud.rigids.clear();
+      auto one = state_of<B>(cloud, P2G::tile), two = state_of<B>(cloud, P2G::tile);
+      INFO(B::name());
+      steps_in_launches(one, 2e-4, 10, 5);
+      CHECK(one.together == !is_device<typename B::Space>);
+      steps_by_function(two, 2e-4, 10);
+      CHECK(largest_difference(soil_fields(one), soil_fields(two)) < B::of(1e-10, 1e-3));
+    }
   });
 }
