@@ -41,7 +41,8 @@ KOKKOS_INLINE_FUNCTION bool inward_normal(const Grid<T, Dim>& grid, unsigned sid
   const T length = Kokkos::sqrt(dot(n, n));
   constexpr T k_interior = T(0.05);  // of the mass a cell's edge
   if (!(length > k_interior * mass)) return false;
-  for (int d = 0; d < Dim; ++d) n[d] /= -length;
+  const T share = -1 / length;
+  for (int d = 0; d < Dim; ++d) n[d] *= share;
   return true;
 }
 

@@ -7,52 +7,66 @@
 
 namespace mpm {
 
-/// Acceleration of a rigid [m/s2] under the force [N] of the soil on it (Eq. 7).
+/// What a step changes of a rigid, and by what.
 template <int Dim>
-KOKKOS_INLINE_FUNCTION double acceleration(const Rigid<Dim>& rigid, int d, double contact) {
-  return rigid.dynamic ? (rigid.force[d] + contact) / rigid.mass : 0;
-}
-/// Its movement in a step [m] with acceleration a, exactly where the force is constant.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION double movement(const Rigid<Dim>& rigid, int d, double a, double dt) {
-  return dt * (rigid.velocity[d] + dt / 2 * a);
-}
+struct MovingRigid {
+  Vector<double, Dim> displacement, velocity, impulse, force;  // as Rigid has them
+  double mass;
+  bool dynamic;
 
-/// Moves a rigid by a step. contact [N] is the force of the soil on it. Returns the largest component of its
-/// movement [m].
-template <int Dim>
-KOKKOS_INLINE_FUNCTION double move_rigid(Rigid<Dim>& rigid, const double* contact, double dt) {
-  double furthest = 0;
-  MPM_ROLLED
-  for (int d = 0; d < Dim; ++d) {
-    const double a = acceleration(rigid, d, contact[d]), step = movement(rigid, d, a, dt);
-    furthest = Kokkos::fmax(furthest, Kokkos::fabs(step));
-    rigid.displacement[d] += step;
-    rigid.impulse[d] += dt * contact[d];
-    rigid.velocity[d] += dt * a;
+  MovingRigid() = default;
+  KOKKOS_INLINE_FUNCTION explicit MovingRigid(const Rigid<Dim>& r)
+      : displacement(r.displacement),
+        velocity(r.velocity),
+        impulse(r.impulse),
+        force(r.force),
+        mass(r.mass),
+        dynamic(r.dynamic) {}
+
+  /// Acceleration [m/s2] under the force [N] of the soil on it (Eq. 7).
+  KOKKOS_INLINE_FUNCTION double acceleration(int d, double contact) const {
+    return dynamic ? (force[d] + contact) / mass : 0;
   }
-  return furthest;
-}
+  /// Movement in a step [m] with acceleration a, exactly where the force is constant.
+  KOKKOS_INLINE_FUNCTION double movement(int d, double a, double dt) const {
+    return dt * (velocity[d] + dt / 2 * a);
+  }
+  /// Moves by a step. contact [N] is the force of the soil. Returns the largest component of its movement
+  /// [m].
+  KOKKOS_INLINE_FUNCTION double move(const Vector<double, Dim>& contact, double dt) {
+    double furthest = 0;
+    for (int d = 0; d < Dim; ++d) {
+      const double a = acceleration(d, contact[d]), step = movement(d, a, dt);
+      furthest = Kokkos::fmax(furthest, Kokkos::fabs(step));
+      displacement[d] += step;
+      impulse[d] += dt * contact[d];
+      velocity[d] += dt * a;
+    }
+    return furthest;
+  }
+  KOKKOS_INLINE_FUNCTION void keep_in(Rigid<Dim>& r) const {
+    r.displacement = displacement, r.velocity = velocity, r.impulse = impulse;
+  }
+};
 
 /// The two as they are at one moment, in the memory that all teams see.
 KOKKOS_INLINE_FUNCTION Signal signal_of(const Control& control) {
   return Kokkos::bit_cast<Signal>(load_of_others(reinterpret_cast<const long long*>(&control.ended)));
 }
 
-/// Counts the step and adds what any point can have moved to the bound; moved, margin [cells]; late:
-/// State::rebuild_late.
+/// Counts the step after `before` and adds what any point can have moved to the bound; moved, margin [cells];
+/// late: State::rebuild_late.
 template <class T>
-KOKKOS_INLINE_FUNCTION void count_step(Control& c, double moved, double margin, int late) {
+KOKKOS_INLINE_FUNCTION void count_step(Control& c, const Control& before, double moved, double margin,
+                                       int late) {
   constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
-  c.increment = moved + epsilon;
-  c.bound += c.increment;
-  ++c.steps;
-  const bool now = c.due_in == 1;
-  if (c.due_in > 0)
-    --c.due_in;
-  else if (late > 0 && rebuild_due(c.bound, c.increment, margin, late))
-    c.due_in = late;
-  if (now || !(c.bound <= margin) || load_of_others(&c.fault_count) > 0) c.paused |= Pause::due;
+  const double increment = moved + epsilon, bound = before.bound + increment;
+  const bool due = late > 0 && rebuild_due(bound, increment, margin, late);
+  c.increment = increment, c.bound = bound;
+  c.due_in = before.due_in > 0 ? before.due_in - 1 : (due ? late : 0);
+  c.steps = before.steps + 1;
+  if (before.due_in == 1 || !(bound <= margin) || before.fault_count > 0)
+    c.paused = before.paused | Pause::due;
 }
 
 template <class Space, class T, int Dim>
@@ -87,28 +101,34 @@ struct EndStep {
   /// part: room(threads)
   template <class Team>
   KOKKOS_INLINE_FUNCTION void operator()(const Team& team, double* part) const {
-    const int values = Dim * count, parts = warps(team.team_size());
+    const int values = Dim * count, parts = warps(team.team_size()), rank = team.team_rank();
+    const Control before = control();  // asked for with all else
+    MovingRigid<Dim> rigid{};
+    if (rank < count) rigid = MovingRigid<Dim>(rigids(rank));
+    const double moved = largest_movement(team);
     if (!summed) sum_forces(team, 0, values, part);
-    double moved = 0;  // cells
-    MPM_ROLLED
-    for (int n = team.team_rank(); n < movements.places; n += team.team_size())
-      moved = Kokkos::fmax(moved, movements.take(n));
     keep(team, largest_of_warp(moved), part + values * parts);
     team.team_barrier();  // also: no thread looks at `paused` any more
     MPM_ROLLED
-    for (int r = team.team_rank(); r < count; r += team.team_size()) {
-      MPM_ROLLED
-      for (int v = r * Dim; v < (r + 1) * Dim && !summed; ++v) sums(v) = total(part + v * parts, parts);
-      part[r * Dim * parts] = move_rigid(rigids(r), &sums(r * Dim), dt) / spacing;
+    for (int r = rank; r < count; r += team.team_size()) {
+      if (r > rank) rigid = MovingRigid<Dim>(rigids(r));
+      Vector<double, Dim> contact;
+      for (int d = 0; d < Dim; ++d) {
+        const int v = r * Dim + d;
+        contact[d] = summed ? sums(v) : total(part + v * parts, parts);
+        if (!summed) sums(v) = contact[d];
+      }
+      part[r * Dim * parts] = rigid.move(contact, dt) / spacing;
+      rigid.keep_in(rigids(r));
     }
     team.team_barrier();
     Kokkos::single(Kokkos::PerTeam(team), [&] {
-      moved = 0;
+      double furthest = 0;  // cells
       MPM_ROLLED
-      for (int w = 0; w < parts; ++w) moved = Kokkos::fmax(moved, part[values * parts + w]);
+      for (int w = 0; w < parts; ++w) furthest = Kokkos::fmax(furthest, part[values * parts + w]);
       MPM_ROLLED
-      for (int r = 0; r < count; ++r) moved = Kokkos::fmax(moved, part[r * Dim * parts]);
-      count_step<T>(control(), moved, margin, late);
+      for (int r = 0; r < count; ++r) furthest = Kokkos::fmax(furthest, part[r * Dim * parts]);
+      count_step<T>(control(), before, furthest, margin, late);
     });
   }
 
@@ -124,7 +144,7 @@ struct EndStep {
   /// which are there. part: room(threads).
   template <bool Dynamic, class Team>
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> next_displacement(const Team& team, int r, double* part) const {
-    const Rigid<Dim>& rigid = rigids(r);
+    const MovingRigid<Dim> rigid(rigids(r));
     Vector<double, Dim> a{}, to;
     if constexpr (Dynamic) {
       const int parts = warps(team.team_size());
@@ -132,9 +152,9 @@ struct EndStep {
       if (rigid.dynamic) sum_forces(team, r * Dim, Dim, part);
       team.team_barrier();
       for (int d = 0; d < Dim && rigid.dynamic; ++d)
-        a[d] = acceleration(rigid, d, total(part + d * parts, parts));
+        a[d] = rigid.acceleration(d, total(part + d * parts, parts));
     }
-    for (int d = 0; d < Dim; ++d) to[d] = rigid.displacement[d] + movement(rigid, d, a[d], dt);
+    for (int d = 0; d < Dim; ++d) to[d] = rigid.displacement[d] + rigid.movement(d, a[d], dt);
     return to;
   }
 
@@ -143,22 +163,41 @@ struct EndStep {
   KOKKOS_INLINE_FUNCTION static void keep(const Team& team, double of_warp, double* part) {
     if (team.team_rank() % k_warp == 0) part[team.team_rank() / k_warp] = of_warp;
   }
-  KOKKOS_INLINE_FUNCTION double force(int n) const { return load_of_others(&forces(n)); }
+  /// Of those noted at the places of a thread [cells], two of which it asks for at once.
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION double largest_movement(const Team& team) const {
+    double moved = 0;
+    MPM_ROLLED
+    for (int n = team.team_rank(); n < movements.places; n += 2 * team.team_size()) {
+      const int m = n + team.team_size();
+      const bool two = m < movements.places;
+      const double first = movements.noted(n), second = two ? movements.noted(m) : 0.0;
+      movements.begin(n);
+      if (two) movements.begin(m);
+      moved = Kokkos::fmax(moved, Kokkos::fmax(first, second));
+    }
+    return moved;
+  }
   /// Sums of the forces number `first` to first + n by warp, [n][warps], in an order that is always the same.
   template <class Team>
   KOKKOS_INLINE_FUNCTION void sum_forces(const Team& team, int first, int n, double* part) const {
-    constexpr int at_once = 4;  // that a thread asks the memory for
-    const int size = team.team_size();
+    constexpr int k_slots = 4, k_values = 2;  // that a thread asks the memory for at once
+    const int size = team.team_size(), values = Dim * count;
     MPM_ROLLED
-    for (int v = first; v < first + n; ++v) {
-      double sum[at_once] = {};
-      int k = team.team_rank();
+    for (int v = 0; v < n; v += k_values) {
+      double sum[k_slots][k_values] = {};
       MPM_ROLLED
-      for (; k + (at_once - 1) * size < slots; k += at_once * size)
-        for (int m = 0; m < at_once; ++m) sum[m] += force((k + m * size) * Dim * count + v);
-      MPM_ROLLED
-      for (; k < slots; k += size) sum[0] += force(k * Dim * count + v);
-      keep(team, sum_of_warp((sum[0] + sum[1]) + (sum[2] + sum[3])), part + (v - first) * warps(size));
+      for (int k = team.team_rank(); k < slots; k += k_slots * size)
+        for (int m = 0; m < k_slots; ++m)
+          for (int w = 0; w < k_values; ++w) {
+            const int slot = Kokkos::min(k + m * size, slots - 1), of = Kokkos::min(v + w, n - 1);
+            const double value = forces(slot * values + first + of);  // some for nothing, but none waits
+            sum[m][w] += slot == k + m * size ? value : 0;
+          }
+      for (int w = 0; w < k_values; ++w) {
+        const double all = sum_of_warp((sum[0][w] + sum[1][w]) + (sum[2][w] + sum[3][w]));
+        if (v + w < n) keep(team, all, part + (v + w) * warps(size));
+      }
     }
   }
   KOKKOS_INLINE_FUNCTION static double total(const double* part, int parts) {

@@ -34,6 +34,7 @@ template <class Space, class T, int Dim>
 struct UpdateNodes {
   using Member = typename NodeTeam<Space, Dim>::member_type;
   using Sums = NodeSums<Space, T, Dim>;
+  using S = SoilShare<Dim>;
   static constexpr int cells = Patch<Dim>::cells;
   int value_count;
   Grid<T, Dim> grid;
@@ -44,7 +45,7 @@ struct UpdateNodes {
   Kokkos::View<double*, typename Space::memory_space> forces;
   Kokkos::View<std::uint64_t*, typename Space::memory_space> counted;
   Vector<T, Dim> g;
-  T dt, damping, mass_cut;
+  T dt, inv_dt, damping, mass_cut;
   double spacing;
   bool has_boundary, has_friction, has_mass_normals, clears;
   int scratch_level;
@@ -80,46 +81,56 @@ struct UpdateNodes {
     Coord<Dim> at = coord_of<Dim>(i);
     const Coord<Dim> from = origin(i / cells);
     for (int d = 0; d < Dim; ++d) at[d] += from[d];
-    keep(i, motion(nodes, i, at, near, force));
+    keep(i, motion(nodes, rigids.data(), i, at, near, force));
   }
   KOKKOS_INLINE_FUNCTION void keep(int i, const MotionValues<T, Dim>& motion) const {
     *reinterpret_cast<MotionValues<T, Dim>*>(&nodes.motion(i, 0)) = motion;
   }
 
-  /// What becomes of node i, which is `at`, under its sums; near: a rigid may touch it. Adds component d of
-  /// the force on rigid r to force[(r Dim + d) cells], unless it is null.
-  KOKKOS_INLINE_FUNCTION MotionValues<T, Dim> motion(const Sums& sums, int i, const Coord<Dim>& at, bool near,
-                                                     double* force) const {
-    using S = SoilShare<Dim>;
-    T sum[S::size];  // all asked for at once
-    for (int n = 0; n < S::size; ++n) sum[n] = sums.soil(i, n);
-    const T m_i = sum[S::mass];
+  /// A node and what it was given.
+  struct Node {
+    int i;
+    Coord<Dim> at;
+    unsigned sides;
+    T soil[S::size], boundary[BoundaryShare<Dim>::size];
+    T inv_m;
+  };
+
+  /// What becomes of node i, which is `at`, under its sums; bodies: the rigids; near: one of them may touch
+  /// the node. Adds component d of the force on rigid r to force[(r Dim + d) cells], unless it is null.
+  KOKKOS_INLINE_FUNCTION MotionValues<T, Dim> motion(const Sums& sums, const Rigid<Dim>* bodies, int i,
+                                                     const Coord<Dim>& at, bool near, double* force) const {
+    Node node{i, at, 0, {}, {}, 0};
+    for (int n = 0; n < S::size; ++n) node.soil[n] = sums.soil(i, n);  // all asked for at once
+    if (near && has_boundary)
+      for (int n = 0; n < BoundaryShare<Dim>::size; ++n) node.boundary[n] = sums.boundary(i, n);
+    const T m_i = node.soil[S::mass];
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
     MPM_ROLLED
     for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r)
       nodes.impulse(r, i) *= k_memory<T>;
     constexpr T k_floor = T(1e-12);  // of the cut: far less is at rest, lest 1 / m_i overflow
     if (m_i > k_floor * mass_cut) {
-      const T inv_m = 1 / m_i;
+      const T inv_m = node.inv_m = 1 / m_i;
       const T inv_m_force = m_i > mass_cut ? inv_m : T(0);  // the force on less mass is round-off
       for (int d = 0; d < Dim; ++d) {
-        v_old[d] = sum[S::momentum + d] * inv_m;       // Eq. (6)
-        T a = sum[S::force + d] * inv_m_force + g[d];  // Eq. (8)
+        v_old[d] = node.soil[S::momentum + d] * inv_m;       // Eq. (6)
+        T a = node.soil[S::force + d] * inv_m_force + g[d];  // Eq. (8)
         a -= damping * Kokkos::fabs(a) * (v_old[d] > 0 ? T(1) : (v_old[d] < 0 ? T(-1) : T(0)));
         v[d] = v_old[d] + a * dt;  // Eq. (9)
       }
-      const unsigned sides = sides_of(grid, at);
-      apply_walls(grid, sides, v);
+      node.sides = sides_of(grid, at);
+      apply_walls(grid, node.sides, v);
       const int touching = near && m_i > mass_cut ? static_cast<int>(rigids.extent(0)) : 0;
       MPM_ROLLED
       for (int r = 0; r < touching; ++r)
-        touch(sums, i, r, at, sides, m_i, v, force == nullptr ? force : force + r * Dim * cells);
-      apply_walls(grid, sides, v);
+        touch(sums, node, bodies[r], r, v, force == nullptr ? force : force + r * Dim * cells);
+      apply_walls(grid, node.sides, v);
     }
     MotionValues<T, Dim> motion;
     for (int d = 0; d < Dim; ++d) {
       motion.c[NodeMotion<Dim>::velocity + d] = v[d];
-      motion.c[NodeMotion<Dim>::acceleration + d] = (v[d] - v_old[d]) / dt;  // feels contact and walls
+      motion.c[NodeMotion<Dim>::acceleration + d] = (v[d] - v_old[d]) * inv_dt;  // feels contact and walls
     }
     return motion;
   }
@@ -134,46 +145,48 @@ struct UpdateNodes {
 
   /// Contact with rigid r; adds the force of the soil on it (Eq. 10) to force[0], force[cells] ..., unless it
   /// is null.
-  KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, int i, int r, const Coord<Dim>& at, unsigned sides,
-                                    T m_i, Vector<T, Dim>& v, double* force) const {
-    using S = SoilShare<Dim>;
-    const Rigid<Dim>& rigid = rigids(r);
-    Vector<T, Dim> n, v_r, boundary = filled<T, Dim>(0);
+  KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, const Node& node, const Rigid<Dim>& rigid, int r,
+                                    Vector<T, Dim>& v, double* force) const {
+    T given[RigidShare<Dim>::size] = {};  // asked for before the rigid tells whether it matters
+    for (int n = 0; n < RigidShare<Dim>::size && has_mass_normals; ++n) given[n] = sums.rigid(r, node.i, n);
+    const T m_i = node.soil[S::mass];
+    Vector<T, Dim> n, v_r, boundary;
     for (int d = 0; d < Dim; ++d) {
       v_r[d] = static_cast<T>(rigid.velocity[d]);
-      if (has_boundary) boundary[d] = sums.boundary(i, BoundaryShare<Dim>::area + d);
+      boundary[d] = node.boundary[BoundaryShare<Dim>::area + d];
     }
     double distance = 0;
     Vector<double, Dim> out{};
-    const bool reaches =
-        rigid.surface_normal || rigid.reach > 0 ? look_at_surface(rigid, at, boundary, distance, out) : true;
-    if (rigid.surface_normal ? !(reaches && surface_normal(out, sides, n))
-                             : !mass_normal(sums, rigid, i, r, sides, n))
+    const bool reaches = rigid.surface_normal || rigid.reach > 0
+                             ? look_at_surface(rigid, node.at, boundary, distance, out)
+                             : true;
+    if (rigid.surface_normal ? !(reaches && surface_normal(out, node.sides, n))
+                             : !mass_normal(rigid, given, node.sides, n))
       return;
     const T area = Kokkos::fmax(T(0), dot(boundary, n));
     Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction) };
     if (rigid.shear_limit < Kokkos::Experimental::infinity<double>::value)
-      interface.shear_speed = static_cast<T>(rigid.shear_limit) * area * dt / m_i;
+      interface.shear_speed = static_cast<T>(rigid.shear_limit) * area * dt * node.inv_m;
     T pressing = 0;
-    for (int d = 0; d < Dim; ++d) pressing += (sums.soil(i, S::force + d) / m_i + g[d]) * n[d];
+    for (int d = 0; d < Dim; ++d) pressing += (node.soil[S::force + d] * node.inv_m + g[d]) * n[d];
     interface.pressing = pressing * dt;
     interface.separates = rigid.separates;
     // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
     // well, the body would act thicker than it is.
     interface.within_soil = rigid.surface_normal && distance > spacing / 2;
     if (rigid.reach > 0) {
-      const T depth = surface_depth(sums.boundary(i, BoundaryShare<Dim>::volume) / grid.spacing, area);
+      const T depth = surface_depth(node.boundary[BoundaryShare<Dim>::volume] / grid.spacing, area);
       const T gap = static_cast<T>(distance) + depth * grid.spacing;
       interface.penalty = penalty(gap, T(rigid.reach), T(rigid.exponent));
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
       if (gap > Kokkos::fmax(T(rigid.reach), grid.spacing / 2)) return;
     }
-    if (has_friction) interface.stock = nodes.impulse(r, i) / m_i;
+    if (has_friction) interface.stock = nodes.impulse(r, node.i) * node.inv_m;
     const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
-    if (has_friction) nodes.impulse(r, i) = interface.stock * m_i;
+    if (has_friction) nodes.impulse(r, node.i) = interface.stock * m_i;
     for (int d = 0; d < Dim; ++d) {
       v[d] += change[d];
-      if (force != nullptr) force[d * cells] -= static_cast<double>(m_i) * change[d] / dt;
+      if (force != nullptr) force[d * cells] -= static_cast<double>(m_i) * change[d] * inv_dt;
     }
   }
 
@@ -188,11 +201,11 @@ struct UpdateNodes {
   /// Area of a cell's face [m^2; m in 2D].
   KOKKOS_INLINE_FUNCTION T face() const { return Dim == 2 ? grid.spacing : grid.spacing * grid.spacing; }
 
-  /// Inward unit normal from the rigid's mass gradient; false where it is out of touch.
-  KOKKOS_INLINE_FUNCTION bool mass_normal(const Sums& sums, const Rigid<Dim>& rigid, int i, int r,
-                                          unsigned sides, Vector<T, Dim>& n) const {
-    const T m_r = sums.rigid(r, i, RigidShare<Dim>::mass);
-    for (int d = 0; d < Dim; ++d) n[d] = sums.rigid(r, i, RigidShare<Dim>::normal + d);
+  /// Inward unit normal from the rigid's mass gradient; false where it is out of touch. given: RigidShare.
+  KOKKOS_INLINE_FUNCTION bool mass_normal(const Rigid<Dim>& rigid, const T* given, unsigned sides,
+                                          Vector<T, Dim>& n) const {
+    const T m_r = given[RigidShare<Dim>::mass];
+    for (int d = 0; d < Dim; ++d) n[d] = given[RigidShare<Dim>::normal + d];
     return m_r > rigid.mass_cut && inward_normal(grid, sides, m_r, n);
   }
 
@@ -248,6 +261,7 @@ UpdateNodes<Space, T, Dim> node_update_of(const State<Space, T, Dim>& s, double 
                                     s.counted,
                                     {},
                                     T(dt),
+                                    T(1 / dt),
                                     T(s.damping),
                                     T(s.mass_cut),
                                     s.spacing,

@@ -143,12 +143,8 @@ struct Movements {
   KOKKOS_INLINE_FUNCTION void note(int slot, double moved) const {
     Kokkos::atomic_max(&bits(slot % places), Kokkos::bit_cast<std::uint64_t>(moved));
   }
-  /// What was noted at a place, which then begins anew.
-  KOKKOS_INLINE_FUNCTION double take(int place) const {
-    const double moved = Kokkos::bit_cast<double>(bits(place));
-    bits(place) = 0;
-    return moved;
-  }
+  KOKKOS_INLINE_FUNCTION double noted(int place) const { return Kokkos::bit_cast<double>(bits(place)); }
+  KOKKOS_INLINE_FUNCTION void begin(int place) const { bits(place) = 0; }
 };
 
 /// Notes a fault; the first one is kept.

@@ -27,8 +27,9 @@ void sum_on_device(const Interpolation<Source>& it) {
         if (control().paused) return;
         const int slot = by_colour(first + team.league_rank());
         if (source.skips(slot)) return;
-        sum_patch<team_threads<Space>>(
-            team, Scratch(team, Tile_::bytes()), source, around, slot,
+        sum_patch(
+            team, Scratch(team, Tile_::bytes()), source,
+            [&](int n) { return number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n)); },
             [&](int c) { return begin(slot * cells + c); }, out);
       });
 }

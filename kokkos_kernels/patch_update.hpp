@@ -33,16 +33,16 @@ KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const MotionValues<T, Dim>* windo
 
 /// A team moves the particles of a patch. If Sums, it adds them where they now are to
 /// the nodes for the next step, as the strategy `tile` does: a particle is read and written once a step.
-template <class Space, class T, int Dim, bool Sums, int Threads = team_threads<Space>>
+template <class Space, class T, int Dim, bool Sums>
 struct UpdateParticles {
   using Source = SoilSource<Space, T, Dim>;
   using Boundary = BoundarySource<Space, T, Dim>;
-  using Tile_ = Tile<Source, Threads>;
+  using Tile_ = Tile<Source>;
   using Team = PatchTeam<Space, T, Dim>;
   using Member = typename Team::member_type;
   using Memory = typename Space::memory_space;
   static constexpr int cells = Patch<Dim>::cells, window = Patch<Dim>::window;
-  static constexpr int threads = Threads;
+  static constexpr int threads = team_threads<Space>;
   /// What is left of a tile where nothing is summed.
   struct Nothing {
     KOKKOS_INLINE_FUNCTION explicit Nothing(Scratch&) {}
@@ -70,7 +70,7 @@ struct UpdateParticles {
   static constexpr std::size_t bytes() {
     const std::size_t own =
         scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) + TileOrNothing::bytes();
-    return Sums && Tile<Boundary, Threads>::bytes() > own ? Tile<Boundary, Threads>::bytes() : own;
+    return Sums && Tile<Boundary>::bytes() > own ? Tile<Boundary>::bytes() : own;
   }
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
@@ -79,24 +79,29 @@ struct UpdateParticles {
   }
 
   KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot) const {
-    update(team, all, slot, sums, [&](int, int number) {
+    prefetch_particles(team, slot);
+    const auto number_of = [&](int n) {
+      return number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n));
+    };
+    update(team, all, slot, sums, number_of, [&](int, int number) {
       return *reinterpret_cast<const MotionValues<T, Dim>*>(&motion(number, 0));
     });
   }
 
-  /// all: bytes(). out: the sums of the next step. motion_of(n, number): what becomes of node n of the
-  /// window.
-  template <class Motion>
+  /// all: bytes(). out: the sums of the next step. number_of(n): of node n of the window. motion_of(n,
+  /// number): what becomes of it.
+  template <class Number, class Motion>
   KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot,
-                                     const NodeSums<Space, T, Dim>& out, const Motion& motion_of) const {
+                                     const NodeSums<Space, T, Dim>& out, const Number& number_of,
+                                     const Motion& motion_of) const {
     const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
     const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
     Scratch scratch = all;
     MotionValues<T, Dim>* const nodes = scratch.take<MotionValues<T, Dim>>(window);
     T* const mean = scratch.take<T>(cells);
     const TileOrNothing tile(scratch);
-    prefetch_particles(cell_begin(0) + team.team_rank(), cell_begin(cells));
-    for_each_of_window<Dim>(team, around, slot, [&](int n, int number) {
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
+      const int number = number_of(n);
       tile.set_node(n, number);
       nodes[n] = motion_of(n, number);
     });
@@ -111,8 +116,8 @@ struct UpdateParticles {
       tile.give_window(team, out.soil);
       if (has_boundary && near_rigid(slot) != 0) {
         team.team_barrier();
-        sum_patch<Threads>(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, around, slot,
-                           cell_begin, out.boundary);
+        sum_patch(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, number_of, cell_begin,
+                  out.boundary);
       }
     } else {
       team.team_barrier();
@@ -123,9 +128,10 @@ struct UpdateParticles {
   }
 
   /// Asks the memory for what the particles of a thread hold, before their nodes are there.
-  KOKKOS_INLINE_FUNCTION void prefetch_particles(int p, int end) const {
+  KOKKOS_INLINE_FUNCTION void prefetch_particles(const Member& team, int slot) const {
     const auto& soil = source.points;
-    for (; is_device<Space> && p < end; p += threads) {
+    const int end = begin((slot + 1) * cells);
+    for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
       prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
       prefetch(&soil.volume(p)), prefetch(&soil.strength(p)), prefetch(&soil.plastic_strain(p));
     }

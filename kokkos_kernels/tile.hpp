@@ -10,8 +10,7 @@
 
 namespace mpm {
 
-/// Threads: of a team.
-template <class Source, int Threads = team_threads<typename Source::Space>>
+template <class Source>
 class Tile {
  public:
   using T = typename Source::real;
@@ -144,33 +143,27 @@ class Tile {
   /// A thread sums a row of nodes over the particles of a column of cells, those [first, last) on the stage:
   /// four nodes along the first axis, which they reach from the same cell there. Then the threads of a row,
   /// all of one warp, add their first nodes, their second ones, and so on: no two the same at once, always in
-  /// this order. Where there are threads enough, two share the lines of cells of a row, and add one after the
-  /// other.
+  /// this order.
   template <class Team>
   KOKKOS_INLINE_FUNCTION void add_rows(const Team& team, int layer, int first, int last) const {
-    constexpr int items = edge * across * k_layers, warps = (items + k_warp - 1) / k_warp * k_warp;
-    constexpr int shares = Threads >= 2 * warps ? 2 : 1;
-    const int share = shares == 2 ? team.team_rank() / warps : 0;
+    constexpr int items = edge * across * k_layers;
     for (int start = 0; start < items; start += team.team_size()) {
-      const int item = share < shares ? start + team.team_rank() - share * warps : items,
-                column = item % edge, row = item / edge % across, above = item / (edge * across);
+      const int item = start + team.team_rank(), column = item % edge, row = item / edge % across,
+                above = item / (edge * across);
       T own[k_reach][size] = {};
       unrolled<k_reach>([&](auto b) {
         const int line = row - b;
-        if (item >= items || line < 0 || line >= edge || b * shares / k_reach != share) return;
+        if (item >= items || line < 0 || line >= edge) return;
         const int cell = (layer * edge + line) * edge + column;
         const int end = Kokkos::min(begin_[cell + 1], last) - first;
         for (int n = Kokkos::max(begin_[cell], first) - first; n < end; ++n)
           add_entry<b>(stage_ + place(n), above, own);
       });
       T* const to = sums_ + (((Dim == 3 ? layer + above : 0) * across + row) * across + column) * size;
-      for (int turn = 0; turn < shares; ++turn) {
-        if (turn > 0) team.team_barrier();
-        for (int a = 0; a < k_reach; ++a) {
-          if (item < items && turn == share)
-            for (int k = 0; k < size; ++k) to[a * size + k] += own[a][k];
-          sync_warp();
-        }
+      for (int a = 0; a < k_reach; ++a) {
+        if (item < items)
+          for (int k = 0; k < size; ++k) to[a * size + k] += own[a][k];
+        sync_warp();
       }
     }
   }
@@ -237,14 +230,15 @@ class Tile {
   }
 };
 
-/// A team gives the points of a slot to the nodes. cell_begin(c): the first point of cell c of the patch.
-template <int Threads, class Source, class Team, class Around, class Begin, class Field>
+/// A team gives the points of a slot to the nodes. number_of(n): of node n of the window; cell_begin(c): the
+/// first point of cell c of the patch.
+template <class Source, class Team, class Number, class Begin, class Field>
 KOKKOS_INLINE_FUNCTION void sum_patch(const Team& team, Scratch scratch, const Source& source,
-                                      const Around& around, int slot, const Begin& cell_begin,
-                                      const Field& out) {
-  using Tile_ = Tile<Source, Threads>;
+                                      const Number& number_of, const Begin& cell_begin, const Field& out) {
+  using Tile_ = Tile<Source>;
   const Tile_ tile(scratch);
-  for_each_of_window<Source::dim>(team, around, slot, [&](int n, int number) { tile.set_node(n, number); });
+  Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Source::dim>::window),
+                       [&](int n) { tile.set_node(n, number_of(n)); });
   tile.clear(team, cell_begin);
   team.team_barrier();
   tile.add(team, [&](int p) { return typename Tile_::Entry{source.points.coordinate(p), source.load(p)}; });

@@ -8,7 +8,8 @@
 namespace mpm {
 namespace {
 
-constexpr long k_sample_every = 200, k_first_sample = 20;  // steps between two timed ones on a device
+// On a device functions are timed in step 20, 40, 80 ... of the run, later each thousand steps.
+constexpr long k_samples_apart = 1000;
 
 /// Absolute height of a particle [m]: the last direction is the vertical one.
 template <int Dim>
@@ -112,16 +113,16 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
 /// Steps up to the next one that is timed, or that one.
 template <class Space, class T, int Dim>
 long TypedStepper<Space, T, Dim>::until_sample() const {
-  const long since = (steps_enqueued_ + k_sample_every - k_first_sample + 1) % k_sample_every;
-  return since == 0 ? 1 : k_sample_every - since;
+  return std::max(1L, next_sample_ - 1 - steps_enqueued_);
 }
 
 /// Before a step on a device: whether it is one of those that are timed. After it: none is.
 template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::sample(bool on) {
   if (!is_device<Space>) return;
-  const bool due = on && steps_enqueued_ % k_sample_every == k_first_sample - 1;
+  const bool due = on && steps_enqueued_ == next_sample_ - 1;
   if (due) {
+    next_sample_ += std::min(next_sample_, k_samples_apart);
     beside_.join(state_.space);
     state_.space.fence("mpm::before a step that is timed");
   }

@@ -61,7 +61,7 @@ class TypedStepper final : public Stepper {
   std::unique_ptr<Ranks<Space, T, Dim>> ranks_;  // null on one rank
   Beside<Space> beside_;
   Timers timers_;
-  long steps_enqueued_ = 0;
+  long steps_enqueued_ = 0, next_sample_ = 20;
   double stepping_ = 0;      // s of wall time in advance
   std::vector<long> first_;  // id of the first particle of each body
   long total_ = 0;           // particles of all ranks
