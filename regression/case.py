@@ -17,6 +17,7 @@ import os
 import shlex
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -25,6 +26,8 @@ CASES = ROOT / "regression" / "cases"
 sys.path[:0] = [path for path in (str(ROOT / "scripts"), str(ROOT / "regression")) if path not in sys.path]
 
 from results import Run  # noqa: E402
+
+SESSIONS = tempfile.TemporaryDirectory(prefix="mpm_")
 
 
 class ProgramFailed(Exception):
@@ -97,6 +100,8 @@ def launcher():
 
 
 def environment():
-    """Open MPI refuses root, and more ranks than cores, unless told; threads that wait give way to those of other runs."""
-    return {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_PROC_BIND": "false",
-            "OMP_WAIT_POLICY": "passive", **os.environ}
+    """Open MPI refuses root, and more ranks than cores, unless told; runs at the same time may clear each other's session
+    folder, so each has one of its own; threads that wait give way to those of other runs."""
+    return {"OMPI_MCA_orte_tmpdir_base": tempfile.mkdtemp(dir=SESSIONS.name),
+            "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+            "OMP_PROC_BIND": "false", "OMP_WAIT_POLICY": "passive", **os.environ}
