@@ -85,12 +85,13 @@ def read_log(text):
         return re.search(pattern, text, re.M)
 
     steps = int(find(r"^(?:finished|failed) after (\d+) steps")[1])
-    rows = re.findall(r"^  ([a-z][a-z ,]+?) +\d+ +([\d.]+) +[\d.]+ %", text, re.M)
+    rows = re.findall(r"^  ([a-z][a-z ,]+?) +(\d+) +([\d.]+) +[\d.]+ %", text, re.M)
     count, megabytes, strategy = find(r"^(\d+) particles in \d+ patches, ([\d.]+) MB on the devices?; strategy (\w+)").groups()
     rate = find(r"^([\d.e+-]+) us a step without output")
     copy = find(r"a copy reads and writes ([\d.]+) GB/s; the steps move ([\d.]+)")
     return {"us": float(rate[1]), "steps": steps, "count": int(count), "ran": strategy,
-            "functions": {name: 1e6 * float(seconds) / steps for name, seconds in rows},
+            "functions": {name: 1e6 * float(seconds) / steps for name, calls, seconds in rows
+                          if 2 * int(calls) > steps or "rebuild" in name},  # others were done by few steps alone
             "bytes": 1e6 * float(megabytes) / int(count), "copy": float(copy[1]) if copy else None,
             "moved": float(copy[2]) if copy else None,
             "machine": re.sub(r", \d+ ranks?$", "", find(r"^  machine +[^,]*, (.*)$")[1]),

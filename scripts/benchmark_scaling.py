@@ -145,9 +145,12 @@ def details(runs, backend):
 def text_of(runs):
     parts = []
     for backend in dict.fromkeys(each["backend"] for each in runs):
-        where = next(each for each in runs if each["backend"] == backend)
+        mine = [each for each in runs if each["backend"] == backend]
         unit = "GPUs" if backend == "cuda" else "cores"
-        parts.append(f"us a step on {unit} ({where['device']}; {where['date']}, commit {where['commit']}).")
+        states = sorted({(each["date"], each["commit"], each["kind"]) for each in mine})
+        when = "; ".join(f"{date}, commit {state}: {', '.join(kind for d, c, kind in states if (d, c) == (date, state))}"
+                         for date, state in dict.fromkeys(each[:2] for each in states))
+        parts.append(f"us a step on {unit} ({mine[0]['device']}; {when}).")
         for kind, what in (("weak", "Weak scaling, the footing strip (efficiency):"),
                            ("strong", "Strong scaling, the footing strip (speed over one):"),
                            ("landslide", "The landslide (speed over one):"), ("largest", "The largest:")):

@@ -100,11 +100,9 @@ def speedups(measured):
                             (("serial", "double", "auto"), ("cuda", "single", strategy)))
                 if strategy is None:
                     cells.append(paper[k])
-                elif cpu is None or gpu is None:
-                    cells.append("-")
                 else:
-                    parts = [each["functions"][function] if function else each["us"] for each in (cpu, gpu)]
-                    cells.append(ratio(*parts))
+                    parts = [each and (each["functions"].get(function) if function else each["us"]) for each in (cpu, gpu)]
+                    cells.append("-" if None in parts else ratio(*parts))  # a launch of whole steps has no functions
             rows.append([name, label, *cells])
     return table(["function", "", *(f"{particles:,}" for particles in PAPER["footing"])], rows)
 

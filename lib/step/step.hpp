@@ -165,10 +165,10 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Sp
   const Space& queue = apart ? beside->fork(s.space) : s.space;
   const bool at_once = !ranks && ends_at_once(s) && !timers.sampling();
   if (at_once && is_whole_step(s)) {
-    int done = 0;
-    PetscCall(run(Function::particles, [&] {
-      done = whole_steps(s, dt, left ? *left : 1);
-    }));  // 4 to 6, and 1 to 3 of the next one
+    const long most = left ? *left : 1;
+    long done = 0;
+    const auto work = [&] { return done = whole_steps(s, dt, most); };
+    PetscCall(timers.run_many(Function::whole, most, work, wait));  // 4 to 6, and 1 to 3 of the next one
     if (left) *left -= done;
     PetscFunctionReturn(PETSC_SUCCESS);
   }

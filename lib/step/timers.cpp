@@ -10,6 +10,7 @@ const char* name_of(Function f) {
     case Function::nodes: return "nodal velocities, contact";
     case Function::particles: return "stress update, movement";
     case Function::rigids: return "move rigid bodies";
+    case Function::whole: return "whole steps";
     default: return "rebuild bins and lists";
   }
 }

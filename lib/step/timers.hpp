@@ -10,9 +10,10 @@
 
 namespace mpm {
 
-/// The functions of a step, by the paper's names.
-enum class Function { reset, rigid_to_nodes, soil_to_nodes, nodes, particles, rigids, rebuild };
-inline constexpr int k_functions = 7;
+/// The functions of a step, by the paper's names; and those of whole steps, which a small problem's launches
+/// do together.
+enum class Function { reset, rigid_to_nodes, soil_to_nodes, nodes, particles, rigids, whole, rebuild };
+inline constexpr int k_functions = 8;
 
 const char* name_of(Function f);
 
@@ -42,6 +43,29 @@ class Timers {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
+  /// Runs a function as many times as `work` returns, at most `most`. Where these are many, so that it costs
+  /// little to wait for what was before and for them, they are timed, ever again after a thousand.
+  template <class Work, class Wait>
+  PetscErrorCode run_many(Function f, long most, Work&& work, Wait&& wait) {
+    PetscFunctionBeginUser;
+    constexpr long k_many = 20, k_apart = 1000;
+    const int n = static_cast<int>(f);
+    const bool timed = most >= k_many && calls_[n] >= next_many_;
+    PetscCall(PetscLogEventBegin(events_[n], 0, 0, 0, 0));
+    if (timed) wait();
+    const auto start = std::chrono::steady_clock::now();
+    const long count = work();
+    calls_[n] += count;
+    if (timed) {
+      wait();
+      seconds_[n] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      sampled_[n] += count;
+      next_many_ = calls_[n] + k_apart;
+    }
+    PetscCall(PetscLogEventEnd(events_[n], 0, 0, 0, 0));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
   long calls(Function f) const { return calls_[static_cast<int>(f)]; }
   /// Seconds of all calls, from those that were timed.
   double seconds(Function f) const {
@@ -54,6 +78,7 @@ class Timers {
   std::array<long, k_functions> calls_{}, sampled_{};
   std::array<double, k_functions> seconds_{};
   bool sampling_ = true;
+  long next_many_ = 0;  // call of run_many from which on it is timed again
 };
 
 }  // namespace mpm

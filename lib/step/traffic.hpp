@@ -64,6 +64,9 @@ double bytes_of(Function f, const State<Space, T, Dim>& s) {
       return (ahead ? 2 : 1) * sums + s.patches.node_count() * double(sizeof(T) * NodeMotion<Dim>::size);
     case Function::particles: return bytes_to_particles(s) + (ahead ? soil_sums : 0);
     case Function::rigids: return s.rigid_moves ? points * (place + home) : 0;
+    case Function::whole:
+      return bytes_of(Function::rigid_to_nodes, s) + bytes_of(Function::nodes, s) +
+             bytes_of(Function::particles, s) + bytes_of(Function::rigids, s);
     default: return 2 * sorted;
   }
 }

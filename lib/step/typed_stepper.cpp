@@ -228,6 +228,7 @@ std::vector<FunctionTime> TypedStepper<Space, T, Dim>::times() const {
   std::vector<FunctionTime> times;
   for (int n = 0; n < k_functions; ++n) {
     const Function f = static_cast<Function>(n);
+    if (f == Function::whole && timers_.calls(f) == 0) continue;
     double figures[2] = {timers_.seconds(f), timers_.calls(f) * bytes_of(f, state_)};
     if (ranks_) MPI_Allreduce(MPI_IN_PLACE, figures, 2, MPI_DOUBLE, MPI_MAX, comm_);
     times.push_back({name_of(f), timers_.calls(f), figures[0], figures[1]});
