@@ -67,7 +67,8 @@ def measure(program, threads, precision, repeats, folder):
         apart.append(sum(each["count"] / each["us"] for each in logs))
     return {"kind": "threads", "particles": whole, "ranks": threads, "backend": "openmp", "precision": precision,
             "rate": statistics.median(together), "apart": statistics.median(apart), "device": log["device"],
-            "machine": log["machine"], "copy": log["copy"], "moved": log["moved"], "date": date.today().isoformat(),
+            "machine": log["machine"], "copy": log["copy"], "moved": log["moved"],
+            "functions": log["functions"], "date": date.today().isoformat(),
             "commit": commit()}
 
 
