@@ -17,6 +17,7 @@
 
 #include "mpm/simulation.hpp"
 #include "signals.hpp"
+#include "subnormals.hpp"
 
 namespace {
 
@@ -80,6 +81,7 @@ void end_others() {
 
 int main(int argc, char** argv) {
   setenv("OMP_PROC_BIND", "false", 0);  // what an unset variable means; Kokkos would warn of it
+  mpm::flush_subnormals();
   MPI_Init(&argc, &argv);
   share_node();
   Kokkos::initialize(argc, argv);  // first: takes its --kokkos-* words out of argv

@@ -2,7 +2,8 @@
 // The strategy `tile` on a processor: what its two passes over the particles of a patch share. A thread takes
 // a patch, many particles at once; all of its memory is on its stack.
 
-#include <algorithm>
+#include <atomic>
+#include <thread>
 #include <vector>
 
 #include "lanes.hpp"
@@ -70,16 +71,16 @@ KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field
     store_some(a, count, to);
 }
 
-/// Where a thread's part of a colour's slots begins, of those that nobody has taken; alone on its cache line.
-struct alignas(64) PartBegin {
-  int next;
+/// A number that many threads change, alone on its cache line.
+struct alignas(64) SharedCount {
+  std::atomic<int> n{0};
 };
 
 /// Calls f(slot) for the slots that hold points, each by one thread. A thread begins with a part of each
 /// colour that is always its own, and so in its cache, and then takes what others have left of theirs: on a
-/// machine that is at work for others too, no thread waits long for one that was held up. If Writes, threads
-/// wait for each other between colours, so that slots at work at the same time share no node. One thread
-/// alone needs no colours and takes the slots in the order of the points.
+/// machine that is at work for others too, no thread waits long for one that was held up. If Writes, no
+/// thread begins a colour before all slots of the last are done: slots at work at the same time share no
+/// node. One thread alone needs no colours and takes the slots in the order of the points.
 template <bool Writes, class Space, int Dim, class F>
 void for_each_slot(const char* label, const Space& space, const Bins<Space>& bins, const F& f) {
   using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Static>>;
@@ -95,29 +96,33 @@ void for_each_slot(const char* label, const Space& space, const Bins<Space>& bin
     });
   } else {
     constexpr int colours = Patch<Dim>::colours;
-    constexpr int k_at_once = 4;  // slots that are taken together
     const int threads = space.concurrency();
+    const auto colour_begin = bins.colour_begin;
     const auto part_begin = [=](int colour, int thread) {
-      const long from = bins.colour_begin[colour], count = bins.colour_begin[colour + 1] - from;
+      const long from = colour_begin[colour], count = colour_begin[colour + 1] - from;
       return static_cast<int>(from + count * thread / threads);
     };
-    std::vector<PartBegin> parts(colours * threads);
-    for (int n = 0; n < colours * threads; ++n) parts[n].next = part_begin(n / threads, n % threads);
-    PartBegin* const of = parts.data();
-    const auto some = [=](int first, int last) {  // of the colours
-      Kokkos::parallel_for(label, Range(space, 0, threads), [=](int thread) {
-        for (int colour = first; colour < last; ++colour)
-          for (int k = 0; k < threads; ++k) {
-            const int whose = (thread + k) % threads, end = part_begin(colour, whose + 1);
-            int* const next = &of[colour * threads + whose].next;
-            for (int n; (n = Kokkos::atomic_fetch_add(next, k_at_once)) < end;)
-              for (int m = n; m < std::min(n + k_at_once, end); ++m) f(by_colour(m));
-          }
-      });
-    };
-    constexpr int at_once = Writes ? 1 : colours;
-    for (int colour = 0; colour < colours; colour += at_once)
-      if (bins.colour_begin[colour] < bins.colour_begin[colour + at_once]) some(colour, colour + at_once);
+    std::vector<SharedCount> counts(colours * (threads + 1));
+    SharedCount *const taken = counts.data(), *const done = taken + colours * threads;
+    for (int n = 0; n < colours * threads; ++n) taken[n].n = part_begin(n / threads, n % threads);
+    Kokkos::parallel_for(label, Range(space, 0, threads), [=](int thread) {
+      for (int colour = 0; colour < colours; ++colour) {
+        int mine = 0;
+        for (int k = 0; k < threads; ++k) {
+          const int whose = (thread + k) % threads, end = part_begin(colour, whose + 1);
+          auto& next = taken[colour * threads + whose].n;
+          // Looked at before it is changed: a line that nobody changes any more is read by all at once.
+          for (int n; next < end && (n = next++) < end; ++mine) f(by_colour(n));
+        }
+        if constexpr (Writes) {
+          constexpr int k_patience = 4096;  // looks, before the processor is left to others
+          const int all = colour_begin[colour + 1] - colour_begin[colour];
+          done[colour].n += mine;
+          for (int looks = 0; done[colour].n < all; ++looks)
+            if (looks > k_patience) std::this_thread::yield();
+        }
+      }
+    });
   }
 }
 

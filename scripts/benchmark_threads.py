@@ -14,17 +14,17 @@ from datetime import date
 
 from benchmark_runs import HISTORY, ROOT, Setting, commit, environment, read_log
 
-PARTICLES = 737280       # of all threads: a strip of L/B = 28.8; more where a thread would have less than LEAST
-LEAST = 25600
-UPDATES_A_THREAD = 4e7   # particle updates of a run
+SIZES = (737280, 5898240)  # particles of all threads: strips of L/B = 28.8 and 230.4
+LEAST = 25600              # of a thread: a shorter strip has no room for the plate
+UPDATES_A_THREAD = 4e7     # particle updates of a run
 
 
-def counts(words):
-    """Numbers of threads: those given, or 1, 2, 4 ... and all cores."""
-    if words:
-        return [int(word) for word in words.split(",")]
+def cases(sizes, words):
+    """Numbers of particles, those given or of two strips, and of threads: those given, or 1, 2, 4 ... and all cores."""
     cores = len(os.sched_getaffinity(0))
-    return sorted({n for n in (2**k for k in range(12)) if n <= cores} | {cores})
+    threads = [int(word) for word in words.split(",")] if words else sorted({2**k for k in range(12) if 2**k <= cores} | {cores})
+    sizes = [int(word) for word in sizes.split(",")] if sizes else SIZES
+    return [(size, count) for size in sizes for count in threads if size // count >= LEAST]
 
 
 def command(program, threads, particles, precision, steps, folder):
@@ -55,17 +55,16 @@ def run_at_once(program, programs, threads, particles, precision, folder):
     return [read_log((folder / str(n) / "mpm.log").read_text()) for n in range(programs)]
 
 
-def measure(program, threads, precision, repeats, folder):
+def measure(program, particles, threads, precision, repeats, folder):
     """M particle updates/s of the threads, and of as many programs at once; medians of runs that take turns."""
     together, apart = [], []
-    whole = max(PARTICLES, threads * LEAST)
-    part = whole // threads // 640 * 640  # 640: a column of cells
+    part = particles // threads // 640 * 640  # 640: a column of cells
     for _ in range(repeats):
-        (log,) = run_at_once(program, 1, threads, whole, precision, folder)
+        (log,) = run_at_once(program, 1, threads, particles, precision, folder)
         together.append(log["count"] / log["us"])
         logs = run_at_once(program, threads, 1, part, precision, folder) if threads > 1 else [log]
         apart.append(sum(each["count"] / each["us"] for each in logs))
-    return {"kind": "threads", "particles": whole, "ranks": threads, "backend": "openmp", "precision": precision,
+    return {"kind": "threads", "particles": particles, "ranks": threads, "backend": "openmp", "precision": precision,
             "rate": statistics.median(together), "apart": statistics.median(apart), "device": log["device"],
             "machine": log["machine"], "copy": log["copy"], "moved": log["moved"],
             "functions": log["functions"], "date": date.today().isoformat(),
@@ -74,8 +73,8 @@ def measure(program, threads, precision, repeats, folder):
 
 def text_of(runs):
     parts = []
-    for precision in dict.fromkeys(each["precision"] for each in runs):
-        mine = sorted((each for each in runs if each["precision"] == precision), key=lambda each: each["ranks"])
+    for table in dict.fromkeys((each["particles"], each["precision"]) for each in runs):
+        mine = sorted((each for each in runs if (each["particles"], each["precision"]) == table), key=lambda each: each["ranks"])
         where, one = mine[0], mine[0]["rate"] / mine[0]["ranks"]
         lines = ["| threads | M particle updates/s | over as many times the first row | programs at once, M updates/s | over those | "
                  "share of the copy's bandwidth |", "| --- |" + " --- |" * 5]
@@ -83,6 +82,6 @@ def text_of(runs):
             share = f"{100 * each['moved'] / each['copy']:.0f} %" if each.get("copy") else "-"
             lines.append(f"| {each['ranks']} | {each['rate']:.1f} | {100 * each['rate'] / (one * each['ranks']):.0f} % | "
                          f"{each['apart']:.1f} | {100 * each['rate'] / each['apart']:.0f} % | {share} |")
-        parts += [f"Footing, {where['particles']:,} particles, {precision} precision ({where['machine'].split(', ')[0]}; "
+        parts += [f"Footing, {where['particles']:,} particles, {where['precision']} precision ({where['machine'].split(', ')[0]}; "
                   f"{where['date']}, commit {where['commit']}):", "\n".join(lines)]
     return "\n\n".join(parts)

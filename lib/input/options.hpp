@@ -4,7 +4,7 @@
 // the program.
 //
 // The order in a program:
-//   MPI_Init, Kokkos::initialize
+//   flush_subnormals, MPI_Init, Kokkos::initialize
 //   prepare_arguments(...)     before PetscInitialize, which ends the program over a file that it cannot read
 //   PetscInitialize(&argc, &argv, nullptr, nullptr)
 //   read_options(...)

@@ -6,9 +6,12 @@
 #include <Kokkos_Core.hpp>
 #include <catch2/catch_session.hpp>
 
+#include "subnormals.hpp"
+
 namespace {
 
 int run_tests(int argc, char** argv) {
+  mpm::flush_subnormals();
   MPI_Init(nullptr, nullptr);
   Kokkos::initialize();
   int failed = 1;

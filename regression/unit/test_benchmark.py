@@ -54,11 +54,11 @@ class Benchmark(unittest.TestCase):
         """A program of two threads, and two programs at once, by numbers of particles that the program finds too."""
         if "openmp" not in runs.backends(PROGRAM):
             self.skipTest("built without OpenMP")
-        for name, value in (("PARTICLES", 51200), ("UPDATES_A_THREAD", 1e5)):
-            self.addCleanup(setattr, threads, name, getattr(threads, name))
-            setattr(threads, name, value)
+        self.addCleanup(setattr, threads, "UPDATES_A_THREAD", threads.UPDATES_A_THREAD)
+        threads.UPDATES_A_THREAD = 1e5
+        self.assertEqual(threads.cases("51200,128000", "1,2,4"), [(51200, 1), (51200, 2), (128000, 1), (128000, 2), (128000, 4)])
         with tempfile.TemporaryDirectory() as folder:
-            found = threads.measure(PROGRAM, 2, "double", 1, pathlib.Path(folder) / "runs")
+            found = threads.measure(PROGRAM, 51200, 2, "double", 1, pathlib.Path(folder) / "runs")
         self.assertGreater(found["rate"], 0)
         self.assertGreater(found["apart"], 0)
         rows = threads.text_of([{**found, "ranks": 1, "rate": 20.0, "apart": 20.0},
