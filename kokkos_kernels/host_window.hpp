@@ -3,7 +3,6 @@
 // a patch, many particles at once; all of its memory is on its stack.
 
 #include <atomic>
-#include <thread>
 #include <vector>
 
 #include "lanes.hpp"
@@ -115,11 +114,12 @@ void for_each_slot(const char* label, const Space& space, const Bins<Space>& bin
           for (int n; next < end && (n = next++) < end; ++mine) f(by_colour(n));
         }
         if constexpr (Writes) {
-          constexpr int k_patience = 4096;  // looks, before the processor is left to others
+          constexpr int k_patience = 16384;  // looks, some 10 us, before the processor is left to others
           const int all = colour_begin[colour + 1] - colour_begin[colour];
-          done[colour].n += mine;
-          for (int looks = 0; done[colour].n < all; ++looks)
-            if (looks > k_patience) std::this_thread::yield();
+          auto& ready = done[colour].n;
+          if ((ready += mine) == all) ready.notify_all();
+          for (int n, looks = 0; (n = ready) < all; ++looks)
+            if (looks > k_patience) ready.wait(n);
         }
       }
     });
