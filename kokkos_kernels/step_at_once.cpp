@@ -8,6 +8,9 @@
 namespace mpm {
 namespace {
 
+// More patches than this take their turns, and then what several teams compute of the nodes at a patch's rim
+// costs more than a launch.
+constexpr int k_most_patches = 1000;
 constexpr long k_steps_at_once = 1000;  // of one launch: a device that also shows pictures must not wait long
 
 template <bool Whole, class Space, class T, int Dim>
@@ -92,8 +95,9 @@ bool is_whole_step(const State<Space, T, Dim>& s) {
   // What friction keeps of the impulse at a node changes with each look at it.
   const bool independent = !s.has_friction && !(s.rigid_dynamic && s.mass_normals);
   const bool summed = s.summed.soil && s.summed.boundary == s.soil_boundary && s.summed.rigids;
+  const bool pays = s.together || s.patches.slots <= k_most_patches;
   if constexpr (sums_fit<Space, T, Dim>)
-    return independent && summed && s.xpic_order == 0 && !s.affine && has_room<true>(s);
+    return pays && independent && summed && s.xpic_order == 0 && !s.affine && has_room<true>(s);
   return false;
 }
 

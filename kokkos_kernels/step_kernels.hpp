@@ -42,9 +42,9 @@ bool ends_at_once(const State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void update_and_end(State<Space, T, Dim>& s, double dt);
 
-/// Whether one launch can do whole steps: functions 4 to 6, and 1 to 3 of the next step. So it is where the
+/// Whether one launch is to do whole steps: functions 4 to 6, and 1 to 3 of the next step. It can where the
 /// sums of this step are there, no contact has friction, and no rigid moves by the force on it while the
-/// mass gradient tells its normals.
+/// mass gradient tells its normals, and it pays where patches are few.
 template <class Space, class T, int Dim>
 bool is_whole_step(const State<Space, T, Dim>& s);
 /// As many of the next `most` steps as one launch may do; returns how many it will, if the steps are not
