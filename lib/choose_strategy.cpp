@@ -2,13 +2,13 @@
 // What was found is kept for problems of the same size on the same device, so that the same options give the
 // same strategy again, and with it the same bits.
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "output/remembered.hpp"
 #include "parallel/together.hpp"
 #include "simulation_body.hpp"
+#include "trial.hpp"
 
 namespace mpm {
 namespace {
@@ -20,25 +20,6 @@ std::vector<P2G> candidates(Backend backend) {
   return all;
 }
 
-/// Seconds a step, in the best of a stepper's first batches, as others may use the machine meanwhile; the
-/// very first steps, which load kernels, do not count. Nothing where it cannot take a step.
-std::optional<double> time_of_steps(Stepper& stepper, double dt) {
-  constexpr long k_first = 2, k_most = 128;
-  constexpr double k_enough = 0.05;  // s
-  Batch batch;
-  if (stepper.advance(k_first, dt, &batch) != PETSC_SUCCESS || batch.steps < k_first) return std::nullopt;
-  std::optional<double> best;
-  double all = 0;
-  for (long steps = 1; steps <= k_most && all < k_enough; steps *= 2) {
-    if (stepper.advance(steps, dt, &batch) != PETSC_SUCCESS) return std::nullopt;
-    if (batch.steps < steps) break;  // a rebuild is due
-    const double took = batch.seconds / steps;
-    all += batch.seconds;
-    best = std::min(best.value_or(took), took);
-  }
-  return best;
-}
-
 /// Tries one strategy; adds what it took to `told`. A strategy whose lists do not fit into memory is left
 /// out.
 std::optional<double> try_strategy(const Config& config, MPI_Comm comm, Model model, double dt,
@@ -47,7 +28,8 @@ std::optional<double> try_strategy(const Config& config, MPI_Comm comm, Model mo
   Failure failure;
   if (stepper->set_up(std::move(model), &failure) != PETSC_SUCCESS || !failure.what.empty())
     return std::nullopt;
-  const auto seconds = time_of_steps(*stepper, dt);
+  const auto seconds =
+      time_of_steps([&](long steps, Batch* batch) { return stepper->advance(steps, dt, batch); });
   if (seconds)
     *told +=
         formatted("%s%s %.4g us", told->empty() ? "" : ", ", stepper->strategy().c_str(), 1e6 * *seconds);

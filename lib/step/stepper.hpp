@@ -63,7 +63,8 @@ class Stepper {
   virtual ~Stepper() = default;
   /// Puts the particles on the device and orders them.
   virtual PetscErrorCode set_up(Model&& model, Failure* failure) = 0;
-  /// Does up to `steps` steps of dt [s], and fewer if a rebuild or a failure comes first.
+  /// Does up to `steps` steps of dt [s], and fewer if a rebuild or a failure comes first, or if the device
+  /// turns out not to hold a launch of many.
   virtual PetscErrorCode advance(long steps, double dt, Batch* batch) = 0;
   /// Bins, patches and lists anew.
   virtual PetscErrorCode rebuild(Failure* failure) = 0;

@@ -115,8 +115,10 @@ TEST_CASE("a body whose particles a frame lists starts as the frame's did", "[st
     REQUIRE(file.fault(expected, dim).empty());
     ParticleTable table;
     CHECK(read_particles(file.path, "soil", config.mesh, dim, table).empty());
-    BodyParticles particles{table.position, 0.5,          table.particle_volume,
-                            table.velocity, table.stress, table.plastic_strain};
+    BodyParticles particles;
+    particles.position = table.position, particles.velocity = table.velocity;
+    particles.stress = table.stress, particles.plastic_strain = table.plastic_strain;
+    particles.spacing = 0.5, particles.particle_volume = table.particle_volume;
     for (std::size_t k = 0; k < particles.position.size(); ++k) particles.position[k] -= k_lower[k % dim];
     const ParticleSnapshot start = start_of(config, particles);
     CHECK(start.position == expected.position);
