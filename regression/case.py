@@ -7,6 +7,7 @@ and may hold
   DECK         the options file, from the top of the source tree; else case.opts of its folder
   PRECISIONS   those in which it is run, where not in both; BACKENDS likewise
   LONG         True: not among the quick tests
+  APART        (why, bound): strategies and back ends are further apart after a step in single precision than compare.py allows
   prepare(run, path, options)  writes the initial fields of a run to the HDF5 file `path`
   draw(axes, runs)             draws the case's curve for the documents
 Its docstring opens with a title, and explains the problem, the exact answer and what the set-up neglects.

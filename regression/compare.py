@@ -50,14 +50,6 @@ def of_precision(futures, precision):
     return {name: run for name, run in finished(futures).items() if run.text("precision") == precision}
 
 
-def sensitivity(run, precision):
-    """What contact makes of round-off in a step, where it acts over gaps of a part of a cell: its force has the relative
-    error of the gap, which is a difference of places. In double precision the bound has room for that.
-    """
-    reaches = [float(run.text(f"{rigid}_penalty_reach", "1")) for rigid in run.words("rigids")]
-    return 1 / min([1, *reaches]) if precision == "single" else 1
-
-
 def rows(case, variant, started, reference):
     """Rows of a variant: apart from the reference, the same bits twice, the case's own answers."""
     source = "-".join(variant[:1] + variant[2:])
@@ -65,10 +57,11 @@ def rows(case, variant, started, reference):
         if variant is not reference["variant"]:
             apart = {name: differences.largest(run, reference[steps][name])
                      for name, run in of_precision(futures, variant[1]).items()}
-            times = {name: sensitivity(reference[steps][name], variant[1]) if steps == 1 else 1 for name in apart}
-            name = max(apart, key=lambda each: apart[each][0] / times[each])
+            name = max(apart, key=lambda each: apart[each][0])
+            why, bound = getattr(case.module, "APART", ("", 0.0)) if (steps, variant[1]) == (1, "single") else ("", 0.0)
             yield Row(f"{steps} steps: apart at most, {name}, {apart[name][1]}", apart[name][0], 0,
-                      BOUNDS[steps]["double"], "-".join(reference["variant"]), single=BOUNDS[steps]["single"] * times[name])
+                      BOUNDS[steps]["double"], "-".join(reference["variant"]), single=BOUNDS[steps]["single"],
+                      shortfall=why, bound=bound)
     again = finished(started.again)
     if again:
         first = of_precision(started.short[max(BOUNDS)], variant[1])

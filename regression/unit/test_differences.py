@@ -13,7 +13,6 @@ import numpy as np
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "regression"), str(ROOT / "scripts")]
-import compare  # noqa: E402
 import differences  # noqa: E402
 from results import Run  # noqa: E402
 
@@ -71,14 +70,6 @@ class Differences(unittest.TestCase):
     def test_wrong(self):
         for changes in ({"volume": np.full(5, 0.0025)}, {"velocity": np.full((4, 3), np.nan)}, {"history": {"plate_y": np.inf}}):
             self.assertEqual(self.apart(**changes)[0], np.inf, changes)
-
-    def test_sensitivity(self):
-        """A contact that acts over a twentieth of a cell multiplies single precision's round-off in a step by twenty."""
-        run = self.run_with()
-        self.assertEqual(compare.sensitivity(run, "single"), 1)
-        run.options["plate_penalty_reach"] = "0.05"
-        self.assertEqual(compare.sensitivity(run, "single"), 20)
-        self.assertEqual(compare.sensitivity(run, "double"), 1)
 
     def test_bits(self):
         self.assertEqual(differences.differing(self.run_with(velocity=FIELDS["velocity"] + [0, 2e-16, 0]), self.run_with()), 4)
