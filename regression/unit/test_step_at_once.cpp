@@ -15,7 +15,7 @@ template <class Space, class T, int Dim>
 int steps_in_launches(State<Space, T, Dim>& s, double dt, int n, int most) {
   int rebuilds = 0;
   while (n > 0) {
-    if (!s.summed.soil) {
+    if (!s.summed.soil || s.summed.boundary != s.soil_boundary || !s.summed.rigids) {
       interpolate(s);
       s.summed = {true, s.soil_boundary, true};
     }
