@@ -1,6 +1,6 @@
 #include "batches.hpp"
 
-#include "particle_to_node.hpp"
+#include "interpolation.hpp"
 #include "step_kernels.hpp"
 
 namespace mpm {
@@ -35,18 +35,12 @@ double copy_out(const Space& space, const State<Space, T, Dim>& s, const SoilBat
   return bytes;
 }
 
-/// Whether a batch that was updated is summed to the nodes while it is there, where update_particles does not
-/// do so itself. The threads of a processor sum colour by colour, and not batch by batch.
-template <class Space>
-constexpr bool sums_in_batches = backend_of<Space> != Backend::openmp;
-
 /// The batch that s.soil now is, to the nodes.
 template <class Space, class T, int Dim>
 void sum_batch(const State<Space, T, Dim>& s) {
   using Source = SoilSource<Space, T, Dim>;
   const Source source{s.soil.points, s.grid.inv_spacing};
-  particle_to_node(s.p2g.strategy, Interpolation<Source>{s.space, s.grid, s.patches, s.soil.bins, source,
-                                                         s.nodes.soil, s.control, s.p2g.mosaic_cells});
+  particle_to_node(s.p2g.strategy, interpolation_of(s, s.soil.bins, source, s.nodes.soil, s.space));
 }
 
 }  // namespace
@@ -65,7 +59,7 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
     seconds += timer.seconds();
   };
   const Kokkos::Timer timer;
-  const bool sums = sums_in_batches<Space> && !sums_ahead(s);
+  const bool sums = !sums_ahead(s);  // while the batch is there; else update_particles does so itself
   if (sums) {
     reset_nodes(s);
     s.space.fence("mpm::before the sums of batches");

@@ -30,16 +30,11 @@ template <class Space, class T, int Dim, class F>
 void for_all_soil(const State<Space, T, Dim>& s, F&& f) {
   const auto& b = s.batches;
   if (!b.in_use()) return f(s.soil);
-  constexpr int colours = Patch<Dim>::colours;
-  const int passes = is_device<Space> || backend_of<Space> == Backend::serial ? 1 : colours;
-  for (int pass = 0; pass < passes; ++pass)
-    for (const auto& batch : b.all) {
-      auto set = batch.stays && b.loaded ? batch.set : s.soil;
-      set.bins = batch.set.bins;
-      for (int k = 0; k <= colours && passes > 1; ++k)  // only this colour
-        set.bins.colour_begin[k] = batch.set.bins.colour_begin[k <= pass ? pass : pass + 1];
-      f(set);
-    }
+  for (const auto& batch : b.all) {
+    auto set = batch.stays && b.loaded ? batch.set : s.soil;
+    set.bins = batch.set.bins;
+    f(set);
+  }
 }
 
 }  // namespace mpm

@@ -17,4 +17,7 @@ enum class Wall { roller, fixed, free };
 /// How particles take their velocity from the nodes (-velocity_update).
 enum class VelocityUpdate { flip, pic, xpic, apic };
 
+/// The strategy that `auto` stands for on a backend.
+constexpr P2G chosen(P2G how, Backend) { return how == P2G::automatic ? P2G::tile : how; }
+
 }  // namespace mpm

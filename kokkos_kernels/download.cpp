@@ -79,7 +79,7 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   const auto add_set = [&](const auto& set) {
     add(set.points.coordinate), add(set.points.cell), add(set.points.id), add(set.address), add(set.order);
     add(set.bins.begin), add(set.bins.by_colour), add(set.bins.list_begin), add(set.bins.list),
-        add(set.bins.blocks);
+        add(set.bins.blocks), add(set.bins.windows.place), add(set.bins.windows.sums);
     auto points = set.points;
     for_each_field(points, add);
   };
@@ -87,7 +87,7 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   for (const auto& set : s.rigid_points) add_set(set);
   add(s.patches.slot_of), add(s.patches.origin), add(s.patches.around), add(s.marks), add(s.spare);
   add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.boundary), add(s.nodes.impulse),
-      add(s.near_rigid), add(s.vertices), add(s.nodes.rigid);
+      add(s.near_rigid), add(s.boundary_windows.sums), add(s.vertices), add(s.nodes.rigid);
   for (const auto* more : {&s.next_sums, &s.last_sums})
     add(more->soil), add(more->boundary), add(more->rigid);
   add(s.batches.room), add(s.batches.slots);

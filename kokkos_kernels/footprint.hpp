@@ -6,8 +6,9 @@
 
 namespace mpm {
 
-/// Bytes that a State holds for each particle of the soil, with what sorts it, and for each node. Lists of
-/// the strategies and the rigids come on top.
+/// Bytes that a State holds for each particle of the soil, with what sorts it, for each node, and, of the
+/// windows that threads of a processor sum to (`tile`), for each cell. Lists of the strategies and the rigids
+/// come on top.
 template <class T, int Dim>
 struct Footprint {
   static constexpr double grown = 17.0 / 16;  // ensure() leaves room
@@ -17,6 +18,8 @@ struct Footprint {
   static constexpr double node =
       grown *
       (sizeof(T) * (SoilShare<Dim>::size + NodeMotion<Dim>::size + BoundaryShare<Dim>::size) + sizeof(int));
+  static constexpr double window =
+      grown * double(sizeof(T) * SoilShare<Dim>::size * Patch<Dim>::window) / Patch<Dim>::cells;
 };
 
 }  // namespace mpm

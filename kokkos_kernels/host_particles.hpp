@@ -253,20 +253,4 @@ struct HostParticles {
   }
 };
 
-/// Moves the soil of a State on a processor.
-template <class Space, class T, int Dim>
-void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by) {
-  const auto& set = s.soil;
-  const auto control = s.control;
-  const auto movements = s.movements;
-  const HostParticles<Space, T, Dim> particles{
-      set.points, set.bins.begin, s.patches.around, s.patches.origin, s.nodes.motion, s.control,
-      by,         s.spacing};
-  for_each_slot<false, Space, Dim>("mpm::update_particles", s.space, set.bins, [=](int slot) {
-    if (control().paused) return;
-    const T moved = particles(slot);
-    movements.note(slot, moved);
-  });
-}
-
 }  // namespace mpm

@@ -41,10 +41,19 @@ struct HostTile {
   decltype(Patches<Space, Dim>::around) around;
   NodeField<Space, T, size> out;
 
+  using Sums = T (&)[size][window];
+
   /// Adds the particles of a slot to the nodes.
   void operator()(int slot) const {
     if (source.skips(slot)) return;
     alignas(R) T sums[size][window] = {};
+    sum(slot, sums);
+    for_each_run<Dim>(around, slot,
+                      [&](int place, int node, auto count) { give_run<count>(sums, place, node); });
+  }
+
+  /// Adds the particles of a slot to the sums of its window.
+  void sum(int slot, Sums sums) const {
     Stage stage;
     const int to = begin((slot + 1) * cells);
     const bool one_body = of_one_body(source.points, begin(slot * cells), to);
@@ -59,8 +68,6 @@ struct HostTile {
         if (next >= end) break;
       }
     }
-    for_each_run<Dim>(around, slot,
-                      [&](int place, int node, auto count) { give_run<count>(sums, place, node); });
   }
 
   /// Adds `count` nodes that lie together, from `place` in the window, to those from number `node` on.
@@ -131,8 +138,7 @@ struct HostTile {
   }
 
   /// Adds the particles [from, to) of the stage, of one cell of the patch.
-  KOKKOS_INLINE_FUNCTION void add_cell(int place, const Stage& stage, int from, int to,
-                                       T (&sums)[size][window]) const {
+  KOKKOS_INLINE_FUNCTION void add_cell(int place, const Stage& stage, int from, int to, Sums sums) const {
     constexpr int layers = Dim == 3 ? k_row : 1;
     const int base = window_base<Dim>(place);
     for (int k = 0; k < layers; ++k) {
@@ -190,16 +196,5 @@ struct HostTile {
     return r;
   }
 };
-
-/// The interpolation on a processor, colour by colour: windows of one colour share no node.
-template <class Source>
-void sum_on_host(const Interpolation<Source>& it) {
-  const HostTile<Source> tile{it.source, it.bins.begin, it.patches.around, it.out};
-  const auto control = it.control;
-  for_each_slot<true, typename Source::Space, Source::dim>("mpm::reduce_by_tile", it.space, it.bins,
-                                                           [=](int slot) {
-                                                             if (!control().paused) tile(slot);
-                                                           });
-}
 
 }  // namespace mpm

@@ -75,55 +75,70 @@ struct alignas(64) SharedCount {
   std::atomic<int> n{0};
 };
 
-/// Calls f(slot) for the slots that hold points, each by one thread. A thread begins with a part of each
-/// colour that is always its own, and so in its cache, and then takes what others have left of theirs: on a
-/// machine that is at work for others too, no thread waits long for one that was held up. If Writes, no
-/// thread begins a colour before all slots of the last are done: slots at work at the same time share no
-/// node. One thread alone needs no colours and takes the slots in the order of the points.
-template <bool Writes, class Space, int Dim, class F>
-void for_each_slot(const char* label, const Space& space, const Bins<Space>& bins, const F& f) {
+/// Numbers [first, last) that threads share out, `together` at a time. Each begins with an equal part, or
+/// with the numbers about an equal part of `some`, which rise: so threads stay with what they had in the last
+/// phase.
+struct Shared {
+  int first = 0, last = 0, together = 1;
+  const int* some = nullptr;
+  int some_count = 0;
+
+  int part_begin(int part, int parts) const {
+    const auto share = [&](int count) { return static_cast<int>(static_cast<long>(count) * part / parts); };
+    if (some_count == 0) return first + share(last - first);
+    return part == 0 ? first : part == parts ? last : some[share(some_count)];
+  }
+};
+
+/// Calls f(phase, n) for n of all[phase], each by one thread; no thread begins a phase before all of the last
+/// is done. A thread begins with a part that is always its own, and so in its cache, from front to back, as
+/// memory is read ahead; then it takes what others have left of theirs: on a machine that is at work for
+/// others too, no thread waits long for one that was held up.
+template <int Phases, class Space, class F>
+void for_each_shared(const char* label, const Space& space, const Shared (&all)[Phases], const F& f) {
   using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Static>>;
-  constexpr int cells = Patch<Dim>::cells;
-  const auto begin = bins.begin;
-  const auto by_colour = bins.by_colour;
   if constexpr (backend_of<Space> == Backend::serial) {
-    if (bins.some)
-      return Kokkos::parallel_for(label, Range(space, bins.colour_begin[0], bins.colour_begin[1]),
-                                  [=](int n) { f(by_colour(n)); });
-    Kokkos::parallel_for(label, Range(space, bins.first_slot, bins.last_slot), [=](int slot) {
-      if (begin(slot * cells) < begin((slot + 1) * cells)) f(slot);
-    });
+    for (int phase = 0; phase < Phases; ++phase)
+      Kokkos::parallel_for(label, Range(space, all[phase].first, all[phase].last),
+                           [&](int n) { f(phase, n); });
   } else {
-    constexpr int colours = Patch<Dim>::colours;
     const int threads = space.concurrency();
-    const auto colour_begin = bins.colour_begin;
-    const auto part_begin = [=](int colour, int thread) {
-      const long from = colour_begin[colour], count = colour_begin[colour + 1] - from;
-      return static_cast<int>(from + count * thread / threads);
-    };
-    std::vector<SharedCount> counts(colours * (threads + 1));
-    SharedCount *const taken = counts.data(), *const done = taken + colours * threads;
-    for (int n = 0; n < colours * threads; ++n) taken[n].n = part_begin(n / threads, n % threads);
-    Kokkos::parallel_for(label, Range(space, 0, threads), [=](int thread) {
-      for (int colour = 0; colour < colours; ++colour) {
+    std::vector<SharedCount> counts(Phases * (threads + 1));
+    SharedCount *const taken = counts.data(), *const done = taken + Phases * threads;
+    for (int n = 0; n < Phases * threads; ++n) taken[n].n = all[n / threads].part_begin(n % threads, threads);
+    Kokkos::parallel_for(label, Range(space, 0, threads), [&](int thread) {
+      for (int phase = 0; phase < Phases; ++phase) {
+        const Shared& of = all[phase];
         int mine = 0;
         for (int k = 0; k < threads; ++k) {
-          const int whose = (thread + k) % threads, end = part_begin(colour, whose + 1);
-          auto& next = taken[colour * threads + whose].n;
+          const int whose = (thread + k) % threads, end = of.part_begin(whose + 1, threads);
+          auto& next = taken[phase * threads + whose].n;
           // Looked at before it is changed: a line that nobody changes any more is read by all at once.
-          for (int n; next < end && (n = next++) < end; ++mine) f(by_colour(n));
+          for (int n; next < end && (n = next.fetch_add(of.together)) < end;)
+            for (const int stop = Kokkos::min(n + of.together, end); n < stop; ++n, ++mine) f(phase, n);
         }
-        if constexpr (Writes) {
-          constexpr int k_patience = 16384;  // looks, some 10 us, before the processor is left to others
-          const int all = colour_begin[colour + 1] - colour_begin[colour];
-          auto& ready = done[colour].n;
-          if ((ready += mine) == all) ready.notify_all();
-          for (int n, looks = 0; (n = ready) < all; ++looks)
-            if (looks > k_patience) ready.wait(n);
-        }
+        if (phase == Phases - 1) return;
+        constexpr int k_patience = 1 << 17;  // looks, some 80 us, before the processor is left to others
+        auto& ready = done[phase].n;
+        if ((ready += mine) == of.last - of.first) ready.notify_all();
+        for (int n, looks = 0; (n = ready) < of.last - of.first; ++looks)
+          if (looks > k_patience) ready.wait(n);
       }
     });
   }
+}
+
+/// The slots that hold points, as places in Bins::by_colour.
+template <int Dim, class Space>
+Shared slots_held(const Bins<Space>& bins) {
+  return {bins.colour_begin[0], bins.colour_begin[Patch<Dim>::colours], 1};
+}
+/// All slots, of which each thread has those about the ones that it had of slots_held. Their nodes are little
+/// work.
+template <int Dim, class Space>
+Shared slots_about(const Bins<Space>& bins, int slots) {
+  const Shared held = slots_held<Dim>(bins);
+  return {0, slots, 2, bins.by_colour.data() + held.first, held.last - held.first};
 }
 
 /// Whether the points [from, to) are all of one body.

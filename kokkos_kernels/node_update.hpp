@@ -12,9 +12,19 @@ namespace mpm {
 template <class Space, int Dim>
 inline constexpr int node_threads = is_device<Space> ? Patch<Dim>::cells : 1;
 
-/// So many of them share a multiprocessor that contact, which needs many registers, hides what it waits for.
+/// On a GPU so many of them share a multiprocessor that contact, which needs many registers, hides what it
+/// waits for. On a processor threads take over what others have left: far from the soil a slot is less work.
 template <class Space, int Dim>
-using NodeTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, 12>>;
+using NodeTeam =
+    std::conditional_t<is_device<Space>,
+                       Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, 12>>,
+                       Kokkos::TeamPolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>>;
+template <class Space, int Dim>
+NodeTeam<Space, Dim> node_teams(const Space& space, int teams) {
+  NodeTeam<Space, Dim> policy(space, teams, node_threads<Space, Dim>);
+  if (!is_device<Space>) policy.set_chunk_size(4);
+  return policy;
+}
 
 /// Sets the sums of a slot's nodes to zero, neighbours in memory by neighbouring threads.
 template <class Team, class Space, class T, int Dim>
@@ -268,7 +278,7 @@ UpdateNodes<Space, T, Dim> node_update_of(const State<Space, T, Dim>& s, double 
                                     s.soil_boundary,
                                     s.has_friction,
                                     s.mass_normals,
-                                    sums_ahead(s),
+                                    sums_ahead(s) && !writes_sums(s),
                                     0};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   return update;

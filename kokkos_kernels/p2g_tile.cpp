@@ -1,4 +1,4 @@
-#include "host_tile.hpp"
+#include "host_sums.hpp"
 #include "tile.hpp"
 
 namespace mpm {

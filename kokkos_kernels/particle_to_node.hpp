@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// Everything that an interpolation needs. `out` is added to; it is what `reset_nodes` cleared.
+/// Everything that an interpolation needs.
 template <class Source>
 struct Interpolation {
   using Space = typename Source::Space;
@@ -22,10 +22,12 @@ struct Interpolation {
   NodeField<Space, T, Source::size> out;
   ControlView<Space> control;
   int mosaic_cells = 3;
+  Windows<Space> windows = {};
+  bool adds = true;  // to what `out` holds, which `reset_nodes` cleared; else it is written, all of it
+  /// The slots whose nodes matter, if near_count is not negative; else those of all do.
+  Kokkos::View<int*, typename Space::memory_space> near_slots = {};
+  int near_count = -1;
 };
-
-/// The strategy that `auto` stands for on a backend.
-constexpr P2G chosen(P2G how, Backend) { return how == P2G::automatic ? P2G::tile : how; }
 
 /// The strategy for the points of rigids. They are few in many cells of a patch or many in few: where `tile`
 /// would leave most of a GPU's threads idle, a thread a point does not.
@@ -51,7 +53,7 @@ void reduce_by_tile(const Interpolation<Source>&);  // a team a patch, in scratc
 /// The switch of -p2g.
 template <class Source>
 void particle_to_node(P2G how, const Interpolation<Source>& it) {
-  if (it.source.points.count == 0) return;
+  if (it.source.points.count == 0 && it.adds) return;
   switch (chosen(how, backend_of<typename Source::Space>)) {
     case P2G::sequential: return scatter_sequential(it);
     case P2G::atomic: return scatter_atomic(it);

@@ -74,6 +74,19 @@ void for_each_field(Points_& points, F&& f) {
   for_each_named_field(points, [&](const char*, auto& field) { f(field); });
 }
 
+/// Places for the sums of windows, so that many threads can make them at once.
+template <class Space>
+struct Windows {
+  Kokkos::View<int*, typename Space::memory_space>
+      place;  // of the window of a slot, from 1 on; 0: it has none
+  Kokkos::View<char*, typename Space::memory_space> sums;  // of the windows, one after the other
+};
+/// Whether the strategy `tile` needs them.
+template <class Space>
+bool has_windows(const Space& space) {
+  return backend_of<Space> == Backend::openmp && space.concurrency() > 1;
+}
+
 /// Ranges of points by cell, and the lists of the strategies that need them. Valid while no point has moved
 /// further than the margin that they were built with.
 template <class Space>
@@ -81,15 +94,16 @@ struct Bins {
   using Memory = typename Space::memory_space;
   Kokkos::View<int*, Memory> begin;      // first point of a cell [cells + 1]
   int first_slot = 0, last_slot = 0;     // slots that may hold points: [first_slot, last_slot)
-  Kokkos::View<int*, Memory> by_colour;  // slots that hold points, ordered by colour
+  Kokkos::View<int*, Memory> by_colour;  // slots that hold points, ordered by colour; on a processor all are
+                                         // of one, so that they rise
   int colour_begin[8 + 1] = {};          // ranges of by_colour
-  int border = 0;     // of by_colour, on several ranks: slots in front that share nodes with other ranks, all
-                      // colours of them; but with OpenMP, where colours come first
-  bool some = false;  // not all slots: bins_of
+  int border = 0;  // of by_colour, on several ranks: slots in front that share nodes with other ranks, all
+                   // colours of them; but with OpenMP, where colours come first
   Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]
   Kokkos::View<int*, Memory> list;        // gather: points that may reach the node, in order
   Kokkos::View<long*, Memory> blocks;     // mosaic: blocks that hold points, ordered by colour
   int block_begin[8 + 1] = {};            // mosaic: ranges of blocks by colour
+  Windows<Space> windows;                 // tile, many threads of a processor
 };
 
 /// Some of the slots that hold points, [first, last) of Bins::by_colour, and the queue that works on them.
@@ -104,7 +118,6 @@ struct Part {
 template <class Space>
 Bins<Space> bins_of(const Bins<Space>& all, const Part<Space>& part) {
   Bins<Space> bins = all;
-  bins.some = true;
   bins.colour_begin[0] = part.first;
   for (int colour = 1; colour <= 8; ++colour) bins.colour_begin[colour] = part.last;
   return bins;

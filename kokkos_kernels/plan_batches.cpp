@@ -106,7 +106,7 @@ void list_slots(State<Space, T, Dim>& s) {
   for (std::size_t n = 0; n < lists.size(); ++n) {
     Bins<Space>& bins = b.all[n].set.bins;
     const int begin = end;
-    bins.begin = whole.begin;
+    bins.begin = whole.begin, bins.windows = whole.windows;
     for (int colour = 0; colour < colours; ++colour) {
       for (const int slot : lists[n][colour]) slots(end++) = slot;
       bins.colour_begin[colour + 1] = end - begin;

@@ -108,11 +108,25 @@ void build_blocks(const Space& space, const Grid<T, Dim>& grid, const Patches<Sp
   }
 }
 
+/// Room for the window of each slot that holds points.
+template <class Source, class Space, int Dim>
+void build_windows(const Space& space, const Patches<Space, Dim>& patches, Bins<Space>& bins) {
+  const int held = bins.colour_begin[Patch<Dim>::colours];
+  ensure(bins.windows.place, patches.slots);
+  ensure(bins.windows.sums, window_bytes<Source> * held);
+  const auto place = bins.windows.place, by_colour = bins.by_colour;
+  Kokkos::deep_copy(space, place, 0);
+  Kokkos::parallel_for(
+      "mpm::place_windows", Kokkos::RangePolicy<Space>(space, 0, held),
+      KOKKOS_LAMBDA(int n) { place(by_colour(n)) = n + 1; });
+}
+
 template <class Source, class T, int Dim, class Space>
 void build_for(const State<Space, T, Dim>& s, const Source& source, Bins<Space>& bins) {
   const P2G how = chosen(s.p2g.strategy, backend_of<Space>);
   if (how == P2G::gather) build_node_lists(s.space, source, s.patches, bins, s.p2g.margin);
   if (how == P2G::mosaic) build_blocks(s.space, s.grid, s.patches, bins, s.p2g.mosaic_cells);
+  if (how == P2G::tile && has_windows(s.space)) build_windows<Source>(s.space, s.patches, bins);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include "batches.hpp"
 #include "rebuild.hpp"
+#include "share.hpp"
+#include "step_kernels.hpp"
 
 namespace mpm {
 namespace {
@@ -155,7 +157,8 @@ struct ColourOfSlot {
   KOKKOS_INLINE_FUNCTION int operator()(int slot) const {
     if (begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells)) return -1;
     int colour = 0;
-    for (int d = 0; d < Dim; ++d) colour |= ((origin(slot)[d] >> Patch<Dim>::log_edge) & 1) << d;
+    for (int d = 0; d < Dim && is_device<Space>; ++d)
+      colour |= ((origin(slot)[d] >> Patch<Dim>::log_edge) & 1) << d;
     return colour;
   }
 };
@@ -264,6 +267,10 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
         ++n;
       },
       s.near_count);
+  if (s.soil_boundary && has_windows(s.space)) {
+    s.boundary_windows.place = near;
+    ensure(s.boundary_windows.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.near_count);
+  }
   ensure(s.slot_forces, std::size_t(s.near_count) * Dim * s.rigid_points.size());
 }
 
@@ -307,6 +314,8 @@ void sort_and_list(State<Space, T, Dim>& s) {
     s.nodes.rigid = decltype(s.nodes.rigid)(
         Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),
         nodes + (s.nodes.rigid.extent(1) > 0 ? nodes / 16 : 0));
+  if (s.mass_normals && writes_sums(s))
+    Kokkos::deep_copy(s.space, s.nodes.rigid, T(0));  // only those near rigids are written
   if (s.batches.in_use()) plan_batches(s);
   const auto control = s.control;
   Kokkos::parallel_for(

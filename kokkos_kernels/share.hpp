@@ -198,6 +198,11 @@ KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, W w, const Vec
   if constexpr (requires { Source::takes_offset; }) Source::give_more(q, w, offset(), add);
 }
 
+/// Bytes of the sums of one window.
+template <class Source>
+inline constexpr std::size_t window_bytes =
+    sizeof(typename Source::real) * Source::size* Patch<Source::dim>::window;
+
 /// Applies X(Source) to every source of a space, real type and dimension.
 #define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
   X(SoilSource, Space, T, Dim)                \

@@ -36,6 +36,7 @@ struct State {
   Kokkos::View<int*, Memory> near_slots;   // where a rigid may touch a node that the slot's particles reach
   Kokkos::View<int*, Memory> near_rigid;   // by slot: its place among those, from 1 on; 0 elsewhere
   int near_count = 0;
+  Windows<Space> boundary_windows;  // of the patches near a rigid
   Kokkos::View<double*, Memory>
       slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
   Nodes<Space, T, Dim> nodes;

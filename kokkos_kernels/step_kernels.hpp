@@ -12,19 +12,27 @@ bool few_patches(const State<Space, T, Dim>& s) {
   return is_device<Space> && s.patches.slots < 2000;
 }
 
-/// 1. Sets the nodal sums to zero.
+/// Whether the interpolation writes the sums of all nodes. Else it adds to what reset_nodes has cleared.
+template <class Space, class T, int Dim>
+bool writes_sums(const State<Space, T, Dim>& s) {
+  return has_windows(s.space) && chosen(s.p2g.strategy, backend_of<Space>) == P2G::tile &&
+         !s.batches.in_use();
+}
+
+/// 1. Sets the nodal sums to zero, where they have to be.
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s);
 
 /// Whether update_particles goes on to function 3 of the next step, the soil's boundary included: particles
-/// then pass through memory once a step. So it is on a GPU with the strategy `tile`, where a velocity update
-/// does not need the nodal sums again and the scratch memory holds both.
+/// then pass through memory once a step. So it is with the strategy `tile`, where a velocity update does not
+/// need the nodal sums again and, on a GPU, the scratch memory holds both.
 template <class Space, class T, int Dim>
 bool sums_ahead(const State<Space, T, Dim>& s);
 
 /// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
 /// contact forces in s.slot_forces. Where sums_ahead, it leaves the nodal sums at zero, which is function 1
-/// of the next step. dt [s]. queue: that of the nodes near rigids, if nodes_apart; the others are on s.space.
+/// of the next step, unless writes_sums. dt [s]. queue: that of the nodes near rigids, if nodes_apart; the
+/// others are on s.space.
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue);
 template <class Space, class T, int Dim>

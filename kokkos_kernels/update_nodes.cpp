@@ -6,6 +6,7 @@ template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s) {
   using Team = Kokkos::TeamPolicy<Space>;
   s.summed = {}, s.next_zero = false;
+  if (writes_sums(s)) return;
   const auto nodes = s.nodes;
   const auto control = s.control;
   const int rigids = s.mass_normals ? static_cast<int>(s.rigid_points.size()) : 0;
@@ -21,15 +22,13 @@ template <class Space, class T, int Dim>
 bool nodes_apart(const State<Space, T, Dim>& s) {
   // Patches far from rigids need few registers: where they are many, they go faster with a launch of their
   // own.
-  return !s.rigid_points.empty() && s.near_count > 0 && !few_patches(s);
+  return is_device<Space> && !s.rigid_points.empty() && s.near_count > 0 && !few_patches(s);
 }
 
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue) {
-  using Team = NodeTeam<Space, Dim>;
-  using Member = typename Team::member_type;
+  using Member = typename NodeTeam<Space, Dim>::member_type;
   using Update = UpdateNodes<Space, T, Dim>;
-  constexpr int threads = node_threads<Space, Dim>;
   Update update = node_update_of(s, dt);
   const int values = update.value_count;
   const auto near = s.near_rigid, near_slots = s.near_slots;
@@ -38,8 +37,8 @@ void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue) {
   constexpr std::size_t k_fast = 32 * 1024;  // bytes that every back end has; some thirty rigids need more
   update.scratch_level = near_bytes > k_fast ? 1 : 0;
   const auto some_near = [&](const Space& space, int teams) {
-    return light(
-        Team(space, teams, threads).set_scratch_size(update.scratch_level, Kokkos::PerTeam(near_bytes)));
+    return light(node_teams<Space, Dim>(space, teams)
+                     .set_scratch_size(update.scratch_level, Kokkos::PerTeam(near_bytes)));
   };
   if (s.near_count > 0 && !nodes_apart(s))
     return Kokkos::parallel_for(
@@ -49,7 +48,8 @@ void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue) {
           n > 0 ? update.update_near(team, slot, n - 1) : update.update_far(team, slot);
         });
   Kokkos::parallel_for(
-      "mpm::update_nodes", light(Team(s.space, s.patches.slots, threads)), KOKKOS_LAMBDA(const Member& team) {
+      "mpm::update_nodes", light(node_teams<Space, Dim>(s.space, s.patches.slots)),
+      KOKKOS_LAMBDA(const Member& team) {
         const int slot = team.league_rank();
         if (!control().paused && (values == 0 || near(slot) == 0)) update.update_far(team, slot);
       });

@@ -25,6 +25,8 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   }
   const double soil = need.particles * a_particle;
   need.nodes = k_ring * cells * Footprint<T, Dim>::node;
+  if (config.backend == Backend::openmp && chosen(config.p2g.strategy, config.backend) == P2G::tile)
+    need.nodes += cells * Footprint<T, Dim>::window;
   need.device = soil + need.nodes;
   if (!config.device_memory_limit) return;
   need.device = std::min(need.device, *config.device_memory_limit * k_gib);

@@ -2,8 +2,8 @@
 // One time step, in the paper's words.
 
 #include "batches.hpp"
+#include "interpolation.hpp"
 #include "parallel/ranks.hpp"
-#include "particle_to_node.hpp"
 #include "step/beside.hpp"
 #include "step/timers.hpp"
 #include "step_kernels.hpp"
@@ -15,8 +15,7 @@ namespace mpm {
 template <class Source, class Space, class T, int Dim>
 void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>& bins, const Source& source,
                  const NodeField<Space, T, Source::size>& out, const Space& space) {
-  particle_to_node(strategy, Interpolation<Source>{space, s.grid, s.patches, bins, source, out, s.control,
-                                                   s.p2g.mosaic_cells});
+  particle_to_node(strategy, interpolation_of(s, bins, source, out, space));
 }
 template <class Source, class Space, class T, int Dim>
 void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>& bins, const Source& source,
@@ -105,6 +104,7 @@ PetscErrorCode update_and_send(State<Space, T, Dim>& s, double dt, Ranks<Space, 
   update_particles(s, dt, border);
   PetscCall(ranks.send_ahead(s));
   update_particles(s, dt, ranks.inner(s));
+  PetscCall(ranks.settle(s));
   ranks.join(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,23 @@
+#pragma once
+// What the step asks of an interpolation.
+
+#include "particle_to_node.hpp"
+#include "step_kernels.hpp"
+
+namespace mpm {
+
+/// The points of `source`, which `bins` orders, to the nodes' sums `out`, on a queue.
+template <class Source, class Space, class T, int Dim>
+Interpolation<Source> interpolation_of(const State<Space, T, Dim>& s, const Bins<Space>& bins,
+                                       const Source& source, const NodeField<Space, T, Source::size>& out,
+                                       const Space& queue) {
+  constexpr bool boundary = std::is_same_v<Source, BoundarySource<Space, T, Dim>>;
+  constexpr bool rigid = std::is_same_v<Source, RigidSource<Space, T, Dim>>;
+  Interpolation<Source> it{queue, s.grid, s.patches, bins, source, out, s.control, s.p2g.mosaic_cells};
+  it.windows = boundary ? s.boundary_windows : bins.windows;
+  it.adds = !writes_sums(s);
+  if (rigid) it.near_slots = s.near_slots, it.near_count = s.near_count;
+  return it;
+}
+
+}  // namespace mpm
