@@ -166,6 +166,35 @@ TEST_CASE("gather and the plain loop give the same bits on every run and number 
   });
 }
 
+TEST_CASE("on processors tile gives the bits of one thread whatever the number of threads, step by step",
+          "[strategies]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    using Space = typename B::Space;
+    using One = Build<Kokkos::Serial, typename B::real, B::dim>;
+    if constexpr (!is_device<Space>)
+      for (const int seed : {3, 4}) {
+        Cloud cloud = random_cloud<B::dim>(seed, Wall::roller);
+        cloud.gravity = {0, -9.81, 0};
+        cloud.f_bar_share = seed % 2 ? 0.9 : 0;
+        auto expected = state_of<One>(cloud, P2G::tile);
+        constexpr double k_dt = 1e-5;  // s
+        const int steps = 30, rebuilds = run_steps(expected, k_dt, steps);
+        REQUIRE(look(expected).fault_count == 0);
+        for (const Space& space : {Space(), with_other_threads<Space>()}) {
+          INFO(build.name() << ", " << space.concurrency() << " threads, seed " << seed);
+          auto s = state_of<B>(cloud, P2G::tile, space);
+          CHECK(run_steps(s, k_dt, steps) == rebuilds);
+          CHECK(soil_fields(s) == soil_fields(expected));
+          CHECK(nodes_of(s, s.nodes.soil) == nodes_of(expected, expected.nodes.soil));
+          const auto ours = on_host(s.rigids), theirs = on_host(expected.rigids);
+          for (int r = 0; r < 2; ++r)
+            for (int d = 0; d < B::dim; ++d) CHECK(ours(r).impulse[d] == theirs(r).impulse[d]);
+        }
+      }
+  });
+}
+
 TEST_CASE("no strategy touches a node while the steps are paused", "[strategies]") {
   for_each_build([](auto build) {
     using B = decltype(build);
