@@ -17,6 +17,7 @@ from benchmark_runs import HISTORY, ROOT, Setting, commit, environment, read_log
 SIZES = (737280, 5898240)  # particles of all threads: strips of L/B = 28.8 and 230.4
 LEAST = 25600              # of a thread: a shorter strip has no room for the plate
 UPDATES_A_THREAD = 4e7     # particle updates of a run
+LEAST_STEPS = 20           # the first one makes sums that each of the others finds made
 
 
 def cases(sizes, words):
@@ -40,7 +41,7 @@ def run_at_once(program, programs, threads, particles, precision, folder):
     """The logs of several programs at once, each of so many threads and particles and, if they are many, on a core."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    steps = max(3, round(UPDATES_A_THREAD * threads / particles))
+    steps = max(LEAST_STEPS, round(UPDATES_A_THREAD * threads / particles))
     cores = sorted(os.sched_getaffinity(0))
     started = []
     for n in range(programs):
