@@ -98,7 +98,7 @@ struct Bins {
                                          // of one, so that they rise
   int colour_begin[8 + 1] = {};          // ranges of by_colour
   int border = 0;  // of by_colour, on several ranks: slots in front that share nodes with other ranks, all
-                   // colours of them; but with OpenMP, where colours come first
+                   // colours of them; but with OpenMP, where slots rise
   Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]
   Kokkos::View<int*, Memory> list;        // gather: points that may reach the node, in order
   Kokkos::View<long*, Memory> blocks;     // mosaic: blocks that hold points, ordered by colour
@@ -107,7 +107,7 @@ struct Bins {
 };
 
 /// Some of the slots that hold points, [first, last) of Bins::by_colour, and the queue that works on them.
-/// Where colours do not matter: on a device, and with one thread.
+/// Several parts: on a device, and with one thread.
 template <class Space>
 struct Part {
   Space space;

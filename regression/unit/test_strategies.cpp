@@ -172,7 +172,7 @@ TEST_CASE("on processors tile gives the bits of one thread whatever the number o
     using B = decltype(build);
     using Space = typename B::Space;
     using One = Build<Kokkos::Serial, typename B::real, B::dim>;
-    if constexpr (!is_device<Space>)
+    if constexpr (!is_device<Space>) {
       for (const int seed : {3, 4}) {
         Cloud cloud = random_cloud<B::dim>(seed, Wall::roller);
         cloud.gravity = {0, -9.81, 0};
@@ -192,6 +192,7 @@ TEST_CASE("on processors tile gives the bits of one thread whatever the number o
             for (int d = 0; d < B::dim; ++d) CHECK(ours(r).impulse[d] == theirs(r).impulse[d]);
         }
       }
+    }
   });
 }
 
