@@ -84,7 +84,7 @@ def read_log(text):
     def find(pattern):
         return re.search(pattern, text, re.M)
 
-    steps = int(find(r"^(?:finished|failed) after (\d+) steps")[1])
+    steps = int(find(r"^(?:finished|failed|stopped) after (\d+) steps")[1])
     rows = re.findall(r"^  ([a-z][a-z ,]+?) +(\d+) +([\d.]+) +[\d.]+ %", text, re.M)
     count, megabytes, strategy = find(r"^(\d+) particles in \d+ patches, ([\d.]+) MB on the devices?; strategy (\w+)").groups()
     rate = find(r"^([\d.e+-]+) us a step without output")

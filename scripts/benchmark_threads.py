@@ -2,7 +2,8 @@
 
 Cores that are all at work run slower than one alone (their clock, their share of the memory's bandwidth), whatever the
 program. So the threads are held against single threads that are at work at the same time, each bound to a core, with as many
-particles as a thread has: what is lost against them is the program's own.
+particles as a thread has, and all for the same time, so that none has the machine to itself at the end: what is lost against
+them is the program's own.
 """
 
 import os
@@ -18,6 +19,8 @@ SIZES = (737280, 5898240)  # particles of all threads: strips of L/B = 28.8 and 
 LEAST = 25600              # of a thread: a shorter strip has no room for the plate
 UPDATES_A_THREAD = 4e7     # particle updates of a run
 LEAST_STEPS = 20           # the first one makes sums that each of the others finds made
+AT_ONCE = 5                # s, that programs run which are at work at the same time
+STOPPED = 75               # exit status of those
 
 
 def cases(sizes, words):
@@ -28,9 +31,9 @@ def cases(sizes, words):
     return [(size, count) for size in sizes for count in threads if size // count >= LEAST]
 
 
-def command(program, threads, particles, precision, steps, folder):
+def command(program, threads, particles, precision, length, folder):
     size = Setting("footing", particles, "openmp", precision, "tile").size()
-    options = (f"-options_file inputs/footing.opts -backend openmp -precision {precision} -p2g tile -time_max_steps {steps}"
+    options = (f"-options_file inputs/footing.opts -backend openmp -precision {precision} -p2g tile {length}"
                f" {size} {HISTORY} -output_dir {folder}")
     return [str(program), *shlex.split(options)], {**environment(), "OMP_NUM_THREADS": str(threads),
                                                    "OMP_PROC_BIND": "spread" if threads > 1 else "false",
@@ -41,17 +44,19 @@ def run_at_once(program, programs, threads, particles, precision, folder):
     """The logs of several programs at once, each of so many threads and particles and, if they are many, on a core."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    steps = max(LEAST_STEPS, round(UPDATES_A_THREAD * threads / particles))
+    length = f"-wall_time_limit {AT_ONCE}"
+    if programs == 1:
+        length = f"-time_max_steps {max(LEAST_STEPS, round(UPDATES_A_THREAD * threads / particles))}"
     cores = sorted(os.sched_getaffinity(0))
     started = []
     for n in range(programs):
-        words, env = command(program, threads, particles, precision, steps, folder / str(n))
+        words, env = command(program, threads, particles, precision, length, folder / str(n))
         bind = ["taskset", "-c", str(cores[n * len(cores) // programs])] if threads == 1 else []
         started.append(subprocess.Popen([*bind, *words], cwd=ROOT, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                         text=True))
     texts = [each.communicate()[0] for each in started]
     for process, text in zip(started, texts):
-        if process.returncode != 0:
+        if process.returncode not in (0, STOPPED):
             raise SystemExit(f"{shlex.join(process.args)}: exit status {process.returncode}\n{text[-2000:]}")
     return [read_log((folder / str(n) / "mpm.log").read_text()) for n in range(programs)]
 
