@@ -8,21 +8,21 @@
 
 namespace mpm {
 
-/// Moves the soil of a part of the slots; if `sums`, it goes on to the nodes, with its boundary.
+/// Moves the soil; if `sums`, it goes on to the nodes, with its boundary.
 template <class Space, class T, int Dim>
-void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by, bool sums, const Part<Space>& part) {
+void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by, bool sums) {
   const auto& set = s.soil;
-  const Bins<Space> bins = bins_of(set.bins, part);
+  const auto& bins = set.bins;
   const HostParticles<Space, T, Dim> particles{
       set.points, bins.begin, s.patches.around, s.patches.origin, s.nodes.motion, s.control, by, s.spacing};
   const SoilSource<Space, T, Dim> soil_source{set.points, s.grid.inv_spacing};
   const BoundarySource<Space, T, Dim> boundary_source{set.points, s.grid.inv_spacing, s.near_rigid};
-  const HostSums soil(interpolation_of(s, bins, soil_source, s.nodes.soil, part.space));
-  const HostSums boundary(interpolation_of(s, bins, boundary_source, s.nodes.boundary, part.space));
+  const HostSums soil(interpolation_of(s, bins, soil_source, s.nodes.soil, s.space));
+  const HostSums boundary(interpolation_of(s, bins, boundary_source, s.nodes.boundary, s.space));
   const bool has_boundary = s.soil_boundary;
   const Shared phases[] = {slots_held<Dim>(bins),
                            sums && soil.apart ? slots_about<Dim>(bins, s.patches.slots) : Shared{}};
-  for_each_shared("mpm::update_particles", part.space, phases, [&](int phase, int n) {
+  for_each_shared("mpm::update_particles", s.space, phases, [&](int phase, int n) {
     if (s.control().paused) return;
     if (phase == 0) {
       const int slot = bins.by_colour(n);

@@ -24,8 +24,8 @@ template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s);
 
 /// Whether update_particles goes on to function 3 of the next step, the soil's boundary included: particles
-/// then pass through memory once a step. So it is with the strategy `tile`, where a velocity update does not
-/// need the nodal sums again and, on a GPU, the scratch memory holds both.
+/// then pass through memory once a step. So it is with the strategy `tile` on a GPU and on many threads, where
+/// a velocity update does not need the nodal sums again and, on a GPU, the scratch memory holds both.
 template <class Space, class T, int Dim>
 bool sums_ahead(const State<Space, T, Dim>& s);
 

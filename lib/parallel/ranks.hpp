@@ -57,8 +57,6 @@ class Ranks {
   Part<Space> inner(const State_& s) const;
   /// Sends the shares, which border(s) has summed.
   PetscErrorCode send_ahead(State_& s);
-  /// On a processor, where nothing runs behind the host: what was sent ahead comes in and is added now.
-  PetscErrorCode settle(State_& s);
   /// What s.space is given behind this call finds the border's particles as they are then.
   void join(const State_& s) { border_there_.hold(s.space); }
   /// Whether the border's shares have been sent since the last add_soil.

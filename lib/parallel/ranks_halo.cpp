@@ -181,15 +181,6 @@ PetscErrorCode Ranks<Space, T, Dim>::end_ahead(const State_& s, const Space& que
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::settle(State_& s) {
-  PetscFunctionBeginUser;
-  if (is_device<Space>) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(end_ahead(s, s.space, false));
-  ahead_ = Ahead::added;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::forget() {
   PetscFunctionBeginUser;
   PetscCall(bound_.drain());
@@ -209,7 +200,6 @@ PetscErrorCode Ranks<Space, T, Dim>::forget() {
   template Part<Space> Ranks<Space, T, Dim>::border(const State<Space, T, Dim>&);              \
   template Part<Space> Ranks<Space, T, Dim>::inner(const State<Space, T, Dim>&) const;         \
   template PetscErrorCode Ranks<Space, T, Dim>::send_ahead(State<Space, T, Dim>&);             \
-  template PetscErrorCode Ranks<Space, T, Dim>::settle(State<Space, T, Dim>&);                 \
   template PetscErrorCode Ranks<Space, T, Dim>::forget();
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

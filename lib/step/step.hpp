@@ -104,7 +104,6 @@ PetscErrorCode update_and_send(State<Space, T, Dim>& s, double dt, Ranks<Space, 
   update_particles(s, dt, border);
   PetscCall(ranks.send_ahead(s));
   update_particles(s, dt, ranks.inner(s));
-  PetscCall(ranks.settle(s));
   ranks.join(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
