@@ -21,7 +21,7 @@ struct NodesOfWindows {
   Windows<Space> windows;
   decltype(Patches<Space, Dim>::around) around;
   NodeField<Space, T, size> out;
-  bool adds;
+  bool adds;  // to what is there
 
   /// The window of a slot; null if it has none, or no points to sum.
   Window* window_of(int slot) const {
@@ -110,6 +110,7 @@ struct HostSums {
   void give_nodes(int slot) const { nodes(slot); }
 };
 
+/// The interpolation on a processor.
 template <class Source>
 void sum_on_host(const Interpolation<Source>& it) {
   const HostSums sums(it);
