@@ -27,7 +27,8 @@ loader.exec_module(benchmark)
 def result(backend, precision, strategy, us, particles=76800, problem="footing", **more):
     return {"problem": problem, "particles": particles, "backend": backend, "precision": precision, "strategy": strategy,
             "ran": "tile" if strategy == "auto" else strategy, "us": us, "all_us": [us],
-            "functions": {name: us / 2 for name, _ in tables.SPEEDUPS.values() if name}, "device": "a device", "machine": "a machine, 4 cores", "date": "2026-01-01", "commit": "abc", **more}
+            "functions": {name: us / 2 for name, _ in tables.SPEEDUPS.values() if name},
+            "device": "a device", "machine": "a machine, 4 cores", "date": "2026-01-01", "commit": "abc", **more}
 
 
 class Benchmark(unittest.TestCase):
