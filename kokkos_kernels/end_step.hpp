@@ -2,6 +2,7 @@
 // The end of a step: the rigid bodies move, the step is counted, and what any point can have moved is added
 // to the bound. A team does it.
 
+#include "lone_thread.hpp"
 #include "state.hpp"
 #include "warp.hpp"
 
@@ -122,7 +123,7 @@ struct EndStep {
       rigid.keep_in(rigids(r));
     }
     team.team_barrier();
-    Kokkos::single(Kokkos::PerTeam(team), [&] {
+    once(team, [&] {
       double furthest = 0;  // cells
       MPM_ROLLED
       for (int w = 0; w < parts; ++w) furthest = Kokkos::fmax(furthest, part[values * parts + w]);
@@ -137,7 +138,7 @@ struct EndStep {
   KOKKOS_INLINE_FUNCTION void sum(const Team& team, int value, double* part) const {
     sum_forces(team, value, 1, part);
     team.team_barrier();
-    Kokkos::single(Kokkos::PerTeam(team), [&] { sums(value) = total(part, warps(team.team_size())); });
+    once(team, [&] { sums(value) = total(part, warps(team.team_size())); });
   }
 
   /// Displacement [m] that rigid r will have, to the same bits. Dynamic: it may move by the forces on it,
@@ -181,7 +182,9 @@ struct EndStep {
   /// Sums of the forces number `first` to first + n by warp, [n][warps], in an order that is always the same.
   template <class Team>
   KOKKOS_INLINE_FUNCTION void sum_forces(const Team& team, int first, int n, double* part) const {
-    constexpr int k_slots = 4, k_values = 2;  // that a thread asks the memory for at once
+    // Slots and values that a thread asks the memory for at once. On a processor one after the other, so that
+    // slots that leave no force change nothing.
+    constexpr int k_slots = is_device<Space> ? 4 : 1, k_values = 2;
     const int size = team.team_size(), values = Dim * count;
     MPM_ROLLED
     for (int v = 0; v < n; v += k_values) {
@@ -195,7 +198,9 @@ struct EndStep {
             sum[m][w] += slot == k + m * size ? value : 0;
           }
       for (int w = 0; w < k_values; ++w) {
-        const double all = sum_of_warp((sum[0][w] + sum[1][w]) + (sum[2][w] + sum[3][w]));
+        for (int step = 1; step < k_slots; step *= 2)
+          for (int m = 0; m < k_slots; m += 2 * step) sum[m][w] += sum[m + step][w];
+        const double all = sum_of_warp(sum[0][w]);
         if (v + w < n) keep(team, all, part + (v + w) * warps(size));
       }
     }

@@ -74,6 +74,11 @@ struct HostParticles {
   UpdateScalars<T> by;
   double spacing;
 
+  /// Asks for what the next slot takes from the nodes.
+  void fetch_nodes(int slot) const {
+    const int last = last_around<Dim>(around, slot);
+    if (last >= 0) fetch(&motion(last * cells, 0), cells * k_motion * sizeof(T));
+  }
   /// The particles of a slot. Returns the largest component of their movements [cells].
   T operator()(int slot) const {
     alignas(Node) T nodes[window][k_node];

@@ -1,11 +1,21 @@
 #pragma once
 // The strategy `tile` on a processor: how the sums of the patches come to the nodes.
 
+#include <array>
 #include <cstring>
 
 #include "host_tile.hpp"
 
 namespace mpm {
+
+/// The places in Patches::around as the slots there rise.
+template <int Dim>
+std::array<int, Patch<Dim>::around> places_around_in_order(const Coord<Dim>& turn) {
+  std::array<int, Patch<Dim>::around> places{};
+  for (int n = 0; n < Patch<Dim>::around; ++n)
+    for (int k = 0, rest = n; k < Dim; ++k, rest /= 3) places[n] += rest % 3 * power(3, turn[k]);
+  return places;
+}
 
 /// What the nodes of a patch take from the windows of the patches round it, in which they lie too.
 template <class Source>
@@ -17,11 +27,15 @@ struct NodesOfWindows {
   using Window = T[size][window];
   using Row = Lanes<T, edge>;
 
+  static constexpr int rows = Patch<Dim>::cells / edge;
+  using Rows = Row[rows][size];  // sums of a slot's nodes
+
   Bins<Space> bins;
   Windows<Space> windows;
-  decltype(Patches<Space, Dim>::around) around;
+  Patches<Space, Dim> patches;
   NodeField<Space, T, size> out;
   bool adds;  // to what is there
+  std::array<int, Patch<Dim>::around> in_order = places_around_in_order(patches.turn);
 
   /// The window of a slot; null if it has none, or no points to sum.
   Window* window_of(int slot) const {
@@ -31,56 +45,68 @@ struct NodesOfWindows {
     return reinterpret_cast<Window*>(windows.sums.data()) + (windows.place(slot) - 1);
   }
 
-  /// To the nodes of a slot, in the order in which the slots round it would give to them one by one.
-  void operator()(int slot) const {
-    const Window* round[Patch<Dim>::around];
+  /// Asks for what a slot takes from the windows.
+  void fetch_windows(int slot) const {
+    const int last = last_around<Dim>(patches.around, slot);
+    if (const Window* const from = last < 0 ? nullptr : window_of(last)) fetch(from, sizeof *from);
+  }
+  /// What the nodes of a slot have.
+  void load(int slot, Rows& sums) const {
+    for (int r = 0; r < rows; ++r) load_groups(&out(slot * Patch<Dim>::cells + r * edge, 0), sums[r]);
+  }
+  /// To the nodes of a slot.
+  void give_nodes(int slot) const {
+    Rows sums;
+    if (adds) load(slot, sums);
+    if (!take(slot, sums) && adds) return;
+    for (int r = 0; r < rows; ++r) store_groups(sums[r], &out(slot * Patch<Dim>::cells + r * edge, 0));
+  }
+  /// To the sums of a slot's nodes, in the order in which the slots round it would give to them one by one.
+  /// Where this does not add to what is there, they begin at zero. False if no window holds them.
+  bool take(int slot, Rows& sums) const {
+    if (!adds)
+      for (auto& row : sums)
+        for (Row& sum : row) sum = T(0);
     bool some = false;
-    for (int k = 0; k < Patch<Dim>::around; ++k) {
-      round[k] = around(slot, k) < 0 ? nullptr : window_of(around(slot, k));
-      some = some || round[k];
+    for (const int place : in_order) {
+      const int other = patches.around(slot, place);
+      const Window* const window = other < 0 ? nullptr : window_of(other);
+      if (!window) continue;
+      some = true;
+      const int x = place % 3, y = place / 3 % 3, z = place / 9;
+      if (x == 0) add_window<0>(*window, y, z, sums);
+      if (x == 1) add_window<1>(*window, y, z, sums);
+      if (x == 2) add_window<2>(*window, y, z, sums);
     }
-    if (!some && adds) return;
-    constexpr int layers = Dim == 3 ? edge : 1;
-    for (int z = 0; z < layers; ++z)
-      for (int y = 0; y < edge; ++y) {
-        T* const nodes = &out(slot * Patch<Dim>::cells + (y + edge * z) * edge, 0);
-        Row sums[size];
-        for (Row& sum : sums) sum = T(0);
-        if (adds) load_groups(nodes, sums);
-        for (int k = Dim == 3 ? 0 : 1; k < (Dim == 3 ? 3 : 2); ++k)
-          for (int j = 0; j < 3; ++j) {
-            const int row = row_in(j, y), layer = Dim == 3 ? row_in(k, z) : 0;
-            if (row >= 0 && layer >= 0)
-              add_row(round + 3 * (j + (Dim == 3 ? 3 * k : 0)), (row + across * layer) * across, sums);
-          }
-        store_groups(sums, nodes);
-      }
+    return some;
   }
 
-  /// Where row y of a patch is in the window of the one before it, itself, or the one behind it: -1 nowhere.
-  static constexpr int row_in(int which, int y) {
-    const int row = y + 1 + (1 - which) * edge;
+  /// Where row n of a patch is in the window of the one before it, itself, or the one behind it: -1 nowhere.
+  static constexpr int row_in(int which, int n) {
+    const int row = n + 1 + (1 - which) * edge;
     return row < across ? Kokkos::max(row, -1) : -1;
   }
-
-  /// Adds a row of three patches beside one another, from `place` on in their windows.
-  KOKKOS_FORCEINLINE_FUNCTION static void add_row(const Window* const* three, int place, Row (&sums)[size]) {
-    if (three[0]) {
-      for (int n = 0; n < size; ++n) {
-        const T* const from = (*three[0])[n] + place + edge + 1;
-        Row first = T(0);
-        first.set(0, from[0]), first.set(1, from[1]);
-        sums[n] += first;
+  /// Adds what the window of the patch at place (x, y, z) of those round the nodes holds of them.
+  template <int x>
+  static void add_window(const Window& window, int y, int z, Rows& sums) {
+    for (int r = 0; r < rows; ++r) {
+      const int row = row_in(y, r % edge), layer = Dim == 3 ? row_in(z, r / edge) : 0;
+      if (row >= 0 && layer >= 0) add_row<x>(window, (row + across * layer) * across, sums[r]);
+    }
+  }
+  /// Adds a row that begins at `from` in the window: its last two nodes, those in the middle, or the first.
+  template <int x>
+  KOKKOS_FORCEINLINE_FUNCTION static void add_row(const Window& window, int from, Row (&sums)[size]) {
+    for (int n = 0; n < size; ++n) {
+      const T* const values = window[n] + from;
+      if (x == 1) {
+        sums[n] += Row::load(values + 1);
+      } else if (x == 0) {
+        for (int l = 0; l < 2; ++l) sums[n].set(l, sums[n][l] + values[edge + 1 + l]);
+      } else {
+        sums[n].set(edge - 1, sums[n][edge - 1] + values[0]);
       }
     }
-    if (three[1])
-      for (int n = 0; n < size; ++n) sums[n] += Row::load((*three[1])[n] + place + 1);
-    if (three[2])
-      for (int n = 0; n < size; ++n) {
-        Row last = T(0);
-        last.set(edge - 1, (*three[2])[n][place]);
-        sums[n] += last;
-      }
   }
 };
 
@@ -95,7 +121,7 @@ struct HostSums {
 
   explicit HostSums(const Interpolation<Source>& it)
       : tile{it.source, it.bins.begin, it.patches.around, it.out},
-        nodes{it.bins, it.windows, it.patches.around, it.out, it.adds},
+        nodes{it.bins, it.windows, it.patches, it.out, it.adds},
         apart(has_windows(it.space)) {}
 
   /// The particles of a slot, which holds some.
@@ -107,7 +133,7 @@ struct HostSums {
     tile.sum(slot, sums);
   }
   /// Any slot, if `apart`.
-  void give_nodes(int slot) const { nodes(slot); }
+  void give_nodes(int slot) const { nodes.give_nodes(slot); }
 };
 
 /// The interpolation on a processor.

@@ -70,6 +70,18 @@ KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field
     store_some(a, count, to);
 }
 
+/// Asks the memory for what is needed soon.
+inline void fetch(const void* from, std::size_t bytes) {
+  constexpr std::size_t line = 64;
+  for (std::size_t at = 0; at < bytes; at += line)
+    __builtin_prefetch(static_cast<const char*>(from) + at, 0, 2);
+}
+/// Of the slots round one that which is last in memory: the slots before it have not asked for it.
+template <int Dim, class Around>
+int last_around(const Around& around, int slot) {
+  return around(slot, Patch<Dim>::around - 1);
+}
+
 /// A number that many threads change, alone on its cache line.
 struct alignas(64) SharedCount {
   std::atomic<int> n{0};
@@ -103,11 +115,13 @@ void for_each_shared(const char* label, const Space& space, const Shared (&all)[
                            [&](int n) { f(phase, n); });
   } else {
     const int threads = space.concurrency();
+    int phases = Phases;
+    while (phases > 1 && all[phases - 1].first == all[phases - 1].last) --phases;
     std::vector<SharedCount> counts(Phases * (threads + 1));
     SharedCount *const taken = counts.data(), *const done = taken + Phases * threads;
     for (int n = 0; n < Phases * threads; ++n) taken[n].n = all[n / threads].part_begin(n % threads, threads);
     Kokkos::parallel_for(label, Range(space, 0, threads), [&](int thread) {
-      for (int phase = 0; phase < Phases; ++phase) {
+      for (int phase = 0; phase < phases; ++phase) {
         const Shared& of = all[phase];
         int mine = 0;
         for (int k = 0; k < threads; ++k) {
@@ -117,7 +131,7 @@ void for_each_shared(const char* label, const Space& space, const Shared (&all)[
           for (int n; next < end && (n = next.fetch_add(of.together)) < end;)
             for (const int stop = Kokkos::min(n + of.together, end); n < stop; ++n, ++mine) f(phase, n);
         }
-        if (phase == Phases - 1) return;
+        if (phase == phases - 1) return;
         constexpr int k_patience = 1 << 17;  // looks, some 80 us, before the processor is left to others
         auto& ready = done[phase].n;
         if ((ready += mine) == of.last - of.first) ready.notify_all();

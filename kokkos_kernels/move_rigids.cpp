@@ -1,3 +1,5 @@
+#include <vector>
+
 #include "end_step.hpp"
 #include "particle_to_node.hpp"
 #include "step_kernels.hpp"
@@ -11,6 +13,12 @@ void move_rigid_points(State<Space, T, Dim>& s, const Space& queue) {
     const auto points = s.rigid_points[r].points;
     if (points.surface_normal) continue;  // only a rebuild asks for them, and finds them itself
     const RigidSource<Space, T, Dim> source{points, s.rigids, r, s.patches.origin, s.spacing};
+    constexpr int k_few =
+        2000;  // a thread of a processor is done with them before the others have come together
+    if (!is_device<Space> && points.count < k_few) {
+      for (int p = 0; p < points.count; ++p) source.move(p);
+      continue;
+    }
     Kokkos::parallel_for(  // also while the steps are paused: it gives the same again
         "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(queue, 0, points.count)),
         KOKKOS_LAMBDA(int p) { source.move(p); });
@@ -19,11 +27,9 @@ void move_rigid_points(State<Space, T, Dim>& s, const Space& queue) {
 
 namespace {
 
-/// Teams of a thousand threads, which sum the forces of thousands of slots: `work` does what one of them
-/// does.
 template <class Space, class T, int Dim, class Work>
-void launch_end(const EndStep<Space, T, Dim>& end, const Space& queue, int teams, const Work& work) {
-  constexpr int threads = is_device<Space> ? 1024 : 1;
+void launch_end_by_teams(const EndStep<Space, T, Dim>& end, const Space& queue, int teams, const Work& work) {
+  constexpr int threads = 1024;
   using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<threads, 1>>;
   const int room = end.room(threads);
   const std::size_t bytes = scratch_bytes<double>(room);
@@ -34,6 +40,20 @@ void launch_end(const EndStep<Space, T, Dim>& end, const Space& queue, int teams
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (!end.control().paused) work(end, team, scratch<double>(team, room, level));
       });
+}
+
+/// Teams of a thousand threads, which sum the forces of thousands of slots: `work` does what one of them
+/// does. On a processor one thread does it all, before the others would have come together.
+template <class Space, class T, int Dim, class Work>
+void launch_end(const EndStep<Space, T, Dim>& end, const Space& queue, int teams, const Work& work) {
+  if constexpr (is_device<Space>) {
+    launch_end_by_teams(end, queue, teams, work);
+  } else {
+    Kokkos::parallel_for("mpm::end_step", Kokkos::RangePolicy<Kokkos::Serial>(0, teams), [&](int team) {
+      std::vector<double> part(end.room(1));
+      if (!end.control().paused) work(end, LoneThread{team}, part.data());
+    });
+  }
 }
 
 struct Sum {

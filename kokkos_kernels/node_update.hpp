@@ -2,6 +2,8 @@
 // What becomes of a node in a step (function 4): its velocity and acceleration, the walls, and contact.
 
 #include "contact.hpp"
+#include "lanes.hpp"
+#include "lone_thread.hpp"
 #include "step_kernels.hpp"
 #include "warp.hpp"
 #include "window.hpp"
@@ -12,28 +14,12 @@ namespace mpm {
 template <class Space, int Dim>
 inline constexpr int node_threads = is_device<Space> ? Patch<Dim>::cells : 1;
 
-/// On a GPU so many of them share a multiprocessor that contact, which needs many registers, hides what it
-/// waits for. On a processor threads take over what others have left: far from the soil a slot is less work.
-template <class Space, int Dim>
-using NodeTeam =
-    std::conditional_t<is_device<Space>,
-                       Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, 12>>,
-                       Kokkos::TeamPolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>>;
-template <class Space, int Dim>
-NodeTeam<Space, Dim> node_teams(const Space& space, int teams) {
-  NodeTeam<Space, Dim> policy(space, teams, node_threads<Space, Dim>);
-  if (!is_device<Space>) policy.set_chunk_size(4);
-  return policy;
-}
-
 /// Sets the sums of a slot's nodes to zero, neighbours in memory by neighbouring threads.
 template <class Team, class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T, Dim>& nodes, int slot,
                                        bool boundary, int rigids) {
   constexpr int cells = Patch<Dim>::cells;
-  const auto clear = [&](T* values, int count) {
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, count), [&](int n) { values[n] = 0; });
-  };
+  const auto clear = [&](T* values, int count) { for_team(team, count, [&](int n) { values[n] = 0; }); };
   clear(&nodes.soil(slot * cells, 0), cells * SoilShare<Dim>::size);
   if (boundary) clear(&nodes.boundary(slot * cells, 0), cells * BoundaryShare<Dim>::size);
   for (int r = 0; r < rigids; ++r) clear(&nodes.rigid(r, slot * cells, 0), cells * RigidShare<Dim>::size);
@@ -42,8 +28,6 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
 /// The node's part of the step.
 template <class Space, class T, int Dim>
 struct UpdateNodes {
-  using Member = typename NodeTeam<Space, Dim>::member_type;
-  using Sums = NodeSums<Space, T, Dim>;
   using S = SoilShare<Dim>;
   static constexpr int cells = Patch<Dim>::cells;
   int value_count;
@@ -58,15 +42,15 @@ struct UpdateNodes {
   T dt, inv_dt, damping, mass_cut;
   double spacing;
   bool has_boundary, has_friction, has_mass_normals, clears;
-  int scratch_level;
 
-  /// The nodes of a slot, number n of those near a rigid. Leaves the force on each rigid [N] in `forces`,
-  /// summed in an order that is always the same.
-  KOKKOS_INLINE_FUNCTION void update_near(const Member& team, int slot, int n) const {
-    double* const force = scratch<double>(team, value_count * cells, scratch_level);
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int k) {
+  /// The nodes of a slot, number n of those near a rigid, under their sums. Leaves the force on each rigid
+  /// [N] in `forces`, summed in an order that is always the same. force: [values][cells]
+  template <class Team, class Sums>
+  KOKKOS_INLINE_FUNCTION void update_near(const Team& team, const Sums& sums, int slot, int n,
+                                          double* force) const {
+    for_team(team, cells, [&](int k) {
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
-      update(slot * cells + k, true, force + k);
+      update(sums, slot * cells + k, true, force + k);
       if (counted.extent(0) == 0 || (counted(slot) >> k & 1) != 0) return;
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank tells it
     });
@@ -87,12 +71,30 @@ struct UpdateNodes {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void update(int i, bool near, double* force) const {
+  template <class Sums>
+  KOKKOS_INLINE_FUNCTION void update(const Sums& sums, int i, bool near, double* force) const {
     Coord<Dim> at = coord_of<Dim>(i);
     const Coord<Dim> from = origin(i / cells);
     for (int d = 0; d < Dim; ++d) at[d] += from[d];
-    keep(i, motion(nodes, rigids.data(), i, at, near, force));
+    keep(i, motion(sums, rigids.data(), i, at, near, force));
   }
+  /// Mass [kg] below which a node is at rest: so little that 1 / m_i might overflow.
+  KOKKOS_INLINE_FUNCTION T at_rest() const { return T(1e-12) * mass_cut; }
+
+  /// Velocities of a node before and after the step, without walls and contact, by number or by lane. inv_m:
+  /// 1 / its mass
+  template <class R>
+  KOKKOS_FORCEINLINE_FUNCTION void accelerate(const R (&soil)[S::size], R inv_m, Vector<R, Dim>& v_old,
+                                              Vector<R, Dim>& v) const {
+    const R inv_m_force = select(soil[S::mass] > mass_cut, inv_m, R(0));  // on less mass it is round-off
+    for (int d = 0; d < Dim; ++d) {
+      v_old[d] = soil[S::momentum + d] * inv_m;       // Eq. (6)
+      R a = soil[S::force + d] * inv_m_force + g[d];  // Eq. (8)
+      a -= damping * Kokkos::fabs(a) * select(v_old[d] > 0, R(1), select(v_old[d] < 0, R(-1), R(0)));
+      v[d] = v_old[d] + a * dt;  // Eq. (9)
+    }
+  }
+
   KOKKOS_INLINE_FUNCTION void keep(int i, const MotionValues<T, Dim>& motion) const {
     *reinterpret_cast<MotionValues<T, Dim>*>(&nodes.motion(i, 0)) = motion;
   }
@@ -108,6 +110,7 @@ struct UpdateNodes {
 
   /// What becomes of node i, which is `at`, under its sums; bodies: the rigids; near: one of them may touch
   /// the node. Adds component d of the force on rigid r to force[(r Dim + d) cells], unless it is null.
+  template <class Sums>
   KOKKOS_INLINE_FUNCTION MotionValues<T, Dim> motion(const Sums& sums, const Rigid<Dim>* bodies, int i,
                                                      const Coord<Dim>& at, bool near, double* force) const {
     Node node{i, at, 0, {}, {}, 0};
@@ -119,16 +122,9 @@ struct UpdateNodes {
     MPM_ROLLED
     for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r)
       nodes.impulse(r, i) *= k_memory<T>;
-    constexpr T k_floor = T(1e-12);  // of the cut: far less is at rest, lest 1 / m_i overflow
-    if (m_i > k_floor * mass_cut) {
-      const T inv_m = node.inv_m = 1 / m_i;
-      const T inv_m_force = m_i > mass_cut ? inv_m : T(0);  // the force on less mass is round-off
-      for (int d = 0; d < Dim; ++d) {
-        v_old[d] = node.soil[S::momentum + d] * inv_m;       // Eq. (6)
-        T a = node.soil[S::force + d] * inv_m_force + g[d];  // Eq. (8)
-        a -= damping * Kokkos::fabs(a) * (v_old[d] > 0 ? T(1) : (v_old[d] < 0 ? T(-1) : T(0)));
-        v[d] = v_old[d] + a * dt;  // Eq. (9)
-      }
+    if (m_i > at_rest()) {
+      node.inv_m = 1 / m_i;
+      accelerate(node.soil, node.inv_m, v_old, v);
       node.sides = sides_of(grid, at);
       apply_walls(grid, node.sides, v);
       const int touching = near && m_i > mass_cut ? static_cast<int>(rigids.extent(0)) : 0;
@@ -146,15 +142,36 @@ struct UpdateNodes {
   }
 
   /// The nodes of a slot far from every rigid.
-  KOKKOS_INLINE_FUNCTION void update_far(const Member& team, int slot) const {
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells),
-                         [&](int k) { update(slot * cells + k, false, nullptr); });
+  template <class Team, class Sums>
+  KOKKOS_INLINE_FUNCTION void update_far(const Team& team, const Sums& sums, int slot) const {
+    for_team(team, cells, [&](int k) { update(sums, slot * cells + k, false, nullptr); });
     team.team_barrier();
+    if (clears) clear_sums(team, nodes, slot, false, 0);
+  }
+
+  /// The same, far from walls too and without friction, for the lanes of a processor: a row at once.
+  template <class Team, class Sums>
+  void update_rows(const Team& team, const Sums& sums, int slot) const {
+    using Row = typename Sums::Row;
+    for (int k = 0; k < sums.rows; ++k) {
+      const auto& soil = sums.of_soil[k];
+      Vector<Row, Dim> v_old, v;
+      const auto moves = soil[S::mass] > at_rest();
+      accelerate(soil, select(moves, T(1) / soil[S::mass], T(0)), v_old, v);
+      Row motion[NodeMotion<Dim>::size];
+      for (int d = 0; d < Dim; ++d) {
+        v[d] = select(moves, v[d], T(0));
+        motion[NodeMotion<Dim>::velocity + d] = v[d];
+        motion[NodeMotion<Dim>::acceleration + d] = (v[d] - v_old[d]) * inv_dt;
+      }
+      store_groups(motion, &nodes.motion((slot * sums.rows + k) * Row::k_count, 0));
+    }
     if (clears) clear_sums(team, nodes, slot, false, 0);
   }
 
   /// Contact with rigid r; adds the force of the soil on it (Eq. 10) to force[0], force[cells] ..., unless it
   /// is null.
+  template <class Sums>
   KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, const Node& node, const Rigid<Dim>& rigid, int r,
                                     Vector<T, Dim>& v, double* force) const {
     T given[RigidShare<Dim>::size] = {};  // asked for before the rigid tells whether it matters
@@ -278,8 +295,7 @@ UpdateNodes<Space, T, Dim> node_update_of(const State<Space, T, Dim>& s, double 
                                     s.soil_boundary,
                                     s.has_friction,
                                     s.mass_normals,
-                                    sums_ahead(s) && !writes_sums(s),
-                                    0};
+                                    sums_ahead(s) && !writes_sums(s)};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   return update;
 }

@@ -1,5 +1,8 @@
 // Where the points are, and which patches are active.
 
+#include <algorithm>
+#include <numeric>
+
 #include "batches.hpp"
 #include "rebuild.hpp"
 
@@ -15,6 +18,26 @@ KOKKOS_INLINE_FUNCTION long patch_around(const Grid<T, Dim>& grid, Coord<Dim> at
     if (patch < 0 || patch >= grid.patches[d]) return -1;
   }
   return grid.patch_of(at);
+}
+
+/// The directions, that with the fewest patches first.
+template <class T, int Dim>
+Coord<Dim> shortest_first(const Grid<T, Dim>& grid) {
+  Coord<Dim> turn;
+  std::iota(turn.c, turn.c + Dim, 0);
+  std::stable_sort(turn.c, turn.c + Dim, [&](int a, int b) { return grid.patches[a] < grid.patches[b]; });
+  return turn;
+}
+/// Lower cell of the n-th patch of the whole grid, where directions take turns: so the patches round one are
+/// near it in memory too.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION Coord<Dim> origin_in_turn(const Grid<T, Dim>& grid, const Coord<Dim>& turn, int n) {
+  Coord<Dim> c{};
+  for (int k = 0; k < Dim; ++k) {
+    c[turn[k]] = (n % grid.patches[turn[k]] - 1) * Patch<Dim>::edge;
+    n /= grid.patches[turn[k]];
+  }
+  return c;
 }
 
 constexpr int k_soil = 1, k_rigid = 2;  // what a patch is marked to hold
@@ -138,16 +161,17 @@ void activate_patches(State<Space, T, Dim>& s) {
   mark_soil(s, marks);
   for (const auto& set : s.rigid_points) mark_rigid(s, set, marks);
 
+  const Coord<Dim> turn = patches.turn = shortest_first(grid);
   Kokkos::parallel_scan(
       "mpm::number_patches", Range(s.space, 0, patch_count),
       KOKKOS_LAMBDA(int n, int& slot, bool last) {
-        const Coord<Dim> at = grid.origin_of(n);
+        const Coord<Dim> at = origin_in_turn(grid, turn, n);
         bool active = false;
         for (int k = 0; k < Patch<Dim>::around && !active; ++k) {
           const long other = patch_around(grid, at, k);
           active = other >= 0 && marks(other) != 0;
         }
-        if (last) slot_of(n) = active ? slot : -1;
+        if (last) slot_of(grid.patch_of(at)) = active ? slot : -1;
         slot += active;
       },
       patches.slots);

@@ -19,6 +19,7 @@ struct P2GPlan {
 /// Which nodal fields hold the sums of what they are of, as it is now.
 struct Summed {
   bool soil = false, boundary = false, rigids = false;
+  bool in_windows = false;  // those of the soil and its boundary: the windows hold them, for update_nodes
 };
 
 template <class Space, class T, int Dim>

@@ -39,6 +39,9 @@ template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt) {
   update_nodes(s, dt, s.space);
 }
+/// Brings to the nodes the sums that update_particles has left in windows for update_nodes.
+template <class Space, class T, int Dim>
+void finish_sums(State<Space, T, Dim>& s);
 /// Whether the nodes near rigids have a kernel of their own.
 template <class Space, class T, int Dim>
 bool nodes_apart(const State<Space, T, Dim>& s);

@@ -27,7 +27,7 @@ bool sums_ahead(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const Part<Space>& part) {
   const bool sums = sums_ahead(s);
-  s.summed = {sums, sums && s.soil_boundary, false};
+  s.summed = {sums, sums && s.soil_boundary, false, sums && writes_sums(s)};
   if constexpr (is_device<Space>) {
     if constexpr (sums_fit<Space, T, Dim>)
       if (sums) return launch_update<true>(s, dt, part);

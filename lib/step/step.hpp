@@ -74,6 +74,7 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
 template <class Space, class T, int Dim>
 PetscErrorCode soil_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks, const Space& queue) {
   PetscFunctionBeginUser;
+  if (ranks) finish_sums(s);
   if (!ranks || !ranks->overlaps(s)) {
     soil_to_nodes(s, queue);
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -90,6 +91,7 @@ PetscErrorCode soil_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* rank
 /// The lists hold, as they do for that step: s.control must not be paused.
 template <class Space, class T, int Dim>
 void sum_present_soil(State<Space, T, Dim>& s) {
+  finish_sums(s);
   if (s.summed.soil) return;
   reset_nodes(s);
   soil_to_nodes(s, s.space);
