@@ -86,7 +86,7 @@ template <class Space, int Dim>
 struct Patches {
   using Memory = typename Space::memory_space;
   int slots = 0;
-  Coord<Dim> turn{};  // directions as slots count them
+  Coord<Dim> turn{};  // directions as slots count them, the one with the fewest patches first
   Kokkos::View<int*, Memory> slot_of;        // by Grid::patch_of; -1 where not active
   Kokkos::View<Coord<Dim>*, Memory> origin;  // lower cell of a slot
   Kokkos::View<int * [Patch<Dim>::around], Kokkos::LayoutRight, Memory>

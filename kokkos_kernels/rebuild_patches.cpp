@@ -20,14 +20,12 @@ KOKKOS_INLINE_FUNCTION long patch_around(const Grid<T, Dim>& grid, Coord<Dim> at
   return grid.patch_of(at);
 }
 
-/// The directions as slots count them. A processor's caches hold the patches round one if that with the
-/// fewest patches comes first; a GPU's hold them anyway, and few patches of a flat slope were slower so.
-template <class Space, class T, int Dim>
-Coord<Dim> turn_of(const Grid<T, Dim>& grid) {
+/// The directions, that with the fewest patches first.
+template <class T, int Dim>
+Coord<Dim> shortest_first(const Grid<T, Dim>& grid) {
   Coord<Dim> turn;
   std::iota(turn.c, turn.c + Dim, 0);
-  if (!is_device<Space>)
-    std::stable_sort(turn.c, turn.c + Dim, [&](int a, int b) { return grid.patches[a] < grid.patches[b]; });
+  std::stable_sort(turn.c, turn.c + Dim, [&](int a, int b) { return grid.patches[a] < grid.patches[b]; });
   return turn;
 }
 /// Lower cell of the n-th patch of the whole grid, where directions take turns: so the patches round one are
@@ -163,7 +161,7 @@ void activate_patches(State<Space, T, Dim>& s) {
   mark_soil(s, marks);
   for (const auto& set : s.rigid_points) mark_rigid(s, set, marks);
 
-  const Coord<Dim> turn = patches.turn = turn_of<Space>(grid);
+  const Coord<Dim> turn = patches.turn = shortest_first(grid);
   Kokkos::parallel_scan(
       "mpm::number_patches", Range(s.space, 0, patch_count),
       KOKKOS_LAMBDA(int n, int& slot, bool last) {

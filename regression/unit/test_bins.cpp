@@ -74,11 +74,10 @@ std::string fault_of_patches(const State<Space, T, Dim>& s) {
   }
   if (active != s.patches.slots) return "not every slot belongs to a patch";
   const auto& patches = s.grid.patches;
-  const int first =
-      is_device<Space> ? 0 : static_cast<int>(std::min_element(patches.c, patches.c + Dim) - patches.c);
+  const int shortest = static_cast<int>(std::min_element(patches.c, patches.c + Dim) - patches.c);
   for (int slot = 0; slot < active; ++slot) {
-    const int next = around(slot, Patch<Dim>::around / 2 + power(3, first));
-    if (next >= 0 && next != slot + 1) return "slots count another direction first";
+    const int next = around(slot, Patch<Dim>::around / 2 + power(3, shortest));
+    if (next >= 0 && next != slot + 1) return "slots do not count the direction with the fewest patches first";
     bool needed = false;
     for (int k = 0; k < Patch<Dim>::around; ++k) {
       const int other = around(slot, k);
