@@ -99,13 +99,14 @@ struct NodesOfWindows {
   KOKKOS_FORCEINLINE_FUNCTION static void add_row(const Window& window, int from, Row (&sums)[size]) {
     for (int n = 0; n < size; ++n) {
       const T* const values = window[n] + from;
-      if (x == 1) {
-        sums[n] += Row::load(values + 1);
-      } else if (x == 0) {
-        for (int l = 0; l < 2; ++l) sums[n].set(l, sums[n][l] + values[edge + 1 + l]);
-      } else {
-        sums[n].set(edge - 1, sums[n][edge - 1] + values[0]);
-      }
+      Row row = T(0);  // whole rows: a processor waits where it reads a vector after parts of it were written
+      if (x == 0)
+        for (int l = 0; l < 2; ++l) row.set(l, values[edge + 1 + l]);
+      else if (x == 1)
+        row = Row::load(values + 1);
+      else
+        row.set(edge - 1, values[0]);
+      sums[n] += row;
     }
   }
 };
