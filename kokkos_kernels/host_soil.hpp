@@ -13,10 +13,11 @@ struct SlotSums {
   static constexpr int edge = Patch<Dim>::edge, rows = Patch<Dim>::cells / edge;
   using Row = Lanes<T, edge>;
   Row of_soil[rows][SoilShare<Dim>::size], of_boundary[rows][BoundaryShare<Dim>::size];
-  decltype(NodeSums<Space, T, Dim>::rigid) rigid;
+  const decltype(NodeSums<Space, T, Dim>::rigid)* of_rigids;  // a view copied would be counted by all threads
 
   KOKKOS_INLINE_FUNCTION T soil(int i, int n) const { return of_soil[i / edge % rows][n][i % edge]; }
   KOKKOS_INLINE_FUNCTION T boundary(int i, int n) const { return of_boundary[i / edge % rows][n][i % edge]; }
+  KOKKOS_INLINE_FUNCTION T rigid(int r, int i, int n) const { return (*of_rigids)(r, i, n); }
 };
 
 template <class Space, class T, int Dim>
@@ -55,7 +56,7 @@ struct HostSoil {
     };
     take(soil.nodes, sums.of_soil);
     if (has_boundary_at(slot)) take(boundary.nodes, sums.of_boundary);
-    sums.rigid = rigid;
+    sums.of_rigids = &rigid;
   }
 };
 
