@@ -1,6 +1,7 @@
 #pragma once
 // update_nodes on a processor.
 
+#include <type_traits>
 #include <vector>
 
 #include "host_soil.hpp"
@@ -13,6 +14,7 @@ template <class Space, class T, int Dim>
 struct HostNodes {
   static constexpr int cells = Patch<Dim>::cells, edge = Patch<Dim>::edge;
   using Sums = SlotSums<Space, T, Dim>;
+  static_assert(std::is_trivially_copyable_v<Sums>, "threads would count the copies of a view in it");
 
   UpdateNodes<Space, T, Dim> update;
   HostSoil<Space, T, Dim> soil;

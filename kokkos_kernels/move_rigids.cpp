@@ -13,8 +13,7 @@ void move_rigid_points(State<Space, T, Dim>& s, const Space& queue) {
     const auto points = s.rigid_points[r].points;
     if (points.surface_normal) continue;  // only a rebuild asks for them, and finds them itself
     const RigidSource<Space, T, Dim> source{points, s.rigids, r, s.patches.origin, s.spacing};
-    constexpr int k_few =
-        2000;  // a thread of a processor is done with them before the others have come together
+    constexpr int k_few = 2000;  // one thread is done with them before the others have come together
     if (!is_device<Space> && points.count < k_few) {
       for (int p = 0; p < points.count; ++p) source.move(p);
       continue;
