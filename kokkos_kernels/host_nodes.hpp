@@ -33,7 +33,8 @@ struct HostNodes {
     Sums sums;
     soil.take(slot, in_windows, sums);
     if (near > 0) {
-      std::vector<double> force(update.value_count * cells);
+      thread_local std::vector<double> force;  // so that a step allocates nothing
+      force.resize(update.value_count * cells);
       update.update_near(LoneThread{}, sums, slot, near - 1, force.data());
     } else if (inside(slot) && !update.has_friction) {
       update.update_rows(LoneThread{}, sums, slot);

@@ -99,7 +99,7 @@ struct NodesOfWindows {
   KOKKOS_FORCEINLINE_FUNCTION static void add_row(const Window& window, int from, Row (&sums)[size]) {
     for (int n = 0; n < size; ++n) {
       const T* const values = window[n] + from;
-      Row row = T(0);  // whole rows: a processor waits where it reads a vector after parts of it were written
+      Row row = T(0);  // nothing at the nodes that this window does not hold
       if (x == 0)
         for (int l = 0; l < 2; ++l) row.set(l, values[edge + 1 + l]);
       else if (x == 1)
