@@ -2,66 +2,96 @@
 
 #include <mpi.h>
 #include <petscsys.h>
-#include <Kokkos_Core.hpp>
 
-#include <sched.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <string>
 #include <thread>
 
+#include "mpm/devices.hpp"
 #include "mpm/simulation.hpp"
-#include "signals.hpp"
 #include "subnormals.hpp"
 
 namespace {
 
 constexpr int k_system_failure = 1;  // exit status of what neither the input nor the computation explains
 
+/// What the program ends with where the system failed. Memory that runs out before the first step is a matter
+/// of the input, later of the computation.
+std::atomic_int failure_status{k_system_failure};
+std::atomic_bool begun{false};  // the steps
+
+/// Tells the first failure in one line.
+void tell_failure(bool memory, const char* message) {
+  static std::atomic_flag told;
+  if (told.test_and_set()) return;
+  if (!memory) {
+    std::fprintf(stderr, "mpm: %s\n", message != nullptr ? message : "the system failed");
+    return;
+  }
+  failure_status = static_cast<int>(begun ? mpm::Outcome::failed : mpm::Outcome::bad_input);
+  std::fprintf(stderr, "mpm: memory ran out %s; fewer particles or more memory are needed\n",
+               begun ? "during the run" : "before the first step");
+}
+
+/// Whether a message is that of an allocation: of the language, its containers or Kokkos.
+bool tells_of_memory(const char* message) {
+  const std::string text = message != nullptr ? message : "";
+  return text.find("bad_alloc") != std::string::npos ||
+         text.find("failed to allocate") != std::string::npos ||
+         text.find("bad_array_new_length") != std::string::npos ||
+         text.find("max_size()") != std::string::npos;
+}
+
 /// One line instead of PETSc's page, where an error is met first; a full disk is often met by rows and by
 /// frames, which are written beside the run.
 PetscErrorCode tell_in_one_line(MPI_Comm, int, const char*, const char*, PetscErrorCode error,
                                 PetscErrorType type, const char* message, void*) {
-  static std::atomic_flag told;
-  if (type == PETSC_ERROR_INITIAL && !told.test_and_set())
-    std::fprintf(stderr, "mpm: %s\n", message != nullptr ? message : "the system failed");
+  if (type == PETSC_ERROR_INITIAL) tell_failure(error == PETSC_ERR_MEM || tells_of_memory(message), message);
+  return error;
+}
+
+/// The same of PETSc's start, where only an option of its own can be wrong.
+PetscErrorCode tell_of_start(MPI_Comm, int, const char*, const char*, PetscErrorCode error,
+                             PetscErrorType type, const char* message, void*) {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (type == PETSC_ERROR_INITIAL && rank == 0)
+    std::fprintf(
+        stderr,
+        "mpm: options of PETSc: given a value that it does not know (%s), takes those of its manual\n",
+        message != nullptr ? message : "");
   return error;
 }
 
 PetscErrorCode run(const mpm::InputReport& arguments, mpm::Outcome* outcome) {
   PetscFunctionBeginUser;
   mpm::Simulation simulation;  // its views die here, before Kokkos does
-  PetscCall(simulation.set_from_options(PETSC_COMM_WORLD, nullptr, arguments));
-  if (simulation.ready()) PetscCall(simulation.run());
+  simulation.on_first_step([] { begun = true; });
+  try {
+    PetscCall(simulation.set_from_options(PETSC_COMM_WORLD, nullptr, arguments));
+    if (simulation.ready()) PetscCall(simulation.run());
+  } catch (const std::exception& error) {
+    tell_failure(tells_of_memory(error.what()), error.what());
+    PetscFunctionReturn(PETSC_ERR_MEM);
+  }
   *outcome = simulation.outcome();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What several ranks on a node must not each take whole, where the user has not chosen: a device each, in
-/// turn
-/// (--kokkos-device-id, KOKKOS_DEVICE_ID), and a part of the cores (OMP_NUM_THREADS, KOKKOS_NUM_THREADS). One
-/// of them speaks for all of what Kokkos warns of.
-void share_node() {
-  MPI_Comm node = MPI_COMM_NULL;
-  int world = 0, rank = 0, size = 1;
-  MPI_Comm_rank(MPI_COMM_WORLD, &world);
-  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
-  MPI_Comm_rank(node, &rank);
-  MPI_Comm_size(node, &size);
-  MPI_Comm_free(&node);
-  const int devices = Kokkos::num_devices();
-  if (devices > 0) setenv("KOKKOS_DEVICE_ID", std::to_string(rank % devices).c_str(), 0);
-  cpu_set_t mine;
-  const int usable = sched_getaffinity(0, sizeof mine, &mine) == 0 ? CPU_COUNT(&mine) : 1;
-  const int part = std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)) / size);
-  if (size > 1 && std::getenv("OMP_NUM_THREADS") == nullptr)
-    setenv("KOKKOS_NUM_THREADS", std::to_string(std::min(usable, part)).c_str(), 0);
-  if (world > 0) setenv("KOKKOS_DISABLE_WARNINGS", "1", 0);
+/// An exception that nobody can catch, as in a thread: the same line in lieu of an abort.
+void end_of_exception() {
+  std::string what = "the program failed";
+  try {
+    if (std::current_exception()) std::rethrow_exception(std::current_exception());
+  } catch (const std::exception& error) {
+    what = error.what();
+  } catch (...) {}
+  tell_failure(tells_of_memory(what.c_str()), what.c_str());
+  std::_Exit(failure_status);
 }
 
 /// A rank that failed alone, as for want of memory, must not leave the others waiting for it for ever.
@@ -74,29 +104,35 @@ void end_others() {
     MPI_Test(&all, &ended, MPI_STATUS_IGNORE);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  if (!ended) MPI_Abort(MPI_COMM_WORLD, k_system_failure);
+  if (!ended) MPI_Abort(MPI_COMM_WORLD, failure_status);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  setenv("OMP_PROC_BIND", "false", 0);  // what an unset variable means; Kokkos would warn of it
   mpm::flush_subnormals();
+  std::set_terminate(end_of_exception);
   MPI_Init(&argc, &argv);
-  share_node();
-  Kokkos::initialize(argc, argv);  // first: takes its --kokkos-* words out of argv
-  const auto arguments = mpm::prepare_arguments(MPI_COMM_WORLD, &argc, argv);
+  if (!mpm::start_devices(&argc, argv)) {
+    MPI_Finalize();
+    return static_cast<int>(mpm::Outcome::bad_input);
+  }
+  const auto arguments = mpm::prepare_arguments(MPI_COMM_WORLD, &argc, &argv);
   // The system's own way with signals: PETSc's is a page of text even where a reader closes a pipe.
   PetscCall(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"));
-  PetscCall(PetscInitialize(&argc, &argv, nullptr, nullptr));
+  PetscCall(PetscPushErrorHandler(tell_of_start, nullptr));  // stays: -malloc_debug could not free it
+  if (PetscInitialize(&argc, &argv, nullptr, nullptr) != PETSC_SUCCESS) {
+    mpm::end_devices();
+    MPI_Finalize();
+    return static_cast<int>(mpm::Outcome::bad_input);
+  }
   PetscCall(PetscPushErrorHandler(tell_in_one_line, nullptr));
-  mpm::catch_signals();
   mpm::Outcome outcome{};
   const bool whole = run(*arguments, &outcome) == PETSC_SUCCESS;
   if (!whole) end_others();
   PetscCall(PetscPopErrorHandler());
   PetscCall(PetscFinalize());
-  Kokkos::finalize();
+  mpm::end_devices();
   MPI_Finalize();
-  return whole ? static_cast<int>(outcome) : k_system_failure;
+  return whole ? static_cast<int>(outcome) : failure_status.load();
 }

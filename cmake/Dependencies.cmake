@@ -19,6 +19,14 @@ if(MPM_KOKKOS_LANGUAGE STREQUAL CUDA)
   endif()
 endif()
 
+# nvcc from 12.9 on and g++ lay out the members of Kokkos' mdspan differently in C++20 (test cuda.view_layout), and
+# kernels then read wrong extents. Kokkos avoids it from 4.7.02 on.
+if(Kokkos_ENABLE_CUDA AND Kokkos_VERSION VERSION_LESS 4.7.02 AND IMPL_MDSPAN IN_LIST Kokkos_OPTIONS
+    AND NOT CMAKE_CUDA_COMPILER_VERSION VERSION_LESS 12.9)
+  message(FATAL_ERROR "Kokkos ${Kokkos_VERSION} in ${Kokkos_DIR} has a fault with this CUDA: take 4.7.02 or newer, "
+    "or build it with -DKokkos_ENABLE_IMPL_MDSPAN=OFF")
+endif()
+
 # Adds sources that include Kokkos to a target.
 function(mpm_kokkos_sources target)
   target_sources(${target} PRIVATE ${ARGN})
@@ -27,34 +35,11 @@ endfunction()
 
 find_package(MPI REQUIRED COMPONENTS C)
 
-find_package(PkgConfig REQUIRED)
-pkg_search_module(PETSC REQUIRED IMPORTED_TARGET GLOBAL PETSc>=3.19 petsc>=3.19)
-add_library(PETSc::PETSc ALIAS PkgConfig::PETSC)
-if(PETSC_LINK_LIBRARIES MATCHES "libpetsc[^;]*\\.a")
-  target_link_libraries(PkgConfig::PETSC INTERFACE ${PETSC_STATIC_LDFLAGS})
-endif()
-
-# Debian's parallel HDF5 is known to pkg-config; others by find_package.
-if(NOT HDF5_ROOT AND NOT DEFINED ENV{HDF5_ROOT})
-  pkg_search_module(HDF5 QUIET IMPORTED_TARGET GLOBAL hdf5-openmpi hdf5-mpich)
-endif()
-if(TARGET PkgConfig::HDF5)
-  add_library(HDF5::HDF5 ALIAS PkgConfig::HDF5)
-else()
-  set(HDF5_PREFER_PARALLEL ON)
-  find_package(HDF5 REQUIRED COMPONENTS C)
-  if(NOT HDF5_IS_PARALLEL)
-    message(FATAL_ERROR "HDF5 in ${HDF5_INCLUDE_DIRS} is not parallel; name another by HDF5_ROOT")
-  endif()
-endif()
-
+# Found by modules beside this file, which are installed for the users of the library.
+find_package(PETSc 3.19 REQUIRED)
+find_package(ParallelHDF5 REQUIRED)
 find_package(ZLIB REQUIRED)  # HDF5 stands on it too
-
-find_path(METIS_INCLUDE_DIR metis.h HINTS ${METIS_ROOT} ENV METIS_ROOT PATH_SUFFIXES include REQUIRED)
-find_library(METIS_LIBRARY metis HINTS ${METIS_ROOT} ENV METIS_ROOT PATH_SUFFIXES lib REQUIRED)
-add_library(METIS::METIS UNKNOWN IMPORTED)
-set_target_properties(METIS::METIS PROPERTIES
-  IMPORTED_LOCATION ${METIS_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${METIS_INCLUDE_DIR})
+find_package(METIS REQUIRED)
 
 if(MPM_TESTS)
   find_package(Catch2 3 REQUIRED CONFIG)

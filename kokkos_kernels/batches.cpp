@@ -20,7 +20,7 @@ void copy(const Space& space, const View& to, const View& from, int first, int l
 template <class Space, class T, int Dim>
 double copy_in(const Space& space, const State<Space, T, Dim>& s, const SoilBatch<Space, T, Dim>& batch) {
   double bytes = 0;
-  for_each_of_step(s.soil.points, batch.set.points, [&](const auto& home, const auto& there, bool) {
+  for_each_of_step(s.soil.points, batch.set.points, [&](const auto& home, const auto& there, Use) {
     copy(space, there, home, batch.first, batch.last, bytes);
   });
   return bytes;
@@ -29,8 +29,8 @@ double copy_in(const Space& space, const State<Space, T, Dim>& s, const SoilBatc
 template <class Space, class T, int Dim>
 double copy_out(const Space& space, const State<Space, T, Dim>& s, const SoilBatch<Space, T, Dim>& batch) {
   double bytes = 0;
-  for_each_of_step(s.soil.points, batch.set.points, [&](const auto& home, const auto& there, bool changes) {
-    if (changes) copy(space, home, there, batch.first, batch.last, bytes);
+  for_each_of_step(s.soil.points, batch.set.points, [&](const auto& home, const auto& there, Use use) {
+    if (use == Use::changes) copy(space, home, there, batch.first, batch.last, bytes);
   });
   return bytes;
 }
@@ -59,7 +59,7 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
     seconds += timer.seconds();
   };
   const Kokkos::Timer timer;
-  const bool sums = !sums_ahead(s);  // while the batch is there; else update_particles does so itself
+  const bool sums = !s.plan.sums_ahead;  // while the batch is there; else update_particles does so itself
   if (sums) {
     reset_nodes(s);
     s.space.fence("mpm::before the sums of batches");

@@ -17,6 +17,9 @@ enum class Wall { roller, fixed, free };
 /// How particles take their velocity from the nodes (-velocity_update).
 enum class VelocityUpdate { flip, pic, xpic, apic };
 
+/// What becomes of particles that are alone, or whose volume leaves its bounds (-stray_particles).
+enum class StrayRule { keep, remove, stop };
+
 /// The strategy that `auto` stands for on a backend.
 constexpr P2G chosen(P2G how, Backend) { return how == P2G::automatic ? P2G::tile : how; }
 

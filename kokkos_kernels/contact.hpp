@@ -1,32 +1,9 @@
 #pragma once
-// Contact of the soil with a rigid body at a node, and the walls of the mesh.
+// Contact of the soil with a rigid body at a node.
 
-#include "nodes.hpp"
+#include "walls.hpp"
 
 namespace mpm {
-
-/// Which sides of the mesh a node lies on or outside of: bit 2 d + side.
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION unsigned sides_of(const Grid<T, Dim>& grid, const Coord<Dim>& node) {
-  unsigned sides = 0;
-  for (int d = 0; d < Dim; ++d) {
-    if (node[d] <= 0) sides |= 1u << (2 * d);
-    if (node[d] >= grid.cells[d]) sides |= 2u << (2 * d);
-  }
-  return sides;
-}
-
-/// Velocity that the walls allow: no normal component at a roller, none at all where fixed.
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION void apply_walls(const Grid<T, Dim>& grid, unsigned sides, Vector<T, Dim>& v) {
-  if (sides == 0) return;
-  for (int d = 0; d < Dim; ++d)
-    for (int side = 0; side < 2; ++side) {
-      if (!(sides >> (2 * d + side) & 1u)) continue;
-      if (grid.wall[d][side] == Wall::roller) v[d] = 0;
-      if (grid.wall[d][side] == Wall::fixed) v = filled<T, Dim>(0);
-    }
-}
 
 /// Inward unit normal of a rigid body at a node from its mass gradient (Eq. 3), whose sign points out of the
 /// body. The mirrored half of a body at a roller is missing, so the gradient's component normal to it is left

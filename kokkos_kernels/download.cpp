@@ -31,7 +31,14 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
   spread(soil.velocity, Dim, fields.velocity, part);
   spread(soil.stress, sym_size<Dim>, fields.stress, part);
   spread(soil.volume, 1, fields.volume, whole);
-  spread(soil.plastic_strain, 1, fields.plastic_strain, whole);
+  fields.history.resize(soil.history.columns);
+  for (int k = 0; k < soil.history.columns; ++k) spread(soil.history.column[k], 1, fields.history[k], whole);
+  const auto bodies = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), soil.bodies);
+  const auto of_body = [&](int b, int) { return double(bodies(b).mass); };
+  if (soil.has_own_mass)
+    spread(soil.mass, 1, fields.mass, whole);
+  else
+    spread(soil.body, 1, fields.mass, of_body);
 
   const auto x_p = host_of(soil.coordinate);
   const auto cell = host_of(soil.cell);
@@ -77,7 +84,7 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
     if (!at_host) bytes += view.span() * sizeof(*view.data());
   };
   const auto add_set = [&](const auto& set) {
-    add(set.points.coordinate), add(set.points.cell), add(set.points.id), add(set.address), add(set.order);
+    add(set.points.cell), add(set.points.id), add(set.address), add(set.order);
     add(set.bins.begin), add(set.bins.by_colour), add(set.bins.list_begin), add(set.bins.list),
         add(set.bins.blocks), add(set.bins.windows.place), add(set.bins.windows.sums);
     auto points = set.points;
@@ -86,8 +93,9 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add_set(s.soil);
   for (const auto& set : s.rigid_points) add_set(set);
   add(s.patches.slot_of), add(s.patches.origin), add(s.patches.around), add(s.marks), add(s.spare);
-  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.boundary), add(s.nodes.impulse),
-      add(s.near_rigid), add(s.boundary_windows.sums), add(s.vertices), add(s.nodes.rigid);
+  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.boundary), add(s.nodes.impulse);
+  add(s.nodes.strength), add(s.nodes.rigid), add(s.near_rigid), add(s.vertices), add(s.strays.alone);
+  add(s.boundary_windows.sums), add(s.strength_windows.sums);
   for (const auto* more : {&s.next_sums, &s.last_sums})
     add(more->soil), add(more->boundary), add(more->rigid);
   add(s.batches.room), add(s.batches.slots);

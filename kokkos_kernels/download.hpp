@@ -13,7 +13,9 @@ namespace mpm {
 struct SoilFields {
   std::vector<int> id;           // rising
   std::vector<double> position;  // m from the mesh's lower corner
-  std::vector<double> velocity, stress, volume, plastic_strain;
+  std::vector<double> velocity, stress, volume;
+  std::vector<std::vector<double>> history;  // of each column in use
+  std::vector<double> mass;                  // kg
 };
 template <class Space, class T, int Dim>
 SoilFields download_soil(const State<Space, T, Dim>& s);

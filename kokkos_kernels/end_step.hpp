@@ -13,7 +13,7 @@ template <int Dim>
 struct MovingRigid {
   Vector<double, Dim> displacement, velocity, impulse, force;  // as Rigid has them
   double mass;
-  bool dynamic;
+  bool dynamic, held[Dim];
 
   MovingRigid() = default;
   KOKKOS_INLINE_FUNCTION explicit MovingRigid(const Rigid<Dim>& r)
@@ -22,11 +22,13 @@ struct MovingRigid {
         impulse(r.impulse),
         force(r.force),
         mass(r.mass),
-        dynamic(r.dynamic) {}
+        dynamic(r.dynamic) {
+    for (int d = 0; d < Dim; ++d) held[d] = r.held[d];
+  }
 
   /// Acceleration [m/s2] under the force [N] of the soil on it (Eq. 7).
   KOKKOS_INLINE_FUNCTION double acceleration(int d, double contact) const {
-    return dynamic ? (force[d] + contact) / mass : 0;
+    return dynamic && !held[d] ? (force[d] + contact) / mass : 0;
   }
   /// Movement in a step [m] with acceleration a, exactly where the force is constant.
   KOKKOS_INLINE_FUNCTION double movement(int d, double a, double dt) const {

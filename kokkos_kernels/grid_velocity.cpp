@@ -14,25 +14,21 @@ template <class Space, class T, int Dim>
 struct GridVelocity {
   Soil<Space, T, Dim> points;
   NodeField<Space, T, SoilShare<Dim>::size> nodes;
-  decltype(Patches<Space, Dim>::around) around;
+  NodePlaces<Space, T, Dim> places;
 
   explicit GridVelocity(const State<Space, T, Dim>& s)
-      : points(s.soil.points), nodes(s.nodes.soil), around(s.patches.around) {}
+      : points(s.soil.points), nodes(s.nodes.soil), places(s.grid, s.patches) {}
 
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> operator()(int p) const {
     using S = SoilShare<Dim>;
     Vector<double, Dim> v = filled<double, Dim>(0);
-    with_weights(points.coordinate(p), points.bodies(points.body(p)).half_length,
-                 [&](const AxisWeights<T>(&a)[Dim]) {
-                   const Stencil<Dim> stencil(points.cell(p), a);
-                   for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>&) {
-                     if (!(w > 0)) return;
-                     const int i = stencil.node(around, k);
-                     const double m_i = nodes(i, S::mass);
-                     if (!(m_i > 0)) return;  // a share too small for T
-                     for (int d = 0; d < Dim; ++d) v[d] += w * (nodes(i, S::momentum + d) / m_i);
-                   });
-                 });
+    for_each_node<Kind::motion>(points, points.bodies(points.body(p)).half_length, places, p,
+                                [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
+                                  const double m_i = nodes(i, S::mass);
+                                  if (!(m_i > 0)) return;  // a share too small for T
+                                  for (int d = 0; d < Dim; ++d)
+                                    v[d] += w * sign(d) * (nodes(i, S::momentum + d) / m_i);
+                                });
     return v;
   }
 };

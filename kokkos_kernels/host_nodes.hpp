@@ -45,9 +45,10 @@ struct HostNodes {
 
   /// Whether no node of a slot is at a wall.
   bool inside(int slot) const {
-    const Coord<Dim> from = update.origin(slot);
+    const Coord<Dim> from = update.places.origin(slot);
     bool inside = true;
-    for (int d = 0; d < Dim; ++d) inside = inside && from[d] > 0 && from[d] + edge <= update.grid.cells[d];
+    for (int d = 0; d < Dim; ++d)
+      inside = inside && from[d] > 0 && from[d] + edge <= update.places.grid.cells[d];
     return inside;
   }
 };

@@ -5,47 +5,95 @@
 #include "advance.hpp"
 #include "host_window.hpp"
 #include "state.hpp"
+#include "walls.hpp"
 
 namespace mpm {
 
-/// The materials of as many particles as R has lanes.
-template <class R>
-struct MaterialLanes {
-  const AnyMaterial<typename R::real>* table;
-  bool same;  // only which[0] is set
-  int which[R::k_count];
-};
-
-/// Each law takes all lanes; those that are not of its material keep their state.
-template <class R, class T, int Dim>
-[[gnu::noinline]] KOKKOS_FUNCTION void update_materials(const MaterialLanes<R>& of,
-                                                        MaterialState<R, Dim>& state,
-                                                        const SymTensor<R, Dim>& d_strain,
-                                                        const Spin<R, Dim>& d_spin, T dt) {
-  const MaterialState<R, Dim> old = state;
-  bool done[R::k_count] = {};
-  for (int l = 0; l < R::k_count; ++l) {
-    if (done[l]) continue;
-    MaterialState<R, Dim> now = old;
-    of.table[of.which[l]].visit([&](const auto& law) { law.update(now, d_strain, d_spin, dt); });
-    R own = 0;
-    for (int k = l; k < R::k_count; ++k)
-      if (of.which[k] == of.which[l]) done[k] = true, own.set(k, T(1));
-    const auto mine = own > 0;
-    for (int k = 0; k < sym_size<Dim>; ++k) state.stress[k] = select(mine, now.stress[k], state.stress[k]);
-    state.plastic_strain = select(mine, now.plastic_strain, state.plastic_strain);
-    state.strength = select(mine, now.strength, state.strength);
+/// The update of a law for all lanes.
+template <class Law, class R, class T, int Dim, int N>
+KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stress, LawState<R, N>& state,
+                                         const Increment<R, T, Dim>& by) {
+  if constexpr (!has_scalar_update<Law>()) {
+    law.update(stress, state, by);
+  } else {
+    for (int l = 0; l < R::k_count; ++l) {
+      SymTensor<T, Dim> own_stress;
+      LawState<T, N> own_state;
+      Increment<T, T, Dim> own_by;
+      own_by.dt = by.dt, own_by.clock = by.clock;
+      for (int k = 0; k < sym_size<Dim>; ++k)
+        own_stress[k] = stress[k][l], own_by.strain[k] = by.strain[k][l];
+      for (int k = 0; k < (Dim == 2 ? 1 : 3); ++k) own_by.spin.c[k] = by.spin.c[k][l];
+      for (int k = 0; k < Dim * Dim; ++k)
+        own_by.gradient[k / Dim][k % Dim] = by.gradient[k / Dim][k % Dim][l];
+      for (int k = 0; k < N; ++k) own_state[k] = state[k][l];
+      law.update(own_stress, own_state, own_by);
+      for (int k = 0; k < sym_size<Dim>; ++k) stress[k].set(l, own_stress[k]);
+      for (int k = 0; k < N; ++k) state[k].set(l, own_state[k]);
+    }
   }
 }
-template <class R, class T, int Dim>
-KOKKOS_FORCEINLINE_FUNCTION void update_material(const MaterialLanes<R>& of, MaterialState<R, Dim>& state,
-                                                 const SymTensor<R, Dim>& d_strain,
-                                                 const Spin<R, Dim>& d_spin, T dt) {
-  if (of.same)
-    of.table[of.which[0]].visit([&](const auto& law) { law.update(state, d_strain, d_spin, dt); });
-  else
-    update_materials(of, state, d_strain, d_spin, dt);
-}
+
+/// The laws of the particles [p, p + count), as many as R has lanes at most, with their state in memory.
+/// Those that fly freely, being alone, carry no stress and keep their state.
+template <class R, class Space, class T, int Dim>
+struct LawLanes {
+  const Soil<Space, T, Dim>& soil;
+  int p, count;
+  bool one_law;  // only material[0] is set
+  bool some_fly = false;
+  R flies = 0;  // 1 where a particle does
+  int material[R::k_count] = {};
+
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(SymTensor<R, Dim>& stress,
+                                              const Increment<R, T, Dim>& by) const {
+    if (one_law && !some_fly)
+      update(material[0], stress, by, [](const R& now, const R&) { return now; });
+    else
+      update_some(stress, by);
+  }
+
+  /// Each law takes all lanes; those that are not of its material keep what they have.
+  [[gnu::noinline]] KOKKOS_FUNCTION void update_some(SymTensor<R, Dim>& stress,
+                                                     const Increment<R, T, Dim>& by) const {
+    const SymTensor<R, Dim> old = stress;
+    bool done[R::k_count] = {};
+    const auto material_of = [&](int l) { return material[one_law ? 0 : l]; };
+    for (int l = 0; l < R::k_count; ++l) {
+      if (done[l]) continue;
+      R own = 0;
+      for (int k = l; k < R::k_count; ++k)
+        if (material_of(k) == material_of(l)) done[k] = true, own.set(k, T(1));
+      const auto mine = own > 0;
+      SymTensor<R, Dim> now = old;
+      const auto moves = (own > 0) & (flies < 1);
+      update(material_of(l), now, by,
+             [&](const R& after, const R& was) { return select(moves, after, was); });
+      for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(mine, now[k], stress[k]);
+    }
+    for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(flies > 0, R(0), stress[k]);
+  }
+
+  /// kept(after, before): what becomes of a state variable.
+  template <class Kept>
+  KOKKOS_FORCEINLINE_FUNCTION void update(int m, SymTensor<R, Dim>& stress, const Increment<R, T, Dim>& by,
+                                          const Kept& kept) const {
+    soil.materials.data()[m].visit([&](const auto& law) {
+      using Law = std::decay_t<decltype(law)>;
+      LawState<R, state_size<Law>> was, state;
+      for (int k = 0; k < state.size; ++k) {
+        load_field(soil.history.column[k], p, count, was[k]);
+        state[k] = was[k];
+      }
+      update_lanes(law, stress, state, by);
+      for (int k = 0; k < state.size; ++k) {
+        if (!Law::state()[k].changes) continue;
+        state[k] = kept(state[k], was[k]);
+        if (any_of(state[k] != was[k])) store_field(state[k], soil.history.column[k], p, count);
+      }
+    });
+  }
+};
 
 /// Moves the particles of patches.
 template <class Space, class T, int Dim>
@@ -63,6 +111,7 @@ struct HostParticles {
     T mean[k_pitch];    // 1/s, dilatation rate of the particle's cell; first its share of it
     int base[k_pitch];  // window_base of its cell
     bool one_body;      // all particles of the patch
+    bool at_wall;       // the patch
   };
 
   Soil<Space, T, Dim> soil;
@@ -71,6 +120,9 @@ struct HostParticles {
   decltype(Patches<Space, Dim>::origin) origin;
   decltype(Nodes<Space, T, Dim>::motion) motion;
   ControlView<Space> control;
+  Grid<T, Dim> grid;
+  decltype(Strays<Space>::alone) alone;
+  decltype(Strays<Space>::put_back) put_back;
   UpdateScalars<T> by;
   double spacing;
 
@@ -89,6 +141,9 @@ struct HostParticles {
     for (int n = 0; n < window; ++n)
       for (int k = k_motion; k < k_node; ++k) nodes[n][k] = 0;
     Stage stage;
+    const Coord<Dim> from = origin(slot);
+    stage.at_wall = reaches_wall(grid, from);
+    if (stage.at_wall) mirror_images(grid, from, [&](int n) -> T* { return nodes[n]; });
     stage.one_body = of_one_body(soil, begin(slot * cells), begin((slot + 1) * cells));
     R moved = 0;
     for (int c = 0, end; c < cells; c = end) {  // as many whole cells as the stage holds
@@ -193,10 +248,10 @@ struct HostParticles {
   /// Volume times dilatation rate of the particles [from, to) [m3/s], all of the stage, to stage.mean.
   void weigh_dilatation(int from, int to, Stage& stage) const {
     for (int p = from; p < to; p += W) {
-      R volume[1], rate = 0;
+      R volume, rate = 0;
       load_field(soil.volume, p, Kokkos::min(W, to - p), volume);
       for (int d = 0; d < Dim; ++d) rate += R::load(stage.gradient[d * (Dim + 1)] + (p - from));
-      (rate * volume[0]).store(stage.mean + (p - from));
+      (rate * volume).store(stage.mean + (p - from));
     }
   }
   /// Adds the volumes [m3] of the particles [first, last), and with their dilatation rates [m3/s]. from: the
@@ -212,33 +267,50 @@ struct HostParticles {
   KOKKOS_INLINE_FUNCTION void move_block(int p, int count, int slot, const Stage& stage, int n,
                                          R& moved) const {
     Particle<R, Dim> q;
-    R volume[1], plastic_strain[1], strength[1];
     load_field(soil.coordinate, p, count, q.x.c);
     load_field(soil.velocity, p, count, q.v.c);
-    load_field(soil.stress, p, count, q.material.stress.c);
-    load_field(soil.volume, p, count, volume);
-    load_field(soil.plastic_strain, p, count, plastic_strain);
-    load_field(soil.strength, p, count, strength);
-    q.volume = volume[0], q.material.plastic_strain = plastic_strain[0], q.material.strength = strength[0];
+    load_field(soil.stress, p, count, q.stress.c);
+    load_field(soil.volume, p, count, q.volume);
     Taken<R, Dim> t;
     for (int k = 0; k < k_motion; ++k) t.motion[k] = R::load(stage.motion[k] + n);
     for (int k = 0; k < Dim * Dim; ++k) t.gradient[k / Dim][k % Dim] = R::load(stage.gradient[k] + n);
-    MaterialLanes<R> materials;
-    materials.table = soil.materials.data(), materials.same = stage.one_body;
+    LawLanes<R, Space, T, Dim> law{.soil = soil, .p = p, .count = count, .one_law = stage.one_body};
     for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
-      materials.which[l] = soil.bodies(soil.body(p + Kokkos::min(l, count - 1))).material;
-    const R own = advance(q, materials, t, R::load(stage.mean + n), by);
+      law.material[l] = soil.bodies(soil.body(p + Kokkos::min(l, count - 1))).material;
+    if (alone(slot) != 0) find_alone(law);
+    const R volume = q.volume, own = advance(q, law, t, R::load(stage.mean + n), by);
+    if (law.some_fly) q.volume = select(law.flies > 0, volume, q.volume);
+    if (stage.at_wall) put_back_on_walls(q, p, count, slot);
     store_field(q.x.c, soil.coordinate, p, count);
     store_field(q.v.c, soil.velocity, p, count);
-    store_field(q.material.stress.c, soil.stress, p, count);
-    volume[0] = q.volume;
-    store_field(volume, soil.volume, p, count);
-    if (any_of(q.material.plastic_strain != plastic_strain[0])) {
-      plastic_strain[0] = q.material.plastic_strain;
-      store_field(plastic_strain, soil.plastic_strain, p, count);
-    }
-    if (any_of(!(is_finite(q) & (q.volume > 0) & (own <= 1)))) find_faults(q, own, p, count, slot);
+    store_field(q.stress.c, soil.stress, p, count);
+    store_field(q.volume, soil.volume, p, count);
+    const bool limited = by.volume_is_fault && any_of(is_volume_limited(q, by));
+    if (limited || any_of(!(is_finite(q) & (own <= 1)))) find_faults(q, own, p, count, slot);
     moved = Kokkos::fmax(moved, own);
+  }
+
+  /// Which particles of the block are alone.
+  [[gnu::noinline]] KOKKOS_FUNCTION void find_alone(LawLanes<R, Space, T, Dim>& law) const {
+    for (int l = 0; l < law.count; ++l) {
+      if (!is_alone(alone, soil.cell(law.p + l))) continue;
+      law.flies.set(l, T(1));
+      law.some_fly = true;
+    }
+  }
+
+  /// Particles of the block that have passed a wall are put on it (put_on_walls).
+  void put_back_on_walls(Particle<R, Dim>& q, int p, int count, int slot) const {
+    auto at_home = (q.x[0] >= 0) & (q.x[0] < 1);
+    for (int d = 1; d < Dim; ++d) at_home = at_home & (q.x[d] >= 0) & (q.x[d] < 1);
+    if (!any_of(!at_home)) return;  // no cell lies beyond a wall
+    for (int l = 0; l < count; ++l) {
+      Vector<T, Dim> x, v;
+      for (int d = 0; d < Dim; ++d) x[d] = q.x[d][l], v[d] = q.v[d][l];
+      if (!put_on_walls(grid, in_mesh(origin(slot), coord_of<Dim>(soil.cell(p + l))), x, v)) continue;
+      for (int d = 0; d < Dim; ++d) q.x[d].set(l, x[d]), q.v[d].set(l, v[d]);
+      Kokkos::atomic_inc(&put_back(soil.body(p + l)));
+    }
   }
 
   [[gnu::noinline]] KOKKOS_FUNCTION void find_faults(const Particle<R, Dim>& block, const R& moved, int p,
@@ -247,8 +319,8 @@ struct HostParticles {
       Particle<T, Dim> q;
       for (int d = 0; d < Dim; ++d) q.x[d] = block.x[d][l], q.v[d] = block.v[d][l];
       q.volume = block.volume[l];
-      for (int k = 0; k < sym_size<Dim>; ++k) q.material.stress[k] = block.material.stress[k][l];
-      const FaultKind fault = fault_of(q, moved[l]);
+      for (int k = 0; k < sym_size<Dim>; ++k) q.stress[k] = block.stress[k][l];
+      const FaultKind fault = fault_of(q, moved[l], by);
       if (fault == FaultKind::none) continue;
       const Coord<Dim> cell = coord_of<Dim>(soil.cell(p + l));
       double position[3] = {};

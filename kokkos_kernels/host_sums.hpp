@@ -121,7 +121,7 @@ struct HostSums {
   bool apart;
 
   explicit HostSums(const Interpolation<Source>& it)
-      : tile{it.source, it.bins.begin, it.patches.around, it.out},
+      : tile{it.source, it.bins.begin, it.patches.around, it.patches.origin, it.grid, it.out},
         nodes{it.bins, it.windows, it.patches, it.out, it.adds},
         apart(has_windows(it.space)) {}
 

@@ -39,6 +39,8 @@ struct HostTile {
   Source source;
   decltype(Bins<Space>::begin) begin;
   decltype(Patches<Space, Dim>::around) around;
+  decltype(Patches<Space, Dim>::origin) origin;
+  Grid<T, Dim> grid;
   NodeField<Space, T, size> out;
 
   using Sums = T (&)[size][window];
@@ -52,7 +54,7 @@ struct HostTile {
                       [&](int place, int node, auto count) { give_run<count>(sums, place, node); });
   }
 
-  /// Adds the particles of a slot to the sums of its window.
+  /// Adds the particles of a slot to the sums of its window, which are zero; no node beyond a wall keeps any.
   void sum(int slot, Sums sums) const {
     Stage stage;
     const int to = begin((slot + 1) * cells);
@@ -68,6 +70,8 @@ struct HostTile {
         if (next >= end) break;
       }
     }
+    const Coord<Dim> at = origin(slot);
+    if (reaches_wall(grid, at)) fold_images<Source>(grid, at, [&](int n, int v) -> T& { return sums[v][n]; });
   }
 
   /// Adds `count` nodes that lie together, from `place` in the window, to those from number `node` on.
@@ -107,11 +111,12 @@ struct HostTile {
       const auto& soil = source.points;
       Vector<R, Dim> v;
       SymTensor<R, Dim> stress;
-      R volume[1];
+      R volume[1], mass[1] = {body.mass};
       load_field(soil.velocity, p, count, v.c);
       load_field(soil.stress, p, count, stress.c);
       load_field(soil.volume, p, count, volume);
-      const auto point = source.point(body, v, stress, volume[0]);
+      if (soil.has_own_mass) load_field(soil.mass, p, count, mass);
+      const auto point = source.point({mass[0], body.half_length, 0}, v, stress, volume[0]);
       const R* const value = reinterpret_cast<const R*>(&point) + 2;
       unrolled<k_point>([&](auto k) { value[k].store(stage.value[k] + n); });
     } else {

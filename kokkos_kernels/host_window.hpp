@@ -1,6 +1,6 @@
 #pragma once
-// The strategy `tile` on a processor: what its two passes over the particles of a patch share. A thread takes
-// a patch, many particles at once; all of its memory is on its stack.
+// The strategy `tile` on a processor: helpers of its two passes over the particles of a patch. A thread
+// processes a patch, many particles at once, with all of its memory on the stack.
 
 #include <atomic>
 #include <vector>
@@ -12,8 +12,8 @@
 
 namespace mpm {
 
-/// Calls f(place, node, count) for every run of the window of a slot that lies together in both: from `place`
-/// in the window, and from the number `node`, `count` nodes.
+/// Calls f(place, node, count) for every run of nodes that is contiguous in the window of a slot and in the
+/// nodal fields: `count` nodes from `place` in the window and from number `node` of the fields on.
 template <int Dim, class Around, class F>
 void for_each_run(const Around& around, int slot, F&& f) {
   constexpr int edge = Patch<Dim>::edge, across = Patch<Dim>::window_edge, log_edge = Patch<Dim>::log_edge;
@@ -61,6 +61,11 @@ KOKKOS_FORCEINLINE_FUNCTION void load_field(const Field& field, int p, int count
   else
     load_some(from, count, a);
 }
+/// A field of one value a particle.
+template <class R, class Field>
+KOKKOS_FORCEINLINE_FUNCTION void load_field(const Field& field, int p, int count, R& a) {
+  load_field(field, p, count, reinterpret_cast<R(&)[1]>(a));
+}
 template <class R, class Field, int N>
 KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field, int p, int count) {
   auto* const to = reinterpret_cast<typename R::real*>(&field(p));
@@ -69,27 +74,31 @@ KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field
   else
     store_some(a, count, to);
 }
+template <class R, class Field>
+KOKKOS_FORCEINLINE_FUNCTION void store_field(const R& a, const Field& field, int p, int count) {
+  store_field(reinterpret_cast<const R(&)[1]>(a), field, p, count);
+}
 
-/// Asks the memory for what is needed soon.
+/// Prefetches memory that is needed soon.
 inline void fetch(const void* from, std::size_t bytes) {
   constexpr std::size_t line = 64;
   for (std::size_t at = 0; at < bytes; at += line)
     __builtin_prefetch(static_cast<const char*>(from) + at, 0, 2);
 }
-/// Of the slots round one that which is last in memory: the slots before it have not asked for it.
+/// The last slot in memory among those round a slot; the slots before it have not prefetched that slot.
 template <int Dim, class Around>
 int last_around(const Around& around, int slot) {
   return around(slot, Patch<Dim>::around - 1);
 }
 
-/// A number that many threads change, alone on its cache line.
+/// A number that many threads change, on a cache line of its own.
 struct alignas(64) SharedCount {
   std::atomic<int> n{0};
 };
 
-/// Numbers [first, last) that threads share out, `together` at a time. Each begins with an equal part, or
-/// with the numbers about an equal part of `some`, which rise: so threads stay with what they had in the last
-/// phase.
+/// Numbers [first, last) that threads divide among them, `together` at a time. Each thread begins with an
+/// equal part, or with the numbers next to an equal part of `some`, which rise, so that a thread keeps the
+/// data of the last phase.
 struct Shared {
   int first = 0, last = 0, together = 1;
   const int* some = nullptr;
@@ -102,10 +111,10 @@ struct Shared {
   }
 };
 
-/// Calls f(phase, n) for n of all[phase], each by one thread; no thread begins a phase before all of the last
-/// is done. A thread begins with a part that is always its own, and so in its cache, from front to back, as
-/// memory is read ahead; then it takes what others have left of theirs: on a machine that is at work for
-/// others too, no thread waits long for one that was held up.
+/// Calls f(phase, n) once for each n of all[phase]. No thread begins a phase before the last phase is done. A
+/// thread begins with its own part, which is the same in every step and so in its cache, from front to back,
+/// because the processor prefetches in that direction. Then the thread takes numbers that other threads have
+/// not reached. On a machine with other load, no thread waits long for a thread that was suspended.
 template <int Phases, class Space, class F>
 void for_each_shared(const char* label, const Space& space, const Shared (&all)[Phases], const F& f) {
   using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Static>>;
@@ -127,7 +136,8 @@ void for_each_shared(const char* label, const Space& space, const Shared (&all)[
         for (int k = 0; k < threads; ++k) {
           const int whose = (thread + k) % threads, end = of.part_begin(whose + 1, threads);
           auto& next = taken[phase * threads + whose].n;
-          // Looked at before it is changed: a line that nobody changes any more is read by all at once.
+          // Read before it is changed: all threads can read a line at once that none of them changes any
+          // more.
           for (int n; next < end && (n = next.fetch_add(of.together)) < end;)
             for (const int stop = Kokkos::min(n + of.together, end); n < stop; ++n, ++mine) f(phase, n);
         }
@@ -147,8 +157,7 @@ template <int Dim, class Space>
 Shared slots_held(const Bins<Space>& bins) {
   return {bins.colour_begin[0], bins.colour_begin[Patch<Dim>::colours], 1};
 }
-/// All slots, of which each thread has those about the ones that it had of slots_held. Their nodes are little
-/// work.
+/// All slots. Each thread has those next to its part of slots_held; their nodes are little work.
 template <int Dim, class Space>
 Shared slots_about(const Bins<Space>& bins, int slots) {
   const Shared held = slots_held<Dim>(bins);
@@ -164,8 +173,8 @@ bool of_one_body(const Points_& points, int from, int to) {
   return others == 0;
 }
 
-/// What bodies give `count` points from p on, by lane; without the material. same: all points are of one
-/// body.
+/// The properties of the bodies of `count` points from p on, by lane, without the material and without own
+/// masses. same: all points are of one body.
 template <class R, class Points_>
 KOKKOS_FORCEINLINE_FUNCTION BodyProperties<R> bodies_of(const Points_& points, int p, int count, bool same) {
   BodyProperties<R> body;

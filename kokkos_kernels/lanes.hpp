@@ -267,6 +267,10 @@ KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fmax(T a, mpm::Lanes<T, W> b) {
   return fmax(mpm::Lanes<T, W>(a), b);
 }
 template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fmin(T a, mpm::Lanes<T, W> b) {
+  return mpm::select(b < mpm::Lanes<T, W>(a), b, mpm::Lanes<T, W>(a));
+}
+template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fabs(mpm::Lanes<T, W> a) {
   return mpm::select(a < T(0), -a, a);
 }

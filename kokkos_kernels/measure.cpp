@@ -21,7 +21,9 @@ struct Sum {
       m.centre[d] += other.m.centre[d];
     }
     m.kinetic_energy += other.m.kinetic_energy;
-    m.count += other.m.count;
+    m.stored_energy += other.m.stored_energy;
+    m.mass += other.m.mass, m.weight += other.m.weight;
+    m.count += other.m.count, m.alone += other.m.alone, m.limited += other.m.limited;
     return *this;
   }
 };
@@ -73,30 +75,57 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   const auto soil = s.soil.points;
   const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
   const int count = soil.count;
+  const auto alone = s.strays.alone;
+  const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
   Sum<Dim> total;
   Kokkos::parallel_reduce(
       "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, (count + together - 1) / together),
       KOKKOS_LAMBDA(int part, Sum<Dim>& sum) {
         Sum<Dim> own;
-        const double mass = soil.bodies(body).mass;
+        const auto common = soil.bodies(body);
         const int end = Kokkos::min(count, (part + 1) * together);
         for (int p = part * together; p < end; ++p) {
           if (soil.body(p) != body) continue;
+          const double mass = soil.mass_of(p, common), weight = soil.has_own_mass ? mass : 1;
           for (int d = 0; d < Dim; ++d) {
             const double x = position(p, d), v = soil.velocity(p)[d];
             own.m.lower[d] = Kokkos::fmin(own.m.lower[d], x);
             own.m.upper[d] = Kokkos::fmax(own.m.upper[d], x);
             own.m.momentum[d] += mass * v;
-            own.m.centre[d] += x;
+            own.m.centre[d] += weight * x;
             own.m.kinetic_energy += mass * v * v / 2;
           }
+          own.m.mass += mass, own.m.weight += weight;
+          soil.materials(common.material).visit([&](const auto& law) {
+            own.m.stored_energy +=
+                double(soil.volume(p)) * law.stored_energy(soil.stress(p), soil.state_of(law, p));
+          });
+          own.m.alone += is_alone(alone, soil.cell(p));
+          own.m.limited += soil.volume(p) <= least || soil.volume(p) >= most;
           ++own.m.count;
         }
         sum += own;
       },
       Kokkos::Sum<Sum<Dim>>(total));
-  for (int d = 0; d < Dim; ++d) total.m.centre[d] /= total.m.count;  // its particles are of one mass
+  for (int d = 0; d < Dim && total.m.weight > 0; ++d) total.m.centre[d] /= total.m.weight;
   return total.m;
+}
+
+template <class Space, class T, int Dim>
+double fastest_wave(const State<Space, T, Dim>& s) {
+  const auto soil = s.soil.points;
+  double fastest = 0;  // m2/s2
+  Kokkos::parallel_reduce(
+      "mpm::fastest_wave", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
+      KOKKOS_LAMBDA(int p, double& largest) {
+        const auto of = soil.properties(p);
+        soil.materials(of.material).visit([&](const auto& law) {
+          const double modulus = law.wave_modulus(soil.stress(p), soil.state_of(law, p));
+          largest = Kokkos::fmax(largest, modulus * soil.volume(p) / of.mass);
+        });
+      },
+      Kokkos::Max<double>(fastest));
+  return Kokkos::sqrt(Kokkos::fmax(0.0, fastest));
 }
 
 template <class Space, class T, int Dim>
@@ -136,6 +165,7 @@ double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long ra
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                               \
   template BodyMeasure measure(const State<Space, T, Dim>&, int);                                    \
+  template double fastest_wave(const State<Space, T, Dim>&);                                         \
   template double ranked_coordinate(const State<Space, T, Dim>&, int, int, long, const BodyMeasure&, \
                                     const OverRanks&);
 MPM_FOR_EACH(MPM_INSTANTIATE)

@@ -18,7 +18,7 @@ std::size_t for_each_part(const State<Space, T, Dim>& s, F&& f) {
     size += sizeof(Value);
   };
   auto points = s.soil.points;
-  part(points.coordinate), part(s.soil.address), part(points.id);
+  part(s.soil.address), part(points.id);
   for_each_field(points, part);
   constexpr std::size_t k_widest = 16;  // alignment of any field
   return (size + k_widest - 1) / k_widest * k_widest;
@@ -80,12 +80,13 @@ std::vector<Leaver> find_leavers(State<Space, T, Dim>& s,
   int found = 0;
   Kokkos::parallel_reduce(
       "mpm::count_leavers", Range(s.space, 0, count),
-      KOKKOS_LAMBDA(int p, int& n) { n += owner(address(p) / Patch<Dim>::cells) != own; }, found);
+      KOKKOS_LAMBDA(int p, int& n) { n += address(p) >= 0 && owner(address(p) / Patch<Dim>::cells) != own; },
+      found);
   if (found == 0) return {};
   const Unmanaged<Leaver, Space> leavers = scratch_of<Leaver>(s, found);
   Kokkos::parallel_scan(
       "mpm::find_leavers", Range(s.space, 0, count), KOKKOS_LAMBDA(int p, int& n, bool last) {
-        const int rank = owner(address(p) / Patch<Dim>::cells);
+        const int rank = address(p) >= 0 ? owner(address(p) / Patch<Dim>::cells) : own;
         if (rank == own) return;
         if (last) leavers(n) = {p, rank};
         ++n;
@@ -136,8 +137,7 @@ void reserve_particles(State<Space, T, Dim>& s, int n) {
   auto& points = s.soil.points;
   const int kept = points.all;
   s.space.fence("mpm::reserve_particles");
-  grow(points.coordinate, n, kept), grow(points.cell, n, kept), grow(points.id, n, kept);
-  grow(s.soil.address, n, kept);
+  grow(points.cell, n, kept), grow(points.id, n, kept), grow(s.soil.address, n, kept);
   if (s.affine) grow(points.affine, n, kept);
   for_each_field(points, [&](auto& field) { grow(field, n, kept); });
 }

@@ -4,6 +4,7 @@
 #include "contact.hpp"
 #include "lanes.hpp"
 #include "lone_thread.hpp"
+#include "particle_to_node.hpp"
 #include "step_kernels.hpp"
 #include "warp.hpp"
 #include "window.hpp"
@@ -31,9 +32,8 @@ struct UpdateNodes {
   using S = SoilShare<Dim>;
   static constexpr int cells = Patch<Dim>::cells;
   int value_count;
-  Grid<T, Dim> grid;
+  NodePlaces<Space, T, Dim> places;
   Nodes<Space, T, Dim> nodes;
-  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   Kokkos::View<Vertex*, typename Space::memory_space> vertices;
   Kokkos::View<double*, typename Space::memory_space> forces;
@@ -74,7 +74,7 @@ struct UpdateNodes {
   template <class Sums>
   KOKKOS_INLINE_FUNCTION void update(const Sums& sums, int i, bool near, double* force) const {
     Coord<Dim> at = coord_of<Dim>(i);
-    const Coord<Dim> from = origin(i / cells);
+    const Coord<Dim> from = places.origin(i / cells);
     for (int d = 0; d < Dim; ++d) at[d] += from[d];
     keep(i, motion(sums, rigids.data(), i, at, near, force));
   }
@@ -125,13 +125,13 @@ struct UpdateNodes {
     if (m_i > at_rest()) {
       node.inv_m = 1 / m_i;
       accelerate(node.soil, node.inv_m, v_old, v);
-      node.sides = sides_of(grid, at);
-      apply_walls(grid, node.sides, v);
+      node.sides = sides_of(places.grid, at);
+      apply_walls(places.grid, node.sides, v);
       const int touching = near && m_i > mass_cut ? static_cast<int>(rigids.extent(0)) : 0;
       MPM_ROLLED
       for (int r = 0; r < touching; ++r)
         touch(sums, node, bodies[r], r, v, force == nullptr ? force : force + r * Dim * cells);
-      apply_walls(grid, node.sides, v);
+      apply_walls(places.grid, node.sides, v);
     }
     MotionValues<T, Dim> motion;
     for (int d = 0; d < Dim; ++d) {
@@ -192,8 +192,9 @@ struct UpdateNodes {
       return;
     const T area = Kokkos::fmax(T(0), dot(boundary, n));
     Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction) };
-    if (rigid.shear_limit < Kokkos::Experimental::infinity<double>::value)
-      interface.shear_speed = static_cast<T>(rigid.shear_limit) * area * dt * node.inv_m;
+    const T limit = shear_limit(rigid, node.i);
+    if (limit < Kokkos::Experimental::infinity<T>::value)
+      interface.shear_speed = limit * area * dt * node.inv_m;
     T pressing = 0;
     for (int d = 0; d < Dim; ++d) pressing += (node.soil[S::force + d] * node.inv_m + g[d]) * n[d];
     interface.pressing = pressing * dt;
@@ -202,11 +203,11 @@ struct UpdateNodes {
     // well, the body would act thicker than it is.
     interface.within_soil = rigid.surface_normal && distance > spacing / 2;
     if (rigid.reach > 0) {
-      const T depth = surface_depth(node.boundary[BoundaryShare<Dim>::volume] / grid.spacing, area);
-      const T gap = static_cast<T>(distance) + depth * grid.spacing;
+      const T depth = surface_depth(node.boundary[BoundaryShare<Dim>::volume] / places.grid.spacing, area);
+      const T gap = static_cast<T>(distance) + depth * places.grid.spacing;
       interface.penalty = penalty(gap, T(rigid.reach), T(rigid.exponent));
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
-      if (gap > Kokkos::fmax(T(rigid.reach), grid.spacing / 2)) return;
+      if (gap > Kokkos::fmax(T(rigid.reach), places.grid.spacing / 2)) return;
     }
     if (has_friction) interface.stock = nodes.impulse(r, node.i) * node.inv_m;
     const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
@@ -217,23 +218,31 @@ struct UpdateNodes {
     }
   }
 
+  /// Largest shear stress of the interface at node i [Pa], infinite where only the friction limits.
+  KOKKOS_INLINE_FUNCTION T shear_limit(const Rigid<Dim>& rigid, int i) const {
+    if (rigid.shear_share < 0) return static_cast<T>(rigid.shear_limit);
+    const T volume = nodes.strength(i, StrengthShare::volume);
+    if (!(volume > 0)) return 0;
+    return static_cast<T>(rigid.shear_share) * (nodes.strength(i, StrengthShare::strength) / volume);
+  }
+
   /// Place of a node in the frame of a rigid's surface [m]. Bodies go on beyond the mesh.
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> place(const Rigid<Dim>& rigid, const Coord<Dim>& at) const {
     Vector<double, Dim> x;
     for (int d = 0; d < Dim; ++d)
-      x[d] = Kokkos::max(0, Kokkos::min(at[d], grid.cells[d])) * spacing - rigid.displacement[d];
+      x[d] = Kokkos::max(0, Kokkos::min(at[d], places.grid.cells[d])) * spacing - rigid.displacement[d];
     return x;
   }
 
   /// Area of a cell's face [m^2; m in 2D].
-  KOKKOS_INLINE_FUNCTION T face() const { return Dim == 2 ? grid.spacing : grid.spacing * grid.spacing; }
+  KOKKOS_INLINE_FUNCTION T face() const { return power(places.grid.spacing, Dim - 1); }
 
   /// Inward unit normal from the rigid's mass gradient; false where it is out of touch. given: RigidShare.
   KOKKOS_INLINE_FUNCTION bool mass_normal(const Rigid<Dim>& rigid, const T* given, unsigned sides,
                                           Vector<T, Dim>& n) const {
     const T m_r = given[RigidShare<Dim>::mass];
     for (int d = 0; d < Dim; ++d) n[d] = given[RigidShare<Dim>::normal + d];
-    return m_r > rigid.mass_cut && inward_normal(grid, sides, m_r, n);
+    return m_r > rigid.mass_cut && inward_normal(places.grid, sides, m_r, n);
   }
 
   /// Distance [m] of a node from the rigid's own surface, and the normal out of it that contact takes. Where
@@ -272,30 +281,29 @@ struct UpdateNodes {
   KOKKOS_INLINE_FUNCTION bool surface_normal(const Vector<double, Dim>& out, unsigned sides,
                                              Vector<T, Dim>& n) const {
     for (int d = 0; d < Dim; ++d) n[d] = static_cast<T>(out[d]);
-    return inward_normal(grid, sides, T(1), n);
+    return inward_normal(places.grid, sides, T(1), n);
   }
 };
 
 template <class Space, class T, int Dim>
 UpdateNodes<Space, T, Dim> node_update_of(const State<Space, T, Dim>& s, double dt) {
-  UpdateNodes<Space, T, Dim> update{Dim * static_cast<int>(s.rigid_points.size()),
-                                    s.grid,
-                                    s.nodes,
-                                    s.patches.origin,
-                                    s.rigids,
-                                    s.vertices,
-                                    s.slot_forces,
-                                    s.counted,
-                                    {},
-                                    T(dt),
-                                    T(1 / dt),
-                                    T(s.damping),
-                                    T(s.mass_cut),
-                                    s.spacing,
-                                    s.soil_boundary,
-                                    s.has_friction,
-                                    s.mass_normals,
-                                    sums_ahead(s) && !writes_sums(s)};
+  UpdateNodes<Space, T, Dim> update{.value_count = Dim * static_cast<int>(s.rigid_points.size()),
+                                    .places = {s.grid, s.patches},
+                                    .nodes = s.nodes,
+                                    .rigids = s.rigids,
+                                    .vertices = s.vertices,
+                                    .forces = s.slot_forces,
+                                    .counted = s.counted,
+                                    .g = {},
+                                    .dt = T(dt),
+                                    .inv_dt = T(1 / dt),
+                                    .damping = T(s.damping),
+                                    .mass_cut = T(s.mass_cut),
+                                    .spacing = s.spacing,
+                                    .has_boundary = s.soil_boundary,
+                                    .has_friction = s.has_friction,
+                                    .has_mass_normals = s.mass_normals,
+                                    .clears = s.plan.sums_ahead && !s.plan.writes_sums};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   return update;
 }

@@ -25,6 +25,12 @@ template <int Dim>
 struct BoundaryShare {
   static constexpr int area = 0, volume = Dim, size = Dim + 1;
 };
+/// What soil near a rigid gives a node where the shear limit is a share of its strength: strength times
+/// volume [Pa m3], and volume [m3], so that their ratio is the mean strength there, whatever becomes of other
+/// sums.
+struct StrengthShare {
+  static constexpr int strength = 0, volume = 1, size = 2;
+};
 /// Values that a rigid gives a node: mass [kg], mass gradient times the cell's edge [kg] (Eq. 3).
 template <int Dim>
 struct RigidShare {
@@ -55,6 +61,7 @@ struct NodeSums {
 template <class Space, class T, int Dim>
 struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, NodeMotion<Dim>::size> motion;
+  NodeField<Space, T, StrengthShare::size> strength;  // allocated where a contact asks for it
   NodeField<Space, T, Dim> rest;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
       impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step
@@ -70,18 +77,20 @@ struct Rigid {
   Vector<double, Dim> force;         // N, external and weight
   double mass;                       // kg
   bool dynamic;
+  bool held[Dim];  // a plane of symmetry cuts it, across which it does not move
   Surface<Dim> surface;
   bool surface_normal;  // normals from the surface, not from the mass gradient
   bool separates;       // the soil may part from it
   double reach;         // m, gap at which the contact ends; 0: it does not depend on the gap
   double exponent;      // -, of its decrease with the gap
   double shear_limit;   // Pa, infinite where only the friction limits
+  double shear_share;   // -, of the soil's strength instead of the limit; negative: none
   double friction;      // -, negative: none
   double mass_cut;      // kg, nodes below it are not touched
 };
 
 /// Why a run cannot go on.
-enum class FaultKind : int { none, not_finite, inverted, too_fast, outside };
+enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone };
 
 /// The first fault that a kernel met.
 struct Fault {
@@ -105,6 +114,7 @@ struct Control {
   int paused;        // Pause; beside `ended`, to be read with it
   int due_in;        // steps to a rebuild that is due; 0: none is
   int steps;         // steps done since the host last looked
+  int lost;          // particles that the last locate() found to leave the run
   int fault_count;
   Fault fault;
 };

@@ -12,7 +12,7 @@ template <class Source>
 void scatter_atomic(const Interpolation<Source>& it) {
   using T = typename Source::real;
   const auto source = it.source;
-  const auto around = it.patches.around;
+  const NodePlaces places(it.grid, it.patches);
   const auto out = it.out;
   const auto control = it.control;
   Kokkos::parallel_for(
@@ -21,7 +21,7 @@ void scatter_atomic(const Interpolation<Source>& it) {
       KOKKOS_LAMBDA(int p) {
         if (control().paused) return;
         move_point(source, p);
-        give_to_nodes(source, around, p, [&](int i, int k, T v) { Kokkos::atomic_add(&out(i, k), v); });
+        give_to_nodes(source, places, p, [&](int i, int k, T v) { Kokkos::atomic_add(&out(i, k), v); });
       });
 }
 

@@ -12,7 +12,7 @@ void scatter_mosaic(const Interpolation<Source>& it) {
   const auto source = it.source;
   const auto grid = it.grid;
   const auto slot_of = it.patches.slot_of;
-  const auto around = it.patches.around;
+  const NodePlaces places(it.grid, it.patches);
   const auto begin = it.bins.begin;
   const auto blocks = it.bins.blocks;
   const auto out = it.out;
@@ -31,7 +31,7 @@ void scatter_mosaic(const Interpolation<Source>& it) {
             if (slot < 0) return;
             const int cell = slot * Patch<Dim>::cells + place_of<Dim>(c);
             for (int p = begin(cell); p < begin(cell + 1); ++p)
-              give_to_nodes(source, around, p, [&](int i, int k, T v) { out(i, k) += v; });
+              give_to_nodes(source, places, p, [&](int i, int k, T v) { out(i, k) += v; });
           });
         });
   }

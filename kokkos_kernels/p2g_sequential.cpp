@@ -6,7 +6,7 @@ template <class Source>
 void scatter_sequential(const Interpolation<Source>& it) {
   using T = typename Source::real;
   const auto source = it.source;
-  const auto around = it.patches.around;
+  const NodePlaces places(it.grid, it.patches);
   const auto out = it.out;
   const auto control = it.control;
   Kokkos::parallel_for(
@@ -14,7 +14,7 @@ void scatter_sequential(const Interpolation<Source>& it) {
       KOKKOS_LAMBDA(int) {
         if (control().paused) return;
         for (int p = 0; p < source.points.count; ++p)
-          give_to_nodes(source, around, p, [&](int i, int k, T v) { out(i, k) += v; });
+          give_to_nodes(source, places, p, [&](int i, int k, T v) { out(i, k) += v; });
       });
 }
 

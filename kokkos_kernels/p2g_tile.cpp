@@ -14,6 +14,8 @@ void sum_on_device(const Interpolation<Source>& it) {
   const auto around = it.patches.around;
   const auto begin = it.bins.begin;
   const auto by_colour = it.bins.by_colour;
+  const auto grid = it.grid;
+  const auto origin = it.patches.origin;
   const auto out = it.out;
   const auto control = it.control;
   const int first = it.bins.colour_begin[0], teams = it.bins.colour_begin[Patch<Dim>::colours] - first;
@@ -30,7 +32,7 @@ void sum_on_device(const Interpolation<Source>& it) {
         sum_patch(
             team, Scratch(team, Tile_::bytes()), source,
             [&](int n) { return number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n)); },
-            [&](int c) { return begin(slot * cells + c); }, out);
+            [&](int c) { return begin(slot * cells + c); }, grid, origin(slot), out);
       });
 }
 

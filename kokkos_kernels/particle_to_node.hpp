@@ -88,21 +88,41 @@ KOKKOS_INLINE_FUNCTION void for_each_cell_of_block(const Grid<T, Dim>& grid, lon
       }
 }
 
-/// Numbers of the nodes that a particle reaches from the cell where it was binned.
-template <int Dim>
-struct Stencil {
-  int slot;
-  int which[Dim][3];  // share of each axis in the number of the patch around
-  int place[Dim][3];  // share of each axis in the place in that patch
+/// Where nodes are: what a particle needs to know to find its own.
+template <class Space, class T, int Dim>
+struct NodePlaces {
+  using Memory = typename Space::memory_space;
+  Grid<T, Dim> grid;
+  Kokkos::View<Coord<Dim>*, Memory> origin;
+  decltype(Patches<Space, Dim>::around) around;
 
-  template <class T>
-  KOKKOS_INLINE_FUNCTION Stencil(int cell, const AxisWeights<T> (&a)[Dim]) : slot(cell / Patch<Dim>::cells) {
-    const Coord<Dim> c = coord_of<Dim>(cell);
+  NodePlaces(const Grid<T, Dim>& mesh, const Patches<Space, Dim>& patches)
+      : grid(mesh), origin(patches.origin), around(patches.around) {}
+};
+
+/// The nodes that a particle reaches from the cell where it was binned; of those beyond a wall their images,
+/// with the signs that values of this kind have there.
+template <Kind kind, class T, int Dim>
+struct Stencil {
+  static constexpr bool k_turns_all = kind == Kind::motion;  // at a fixed side every component
+  int slot;
+  int which[Dim][3];                       // share of each axis in the number of the patch around
+  int place[Dim][3];                       // share of each axis in the place in that patch
+  T normal[Dim][3];                        // factor of the component along the axis, as image_sign
+  T tangential[k_turns_all ? Dim : 1][3];  // factor of the others, where it may be another than 1
+
+  template <class Space>
+  KOKKOS_INLINE_FUNCTION Stencil(const NodePlaces<Space, T, Dim>& places, int cell,
+                                 const AxisWeights<T> (&a)[Dim])
+      : slot(cell / Patch<Dim>::cells) {
+    const Coord<Dim> c = coord_of<Dim>(cell), from = places.origin(slot);
     for (int d = 0, step = 1; d < Dim; ++d, step *= 3)
       for (int k = 0; k < 3; ++k) {
-        const int n = c[d] + a[d].first + k;
+        const int at = from[d] + c[d] + a[d].first + k, n = image_along(places.grid, d, at) - from[d];
         which[d][k] = ((n >> Patch<Dim>::log_edge) + 1) * step;
         place[d][k] = (n & (Patch<Dim>::edge - 1)) << (d * Patch<Dim>::log_edge);
+        normal[d][k] = image_sign<kind, T>(places.grid, d, at, d);
+        if constexpr (k_turns_all) tangential[d][k] = image_sign<kind, T>(places.grid, d, at, (d + 1) % Dim);
       }
   }
   template <class Around>
@@ -111,35 +131,50 @@ struct Stencil {
     for (int d = 1; d < Dim; ++d) w += which[d][k[d]], p += place[d][k[d]];
     return around(slot, w) * Patch<Dim>::cells + p;
   }
+  /// What the node k steps from the first has of a component of a vector, or of a scalar (-1), of node().
+  KOKKOS_INLINE_FUNCTION T sign(const Vector<int, Dim>& k, int component) const {
+    if (component < 0) return 1;
+    T sign = 1;
+    for (int d = 0; d < Dim; ++d) {
+      if (d == component)
+        sign *= normal[d][k[d]];
+      else if constexpr (k_turns_all)
+        sign *= tangential[d][k[d]];
+    }
+    return sign;
+  }
 };
 
-/// Calls f(node, w, grad, offset) for every node of particle p: w [-] its weight, grad [1/cell] its gradient,
-/// offset() [cells] from the particle to it. Nodes of no weight are left alone, which keeps the blocks of one
-/// colour apart.
-template <class Points_, class T, class Around, class F>
+/// Calls f(node, w, grad, offset, sign) for every node of particle p: w [-] its weight, grad [1/cell] its
+/// gradient, offset() [cells] from the particle to it; sign(component) as Stencil::sign. Nodes of no weight
+/// are left alone, which keeps the blocks of one colour apart.
+template <Kind kind, class Points_, class Space, class T, int Dim, class F>
 KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, const HalfLength<T>& half_length,
-                                          const Around& around, int p, F&& f) {
+                                          const NodePlaces<Space, T, Dim>& places, int p, F&& f) {
   const auto x = points.coordinate(p);
-  with_weights(x, half_length, [&](const auto& a) {
-    constexpr int Dim = sizeof(a) / sizeof(a[0]);
-    const Stencil<Dim> stencil(points.cell(p), a);
+  with_weights(x, half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+    const Stencil<kind, T, Dim> stencil(places, points.cell(p), a);
     for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
-      if (w > 0) f(stencil.node(around, k), w, grad, [&] { return offset_to(x, a, k); });
+      if (!(w > 0)) return;
+      f(
+          stencil.node(places.around, k), w, grad, [&] { return offset_to(x, a, k); },
+          [&](int component) { return stencil.sign(k, component); });
     });
   });
 }
 
 /// Gives the share of particle p to its nodes by add(node, value index, value).
-template <class Source, class Around, class Add>
-KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const Around& around, int p, Add&& add) {
-  using T = typename Source::real;
-  constexpr int Dim = Source::dim;
+template <class Source, class Space, class T, int Dim, class Add>
+KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const NodePlaces<Space, T, Dim>& places,
+                                          int p, Add&& add) {
   if (source.skips(source.points.cell(p) / Patch<Dim>::cells)) return;
   const typename Source::Point q = source.load(p);
-  for_each_node(source.points, q.half_length, around, p,
-                [&](int i, T w, const Vector<T, Dim>& grad, auto&& offset) {
-                  give<Source>(q, w, grad, offset, [&](int value, T v) { add(i, value, v); });
-                });
+  for_each_node<Source::kind>(source.points, q.half_length, places, p,
+                              [&](int i, T w, const Vector<T, Dim>& grad, auto&& offset, auto&& sign) {
+                                give<Source>(q, w, grad, offset, [&](int value, T v) {
+                                  add(i, value, sign(Source::component(value)) * v);
+                                });
+                              });
 }
 
 }  // namespace mpm

@@ -25,9 +25,19 @@ struct Points {
 /// What all particles of a body share.
 template <class T>
 struct BodyProperties {
-  T mass;                     // kg, of one particle
+  T mass;                     // kg, of one particle, where the particles have none of their own
   HalfLength<T> half_length;  // cells, of one particle
   int material;               // index into Soil::materials
+};
+
+/// State variables [variable][particle]: column k holds variable k of the particle's law, whichever law that
+/// is. As many columns are in use as the law with the most variables has; the others take no memory.
+template <class Space, class T>
+struct History {
+  Kokkos::Array<Kokkos::View<T*, typename Space::memory_space>, k_most_state> column;
+  Kokkos::Array<const char*, k_most_state> name{};  // of each column in use
+  Kokkos::Array<bool, k_most_state> changes{};      // some law changes it
+  int columns = 0;                                  // in use
 };
 
 /// The soil: the particles of all deformable bodies.
@@ -37,13 +47,32 @@ struct Soil : Points<Space, T, Dim> {
   Kokkos::View<Vector<T, Dim>*, Memory> velocity;   // m/s
   Kokkos::View<SymTensor<T, Dim>*, Memory> stress;  // Pa, Cauchy, tension positive
   Kokkos::View<T*, Memory> volume;                  // m3, current
-  Kokkos::View<T*, Memory> plastic_strain;          // -, engineering plastic shear strain
-  Kokkos::View<T*, Memory> strength;                // Pa, undrained shear strength
+  History<Space, T> history;                        // state variables of the laws
   Kokkos::View<std::uint16_t*, Memory> body;        // index into bodies
   Kokkos::View<Matrix<T, Dim>*, Memory> affine;     // m/s a cell, C_p of APIC; of extent 0 without it
+  Kokkos::View<T*, Memory> mass;                    // kg, in use where has_own_mass
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
   Kokkos::View<AnyMaterial<T>*, Memory> materials;
+  bool has_own_mass = false;  // the particles of some body differ in mass; the same on all ranks
+
+  /// Mass [kg] of particle p, which is of this body.
+  KOKKOS_INLINE_FUNCTION T mass_of(int p, const BodyProperties<T>& of) const {
+    return has_own_mass ? mass(p) : of.mass;
+  }
+  /// The values of the state variables of particle p, whose law this is.
+  template <class Law>
+  KOKKOS_INLINE_FUNCTION LawState<T, state_size<Law>> state_of(const Law&, int p) const {
+    LawState<T, state_size<Law>> state;
+    for (int k = 0; k < state_size<Law>; ++k) state[k] = history.column[k](p);
+    return state;
+  }
+  /// What its body gives particle p, with its own mass.
+  KOKKOS_INLINE_FUNCTION BodyProperties<T> properties(int p) const {
+    BodyProperties<T> of = bodies(body(p));
+    of.mass = mass_of(p, of);
+    return of;
+  }
 };
 
 /// The particles of one rigid body. They keep their place in the body, so that their motion gathers no
@@ -57,21 +86,35 @@ struct RigidPoints : Points<Space, T, Dim> {
   bool surface_normal = false;                      // contact does not ask for their mass at the nodes
 };
 
-/// Applies f to the name and the view of every field that holds one entry a particle, but coordinate, cell
-/// and id. The one list of fields: sorting, output and checkpoints follow it.
-template <class Space, class T, int Dim, class F>
-void for_each_named_field(Soil<Space, T, Dim>& s, F&& f) {
-  f("velocity", s.velocity), f("stress", s.stress), f("volume", s.volume);
-  f("plastic_strain", s.plastic_strain), f("strength", s.strength), f("body", s.body);
-  if (s.affine.extent(0) > 0) f("affine", s.affine);
+/// What the update of the particles (function 5) does with a field.
+enum class Use { none, reads, changes };
+
+/// Calls f(name, use, field...) for every field that holds one entry a particle, but cell and id, of some
+/// sets of the same kind at once. The one table of fields: sorting, migration, checkpoints, batches, memory
+/// and the bytes that a step moves follow it.
+template <class F, class Soil_, class... Others>
+requires requires(Soil_& s) { s.history; }
+void for_each_field_of(F&& f, Soil_& s, Others&... others) {
+  f("coordinate", Use::changes, s.coordinate, others.coordinate...);
+  f("velocity", Use::changes, s.velocity, others.velocity...);
+  f("stress", Use::changes, s.stress, others.stress...);
+  f("volume", Use::changes, s.volume, others.volume...);
+  for (int k = 0; k < s.history.columns; ++k)
+    f(s.history.name[k], s.history.changes[k] ? Use::changes : Use::reads, s.history.column[k],
+      others.history.column[k]...);
+  f("body", s.bodies.extent(0) > 1 ? Use::reads : Use::none, s.body, others.body...);
+  if (s.affine.extent(0) > 0) f("affine", Use::none, s.affine, others.affine...);
+  if (s.has_own_mass) f("mass", Use::reads, s.mass, others.mass...);
 }
-template <class Space, class T, int Dim, class F>
-void for_each_named_field(RigidPoints<Space, T, Dim>& s, F&& f) {
-  f("home", s.home);
+template <class F, class RigidPoints_>
+requires requires(RigidPoints_& s) { s.home; }
+void for_each_field_of(F&& f, RigidPoints_& s) {
+  f("coordinate", Use::none, s.coordinate), f("home", Use::none, s.home);
 }
+/// The fields alone.
 template <class Points_, class F>
 void for_each_field(Points_& points, F&& f) {
-  for_each_named_field(points, [&](const char*, auto& field) { f(field); });
+  for_each_field_of([&](const char*, Use, auto& field) { f(field); }, points);
 }
 
 /// Places for the sums of windows, so that many threads can make them at once.

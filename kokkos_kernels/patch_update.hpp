@@ -61,9 +61,14 @@ struct UpdateParticles {
   ControlView<Space> control;
   Movements<Space> movements;
   Kokkos::View<T*, Memory, Kokkos::MemoryUnmanaged> dilatation;  // 1/s, by particle
+  Grid<T, Dim> grid;
+  WallReach<Dim> reach;
+  decltype(Strays<Space>::alone) alone;
+  decltype(Strays<Space>::put_back) put_back;
   UpdateScalars<T> by;
   double spacing;
   int first;      // of slots
+  int law;        // index in Materials of that of all bodies; -1: they differ
   bool one_body;  // no particle needs to be asked which its body is
   bool has_boundary;
 
@@ -100,24 +105,35 @@ struct UpdateParticles {
     MotionValues<T, Dim>* const nodes = scratch.take<MotionValues<T, Dim>>(window);
     T* const mean = scratch.take<T>(cells);
     const TileOrNothing tile(scratch);
+    const Coord<Dim> from = origin(slot);  // asked for before the nodes are waited for
+    const bool lone = alone(slot) != 0;
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
       const int number = number_of(n);
       tile.set_node(n, number);
       nodes[n] = motion_of(n, number);
     });
+    const bool uncommon = reach(from) || lone;
+    if (reach(from)) mirror(team, from, nodes);
     T moved = 0;
-    const auto particle = [&](int p) { return step_particle(nodes, mean, slot, p, body, moved); };
+    // Compiled twice: the rule of walls takes no registers where most patches are.
+    const auto particle = [&](int p) {
+      return uncommon ? step_particle<true>(nodes, mean, slot, p, body, moved)
+                      : step_particle<false>(nodes, mean, slot, p, body, moved);
+    };
     if constexpr (Sums) {
       tile.clear(team, cell_begin);
       team.team_barrier();
       if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
       tile.add(team, particle);
       note_movement(team, slot, moved);
-      tile.give_window(team, out.soil);
+      if (uncommon && reach(origin(slot)))  // read again: kept, the origin would take registers above
+        tile.give_window(team, out.soil, grid, origin(slot));
+      else
+        tile.give_window(team, out.soil);
       if (has_boundary && near_rigid(slot) != 0) {
         team.team_barrier();
         sum_patch(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, number_of, cell_begin,
-                  out.boundary);
+                  grid, origin(slot), out.boundary);
       }
     } else {
       team.team_barrier();
@@ -127,13 +143,26 @@ struct UpdateParticles {
     }
   }
 
+  /// The nodes beyond walls take the motion of their images.
+  KOKKOS_INLINE_FUNCTION void mirror(const Member& team, const Coord<Dim>& from,
+                                     MotionValues<T, Dim>* nodes) const {
+    team.team_barrier();
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
+      const int image = image_in_window(grid, from, n);
+      if (image == n) return;
+      const ImageSigns<Kind::motion, T, Dim> sign(grid, from, n);
+      for (int k = 0; k < NodeMotion<Dim>::size; ++k) nodes[n].c[k] = sign(k % Dim) * nodes[image].c[k];
+    });
+  }
+
   /// Asks the memory for what the particles of a thread hold, before their nodes are there.
   KOKKOS_INLINE_FUNCTION void prefetch_particles(const Member& team, int slot) const {
     const auto& soil = source.points;
     const int end = begin((slot + 1) * cells);
     for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
       prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
-      prefetch(&soil.volume(p)), prefetch(&soil.strength(p)), prefetch(&soil.plastic_strain(p));
+      prefetch(&soil.volume(p));
+      for (int k = 0; k < soil.history.columns; ++k) prefetch(&soil.history.column[k](p));
     }
   }
 
@@ -167,37 +196,47 @@ struct UpdateParticles {
     team.team_barrier();
   }
 
-  /// Moves particle p; `moved` [cells] becomes the largest movement so far. Returns what it then gives.
+  /// Moves particle p; `moved` [cells] becomes the largest movement so far. Uncommon: its patch is at a wall
+  /// or holds particles that are alone. Returns what the particle then gives.
+  template <bool Uncommon>
   KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const MotionValues<T, Dim>* nodes, const T* mean,
                                                              int slot, int p, const BodyProperties<T>& common,
                                                              T& moved) const {
     const auto& soil = source.points;
-    const BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
+    BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
     const int place = soil.cell(p) - slot * cells;
     const Coord<Dim> cell = coord_of<Dim>(place);
-    Particle<T, Dim> q{soil.coordinate(p),
-                       soil.velocity(p),
-                       soil.volume(p),
-                       {soil.stress(p), soil.plastic_strain(p), soil.strength(p)}};
-    const T plastic_strain = q.material.plastic_strain;
+    Particle<T, Dim> q{soil.coordinate(p), soil.velocity(p), soil.stress(p), soil.volume(p)};
+    const bool flies = Uncommon && is_alone(alone, soil.cell(p));
     T own = 0;
     with_weights_near(q.x, body.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-      own = advance(q, soil.materials(body.material), take_from_nodes(nodes, cell, a, by.inv_spacing),
-                    by.f_bar > 0 ? mean[place] : T(0), by);
+      own = advance(q, ParticleLaw<Space, T, Dim>{soil, p, body.material, law, flies},
+                    take_from_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean[place] : T(0), by);
     });
+    if (flies) q.volume = soil.volume(p);
     soil.coordinate(p) = q.x;
     soil.velocity(p) = q.v;
+    bool leaves_cell = false;
+    for (int d = 0; d < Dim; ++d) leaves_cell |= !(q.x[d] >= 0 && q.x[d] < 1);
+    if (Uncommon && leaves_cell) {
+      const auto cell_along = [&](int d) {
+        return origin(slot)[d] + (place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1));
+      };
+      if (put_on_walls(grid, cell_along, soil.coordinate(p), soil.velocity(p)))
+        Kokkos::atomic_inc(&put_back(soil.body(p)));
+      q.x = soil.coordinate(p), q.v = soil.velocity(p);
+    }
     soil.volume(p) = q.volume;
-    soil.stress(p) = q.material.stress;
-    if (q.material.plastic_strain != plastic_strain) soil.plastic_strain(p) = q.material.plastic_strain;
-    const FaultKind fault = fault_of(q, own);
+    soil.stress(p) = q.stress;
+    const FaultKind fault = fault_of(q, own, by);
     if (fault != FaultKind::none) {
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
       report(control, fault, soil.id(p), position, Dim);
     }
     moved = Kokkos::fmax(moved, own);
-    return {q.x, source.point(body, q.v, q.material.stress, q.volume)};
+    body.mass = soil.mass_of(p, body);
+    return {q.x, source.point(body, q.v, q.stress, q.volume)};
   }
 };
 
@@ -208,7 +247,15 @@ inline constexpr bool sums_fit = scratch_fits<Space, T, Dim>(UpdateParticles<Spa
 template <class Space, class T, int Dim>
 UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
   const double flip = s.xpic_order > 0 ? 1 : s.flip_share;  // XPIC has changed the velocities already
-  return {T(dt), s.grid.inv_spacing, T(flip), T(1 - flip), T(s.f_bar_share)};
+  return {.dt = T(dt),
+          .inv_spacing = s.grid.inv_spacing,
+          .flip = T(flip),
+          .pic = T(1 - flip),
+          .f_bar = T(s.f_bar_share),
+          .least_volume = T(s.strays.least_volume),
+          .most_volume = T(s.strays.most_volume),
+          .volume_is_fault = s.strays.rule == StrayRule::stop,
+          .clock = {.start = s.time, .dt = dt, .steps = &s.control.data()->steps}};
 }
 
 template <class Update, class Space, class T, int Dim>
@@ -216,22 +263,27 @@ Update update_of(const State<Space, T, Dim>& s, double dt, int first) {
   const auto& set = s.soil;
   const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
       reinterpret_cast<T*>(s.spare.data()), set.points.count);
-  return {{set.points, s.grid.inv_spacing},
-          set.bins.begin,
-          set.bins.by_colour,
-          s.patches.around,
-          s.patches.origin,
-          s.nodes.motion,
-          s.nodes,
-          s.near_rigid,
-          s.control,
-          s.movements,
-          dilatation,
-          update_scalars(s, dt),
-          s.spacing,
-          first,
-          set.points.bodies.extent(0) == 1,
-          s.soil_boundary};
+  return {.source = {set.points, s.grid.inv_spacing},
+          .begin = set.bins.begin,
+          .slots = set.bins.by_colour,
+          .around = s.patches.around,
+          .origin = s.patches.origin,
+          .motion = s.nodes.motion,
+          .sums = s.nodes,
+          .near_rigid = s.near_rigid,
+          .control = s.control,
+          .movements = s.movements,
+          .dilatation = dilatation,
+          .grid = s.grid,
+          .reach = WallReach<Dim>(s.grid),
+          .alone = s.strays.alone,
+          .put_back = s.strays.put_back,
+          .by = update_scalars(s, dt),
+          .spacing = s.spacing,
+          .first = first,
+          .law = s.law,
+          .one_body = set.points.bodies.extent(0) == 1,
+          .has_boundary = s.soil_boundary};
 }
 
 }  // namespace mpm

@@ -104,4 +104,12 @@ KOKKOS_INLINE_FUNCTION int number_at(const Around& around, int slot, const Coord
   return s < 0 ? -1 : s * Patch<Dim>::cells + place_of<Dim>(c);
 }
 
+/// Coordinates in the patch of a place in the window, from -1 to edge + 1.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION Coord<Dim> window_coord(int n) {
+  Coord<Dim> c{};
+  for (int d = 0; d < Dim; ++d, n /= Patch<Dim>::window_edge) c[d] = n % Patch<Dim>::window_edge - 1;
+  return c;
+}
+
 }  // namespace mpm

@@ -35,7 +35,7 @@ template <class Space, class T, int Dim>
 std::size_t lay_out(const State<Space, T, Dim>& s, char* from, SoilBatch<Space, T, Dim>& batch) {
   Cutter cutter{from};
   for_each_of_step(s.soil.points, batch.set.points,
-                   [&](const auto&, auto& there, bool) { cutter.cut(there, batch.first, batch.last); });
+                   [&](const auto&, auto& there, Use) { cutter.cut(there, batch.first, batch.last); });
   Kokkos::View<T*, typename Space::memory_space> dilatation;
   if (s.f_bar_share > 0) cutter.cut(dilatation, batch.first, batch.last);
   batch.spare =
@@ -148,7 +148,7 @@ void store_soil(State<Space, T, Dim>& s, int count, std::size_t spare_bytes) {
   Cutter cutter;
   const auto cut = [&] {
     const auto field = [&](auto& view) { cutter.cut(view, 0, count); };
-    field(soil.coordinate), field(soil.cell), field(soil.id), field(s.soil.address), field(s.soil.order);
+    field(soil.cell), field(soil.id), field(s.soil.address), field(s.soil.order);
     for_each_field(soil, field);
     cutter.cut(s.spare, 0, spare_bytes);
   };

@@ -5,6 +5,7 @@
 
 #include "batches.hpp"
 #include "rebuild.hpp"
+#include "walls.hpp"
 
 namespace mpm {
 namespace {
@@ -120,30 +121,32 @@ void locate(State<Space, T, Dim>& s) {
   const auto grid = s.grid;
   const auto origin = s.patches.origin;
   const auto control = s.control;
-  const double spacing = s.spacing;
-  {
-    const auto x_p = s.soil.points.coordinate;
-    const auto cell = s.soil.points.cell, id = s.soil.points.id;
-    const auto address = s.soil.address;
-    Kokkos::parallel_for(
-        "mpm::locate_soil", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
-        KOKKOS_LAMBDA(int p) {
-          Coord<Dim> c = coord_of<Dim>(cell(p));
-          const Coord<Dim> from = origin(cell(p) / Patch<Dim>::cells);
-          Vector<T, Dim> x = x_p(p);
-          double position[3] = {};
-          for (int d = 0; d < Dim; ++d) {
-            const T whole = Kokkos::floor(x[d]);
-            c[d] += from[d] + static_cast<int>(whole);
-            x[d] -= whole;
-            if (x[d] >= 1) x[d] = 0, ++c[d];  // -tiny + 1 rounds to 1
-            position[d] = (c[d] + double(x[d])) * spacing;
-          }
-          if (!grid.holds(c)) return report(control, FaultKind::outside, id(p), position, Dim);
-          x_p(p) = x;
-          address(p) = grid.address_of(c);
-        });
-  }
+  const auto soil = s.soil.points;
+  const auto address = s.soil.address;
+  const auto alone = s.strays.alone;
+  const auto put_back = s.strays.put_back;
+  const bool removes = s.strays.rule == StrayRule::remove;
+  const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
+  Kokkos::parallel_for(
+      "mpm::locate_soil", Kokkos::RangePolicy<Space>(s.space, 0, soil.count), KOKKOS_LAMBDA(int p) {
+        const int cell = soil.cell(p);
+        Coord<Dim> c = coord_of<Dim>(cell);
+        const Coord<Dim> from = origin(cell / Patch<Dim>::cells);
+        Vector<T, Dim> x = soil.coordinate(p);
+        if (put_on_walls(grid, in_mesh(from, c), x, soil.velocity(p)))
+          Kokkos::atomic_inc(&put_back(soil.body(p)));
+        for (int d = 0; d < Dim; ++d) {
+          const T whole = Kokkos::floor(x[d]);
+          c[d] += from[d] + static_cast<int>(whole);
+          x[d] -= whole;
+          if (x[d] >= 1) x[d] = 0, ++c[d];  // -tiny + 1 rounds to 1
+        }
+        bool leaves = removes && (is_alone(alone, cell) || soil.volume(p) <= least || soil.volume(p) >= most);
+        leaves = leaves || !grid.holds(c);
+        soil.coordinate(p) = x;
+        address(p) = leaves ? -1 : grid.address_of(c);
+        if (leaves) Kokkos::atomic_inc(&control().lost);
+      });
   locate_rigids(s);
 }
 

@@ -115,7 +115,7 @@ bool is_uniform(const RigidPoints<Space, T, Dim>&, const void*) {
 template <class Space, class Points_, class Order, class Spare>
 void permute_fields(const Space& space, Points_& points, const Order& order, const Spare& spare) {
   const auto field = [&](const auto& view) { permute(space, view, order, points.all, spare); };
-  field(points.coordinate), field(points.id);
+  field(points.id);
   for_each_field(points, [&](const auto& view) {
     if (!is_uniform(points, view.data())) field(view);
   });
@@ -271,6 +271,10 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
     s.boundary_windows.place = near;
     ensure(s.boundary_windows.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.near_count);
   }
+  if (s.shear_share && has_windows(s.space)) {
+    s.strength_windows.place = near;
+    ensure(s.strength_windows.sums, window_bytes<StrengthSource<Space, T, Dim>> * s.near_count);
+  }
   ensure(s.slot_forces, std::size_t(s.near_count) * Dim * s.rigid_points.size());
 }
 
@@ -302,19 +306,24 @@ void sort_and_list(State<Space, T, Dim>& s) {
   sort_points(s);
   build_lists(s);
   if (!s.rigid_points.empty()) mark_near_rigids(s);
-  if (s.f_bar_share > 0) average_pressure(s);
+  if (s.f_bar_share > 0 && !s.keeps_stress) average_pressure(s);
 
+  s.plan = plan_step(s);
   s.summed = {};
+  s.strays.known = false;
+  ensure(s.strays.alone, s.patches.slots);
+  Kokkos::deep_copy(s.space, s.strays.alone, 0);
   const int nodes = s.patches.node_count();
   ensure(s.nodes.soil, nodes);
   ensure(s.nodes.motion, nodes);
   if (s.xpic_order > 0) ensure(s.nodes.rest, nodes);
   if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
+  if (s.shear_share) ensure(s.nodes.strength, nodes);
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid = decltype(s.nodes.rigid)(
         Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),
         nodes + (s.nodes.rigid.extent(1) > 0 ? nodes / 16 : 0));
-  if (s.mass_normals && writes_sums(s))
+  if (s.mass_normals && s.plan.writes_sums)
     Kokkos::deep_copy(s.space, s.nodes.rigid, T(0));  // only those near rigids are written
   if (s.batches.in_use()) plan_batches(s);
   const auto control = s.control;
@@ -322,6 +331,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
       "mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
         control().bound = 0;
         control().due_in = 0;
+        control().lost = 0;
         control().paused = control().fault_count > 0;
       });
 }

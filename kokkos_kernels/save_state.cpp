@@ -55,11 +55,10 @@ SavedPoints save_points(const Grid_& grid, const Patches_& patches, Points_ poin
   const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
   saved.id.assign(id.data(), id.data() + points.count);
   saved.address = addresses_of(grid, patches, points.cell, points.count);
-  const auto save = [&](const char* name, const auto& field) {
+  const auto save = [&](const char* name, Use, const auto& field) {
     saved.fields.push_back(save_field(name, field, points.count));
   };
-  save("coordinate", points.coordinate);
-  for_each_named_field(points, save);
+  for_each_field_of(save, points);
   return saved;
 }
 
@@ -86,6 +85,48 @@ SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
     for (int r = 0; r < rigids; ++r) saved.values.push_back(impulse(r, i));
   }
   return saved;
+}
+
+/// What has left the run, and which cells hold particles that are alone.
+template <class Space, class T, int Dim>
+void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
+  const auto put_back = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.put_back);
+  for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
+    const Lost& lost = s.strays.lost[b];
+    const double numbers[k_lost] = {lost.count,       lost.mass,        lost.kinetic_energy, lost.momentum[0],
+                                    lost.momentum[1], lost.momentum[2], double(put_back(b))};
+    saved.lost.insert(saved.lost.end(), numbers, numbers + k_lost);
+  }
+  saved.alone_known = s.strays.known ? 1 : 0;
+  if (!s.strays.known) return;
+  const auto alone = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.alone);
+  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
+  constexpr int cells = Patch<Dim>::cells;
+  for (int c = 0; c < s.patches.node_count(); ++c)
+    if (is_alone(alone, c)) saved.alone.push_back(s.grid.patch_of(origin(c / cells)) * cells + c % cells);
+}
+
+template <class Space, class T, int Dim>
+void restore_lost(State<Space, T, Dim>& s, const SavedState& saved) {
+  const auto put_back = Kokkos::create_mirror_view(s.strays.put_back);
+  for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
+    const double* const numbers = &saved.lost[b * k_lost];
+    s.strays.lost[b] = {numbers[0], numbers[1], numbers[2], {numbers[3], numbers[4], numbers[5]}};
+    put_back(b) = static_cast<int>(numbers[6]);
+  }
+  Kokkos::deep_copy(s.strays.put_back, put_back);
+}
+
+/// After the lists were made.
+template <class Space, class T, int Dim>
+void restore_alone(State<Space, T, Dim>& s, const SavedState& saved) {
+  s.strays.known = saved.alone_known != 0;
+  const auto alone = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.alone);
+  const auto slot_of = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.slot_of);
+  for (const long address : saved.alone)
+    if (const int slot = slot_of(address / Patch<Dim>::cells); slot >= 0)
+      alone(slot) |= std::uint64_t(1) << (address % Patch<Dim>::cells);
+  Kokkos::deep_copy(s.strays.alone, alone);
 }
 
 /// Makes a view hold n entries; its content is lost where it had another number.
@@ -128,11 +169,10 @@ std::string restore_points(Sorted<Space, Points_>& set, const SavedPoints& saved
   auto& points = set.points;
   points.count = points.all = static_cast<int>(saved.id.size());
   std::string missing;
-  const auto restore = [&](const char* name, auto& view) {
+  const auto restore = [&](const char* name, Use, auto& view) {
     if (!restore_field(name, view, saved, points.count)) missing = name;
   };
-  restore("coordinate", points.coordinate);
-  for_each_named_field(points, restore);
+  for_each_field_of(restore, points);
   restore_whole(points.id, saved.id);
   restore_whole(set.address, saved.address);
   restore_whole(points.cell, saved.address);  // sorting gives the cells; only the length counts
@@ -202,12 +242,15 @@ SavedState save_state(const State<Space, T, Dim>& s) {
     }
   }
   saved.impulse = save_impulse(s);
+  save_strays(s, saved);
   return saved;
 }
 
 template <class Space, class T, int Dim>
 std::string take_saved(State<Space, T, Dim>& s, const SavedState& saved) {
   if (saved.rigids.size() != s.rigid_points.size()) return "the number of rigids";
+  if (saved.lost.size() != s.strays.lost.size() * k_lost) return "the number of bodies";
+  restore_lost(s, saved);
   const std::string missing = restore_points(s.soil, saved.soil);
   if (!missing.empty()) return missing;
   restore_rigids(s, saved, true);
@@ -218,9 +261,9 @@ std::string take_saved(State<Space, T, Dim>& s, const SavedState& saved) {
 template <class Space, class T, int Dim>
 void list_saved(State<Space, T, Dim>& s) {
   // A rebuild brings the pressures of a cell together (F-bar); here none is made, only its tables.
-  const double share = std::exchange(s.f_bar_share, 0);
+  const bool keeps = std::exchange(s.keeps_stress, true);
   sort_and_list(s);
-  s.f_bar_share = share;
+  s.keeps_stress = keeps;
 }
 
 template <class Space, class T, int Dim>
@@ -228,6 +271,7 @@ void finish_saved(State<Space, T, Dim>& s, const SavedState& saved) {
   restore_rigids(s, saved, false);
   move_rigid_points(s, s.space);
   restore_nodes(s, saved.impulse);
+  restore_alone(s, saved);
   restore_control(s, saved);
   s.summed = {};
   s.space.fence("mpm::restore_state");

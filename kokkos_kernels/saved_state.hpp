@@ -36,6 +36,8 @@ struct SavedImpulse {
   std::vector<double> values;  // N s, of each rigid [rigids M]
 };
 
+inline constexpr int k_lost = 7;
+
 struct SavedState {
   double bound = 0, increment = 0;  // cells, of Control; the largest of all ranks
   double margin = 0;                // cells, that the bound was held against
@@ -43,6 +45,10 @@ struct SavedState {
   std::vector<double> bounds;  // of each of several ranks: what Ranks::save puts there; empty on one rank
   std::vector<long> owners;    // rank of each patch of the grid; empty on one rank
   SavedPoints soil;
+  long particles = 0;        // at the start, of all ranks: rows of those that have left have no address (-1)
+  std::vector<double> lost;  // k_lost numbers a body: those of Lost, and Strays::put_back
+  std::vector<long> alone;   // Grid::address_of the cells whose particles are alone
+  int alone_known = 0;       // 1: `alone` holds; 0: the next step finds it
   std::vector<SavedRigid> rigids;
   SavedImpulse impulse;
 };

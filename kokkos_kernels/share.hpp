@@ -4,12 +4,15 @@
 #include "nodes.hpp"
 #include "particles.hpp"
 #include "shape_gimp.hpp"
+#include "walls.hpp"
 
 namespace mpm {
 
 // A Point holds what a particle gives, as plain T, so that a strategy may keep it value by value. Each value
 // of a node's share goes with the weight, or with components of its gradient, which takes(value, d) tells:
 //   S factor(q, value)   or   sum over d of dS/dx_d slope(q, value, d)
+// component(value) is the direction of a value that is a component of a vector, -1 of a scalar; with `kind`
+// it tells the sign of its image in a wall.
 
 /// Soil to nodes, Eqs (1), (2), (4): m_i = sum S m_p, p_i = sum S m_p v_p, f_i = - sum V_p sigma_p grad S.
 /// The weight, Eq. (5), is m_i g and is added at the node.
@@ -18,6 +21,7 @@ struct SoilSource {
   using Space = Space_;
   using real = T;
   static constexpr int dim = Dim, size = SoilShare<Dim>::size;
+  static constexpr Kind kind = Kind::motion;
   template <class R>
   struct PointOf {
     HalfLength<R> half_length;
@@ -34,7 +38,7 @@ struct SoilSource {
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    return point(points.bodies(points.body(p)), points.velocity(p), points.stress(p), points.volume(p));
+    return point(points.properties(p), points.velocity(p), points.stress(p), points.volume(p));
   }
   /// R: T, or lanes of it.
   template <class R>
@@ -46,6 +50,9 @@ struct SoilSource {
     for (int k = 0; k < Dim * (Dim + 1) / 2; ++k)
       q.stress_volume[k] = scale * stress[k < Dim ? k : k + 3 - Dim];
     return q;
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
+    return value == SoilShare<Dim>::mass ? -1 : (value - SoilShare<Dim>::momentum) % Dim;
   }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int) {
     return value >= SoilShare<Dim>::force;
@@ -89,6 +96,7 @@ struct RestSource {
   using Space = Space_;
   using real = T;
   static constexpr int dim = Dim, size = Dim;
+  static constexpr Kind kind = Kind::motion;
   struct Point {
     HalfLength<T> half_length;
     T momentum[Dim];
@@ -98,11 +106,12 @@ struct RestSource {
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    const BodyProperties<T> body = points.bodies(points.body(p));
+    const BodyProperties<T> body = points.properties(p);
     Point q{body.half_length, {}};
     for (int d = 0; d < Dim; ++d) q.momentum[d] = body.mass * rest(p)[d];
     return q;
   }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value; }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.momentum[value]; }
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
@@ -116,6 +125,7 @@ struct BoundarySource {
   using Space = Space_;
   using real = T;
   static constexpr int dim = Dim, size = BoundaryShare<Dim>::size;
+  static constexpr Kind kind = Kind::geometry;
   struct Point {
     HalfLength<T> half_length;
     T area, volume;  // V_p / d, V_p
@@ -130,11 +140,46 @@ struct BoundarySource {
     const T volume = points.volume(p);
     return {points.bodies(points.body(p)).half_length, volume * inv_spacing, volume};
   }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
+    return value < BoundaryShare<Dim>::volume ? value : -1;
+  }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
     return value == BoundaryShare<Dim>::area + d;
   }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.volume; }
   KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.area; }
+};
+
+/// The soil's strength at a node, sum S V_p s_p, and its volume, sum S V_p.
+template <class Space_, class T, int Dim>
+struct StrengthSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = StrengthShare::size;
+  static constexpr Kind kind = Kind::geometry;
+  struct Point {
+    HalfLength<T> half_length;
+    T strength, volume;  // V_p s_p, V_p
+  };
+  Soil<Space, T, Dim> points;
+  Kokkos::View<int*, typename Space::memory_space> near_rigid;  // by slot
+
+  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return near_rigid(slot) == 0; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const T volume = points.volume(p);
+    const BodyProperties<T>& body = points.bodies(points.body(p));
+    T strength = 0;
+    points.materials(body.material).visit([&](const auto& law) {
+      strength = law.shear_strength(points.state_of(law, p));
+    });
+    return {body.half_length, volume * strength, volume};
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
+    return value == StrengthShare::strength ? q.strength : q.volume;
+  }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
 /// Rigid body to nodes: m_i^R = sum S m_p and the mass gradient n_i^R = sum grad S m_p (Eq. 3; it points out
@@ -144,6 +189,7 @@ struct RigidSource {
   using Space = Space_;
   using real = T;
   static constexpr int dim = Dim, size = RigidShare<Dim>::size;
+  static constexpr Kind kind = Kind::geometry;
   struct Point {
     HalfLength<T> half_length;
     T mass;
@@ -163,6 +209,9 @@ struct RigidSource {
     for (int d = 0; d < Dim; ++d)
       points.coordinate(p)[d] =
           static_cast<T>(points.home(p)[d] + displacement[d] / spacing - from[d] - cell[d]);
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
+    return value - RigidShare<Dim>::normal;  // -1 of the mass
   }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
     return value == RigidShare<Dim>::normal + d;
@@ -198,6 +247,20 @@ KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, W w, const Vec
   if constexpr (requires { Source::takes_offset; }) Source::give_more(q, w, offset(), add);
 }
 
+/// Gives what the nodes beyond walls have in a window's sums to their images; at a wall, what soil and image
+/// have together stays. sum(n, value): that of node n.
+template <class Source, class T, int Dim, class Sum>
+KOKKOS_INLINE_FUNCTION void fold_images(const Grid<T, Dim>& grid, const Coord<Dim>& origin, const Sum& sum) {
+  for (int d = 0; d < Dim; ++d)
+    for_each_image(grid, origin, d, [&](int place, int image, int at) {
+      for (int v = 0; v < Source::size; ++v) {
+        const T given = image_sign<Source::kind, T>(grid, d, at, Source::component(v)) * sum(place, v);
+        sum(place, v) = 0;
+        sum(image, v) += given;
+      }
+    });
+}
+
 /// Bytes of the sums of one window.
 template <class Source>
 inline constexpr std::size_t window_bytes =
@@ -209,6 +272,7 @@ inline constexpr std::size_t window_bytes =
   X(AffineSource, Space, T, Dim)              \
   X(RestSource, Space, T, Dim)                \
   X(BoundarySource, Space, T, Dim)            \
+  X(StrengthSource, Space, T, Dim)            \
   X(RigidSource, Space, T, Dim)
 
 }  // namespace mpm

@@ -30,14 +30,15 @@ struct SoilBatch {
   Kokkos::View<char*, typename Space::memory_space> spare;  // dilatations, by these numbers too
 };
 
-/// Calls f(home, there, changes) for the fields that the update of the particles looks at.
+/// Calls f(home, there, use) for the fields that the update of the particles looks at.
 template <class Home, class There, class F>
 void for_each_of_step(Home& home, There& there, F&& f) {
-  f(home.coordinate, there.coordinate, true), f(home.velocity, there.velocity, true);
-  f(home.stress, there.stress, true), f(home.volume, there.volume, true);
-  f(home.plastic_strain, there.plastic_strain, true);
-  f(home.strength, there.strength, false), f(home.cell, there.cell, false);
-  if (home.bodies.extent(0) > 1) f(home.body, there.body, false);
+  for_each_field_of(
+      [&](const char*, Use use, auto& at_home, auto& in_batch) {
+        if (use != Use::none) f(at_home, in_batch, use);
+      },
+      home, there);
+  f(home.cell, there.cell, Use::reads);
 }
 
 /// What the batches cost, summed over the steps that were done. Those that were taken apart, each copy and

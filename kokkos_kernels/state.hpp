@@ -6,6 +6,8 @@
 
 #include "nodes.hpp"
 #include "soil_batches.hpp"
+#include "step_plan.hpp"
+#include "strays.hpp"
 
 namespace mpm {
 
@@ -30,6 +32,8 @@ struct State {
   Grid<T, Dim> grid;
   Patches<Space, Dim> patches;
   Sorted<Space, Soil<Space, T, Dim>> soil;
+  int law = -1;  // index in Materials of the law of all bodies; -1: they differ
+  Strays<Space> strays;
   Batches<Space, T, Dim> batches;  // of the soil, where the device's memory does not hold it all
   std::vector<Sorted<Space, RigidPoints<Space, T, Dim>>> rigid_points;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
@@ -37,7 +41,7 @@ struct State {
   Kokkos::View<int*, Memory> near_slots;   // where a rigid may touch a node that the slot's particles reach
   Kokkos::View<int*, Memory> near_rigid;   // by slot: its place among those, from 1 on; 0 elsewhere
   int near_count = 0;
-  Windows<Space> boundary_windows;  // of the patches near a rigid
+  Windows<Space> boundary_windows, strength_windows;  // of the patches near a rigid
   Kokkos::View<double*, Memory>
       slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
   Nodes<Space, T, Dim> nodes;
@@ -54,6 +58,7 @@ struct State {
       spare;  // scratch of a rebuild: one field in its new order; of a step: dilatations, XPIC
   Kokkos::View<int*, Memory> marks;  // scratch of a rebuild: which patches hold points
 
+  double time = 0;                // s, before the steps that Control::steps counts
   double spacing = 0;             // m, edge of a cell, whatever T is
   Vector<double, Dim> gravity{};  // m/s2
   double damping = 0;             // -
@@ -61,14 +66,17 @@ struct State {
   int xpic_order = 0;             // m of XPIC(m), 0 without it
   bool affine = false;            // APIC: Soil::affine is in use; flip_share is then 0
   double f_bar_share = 0;         // -
+  bool keeps_stress = false;      // sorting brings no pressures together: at a start from another run
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them
+  StepPlan plan;                  // of the steps until the next rebuild
   Summed summed;                  // what the step before has summed already
   bool forces_summed = false;  // `sums` holds the forces of this step, of all ranks if a rigid moves by them
   bool rigid_moves = false;    // some rigid is not fixed
   bool rigid_dynamic = false;  // some rigid moves by the forces on it
   bool mass_normals = false;   // some rigid's normals are those of its mass gradient
   bool soil_boundary = false;  // some contact needs the soil's boundary at the nodes
+  bool shear_share = false;    // some contact needs the soil's strength at the nodes
   bool has_friction = false;   // some contact has Coulomb friction
 };
 

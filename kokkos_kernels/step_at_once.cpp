@@ -75,10 +75,8 @@ bool has_room(const State<Space, T, Dim>& s) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-bool ends_at_once(const State<Space, T, Dim>& s) {
-  if constexpr (is_device<Space> && sums_fit<Space, T, Dim>)
-    return s.soil.points.count > 0 && sums_ahead(s) && few_patches(s) && !s.batches.in_use() &&
-           has_room<false>(s);
+bool ends_in_launch(const State<Space, T, Dim>& s) {
+  if constexpr (is_device<Space> && sums_fit<Space, T, Dim>) return has_room<false>(s);
   return false;
 }
 
@@ -93,7 +91,8 @@ void update_and_end(State<Space, T, Dim>& s, double dt) {
 template <class Space, class T, int Dim>
 bool is_whole_step(const State<Space, T, Dim>& s) {
   // What friction keeps of the impulse at a node changes with each look at it.
-  const bool independent = !s.has_friction && !(s.rigid_dynamic && s.mass_normals);
+  // The strengths are summed before the nodes, not ahead with the soil.
+  const bool independent = !s.shear_share && !s.has_friction && !(s.rigid_dynamic && s.mass_normals);
   const bool summed = s.summed.soil && s.summed.boundary == s.soil_boundary && s.summed.rigids;
   const bool pays = s.together || s.patches.slots <= k_most_patches;
   if constexpr (sums_fit<Space, T, Dim>)
@@ -128,7 +127,7 @@ void go_on_apart(State<Space, T, Dim>& s) {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                           \
-  template bool ends_at_once(const State<Space, T, Dim>&);       \
+  template bool ends_in_launch(const State<Space, T, Dim>&);     \
   template void update_and_end(State<Space, T, Dim>&, double);   \
   template bool is_whole_step(const State<Space, T, Dim>&);      \
   template int whole_steps(State<Space, T, Dim>&, double, long); \

@@ -1,6 +1,6 @@
 #pragma once
-// The launch that does several functions of a step, or whole steps one after the other: its teams wait for
-// each other.
+// The persistent launch: it does several functions of a step, or many steps one after the other, and its
+// teams wait for each other.
 
 #include <cstdint>
 #include <type_traits>
@@ -11,29 +11,30 @@
 
 namespace mpm {
 
-inline constexpr int k_rigids_at_once = 4;  // whose points travel as arguments of one launch
+inline constexpr int k_rigids_at_once = 4;  // with points, which are arguments of the launch
 
-/// Looks at what other teams say until the launch gives up to have all of them on the device at once: some
-/// ms.
+/// Polls after which the last team assumes that the device cannot hold all teams at once: some ms.
 inline constexpr int k_patience = 20'000;
 
-/// What this thread wrote, or had from those it waited for, is there for whoever waits for what it does next.
+/// Makes what this thread wrote, or read from teams that it waited for, visible to teams that wait for its
+/// next write.
 KOKKOS_INLINE_FUNCTION void fence_of_teams() {
-  KOKKOS_IF_ON_DEVICE((asm volatile("fence.acq_rel.gpu;" ::: "memory");))  // that of Kokkos orders more
+  KOKKOS_IF_ON_DEVICE((asm volatile("fence.acq_rel.gpu;" ::: "memory");))  // Kokkos' fence orders more
   KOKKOS_IF_ON_HOST((Kokkos::memory_fence();))
 }
 
-/// The launch: the first teams move the points of rigids to where they will be and give their mass to the
-/// nodes, the others take a slot each, and the last one waits for all of them, moves the rigids and counts
-/// the step.
+/// The launch. The first teams move the points of rigids to their next positions and add their mass to the
+/// nodes. Each of the other teams takes a slot. The last team waits for all others, moves the rigids and
+/// counts the step.
 ///
-/// If Whole, each slot's team finds by itself what becomes of the nodes that its particles reach, so that no
-/// team waits for another's; it keeps the motion of the slot's own nodes, and answers for the force that they
-/// leave on the rigids. Else the nodes have been updated before.
+/// If Whole, the team of a slot itself updates all nodes that its particles reach, so that no team waits for
+/// another team's nodes. The team keeps the motion of the slot's own nodes, and sums the force of these nodes
+/// on the rigids. Otherwise the nodes have been updated by an earlier launch.
 ///
-/// Whole steps follow one another in a launch: between two of them all teams wait for the last one. That
-/// needs all of them on the device at once. If some have not begun when others are done with the first step,
-/// that step is the launch's last one. That is for the last team to say, so it is one that has begun.
+/// A launch does many steps if Whole. Between two steps all teams wait for the last team, which requires that
+/// the device holds all teams at once. If some teams have not begun when the others have finished the first
+/// step, the launch ends with that step. The last team decides this. The part of the last team goes to the
+/// team that begins first, so that it is never one of those that have not begun.
 template <class Space, class T, int Dim, bool Whole>
 struct StepAtOnce {
   static constexpr int threads = team_threads<Space>;
@@ -165,7 +166,7 @@ struct StepAtOnce {
       MPM_ROLLED
       for (int p = part * threads + team.team_rank(); p < source.points.count; p += all) {
         source.move(p, to);
-        give_to_nodes(source, update.around, p, [&](int i, int v, T value) {
+        give_to_nodes(source, nodes.places, p, [&](int i, int v, T value) {
           Kokkos::atomic_add(&next.rigid(source.rigid, i, v), value);
         });
       }

@@ -6,33 +6,19 @@
 
 namespace mpm {
 
-/// Whether a device has all patches at once, so that a step should take few launches.
+/// The plan of the steps until the next rebuild, on one rank; several ranks may overlap theirs. After lists
+/// are made.
 template <class Space, class T, int Dim>
-bool few_patches(const State<Space, T, Dim>& s) {
-  return is_device<Space> && s.patches.slots < 2000;
-}
-
-/// Whether the interpolation writes the sums of all nodes. Else it adds to what reset_nodes has cleared.
-template <class Space, class T, int Dim>
-bool writes_sums(const State<Space, T, Dim>& s) {
-  return has_windows(s.space) && chosen(s.p2g.strategy, backend_of<Space>) == P2G::tile &&
-         !s.batches.in_use();
-}
+StepPlan plan_step(const State<Space, T, Dim>& s);
 
 /// 1. Sets the nodal sums to zero, where they have to be.
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s);
 
-/// Whether update_particles goes on to function 3 of the next step, the soil's boundary included: particles
-/// then pass through memory once a step. So it is with the strategy `tile` on a GPU and on many threads, where
-/// a velocity update does not need the nodal sums again and, on a GPU, the scratch memory holds both.
-template <class Space, class T, int Dim>
-bool sums_ahead(const State<Space, T, Dim>& s);
-
 /// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
-/// contact forces in s.slot_forces. Where sums_ahead, it leaves the nodal sums at zero, which is function 1
-/// of the next step, unless writes_sums. dt [s]. queue: that of the nodes near rigids, if nodes_apart; the
-/// others are on s.space.
+/// contact forces in s.slot_forces. Where the plan has sums_ahead and not writes_sums, it leaves the nodal
+/// sums at zero, which is function 1 of the next step. dt [s]. queue: that of the nodes near rigids, if the
+/// plan has nodes_apart; the others are on s.space.
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue);
 template <class Space, class T, int Dim>
@@ -42,14 +28,10 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
 /// Brings to the nodes the sums that update_particles has left in windows for update_nodes.
 template <class Space, class T, int Dim>
 void finish_sums(State<Space, T, Dim>& s);
-/// Whether the nodes near rigids have a kernel of their own.
+/// Whether one launch has room for function 5 with function 3 of the next step, function 6, and function 2 of
+/// the next step.
 template <class Space, class T, int Dim>
-bool nodes_apart(const State<Space, T, Dim>& s);
-
-/// Whether one launch can do function 5 with function 3 of the next step, function 6, and function 2 of the
-/// next step.
-template <class Space, class T, int Dim>
-bool ends_at_once(const State<Space, T, Dim>& s);
+bool ends_in_launch(const State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void update_and_end(State<Space, T, Dim>& s, double dt);
 

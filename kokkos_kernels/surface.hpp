@@ -5,10 +5,11 @@
 
 namespace mpm {
 
-enum class SurfaceKind : int { box, polygon, disc, half_plane };
+enum class SurfaceKind : int { box, polygon, disc, half_plane, revolved };
 
 /// A vertex of a polygon in the plane of x and the vertical axis [m from the mesh's lower corner], and
-/// whether the edge that begins there lies on the mesh's boundary, where no soil can be behind it.
+/// whether the edge that begins there lies on the mesh's boundary, where no soil can be behind it. Of what is
+/// revolved: of its section, distance from the axis and height above the centre.
 struct Vertex {
   double x, z;
   bool outside;
@@ -18,12 +19,12 @@ struct Vertex {
 template <int Dim>
 struct Surface {
   SurfaceKind kind;
-  Vector<double, Dim> centre;  // box, disc; half_plane: a point on it
+  Vector<double, Dim> centre;  // box, disc; half_plane: a point on it; revolved: of the vertices' heights
   Vector<double, Dim> half;    // box: half its edges; polygon in 3D: half[1] is half the prism's width
   Vector<double, Dim> normal;  // half_plane: outward, of length 1
-  double radius;               // disc; box: of its corners
+  double radius;               // disc; box, revolved: of its corners
   double cosine, sine;         // box: of the angle that turns x to the vertical axis
-  int first, count;            // polygon: its vertices
+  int first, count;            // polygon; revolved: vertices of its section, made smaller by the radius
 };
 
 /// Signed distance [m], positive outside, and the outward unit normal there.
@@ -82,6 +83,17 @@ KOKKOS_INLINE_FUNCTION Distance<2> distance_to_polygon(const Vertices& vertices,
   return {0, {out * edge_x, out * edge_z}};
 }
 
+/// Distance of a point, r from the centre, to what turns about the vertical axis.
+template <class Vertices>
+KOKKOS_INLINE_FUNCTION Distance<3> distance_to_revolved(const Surface<3>& body, const Vertices& vertices,
+                                                        const Vector<double, 3>& r) {
+  const double off = Kokkos::sqrt(r[0] * r[0] + r[1] * r[1]);
+  const Distance<2> section = distance_to_polygon(vertices, body.first, body.count, off, r[2]);
+  const bool on_axis = !(off > k_on_edge);  // where every direction is as good
+  const double x = on_axis ? 1 : r[0] / off, y = on_axis ? 0 : r[1] / off;
+  return {section.value - body.radius, {section.normal[0] * x, section.normal[0] * y, section.normal[1]}};
+}
+
 /// Signed distance of x [m from the mesh's lower corner, less the body's displacement].
 template <int Dim, class Vertices>
 KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const Vertices& vertices,
@@ -97,6 +109,8 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
     const double length = Kokkos::sqrt(dot(r, r));
     out.value = length - body.radius;
     for (int d = 0; d < Dim; ++d) out.normal[d] = length > 0 ? r[d] / length : 0;
+  } else if (body.kind == SurfaceKind::revolved) {
+    if constexpr (Dim == 3) out = distance_to_revolved(body, vertices, r);
   } else if (body.kind == SurfaceKind::box) {
     const double along = body.cosine * r[0] + body.sine * r[up];
     r[up] = body.cosine * r[up] - body.sine * r[0];

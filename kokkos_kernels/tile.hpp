@@ -107,6 +107,19 @@ class Tile {
       if (own != 0) Kokkos::atomic_add(out.data() + (m + size * static_cast<long>(to_[m / size])), own);
     });
   }
+  /// The same of a patch at a wall, which is at `origin`: what nodes beyond have goes to their images.
+  template <class Team, class Field>
+  KOKKOS_INLINE_FUNCTION void give_window(const Team& team, const Field& out, const Grid<T, Dim>& grid,
+                                          const Coord<Dim>& origin) const {
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
+      const int image = image_in_window(grid, origin, n), number = to_[image] + image;
+      const ImageSigns<Source::kind, T, Dim> sign(grid, origin, n);
+      for (int v = 0; v < size; ++v) {
+        const T own = sign(Source::component(v)) * sums_[n * size + v];
+        if (own != 0) Kokkos::atomic_add(&out(number, v), own);
+      }
+    });
+  }
 
  private:
   KOKKOS_INLINE_FUNCTION void put(int n, const Entry& entry) const {
@@ -231,10 +244,11 @@ class Tile {
 };
 
 /// A team gives the points of a slot to the nodes. number_of(n): of node n of the window; cell_begin(c): the
-/// first point of cell c of the patch.
-template <class Source, class Team, class Number, class Begin, class Field>
+/// first point of cell c of the patch, which is at `origin`.
+template <class Source, class Team, class Number, class Begin, class T, int Dim, class Field>
 KOKKOS_INLINE_FUNCTION void sum_patch(const Team& team, Scratch scratch, const Source& source,
-                                      const Number& number_of, const Begin& cell_begin, const Field& out) {
+                                      const Number& number_of, const Begin& cell_begin,
+                                      const Grid<T, Dim>& grid, const Coord<Dim>& origin, const Field& out) {
   using Tile_ = Tile<Source>;
   const Tile_ tile(scratch);
   Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Source::dim>::window),
@@ -242,7 +256,10 @@ KOKKOS_INLINE_FUNCTION void sum_patch(const Team& team, Scratch scratch, const S
   tile.clear(team, cell_begin);
   team.team_barrier();
   tile.add(team, [&](int p) { return typename Tile_::Entry{source.points.coordinate(p), source.load(p)}; });
-  tile.give_window(team, out);
+  if (reaches_wall(grid, origin))
+    tile.give_window(team, out, grid, origin);
+  else
+    tile.give_window(team, out);
 }
 
 }  // namespace mpm

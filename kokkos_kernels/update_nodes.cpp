@@ -6,7 +6,7 @@ template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s) {
   using Team = Kokkos::TeamPolicy<Space>;
   s.summed = {}, s.next_zero = false;
-  if (writes_sums(s)) return;
+  if (s.plan.writes_sums) return;
   const auto nodes = s.nodes;
   const auto control = s.control;
   const int rigids = s.mass_normals ? static_cast<int>(s.rigid_points.size()) : 0;
@@ -16,13 +16,6 @@ void reset_nodes(State<Space, T, Dim>& s) {
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (!control().paused) clear_sums(team, nodes, team.league_rank(), boundary, rigids);
       });
-}
-
-template <class Space, class T, int Dim>
-bool nodes_apart(const State<Space, T, Dim>& s) {
-  // Patches far from rigids need few registers: where they are many, they go faster with a launch of their
-  // own.
-  return is_device<Space> && !s.rigid_points.empty() && s.near_count > 0 && !few_patches(s);
 }
 
 namespace {
@@ -47,7 +40,7 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& queu
     return light(
         Team(space, teams, node_threads<Space, Dim>).set_scratch_size(level, Kokkos::PerTeam(near_bytes)));
   };
-  if (s.near_count > 0 && !nodes_apart(s))
+  if (s.near_count > 0 && !s.plan.nodes_apart)
     return Kokkos::parallel_for(
         "mpm::update_nodes", some_near(s.space, s.patches.slots), KOKKOS_LAMBDA(const Member& team) {
           if (control().paused) return;
@@ -64,7 +57,7 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& queu
         if (!control().paused && (values == 0 || near(slot) == 0))
           update.update_far(team, update.nodes, slot);
       });
-  if (nodes_apart(s))
+  if (s.plan.nodes_apart)
     Kokkos::parallel_for(
         "mpm::update_nodes_near_rigids", some_near(queue, s.near_count), KOKKOS_LAMBDA(const Member& team) {
           const int n = team.league_rank();
@@ -94,8 +87,7 @@ void finish_sums(State<Space, T, Dim>& s) {
 #define MPM_INSTANTIATE(Space, T, Dim)                                     \
   template void reset_nodes(State<Space, T, Dim>&);                        \
   template void update_nodes(State<Space, T, Dim>&, double, const Space&); \
-  template void finish_sums(State<Space, T, Dim>&);                        \
-  template bool nodes_apart(const State<Space, T, Dim>&);
+  template void finish_sums(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -18,16 +18,9 @@ void launch_update(State<Space, T, Dim>& s, double dt, const Part<Space>& part) 
 }  // namespace
 
 template <class Space, class T, int Dim>
-bool sums_ahead(const State<Space, T, Dim>& s) {
-  // One thread gains nothing by it, and the log tells its functions apart.
-  const bool fit = is_device<Space> ? sums_fit<Space, T, Dim> : has_windows(s.space);
-  return fit && chosen(s.p2g.strategy, backend_of<Space>) == P2G::tile && s.xpic_order == 0 && !s.affine;
-}
-
-template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const Part<Space>& part) {
-  const bool sums = sums_ahead(s);
-  s.summed = {sums, sums && s.soil_boundary, false, sums && writes_sums(s)};
+  const bool sums = s.plan.sums_ahead;
+  s.summed = {sums, sums && s.soil_boundary, false, sums && s.plan.writes_sums};
   if constexpr (is_device<Space>) {
     if constexpr (sums_fit<Space, T, Dim>)
       if (sums) return launch_update<true>(s, dt, part);
@@ -43,7 +36,6 @@ void update_particles(State<Space, T, Dim>& s, double dt) {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                           \
-  template bool sums_ahead(const State<Space, T, Dim>&);         \
   template void update_particles(State<Space, T, Dim>&, double); \
   template void update_particles(State<Space, T, Dim>&, double, const Part<Space>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)

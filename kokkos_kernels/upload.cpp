@@ -49,6 +49,11 @@ void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<do
   fill_view(set.points.cell, "mpm::cell", count, [](int) { return 0; });
 }
 
+/// Mass of each particle of a body whose particles have none of their own [kg].
+double common_mass(const BodyInput& body) {
+  return body.particle_mass > 0 ? body.particle_mass : body.density * body.particle_volume;
+}
+
 /// Bytes of scratch memory that sorting the rigid with the most points takes.
 template <class Space, class T, int Dim>
 std::size_t spare_of_rigids(const std::vector<RigidInput>& rigids) {
@@ -56,6 +61,29 @@ std::size_t spare_of_rigids(const std::vector<RigidInput>& rigids) {
   std::size_t most = 0;
   for (const RigidInput& rigid : rigids) most = std::max(most, rigid.position.size() / Dim);
   return most * spare_of_point(points);
+}
+
+/// As many columns as the laws of the bodies need, and their names: those of the variables where the laws
+/// agree.
+template <class Space, class T>
+void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& materials,
+                  const std::vector<BodyInput>& bodies) {
+  static const std::array<std::string, k_most_state> shared = [] {
+    std::array<std::string, k_most_state> names;
+    for (int k = 0; k < k_most_state; ++k) names[k] = "state_" + std::to_string(k);
+    return names;
+  }();
+  history.columns = 0;
+  for (const BodyInput& body : bodies) {
+    const auto variables = state_variables(materials[body.material].model);
+    for (int k = 0; k < static_cast<int>(variables.size()); ++k) {
+      const bool first = k >= history.columns;
+      const std::string name = variables[k].name;
+      history.name[k] = first || name == history.name[k] ? variables[k].name : shared[k].c_str();
+      history.changes[k] = (!first && history.changes[k]) || variables[k].changes;
+    }
+    history.columns = std::max(history.columns, static_cast<int>(variables.size()));
+  }
 }
 
 template <class Space, class T, int Dim>
@@ -70,6 +98,9 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
     position.insert(position.end(), bodies[b].position.begin(), bodies[b].position.end());
   }
   soil.count = static_cast<int>(body_of.size());
+  soil.has_own_mass =
+      std::any_of(bodies.begin(), bodies.end(), [](const BodyInput& body) { return body.least_mass > 0; });
+  name_columns(soil.history, materials, bodies);
   if (s.batches.in_use()) store_soil(s, soil.count, spare_of_rigids<Space, T, Dim>(rigids));
   place_points(s.grid, s.spacing, position, s.soil, fault);
 
@@ -97,22 +128,30 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       stress[k] = static_cast<T>(body.stress[in_body(p) * sym_size<Dim> + k]);
     return stress;
   });
-  fill_view(soil.volume, "mpm::volume", soil.count,
-            [&](int p) { return static_cast<T>(bodies[body_of[p]].particle_volume); });
-  fill_view(soil.plastic_strain, "mpm::plastic_strain", soil.count, [&](int p) {
+  fill_view(soil.volume, "mpm::volume", soil.count, [&](int p) {
     const BodyInput& body = bodies[body_of[p]];
-    return static_cast<T>(body.plastic_strain.empty() ? 0 : body.plastic_strain[in_body(p)]);
+    return static_cast<T>(body.volume.empty() ? body.particle_volume : body.volume[in_body(p)]);
   });
-  fill_view(soil.strength, "mpm::strength", soil.count, [&](int p) {
-    const BodyInput& body = bodies[body_of[p]];
-    return static_cast<T>(body.strength.empty() ? 0 : body.strength[in_body(p)]);
-  });
+  for (int k = 0; k < soil.history.columns; ++k)
+    fill_view(soil.history.column[k], "mpm::history", soil.count, [&](int p) {
+      const auto& state = bodies[body_of[p]].state;
+      const bool given = k < static_cast<int>(state.size()) && !state[k].empty();
+      return static_cast<T>(given ? state[k][in_body(p)] : 0);
+    });
   fill_view(soil.bodies, "mpm::bodies", static_cast<int>(bodies.size()), [&](int b) {
-    return BodyProperties<T>{static_cast<T>(bodies[b].density * bodies[b].particle_volume),
-                             static_cast<T>(bodies[b].half_length), bodies[b].material};
+    return BodyProperties<T>{static_cast<T>(common_mass(bodies[b])), static_cast<T>(bodies[b].half_length),
+                             bodies[b].material};
   });
+  if (soil.has_own_mass)
+    fill_view(soil.mass, "mpm::mass", soil.count, [&](int p) {
+      const BodyInput& body = bodies[body_of[p]];
+      return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
+    });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()),
             [&](int m) { return make_material<T>(materials[m].model, materials[m].parameters); });
+  s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
+  for (const BodyInput& body : bodies)
+    if (materials[body.material].model != s.law) s.law = -1;
 }
 
 /// C_p of APIC at the start: the gradient of each body's velocities, so that a linear field is kept from the
@@ -169,11 +208,13 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
     for (int d = 0; d < Dim; ++d) {
       rigid.velocity[d] = rigids[r].velocity[d];
       rigid.force[d] = rigids[r].force[d];
+      rigid.held[d] = rigids[r].held[d];
     }
     const double particle_mass = rigids[r].density * rigids[r].particle_volume;
     rigid.mass = particle_mass * (rigids[r].position.size() / Dim);
     rigid.dynamic = rigids[r].dynamic;
     rigid.shear_limit = rigids[r].shear_limit;
+    rigid.shear_share = rigids[r].shear_share > 0 ? rigids[r].shear_share : -1;
     rigid.friction = rigids[r].friction;
     rigid.surface_normal = rigids[r].surface_normal;
     rigid.separates = rigids[r].separates;
@@ -240,14 +281,24 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   Fault fault{};
   s.mass_cut = std::numeric_limits<double>::max();
   for (const BodyInput& body : bodies)
-    s.mass_cut = std::min(s.mass_cut, k_cut * body.density * body.particle_volume);
-  s.rigid_moves = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.has_friction = false;
+    s.mass_cut = std::min(s.mass_cut, k_cut * (body.least_mass > 0 ? body.least_mass : common_mass(body)));
+  double smallest = std::numeric_limits<double>::max(), largest = 0;
+  for (const BodyInput& body : bodies) {
+    smallest = std::min(smallest, body.most_volume > 0 ? body.least_volume : body.particle_volume);
+    largest = std::max(largest, body.most_volume > 0 ? body.most_volume : body.particle_volume);
+  }
+  s.strays.least_volume = k_least_volume * smallest, s.strays.most_volume = k_most_volume * largest;
+  s.strays.lost.assign(bodies.size(), {});
+  s.strays.put_back = decltype(s.strays.put_back)("mpm::put_back", bodies.size());
+  s.rigid_moves = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.shear_share = s.has_friction = false;
   for (const RigidInput& rigid : rigids) {
     s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.velocity != std::array<double, 3>{};
     s.rigid_dynamic = s.rigid_dynamic || rigid.dynamic;
     s.has_friction = s.has_friction || rigid.friction > 0;
     s.mass_normals = s.mass_normals || !rigid.surface_normal;
     s.soil_boundary = s.soil_boundary || rigid.surface_normal || rigid.shear_limit > 0 || rigid.reach > 0;
+    s.shear_share = s.shear_share || rigid.shear_share > 0;
+    s.soil_boundary = s.soil_boundary || rigid.shear_share > 0;
   }
   s.control = ControlView<Space>("mpm::control");
   s.roll = decltype(s.roll)("mpm::roll");

@@ -8,7 +8,7 @@ template <class Space, class T, int Dim>
 void xpic_pass(State<Space, T, Dim>& s, int pass) {
   using S = SoilShare<Dim>;
   const auto soil = s.soil.points;
-  const auto around = s.patches.around;
+  const NodePlaces places(s.grid, s.patches);
   const auto sums = s.nodes.soil;
   const auto again = s.nodes.rest;
   const auto rest = rest_of(s);
@@ -19,13 +19,14 @@ void xpic_pass(State<Space, T, Dim>& s, int pass) {
       "mpm::xpic_pass", light(Kokkos::RangePolicy<Space>(s.space, 0, soil.count)), KOKKOS_LAMBDA(int p) {
         if (control().paused) return;
         Vector<T, Dim> r = first ? soil.velocity(p) : rest(p);
-        for_each_node(soil, soil.bodies(soil.body(p)).half_length, around, p,
-                      [&](int i, T w, const Vector<T, Dim>&, auto&&) {
-                        const T m_i = sums(i, S::mass);
-                        if (!(m_i > 0)) return;  // a share too small for T
-                        for (int d = 0; d < Dim; ++d)
-                          r[d] -= w * ((first ? sums(i, S::momentum + d) : again(i, d)) / m_i);
-                      });
+        for_each_node<Kind::motion>(soil, soil.bodies(soil.body(p)).half_length, places, p,
+                                    [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
+                                      const T m_i = sums(i, S::mass);
+                                      if (!(m_i > 0)) return;  // a share too small for T
+                                      for (int d = 0; d < Dim; ++d)
+                                        r[d] -= w * sign(d) *
+                                                ((first ? sums(i, S::momentum + d) : again(i, d)) / m_i);
+                                    });
         if (last) {
           for (int d = 0; d < Dim; ++d) soil.velocity(p)[d] -= xpic * r[d];
         } else {
@@ -37,7 +38,7 @@ void xpic_pass(State<Space, T, Dim>& s, int pass) {
 template <class Space, class T, int Dim>
 void take_affine(State<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
-  const auto around = s.patches.around;
+  const NodePlaces places(s.grid, s.patches);
   const auto motion = s.nodes.motion;
   const auto control = s.control;
   Kokkos::parallel_for(
@@ -45,15 +46,17 @@ void take_affine(State<Space, T, Dim>& s) {
         if (control().paused) return;
         Matrix<T, Dim> c{};
         Vector<T, Dim> spread{};  // D_p, diagonal because weights are products that reproduce linear fields
-        for_each_node(soil, soil.bodies(soil.body(p)).half_length, around, p,
-                      [&](int i, T w, const Vector<T, Dim>&, auto&& offset) {
-                        const Vector<T, Dim> r = offset();
-                        for (int e = 0; e < Dim; ++e) {
-                          spread[e] += w * r[e] * r[e];
-                          for (int d = 0; d < Dim; ++d)
-                            c(d, e) += w * motion(i, NodeMotion<Dim>::velocity + d) * r[e];
-                        }
-                      });
+        for_each_node<Kind::motion>(soil, soil.bodies(soil.body(p)).half_length, places, p,
+                                    [&](int i, T w, const Vector<T, Dim>&, auto&& offset, auto&& sign) {
+                                      const Vector<T, Dim> r = offset();
+                                      Vector<T, Dim> v;
+                                      for (int d = 0; d < Dim; ++d)
+                                        v[d] = sign(d) * motion(i, NodeMotion<Dim>::velocity + d);
+                                      for (int e = 0; e < Dim; ++e) {
+                                        spread[e] += w * r[e] * r[e];
+                                        for (int d = 0; d < Dim; ++d) c(d, e) += w * v[d] * r[e];
+                                      }
+                                    });
         for (int d = 0; d < Dim; ++d)
           for (int e = 0; e < Dim; ++e) c(d, e) /= spread[e];
         soil.affine(p) = c;

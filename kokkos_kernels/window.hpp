@@ -29,14 +29,6 @@ KOKKOS_INLINE_FUNCTION int window_place(const Coord<Dim>& cell, const AxisWeight
   return n;
 }
 
-/// Coordinates in the patch of a place in the window, from -1 to edge + 1.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION Coord<Dim> window_coord(int n) {
-  Coord<Dim> c{};
-  for (int d = 0; d < Dim; ++d, n /= Patch<Dim>::window_edge) c[d] = n % Patch<Dim>::window_edge - 1;
-  return c;
-}
-
 /// Calls f(place in the window, number) for every node of a slot's window.
 template <int Dim, class Team, class Around, class F>
 KOKKOS_INLINE_FUNCTION void for_each_of_window(const Team& team, const Around& around, int slot, F&& f) {

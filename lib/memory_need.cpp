@@ -1,23 +1,40 @@
 #include "memory_need.hpp"
 
+#include "input/material_table.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 
 #include "footprint.hpp"
+#include "input/particle_file.hpp"
 #include "input/shapes.hpp"
+#include "mesh/background.hpp"
 #include "output/log.hpp"
 #include "step/stepper.hpp"
 
 namespace mpm {
 namespace {
 
-/// Bytes of so many particles that fill so many cells: the soil's, which -device_memory_limit keeps on the
-/// host, and the nodes'.
+constexpr double k_made = 125, k_framed = 550;  // bytes of the host for a particle of the soil: its place,
+                                                // strength and order while it is brought to the device; of
+                                                // a frame its fields, put together, and the file in memory
+constexpr double k_mesh = 24;                   // for a patch, while PETSc's DMDA is made
+constexpr double k_rigid_framed = 150;          // for a rigid's particle in a frame
+
+/// Bytes of all that fills so many cells with soil: the soil's own, which -device_memory_limit keeps on the
+/// host, and the nodes', the rigids' and the patches'.
 template <class T, int Dim>
 void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   constexpr double k_ring = 1.1;  // the patches round the soil
-  double a_particle = Footprint<T, Dim>::particle;
+  int columns = 0;
+  for (const BodyConfig& body : config.bodies)
+    columns =
+        std::max(columns, static_cast<int>(state_variables(config.materials[body.material].model).size()));
+  double a_particle = Footprint<T, Dim>::particle(columns);
   if (config.p2g.strategy == P2G::gather) {
     // a particle is in the lists of the nodes that it may reach before the margin is used up
     const double reach = 2 * (1.25 + config.p2g.margin);
@@ -27,33 +44,51 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   need.nodes = k_ring * cells * Footprint<T, Dim>::node;
   if (config.backend == Backend::openmp && chosen(config.p2g.strategy, config.backend) == P2G::tile)
     need.nodes += cells * Footprint<T, Dim>::window;
+  need.all_ranks = need.rigids * Footprint<T, Dim>::rigid_point + need.patches * Footprint<T, Dim>::patch;
   need.device = soil + need.nodes;
+  const double place = sizeof(Vector<T, Dim>) + 2 * (sizeof(Vector<double, Dim>) + sizeof(long));
+  need.host += need.rigids * (place + (config.output.frames ? k_rigid_framed : 0)) + need.patches * k_mesh;
   if (!config.device_memory_limit) return;
   need.device = std::min(need.device, *config.device_memory_limit * k_gib);
   need.host += soil;
 }
 
+/// Cells that a shape fills.
+double cells_in(const Shape& shape, const Config& config) {
+  return shape_volume(shape, config.mesh, config.dim) / std::pow(config.mesh.spacing, config.dim);
+}
+
+/// What the bodies and rigids have, and the cells that soil fills.
+double count_particles(const Config& config, MemoryNeed& need) {
+  double cells = 0;
+  for (const BodyConfig& body : config.bodies) {
+    const double in_cell = std::pow(body.shape.particles_per_cell, config.dim);
+    const bool listed = body.shape.kind == ShapeKind::particles;
+    const double count = listed ? double(listed_particles(body.shape.file, body.shape.file_body))
+                                : cells_in(body.shape, config) * in_cell;
+    constexpr double k_numbers = 40;  // of a particle as it is read and as it is kept
+    if (listed) need.host += k_numbers * sizeof(double) * count;
+    cells += count / in_cell;
+    need.particles += count;
+  }
+  for (const RigidConfig& rigid : config.rigids)
+    need.rigids += cells_in(rigid.shape, config) * std::pow(rigid.shape.particles_per_cell, config.dim);
+  return cells;
+}
+
 }  // namespace
 
 MemoryNeed memory_need(const Config& config) {
-  // A particle's place, strength and order while it is brought to the device; of a frame its fields, put
-  // together, and the file as HDF5 makes it in memory.
-  constexpr double k_made = 100, k_framed = 500;
   MemoryNeed need;
-  double cells = 0;
-  for (const BodyConfig& body : config.bodies) {
-    if (body.shape.kind == ShapeKind::particles) continue;
-    const double in_body =
-        shape_volume(body.shape, config.mesh, config.dim) / std::pow(config.mesh.spacing, config.dim);
-    cells += in_body;
-    need.particles += in_body * std::pow(body.shape.particles_per_cell, config.dim);
-  }
+  const double cells = count_particles(config, need);
+  need.patches = patch_count(config.mesh, config.dim);
+  need.host += need.particles * (config.output.frames ? k_framed : k_made);
   const bool single = config.precision == Precision::single;
-  need.host = need.particles * (config.output.frames ? k_framed : k_made);
   if (config.dim == 2)
     single ? add_bytes<float, 2>(config, cells, need) : add_bytes<double, 2>(config, cells, need);
   else
     single ? add_bytes<float, 3>(config, cells, need) : add_bytes<double, 3>(config, cells, need);
+  need.device += need.all_ranks;
   return need;
 }
 
@@ -66,10 +101,19 @@ double free_memory(Backend backend) {
   return free_host_memory();
 }
 
+/// What a limit on the process's memory (ulimit -v) leaves; infinite where there is none.
+static double free_in_process() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return HUGE_VAL;
+  double pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return std::max(double(limit.rlim_cur) - pages * double(sysconf(_SC_PAGESIZE)), 1.0);
+}
+
 double free_host_memory() {
   std::ifstream file("/proc/meminfo");
   for (std::string name, rest; file >> name && std::getline(file, rest);)
-    if (name == "MemAvailable:") return 1024 * std::stod(rest);
+    if (name == "MemAvailable:") return std::min(1024 * std::stod(rest), free_in_process());
   return 0;
 }
 
@@ -83,9 +127,12 @@ MemoryNeed need_here(const Config& config, MPI_Comm comm, bool shared) {
   MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
   MPI_Comm_size(node, &here);
   MPI_Comm_free(&node);
-  need.device *= double(shared ? here : 1) / ranks;
+  constexpr double k_table = 13;  // bytes that a rank has for every patch of the mesh, wherever it is
+  const double at_once = shared ? here : 1;
+  need.device = (need.device - need.all_ranks) * at_once / ranks + at_once * need.all_ranks;
   // Every rank makes the whole lattice before it keeps its own; rank 0 puts the frames together.
-  need.host += here * need.particles * config.dim * sizeof(double);
+  need.host += here * (need.particles * config.dim * sizeof(double) + k_table * need.patches);
+  need.host += (here - 1) * need.rigids * (config.dim + 1) * sizeof(double);
   return need;
 }
 
@@ -116,7 +163,7 @@ std::string memory_fault(const Config& config, MPI_Comm comm) {
   const double device = free_memory(config.backend), host = free_host_memory();
   const double on_device = need.device + (shared ? need.host : 0);
   std::string why;
-  if (need.particles > k_most_particles)
+  if (std::max(need.particles, need.rigids) > k_most_particles)
     why = formatted("%.0f is the most", k_most_particles);
   else if (device > 0 && on_device > device)
     why =
@@ -127,9 +174,11 @@ std::string memory_fault(const Config& config, MPI_Comm comm) {
     why = formatted("the host needs about %.4g GB for them, and %.4g GB are free%s", need.host / 1e9,
                     host / 1e9, config.output.frames ? " (less is needed with -output_frames off)" : "");
   if (why.empty()) return {};
-  return formatted(
-      "mpm: -mesh_spacing: given \"%g\", takes an edge whose particles fit into memory; these are %.4g: %s",
-      config.mesh.spacing, need.particles, why.c_str());
+  std::string what = formatted("these are %.4g", need.particles);
+  if (need.rigids > need.particles) what += formatted(", and %.4g of rigids", need.rigids);
+  if (need.patches > need.particles) what += formatted(", in a mesh of %.4g patches", need.patches);
+  return formatted("mpm: -mesh_spacing: given \"%g\", takes an edge whose particles fit into memory; %s: %s",
+                   config.mesh.spacing, what.c_str(), why.c_str());
 }
 
 }  // namespace mpm

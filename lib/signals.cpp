@@ -9,7 +9,7 @@ namespace {
 constexpr int k_signals[] = {SIGTERM, SIGINT, SIGUSR1};
 
 // What a handler may touch has to be global.
-volatile std::sig_atomic_t caught = 0;
+volatile std::sig_atomic_t caught = 0, waiting = 0;
 struct timespec caught_at;
 
 /// s since the first signal.
@@ -25,7 +25,7 @@ void note(int signal) {
   if (caught == 0) {
     clock_gettime(CLOCK_MONOTONIC, &caught_at);
     caught = signal;
-  } else if (seconds_since() > k_same) {
+  } else if (waiting == 0 && seconds_since() > k_same) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }
@@ -39,7 +39,15 @@ void catch_signals() {
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
   for (const int signal : k_signals) sigaction(signal, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
+
+void ignore_signals() {
+  for (const int signal : k_signals) std::signal(signal, SIG_IGN);
+}
+
+SignalsWait::SignalsWait() { waiting = waiting + 1; }
+SignalsWait::~SignalsWait() { waiting = waiting - 1; }
 
 int signal_caught() { return caught; }
 

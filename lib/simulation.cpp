@@ -6,10 +6,18 @@
 #include <utility>
 
 #include "output/files.hpp"
+#include "output/performance_json.hpp"
 #include "parallel/together.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {
+namespace {
+
+const char* word_of(Outcome outcome) {
+  return outcome == Outcome::finished ? "finished" : outcome == Outcome::stopped ? "stopped" : "failed";
+}
+
+}  // namespace
 
 PetscErrorCode Simulation::run() {
   PetscFunctionBeginUser;
@@ -19,10 +27,15 @@ PetscErrorCode Simulation::run() {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(b.start());
+  if (b.outcome == Outcome::bad_input) PetscFunctionReturn(PETSC_SUCCESS);
+  if (b.on_first_step) b.on_first_step();
   while (b.outcome == Outcome::finished && b.step < b.schedule.last_step()) {
-    PetscCall(b.advance_to(b.schedule.next_stop(b.step)));
+    PetscCall(b.follow_stiffness());
+    if (b.outcome != Outcome::finished) break;
+    PetscCall(b.advance_to(std::min(b.schedule.next_stop(b.step), b.next_look_at_waves())));
     if (b.outcome != Outcome::finished) break;
     if (b.schedule.row_in_turn(b.step)) PetscCall(b.write_row());
+    if (b.outcome != Outcome::finished) break;
     if (b.schedule.frame_in_turn(b.step)) PetscCall(b.write_frame());
     if (b.schedule.checkpoint_due(b.step)) PetscCall(b.write_checkpoint());
     if (!b.stopped_by.empty() && b.step < b.schedule.last_step()) PetscCall(b.stop());
@@ -56,7 +69,7 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     else
       steps = 1;
     Batch batch;
-    PetscCall(stepper->advance(steps, step_dt, &batch));
+    PetscCall(stepper->advance(steps, schedule.time_of(step), step_dt, &batch));
     ++looks;
     const double took = batch.seconds;
     stepping += took;
@@ -116,7 +129,26 @@ PetscErrorCode Simulation::Body::write_row() {
   row.wall_time = wall();
   PetscCall(stepper->measure(row.time - last_row_time, &row));
   last_row_time = row.time;
+  PetscCall(watch(row));
   PetscCall(agree(comm, rank_of(comm) == 0 ? history.write(row) : PETSC_SUCCESS));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Tells once of what a user should know, and whether energy comes from nothing.
+PetscErrorCode Simulation::Body::watch(const HistoryRow& row) {
+  PetscFunctionBeginUser;
+  for (const std::string& line : notices.look(row, config)) PetscCall(log.line(line));
+  if (!watching) {
+    double wave_energy = 0;
+    for (std::size_t b = 0; b < row.bodies.size(); ++b) {
+      const double c = wave_speed(config, config.bodies[b]);
+      wave_energy += row.bodies[b].mass * c * c / 2;
+    }
+    energy.begin(row, wave_energy);
+    watching = true;
+  } else if (const std::string fault = energy.look(row, config); !fault.empty()) {
+    PetscCall(fail(fault));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -156,35 +188,64 @@ PetscErrorCode Simulation::Body::write_partition() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// What this part of the run came to. Where it did no step the stepper may not be set up, and is not asked.
+/// Collective.
+Performance Simulation::Body::performance() const {
+  Performance p{.stepping = stepping - began.stepping,
+                .steps = step - began.step,
+                .particles = stepper->particles(),
+                .looks = looks,
+                .rebuilds = rebuilds,
+                .shortest = shortest,
+                .longest = longest,
+                .interval = rebuilds > 0 ? double(step - since_rebuild) / rebuilds : 0,
+                .strategy = stepper->strategy(),
+                .device = device_name(config.backend),
+                .bandwidth = bandwidth,
+                .version = k_version,
+                .outcome = word_of(outcome),
+                .backend = word_of(config.backend),
+                .precision = word_of(config.precision),
+                .processor = processor_name(),
+                .dim = config.dim,
+                .ranks = ranks(),
+                .threads = thread_count(config.backend),
+                .cores = usable_cores(),
+                .first_step = began.step,
+                .time = schedule.time_of(step)};
+  if (p.steps == 0) return p;
+  p.functions = stepper->times();
+  p.wall = wall() - began.wall;
+  p.memory = double(stepper->memory());
+  p.between_ranks = stepper->rank_figures();
+  return p;
+}
+
+/// The report at the end of the log, and performance.json, which scripts read. The file is written even where
+/// no step was done: its outcome then tells that the run has ended.
+PetscErrorCode Simulation::Body::report_performance() {
+  PetscFunctionBeginUser;
+  const Performance p = performance();
+  if (p.steps > 0) {
+    PetscCall(log.line(format_performance(p)));
+    if (p.between_ranks) PetscCall(log.line(format_ranks(*p.between_ranks)));
+    if (const std::string batches = stepper->batches_report(); !batches.empty()) PetscCall(log.line(batches));
+  }
+  PetscCall(
+      agree(comm, rank_of(comm) == 0 ? write_performance_json(config.output.directory, p) : PETSC_SUCCESS));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode Simulation::Body::finish() {
   PetscFunctionBeginUser;
   PetscCall(frames.settle());
   PetscCall(agree(comm, history.close()));
-  if (step > began.step) {
-    PetscCall(
-        log.line(format_performance({.functions = stepper->times(),
-                                     .wall = wall() - began.wall,
-                                     .stepping = stepping - began.stepping,
-                                     .steps = step - began.step,
-                                     .particles = stepper->particles(),
-                                     .looks = looks,
-                                     .rebuilds = rebuilds,
-                                     .shortest = shortest,
-                                     .longest = longest,
-                                     .interval = rebuilds > 0 ? double(step - since_rebuild) / rebuilds : 0,
-                                     .strategy = stepper->strategy(),
-                                     .device = device_name(config.backend),
-                                     .memory = double(stepper->memory()),
-                                     .bandwidth = bandwidth})));
-    if (const std::string ranks = stepper->ranks_report(); !ranks.empty()) PetscCall(log.line(ranks));
-    if (const std::string batches = stepper->batches_report(); !batches.empty()) PetscCall(log.line(batches));
-  }
-  const char* how = outcome == Outcome::finished  ? "finished"
-                    : outcome == Outcome::stopped ? "stopped"
-                                                  : "failed";
-  PetscCall(log.print("%s after %ld steps at time %g s; results are in %s", how, step, schedule.time_of(step),
-                      config.output.directory.c_str()));
+  if (outcome == Outcome::finished) PetscCall(agree(comm, forget_later()));
+  PetscCall(report_performance());
+  PetscCall(log.print("%s after %ld steps at time %g s; results are in %s", word_of(outcome), step,
+                      schedule.time_of(step), config.output.directory.c_str()));
   PetscCall(agree(comm, log.close()));
+  lock.release();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,14 +1,18 @@
 #pragma once
-// What a simulation holds while it runs. Its functions: simulation_start.cpp up to the first step,
-// simulation.cpp from there to the end.
+// What a simulation holds while it runs. Its functions: simulation_start.cpp up to the first step
+// (particles from files: simulation_from_file.cpp), simulation.cpp from there to the end.
 
 #include <chrono>
 #include <optional>
 
+#include "checkpoint/changes.hpp"
 #include "checkpoint/checkpoint.hpp"
+#include "energy_watch.hpp"
 #include "input/options.hpp"
 #include "input/shapes.hpp"
 #include "mpm/simulation.hpp"
+#include "notices.hpp"
+#include "output/folder_lock.hpp"
 #include "output/frame_queue.hpp"
 #include "output/history.hpp"
 #include "output/log.hpp"
@@ -23,14 +27,22 @@ inline double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+inline constexpr double k_most_steps = 1e12;
+
 struct Simulation::Body {
   MPI_Comm comm = MPI_COMM_NULL;
   Config config;
   InputReport report;
   Outcome outcome = Outcome::finished;
   bool ready = false;
+  std::function<void()> on_first_step;
 
-  double dt = 0;  // s
+  FolderLock lock;  // of the output folder; goes when all is written and closed
+
+  double dt = 0;         // s
+  bool follows = false;  // dt follows the stiffness of the soil, or is held against it
+  long waves_at = -1;    // step of the last look at the waves
+  double told_dt = 0;    // s, the last one that the log has
   Schedule schedule;
   std::unique_ptr<Stepper> stepper;
   Log log;
@@ -52,29 +64,48 @@ struct Simulation::Body {
   RunState began;                     // where this part of the run began
   std::optional<Checkpoint> restart;  // until it is on the device
   std::string restart_file, history_rows;
-  std::vector<std::string> passed_over;  // checkpoints that are damaged, as lines for the log
-  std::string stopped_by;                // what told the run to stop; empty if nothing did
-  long checkpointed = -1;                // step of the last checkpoint
+  std::vector<OptionChange> option_changes;  // that -restart_change allows
+  std::vector<std::string> passed_over;      // checkpoints that are damaged, as lines for the log
+  std::string stopped_by;                    // what told the run to stop; empty if nothing did
+  long checkpointed = -1;                    // step of the last checkpoint
+  EnergyWatch energy;
+  bool watching = false;  // energy has begun
+  Notices notices;
 
+  // simulation_files.cpp
+  void check_files();
+  PetscErrorCode lock_folder();
+
+  PetscErrorCode check_device();
+  void check_build();
   void check_mesh();
-  PetscErrorCode choose_time_step();
+  PetscErrorCode check_places();
   PetscErrorCode begin();
   PetscErrorCode start();
   PetscErrorCode load(Model* model);
   PetscErrorCode load_shape(const std::string& name, const Shape& shape, const std::vector<Shape>& cut_out,
                             LatticePart part, BodyParticles* particles);
-  PetscErrorCode load_file(const BodyConfig& body, BodyParticles* particles);
+  PetscErrorCode load_file(const BodyConfig& body, BodyParticles* particles, bool* from_run);
   PetscErrorCode choose_strategy(const Model& model, const std::string& device);
   PetscErrorCode log_shape(const std::string& name, const Lattice& lattice, bool in_parts);
+  PetscErrorCode log_cuts(const std::string& name, const Shape& shape);
   PetscErrorCode fail(const std::string& what);
   PetscErrorCode advance_to(long target);
   PetscErrorCode rebuild(const Batch& batch);
   PetscErrorCode write_row();
+  PetscErrorCode watch(const HistoryRow& row);
   PetscErrorCode write_frame();
   PetscErrorCode write_last_output();
   PetscErrorCode write_partition();
+  Performance performance() const;
+  PetscErrorCode report_performance();
   PetscErrorCode share_errors();
   PetscErrorCode finish();
+
+  // simulation_time_step.cpp
+  PetscErrorCode choose_time_step();
+  PetscErrorCode follow_stiffness();
+  long next_look_at_waves() const;  // the step at which follow_stiffness has something to do
 
   // simulation_dry_run.cpp
   PetscErrorCode dry_run();
@@ -85,11 +116,13 @@ struct Simulation::Body {
   std::vector<std::string> restart_files() const;
   PetscErrorCode read_restart();
   PetscErrorCode check_restart();
+  bool history_agrees() const;
   void find_history();
   void keep_strategy();
   PetscErrorCode resume();
   Checkpoint description() const;
   PetscErrorCode write_checkpoint();
+  PetscErrorCode forget_later();
   PetscErrorCode look_for_stop(bool* stop);
   PetscErrorCode stop();
   int ranks() const;

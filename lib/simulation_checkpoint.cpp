@@ -13,8 +13,6 @@
 namespace mpm {
 namespace {
 
-const char* word_of(Precision precision) { return precision == Precision::single ? "single" : "double"; }
-
 P2G strategy_of(const std::string& word) {
   return word == "sequential" ? P2G::sequential
          : word == "atomic"   ? P2G::atomic
@@ -41,16 +39,31 @@ PetscErrorCode Simulation::Body::read_restart() {
   const std::string given = "mpm: -restart: given \"" + config.output.restart + "\", takes ";
   std::string fault = "a folder with a checkpoint_STEP.h5, and " + config.output.directory + " has none";
   restart.emplace();
-  for (const std::string& file : restart_files()) {
+  const auto files = restart_files();
+  std::string without_rows;  // the best checkpoint that is sound but for its history
+  for (const std::string& file : files) {
     PetscCall(read_checkpoint(comm, file, *restart, &fault));
+    PetscCall(share_text(comm, &fault));
     restart_file = file;
-    if (fault.empty()) break;
+    if (fault.empty() && (files.size() == 1 || history_agrees())) break;
+    if (fault.empty()) {
+      fault = "a checkpoint with whose rows history.csv begins";
+      if (without_rows.empty()) without_rows = file;
+    }
     passed_over.push_back(file + " is passed over; a restart takes " + fault);
   }
+  if (!fault.empty() && !without_rows.empty()) {
+    restart_file = without_rows;
+    PetscCall(read_checkpoint(comm, restart_file, *restart, &fault));
+  }
   if (fault.empty()) {
-    report.errors = contradictions(*restart, options_to_keep(report.options, config), restart_file);
+    const Comparison found = compare_options(*restart, options_to_keep(report.options, config), restart_file,
+                                             config.output.restart_change);
+    report.errors = found.lines;
     if (!report.errors.empty()) PetscFunctionReturn(PETSC_SUCCESS);
+    option_changes = found.changes;
     fault = state_fault(restart->state, config);
+    if (fault.empty()) apply_changes(option_changes, config, restart->state);
   }
   if (!fault.empty())
     report.errors.push_back(given + fault +
@@ -66,8 +79,15 @@ PetscErrorCode Simulation::Body::read_restart() {
 PetscErrorCode Simulation::Body::check_restart() {
   PetscFunctionBeginUser;
   const RunState& run = restart->run;
+  const bool begins = run.dt_since >= 0 && run.dt_since <= run.step &&
+                      run.dt * k_most_steps >= config.time.end && run.dt_since_time >= 0 &&
+                      run.dt_since_time <= run.time;
+  if (follows && begins) {
+    dt = config.time.step.value_or(run.dt);
+    schedule = Schedule(config.time, config.output, dt, {run.dt_since, run.dt_since_time});
+  }
   const long last = schedule.last_step();
-  if (run.step < 0 || run.since_rebuild < 0 || restart->history.bytes < 0 || restart->frames < 0 ||
+  if (!begins || run.step < 0 || run.since_rebuild < 0 || restart->history.bytes < 0 || restart->frames < 0 ||
       restart->frames - 1 > run.step)  // one a step
     report.errors.push_back("mpm: -restart: given \"" + config.output.restart +
                             "\", takes a checkpoint with a sound step");
@@ -88,6 +108,15 @@ PetscErrorCode Simulation::Body::check_restart() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Whether the history of the output folder begins with the rows of the checkpoint, or there is none. Another
+/// run may have gone back and on from an earlier checkpoint and ended before it wrote one of its own.
+bool Simulation::Body::history_agrees() const {
+  const std::string path = config.output.directory + "/history.csv";
+  std::error_code none;
+  return !std::filesystem::exists(path, none) ||
+         mark_of(path, restart->history.bytes, nullptr) == restart->history;
+}
+
 /// The rows to go on with: those of the output folder, or of the checkpoint's own where that is another.
 void Simulation::Body::find_history() {
   namespace fs = std::filesystem;
@@ -96,7 +125,7 @@ void Simulation::Body::find_history() {
   const fs::path folder = fs::path(restart_file).parent_path();
   std::error_code none;
   for (const std::string& file : {here, (folder / "history.csv").string()}) {
-    if (!fs::exists(file, none)) continue;
+    if (!fs::is_regular_file(file, none)) continue;
     if (mark_of(file, wanted.bytes, &history_rows) == wanted) return;
     history_rows.clear();
     if (file == here)
@@ -117,21 +146,27 @@ PetscErrorCode Simulation::Body::resume() {
   since_rebuild = began.since_rebuild, rebuilds = began.rebuilds;
   longest = began.longest, shortest = began.shortest;
   bool rebuilt = false;
-  PetscCall(stepper->restore(std::move(restart->state), since_rebuild, &rebuilt));
+  const PetscErrorCode unfit = stepper->restore(std::move(restart->state), since_rebuild, &rebuilt);
+  if (unfit == PETSC_ERR_ARG_SIZ) {  // told; only a checkpoint that somebody has altered gets here
+    outcome = Outcome::bad_input;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(unfit);
   if (rebuilt) since_rebuild = 0;
   for (const std::string& line : passed_over) PetscCall(log.line(line));
   PetscCall(log.print("goes on from %s: step %ld, time %.9g s", restart_file.c_str(), step, began.time));
   if (restart->version != k_version)
     PetscCall(log.print("it was written by version %s", restart->version.c_str()));
-  PetscCall(log.line(changes.empty()
+  for (const OptionChange& c : option_changes)
+    PetscCall(log.line("changed here: " + c.name + " " + c.before + " -> " + c.after));
+  PetscCall(log.line(!option_changes.empty() ? "results are no longer those of the run that was left"
+                     : changes.empty()
                          ? "backend, precision, strategy and ranks are the same, and so will be the bits"
                          : changes + ": results will be the same up to round-off"));
   int removed = 0;
   const bool first = rank_of(comm) == 0;
-  PetscCall(agree(
-      comm, first ? go_back_to(config.output.directory, step, restart->frames, &removed) : PETSC_SUCCESS));
-  if (removed > 0)
-    PetscCall(log.print("%d files that were written later, or not finished, were removed", removed));
+  PetscCall(agree(comm, first ? remove_unfinished(config.output.directory, &removed) : PETSC_SUCCESS));
+  if (removed > 0) PetscCall(log.print("%d files that were not finished were removed", removed));
   if (history_rows.empty())
     PetscCall(log.line("there is no history.csv to go on with: a new one begins here"));
   PetscCall(agree(comm, first ? history.open(config, history_rows) : PETSC_SUCCESS));
@@ -165,10 +200,21 @@ Checkpoint Simulation::Body::description() const {
 PetscErrorCode Simulation::Body::write_checkpoint() {
   PetscFunctionBeginUser;
   if (checkpointed == step) PetscFunctionReturn(PETSC_SUCCESS);
+  const SignalsWait until_written;
   const std::string& folder = config.output.directory;
   Checkpoint c = description();
-  c.run = {step,     schedule.time_of(step), dt,       last_row_time, wall(),
-           stepping, since_rebuild,          rebuilds, longest,       shortest};
+  c.run = {.step = step,
+           .time = schedule.time_of(step),
+           .dt = dt,
+           .dt_since = schedule.begin().step,
+           .dt_since_time = schedule.begin().time,
+           .last_row_time = last_row_time,
+           .wall = wall(),
+           .stepping = stepping,
+           .since_rebuild = since_rebuild,
+           .rebuilds = rebuilds,
+           .longest = longest,
+           .shortest = shortest};
   PetscCall(frames.settle());
   const bool first = rank_of(comm) == 0;
   PetscCall(agree(comm, first ? history.settle(&c.history) : PETSC_SUCCESS));
@@ -177,8 +223,23 @@ PetscErrorCode Simulation::Body::write_checkpoint() {
   c.history = {static_cast<long>(mark[0]), static_cast<std::uint32_t>(mark[1])};
   PetscCall(stepper->save(&c.state));
   PetscCall(mpm::write_checkpoint(comm, checkpoint_path(folder, step), std::move(c)));
-  PetscCall(agree(comm, first ? keep_last_checkpoints(folder) : PETSC_SUCCESS));
   checkpointed = step;
+  PetscCall(forget_later());
+  PetscCall(agree(comm, first ? keep_last_checkpoints(folder) : PETSC_SUCCESS));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Removes what a run had written in the folder that was further than the checkpoint from which this one goes
+/// on: checkpoints once there is a newer one, frames then or at the end.
+PetscErrorCode Simulation::Body::forget_later() {
+  PetscFunctionBeginUser;
+  const std::string& folder = config.output.directory;
+  int removed = 0;
+  if (rank_of(comm) == 0 && began.step > 0) {
+    if (checkpointed >= 0) PetscCall(remove_later_checkpoints(folder, checkpointed, &removed));
+    PetscCall(remove_later_frames(folder, frames.count(), &removed));
+  }
+  if (removed > 0) PetscCall(log.print("%d files of a later state were removed", removed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -197,6 +258,7 @@ PetscErrorCode Simulation::Body::look_for_stop(bool* stop) {
 
 PetscErrorCode Simulation::Body::stop() {
   PetscFunctionBeginUser;
+  ignore_signals();
   PetscCall(write_checkpoint());
   outcome = Outcome::stopped;
   PetscCall(log.print("told to stop by %s; %s is written, and -restart latest goes on from it",

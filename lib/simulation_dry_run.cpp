@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "memory_need.hpp"
+#include "output/frame_fields.hpp"
 #include "parallel/together.hpp"
 #include "simulation_body.hpp"
 
@@ -17,10 +18,9 @@ double frame_bytes(const Snapshot& snapshot, const Config& config, bool first) {
   for (const auto* groups : {&snapshot.bodies, &snapshot.rigids, &snapshot.nodes})
     for (const ParticleSnapshot& group : *groups) {
       if (!first && groups != &snapshot.bodies) continue;
-      bytes += 8.0 * group.position.size();
-      for (const auto* field : {&group.velocity, &group.grid_velocity, &group.stress, &group.volume,
-                                &group.plastic_strain, &group.mass, &group.number})
-        bytes += real * field->size();
+      for (const Field& field : frame_fields())
+        if (const auto* values = values_of(group, field))
+          bytes += (is_exact(field) ? 8.0 : real) * values->size();
     }
   return bytes;
 }
@@ -45,7 +45,7 @@ PetscErrorCode Simulation::Body::time_steps(double* seconds) {
   double took = 0;  // of all ranks, so that they end alike
   for (long steps = k_first; done < std::min(k_most, schedule.last_whole_step()); steps *= 2) {
     Batch batch;
-    PetscCall(stepper->advance(std::min(steps, k_most - done), dt, &batch));
+    PetscCall(stepper->advance(std::min(steps, k_most - done), done * dt, dt, &batch));
     done += batch.steps;
     took = done == k_first ? 0 : took + batch.seconds;  // the very first load kernels
     if (!batch.failure.what.empty()) {

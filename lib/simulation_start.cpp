@@ -3,32 +3,34 @@
 #include <cmath>
 #include <cstdio>
 
-#include "input/particle_file.hpp"
+#include "gpu.hpp"
+#include "input/courant.hpp"
+#include "input/overlap.hpp"
 #include "input/text.hpp"
+#include "input/warnings.hpp"
 #include "memory_need.hpp"
 #include "mesh/background.hpp"
 #include "output/files.hpp"
+#include "output/hdf5_handle.hpp"
+#include "output/performance_json.hpp"
 #include "output/remembered.hpp"
 #include "output/run_options.hpp"
 #include "parallel/distribute.hpp"
 #include "parallel/together.hpp"
+#include "signals.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {
-namespace {
-
-constexpr double k_most_steps = 1e12;
-
-}  // namespace
-
 Simulation::Simulation() : body_(std::make_unique<Body>()) {}
 Simulation::~Simulation() = default;
 bool Simulation::ready() const { return body_->ready; }
 Outcome Simulation::outcome() const { return body_->outcome; }
+void Simulation::on_first_step(std::function<void()> call) { body_->on_first_step = std::move(call); }
 
 PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, const InputReport& arguments) {
   PetscFunctionBeginUser;
   Body& b = *body_;
+  silence_hdf5();
   b.comm = comm;
   b.report = arguments;
   PetscCall(read_options(prefix, available_backends(), b.config, b.report));
@@ -36,13 +38,23 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
     PetscCall(print_help(comm, b.report));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (b.report.errors.empty()) PetscCall(b.check_device());
+  if (b.report.errors.empty()) b.check_build();
   if (b.report.errors.empty()) b.check_mesh();
   if (b.report.errors.empty()) PetscCall(b.choose_time_step());
   if (b.report.errors.empty())
     if (const std::string fault = memory_fault(b.config, comm); !fault.empty())
       b.report.errors.push_back(fault);
-  if (b.report.errors.empty() && !b.config.output.restart.empty()) PetscCall(b.read_restart());
+  if (b.report.errors.empty() && rank_of(comm) == 0) PetscCallCXX(b.check_files());
   PetscCall(b.share_errors());
+  PetscCall(b.check_places());
+  if (b.report.errors.empty())
+    for (const std::string& warning : warnings_of(b.config, b.ranks())) b.report.warnings.push_back(warning);
+  if (b.report.errors.empty() && !b.config.output.restart.empty()) {
+    if (!b.config.dry_run) PetscCall(b.lock_folder());
+    if (b.report.errors.empty()) PetscCall(b.read_restart());
+    PetscCall(b.share_errors());
+  }
   if (!b.report.errors.empty()) {
     PetscCall(print_errors(comm, b.report));
     b.outcome = Outcome::bad_input;
@@ -61,6 +73,57 @@ PetscErrorCode Simulation::Body::share_errors() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Nothing is in the place of something else. A rank that found another mistake keeps the others from it.
+PetscErrorCode Simulation::Body::check_places() {
+  PetscFunctionBeginUser;
+  int wrong = report.errors.empty() ? 0 : 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPI_INT, MPI_MAX, comm));
+  if (wrong) PetscFunctionReturn(PETSC_SUCCESS);
+  std::vector<Overlap> overlaps;
+  PetscCall(find_overlaps(comm, config, &overlaps));
+  report.errors = describe(overlaps, config);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// A run with -backend cuda needs a GPU on every rank. A dry run goes to the processor instead, so that a
+/// deck for a GPU can be checked on a login node.
+PetscErrorCode Simulation::Body::check_device() {
+  PetscFunctionBeginUser;
+  int gpus = gpu_count();
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &gpus, 1, MPI_INT, MPI_MIN, comm));
+  if (config.backend != Backend::cuda || gpus > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  std::vector<std::string> words;
+  Backend host = Backend::serial;  // the fastest
+  for (const Backend backend : available_backends())
+    if (backend != Backend::cuda) words.push_back(word_of(host = backend));
+  if (config.dry_run) {
+    config.backend = host;
+    report.warnings.push_back(
+        formatted("warning: -backend cuda: there is no GPU here, or no driver for it; this dry run is one of "
+                  "-backend %s, whose memory and wall time are not those of a GPU",
+                  word_of(host)));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  bool given = false;
+  for (const EffectiveOption& option : report.options)
+    given = given || (option.name == "-backend" && !option.standard);
+  const std::string why = why_no_gpu();
+  report.errors.push_back(
+      formatted("mpm: -backend: %s, takes %s where there is no GPU or no driver for it%s%s",
+                given ? "given \"cuda\"" : "not given, which stands for \"cuda\"",
+                join(words, " or ").c_str(), why.empty() ? "" : "; CUDA says: ", why.c_str()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// A program may be built for one dimension or precision only.
+void Simulation::Body::check_build() {
+  if (make_stepper(config, comm)) return;
+  report.errors.push_back(
+      formatted("mpm: -precision: given \"%s\" with -dim %d, takes what this program was built for "
+                "(MPM_REALS, MPM_DIMS)",
+                word_of(config.precision), config.dim));
+}
+
 /// The patch table is counted by int.
 void Simulation::Body::check_mesh() {
   constexpr double k_most_patches = 2147483647;
@@ -74,31 +137,6 @@ void Simulation::Body::check_mesh() {
   report.errors.push_back(line);
 }
 
-/// The step from the Courant number (Eq. 14), or the user's where it is stable.
-PetscErrorCode Simulation::Body::choose_time_step() {
-  PetscFunctionBeginUser;
-  const double critical = critical_time_step(config);
-  dt = config.time.step.value_or(config.time.courant * critical);
-  if (dt > k_largest_courant * critical) {
-    char line[200];
-    std::snprintf(
-        line, sizeof line,
-        "mpm: -time_step: given \"%g\", takes a time in s of at most %.6g, above which the step is unstable",
-        dt, k_largest_courant * critical);
-    report.errors.push_back(line);
-  }
-  if (config.time.end / dt > k_most_steps) {
-    char line[200];
-    std::snprintf(line, sizeof line,
-                  "mpm: -time_end: given \"%g\", takes at most %g s with time steps of %g s (1e12 steps)",
-                  config.time.end, k_most_steps * dt, dt);
-    report.errors.push_back(line);
-  } else {
-    schedule = Schedule(config.time, config.output, dt);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /// A stepper for these options, and the log's first lines, to the terminal until the file is open.
 PetscErrorCode Simulation::Body::begin() {
   PetscFunctionBeginUser;
@@ -109,19 +147,30 @@ PetscErrorCode Simulation::Body::begin() {
   PetscCall(log.line(format_header(k_version, kokkos_version(),
                                    std::string(word_of(config.backend)) + ", " + device_name(config.backend),
                                    ranks())));
+  for (const std::string& warning : report.warnings) PetscCall(log.line(warning));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode Simulation::Body::start() {
   PetscFunctionBeginUser;
-  PetscCall(begin());
   const bool first = rank_of(comm) == 0;
   int removed = 0;
-  if (restart)
-    PetscCall(agree(comm, first ? make_folder(config.output.directory) : PETSC_SUCCESS));
-  else
-    PetscCall(agree(comm, first ? prepare_output_folder(config.output.directory, &removed) : PETSC_SUCCESS));
+  catch_signals();  // until here there is nothing to save: they end the program
+  PetscCall(agree(comm, first ? make_folder(config.output.directory) : PETSC_SUCCESS));
+  PetscCall(lock_folder());
+  if (!report.errors.empty()) {
+    PetscCall(print_errors(comm, report));
+    outcome = Outcome::bad_input;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(begin());
+  const std::string& folder = config.output.directory;
+  PetscCall(agree(comm, !first    ? PETSC_SUCCESS
+                        : restart ? forget_performance_json(folder)
+                                  : prepare_output_folder(folder, &removed)));
   PetscCall(agree(comm, log.open(config.output.directory, restart.has_value())));
+  if (!lock.left_by().empty())
+    PetscCall(log.line("the lock of the folder was left by " + lock.left_by() + ", which is gone"));
   if (removed > 0)
     PetscCall(log.print("%d files of an earlier run were removed from %s", removed,
                         config.output.directory.c_str()));
@@ -145,14 +194,21 @@ PetscErrorCode Simulation::Body::start() {
     PetscCall(fail(failure.what));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (!restart) PetscCall(follow_stiffness());
+  if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(log.print("%ld particles in %d patches, %.1f MB on the device%s; strategy %s",
                       stepper->particles(), stepper->patches(), stepper->memory() / 1e6,
                       ranks() > 1 ? "s" : "", stepper->strategy().c_str()));
-  if (const std::string report = stepper->ranks_report(); !report.empty()) PetscCall(log.line(report));
+  if (const auto figures = stepper->rank_figures()) PetscCall(log.line(format_ranks(*figures)));
   if (const std::string report = stepper->batches_report(); !report.empty()) PetscCall(log.line(report));
-  PetscCall(log.print("time step %.9g s, Courant number %.4f; %ld steps to %g s", dt,
-                      dt / critical_time_step(config), schedule.last_step(),
-                      schedule.time_of(schedule.last_step())));
+  if (follows && !config.time.step)
+    PetscCall(log.print(
+        "time step %.9g s, which follows the stiffness of the soil: Courant number %.4f, of at most %.4f", dt,
+        config.time.courant, largest_courant(config)));
+  else
+    PetscCall(log.print("time step %.9g s, Courant number %.4f, of at most %.4f; %ld steps to %g s", dt,
+                        dt / critical_time_step(config), largest_courant(config), schedule.last_step(),
+                        schedule.time_of(schedule.last_step())));
   if (restart) {
     PetscCall(resume());
     wall_start = seconds_now();
@@ -176,7 +232,7 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   for (const auto& body : config.bodies) {
     const bool listed = body.shape.kind == ShapeKind::particles;
     BodyParticles& particles = model->bodies.emplace_back();
-    PetscCall(listed ? load_file(body, &particles)
+    PetscCall(listed ? load_file(body, &particles, &model->from_run)
                      : load_shape("body " + body.name, body.shape, cut_out_of(config, body),
                                   {rank_of(comm), ranks()}, &particles));
   }
@@ -198,29 +254,26 @@ PetscErrorCode Simulation::Body::load_shape(const std::string& name, const Shape
   Lattice lattice;
   PetscCall(fill(shape, config.mesh, config.dim, lattice, cut_out, part));
   PetscCall(log_shape(name, lattice, part.of > 1));
+  PetscCall(log_cuts(name, shape));
   particles->position = std::move(lattice.position);
   particles->spacing = lattice.spacing;
   particles->particle_volume = lattice.particle_volume;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Particles that a file lists, read again after they were checked with the options.
-PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles* particles) {
+/// The planes of symmetry that cut a shape.
+PetscErrorCode Simulation::Body::log_cuts(const std::string& name, const Shape& shape) {
   PetscFunctionBeginUser;
-  ParticleTable table;
-  std::string fault;
-  PetscCallCXX(fault = read_particles(body.shape.file, body.name, config.mesh, config.dim, table));
-  PetscCheck(fault.empty(), comm, PETSC_ERR_FILE_READ, "%s has changed: it should be %s",
-             body.shape.file.c_str(), fault.c_str());
-  const long count = static_cast<long>(table.position.size()) / config.dim;
-  PetscCall(log.print("body %s: %ld particles of %s stand for %.6g %s", body.name.c_str(), count,
-                      body.shape.file.c_str(), count * table.particle_volume, config.dim == 2 ? "m2" : "m3"));
-  particles->position = std::move(table.position);
-  particles->spacing = config.mesh.spacing / body.shape.particles_per_cell;
-  particles->particle_volume = table.particle_volume;
-  particles->velocity = std::move(table.velocity);
-  particles->stress = std::move(table.stress);
-  particles->plastic_strain = std::move(table.plastic_strain);
+  const Cuts cuts = cuts_of(shape, config.mesh, config.dim);
+  std::string sides;
+  for (int d = 0; d < config.dim; ++d)
+    for (int side = 0; side < 2; ++side)
+      if (cuts[d][side])
+        sides += std::string(sides.empty() ? "" : ", ") + "-mesh_" + "xyz"[d] + (side == 0 ? "min" : "max");
+  if (!sides.empty())
+    PetscCall(
+        log.print("%s: cut by the plane of symmetry at %s; masses and forces are those of the part inside",
+                  name.c_str(), sides.c_str()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -240,7 +293,7 @@ PetscErrorCode Simulation::Body::log_shape(const std::string& name, const Lattic
 }
 
 std::unique_ptr<InputReport, void (*)(InputReport*)> prepare_arguments(MPI_Comm comm, int* argc,
-                                                                       char** argv) {
+                                                                       char*** argv) {
   auto report =
       std::unique_ptr<InputReport, void (*)(InputReport*)>(new InputReport, [](InputReport* r) { delete r; });
   prepare_arguments(comm, argc, argv, *report);

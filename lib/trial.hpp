@@ -14,7 +14,7 @@ namespace mpm {
 template <class Advance>
 std::optional<double> time_of_steps(const Advance& advance) {
   constexpr long k_first = 2, k_most = 128;
-  constexpr double k_enough = 0.05;  // s
+  constexpr double k_enough = 0.02;  // s
   Batch batch;
   if (advance(k_first, &batch) != PETSC_SUCCESS || batch.steps == 0) return std::nullopt;
   std::optional<double> best;

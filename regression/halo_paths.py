@@ -10,7 +10,6 @@ status 1 where a run failed or differs. Meant for a machine with a GPU a rank.
 """
 
 import argparse
-import re
 import shlex
 import subprocess
 import sys
@@ -22,7 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import case as cases  # noqa: E402
 import differences  # noqa: E402
-from benchmark_runs import HISTORY, Setting, read_log  # noqa: E402
+from benchmark_runs import HISTORY, Setting, performance  # noqa: E402
 from compare import BOUNDS  # noqa: E402
 from results import Run  # noqa: E402
 
@@ -33,14 +32,14 @@ CHECKS = [("inputs/landslide_coarse.opts", "", 1), ("inputs/landslide_coarse.opt
 
 
 def run(given, options, ranks, folder):
-    """Runs the program; its log, or None where it failed."""
+    """Runs the program; its performance.json, or None where it failed."""
     command = [str(given.binary), "-backend", given.backend, *shlex.split(options), "-output_dir", str(folder), "-progress", "off"]
     if ranks > 1:
         command = [cases.launcher(), "-n", str(ranks), "--bind-to", "none", *command]
     done = subprocess.run(command, cwd=cases.ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           env={"OMP_NUM_THREADS": "1", **cases.environment()}, timeout=300)
     if done.returncode == 0:
-        return (folder / "mpm.log").read_text()
+        return performance(folder)
     print(f"FAILED {shlex.join(command)}: exit status {done.returncode}\n{done.stdout[-1500:]}", flush=True)
     return None
 
@@ -72,6 +71,11 @@ def check(given, folder):
     return wrong
 
 
+def us_of(told):
+    """us a step, without output."""
+    return 1e6 * told["stepping_seconds"] / told["steps"]
+
+
 def times(given, folder):
     particles, wrong = 5898240 // (1 if given.backend == "cuda" else 64), 0
     for precision in ("single", "double"):
@@ -79,23 +83,22 @@ def times(given, folder):
             size = Setting("footing", ranks * particles, given.backend, precision, "tile").size()
             return (f"-options_file inputs/footing.opts -precision {precision} -p2g tile -time_max_steps {given.steps}"
                     f" {size} {HISTORY}")
-        log = run(given, options(1), 1, folder / "time")
-        if log is None:
+        told = run(given, options(1), 1, folder / "time")
+        if told is None:
             wrong += 1
             continue
-        alone = read_log(log)["us"]
+        alone = us_of(told)
         print(f"{precision}, {particles:,} particles a rank: {alone:.0f} us a step on one rank", flush=True)
         for way in ways(given):
-            log = run(given, f"{options(given.ranks)} {way}", given.ranks, folder / "time")
-            if log is None:
+            told = run(given, f"{options(given.ranks)} {way}", given.ranks, folder / "time")
+            if told is None:
                 wrong += 1
                 continue
-            us = read_log(log)["us"]
-            words = re.findall(r"sent a step, (.*)", log)[-1]
-            held = re.findall(r"held up by the halo for [\d.]+ to ([\d.]+) s", log)
-            spent = re.findall(r"halo \(pack and sum\) .*", log)[-1]
-            print(f"  {way}: {us:.0f} us ({100 * alone / us:.1f} %), {words}; {spent}"
-                  + (f"; held up {1e6 * float(held[-1]) / given.steps:.1f} us a step" if held else ""), flush=True)
+            us, ranks = us_of(told), told["between_ranks"]
+            halo, wait, held = (ranks[name] for name in ("halo_seconds", "wait_seconds", "held_seconds"))
+            print(f"  {way}: {us:.0f} us ({100 * alone / us:.1f} %), {ranks['halo_path']}; halo (pack and sum)"
+                  f" {halo['least']:.3f} to {halo['most']:.3f} s, wait {wait['least']:.3f} to {wait['most']:.3f} s"
+                  + (f"; held up {1e6 * held['most'] / given.steps:.1f} us a step" if held else ""), flush=True)
     return wrong
 
 

@@ -57,9 +57,5 @@ def machine(backend):
 
 
 def version(runs):
-    """The program's version line in a run's log."""
-    for run in runs.values():
-        words = re.search(r"mpm (\d[\w.+-]*)", (run.folder / "mpm.log").read_text())
-        if words:
-            return words[1]
-    return ""
+    """The version of the program that made the runs."""
+    return next((json.loads((run.folder / "options.json").read_text())["version"] for run in runs.values()), "")

@@ -6,7 +6,7 @@ Of the paper's own curves only what its tables and text say is drawn: Figs 5 and
 
 import numpy as np
 
-from benchmark_runs import commit, read_log, run
+from benchmark_runs import commit, run, speed_of
 from benchmark_tables import MOSAIC_SPEEDUP, PAPER, Measured
 from results import Run, bearing_curve, reference_curve, window_means
 from runout import advance, reference_runout
@@ -21,7 +21,7 @@ def curves(program, backend, folder):
     found = {}
     for problem in ("footing", "landslide"):
         options = f"-options_file inputs/{problem}.opts -backend {backend} -precision double -output_frames off -progress off"
-        log = read_log(run(program, options, folder))
+        speed = speed_of(run(program, options, folder))
         done = Run(folder)
         if problem == "footing":
             x, y = window_means(*bearing_curve(done, "plate"))
@@ -30,9 +30,9 @@ def curves(program, backend, folder):
             x, y = done.history["time"], advance(done, "slide")
             stored = reference_runout(done).get("flat")
             reference = (stored["time"], stored["toe"]) if stored else None
-        found[problem] = {"x": rounded(x), "y": rounded(y), "particles": log["count"], "backend": backend, "commit": commit(),
+        found[problem] = {"x": rounded(x), "y": rounded(y), "particles": speed["count"], "backend": backend, "commit": commit(),
                           "reference": [rounded(each) for each in reference] if reference else None}
-        print(f"{problem}.opts to its end: {log['steps']} steps of {log['us']:.4g} us", flush=True)
+        print(f"{problem}.opts to its end: {speed['steps']} steps of {speed['us']:.4g} us", flush=True)
     return found
 
 

@@ -1,9 +1,11 @@
 """Timed runs of the two problems of Dong, Wang & Randolph (2015) at any of their sizes.
 
-A run makes as many steps as its back end does in a second or so, without frames. What it took is read from its log: us a
-step (steps and rebuilds, without output) and the time of each function. Repeated, the run with the median counts.
+A run makes as many steps as its back end does in a second or so, without frames. What it took is read from its
+performance.json: us a step (steps and rebuilds, without output) and the time of each function. Repeated, the run with the
+median counts.
 """
 
+import json
 import os
 import re
 import shlex
@@ -59,13 +61,18 @@ def default_program():
 
 
 def run(program, options, folder):
-    """Runs the program; the text of its log."""
+    """Runs the program; its performance.json."""
     shutil.rmtree(folder, ignore_errors=True)
     command = [str(program), *shlex.split(options), "-output_dir", str(folder)]
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
     if done.returncode != 0:
         raise SystemExit(f"{shlex.join(command)}: exit status {done.returncode}\n{done.stdout[-2000:]}")
-    return (folder / "mpm.log").read_text()
+    return performance(folder)
+
+
+def performance(folder):
+    """What the run in a folder tells of its speed (docs/running.md)."""
+    return json.loads((folder / "performance.json").read_text())
 
 
 def environment():
@@ -79,23 +86,16 @@ def backends(program):
     return re.findall(r"\w+", re.search(r"-backend\n.*\n +takes (.*);", text)[1].replace(" or ", " "))
 
 
-def read_log(text):
-    """us a step in all and of each function {name: us}, bytes a particle, the strategy that ran, machine and device."""
-    def find(pattern):
-        return re.search(pattern, text, re.M)
-
-    steps = int(find(r"^(?:finished|failed|stopped) after (\d+) steps")[1])
-    rows = re.findall(r"^  ([a-z][a-z ,]+?) +(\d+) +([\d.]+) +[\d.]+ %", text, re.M)
-    count, megabytes, strategy = find(r"^(\d+) particles in \d+ patches, ([\d.]+) MB on the devices?; strategy (\w+)").groups()
-    rate = find(r"^([\d.e+-]+) us a step without output")
-    copy = find(r"a copy reads and writes ([\d.]+) GB/s; the steps move ([\d.]+)")
-    return {"us": float(rate[1]), "steps": steps, "count": int(count), "ran": strategy,
-            "functions": {name: 1e6 * float(seconds) / steps for name, calls, seconds in rows
-                          if 2 * int(calls) > steps or "rebuild" in name},  # others were done by few steps alone
-            "bytes": 1e6 * float(megabytes) / int(count), "copy": float(copy[1]) if copy else None,
-            "moved": float(copy[2]) if copy else None,
-            "machine": re.sub(r", \d+ ranks?$", "", find(r"^  machine +[^,]*, (.*)$")[1]),
-            "device": find(r"^  device +\w+, (.*)$")[1]}
+def speed_of(told):
+    """Of a performance.json: us a step in all and of each function {name: us}, bytes a particle, GB/s of a copy and of the
+    steps, the strategy that ran, machine and device."""
+    steps, copy = told["steps"], told["copy_bandwidth_bytes_per_second"]
+    return {"us": 1e6 * told["stepping_seconds"] / steps, "steps": steps, "count": told["particles"], "ran": told["strategy"],
+            "functions": {each["name"]: 1e6 * each["seconds"] / steps for each in told["functions"]
+                          if 2 * each["calls"] > steps or "rebuild" in each["name"]},  # others were done by few steps alone
+            "bytes": told["memory_bytes"] / told["particles"], "copy": copy and copy / 1e9,
+            "moved": copy and told["moved_bytes_per_second"] / 1e9,
+            "machine": f"{told['processor']}, {told['cores']} cores", "device": told["device"]}
 
 
 def commit():
@@ -107,10 +107,10 @@ def commit():
 
 
 def measure(program, setting, repeats, folder):
-    """The median of `repeats` runs: the setting, what read_log tells, us of all repeats, date and commit."""
+    """The median of `repeats` runs: the setting, what speed_of tells, us of all repeats, date and commit."""
     options = (f"-options_file inputs/{setting.problem}.opts -backend {setting.backend} -precision {setting.precision}"
                f" -p2g {setting.strategy} -time_max_steps {setting.steps()} {setting.size()} {HISTORY}")
-    done = sorted((read_log(run(program, options, folder)) for _ in range(repeats)), key=lambda each: each["us"])
+    done = sorted((speed_of(run(program, options, folder)) for _ in range(repeats)), key=lambda each: each["us"])
     median = done[(repeats - 1) // 2]
     if median["count"] != setting.particles:
         raise SystemExit(f"{options}: {median['count']} particles instead of {setting.particles}")

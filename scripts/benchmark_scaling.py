@@ -5,14 +5,13 @@ whatever the number of ranks. Landslide: the slab of L/H = 480, cut in boxes and
 the factor SMALLER.
 """
 
-import re
 import shlex
 import shutil
 import subprocess
 from dataclasses import dataclass
 from datetime import date
 
-from benchmark_runs import HISTORY, ROOT, Setting, commit, environment, read_log
+from benchmark_runs import HISTORY, ROOT, Setting, commit, environment, performance, speed_of
 
 WEAK, STRONG, SLIDE = 5898240, (23592960, 94371840), 4423680
 SMALLER = 64  # on processors
@@ -62,7 +61,7 @@ def command(program, case, folder):
 
 
 def measure(program, case, repeats, folder):
-    """The fastest of several runs, what its log tells of the ranks, and where it was."""
+    """The fastest of several runs, what it tells of the ranks, and where it was."""
     done = []
     for _ in range(repeats):
         shutil.rmtree(folder, ignore_errors=True)
@@ -71,24 +70,25 @@ def measure(program, case, repeats, folder):
                              env={"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMP_NUM_THREADS": "1", **environment()})
         if run.returncode != 0:
             return {"failed": f"{shlex.join(words)}: exit status {run.returncode}\n{run.stdout[-1500:]}"}
-        text = (folder / "mpm.log").read_text()
-        done.append({**read_log(text), **read_ranks(text)})
+        told = performance(folder)
+        done.append({**speed_of(told), **figures_of_ranks(told)})
     best = min(done, key=lambda each: each["us"])
     return {**case.__dict__, **best, "all_us": [each["us"] for each in done], "date": date.today().isoformat(),
             "commit": commit()}
 
 
-def read_ranks(text):
-    """Balance of the particles, nodes and kB of the halo, and shares of the time, from the log of several ranks."""
-    found = {}
-    for name, pattern in (("balance", r"particles a rank, largest over mean ([\d.]+)"),
-                          ("halo_nodes", r"halo of at most (\d+) nodes"), ("kB", r"([\d.]+) kB sent a step"),
-                          ("compute_s", r"compute [\d.]+ to ([\d.]+) s a rank"),
-                          ("work_balance", r"s a rank, largest over mean ([\d.]+)"),
-                          ("wait_s", r"wait [\d.]+ to ([\d.]+)")):
-        if match := re.search(pattern, text):
-            found[name] = float(match[1])
-    return found
+def figures_of_ranks(told):
+    """Balance of the particles, nodes and kB of the halo, and shares of the time, where there are several ranks."""
+    ranks = told["between_ranks"]
+    if ranks is None:
+        return {}
+
+    def balance(name):
+        return ranks[name]["most"] / ranks[name]["mean"] if ranks[name]["mean"] > 0 else 1
+
+    return {"balance": balance("particles"), "halo_nodes": ranks["halo_nodes"]["most"],
+            "kB": ranks["sent_bytes_per_step"]["most"] / 1e3, "compute_s": ranks["compute_seconds"]["most"],
+            "work_balance": balance("compute_seconds"), "wait_s": ranks["wait_seconds"]["most"]}
 
 
 def cell(us, reference, weak):

@@ -13,7 +13,7 @@ import statistics
 import subprocess
 from datetime import date
 
-from benchmark_runs import HISTORY, ROOT, Setting, commit, environment, read_log
+from benchmark_runs import HISTORY, ROOT, Setting, commit, environment, performance, speed_of
 
 SIZES = (737280, 5898240)  # particles of all threads: strips of L/B = 28.8 and 230.4
 LEAST = 25600              # of a thread: a shorter strip has no room for the plate
@@ -41,7 +41,7 @@ def command(program, threads, particles, precision, length, folder):
 
 
 def run_at_once(program, programs, threads, particles, precision, folder):
-    """The logs of several programs at once, each of so many threads and particles and, if they are many, on a core."""
+    """The figures of several programs at once, each of so many threads and particles and, if they are many, on a core."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     length = f"-wall_time_limit {AT_ONCE}"
@@ -58,7 +58,7 @@ def run_at_once(program, programs, threads, particles, precision, folder):
     for process, text in zip(started, texts):
         if process.returncode not in (0, STOPPED):
             raise SystemExit(f"{shlex.join(process.args)}: exit status {process.returncode}\n{text[-2000:]}")
-    return [read_log((folder / str(n) / "mpm.log").read_text()) for n in range(programs)]
+    return [speed_of(performance(folder / str(n))) for n in range(programs)]
 
 
 def measure(program, particles, threads, precision, repeats, folder):
@@ -66,14 +66,14 @@ def measure(program, particles, threads, precision, repeats, folder):
     together, apart = [], []
     part = particles // threads // 640 * 640  # 640: a column of cells
     for _ in range(repeats):
-        (log,) = run_at_once(program, 1, threads, particles, precision, folder)
-        together.append(log["count"] / log["us"])
-        logs = run_at_once(program, threads, 1, part, precision, folder) if threads > 1 else [log]
-        apart.append(sum(each["count"] / each["us"] for each in logs))
+        (one,) = run_at_once(program, 1, threads, particles, precision, folder)
+        together.append(one["count"] / one["us"])
+        parts = run_at_once(program, threads, 1, part, precision, folder) if threads > 1 else [one]
+        apart.append(sum(each["count"] / each["us"] for each in parts))
     return {"kind": "threads", "particles": particles, "ranks": threads, "backend": "openmp", "precision": precision,
-            "rate": statistics.median(together), "apart": statistics.median(apart), "device": log["device"],
-            "machine": log["machine"], "copy": log["copy"], "moved": log["moved"],
-            "functions": log["functions"], "date": date.today().isoformat(),
+            "rate": statistics.median(together), "apart": statistics.median(apart), "device": one["device"],
+            "machine": one["machine"], "copy": one["copy"], "moved": one["moved"],
+            "functions": one["functions"], "date": date.today().isoformat(),
             "commit": commit()}
 
 

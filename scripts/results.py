@@ -92,15 +92,20 @@ def extent(run, name):
     if shape == "polygon":
         x = run.numbers(f"{name}_polygon")[::2]
         return min(x), max(x)
-    if shape == "disc":
+    if shape in ("disc", "ball", "cylinder", "cone"):
         centre, radius = run.number(f"{name}_centre"), run.number(f"{name}_radius")
-        return centre - radius, centre + radius
+        return in_mesh(run, centre - radius, centre + radius)
     if shape == "half_plane":
         return run.number("mesh_lower"), run.number("mesh_upper")
     (left, low), (right, high) = run.numbers(f"{name}_lower")[:2], run.numbers(f"{name}_upper")[:2]
     angle = np.radians(run.number(f"{name}_angle_deg"))  # about the lower corner
     x = [left + a * np.cos(angle) - b * np.sin(angle) for a in (0, right - left) for b in (0, high - low)]
-    return min(x), max(x)
+    return in_mesh(run, min(x), max(x))
+
+
+def in_mesh(run, left, right):
+    """What a side of the mesh leaves of an extent in x, m."""
+    return max(left, run.number("mesh_lower", left)), min(right, run.number("mesh_upper", right))
 
 
 def is_half_model(run, name):

@@ -1,8 +1,13 @@
 #pragma once
-// What every material model shares: its table of parameters, the state it updates, and the rotation of
-// stress.
+// What every law shares: its tables of parameters and of state variables, what its update is given, and the
+// rotation of stress. docs/CONTRIBUTING.md tells how a law is written.
 
+#include <array>
+#include <string>
+
+#include "materials/tables.hpp"
 #include "types.hpp"
+#include "warp.hpp"
 
 namespace mpm {
 
@@ -13,17 +18,70 @@ struct Parameter {
   typename Model::real Model::*member;
   const char* unit;
   const char* meaning;
-  double lowest, highest;  // accepted range, inclusive
-  double standard;         // default; NaN where the parameter is required
+  double lowest, highest;            // accepted range, inclusive
+  double standard;                   // default; NaN where the parameter is required
+  const char* instead_of = nullptr;  // key of the parameter whose place it takes where it is given
 };
 
-/// What a model updates at a particle.
-template <class T, int Dim>
-struct MaterialState {
-  SymTensor<T, Dim> stress;  // Pa, Cauchy, tension positive
-  T plastic_strain;          // -, accumulated engineering plastic shear strain
-  T strength;                // Pa, undrained shear strength of this particle
+/// How a particle is when it is created: a law's initial_state() follows from it.
+struct ParticleStart {
+  std::array<double, 3> position{};  // m; along the vertical, the last axis of the mesh, in `height`
+  double height = 0;                 // m, reference height
+  std::array<double, 6> stress{};    // Pa: xx yy zz xy yz zx, tension positive
 };
+
+/// What is wrong with the parameters of a law together.
+struct ParameterFault {
+  std::string key;    // option key of the parameter to change; empty: nothing is wrong
+  std::string takes;  // the end of "takes ..."; -NAME_ stands for the prefix of the material's options
+};
+
+/// The values of a law's state variables at a particle, in the order of its table. N may be 0.
+template <class R, int N>
+struct LawState {
+  static constexpr int size = N;
+  R c[N > 0 ? N : 1];
+  KOKKOS_INLINE_FUNCTION R& operator[](int k) { return c[k]; }
+  KOKKOS_INLINE_FUNCTION const R& operator[](int k) const { return c[k]; }
+};
+
+/// The time at the start of a step [s]: `start`, and the steps of dt that were done since.
+struct Clock {
+  double start = 0, dt = 0;
+  const int* steps = nullptr;  // in the memory of the execution space, where another team may count them
+  KOKKOS_INLINE_FUNCTION double now() const { return start + dt * load_of_others(steps); }
+};
+
+/// What a step does to a particle, as its law sees it. R: the real type T, or lanes of it.
+template <class R, class T, int Dim>
+struct Increment {
+  SymTensor<R, Dim> strain;  // -, tensor shear strains, with the cell's share of dilatation (F-bar)
+  Spin<R, Dim> spin;         // -
+  R gradient[Dim][Dim];      // 1/s, L_ij = dv_i/dx_j
+  T dt;                      // s
+  Clock clock;
+  /// Time at the start of the step [s]; only laws that ask for it read it.
+  KOKKOS_INLINE_FUNCTION T time() const { return static_cast<T>(clock.now()); }
+};
+
+/// Number of state variables of a law.
+template <class Law>
+inline constexpr int state_size = static_cast<int>(Law::state().size());
+
+/// Whether a law's update is written for one particle (k_scalar_update), as one with many branches is, and
+/// not for lanes too.
+template <class Law>
+constexpr bool has_scalar_update() {
+  if constexpr (requires { Law::k_scalar_update; }) return Law::k_scalar_update;
+  return false;
+}
+/// Whether the stiffness of a law depends on stress or state (k_stiffness_changes), so that the time step has
+/// to follow it.
+template <class Law>
+constexpr bool stiffness_changes() {
+  if constexpr (requires { Law::k_stiffness_changes; }) return Law::k_stiffness_changes;
+  return false;
+}
 
 /// Stress turned with the material by the spin times dt: Q s Q^T with Q = (I - w/2)^-1 (I + w/2), which is a
 /// rotation for any w (Hughes & Winget 1980), so that the Jaumann rate keeps the invariants.
@@ -74,6 +132,18 @@ KOKKOS_INLINE_FUNCTION void add_elastic(SymTensor<R, Dim>& s, const SymTensor<R,
                                         T shear_modulus) {
   const R mean = lambda * (e[0] + e[1] + e[2]);
   for (int k = 0; k < sym_size<Dim>; ++k) s[k] += 2 * shear_modulus * e[k] + (k < 3 ? mean : R(0));
+}
+
+/// Elastic energy of a volume under an isotropic stress-strain law [J/m3].
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T elastic_energy(const SymTensor<T, Dim>& s, T lambda, T shear_modulus) {
+  const T mean = mean_of(s), bulk_modulus = lambda + shear_modulus * T(2.0 / 3);
+  T j2 = 0;
+  for (int k = 0; k < sym_size<Dim>; ++k) {
+    const T deviator = k < 3 ? s[k] - mean : s[k];
+    j2 += k < 3 ? deviator * deviator / 2 : deviator * deviator;
+  }
+  return mean * mean / (2 * bulk_modulus) + j2 / (2 * shear_modulus);
 }
 
 /// Elastic constants of Young's modulus and Poisson's ratio.

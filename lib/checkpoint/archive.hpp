@@ -20,7 +20,8 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
   archive.value("version", c.version), archive.value("dim", c.dim), archive.value("ranks", c.ranks);
   archive.value("backend", c.backend), archive.value("precision", c.precision);
   archive.value("strategy", c.strategy), archive.value("step", c.run.step), archive.value("time", c.run.time);
-  archive.value("dt", c.run.dt), archive.value("last_row_time", c.run.last_row_time);
+  archive.value("dt", c.run.dt), archive.value("dt_since", c.run.dt_since);
+  archive.value("dt_since_time", c.run.dt_since_time), archive.value("last_row_time", c.run.last_row_time);
   archive.value("wall", c.run.wall), archive.value("stepping", c.run.stepping);
   archive.value("since_rebuild", c.run.since_rebuild), archive.value("rebuilds", c.run.rebuilds);
   archive.value("longest", c.run.longest), archive.value("shortest", c.run.shortest);
@@ -43,6 +44,8 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
     std::array<double, 3>* vectors[] = {&rigid.displacement, &rigid.velocity, &rigid.impulse, &rigid.binned};
     (*vectors[k % k_motion / 3])[k % 3] = motion[k];
   }
+  archive.value("particles", c.state.particles), archive.list("lost", c.state.lost);
+  archive.value("alone_known", c.state.alone_known), archive.list("alone", c.state.alone);
   archive.list("bounds", c.state.bounds), archive.list("owners", c.state.owners);
   archive.list("impulse_address", c.state.impulse.address);
   archive.list("impulse", c.state.impulse.values);

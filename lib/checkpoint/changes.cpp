@@ -22,6 +22,7 @@ bool may_change(const std::string& name) {
                                    "-p2g_mosaic_cells",
                                    "-p2g_rebuild_interval",
                                    "-partition",
+                                   "-rebalance_threshold",
                                    "-halo_path",
                                    "-halo_overlap",
                                    "-time_end",
@@ -29,6 +30,7 @@ bool may_change(const std::string& name) {
                                    "-history_interval",
                                    "-checkpoint_interval",
                                    "-restart",
+                                   "-restart_change",
                                    "-wall_time_limit",
                                    "-progress",
                                    "-dry_run"};
@@ -72,26 +74,59 @@ std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>&
   return kept;
 }
 
-std::vector<std::string> contradictions(const Checkpoint& checkpoint, const std::vector<EffectiveOption>& now,
-                                        const std::string& file) {
+bool is_load(const std::string& name, const Config& config) {
+  const std::string key = lower_case(name);
+  if (key == "gravity" || key == "damping") return true;
+  for (int d = 0; d < config.dim; ++d)
+    for (const char* side : {"min", "max"})
+      if (key == std::string("mesh_") + "xyz"[d] + side) return true;
+  for (const RigidConfig& rigid : config.rigids)
+    for (const char* of_rigid : {"_motion", "_velocity", "_force", "_density"})
+      if (key == lower_case(rigid.name) + of_rigid) return true;
+  return false;
+}
+
+Comparison compare_options(const Checkpoint& checkpoint, const std::vector<EffectiveOption>& now,
+                           const std::string& file, const std::vector<std::string>& allowed) {
   std::map<std::string, const EffectiveOption*> then;
   for (const EffectiveOption& option : checkpoint.options) then[option.name] = &option;
-  std::vector<std::string> lines;
+  Comparison found;
   const std::string why = ", which holds in the run of " + file;
+  const auto is_allowed = [&](const std::string& name) {
+    const auto same = [&](const std::string& word) { return "-" + lower_case(word) == lower_case(name); };
+    return std::any_of(allowed.begin(), allowed.end(), same);
+  };
   for (const EffectiveOption& option : now) {
-    const auto found = then.find(option.name);
-    const EffectiveOption* former = found == then.end() ? nullptr : found->second;
+    const auto place = then.find(option.name);
+    const EffectiveOption* former = place == then.end() ? nullptr : place->second;
     then.erase(option.name);
     if (may_change(option.name) || (former == nullptr && option.standard)) continue;
     if (former != nullptr && same_value(former->value, option.value)) continue;
-    lines.push_back("mpm: " + option.name + ": " + (option.standard ? "default" : "given") + " \"" +
-                    option.value + "\", takes " +
-                    (former == nullptr ? "nothing at a restart" : "\"" + former->value + "\"") + why);
+    if (is_allowed(option.name))
+      found.changes.push_back({option.name, former == nullptr ? "none" : former->value, option.value});
+    else
+      found.lines.push_back("mpm: " + option.name + ": " + (option.standard ? "default" : "given") + " \"" +
+                            option.value + "\", takes " +
+                            (former == nullptr ? "nothing at a restart" : "\"" + former->value + "\"") + why);
   }
-  for (const auto& [name, former] : then)
-    if (!may_change(name) && !former->standard)
-      lines.push_back("mpm: " + name + ": not given, takes \"" + former->value + "\"" + why);
-  return lines;
+  for (const auto& [name, former] : then) {
+    if (may_change(name) || former->standard) continue;
+    if (is_allowed(name))
+      found.changes.push_back({name, former->value, "none"});
+    else
+      found.lines.push_back("mpm: " + name + ": not given, takes \"" + former->value + "\"" + why);
+  }
+  return found;
+}
+
+void apply_changes(const std::vector<OptionChange>& changes, const Config& config, SavedState& state) {
+  for (std::size_t r = 0; r < std::min(config.rigids.size(), state.rigids.size()); ++r) {
+    const RigidConfig& rigid = config.rigids[r];
+    const bool changed = std::any_of(changes.begin(), changes.end(), [&](const OptionChange& change) {
+      return change.name == "-" + rigid.name + "_motion" || change.name == "-" + rigid.name + "_velocity";
+    });
+    if (changed) state.rigids[r].velocity = rigid.motion == Motion::fixed ? Vec3{} : rigid.velocity;
+  }
 }
 
 std::string changed_machine(const Checkpoint& then, const Checkpoint& now) {

@@ -14,10 +14,27 @@ namespace mpm {
 std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>& options,
                                              const Config& config);
 
-/// A line for each option that contradicts the checkpoint; `file` is its name. Options of output, of the
-/// machine and of the end of the run may change.
-std::vector<std::string> contradictions(const Checkpoint& checkpoint, const std::vector<EffectiveOption>& now,
-                                        const std::string& file);
+/// An option that has another value than in the checkpoint.
+struct OptionChange {
+  std::string name, before, after;  // with its dash; "none" where it is not given
+};
+
+/// What of the options a restart compares and what it found.
+struct Comparison {
+  std::vector<std::string> lines;     // one for each option that contradicts the checkpoint
+  std::vector<OptionChange> changes;  // those that -restart_change allows
+};
+
+/// Compares the options with those of the checkpoint; `file` is its name. Options of output, of the machine
+/// and of the end of the run may change, and those whose names (without dash) are in `allowed`.
+Comparison compare_options(const Checkpoint& checkpoint, const std::vector<EffectiveOption>& now,
+                           const std::string& file, const std::vector<std::string>& allowed = {});
+
+/// Whether -restart_change takes the name of an option: of what loads the bodies and holds them.
+bool is_load(const std::string& name, const Config& config);
+
+/// Gives rigids whose motion or velocity changed the velocity that the options now say.
+void apply_changes(const std::vector<OptionChange>& changes, const Config& config, SavedState& state);
 
 /// What goes on otherwise than it was and so gives other bits; empty if nothing. `now` tells the machine and
 /// the options with which the run goes on.

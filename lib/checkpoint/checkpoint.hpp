@@ -1,7 +1,7 @@
 #pragma once
-// What a checkpoint holds, and its file: checkpoint_STEP.h5, one HDF5 file with a line behind it that tells
-// its length and checksum. Particles are in the order of their creation, whatever rank had them, so that any
-// number of ranks can go on from it.
+// The content of a checkpoint and its file, checkpoint_STEP.h5. The file is an HDF5 file, followed by a line
+// with its length and checksum. Particles are in the order of their creation on any number of ranks, so that
+// any number of ranks can continue from it.
 
 #include <petscsys.h>
 
@@ -15,16 +15,18 @@
 
 namespace mpm {
 
-/// Where a run is, beside its particles.
+/// The progress of a run.
 struct RunState {
   long step = 0;
-  double time = 0, dt = 0;                                          // s, simulated; of a whole step
-  double last_row_time = 0;                                         // s, simulated
-  double wall = 0, stepping = 0;                                    // s since the first step; of it in steps
+  double time = 0, dt = 0;        // s, simulated; of a whole step
+  long dt_since = 0;              // the step from which steps have been of dt
+  double dt_since_time = 0;       // s, simulated, before that step
+  double last_row_time = 0;       // s, simulated
+  double wall = 0, stepping = 0;  // s since the first step; of it in steps
   long since_rebuild = 0, rebuilds = 0, longest = 0, shortest = 0;  // steps between rebuilds
 };
 
-/// Which particles of one set a rank holds of a checkpoint: `count` from number `first`, of `total`.
+/// The particles of one set of a checkpoint that a rank holds: `count` of `total`, from number `first` on.
 struct IdBlock {
   long first = 0, count = 0, total = 0;
 };
@@ -40,18 +42,18 @@ struct Checkpoint {
   SavedState state;
 };
 
-/// Writes the file under a temporary name, brings it to the disk, reads it again to compare its checksum, and
-/// renames it to `path`. Collective; each rank gives the points that it has, in any order. A former `path` is
-/// whole until the new one is, and so is every other file if this fails.
+/// Writes the file under a temporary name, flushes it to the disk, reads it again to compare its checksum,
+/// and renames it to `path`. Collective; each rank gives its own points, in any order. An earlier file of
+/// this name stays complete until the new one is complete. If writing fails, all other files stay complete.
 PetscErrorCode write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint&& checkpoint);
 
-/// Reads a file, each rank its block of the points of every set, by number. Collective. `fault` is what a
-/// file that can be gone on from would be ("takes ..."), and empty if this is one; nothing of a file whose
-/// checksum is wrong is looked at.
+/// Reads a file; each rank reads its block of the points of every set, by number. Collective. `fault` is the
+/// end of the message "takes ..." where the run cannot continue from the file, else empty. If the checksum is
+/// wrong, the content is not read.
 PetscErrorCode read_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint& checkpoint,
                                std::string* fault);
 
-/// The same of a file whose seal is known to be right, on one of `ranks` ranks.
+/// Reads a file whose seal has been checked, as one of `ranks` ranks.
 std::string read_items(const std::string& path, int rank, int ranks, Checkpoint& checkpoint);
 
 }  // namespace mpm

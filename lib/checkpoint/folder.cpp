@@ -5,49 +5,24 @@
 #include <optional>
 #include <system_error>
 
-#include "input/text.hpp"
 #include "output/files.hpp"
+#include "output/own_files.hpp"
 
 namespace mpm {
 namespace fs = std::filesystem;
 
 namespace {
 
-/// The number in PREFIX NUMBER .h5, if the name is of that kind.
-std::optional<long> number_in(const std::string& name, const std::string& prefix) {
-  const std::string suffix = ".h5";
-  if (!name.starts_with(prefix) || !name.ends_with(suffix) || name.size() <= prefix.size() + suffix.size())
-    return std::nullopt;
-  const std::string digits = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
-  if (digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
-  return parse_integer(digits);
-}
+using NumberOf = std::optional<long> (*)(const std::string& name);
 
-PetscErrorCode remove_file(const fs::path& path) {
-  PetscFunctionBeginUser;
-  std::error_code failed;
-  fs::remove(path, failed);
-  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot remove %s: %s", path.c_str(),
-             failed.message().c_str());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/// Removes the files PREFIX NUMBER .h5 of numbers above `last`, and all that begin so and were not finished.
-PetscErrorCode remove_later(const fs::path& folder, const std::string& prefix, long last, int* removed) {
-  PetscFunctionBeginUser;
-  std::vector<fs::path> later;
+/// Names in a folder that have a number of this kind above `last`.
+std::vector<std::string> later_than(const fs::path& folder, NumberOf number_of, long last) {
+  std::vector<std::string> later;
   std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string name = it->path().filename().string();
-    const auto number = number_in(name, prefix);
-    if ((number && *number > last) || (name.starts_with(prefix) && name.ends_with(".tmp")))
-      later.push_back(it->path());
-  }
-  PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot read the folder %s: %s", folder.c_str(),
-             error.message().c_str());
-  for (const fs::path& path : later) PetscCall(remove_file(path));
-  *removed += static_cast<int>(later.size());
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (const auto number = number_of(it->path().filename().string()); number && *number > last)
+      later.push_back(it->path().string());
+  return later;
 }
 
 }  // namespace
@@ -60,7 +35,7 @@ std::vector<long> checkpoint_steps(const std::string& folder) {
   std::vector<long> steps;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (const auto step = number_in(it->path().filename().string(), "checkpoint_")) steps.push_back(*step);
+    if (const auto step = checkpoint_number(it->path().filename().string())) steps.push_back(*step);
   std::sort(steps.begin(), steps.end());
   return steps;
 }
@@ -68,24 +43,32 @@ std::vector<long> checkpoint_steps(const std::string& folder) {
 PetscErrorCode keep_last_checkpoints(const std::string& folder) {
   constexpr std::size_t k_kept = 2;
   PetscFunctionBeginUser;
+  int removed = 0;
   const auto steps = checkpoint_steps(folder);
   for (std::size_t n = 0; n + k_kept < steps.size(); ++n)
-    PetscCall(remove_file(checkpoint_path(folder, steps[n])));
+    PetscCall(remove_own(checkpoint_path(folder, steps[n]), &removed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode go_back_to(const std::string& folder, long step, long frames, int* removed) {
+PetscErrorCode remove_unfinished(const std::string& folder, int* removed) {
   PetscFunctionBeginUser;
-  const fs::path in_frames = fs::path(folder) / "frames";
-  int count = 0;
-  PetscCall(make_folder(in_frames.string()));
-  PetscCall(remove_later(folder, "checkpoint_", step, &count));
-  PetscCall(remove_later(in_frames, "frame_", frames - 1, &count));
-  for (const char* file : {"history.csv.tmp", "options.json.tmp", "particles.xdmf.tmp"}) {
-    std::error_code none;
-    count += fs::remove(fs::path(folder) / file, none) ? 1 : 0;
-  }
-  *removed = count;
+  PetscCall(make_folder((fs::path(folder) / "frames").string()));
+  for (const std::string& path : written_names(folder))
+    if (path.ends_with(".tmp")) PetscCall(remove_own(path, removed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode remove_later_checkpoints(const std::string& folder, long step, int* removed) {
+  PetscFunctionBeginUser;
+  for (const std::string& path : later_than(folder, checkpoint_number, step))
+    PetscCall(remove_own(path, removed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode remove_later_frames(const std::string& folder, long frames, int* removed) {
+  PetscFunctionBeginUser;
+  for (const std::string& path : later_than(fs::path(folder) / "frames", frame_number, frames - 1))
+    PetscCall(remove_own(path, removed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -14,11 +14,15 @@ std::string checkpoint_path(const std::string& folder, long step);
 /// Steps of the checkpoints in a folder, the earliest first; none where it cannot be read.
 std::vector<long> checkpoint_steps(const std::string& folder);
 
-/// Removes all checkpoints but the last two.
+/// Removes all checkpoints but the last two. Nothing here removes a file that is not the program's own.
 PetscErrorCode keep_last_checkpoints(const std::string& folder);
 
-/// Makes a folder ready to go on after `step` steps and `frames` frames: what a run wrote there later, and
-/// files that were not finished, are removed; the run writes them again. `removed` [files] is for the log.
-PetscErrorCode go_back_to(const std::string& folder, long step, long frames, int* removed);
+/// Makes a folder ready to go on in: files that were not finished are removed. `removed` [files] is added to.
+PetscErrorCode remove_unfinished(const std::string& folder, int* removed);
+
+/// Removes what a run wrote after `step` steps, or after `frames` frames, before another went back to them.
+/// To be called once what the other has written since is safe.
+PetscErrorCode remove_later_checkpoints(const std::string& folder, long step, int* removed);
+PetscErrorCode remove_later_frames(const std::string& folder, long frames, int* removed);
 
 }  // namespace mpm

@@ -80,22 +80,24 @@ IdBlock block_of(long total, int rank, int ranks) {
   return {first, total / ranks + (rank < total % ranks ? 1 : 0), total};
 }
 
-PetscErrorCode bring_to_blocks(MPI_Comm comm, SavedPoints& points, IdBlock* block) {
+PetscErrorCode bring_to_blocks(MPI_Comm comm, long total, long lost, SavedPoints& points, IdBlock* block) {
   PetscFunctionBeginUser;
   PetscMPIInt rank = 0, ranks = 1;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  long total = 0;
-  for (const long id : points.id) total = std::max(total, id + 1);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPI_LONG, MPI_MAX, comm));
+  const auto known = [&](long id) { return id >= 0 && id < total; };
+  PetscCheck(std::all_of(points.id.begin(), points.id.end(), known), PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "A particle has a number beyond those of the run, so there is no checkpoint");
   if (ranks > 1) PetscCall(send_to_blocks(comm, total, ranks, points));
   *block = block_of(total, rank, ranks);
   std::vector<char> there(block->count, 0);
   for (const long id : points.id) there[id - block->first] = 1;
-  int whole = std::find(there.begin(), there.end(), 0) == there.end() ? 1 : 0;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &whole, 1, MPI_INT, MPI_MIN, comm));
-  PetscCheck(whole, comm, PETSC_ERR_PLIB, "A particle is on no rank, so there is no checkpoint");
+  long missing = std::count(there.begin(), there.end(), 0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &missing, 1, MPI_LONG, MPI_SUM, comm));
+  PetscCheck(missing == lost, comm, PETSC_ERR_PLIB, "A particle is on no rank, so there is no checkpoint");
   put_in_order(points.id, *block, 1, points.address);
+  for (std::size_t n = 0; n < there.size(); ++n)
+    if (there[n] == 0) points.address[n] = -1;
   for (SavedField& field : points.fields) put_in_order(points.id, *block, field.components, field.values);
   points.id.resize(block->count);
   std::iota(points.id.begin(), points.id.end(), block->first);

@@ -11,8 +11,9 @@ namespace mpm {
 IdBlock block_of(long total, int rank, int ranks);
 
 /// Brings the points of all ranks into blocks by number: `points` becomes the block of this rank, in order. A
-/// point that several ranks have is kept once. Collective.
-PetscErrorCode bring_to_blocks(MPI_Comm comm, SavedPoints& points, IdBlock* block);
+/// point that several ranks have is kept once. Of `total` points `lost` are on no rank: their rows have the
+/// address -1. Collective.
+PetscErrorCode bring_to_blocks(MPI_Comm comm, long total, long lost, SavedPoints& points, IdBlock* block);
 
 /// Brings the impulses of all ranks together, in order of address, on every rank. A node that several ranks
 /// have is kept once, of the first. Collective.

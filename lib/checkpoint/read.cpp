@@ -56,10 +56,28 @@ class Reader {
     }
     points.id.resize(points.address.size());
     std::iota(points.id.begin(), points.id.end(), block.first);
+    leave_out_lost(points);
   }
   const std::string& fault() const { return fault_; }
 
  private:
+  /// Rows without an address are those of particles that have left the run.
+  static void leave_out_lost(SavedPoints& points) {
+    std::size_t kept = 0;
+    for (std::size_t p = 0; p < points.id.size(); ++p) {
+      if (points.address[p] == -1) continue;
+      points.id[kept] = points.id[p], points.address[kept] = points.address[p];
+      for (SavedField& field : points.fields) {
+        if (field.values.size() != points.id.size() * field.components) continue;
+        const auto row = field.values.begin() + static_cast<long>(p) * field.components;
+        std::copy_n(row, field.components, field.values.begin() + static_cast<long>(kept) * field.components);
+      }
+      ++kept;
+    }
+    if (kept == points.id.size()) return;
+    for (SavedField& field : points.fields) field.values.resize(kept * field.components);
+    points.id.resize(kept), points.address.resize(kept);
+  }
   bool check(hid_t result, const std::string& what) {
     if (result < 0 && fault_.empty()) fault_ = what;
     return fault_.empty();
@@ -171,7 +189,8 @@ std::string read_items(const std::string& path, int rank, int ranks, Checkpoint&
   IdBlock soil;
   go_through(reader, checkpoint, options, soil);
   if (!reader.fault().empty()) return "a checkpoint with a sound " + reader.fault();
-  return options_of_text(options, checkpoint.options) ? "" : "a checkpoint with sound options";
+  const bool sound = options_of_text(options, checkpoint.options) && !checkpoint.options.empty();
+  return sound ? "" : "a checkpoint with sound options";
 }
 
 PetscErrorCode read_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint& checkpoint,

@@ -14,6 +14,7 @@
 #include "output/files.hpp"
 #include "output/log.hpp"
 #include "parallel/together.hpp"
+#include "regular_file.hpp"
 
 namespace mpm {
 namespace {
@@ -128,8 +129,10 @@ PetscErrorCode seal_file(MPI_Comm comm, const std::string& path) {
 
 PetscErrorCode check_seal(MPI_Comm comm, const std::string& path, std::string* fault) {
   PetscFunctionBeginUser;
-  fault->clear();
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  *fault = irregular_fault(path);
+  PetscCall(share_text(comm, fault));
+  if (!fault->empty()) PetscFunctionReturn(PETSC_SUCCESS);
+  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   const int reason = errno;
   const std::string blank = seal_of(0, 0);
   const long length = static_cast<long>(blank.size()), bytes = bytes_in(file.id) - length;

@@ -1,7 +1,7 @@
 #pragma once
-// A file with a seal: a last line that tells how long the file is before it, and the checksum (CRC-32) of
-// that part. A file that was cut, or in which a byte changed, is known before anything in it is looked at.
-// HDF5 does not mind what stands behind its own part.
+// A file with a seal: a last line with the length of the file before that line, and the checksum (CRC-32) of
+// that part. The seal reveals a truncated file or a changed byte before the content is read. HDF5 ignores
+// bytes behind its own part.
 
 #include <petscsys.h>
 
@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// The seal of a text of so many bytes.
+/// The seal of a file of this length.
 std::string seal_of(long bytes, std::uint32_t crc);
 
 /// Writes `contents` and its seal to `path` under a temporary name, brings it to the disk, reads it from

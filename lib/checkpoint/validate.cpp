@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "checkpoint/changes.hpp"
 #include "mesh/background.hpp"
@@ -28,15 +29,33 @@ bool in_mesh(long address, const MeshConfig& mesh, int dim, int ring) {
   return patch == 0;
 }
 
+/// The fields that the soil of every checkpoint has, with their components; restoring asks for those that
+/// only some runs have, as the state variables of the laws. The first that is not there.
+std::string missing_field(const SavedPoints& points, const Config& config) {
+  const int dim = config.dim;
+  const std::pair<const char*, int> fields[] = {
+      {"coordinate", dim}, {"velocity", dim}, {"stress", dim == 2 ? 4 : 6}, {"volume", 1}, {"body", 1}};
+  for (const auto& [name, components] : fields)
+    if (std::none_of(
+            points.fields.begin(), points.fields.end(),
+            [&, n = name, c = components](const auto& f) { return f.name == n && f.components == c; }))
+      return name;
+  return "";
+}
+
 std::string points_fault(const SavedPoints& points, const Config& config, const std::string& name) {
+  if (const std::string missing = missing_field(points, config); !missing.empty())
+    return "a checkpoint with a sound " + name + "/" + missing;
   const auto inside = [&](long address) { return in_mesh(address, config.mesh, config.dim, 0); };
   if (!std::all_of(points.address.begin(), points.address.end(), inside))
     return "a checkpoint whose " + name + " is inside the mesh";
   for (const SavedField& field : points.fields) {
     const double furthest = field.name == "coordinate" ? 2 : HUGE_VAL;  // cells: more than any margin
     const double bodies = field.name == "body" ? static_cast<double>(config.bodies.size()) : HUGE_VAL;
+    const bool positive = field.name == "volume" || field.name == "mass";
     const auto sound = [&](double x) {
-      return std::isfinite(x) && std::fabs(x) <= furthest && x < bodies && (bodies == HUGE_VAL || x >= 0);
+      return std::isfinite(x) && (!positive || x > 0) && std::fabs(x) <= furthest && x < bodies &&
+             (bodies == HUGE_VAL || x >= 0);
     };
     if (!std::all_of(field.values.begin(), field.values.end(), sound))
       return "a checkpoint with a sound " + name + "/" + field.name;
@@ -52,6 +71,10 @@ std::string state_fault(const SavedState& state, const Config& config) {
     return "a checkpoint with a sound bound";
   if (!std::isfinite(state.margin) || state.due_in < 0 || state.due_in > GlobalBound::k_late)
     return "a checkpoint with a sound margin and due_in";
+  if (state.lost.size() != config.bodies.size() * k_lost || state.particles < 0)
+    return "a checkpoint with a sound account of what has left";
+  for (const long address : state.alone)
+    if (!in_mesh(address, config.mesh, config.dim, 0)) return "a checkpoint with a sound alone";
   const std::size_t rigids = config.rigids.size();
   if (state.impulse.values.size() != state.impulse.address.size() * rigids)
     return "a checkpoint with a sound impulse";
@@ -65,6 +88,7 @@ std::string state_fault(const SavedState& state, const Config& config) {
   for (const SavedRigid& rigid : state.rigids)
     for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse, &rigid.binned})
       if (!std::all_of(vector->begin(), vector->end(), finite)) return "a checkpoint with sound rigids";
+  if (!std::all_of(state.lost.begin(), state.lost.end(), finite)) return "a checkpoint with a sound lost";
   if (!std::all_of(state.bounds.begin(), state.bounds.end(), finite)) return "a checkpoint with sound bounds";
   return points_fault(state.soil, config, "soil");
 }

@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <list>
 
 #include "checkpoint/archive.hpp"
@@ -194,7 +195,9 @@ PetscErrorCode write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoi
   PetscFunctionBeginUser;
   SavedState& state = checkpoint.state;
   IdBlock soil;
-  PetscCall(bring_to_blocks(comm, state.soil, &soil));
+  double lost = 0;
+  for (std::size_t k = 0; k < state.lost.size(); k += k_lost) lost += state.lost[k];
+  PetscCall(bring_to_blocks(comm, state.particles, std::lround(lost), state.soil, &soil));
   PetscCall(gather_impulse(comm, static_cast<int>(state.rigids.size()), state.impulse));
   if (size_of(comm) == 1)
     PetscCall(write_alone(path, checkpoint, soil));

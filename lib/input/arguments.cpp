@@ -1,98 +1,144 @@
-// What must be checked before PETSc reads the command line and the options files: it ends the program over a
-// file that it cannot read and passes over words that belong to no option.
+// What must be done before PETSc reads the command line and the options files: it ends the program over a
+// file that it cannot read, and passes over words that belong to no option.
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
-#include <fstream>
+#include <map>
 
+#include "input/deck.hpp"
 #include "input/options.hpp"
 #include "input/text.hpp"
 
 namespace mpm {
 namespace {
 
-bool is_key(const std::string& word) {
-  PetscBool valid = PETSC_FALSE;
-  return PetscOptionsValidKey(word.c_str(), &valid) == PETSC_SUCCESS && valid;
-}
-
-/// The words of a line of an options file, without its comment; a word may hold spaces in double quotes.
-std::vector<std::string> words_of(const std::string& line) {
-  std::vector<std::string> words;
-  const std::string text = line.substr(0, line.find('#'));
-  constexpr const char* k_blank = " \t\r";
-  for (auto at = text.find_first_not_of(k_blank); at != std::string::npos;
-       at = text.find_first_not_of(k_blank, at)) {
-    const bool quoted = text[at] == '"';
-    const auto end = quoted ? text.find('"', at + 1) : text.find_first_of(k_blank, at);
-    const auto from = at + quoted;
-    words.push_back(text.substr(from, end == std::string::npos ? end : end - from));
-    if (end == std::string::npos) break;
-    at = end + quoted;
-  }
-  return words;
-}
-
-/// One line of text for each mistake in an options file.
-std::vector<std::string> faults_of(const std::string& path) {
-  std::error_code error;
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path, error))
-    return {"mpm: -options_file: given \"" + path + "\", takes a file that can be read"};
-  if (!std::filesystem::is_regular_file(path, error))
-    return {};  // a pipe can be read only once, which is PETSc's
-  std::vector<std::string> faults;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const auto words = words_of(line);
-    if (words.empty() || (words[0] == "alias" && words.size() == 3)) continue;
-    if (words.size() > 2 || !is_key(words[0]) || (words.size() == 2 && is_key(words[1])))
-      faults.push_back("mpm: " + path + ":" + std::to_string(number) + ": given \"" + join(words, " ") +
-                       "\", takes -NAME VALUE, and lists without spaces");
-  }
-  return faults;
-}
-
-/// faults_of() on the first process, told to all.
-std::vector<std::string> common_faults(MPI_Comm comm, const std::string& path) {
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  std::string all = rank == 0 ? join(faults_of(path), "\n") : "";
-  int size = static_cast<int>(all.size());
-  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
+/// The same texts on every process: those of the first.
+void share(MPI_Comm comm, std::vector<std::string>& texts) {
+  std::string all;
+  for (const auto& text : texts) all += text + '\0';
+  unsigned long size = all.size();
+  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG, 0, comm);
   all.resize(size);
-  MPI_Bcast(all.data(), size, MPI_CHAR, 0, comm);
-  return size == 0 ? std::vector<std::string>{} : split(all, '\n');
+  constexpr unsigned long k_piece = 1 << 30;  // MPI counts by int
+  for (unsigned long from = 0; from < size; from += k_piece)
+    MPI_Bcast(all.data() + from, static_cast<int>(std::min(k_piece, size - from)), MPI_CHAR, 0, comm);
+  texts = split(all, '\0');
+  texts.pop_back();
+}
+
+/// PETSc's own files, unless -skip_petscrc is on the command line.
+void read_petscrc(const std::vector<std::string>& words, DeckReader& reader) {
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    const std::string value = k + 1 < words.size() ? lower_case(words[k + 1]) : "";
+    if (lower_case(words[k]) == "-skip_petscrc" && value != "false" && value != "0" && value != "no" &&
+        value != "off")
+      return;
+  }
+  std::error_code error;
+  const char* home = std::getenv("HOME");
+  if (home != nullptr && !std::filesystem::equivalent(home, ".", error))
+    reader.read_file_if_there(std::string(home) + "/.petscrc", Source::petscrc);
+  reader.read_file_if_there(".petscrc", Source::petscrc);
+  reader.read_file_if_there("petscrc", Source::petscrc);
+}
+
+void read_environment(DeckReader& reader) {
+  if (const char* given = std::getenv("PETSC_OPTIONS")) {
+    std::vector<std::string> words;
+    for (const auto& word : split(given, ' '))
+      if (!word.empty()) words.push_back(word);
+    reader.read_words(words, Source::environment, "PETSC_OPTIONS: ");
+  }
+  if (std::getenv("PETSC_OPTIONS_YAML") != nullptr)
+    reader.errors.push_back("mpm: PETSC_OPTIONS_YAML: given, takes nothing: options are not read as YAML");
+}
+
+/// Words that belong to no option. A deck without -options_file is the cause of all else that is missing.
+void report_strays(DeckReader& reader) {
+  for (const auto& word : reader.strays) {
+    std::error_code error;
+    const bool deck =
+        std::filesystem::path(word).extension() == ".opts" || std::filesystem::is_regular_file(word, error);
+    if (reader.last_file.empty() && !reader.file_unread && deck) {
+      reader.errors = {"mpm: " + printable(word) + ": given outside any option, takes -options_file " +
+                       printable(word)};
+      reader.file_unread = true;
+      return;
+    }
+    reader.errors.push_back("mpm: " + printable(word) +
+                            ": given outside any option, takes -NAME VALUE, and lists without spaces");
+  }
+}
+
+/// PETSc's web server, which its start looks for though it is not there.
+void refuse_saws(std::vector<GivenOption>& options, std::vector<std::string>& errors) {
+  const auto first = std::stable_partition(options.begin(), options.end(), [](const GivenOption& option) {
+    return lower_case(option.name).rfind("-saws_", 0) != 0;
+  });
+  for (auto option = first; option != options.end(); ++option)
+    errors.push_back("mpm: " + printable(option->name) + ": given, takes nothing: there is no web server");
+  options.erase(first, options.end());
+}
+
+/// All that the first process was given. `words` are those of PETSc's command line from here on.
+void read_all(const std::vector<std::string>& line, InputReport& report) {
+  DeckReader reader;
+  read_petscrc(line, reader);
+  read_environment(reader);
+  reader.read_words(line, Source::command_line, "");
+  report_strays(reader);
+  auto options = reader.take();
+  refuse_saws(options, reader.errors);
+  report.help = reader.help;
+  report.file_unread = reader.file_unread;
+  report.errors = reader.errors;
+  report.files = reader.files;
+  std::error_code error;  // a pipe gives the output no name
+  if (std::filesystem::is_regular_file(reader.last_file, error)) report.options_file = reader.last_file;
+  if (options.empty() && report.errors.empty() && !report.help) {
+    report.errors.push_back("mpm: -options_file: " +
+                            (reader.last_file.empty() ? "not given" : "given \"" + reader.last_file + "\"") +
+                            ", takes a deck that holds options; -help lists all");
+    report.file_unread = true;
+  }
+  std::map<std::string, const GivenOption*> last;
+  for (const GivenOption& option : options) {
+    const GivenOption*& former = last[lower_case(option.name)];
+    if (former != nullptr) {
+      report.replaced.push_back(lower_case(option.name).substr(1));
+      report.replaced.push_back(former->value.value_or(""));
+    }
+    former = &option;
+  }
+  if (report.file_unread) return;
+  for (const GivenOption& option : options) {
+    report.words.push_back(option.name);
+    if (option.value) report.words.push_back(*option.value);
+  }
 }
 
 }  // namespace
 
-void prepare_arguments(MPI_Comm comm, int* argc, char** argv, InputReport& report) {
-  int kept = 1;
-  const auto keep = [&](int k) { argv[kept++] = argv[k]; };
-  for (int k = 1; k < *argc; ++k) {
-    const std::string word = argv[k], key = lower_case(word);
-    const bool has_value = k + 1 < *argc && !is_key(argv[k + 1]) && key != "-prefix_pop";
-    if (!is_key(word)) {
-      report.errors.push_back("mpm: " + word +
-                              ": given outside any option, takes -NAME VALUE, and lists without spaces");
-      continue;
-    }
-    const bool help = key == "-help" || key == "--help" || key == "-h", file = key == "-options_file";
-    report.help = report.help || help;
-    bool pass = !help;
-    if (file) {
-      report.options_file = has_value ? argv[k + 1] : "";
-      const auto faults = common_faults(comm, report.options_file);
-      report.errors.insert(report.errors.end(), faults.begin(), faults.end());
-      pass = faults.empty();
-      report.file_unread = report.file_unread || !pass;
-    }
-    if (pass) keep(k);
-    if (has_value && pass) keep(k + 1);
-    k += has_value;
-  }
-  *argc = kept;
-  argv[kept] = nullptr;
+void prepare_arguments(MPI_Comm comm, int* argc, char*** argv, InputReport& report) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  if (rank == 0) read_all({*argv + std::min(1, *argc), *argv + *argc}, report);
+  std::vector<std::string> marks = {report.help ? "1" : "", report.file_unread ? "1" : "",
+                                    report.options_file};
+  for (auto* texts : {&report.words, &report.errors, &report.replaced, &report.files, &marks})
+    share(comm, *texts);
+  report.help = !marks[0].empty(), report.file_unread = !marks[1].empty();
+  report.options_file = marks[2];
+  unsetenv("PETSC_OPTIONS"), unsetenv("PETSC_OPTIONS_YAML");  // they have been read
+
+  // What PETSc would print of options that were not used, every one of which is reported here.
+  report.words.insert(report.words.begin(), {"-skip_petscrc", "true", "-options_left", "false"});
+  report.arguments = {*argc > 0 ? **argv : nullptr};
+  for (auto& word : report.words) report.arguments.push_back(word.data());
+  *argc = static_cast<int>(report.arguments.size());
+  report.arguments.push_back(nullptr);
+  *argv = report.arguments.data();
 }
 
 }  // namespace mpm

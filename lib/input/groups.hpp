@@ -15,17 +15,44 @@ bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh);
 /// The options of one material: its density, its model and the model's own table of parameters.
 void read_material(OptionReader& in, const std::string& name, MaterialConfig& material);
 
+/// A parameter of a material by its key; NaN where its model has none of that name.
+double parameter_of(const MaterialConfig& material, const std::string& key);
+
+/// Whether soil of a material has a strength, somewhere.
+bool has_strength(const MaterialConfig& material);
+
 /// The geometry and lattice of a body or rigid. Whether all of it was sound. Only where `listed` may a file
 /// list the particles.
 bool read_shape(OptionReader& in, const std::string& name, int dim, bool listed, Shape& shape);
 
-/// Checks that a sound shape lies in the mesh and holds a particle.
+/// Checks that a sound shape lies in the mesh, or is cut by planes of symmetry, and holds a particle.
 void check_shape(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
                  int dim);
 
-/// Reads the particles that a file lists, and checks them.
-void check_particles(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
-                     int dim, ParticleTable& table);
+/// Checks that the shapes cut out of a body leave a particle.
+void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& config, const BodyConfig& body);
+
+/// Checks that a rigid does not move across a plane of symmetry that cuts it.
+void check_cut_motion(OptionReader& in, const MeshConfig& mesh, int dim, const RigidConfig& rigid);
+
+/// The initial velocity and stress of a body, which take the place of those of its file.
+void read_start(OptionReader& in, int dim, BodyConfig& body);
+
+/// Where a body's particles are, if a file lists them.
+ParticleSource source_of(const BodyConfig& body);
+/// The same with the state variables of the body's law.
+ParticleSource source_of(const BodyConfig& body, const Config& config);
+
+/// Reads the particles that a file lists, and checks them; the table is empty where they are wrong.
+void check_particles(OptionReader& in, const BodyConfig& body, const Config& config, const MeshConfig& mesh,
+                     ParticleTable& table);
+
+/// Checks that the masses of a file are those of the body's material, to a quarter.
+void check_density(OptionReader& in, const BodyConfig& body, const Config& config,
+                   const ParticleTable& table);
+
+/// Checks the values of PETSc's options that PETSc would find wrong only at the end of the run.
+void check_petsc_options(OptionReader& in);
 
 /// -materials, -bodies, -rigids and the options of each that they name. The fixed options must have been read
 /// before, since no name may begin as they do. A null mesh (unsound) leaves the shapes unchecked against it.

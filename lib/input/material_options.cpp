@@ -1,9 +1,12 @@
 // The options of a material, from the tables of the models. The only file of input/ that sees Kokkos.
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "input/groups.hpp"
 #include "input/text.hpp"
+#include "materials/any.hpp"
 #include "materials/list.hpp"
 
 namespace mpm {
@@ -12,13 +15,14 @@ namespace {
 /// A model's table without the types of its members.
 struct Model {
   std::string name;
-  std::vector<Option> options;   // names without the material's
-  std::vector<double> standard;  // NaN: required
+  std::vector<Option> options;          // names without the material's
+  std::vector<double> standard;         // NaN: required
+  std::vector<std::string> instead_of;  // the key of another parameter, or empty
 };
 
 template <class M>
 Model table_of() {
-  Model model{M::k_name, {}, {}};
+  Model model{M::k_name, {}, {}, {}};
   for (const auto& p : M::parameters()) {
     model.options.push_back({.name = p.key,
                              .meaning = p.meaning,
@@ -26,6 +30,7 @@ Model table_of() {
                              .range = {.lowest = p.lowest, .highest = p.highest},
                              .required = std::isnan(p.standard)});
     model.standard.push_back(p.standard);
+    model.instead_of.push_back(p.instead_of != nullptr ? p.instead_of : "");
   }
   return model;
 }
@@ -35,13 +40,28 @@ std::vector<Model> tables_of(ModelList<Models...>) {
   return {table_of<Models<double>>()...};
 }
 
+/// The parameter that takes the place of another; empty where there is none.
+std::string stand_in_for(const Model& model, const std::string& key) {
+  for (std::size_t k = 0; k < model.options.size(); ++k)
+    if (model.instead_of[k] == key) return model.options[k].name;
+  return "";
+}
+
 void read_parameters(OptionReader& in, const std::string& name, const Model& model,
                      std::vector<double>& parameters) {
   for (std::size_t k = 0; k < model.options.size(); ++k) {
     Option option = model.options[k];
-    option.name = name + "_" + option.name;
+    const std::string stand_in = stand_in_for(model, option.name);
     double value = model.standard[k];
-    in.number(option, value);
+    option.name = name + "_" + option.name;
+    if (!stand_in.empty()) option.aside = ", or -" + name + "_" + stand_in + " in its place";
+    if (!model.instead_of[k].empty()) option.standard = "none";
+    if (!stand_in.empty() && in.given(name + "_" + stand_in)) {
+      in.not_taken(option.name, "-" + name + "_" + stand_in + " is in its place");
+      value = 0;
+    } else {
+      in.number(option, value);
+    }
     parameters.push_back(value);
   }
 }
@@ -60,7 +80,26 @@ void reject_others(OptionReader& in, const std::string& name, const Model& model
         in.not_taken(name + "_" + option.name, "the model " + model.name + " has no such parameter");
 }
 
+/// What the law itself says of its parameters.
+void check_together(OptionReader& in, const std::string& name, int model,
+                    const std::vector<double>& parameters) {
+  ParameterFault fault = parameter_fault(make_material<double>(model, parameters));
+  if (fault.key.empty()) return;
+  const std::string prefix = "-NAME_";
+  for (auto at = fault.takes.find(prefix); at != std::string::npos; at = fault.takes.find(prefix, at))
+    fault.takes.replace(at, prefix.size(), "-" + name + "_");
+  in.reject(name + "_" + fault.key, fault.takes);
+}
+
 }  // namespace
+
+double parameter_of(const MaterialConfig& material, const std::string& key) {
+  for (const Model& model : tables_of(Materials{}))
+    for (std::size_t k = 0; k < model.options.size(); ++k)
+      if (model.name == material.model && model.options[k].name == key)
+        return k < material.parameters.size() ? material.parameters[k] : model.standard[k];
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
 void read_material(OptionReader& in, const std::string& name, MaterialConfig& material) {
   const auto models = tables_of(Materials{});
@@ -75,7 +114,7 @@ void read_material(OptionReader& in, const std::string& name, MaterialConfig& ma
   in.number({.name = name + "_density",
              .meaning = "initial density",
              .unit = "kg/m3",
-             .range = k_positive,
+             .range = k_density,
              .required = true},
             material.density);
   if (in.listing()) {
@@ -84,12 +123,24 @@ void read_material(OptionReader& in, const std::string& name, MaterialConfig& ma
       read_parameters(in, name, model, material.parameters);
     }
   } else if (known) {
+    const auto errors = in.errors();
     material.model = words[chosen];
     read_parameters(in, name, models[chosen], material.parameters);
+    if (in.errors() == errors) check_together(in, name, chosen, material.parameters);
     reject_others(in, name, models[chosen], models);
   } else {
     in.ignore(name + "_");
   }
+}
+
+bool has_strength(const MaterialConfig& material) {
+  constexpr double k_far = 1e9;  // m
+  const auto models = material_models();
+  const auto found = std::find(models.begin(), models.end(), material.model);
+  if (found == models.end()) return false;  // reported
+  const int model = static_cast<int>(found - models.begin());
+  const AnyMaterial<double> law = make_material<double>(model, material.parameters);
+  return strength_at(law, -k_far) > 0 || strength_at(law, k_far) > 0;
 }
 
 }  // namespace mpm

@@ -6,6 +6,7 @@
 namespace mpm {
 namespace {
 
+constexpr double k_furthest = 4e9;        // cells from the origin: round-off is 1e-6 of a cell there
 constexpr double k_most_cells = 1 << 30;  // in a direction, so that cells and nodes count in an int
 
 void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
@@ -31,6 +32,14 @@ bool count_cells(OptionReader& in, int dim, MeshConfig& mesh) {
                                   text_of(mesh.lower, dim));
       return false;
     }
+  for (int d = 0; d < dim; ++d) {
+    const bool lower = std::abs(mesh.lower[d]) > std::abs(mesh.upper[d]);
+    if (std::max(std::abs(mesh.lower[d]), std::abs(mesh.upper[d])) <= k_furthest * mesh.spacing) continue;
+    in.reject(lower ? "mesh_lower" : "mesh_upper",
+              "a corner at most " + text_of(k_furthest) + " cells of " + text_of(mesh.spacing) +
+                  " m from the origin, since its coordinates do not tell particles apart further out");
+    return false;
+  }
   mesh.cells = {1, 1, 1};
   for (int d = 0; d < dim; ++d) {
     const double extent = mesh.upper[d] - mesh.lower[d], cells = std::round(extent / mesh.spacing);
@@ -51,14 +60,22 @@ bool count_cells(OptionReader& in, int dim, MeshConfig& mesh) {
 bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh) {
   in.section("Mesh");
   const auto errors = in.errors();
-  in.vector({.name = "mesh_lower", .meaning = "lower corner of the mesh", .unit = "m", .required = true}, dim,
-            mesh.lower);
-  in.vector({.name = "mesh_upper", .meaning = "upper corner of the mesh", .unit = "m", .required = true}, dim,
-            mesh.upper);
+  in.vector({.name = "mesh_lower",
+             .meaning = "lower corner of the mesh",
+             .unit = "m",
+             .range = k_coordinate,
+             .required = true},
+            dim, mesh.lower);
+  in.vector({.name = "mesh_upper",
+             .meaning = "upper corner of the mesh",
+             .unit = "m",
+             .range = k_coordinate,
+             .required = true},
+            dim, mesh.upper);
   in.number({.name = "mesh_spacing",
              .meaning = "edge of the square cells; the extent is a whole number of them",
              .unit = "m",
-             .range = k_positive,
+             .range = {.lowest = 0, .highest = 1e6, .open_lowest = true},
              .required = true},
             mesh.spacing);
   const bool sound = !in.listing() && in.errors() == errors && count_cells(in, dim, mesh);

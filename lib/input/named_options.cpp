@@ -6,7 +6,6 @@
 
 #include "input/groups.hpp"
 #include "input/petsc_names.hpp"
-#include "input/shapes.hpp"
 #include "input/text.hpp"
 
 namespace mpm {
@@ -41,7 +40,7 @@ struct Names {
 /// The good names of a list. A bad one is reported, and its own options are left unread.
 std::vector<std::string> read_names(OptionReader& in, const Option& option, Names& names) {
   std::vector<std::string> given, good;
-  in.list_of(option, "names, as sand,clay", given);
+  if (option.required || !in.none(option)) in.list_of(option, "names, as sand,clay", given);
   if (in.listing()) return {"NAME"};
   for (const auto& name : given) {
     if (name.empty()) continue;  // reported
@@ -57,65 +56,87 @@ std::vector<std::string> read_names(OptionReader& in, const Option& option, Name
   return good;
 }
 
-/// What the particles start with, but for what their file gives.
-void read_start(OptionReader& in, int dim, const ParticleTable& listed, BodyConfig& body) {
-  const std::string velocity = body.name + "_velocity", stress = body.name + "_stress";
-  const std::string why = body.name + "_file gives it for every particle";
-  if (listed.velocity.empty())
-    in.vector({.name = velocity, .meaning = "initial velocity", .unit = "m/s"}, dim, body.velocity);
-  else
-    in.not_taken(velocity, why);
-  if (listed.stress.empty())
-    in.tensor({.name = stress, .meaning = "initial stress, tension positive", .unit = "Pa"}, dim,
-              body.stress);
-  else
-    in.not_taken(stress, why);
+/// The good names of bodies and rigids.
+struct Listed {
+  std::vector<std::string> bodies, rigids;
+};
+
+/// Names of a list that a later one, as of the command line, replaced: the deck may still speak of them.
+void leave_out(OptionReader& in, const std::string& list, const Names& names) {
+  for (const auto& value : in.replaced(list))
+    for (const auto& name : split(value))
+      if (names.fault(name).empty() && !in.is_left_out(name)) in.leave_out(list, name);
 }
 
-/// The rigids out of whose shapes the body is cut.
-void read_cut_out(OptionReader& in, const std::vector<std::string>& rigids, BodyConfig& body) {
-  const Option option{
-      .name = body.name + "_cut_out",
-      .meaning = "rigids in whose shapes, as they are at the start, the body has no particles"};
-  const std::string takes = in.listing()     ? "names of -rigids, as pipe,plate"
-                            : rigids.empty() ? "names of -rigids, which lists none"
-                                             : "names of -rigids: " + join(rigids, ", ");
-  if (!in.listing() && body.shape.kind == ShapeKind::particles)
-    return in.not_taken(option.name, "the particles are those of " + body.name + "_file");
-  std::vector<std::string> names;
-  if (!in.list_of(option, takes, names)) return;
-  for (const auto& name : names) {
-    const auto found = std::find(rigids.begin(), rigids.end(), name);
-    if (found == rigids.end()) return in.reject(option.name, takes);
-    body.cut_out.push_back(static_cast<int>(found - rigids.begin()));
+/// Where a whole list was forgotten, that is the one mistake: what is given for its names is none.
+void forgive_unlisted(OptionReader& in, const Names& names) {
+  const auto pass = [&](const char* key) {
+    for (const auto& owner : in.owners_of(key))
+      if (!names.used.count(owner)) in.ignore(owner + "_");
+  };
+  if (!in.given("materials")) pass("model"), pass("density");
+  if (!in.given("bodies")) pass("material"), pass("shape");
+  if (in.given("rigids") || !in.given("bodies")) return;
+  for (const auto& owner : in.owners_of("shape")) {
+    constexpr int k_few = 2;  // a misspelt name begins fewer options
+    if (in.count_of(owner + "_") <= k_few || names.used.count(owner) || in.is_left_out(owner)) continue;
+    in.reject("rigids", "names, as plate,pipe; " + owner + " has a shape, and no list has it");
+    in.ignore(owner + "_");
   }
 }
 
-/// Checks that the shapes cut out of a body leave a particle.
-void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& config, const BodyConfig& body) {
-  if (body.cut_out.empty() || holds_particle(body.shape, mesh, config.dim, cut_out_of(config, body))) return;
-  in.reject(body.name + "_cut_out", "rigids that leave a particle of " + body.name);
+/// The rigids and bodies out of whose shapes the body is cut.
+void read_cut_out(OptionReader& in, const Listed& listed, BodyConfig& body) {
+  const Option option{
+      .name = body.name + "_cut_out",
+      .meaning =
+          "rigids and other bodies in whose shapes, as they are at the start, the body has no particles"};
+  std::vector<std::string> others = listed.rigids, names;
+  for (const auto& name : listed.bodies)
+    if (name != body.name) others.push_back(name);
+  const std::string takes = in.listing()     ? "names of -rigids and -bodies, as pipe,plate"
+                            : others.empty() ? "names of -rigids and -bodies, which list no other"
+                                             : "names of -rigids and -bodies: " + join(others, ", ");
+  if (!in.list_of(option, takes, names)) return;
+  const auto place_in = [](const std::vector<std::string>& list, const std::string& name) {
+    const auto found = std::find(list.begin(), list.end(), name);
+    return found == list.end() ? -1 : static_cast<int>(found - list.begin());
+  };
+  for (const auto& name : names) {
+    const int rigid = place_in(listed.rigids, name), other = place_in(listed.bodies, name);
+    if (rigid >= 0)
+      body.cut_out.push_back(rigid);
+    else if (other >= 0 && name != body.name)
+      body.cut_out_bodies.push_back(other);
+    else if (!in.is_left_out(name))
+      return in.reject(option.name, takes);
+  }
 }
 
-void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config,
-               const std::vector<std::string>& rigids, BodyConfig& body) {
+void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, const Listed& names,
+               BodyConfig& body) {
   in.section("Each body or rigid NAME: its shape and particles");
   const bool sound = read_shape(in, body.name, config.dim, /*listed*/ true, body.shape);
   const bool from_file = body.shape.kind == ShapeKind::particles;
-  ParticleTable listed;
-  if (sound && mesh && from_file) check_particles(in, body.name, body.shape, *mesh, config.dim, listed);
   if (sound && mesh && !from_file) check_shape(in, body.name, body.shape, *mesh, config.dim);
 
   in.section("Each body NAME");
   std::vector<std::string> materials;
   for (const auto& material : config.materials) materials.push_back(material.name);
-  in.word({.name = body.name + "_material",
-           .meaning = "its material",
-           .required = true,
-           .aside = materials.empty() ? "a name of -materials, which lists none" : ", of -materials"},
-          materials, body.material);
-  read_start(in, config.dim, listed, body);
-  read_cut_out(in, rigids, body);
+  if (materials.empty() && !in.listing())
+    in.ignore(body.name + "_material");  // the list is wrong, which is reported
+  else
+    in.word({.name = body.name + "_material",
+             .meaning = "its material",
+             .required = true,
+             .aside = ", of -materials"},
+            materials, body.material);
+  read_start(in, config.dim, body);
+  read_cut_out(in, names, body);
+  if (!sound || !mesh || !from_file) return;
+  ParticleTable listed;
+  check_particles(in, body, config, *mesh, listed);
+  check_density(in, body, config, listed);
 }
 
 /// What moves a rigid: each motion takes its own options.
@@ -136,6 +157,7 @@ void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
     in.vector({.name = rigid.name + "_velocity",
                .meaning = "prescribed: its velocity (required); dynamic: its initial velocity",
                .unit = "m/s",
+               .range = k_speed,
                .required = prescribed},
               dim, rigid.velocity);
   else
@@ -144,12 +166,13 @@ void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
     in.number({.name = rigid.name + "_density",
                .meaning = "dynamic: its density",
                .unit = "kg/m3",
-               .range = k_positive,
+               .range = k_density,
                .required = true},
               rigid.density);
     in.vector({.name = rigid.name + "_force",
                .meaning = "dynamic: external force on it, beside gravity",
-               .unit = "N"},
+               .unit = "N",
+               .range = k_stress},
               dim, rigid.force);
   } else {
     in.not_taken(rigid.name + "_density", why);
@@ -186,25 +209,46 @@ void read_penalty(OptionReader& in, RigidConfig& rigid) {
   }
 }
 
-void read_rigid(OptionReader& in, const MeshConfig* mesh, int dim, RigidConfig& rigid) {
+/// The shear limit as a share of the strength of the soil at it, instead of one for all of the interface.
+void read_shear_share(OptionReader& in, const Config& config, RigidConfig& rigid) {
+  const std::string name = rigid.name + "_shear_share";
+  if (rigid.has_shear_limit && !in.listing()) return in.not_taken(name, rigid.name + "_shear_limit is given");
+  const bool found =
+      in.number({.name = name,
+                 .meaning = "shear limit as a share of the soil's strength there (su), instead "
+                            "of the shear limit",
+                 .unit = "-",
+                 .range = {.lowest = 0, .highest = 1}},
+                rigid.shear_share);
+  const auto strong = [&](const BodyConfig& body) {
+    return body.material < static_cast<int>(config.materials.size()) &&
+           has_strength(config.materials[body.material]);
+  };
+  if (found && std::none_of(config.bodies.begin(), config.bodies.end(), strong))
+    in.reject(name, "nothing here: no body has a material with a strength");
+}
+
+void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, RigidConfig& rigid) {
+  const int dim = config.dim;
   rigid.shape.particles_per_cell = 4;
-  if (!in.listing()) {  // listed with the bodies'
-    const bool sound = read_shape(in, rigid.name, dim, /*listed*/ false, rigid.shape);
-    if (sound && mesh) check_shape(in, rigid.name, rigid.shape, *mesh, dim);
-  }
+  // listed with the bodies'
+  const bool sound = !in.listing() && read_shape(in, rigid.name, dim, /*listed*/ false, rigid.shape);
+  if (sound && mesh) check_shape(in, rigid.name, rigid.shape, *mesh, dim);
   in.section("Each rigid NAME");
   read_motion(in, dim, rigid);
+  if (sound && mesh) check_cut_motion(in, *mesh, dim, rigid);
   rigid.has_shear_limit = in.number({.name = rigid.name + "_shear_limit",
                                      .meaning = "largest shear stress of the interface; 0 is smooth",
                                      .unit = "Pa",
-                                     .range = k_not_negative},
+                                     .range = {.lowest = 0, .highest = 1e15}},
                                     rigid.shear_limit);
-  in.number(
-      {.name = rigid.name + "_friction",
-       .meaning = "Coulomb coefficient of the interface; the shear limit, where given, bounds the shear too",
-       .unit = "-",
-       .range = {.lowest = 0, .highest = 10}},
-      rigid.friction);
+  read_shear_share(in, config, rigid);
+  in.number({.name = rigid.name + "_friction",
+             .meaning = "Coulomb coefficient of the interface; the shear limit or share, where given, bounds "
+                        "the shear too",
+             .unit = "-",
+             .range = {.lowest = 0, .highest = 10}},
+            rigid.friction);
   in.word({.name = rigid.name + "_contact_normal",
            .meaning = "contact normals: of the body's own surface, or of its nodal mass gradient (Eq. 3)"},
           std::vector<std::pair<std::string, ContactNormal>>{{"surface", ContactNormal::surface},
@@ -221,19 +265,24 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, int dim, RigidConfig& 
 void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
   Names names(in);
   in.section("Names");
-  const auto materials = read_names(in, {.name = "materials", .meaning = "names of the materials"}, names);
+  const auto materials =
+      read_names(in, {.name = "materials", .meaning = "names of the materials", .required = true}, names);
   const auto bodies = read_names(
       in, {.name = "bodies", .meaning = "names of the deformable bodies", .required = true}, names);
   const auto rigids = read_names(in, {.name = "rigids", .meaning = "names of the rigid bodies"}, names);
+  if (!in.listing()) {
+    for (const char* list : {"materials", "bodies", "rigids"}) leave_out(in, list, names);
+    forgive_unlisted(in, names);
+  }
   for (const auto& name : materials) read_material(in, name, config.materials.emplace_back());
   const auto errors = in.errors();
   for (const auto& name : bodies) {
     config.bodies.emplace_back().name = name;
-    read_body(in, mesh, config, rigids, config.bodies.back());
+    read_body(in, mesh, config, {bodies, rigids}, config.bodies.back());
   }
   for (const auto& name : rigids) {
     config.rigids.emplace_back().name = name;
-    read_rigid(in, mesh, config.dim, config.rigids.back());
+    read_rigid(in, mesh, config, config.rigids.back());
   }
   if (mesh && in.errors() == errors)
     for (const auto& body : config.bodies) check_cut_out(in, *mesh, config, body);

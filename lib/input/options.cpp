@@ -4,10 +4,13 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "checkpoint/changes.hpp"
+#include "input/courant.hpp"
 #include "input/groups.hpp"
 #include "input/reader.hpp"
 #include "input/text.hpp"
 #include "output/frame_fields.hpp"
+#include "output/log.hpp"
 
 namespace mpm {
 namespace {
@@ -51,11 +54,14 @@ void read_p2g(OptionReader& in, P2GConfig& p2g) {
              .unit = "cells",
              .range = {.lowest = 0, .highest = 0.5, .open_lowest = true}},
             p2g.margin);
-  in.integer({.name = "p2g_mosaic_cells",
-              .meaning = "edge of the blocks of the mosaic",
-              .unit = "cells",
-              .range = {.lowest = 3}},
-             p2g.mosaic_cells);
+  if (p2g.strategy == P2G::mosaic || p2g.strategy == P2G::automatic || in.listing())
+    in.integer({.name = "p2g_mosaic_cells",
+                .meaning = "edge of the blocks of the mosaic",
+                .unit = "cells",
+                .range = {.lowest = 3}},
+               p2g.mosaic_cells);
+  else
+    in.not_taken("p2g_mosaic_cells", "-p2g is " + in.given_text("p2g"));
   in.integer({.name = "p2g_rebuild_interval",
               .meaning = "forces the interval of rebuilding instead of the bound on the movement",
               .unit = "steps",
@@ -115,12 +121,16 @@ void read_time(OptionReader& in, TimeConfig& time) {
              .unit = "s",
              .range = k_positive},
             time.step);
-  in.number({.name = "time_courant",
-             .meaning = "Courant number that gives the time step",
-             .unit = "-",
-             .range = {.lowest = 0, .highest = k_largest_courant, .open_lowest = true},
-             .standard = time.step ? "none" : ""},
-            time.courant);
+  in.number(
+      {.name = "time_courant",
+       .meaning =
+           "Courant number that gives the time step, at most 0.6, sqrt(2 / (dim n)) for "
+           "bodies of n particles along a cell's edge, and less with damping; by default 0.5, or 95 % of "
+           "that if it is less",
+       .unit = "-",
+       .range = {.lowest = 0, .highest = k_largest_courant, .open_lowest = true},
+       .standard = time.step ? "none" : ""},
+      time.courant);
   if (!in.listing() && in.given("time_step") && in.given("time_courant"))
     in.reject("time_step", "the place of -time_courant, which is given too; give one of them");
   in.integer({.name = "time_max_steps",
@@ -128,6 +138,19 @@ void read_time(OptionReader& in, TimeConfig& time) {
               .unit = "steps",
               .range = {.lowest = 1}},
              time.max_steps);
+}
+
+/// The bodies tell which Courant numbers are stable.
+void limit_courant(OptionReader& in, Config& config) {
+  if (in.listing() || config.time.step || config.bodies.empty()) return;
+  const double largest = largest_courant(config);
+  if (!in.given("time_courant"))
+    config.time.courant = standard_courant(config);
+  else if (config.time.courant > largest)
+    in.reject("time_courant", formatted("at most %.4g, by the particles along a cell's edge and the damping: "
+                                        "above it the rim of a body is "
+                                        "not stable",
+                                        largest));
 }
 
 void read_velocity_update(OptionReader& in, Config& config) {
@@ -162,14 +185,22 @@ void read_velocity_update(OptionReader& in, Config& config) {
 
 void read_physics(OptionReader& in, Config& config) {
   in.section("Physics");
-  in.vector({.name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2"}, config.dim,
-            config.gravity);
+  in.vector({.name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2", .range = k_speed},
+            config.dim, config.gravity);
   in.number({.name = "damping",
              .meaning = "local (non-viscous) damping factor",
              .unit = "-",
              .range = {.lowest = 0, .highest = 1, .open_highest = true}},
             config.damping);
   read_velocity_update(in, config);
+  in.word(
+      {.name = "stray_particles",
+       .meaning =
+           "what becomes of particles that are alone, or whose volume leaves 0.2 to 2 times that at the "
+           "start: keep: alone they carry no stress, and the volume stays at the bound; remove: they "
+           "leave the run; stop: the run ends with exit status 3"},
+      Words<StrayRule>{{"keep", StrayRule::keep}, {"remove", StrayRule::remove}, {"stop", StrayRule::stop}},
+      config.stray_particles);
   in.number({.name = "f_bar_share",
              .meaning = "share of the cell's mean in a particle's dilatation (F-bar), against locking",
              .unit = "-",
@@ -199,6 +230,9 @@ void read_frames(OptionReader& in, OutputConfig& output) {
   in.word({.name = "output_nodes",
            .meaning = "on: frames also hold mass and velocity of the nodes, as group nodes"},
           Words<bool>{{"on", true}, {"off", false}}, output.nodes);
+  if (output.frames) return;
+  for (const char* name : {"output_fields", "output_compression", "output_nodes"})
+    if (in.given(name)) in.warn(name, "is not used, for -output_frames is off");
 }
 
 void read_output(OptionReader& in, const std::string& options_file, double time_end, OutputConfig& output) {
@@ -237,6 +271,11 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
   in.text({.name = "restart",
            .meaning = "checkpoint to go on from, or latest: the last sound one of the output folder"},
           output.restart);
+  in.list_of(
+      {.name = "restart_change",
+       .meaning = "what may differ from the checkpoint's run: gravity, damping, mesh_xmin and the other "
+                  "sides, and of rigids NAME_motion, NAME_velocity, NAME_force, NAME_density"},
+      "names of options, as gravity,damping", output.restart_change);
   in.number(
       {.name = "wall_time_limit",
        .meaning = "time on the clock after which the run writes a checkpoint and stops with exit status 75",
@@ -249,6 +288,18 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
   in.word({.name = "progress", .meaning = "auto: a live line on a terminal, else a line each 10 %"},
           Words<Progress>{{"auto", Progress::automatic}, {"on", Progress::on}, {"off", Progress::off}},
           output.progress);
+}
+
+/// -restart_change names only what loads and holds the bodies.
+void check_restart_change(OptionReader& in, const Config& config) {
+  const std::string option = "restart_change";
+  if (!in.listing() && config.output.restart.empty()) return in.not_taken(option, "there is no -restart");
+  for (const std::string& name : config.output.restart_change)
+    if (!name.empty() && !is_load(name, config))
+      return in.reject(option,
+                       "names of options among gravity, damping, those of the mesh's sides and NAME_motion, "
+                       "NAME_velocity, NAME_force and NAME_density of rigids; " +
+                           name + " is none");
 }
 
 void read_all(OptionReader& in, const std::vector<Backend>& backends, const std::string& options_file,
@@ -268,10 +319,12 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   check_batches(in, config);
   read_output(in, options_file, config.time.end, config.output);
   read_named(in, sound ? &config.mesh : nullptr, config);
+  limit_courant(in, config);
   const auto named_nodes = [](const auto& thing) { return thing.name == k_nodes; };
   if (config.output.nodes && (std::any_of(config.bodies.begin(), config.bodies.end(), named_nodes) ||
                               std::any_of(config.rigids.begin(), config.rigids.end(), named_nodes)))
     in.reject("output_nodes", "off where a body or rigid has the name nodes");
+  check_restart_change(in, config);
   in.report_unknown();
 }
 
@@ -305,6 +358,7 @@ PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& back
   } else if (!report.file_unread) {
     PetscCall(in.load(prefix, report));
     PetscCallCXX(read_all(in, backends, report.options_file, config));
+    if (prefix == nullptr) PetscCallCXX(check_petsc_options(in));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,19 +29,27 @@ struct EffectiveOption {
 
 /// What reading the input found.
 struct InputReport {
-  std::vector<std::string> errors;  // each a whole line without its end: mpm: -NAME: given "...", takes ...
+  std::vector<std::string> errors;    // each a whole line without its end: mpm: -NAME: given "...", takes ...
+  std::vector<std::string> warnings;  // each a whole line without its end: warning: ...
   std::vector<EffectiveOption> options;  // in the order of reading; for the log
-  std::string help_text;     // every option, its unit, default and meaning (only where help was asked)
-  std::string options_file;  // the last -options_file, empty where there was none
-  bool help = false;         // -help was given
-  bool file_unread = false;  // an options file was left out for its mistakes
+  std::string help_text;           // every option, its unit, default and meaning (only where help was asked)
+  std::string options_file;        // the last -options_file, empty where there was none or it was a pipe
+  std::vector<std::string> files;  // every -options_file that was read, with those in files, in turn
+  bool help = false;               // -help was given
+  bool file_unread = false;        // an options file was left out for its mistakes
+  std::vector<std::string>
+      replaced;                    // in pairs: an option without its dash, a value that a later one replaced
+  std::vector<std::string> words;  // PETSc's command line
+  std::vector<char*> arguments;    // that as argv; not of use in a copy
 };
 
-/// Takes -help, and each -options_file that cannot be read, out of the arguments, and reports the latter,
-/// lines of options files that are not "-NAME VALUE", and words of the command line that belong to no option
-/// (PETSc would pass over both). Call it on every process of comm after MPI_Init and before PetscInitialize,
-/// which reads the files that are left; what is on the command line takes precedence over them.
-void prepare_arguments(MPI_Comm comm, int* argc, char** argv, InputReport& report);
+/// Reads the command line, the options files (a pipe too), PETSc's own files and PETSC_OPTIONS on the first
+/// process of comm, and gives every process PETSc's arguments in their place, without -help and
+/// -options_file; they live as long as the report. What is on the command line takes precedence over the
+/// files. Reports files that cannot be read, lines of them that are not "-NAME VALUE", and words that belong
+/// to no option (PETSc would pass over both). Call it on every process of comm after MPI_Init and before
+/// PetscInitialize.
+void prepare_arguments(MPI_Comm comm, int* argc, char*** argv, InputReport& report);
 
 /// Reads every option with this prefix (null for none) from PETSc's database, which is the same on all
 /// processes, and checks them, also against each other. `backends` are those compiled in, the slowest first;

@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "checkpoint/particles.hpp"
 #include "input/text.hpp"
+#include "memory_need.hpp"
 #include "output/hdf5_handle.hpp"
+#include "output/log.hpp"
+#include "regular_file.hpp"
 
 namespace mpm {
 namespace {
@@ -36,11 +41,34 @@ struct GroupReader {
     }
     return values;
   }
+  /// The same of what may be missing; but where `needed`, the frame's -output_fields left it out.
+  void read_if_there(const char* field, int components, int kept, bool needed, std::vector<double>& values) {
+    if (has(field))
+      values = read(field, components, kept);
+    else if (needed && fault.empty())
+      fault =
+          std::string("a frame with ") + name + "/" + field + ", which -output_fields of its run left out";
+  }
 
  private:
   std::vector<double> refuse(const std::string& takes) {
     fault = takes;
     return {};
+  }
+
+  /// Why so many rows cannot be meant, or read; empty if they can.
+  static std::string absurd_size(hid_t data, hsize_t found, int components) {
+    constexpr double k_most_particles = 2147483647, k_tightest = 1100;  // more than deflate can pack into one
+    Handle type(H5Dget_type(data), H5Tclose);
+    const double numbers = double(found) * components, bytes = numbers * double(H5Tget_size(type.id));
+    if (double(found) > k_most_particles) return " has at most 2147483647 rows";
+    if (bytes > k_tightest * double(H5Dget_storage_size(data)))
+      return formatted(" holds what its size says, %.4g numbers", numbers);
+    const double needed = 3 * numbers * sizeof(double), free = free_host_memory();
+    if (free > 0 && needed > free)
+      return formatted(" fits into memory: it needs about %.4g GB, and %.4g GB are free", needed / 1e9,
+                       free / 1e9);
+    return "";
   }
 
   std::vector<double> read_all(const char* field, int components) {
@@ -56,12 +84,44 @@ struct GroupReader {
         H5Sget_simple_extent_dims(space.id, sizes, nullptr) < 0 || sizes[0] == 0 ||
         sizes[1] != hsize_t(components) || (rows > 0 && sizes[0] != rows))
       return refuse(wrong);
+    if (const std::string absurd = absurd_size(data.id, sizes[0], components); !absurd.empty())
+      return refuse("a file whose " + name + "/" + field + absurd);
     std::vector<double> all(sizes[0] * components);
     if (H5Dread(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
       return refuse(wrong);
     return all;
   }
 };
+
+/// A number that the file has as an attribute.
+template <class Number>
+bool read_attribute(hid_t file, const char* name, hid_t type, Number* number) {
+  if (H5Aexists(file, name) <= 0) return false;
+  Handle item(H5Aopen(file, name, H5P_DEFAULT), H5Aclose);
+  if (item.id < 0) return false;
+  Handle space(H5Aget_space(item.id), H5Sclose);
+  return H5Sget_simple_extent_npoints(space.id) == 1 && H5Aread(item.id, type, number) >= 0;
+}
+
+/// Between two rebuilds of its lists a run may have a particle up to half a cell outside the mesh, which the
+/// next one puts back to a wall or lets go. Such particles come to the side of the mesh; how many did.
+long put_inside(const MeshConfig& mesh, int dim, std::vector<double>& position) {
+  constexpr double k_furthest = 0.5, k_inside = 1e-6;  // cells; inside in single precision too
+  long count = 0;
+  for (std::size_t p = 0; p < position.size() / dim; ++p) {
+    bool moved = false;
+    for (int d = 0; d < dim; ++d) {
+      double& x = position[p * dim + d];
+      const double cells = (x - mesh.lower[d]) / mesh.spacing, last = mesh.cells[d] - k_inside;
+      if (cells >= 0 && std::floor(cells) < mesh.cells[d]) continue;
+      if (cells < -k_furthest || cells > mesh.cells[d] + k_furthest) continue;
+      x = mesh.lower[d] + (cells < 0 ? k_inside : last) * mesh.spacing;
+      moved = true;
+    }
+    count += moved;
+  }
+  return count;
+}
 
 /// Empty where every particle is in a cell of the mesh.
 std::string outside(const std::vector<double>& position, const MeshConfig& mesh, int dim) {
@@ -76,34 +136,80 @@ std::string outside(const std::vector<double>& position, const MeshConfig& mesh,
   return "";
 }
 
-/// Empty where all volumes are positive and the same.
-std::string unequal(const std::vector<double>& volume) {
-  const auto [least, most] = std::minmax_element(volume.begin(), volume.end());
-  if (*least > 0 && *most - *least <= 1e-6 * *most) return "";
-  return "particles whose volumes are greater than 0 and, since all have one mass, the same; they are from " +
-         text_of(*least) + " to " + text_of(*most);
+/// Empty where all numbers are greater than 0.
+std::string not_positive(const std::vector<double>& numbers, const char* what) {
+  for (std::size_t p = 0; p < numbers.size(); ++p)
+    if (!(numbers[p] > 0))
+      return std::string("particles whose ") + what + " is greater than 0; that of particle " +
+             std::to_string(p) + " is " + text_of(numbers[p]);
+  return "";
+}
+
+/// The group of a frame, or of a file laid out as one.
+std::string read_group(hid_t file, const ParticleSource& source, int dim, ParticleTable& table) {
+  long long dim_there = dim, step = 0;
+  double time = 0;
+  const bool frame = read_attribute(file, "dim", H5T_NATIVE_LLONG, &dim_there) &&
+                     read_attribute(file, "step", H5T_NATIVE_LLONG, &step) &&
+                     read_attribute(file, "time", H5T_NATIVE_DOUBLE, &time);
+  if (dim_there != dim) return "a frame of a run in " + std::to_string(dim) + "D";
+  Handle opened(H5Gopen2(file, source.group.c_str(), H5P_DEFAULT), H5Gclose);
+  if (opened.id < 0) return "a file with the group " + source.group;
+  GroupReader in{opened.id, source.group};
+  table.position = in.read("position", 3, dim);
+  table.volume = in.read("volume", 1, 1);
+  if (source.velocity) in.read_if_there("velocity", 3, dim, frame, table.velocity);
+  if (source.stress) in.read_if_there("stress", 6, dim == 2 ? 4 : 6, frame, table.stress);
+  for (const std::string& name : source.state) {
+    StateField field{name, {}};
+    in.read_if_there(name.c_str(), 1, 1, frame, field.values);
+    if (!field.values.empty()) table.state.push_back(std::move(field));
+  }
+  in.read_if_there("mass", 1, 1, frame, table.mass);
+  in.read_if_there("reference_height", 1, 1, frame, table.reference_height);
+  if (frame) table.origin = "frame of step " + std::to_string(step) + ", " + text_of(time) + " s";
+  return in.fault;
 }
 
 }  // namespace
 
-std::string read_particles(const std::string& path, const std::string& group, const MeshConfig& mesh, int dim,
+std::string read_particles(const ParticleSource& source, const MeshConfig& mesh, int dim,
                            ParticleTable& table) {
+  if (const std::string fault = irregular_fault(source.path); !fault.empty()) return fault;
+  const Quiet quiet;
+  table = {};
+  std::string fault;
+  bool checkpoint = false;
+  {
+    Handle file(H5Fopen(source.path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (file.id < 0) return "an HDF5 file that can be read";
+    checkpoint = H5Aexists(file.id, "strategy") > 0;  // a frame has none
+    if (!checkpoint) fault = read_group(file.id, source, dim, table);
+  }
+  if (checkpoint) fault = read_checkpoint_particles(source, mesh, dim, table);
+  if (!table.origin.empty()) table.put_inside = put_inside(mesh, dim, table.position);
+  if (fault.empty()) fault = not_positive(table.volume, "volume");
+  if (fault.empty()) fault = not_positive(table.mass, "mass");
+  return fault.empty() ? outside(table.position, mesh, dim) : fault;
+}
+
+double mean_density(const ParticleTable& table, double of_material) {
+  if (table.mass.empty()) return of_material;
+  return std::accumulate(table.mass.begin(), table.mass.end(), 0.0) /
+         std::accumulate(table.volume.begin(), table.volume.end(), 0.0);
+}
+
+long listed_particles(const std::string& path, const std::string& group) {
+  if (!irregular_fault(path).empty()) return 0;
   const Quiet quiet;
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (file.id < 0) return "an HDF5 file that can be read";
-  Handle opened(H5Gopen2(file.id, group.c_str(), H5P_DEFAULT), H5Gclose);
-  if (opened.id < 0) return "a file with the group " + group;
-
-  GroupReader in{opened.id, group};
-  table.position = in.read("position", 3, dim);
-  const auto volume = in.read("volume", 1, 1);
-  if (in.has("velocity")) table.velocity = in.read("velocity", 3, dim);
-  if (in.has("stress")) table.stress = in.read("stress", 6, dim == 2 ? 4 : 6);
-  if (in.has("plastic_strain")) table.plastic_strain = in.read("plastic_strain", 1, 1);
-  if (!in.fault.empty()) return in.fault;
-  table.particle_volume = volume[0];
-  const std::string fault = unequal(volume);
-  return fault.empty() ? outside(table.position, mesh, dim) : fault;
+  if (file.id < 0) return 0;
+  const bool checkpoint = H5Aexists(file.id, "strategy") > 0;  // there all bodies are in one group
+  const std::string data_set = checkpoint ? "soil/address" : group + "/volume";
+  Handle data(H5Dopen2(file.id, data_set.c_str(), H5P_DEFAULT), H5Dclose);
+  if (data.id < 0) return 0;
+  Handle space(H5Dget_space(data.id), H5Sclose);
+  return std::max<long>(static_cast<long>(H5Sget_simple_extent_npoints(space.id)), 0);
 }
 
 }  // namespace mpm

@@ -1,29 +1,54 @@
 #pragma once
-// Bodies whose particles are listed in a file.
+// Bodies whose particles are listed in a file: of the user's, or of a run, which another one starts from.
 
 #include <string>
 #include <vector>
 
 #include "mpm/config.hpp"
+#include "output/snapshot.hpp"
 
 namespace mpm {
 
-/// The particles of one body, all of one volume. Vectors have dim components, stresses 4 in 2D and 6 in 3D
-/// (xx yy zz xy yz zx); what the file does not have is empty.
+/// The particles of one body. Vectors have dim components, stresses 4 in 2D and 6 in 3D (xx yy zz xy yz zx);
+/// what the file does not have is empty.
 struct ParticleTable {
-  std::vector<double> position;        // m [dim N]
-  std::vector<double> velocity;        // m/s [dim N]
-  std::vector<double> stress;          // Pa, tension positive [4 N or 6 N]
-  std::vector<double> plastic_strain;  // - [N]
-  double particle_volume = 0;          // m3 (m2 in 2D)
+  std::vector<double> position;           // m [dim N]
+  std::vector<double> velocity;           // m/s [dim N]
+  std::vector<double> stress;             // Pa, tension positive [4 N or 6 N]
+  std::vector<StateField> state;          // state variables that the source asked for and the file has
+  std::vector<double> volume;             // m3 (m2 in 2D), present [N]
+  std::vector<double> mass;               // kg [N]; empty: the material's density times the volume
+  std::vector<double> reference_height;   // m, of the particle's creation [N]; empty: it is created now
+  std::vector<double> velocity_gradient;  // m/s a cell of the mesh, C_p of APIC [dim^2 N]
+  long put_inside = 0;  // particles that were less than half a cell outside the mesh, as a run may leave them
+  std::string origin;   // "frame of step 12, 0.5 s"; empty for a file of the user's own
 };
 
-/// Reads the group of an HDF5 file that is laid out as that of a body in a frame: `position` (N x 3) and
-/// `volume` (N), and where they are there `velocity` (N x 3), `stress` (N x 6) and `plastic_strain` (N). In
-/// 2D the components that are not in the plane are passed over. Every number must be finite, every particle
-/// in the mesh, and the volumes equal to 1e-6, for all particles of a body have one mass. Returns what the
+/// Where a body's particles are, and what of them is asked for.
+struct ParticleSource {
+  std::string path, group;              // group: the name of the body in the file
+  bool velocity = true, stress = true;  // false: options give it for all particles
+  std::vector<std::string> state{};     // the state variables that the body's law changes
+};
+
+/// Reads the particles of a body from an HDF5 file: a checkpoint, a frame, or a file laid out as one, with a
+/// group that holds `position` (N x 3) and `volume` (N), and where they are there `velocity` (N x 3),
+/// `stress` (N x 6), the state variables, `mass` and `reference_height` (N). A frame must hold all of them,
+/// for otherwise its -output_fields left them out; one of an earlier version (without the attribute `dim`)
+/// counts as a file of the user's. In 2D the components that are not in the plane are passed over. Every
+/// number must be finite, every particle in the mesh, volumes and masses greater than 0. Returns what the
 /// file should have been, as the end of "takes ..."; empty where all is well.
-std::string read_particles(const std::string& path, const std::string& group, const MeshConfig& mesh, int dim,
+std::string read_particles(const ParticleSource& source, const MeshConfig& mesh, int dim,
                            ParticleTable& table);
+
+/// The mean density of the particles of a table [kg/m3]; that of the material where it has no masses.
+double mean_density(const ParticleTable& table, double of_material);
+
+/// How many particles the file lists for a group, of a checkpoint for all, from the sizes alone; 0 where that
+/// cannot be read.
+long listed_particles(const std::string& path, const std::string& group);
+
+/// Takes out the particles whose centre is in one of the shapes, and tells how many.
+long cut_particles(const std::vector<Shape>& cut_out, const MeshConfig& mesh, int dim, ParticleTable& table);
 
 }  // namespace mpm

@@ -78,7 +78,7 @@ const std::vector<std::string>& petsc_names() {
 
 bool is_petsc_name(const std::string& name) {
   // families whose members belong to PETSc objects that a run makes
-  static const std::vector<std::string> families = {"sf_", "dm_", "device_", "cuda_", "saws_", "vecscatter_"};
+  static const std::vector<std::string> families = {"sf_", "dm_", "device_", "cuda_", "vecscatter_"};
   const auto begins_name = [&name](const std::string& beginning) { return name.rfind(beginning, 0) == 0; };
   return std::find(petsc_names().begin(), petsc_names().end(), name) != petsc_names().end() ||
          std::any_of(families.begin(), families.end(), begins_name);

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "input/edge_tree.hpp"
+
 namespace mpm {
 namespace {
 
 /// Twice the area of the triangle a b c, positive anticlockwise.
 double turn(const Point2& a, const Point2& b, const Point2& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-Edge edge_of(const Polygon& polygon, std::size_t k) {
-  return {polygon[k], polygon[(k + 1) % polygon.size()]};
 }
 
 double length_of(const Edge& edge) {
@@ -30,9 +28,33 @@ double distance2(const Edge& edge, const Point2& point) {
   return squared(point[0] - edge.from[0] - t * dx) + squared(point[1] - edge.from[1] - t * dy);
 }
 
+/// Whether the boxes round two edges are further apart than `slack` [m]. Edges on one line are not told apart
+/// by their turns, which are round-off there.
+bool boxes_apart(const Edge& a, const Edge& b, double slack) {
+  for (int d = 0; d < 2; ++d) {
+    const auto [a_low, a_high] = std::minmax({a.from[d], a.to[d]});
+    const auto [b_low, b_high] = std::minmax({b.from[d], b.to[d]});
+    if (a_low - b_high > slack || b_low - a_high > slack) return true;
+  }
+  return false;
+}
+
+/// Whether b is clearly on one side of the line through a: the quick answer for nearly all.
+bool beside(const Edge& a, const Edge& b) {
+  const auto span = [](const Point2& p, const Point2& q) {
+    return std::abs(q[0] - p[0]) + std::abs(q[1] - p[1]);
+  };
+  const double of_a = span(a.from, a.to), far = span(a.from, b.from) + span(a.from, b.to);
+  const double margin = of_a * (2e-12 * (of_a + span(b.from, b.to)) + 1e-15 * far);  // with round-off
+  const double first = turn(a.from, a.to, b.from), last = turn(a.from, a.to, b.to);
+  return (first > margin && last > margin) || (first < -margin && last < -margin);
+}
+
 /// Whether two edges share a point, with a slack of 1e-12 of their lengths.
 bool touch(const Edge& a, const Edge& b) {
+  if (beside(a, b) || beside(b, a)) return false;
   const double slack = 1e-12 * (length_of(a) + length_of(b));
+  if (boxes_apart(a, b, slack)) return false;
   const auto opposite = [](double u, double v) { return (u > 0 && v < 0) || (u < 0 && v > 0); };
   if (opposite(turn(a.from, a.to, b.from), turn(a.from, a.to, b.to)) &&
       opposite(turn(b.from, b.to, a.from), turn(b.from, b.to, a.to)))
@@ -49,20 +71,14 @@ bool folds_back(const Edge& first, const Edge& second) {
 
 }  // namespace
 
+Edge edge_of(const Polygon& polygon, std::size_t k) {
+  return {polygon[k], polygon[(k + 1) % polygon.size()]};
+}
+
 double area_of(const Polygon& polygon) {
   double twice = 0;
   for (std::size_t k = 1; k + 1 < polygon.size(); ++k) twice += turn(polygon[0], polygon[k], polygon[k + 1]);
   return std::abs(twice) / 2;
-}
-
-std::vector<Edge> edges_in_row(const Polygon& polygon, double low, double high) {
-  std::vector<Edge> edges;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Edge edge = edge_of(polygon, k);
-    const auto [bottom, top] = std::minmax({edge.from[1], edge.to[1]});
-    if (top >= low && bottom <= high) edges.push_back(edge);
-  }
-  return edges;
 }
 
 bool is_inside(const std::vector<Edge>& edges, const Point2& point, double slack) {
@@ -90,17 +106,22 @@ bool enters_square(const Edge& edge, const Point2& lower, const Point2& upper, d
   return enter < leave;
 }
 
+bool cross(const Polygon& polygon, int i, int j) {
+  const Edge a = edge_of(polygon, i), b = edge_of(polygon, j);
+  if (j == i + 1) return folds_back(a, b);
+  const bool previous = i == 0 && j == static_cast<int>(polygon.size()) - 1;
+  return previous ? folds_back(b, a) : touch(a, b);
+}
+
 std::optional<std::pair<int, int>> first_crossing(const Polygon& polygon) {
   const int count = static_cast<int>(polygon.size());
   for (int i = 0; i < count; ++i)
     if (length_of(edge_of(polygon, i)) == 0) return std::pair(i, (i + 1) % count);
-  for (int i = 0; i < count; ++i)
-    for (int j = i + 1; j < count; ++j) {
-      const Edge a = edge_of(polygon, i), b = edge_of(polygon, j);
-      const bool next = j == i + 1, previous = i == 0 && j == count - 1;
-      const bool wrong = next ? folds_back(a, b) : previous ? folds_back(b, a) : touch(a, b);
-      if (wrong) return std::pair(i, j);
-    }
+  const EdgeTree tree(polygon);
+  for (int i = 0; i < count; ++i) {
+    const int j = tree.first_near(i, [&](int k) { return cross(polygon, i, k); });
+    if (j < count) return std::pair(i, j);
+  }
   return std::nullopt;
 }
 

@@ -12,10 +12,10 @@ namespace {
 std::string takes_number(const Option& option) {
   const std::string noun = option.unit == "m" ? "a length" : option.unit == "s" ? "a time" : "a number";
   const std::string unit = option.unit == "-" || option.unit.empty() ? "" : " in " + option.unit;
-  return noun + unit + option.range.text();
+  return noun + unit + option.range.text() + option.aside;
 }
 
-std::string quoted(const std::string& text) { return "\"" + text + "\""; }
+std::string quoted(const std::string& text) { return "\"" + visible(text) + "\""; }
 
 }  // namespace
 
@@ -61,6 +61,9 @@ PetscErrorCode OptionReader::load(const char* prefix, InputReport& report) {
                                                          unused.count(lower_case(name)) > 0};
   }
   PetscCall(PetscFree(all));
+  for (std::size_t k = 0; k + 1 < report.replaced.size(); k += 2)
+    if (report.replaced[k].starts_with(lower_case(prefix_)))
+      replaced_.insert({report.replaced[k].substr(prefix_.size()), report.replaced[k + 1]});
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -72,6 +75,47 @@ void OptionReader::list(InputReport& report) {
 bool OptionReader::given(const std::string& name) const { return given_.count(lower_case(name)) > 0; }
 
 void OptionReader::ignore(const std::string& beginning) { ignored_.push_back(lower_case(beginning)); }
+
+std::vector<std::string> OptionReader::replaced(const std::string& name) const {
+  std::vector<std::string> values;
+  const auto [first, last] = replaced_.equal_range(lower_case(name));
+  for (auto found = first; found != last; ++found) values.push_back(found->second);
+  return values;
+}
+
+void OptionReader::leave_out(const std::string& list, const std::string& name) {
+  left_out_[list].push_back(name);
+}
+
+bool OptionReader::is_left_out(const std::string& name) const {
+  return std::any_of(left_out_.begin(), left_out_.end(), [&name](const auto& list) {
+    return std::find(list.second.begin(), list.second.end(), name) != list.second.end();
+  });
+}
+
+std::vector<std::string> OptionReader::owners_of(const std::string& key) const {
+  std::vector<std::string> owners;
+  for (const auto& [name, option] : given_)
+    if (name.ends_with("_" + key)) owners.push_back(name.substr(0, name.size() - key.size() - 1));
+  return owners;
+}
+
+int OptionReader::count_of(const std::string& beginning) const {
+  return static_cast<int>(std::count_if(given_.begin(), given_.end(), [&](const auto& option) {
+    return option.second.unused && !read_.count(option.first) &&
+           option.first.starts_with(lower_case(beginning));
+  }));
+}
+
+/// One line for each list that another one replaced.
+void OptionReader::warn_of_left_out() {
+  for (const auto& [list, names] : left_out_) {
+    int count = 0;
+    for (const auto& name : names) count += count_of(name + "_"), ignore(name + "_");
+    if (count > 0)
+      warn(list, "so " + std::to_string(count) + " options of " + join(names, ", ") + " are not used");
+  }
+}
 
 void OptionReader::section(const std::string& title) {
   if (listing_) report_->help_text += "\n" + title + "\n";
@@ -115,6 +159,11 @@ std::string OptionReader::given_text(const std::string& name) const {
 void OptionReader::reject(const std::string& name, const std::string& takes) {
   const std::string what = given(name) ? "given " + quoted(given_text(name)) : "not given";
   report_->errors.push_back("mpm: -" + prefix_ + name + ": " + what + ", takes " + takes);
+}
+
+void OptionReader::warn(const std::string& name, const std::string& what) {
+  report_->warnings.push_back("warning: -" + prefix_ + name + ": given " + quoted(given_text(name)) + ", " +
+                              what);
 }
 
 void OptionReader::not_taken(const std::string& name, const std::string& why) {
@@ -174,7 +223,8 @@ bool OptionReader::numbers(const Option& option, const std::string& form, const 
   std::string in_3d;
   if (listing_ && !form_3d.empty())
     in_3d.append(" (").append(count(form_3d)).append(" in 3D, as ").append(form_3d + ")");
-  const std::string takes = count(form) + " numbers" + unit + ", as " + form + in_3d + option.aside;
+  const std::string bounds = option.range.text().empty() ? "" : ", each" + option.range.text();
+  const std::string takes = count(form) + " numbers" + unit + ", as " + form + in_3d + bounds + option.aside;
   const std::string* given = find(option, takes, text_of(value));
   if (!given) return false;
   const auto pieces = split(*given);
@@ -204,6 +254,7 @@ bool OptionReader::text(const Option& option, std::string& value) {
   const std::string* given = find(option, takes, option.standard.empty() || !listing_ ? value : "");
   if (!given) return false;
   if (given->empty()) return fail(option, takes);
+  if (has_control(*given)) return fail(option, "a text without line ends, tabulators and the like");
   keep(option, *given, false);
   value = *given;
   return true;
@@ -229,6 +280,14 @@ bool OptionReader::list_of(const Option& option, const std::string& takes, std::
   return true;
 }
 
+bool OptionReader::none(const Option& option) {
+  if (listing_ || !given(option.name) || !given_text(option.name).empty()) return false;
+  read_.insert(lower_case(option.name));
+  known_.push_back(option.name);
+  keep(option, "none", false);
+  return true;
+}
+
 bool OptionReader::word(const Option& option, const std::vector<std::string>& words, int& index) {
   const std::string takes = one_of(words) + option.aside;
   const std::string* given = find(option, takes, option.required ? "" : words.at(index));
@@ -243,6 +302,7 @@ bool OptionReader::word(const Option& option, const std::vector<std::string>& wo
 void OptionReader::report_unknown() {
   std::vector<std::string> known = known_;
   if (prefix_.empty()) known.insert(known.end(), petsc_names().begin(), petsc_names().end());
+  warn_of_left_out();
   for (const auto& [name, option] : given_) {
     const auto begins_name = [&name = name](const std::string& beginning) {
       return name.rfind(beginning, 0) == 0;

@@ -27,6 +27,11 @@ struct Range {
 };
 inline constexpr Range k_positive{.lowest = 0, .open_lowest = true};
 inline constexpr Range k_not_negative{.lowest = 0};
+// What arithmetic is left room for: products of these are finite.
+inline constexpr Range k_coordinate{.lowest = -1e9, .highest = 1e9};                  // m
+inline constexpr Range k_speed{.lowest = -1e6, .highest = 1e6};                       // m/s, m/s2
+inline constexpr Range k_stress{.lowest = -1e15, .highest = 1e15};                    // Pa, N
+inline constexpr Range k_density{.lowest = 0, .highest = 1e10, .open_lowest = true};  // kg/m3
 
 /// All that is to be known of an option but its value. The default is what the variable holds before it is
 /// read.
@@ -68,6 +73,8 @@ class OptionReader {
   /// A list of any length; `takes` says of what, since only the caller can check it. Where a piece is empty,
   /// which is reported, the value still holds all pieces.
   bool list_of(const Option& option, const std::string& takes, std::vector<std::string>& value);
+  /// Whether a list is given without a value: it is then empty.
+  bool none(const Option& option);
   /// An index into the words.
   bool word(const Option& option, const std::vector<std::string>& words, int& index);
   template <class Enum>
@@ -80,8 +87,19 @@ class OptionReader {
   void not_taken(const std::string& name, const std::string& why);
   /// Reports an option that parsed but does not fit the others.
   void reject(const std::string& name, const std::string& takes);
+  /// Warns of an option that is given: "warning: -NAME: given "...", WHAT".
+  void warn(const std::string& name, const std::string& what);
   /// No unknown option that begins so is reported: what it belongs to was wrong itself.
   void ignore(const std::string& beginning);
+  /// The values of an option that later ones replaced.
+  std::vector<std::string> replaced(const std::string& name) const;
+  /// NAME is in a list of names that another list replaced: what is given for it is a warning, no mistake.
+  void leave_out(const std::string& list, const std::string& name);
+  bool is_left_out(const std::string& name) const;
+  /// Every NAME for which -NAME_key is given, in lower case.
+  std::vector<std::string> owners_of(const std::string& key) const;
+  /// How many options that begin so are given and have not been read.
+  int count_of(const std::string& beginning) const;
   /// Reports every option that nobody asked for and that is not PETSc's.
   void report_unknown();
   /// A heading of the help.
@@ -100,6 +118,7 @@ class OptionReader {
   const std::string* find(const Option& option, const std::string& takes, const std::string& standard);
   bool fail(const Option& option, const std::string& takes);
   void keep(const Option& option, const std::string& value, bool standard);
+  void warn_of_left_out();
   template <class Value>
   bool whole(const Option& option, const std::string& standard, Value& value);
 
@@ -109,6 +128,8 @@ class OptionReader {
   std::map<std::string, Given> given_;  // by lower-case name without prefix
   std::set<std::string> read_;
   std::vector<std::string> known_, ignored_;
+  std::multimap<std::string, std::string> replaced_;          // by lower-case name without prefix
+  std::map<std::string, std::vector<std::string>> left_out_;  // names by their list
 };
 
 template <class Enum>

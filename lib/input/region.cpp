@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "input/revolved.hpp"
 
 namespace mpm {
 namespace {
+
+constexpr double k_everywhere = std::numeric_limits<double>::infinity();
 
 /// The coordinates of a polygon's plane: x and the vertical one.
 Point2 in_plane(const Vec3& x, int dim) { return {x[0], x[dim - 1]}; }
@@ -21,8 +26,59 @@ Vec3 turned(const Vec3& x, const Vec3& about, double angle, int dim) {
   return y;
 }
 
+Region::Region(const Shape& shape, int dim, double slack)
+    : shape_(shape), dim_(dim), slack_(slack), low_(k_everywhere), high_(-k_everywhere) {
+  if (shape.kind == ShapeKind::polygon) tree_.emplace(shape.polygon);
+}
+
 void Region::enter_row(double low, double high) {
-  if (shape_.kind == ShapeKind::polygon) edges_ = edges_in_row(shape_.polygon, low - slack_, high + slack_);
+  if (low == low_ && high == high_) return;
+  low_ = low, high_ = high;
+  edges_.clear();
+  if (tree_)
+    tree_->in_row(low - slack_, high + slack_, [&](int k) { edges_.push_back(edge_of(shape_.polygon, k)); });
+}
+
+Region::Span Region::span_of_edges() const {
+  Span span{k_everywhere, -k_everywhere};
+  for (const Edge& edge : edges_)
+    for (const Point2& end : {edge.from, edge.to})
+      span = {std::min(span.from, end[0] - 2 * slack_), std::max(span.to, end[0] + 2 * slack_)};
+  return span;
+}
+
+Region::Span Region::span_of_disc(double low, double high) const {
+  const auto off = [](double centre, double from, double to) {
+    return std::max({from - centre, centre - to, 0.0});
+  };
+  double square = std::pow(shape_.radius + 2 * slack_, 2);  // round-off is less than the slack
+  const bool ball = shape_.kind == ShapeKind::disc;
+  if (ball) square -= std::pow(off(shape_.centre[dim_ - 1], low_, high_), 2);
+  if (dim_ == 3) square -= std::pow(off(shape_.centre[1], low, high), 2);
+  if (square < 0) return {k_everywhere, -k_everywhere};
+  return {shape_.centre[0] - std::sqrt(square), shape_.centre[0] + std::sqrt(square)};
+}
+
+/// Of the row's points the one furthest behind the face tells.
+Region::Span Region::span_behind(double low, double high) const {
+  const Vec3 &n = shape_.normal, &point = shape_.point;
+  const auto least = [](double slope, double from, double to) { return std::min(slope * from, slope * to); };
+  double left = 2 * slack_ - least(n[dim_ - 1], low_ - point[dim_ - 1], high_ - point[dim_ - 1]);
+  if (dim_ == 3) left -= least(n[1], low - point[1], high - point[1]);
+  if (n[0] == 0) return left < 0 ? Span{k_everywhere, -k_everywhere} : Span{-k_everywhere, k_everywhere};
+  const double x = point[0] + left / n[0];
+  return n[0] > 0 ? Span{-k_everywhere, x} : Span{x, k_everywhere};
+}
+
+Region::Span Region::span(double low, double high) const {
+  switch (shape_.kind) {
+    case ShapeKind::polygon: return span_of_edges();
+    case ShapeKind::disc:
+    case ShapeKind::cylinder:
+    case ShapeKind::cone: return span_of_disc(low, high);
+    case ShapeKind::half_plane: return span_behind(low, high);
+    default: return {-k_everywhere, k_everywhere};  // a box: its own lattice has no other sites
+  }
 }
 
 bool Region::box_holds(const Vec3& x) const {
@@ -51,6 +107,8 @@ bool Region::holds(const Vec3& x) const {
     case ShapeKind::box: return box_holds(x);
     case ShapeKind::polygon: return prism_holds(x);
     case ShapeKind::disc: return square <= (shape_.radius + slack_) * (shape_.radius + slack_);
+    case ShapeKind::cylinder:
+    case ShapeKind::cone: return revolved_holds(shape_, x, slack_);
     case ShapeKind::half_plane: return beyond <= slack_;
     default: return false;  // a list of particles has no inside
   }

@@ -1,8 +1,10 @@
 #pragma once
 // What is inside a shape. "Inside" includes the boundary, with a slack, so that round-off never decides.
 
+#include <optional>
 #include <vector>
 
+#include "input/edge_tree.hpp"
 #include "input/polygon.hpp"
 #include "mpm/config.hpp"
 
@@ -16,7 +18,7 @@ Vec3 turned(const Vec3& x, const Vec3& about, double angle, int dim);
 class Region {
  public:
   /// `slack` [m] is what a point may be outside.
-  Region(const Shape& shape, int dim, double slack) : shape_(shape), dim_(dim), slack_(slack) {}
+  Region(const Shape& shape, int dim, double slack);
 
   /// Prepares for points and cells whose vertical coordinate is from low to high [m].
   void enter_row(double low, double high);
@@ -24,14 +26,26 @@ class Region {
   /// Whether all of a cell is inside.
   bool holds_cell(const Vec3& corner, double edge) const;
 
+  /// From where to where in x [m] a row may hold something.
+  struct Span {
+    double from, to;
+  };
+  /// That of the row entered, and in 3D of y from `low` to `high` [m].
+  Span span(double low, double high) const;
+
  private:
   bool box_holds(const Vec3& x) const;
   bool prism_holds(const Vec3& x) const;
+  Span span_of_edges() const;
+  Span span_of_disc(double low, double high) const;
+  Span span_behind(double low, double high) const;
 
   const Shape& shape_;
   int dim_;
   double slack_;
-  std::vector<Edge> edges_;  // polygon: those of the row
+  std::optional<EdgeTree> tree_;  // polygon: of its edges
+  double low_, high_;             // m, the row
+  std::vector<Edge> edges_;       // polygon: those of the row
 };
 
 }  // namespace mpm

@@ -1,14 +1,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "input/groups.hpp"
 #include "input/polygon.hpp"
-#include "input/shapes.hpp"
 #include "input/text.hpp"
 
 namespace mpm {
 namespace {
+
+template <class Enum>
+using Words = std::vector<std::pair<std::string, Enum>>;
 
 void read_box(OptionReader& in, const std::string& name, int dim, Shape& shape) {
   const auto errors = in.errors();
@@ -93,21 +96,73 @@ void read_half_plane(OptionReader& in, const std::string& name, int dim, Shape& 
 }
 
 void read_disc(OptionReader& in, const std::string& name, int dim, Shape& shape) {
-  in.vector({.name = name + "_centre", .meaning = "disc: its centre", .unit = "m", .required = true}, dim,
-            shape.centre);
+  in.vector({.name = name + "_centre",
+             .meaning = "disc: its centre; cylinder: the lower end of its vertical axis; cone: its tip",
+             .unit = "m",
+             .required = true},
+            dim, shape.centre);
   in.number({.name = name + "_radius",
-             .meaning = "disc: its radius",
+             .meaning = "disc, cylinder: its radius; cone: that of its base",
              .unit = "m",
              .range = k_positive,
              .required = true},
             shape.radius);
 }
 
+/// A cone's height or apex angle: either gives the other.
+void read_height(OptionReader& in, const std::string& name, Shape& shape) {
+  const bool cone = shape.kind == ShapeKind::cone && !in.listing();
+  const std::string height = name + "_height", angle = name + "_tip_angle_deg";
+  const bool by_angle = cone && in.given(angle);
+  if (by_angle && in.given(height)) {
+    in.ignore(height);
+    return in.not_taken(angle, name + "_height is given");
+  }
+  if (!by_angle)
+    in.number({.name = height,
+               .meaning = "cylinder: its height, with its tip; cone: its height, or give its tip angle",
+               .unit = "m",
+               .range = k_positive,
+               .required = true},
+              shape.height);
+  double degrees = 180;
+  const Range range = cone ? Range{.lowest = 1, .highest = 179} : Range{.lowest = 1, .highest = 180};
+  if (by_angle || !cone)
+    in.number({.name = angle,
+               .meaning = "cylinder: apex angle of the cone that its lower end is, 180 for a flat end; cone: "
+                          "its apex angle, instead of its height",
+               .unit = "deg",
+               .range = range},
+              degrees);
+  const double of_tip = degrees == 180 ? 0 : shape.radius / std::tan(degrees / 360 * std::numbers::pi);
+  (cone ? (by_angle ? shape.height : shape.tip_height) : shape.tip_height) = of_tip;
+}
+
+void read_cylinder(OptionReader& in, const std::string& name, Shape& shape) {
+  const auto errors = in.errors();
+  read_height(in, name, shape);
+  if (in.listing() || in.errors() != errors || shape.tip_height <= shape.height * (1 + 1e-9)) return;
+  const double least = 360 / std::numbers::pi * std::atan(shape.radius / shape.height);
+  in.reject(name + "_tip_angle_deg", "an angle in deg of " + text_of(least) +
+                                         " or more, so that the tip is not longer than -" + name + "_height");
+}
+
+void read_cone(OptionReader& in, const std::string& name, Shape& shape) {
+  if (!in.listing()) read_height(in, name, shape);  // listed with the cylinder's
+  in.word({.name = name + "_tip", .meaning = "cone: where its tip points"},
+          Words<bool>{{"down", false}, {"up", true}}, shape.tip_up);
+}
+
 void read_file(OptionReader& in, const std::string& name, Shape& shape) {
   in.text({.name = name + "_file",
-           .meaning = "particles: HDF5 file with a group NAME laid out as in a frame",
+           .meaning = "particles: a frame or checkpoint of another run, or an HDF5 file laid out as a frame",
            .required = true},
           shape.file);
+  shape.file_body = name;
+  in.text({.name = name + "_file_body",
+           .meaning = "particles: the body of the file",
+           .standard = in.listing() ? "NAME" : ""},
+          shape.file_body);
 }
 
 /// A word of -NAME_shape. Those that rigids do not take are the last.
@@ -121,6 +176,8 @@ constexpr Kind k_kinds[] = {
     {"polygon", ShapeKind::polygon, true, true, true},
     {"disc", ShapeKind::disc, true, true, true},
     {"ball", ShapeKind::disc, false, true, true},
+    {"cylinder", ShapeKind::cylinder, false, true, true},
+    {"cone", ShapeKind::cone, false, true, true},
     {"half_plane", ShapeKind::half_plane, true, true, true},
     {"particles", ShapeKind::particles, true, true, false},
 };
@@ -130,22 +187,30 @@ const std::vector<std::pair<ShapeKind, std::vector<std::string>>> k_keys = {
     {ShapeKind::box, {"lower", "upper", "fillet", "angle_deg"}},
     {ShapeKind::polygon, {"polygon", "width"}},
     {ShapeKind::disc, {"centre", "radius"}},
+    {ShapeKind::cylinder, {"centre", "radius", "height", "tip_angle_deg"}},
+    {ShapeKind::cone, {"centre", "radius", "height", "tip_angle_deg", "tip"}},
     {ShapeKind::half_plane, {"point", "normal"}},
-    {ShapeKind::particles, {"file"}}};
+    {ShapeKind::particles, {"file", "file_body"}}};
 
 /// Reads what belongs to the kind of shape and rejects what belongs to another.
 void read_geometry(OptionReader& in, const std::string& name, int dim, const std::string& word,
                    Shape& shape) {
+  std::set<std::string> taken;
+  for (const auto& [kind, of_kind] : k_keys)
+    if (kind == shape.kind) taken.insert(of_kind.begin(), of_kind.end());
   for (const auto& [kind, of_kind] : k_keys) {
     const bool wanted = in.listing() || kind == shape.kind;
+    const bool revolved = kind == ShapeKind::cylinder || kind == ShapeKind::cone;
     if (wanted && kind == ShapeKind::box) read_box(in, name, dim, shape);
     if (wanted && kind == ShapeKind::polygon)
       read_polygon(in, name, dim, shape), read_width(in, name, dim, shape);
-    if (wanted && kind == ShapeKind::disc) read_disc(in, name, dim, shape);
+    if (wanted && (kind == ShapeKind::disc || (revolved && !in.listing()))) read_disc(in, name, dim, shape);
+    if (wanted && kind == ShapeKind::cylinder) read_cylinder(in, name, shape);
+    if (wanted && kind == ShapeKind::cone) read_cone(in, name, shape);
     if (wanted && kind == ShapeKind::half_plane) read_half_plane(in, name, dim, shape);
     if (wanted && kind == ShapeKind::particles) read_file(in, name, shape);
     for (const auto& key : of_kind)
-      if (!wanted) in.not_taken(name + "_" + key, name + "_shape is " + word);
+      if (!wanted && taken.insert(key).second) in.not_taken(name + "_" + key, name + "_shape is " + word);
   }
 }
 
@@ -159,7 +224,9 @@ bool read_kind(OptionReader& in, const std::string& name, int dim, bool listed, 
   }
   const Option option{
       .name = name + "_shape",
-      .meaning = "box, polygon (2D), disc (2D), ball (3D), or the particles of a file (bodies)",
+      .meaning =
+          "box, polygon, disc (2D), ball, vertical cylinder or cone (3D), what is behind a plane, or the "
+          "particles of a file (bodies)",
       .required = true};
   int index = 0;
   const bool known = in.word(option, words, index);
@@ -174,13 +241,6 @@ bool read_kind(OptionReader& in, const std::string& name, int dim, bool listed, 
   }
   read_geometry(in, name, dim, words[index], shape);
   return true;
-}
-
-/// The option that places the lower or upper side of a shape in direction d.
-std::string placing_option(const Shape& shape, const std::string& name, int dim, int d, bool lower) {
-  if (shape.kind == ShapeKind::disc) return name + "_centre";
-  if (shape.kind == ShapeKind::polygon) return name + (dim == 3 && d == 1 ? "_width" : "_polygon");
-  return name + (shape.angle != 0 ? "_angle_deg" : lower ? "_lower" : "_upper");
 }
 
 }  // namespace
@@ -205,28 +265,6 @@ bool read_shape(OptionReader& in, const std::string& name, int dim, bool listed,
   if (shape.angle != 0 && shape.fill == Fill::cell)
     in.reject(name + "_fill", "centre where " + name + "_angle_deg turns the box");
   return !in.listing() && in.errors() == errors;
-}
-
-void check_shape(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
-                 int dim) {
-  const Bounds bounds = bounds_of(shape, mesh, dim);
-  const double slack = 1e-9 * mesh.spacing;
-  for (int d = 0; d < dim; ++d) {
-    const bool below = bounds.lower[d] < mesh.lower[d] - slack;
-    if (!below && bounds.upper[d] <= mesh.upper[d] + slack) continue;
-    return in.reject(
-        placing_option(shape, name, dim, d, below),
-        "a shape wholly inside the mesh, " + text_of(mesh.lower, dim) + " to " + text_of(mesh.upper, dim));
-  }
-  if (!holds_particle(shape, mesh, dim))
-    in.reject(name + "_shape", shape.fill == Fill::cell ? "a shape that a whole cell of the mesh fits in"
-                                                        : "a shape that holds a particle of the lattice");
-}
-
-void check_particles(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
-                     int dim, ParticleTable& table) {
-  const std::string fault = read_particles(shape.file, name, mesh, dim, table);
-  if (!fault.empty()) in.reject(name + "_file", fault);
 }
 
 }  // namespace mpm

@@ -7,20 +7,33 @@
 
 #include "input/polygon.hpp"
 #include "input/region.hpp"
+#include "input/revolved.hpp"
+#include "input/round_volume.hpp"
 #include "input/shapes.hpp"
 
 namespace mpm {
 namespace {
 
-/// The box made smaller by its fillet, and all within the fillet of it (Steiner's formula).
-double box_volume(const Shape& shape, int dim) {
+/// The box made smaller by its fillet, and all within the fillet of it (Steiner's formula). Where the mesh
+/// cuts it, an end has no fillet: `ends` are those that do.
+double box_volume(const Shape& shape, const MeshConfig& mesh, int dim) {
   constexpr double k_pi = std::numbers::pi;
-  const double r = shape.fillet;
-  Vec3 e{};
-  for (int d = 0; d < dim; ++d) e[d] = std::max(0.0, shape.upper[d] - shape.lower[d] - 2 * r);
-  if (dim == 2) return e[0] * e[1] + 2 * r * (e[0] + e[1]) + k_pi * r * r;
-  return e[0] * e[1] * e[2] + 2 * r * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0]) +
-         k_pi * r * r * (e[0] + e[1] + e[2]) + 4 * k_pi / 3 * r * r * r;
+  const double r = shape.fillet, slack = 1e-9 * mesh.spacing;
+  Vec3 e{}, ends{2, 2, 2};
+  for (int d = 0; d < dim; ++d) {
+    double low = shape.lower[d] + r, high = shape.upper[d] - r;
+    if (shape.angle == 0 && shape.lower[d] < mesh.lower[d] - slack) low = mesh.lower[d], --ends[d];
+    if (shape.angle == 0 && shape.upper[d] > mesh.upper[d] + slack) high = mesh.upper[d], --ends[d];
+    e[d] = std::max(0.0, high - low);
+  }
+  if (dim == 2)
+    return e[0] * e[1] + r * (ends[0] * e[1] + ends[1] * e[0]) + k_pi / 4 * r * r * ends[0] * ends[1];
+  double volume = e[0] * e[1] * e[2] + k_pi / 6 * r * r * r * ends[0] * ends[1] * ends[2];
+  for (int d = 0; d < 3; ++d) {
+    const int a = (d + 1) % 3, b = (d + 2) % 3;
+    volume += r * ends[d] * e[a] * e[b] + k_pi / 4 * r * r * ends[a] * ends[b] * e[d];
+  }
+  return volume;
 }
 
 /// Part of the mesh behind a plane. With a_d how far the normal component of x grows across the mesh in
@@ -99,15 +112,37 @@ Bounds ball_bounds(const Shape& shape, int dim) {
   return bounds;
 }
 
+Bounds revolved_bounds(const Shape& shape) {
+  Bounds bounds = ball_bounds(shape, 2);
+  bounds.lower[2] = ends_of(shape)[0], bounds.upper[2] = ends_of(shape)[1];
+  return bounds;
+}
+
+/// In each direction as far as any point of the mesh is behind the plane.
+Bounds behind_bounds(const Shape& shape, const MeshConfig& mesh, int dim) {
+  Bounds bounds{mesh.lower, mesh.upper};
+  for (int d = 0; d < dim; ++d) {
+    double left = 2e-9 * mesh.spacing;  // more than round-off
+    for (int e = 0; e < dim; ++e) {
+      const double n = shape.normal[e];
+      left += n * shape.point[e];
+      if (e != d) left -= std::min(n * mesh.lower[e], n * mesh.upper[e]);
+    }
+    if (shape.normal[d] > 0) bounds.upper[d] = std::min(mesh.upper[d], left / shape.normal[d]);
+    if (shape.normal[d] < 0) bounds.lower[d] = std::max(mesh.lower[d], left / shape.normal[d]);
+  }
+  return bounds;
+}
+
 }  // namespace
 
 double shape_volume(const Shape& shape, const MeshConfig& mesh, int dim) {
-  constexpr double k_pi = std::numbers::pi;
-  const double r = shape.radius;
   switch (shape.kind) {
-    case ShapeKind::box: return box_volume(shape, dim);
+    case ShapeKind::box: return box_volume(shape, mesh, dim);
     case ShapeKind::polygon: return area_of(shape.polygon) * (dim == 3 ? shape.width[1] - shape.width[0] : 1);
-    case ShapeKind::disc: return dim == 2 ? k_pi * r * r : 4 * k_pi / 3 * r * r * r;
+    case ShapeKind::disc:
+    case ShapeKind::cylinder:
+    case ShapeKind::cone: return round_volume(shape, mesh, dim);
     case ShapeKind::half_plane: return part_behind(shape, mesh, dim);
     default: return 0;
   }
@@ -118,8 +153,28 @@ Bounds bounds_of(const Shape& shape, const MeshConfig& mesh, int dim) {
     case ShapeKind::box: return box_bounds(shape, dim);
     case ShapeKind::polygon: return prism_bounds(shape, dim);
     case ShapeKind::disc: return ball_bounds(shape, dim);
+    case ShapeKind::cylinder:
+    case ShapeKind::cone: return revolved_bounds(shape);
+    case ShapeKind::half_plane: return behind_bounds(shape, mesh, dim);
     default: return {mesh.lower, mesh.upper};
   }
+}
+
+Cuts cuts_of(const Shape& shape, const MeshConfig& mesh, int dim) {
+  const Bounds bounds = bounds_of(shape, mesh, dim);
+  const double slack = 1e-9 * mesh.spacing;
+  Cuts cuts{};
+  for (int d = 0; d < dim; ++d)
+    cuts[d] = {bounds.lower[d]<mesh.lower[d] - slack, bounds.upper[d]> mesh.upper[d] + slack};
+  return cuts;
+}
+
+Bounds within(Bounds bounds, const MeshConfig& mesh, int dim) {
+  for (int d = 0; d < dim; ++d) {
+    bounds.lower[d] = std::max(bounds.lower[d], mesh.lower[d]);
+    bounds.upper[d] = std::min(bounds.upper[d], mesh.upper[d]);
+  }
+  return bounds;
 }
 
 }  // namespace mpm

@@ -11,7 +11,8 @@ namespace {
 constexpr double k_slack = 1e-9;  // of the mesh spacing
 
 /// A grid of equal squares (cubes) round a shape: particles' own for Fill::centre, the mesh's cells for
-/// Fill::cell. That of a box turns with it; coordinates are those before it is turned.
+/// Fill::cell. That of a box turns with it; coordinates are those before it is turned. All are in the mesh,
+/// which may cut the shape.
 struct Sites {
   Vec3 origin{};
   double edge = 0;                      // m
@@ -21,18 +22,29 @@ struct Sites {
 
   Sites(const Shape& shape, const MeshConfig& mesh, int dim) {
     const bool cells = shape.fill == Fill::cell, box = shape.kind == ShapeKind::box;
-    origin = cells || !box ? mesh.lower : shape.lower;
+    const Bounds bounds = box && shape.angle != 0 ? Bounds{shape.lower, shape.upper}
+                                                  : within(bounds_of(shape, mesh, dim), mesh, dim);
+    origin = cells || !box ? mesh.lower : bounds.lower;
     edge = cells ? mesh.spacing : mesh.spacing / shape.particles_per_cell;
     particles = cells ? shape.particles_per_cell : 1;
     if (box && !cells) angle = shape.angle;
     last[2] = 1;
-    const Bounds bounds = box ? Bounds{shape.lower, shape.upper} : bounds_of(shape, mesh, dim);
     for (int d = 0; d < dim; ++d) {
       const double from = (bounds.lower[d] - origin[d]) / edge, to = (bounds.upper[d] - origin[d]) / edge;
-      const bool whole = shape.kind == ShapeKind::half_plane;  // it fills the mesh to its sides, no further
-      first[d] = std::lround(whole ? from : std::floor(from - 0.5));
-      last[d] = std::lround(whole ? to : std::ceil(to + 0.5));
+      first[d] = std::lround(std::floor(from - 0.5)), last[d] = std::lround(std::ceil(to + 0.5));
+      if (angle != 0) continue;  // such a box lies wholly in the mesh
+      const double low = (mesh.lower[d] - origin[d]) / edge, high = (mesh.upper[d] - origin[d]) / edge;
+      first[d] = std::max(first[d], std::lround(std::ceil(low - 0.5 + k_slack)));
+      last[d] = std::min(last[d], std::lround(std::ceil(high - 0.5 - k_slack)));
+      last[d] = std::max(first[d], last[d]);
     }
+  }
+  /// The sites of a row that may be filled, some more at its ends.
+  std::array<long, 2> range(const Region::Span& span) const {
+    const auto site = [&](double x) {
+      return std::lround(std::clamp((x - origin[0]) / edge, double(first[0]), double(last[0])));
+    };
+    return {std::max(first[0], site(span.from) - 2), std::min(last[0], site(span.to) + 2)};
   }
   /// Only part of the rows or layers.
   void cut(LatticePart part, int dim) {
@@ -58,9 +70,10 @@ bool any_site(const Shape& shape, const MeshConfig& mesh, int dim, const Sites& 
   Region region(shape, dim, k_slack * mesh.spacing);
   for (long k = sites.first[2]; k < sites.last[2]; ++k)
     for (long j = sites.first[1]; j < sites.last[1]; ++j) {
-      const double height = sites.corner(0, j, k, dim)[dim - 1];
-      region.enter_row(height, height + sites.edge);
-      for (long i = sites.first[0]; i < sites.last[0]; ++i) {
+      const Vec3 row = sites.corner(0, j, k, dim);
+      region.enter_row(row[dim - 1], row[dim - 1] + sites.edge);
+      const auto [from, to] = sites.range(region.span(row[1], row[1] + sites.edge));
+      for (long i = from; i < to; ++i) {
         Vec3 x = sites.corner(i, j, k, dim);
         bool filled;
         if (shape.fill == Fill::cell) {
@@ -113,6 +126,7 @@ class Holes {
 std::vector<Shape> cut_out_of(const Config& config, const BodyConfig& body) {
   std::vector<Shape> shapes;
   for (const int rigid : body.cut_out) shapes.push_back(config.rigids[rigid].shape);
+  for (const int other : body.cut_out_bodies) shapes.push_back(config.bodies[other].shape);
   return shapes;
 }
 

@@ -30,6 +30,7 @@ struct LatticePart {
 /// and turns with it; that of another shape is the mesh's. Fill::cell: all particles of every mesh cell that
 /// lies wholly in the shape. Particles whose centre is in one of the shapes `cut_out` are left out.
 /// "In" includes the boundary, with a tolerance of 1e-9 of the mesh spacing, so that round-off never decides.
+/// Nothing is filled beyond the mesh: a box that it cuts has the lattice of the box that ends there.
 /// ShapeKind::particles has no lattice (PETSC_ERR_SUP).
 PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice& lattice,
                     const std::vector<Shape>& cut_out = {}, LatticePart part = {});
@@ -41,15 +42,21 @@ bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim,
 /// The shapes that are cut out of a body.
 std::vector<Shape> cut_out_of(const Config& config, const BodyConfig& body);
 
-/// Volume [m3] (area [m2] in 2D) of a shape; of a half plane, that of the mesh behind it. A fillet rounds all
-/// corners of a box (quarter circles), and in 3D all edges and corners (quarter cylinders, eighths of a
-/// ball).
+/// Volume [m3] (area [m2] in 2D) of a shape, or of the part of it in the mesh where sides of the mesh cut it;
+/// of a half plane, that of the mesh behind it. A fillet rounds all corners of a box (quarter circles), and
+/// in 3D all edges and corners (quarter cylinders, eighths of a ball).
 double shape_volume(const Shape& shape, const MeshConfig& mesh, int dim);
 
-/// The smallest box that holds a shape; of a half plane, the mesh.
+/// The smallest box that holds a shape; of a half plane, one round what is behind it in the mesh.
 struct Bounds {
   Vec3 lower{}, upper{};  // m; the third component is 0 in 2D
 };
 Bounds bounds_of(const Shape& shape, const MeshConfig& mesh, int dim);
+/// What of them is in the mesh.
+Bounds within(Bounds bounds, const MeshConfig& mesh, int dim);
+
+/// The sides of the mesh that a shape reaches beyond, and so is cut by: [direction][0 lower, 1 upper].
+using Cuts = std::array<std::array<bool, 2>, 3>;
+Cuts cuts_of(const Shape& shape, const MeshConfig& mesh, int dim);
 
 }  // namespace mpm

@@ -52,6 +52,14 @@ std::string join(const std::vector<std::string>& pieces, std::string_view separa
   return all;
 }
 
+std::string printable(std::string_view text) {
+  constexpr std::size_t k_most = 100;
+  std::string shown(text.substr(0, k_most));
+  for (char& c : shown)
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
+  return shown + (text.size() > k_most ? "..." : "");
+}
+
 std::string one_of(const std::vector<std::string>& words) {
   if (words.size() < 2) return join(words);
   return join({words.begin(), words.end() - 1}, ", ") + " or " + words.back();
@@ -62,6 +70,25 @@ std::string lower_case(std::string_view text) {
   for (char& c : lower)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   return lower;
+}
+
+bool has_control(std::string_view text) {
+  return std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; });
+}
+
+std::string visible(std::string_view text) {
+  constexpr const char* k_digits = "0123456789abcdef";
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (!has_control({&c, 1}))
+      out += c;
+    else if (c == '\n' || c == '\t' || c == '\r')
+      out += c == '\n' ? "\\n" : c == '\t' ? "\\t" : "\\r";
+    else
+      out.append("\\x").append(1, k_digits[byte >> 4]).append(1, k_digits[byte & 15]);
+  }
+  return out;
 }
 
 int edit_distance(std::string_view a, std::string_view b) {

@@ -29,11 +29,19 @@ std::vector<std::string> split(std::string_view text, char separator = ',');
 /// The pieces with the separator between them.
 std::string join(const std::vector<std::string>& pieces, std::string_view separator = ",");
 
+/// At most 100 bytes of a text that a user gave, and ? for each that a terminal would not show.
+std::string printable(std::string_view text);
+
 /// "a, b or c".
 std::string one_of(const std::vector<std::string>& words);
 
 /// ASCII lower case: PETSc's options know no case.
 std::string lower_case(std::string_view text);
+
+/// Whether a text has characters below the blank, as a line end or a tabulator has; these in a form that
+/// stays in its line: \n, \t, \x1b.
+bool has_control(std::string_view text);
+std::string visible(std::string_view text);
 
 /// Letters to insert, remove, replace or swap with their neighbour to get from one word to the other.
 int edit_distance(std::string_view a, std::string_view b);

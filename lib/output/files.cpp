@@ -3,44 +3,30 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <vector>
+
+#include "output/own_files.hpp"
 
 namespace mpm {
 namespace fs = std::filesystem;
 
 namespace {
 
-/// Is this a file that we (or scripts/plot) write into an output folder (or its temporary form)?
-bool is_ours(const std::string& name, bool in_frames) {
-  constexpr const char* names[] = {"history.csv",    "mpm.log",       "options.json",
-                                   "particles.xdmf", "partition.csv", "curve.png",
-                                   "field.png",      "runout.png",    "velocity.png"};
-  const std::string suffix = ".tmp";
-  const std::string stem = name.ends_with(suffix) ? name.substr(0, name.size() - suffix.size()) : name;
-  if (in_frames) return stem.starts_with("frame_") && stem.ends_with(".h5");
-  if (stem.starts_with("checkpoint_") && stem.ends_with(".h5")) return true;
-  return std::find(std::begin(names), std::end(names), stem) != std::end(names);
-}
-
-/// Removes our files from one folder and adds their number to `removed`.
-PetscErrorCode remove_ours(const fs::path& folder, bool in_frames, int* removed) {
+/// Removes the program's own files from one folder and adds their number to `removed`.
+PetscErrorCode remove_ours(const fs::path& folder, int* removed) {
   PetscFunctionBeginUser;
+  std::vector<std::string> paths;
   std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (!is_ours(it->path().filename().string(), in_frames)) continue;
-    std::error_code failed;
-    fs::remove(it->path(), failed);
-    PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot remove %s of an earlier run: %s",
-               it->path().c_str(), failed.message().c_str());
-    ++*removed;
-  }
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    paths.push_back(it->path().string());
   PetscCheck(!error, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot read the folder %s: %s", folder.c_str(),
              error.message().c_str());
+  for (const std::string& path : paths) PetscCall(remove_own(path, removed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,8 +51,8 @@ PetscErrorCode prepare_output_folder(const std::string& folder, int* removed) {
   int count = 0;
   PetscCall(make_folder(folder));
   PetscCall(make_folder(frames.string()));
-  PetscCall(remove_ours(folder, false, &count));
-  PetscCall(remove_ours(frames, true, &count));
+  PetscCall(remove_ours(folder, &count));
+  PetscCall(remove_ours(frames, &count));
   if (removed) *removed = count;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -13,10 +13,9 @@ namespace mpm {
 /// Makes a folder, with its parents, and checks that files can be made in it. Fails with PETSC_ERR_FILE_OPEN.
 PetscErrorCode make_folder(const std::string& folder);
 
-/// Makes the output folder and its `frames`, and removes what an earlier run left there under our names
-/// (history.csv, mpm.log, options.json, particles.xdmf, frames/frame_*.h5, checkpoint_*.h5, the plots'
-/// pictures and temporary files), nothing else. Call it once the input is known to be valid. `removed`
-/// [number of files] is for the log; it may be null.
+/// Makes the output folder and its `frames`, and removes what an earlier run left there (own_files.hpp),
+/// nothing else. Call it once the input is known to be valid. `removed` [number of files] is for the log; it
+/// may be null.
 PetscErrorCode prepare_output_folder(const std::string& folder, int* removed);
 
 /// Writes `contents` under a temporary name, brings it to the disk and renames it to `path`. If any of this

@@ -17,40 +17,58 @@ struct FrameStyle {
 };
 
 /// The groups that have a field.
-enum class Of { all, bodies, nodes };
+enum class Of { all, bodies, nodes, bodies_and_nodes };
 
-/// One field of a group. A new field is a line of k_fields.
+/// One field of a group. A new field is a line of frame_fields(); state variables come from the laws' tables.
 struct Field {
   const char* name;
   const char* unit;
   int components;
   Of of;
-  std::vector<double> ParticleSnapshot::*values;  // [components N]
+  std::vector<double> ParticleSnapshot::*values;  // [components N]; null: a state variable, by its name
 };
 
-inline constexpr Field k_fields[] = {
-    {"position", "m", 3, Of::all, &ParticleSnapshot::position},  // first: the geometry, always float64
-    {"velocity", "m/s", 3, Of::all, &ParticleSnapshot::velocity},
-    {"grid_velocity", "m/s", 3, Of::bodies, &ParticleSnapshot::grid_velocity},
-    {"stress", "Pa", 6, Of::bodies, &ParticleSnapshot::stress},
-    {"volume", "m3", 1, Of::bodies, &ParticleSnapshot::volume},
-    {"plastic_strain", "-", 1, Of::bodies, &ParticleSnapshot::plastic_strain},
-    {"mass", "kg", 1, Of::nodes, &ParticleSnapshot::mass},
-    {"number", "-", 1, Of::nodes, &ParticleSnapshot::number},
-};
+/// All fields that a group of any run may have; the position, which is the geometry, is the first.
+const std::vector<Field>& frame_fields();
 
-/// Whether a group of this kind has a field in this style. Nodes have all of theirs.
-inline bool is_written(const Field& field, Of group, const FrameStyle& style) {
-  if (field.of != Of::all && field.of != group) return false;
-  return &field == k_fields || group == Of::nodes || style.fields.empty() ||
+/// The numbers of a field in a group; null where the group has none.
+const std::vector<double>* values_of(const ParticleSnapshot& particles, const Field& field);
+
+inline bool is_position(const Field& field) { return field.values == &ParticleSnapshot::position; }
+
+/// Whether the groups of a kind (all: rigids) have a field.
+inline bool belongs_to(const Field& field, Of group) {
+  return field.of == Of::all || field.of == group ||
+         (field.of == Of::bodies_and_nodes && (group == Of::bodies || group == Of::nodes));
+}
+
+/// Whether a field is float64 in any precision: where particles are and were.
+inline bool is_exact(const Field& field) {
+  return is_position(field) || field.values == &ParticleSnapshot::reference_height;
+}
+
+/// Whether a group of this kind is written with a field in this style. Nodes have all of theirs.
+inline bool is_written(const ParticleSnapshot& particles, const Field& field, Of group,
+                       const FrameStyle& style) {
+  if (!belongs_to(field, group) || values_of(particles, field) == nullptr) return false;
+  return is_position(field) || group == Of::nodes || style.fields.empty() ||
          std::find(style.fields.begin(), style.fields.end(), field.name) != style.fields.end();
+}
+
+/// The names of the fields that a group of this kind is written with.
+inline std::vector<std::string> written_fields(const ParticleSnapshot& particles, Of group,
+                                               const FrameStyle& style) {
+  std::vector<std::string> names;
+  for (const Field& field : frame_fields())
+    if (is_written(particles, field, group, style)) names.push_back(field.name);
+  return names;
 }
 
 /// The names that FrameStyle::fields may hold.
 inline std::vector<std::string> frame_field_names() {
   std::vector<std::string> names;
-  for (const Field& field : k_fields)
-    if (&field != k_fields && field.of != Of::nodes) names.push_back(field.name);
+  for (const Field& field : frame_fields())
+    if (!is_position(field) && field.of != Of::nodes) names.push_back(field.name);
   return names;
 }
 

@@ -43,7 +43,7 @@ PetscErrorCode write_unit(hid_t dataset, const std::string& path, const std::str
 
 hid_t file_type(const Field& field, Precision precision) {
   if (field.values == &ParticleSnapshot::number) return H5T_STD_I64LE;
-  return precision == Precision::single && &field != k_fields ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
+  return precision == Precision::single && !is_exact(field) ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
 }
 
 /// In pieces that are compressed each by itself; the bytes of all numbers in a piece are put together first,
@@ -75,7 +75,7 @@ PetscErrorCode create_field(hid_t group, const std::string& path, const Field& f
 PetscErrorCode write_field(hid_t group, const std::string& path, const Field& field,
                            const ParticleSnapshot& particles, Precision precision, int compression) {
   PetscFunctionBeginUser;
-  const std::vector<double>& values = particles.*field.values;
+  const std::vector<double>& values = *values_of(particles, field);
   const long count = static_cast<long>(particles.position.size() / 3);
   PetscCheck(values.size() == static_cast<size_t>(count) * field.components, PETSC_COMM_SELF,
              PETSC_ERR_ARG_SIZ, "%s of %s holds %zu numbers for %ld particles", field.name,
@@ -144,8 +144,8 @@ PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSn
   const char* name = particles.name.c_str();
   Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   PetscCall(check(group.id, path, name));
-  for (const Field& field : k_fields) {
-    if (!is_written(field, kind, style)) continue;
+  for (const Field& field : frame_fields()) {
+    if (!is_written(particles, field, kind, style)) continue;
     if (reserve == nullptr) {
       PetscCall(write_field(group.id, path, field, particles, precision, style.compression));
       continue;
@@ -166,9 +166,10 @@ PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSn
 PetscErrorCode write_groups(hid_t file, const std::string& path, const Snapshot& snapshot,
                             Precision precision, const FrameStyle& style, Reserve* reserve = nullptr) {
   PetscFunctionBeginUser;
-  const long long step = snapshot.step;
+  const long long step = snapshot.step, dim = snapshot.dim;
   PetscCall(write_attribute(file, path, "time", H5T_NATIVE_DOUBLE, &snapshot.time));
   PetscCall(write_attribute(file, path, "step", H5T_NATIVE_LLONG, &step));
+  if (dim > 0) PetscCall(write_attribute(file, path, "dim", H5T_NATIVE_LLONG, &dim));
   for (const ParticleSnapshot& body : snapshot.bodies)
     PetscCall(write_group(file, path, body, Of::bodies, precision, style, reserve));
   for (const ParticleSnapshot& rigid : snapshot.rigids)
@@ -195,6 +196,7 @@ PetscErrorCode create_in_memory(const std::string& path, hid_t* file) {
 PetscErrorCode frame_image(const std::string& path, const Snapshot& snapshot, Precision precision,
                            const FrameStyle& style, std::string* image) {
   PetscFunctionBeginUser;
+  const Quiet quiet;  // in the thread of the frames
   Handle file(-1, H5Fclose);
   PetscCall(create_in_memory(path, &file.id));
   PetscCall(write_groups(file.id, path, snapshot, precision, style));
@@ -210,8 +212,8 @@ std::vector<FrameSlab> frame_slabs(const Snapshot& snapshot, Precision precision
                                    int ranks) {
   std::vector<FrameSlab> slabs;
   for (const ParticleSnapshot& body : snapshot.bodies)
-    for (const Field& field : k_fields) {
-      if (!is_written(field, Of::bodies, style)) continue;
+    for (const Field& field : frame_fields()) {
+      if (!is_written(body, field, Of::bodies, style)) continue;
       FrameSlab slab{.body = &body, .field = &field, .rows = body.total};
       slab.bytes = static_cast<int>(H5Tget_size(file_type(field, precision)));
       slab.packed = style.compression > 0 && body.total > 0;

@@ -11,7 +11,7 @@ namespace {
 std::string data_item(const FrameEntry& frame, const FrameEntry::Group& group, const Field& field,
                       int real_bytes) {
   const bool number = field.values == &ParticleSnapshot::number;
-  const int bytes = number || &field == k_fields ? 8 : real_bytes;
+  const int bytes = number || is_exact(field) ? 8 : real_bytes;
   std::string size = std::to_string(group.count);
   if (field.components > 1) size.append(" ").append(std::to_string(field.components));
   return std::string("<DataItem Format=\"HDF\" NumberType=\"") + (number ? "Int" : "Float") +
@@ -42,10 +42,7 @@ std::string format_tensor(const std::string& name, const std::string& item, long
 
 /// Whether a group of a frame has a field.
 bool has_field(const FrameEntry::Group& group, const Field& field) {
-  if ((field.of == Of::bodies && !group.body) || (field.of == Of::nodes && group.name != k_nodes))
-    return false;
-  return group.fields.empty() ||
-         std::find(group.fields.begin(), group.fields.end(), field.name) != group.fields.end();
+  return std::find(group.fields.begin(), group.fields.end(), field.name) != group.fields.end();
 }
 
 /// The grid of one body or rigid: a point a particle.
@@ -54,10 +51,10 @@ std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group,
   std::string text = "        <Grid Name=\"" + group.name + "\" GridType=\"Uniform\">\n";
   text += "          <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + count +
           "\" NodesPerElement=\"1\"/>\n";
-  text += "          <Geometry GeometryType=\"XYZ\">" + data_item(frame, group, k_fields[0], real_bytes) +
-          "</Geometry>\n";
-  for (const Field& field : k_fields) {
-    if (&field == k_fields || !has_field(group, field)) continue;
+  text += "          <Geometry GeometryType=\"XYZ\">" +
+          data_item(frame, group, frame_fields()[0], real_bytes) + "</Geometry>\n";
+  for (const Field& field : frame_fields()) {
+    if (is_position(field) || !has_field(group, field)) continue;
     const std::string item = data_item(frame, group, field, real_bytes);
     if (field.components == 6)
       text += format_tensor(field.name, item, group.count);
@@ -71,12 +68,9 @@ std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group,
 bool read_group(hid_t file, FrameEntry::Group& group) {
   Handle opened(H5Gopen2(file, group.name.c_str(), H5P_DEFAULT), H5Gclose);
   if (opened.id < 0) return false;
-  for (const Field& field : k_fields)
-    if (H5Lexists(opened.id, field.name, H5P_DEFAULT) > 0) {
-      group.fields.push_back(field.name);
-      group.body = group.body || field.of == Of::bodies;
-    }
-  Handle data(H5Dopen2(opened.id, k_fields[0].name, H5P_DEFAULT), H5Dclose);
+  for (const Field& field : frame_fields())
+    if (H5Lexists(opened.id, field.name, H5P_DEFAULT) > 0) group.fields.push_back(field.name);
+  Handle data(H5Dopen2(opened.id, frame_fields()[0].name, H5P_DEFAULT), H5Dclose);
   if (data.id < 0) return false;
   Handle space(H5Dget_space(data.id), H5Sclose);
   hsize_t sizes[2] = {0, 0};

@@ -12,8 +12,7 @@ struct FrameEntry {
   struct Group {
     std::string name;
     long count = 0;                     // particles
-    bool body = false;                  // has stress, volume and plastic_strain
-    std::vector<std::string> fields{};  // that it has; empty for all
+    std::vector<std::string> fields{};  // that it has
   };
   std::string file;  // relative to the output folder
   double time = 0;   // s

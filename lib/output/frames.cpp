@@ -74,14 +74,13 @@ PetscErrorCode Frames::write(const Snapshot& snapshot) {
     PetscCall(write_frame_together(comm_, folder_ + "/" + file, snapshot, precision_, style_));
 
   FrameEntry entry{file, snapshot.time, {}};
-  const std::vector<std::string>& fields = style_.fields;
-  for (const auto& body : snapshot.bodies)
-    entry.groups.push_back(
-        {body.name, body.total < 0 ? static_cast<long>(body.position.size() / 3) : body.total, true, fields});
-  for (const auto& rigid : snapshot.rigids)
-    entry.groups.push_back({rigid.name, static_cast<long>(rigid.position.size() / 3), false, fields});
-  for (const auto& nodes : snapshot.nodes)
-    entry.groups.push_back({nodes.name, static_cast<long>(nodes.position.size() / 3), false});
+  const auto add = [&](const std::vector<ParticleSnapshot>& groups, Of kind) {
+    for (const auto& group : groups)
+      entry.groups.push_back({group.name,
+                              group.total < 0 ? static_cast<long>(group.position.size() / 3) : group.total,
+                              written_fields(group, kind, style_)});
+  };
+  add(snapshot.bodies, Of::bodies), add(snapshot.rigids, Of::all), add(snapshot.nodes, Of::nodes);
   entries_.push_back(std::move(entry));
   ++count_;
   PetscCall(agree(comm_, rank_of(comm_) == 0 ? write_index() : PETSC_SUCCESS));

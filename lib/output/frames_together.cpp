@@ -29,7 +29,7 @@ int maker_of(MPI_Comm comm, const FrameSlab& slab, long piece) {
 PetscErrorCode collect_pieces(MPI_Comm comm, std::span<const FrameSlab> pieces, std::vector<double>* rows) {
   PetscFunctionBeginUser;
   const ParticleSnapshot& body = *pieces.front().body;
-  const std::vector<double>& values = body.*pieces.front().field->values;
+  const std::vector<double>& values = *values_of(body, *pieces.front().field);
   const long width = pieces.front().field->components, piece = pieces.front().rows;
   const long end = body.first + static_cast<long>(values.size()) / width;
   std::vector<std::vector<char>> out(size_of(comm));
@@ -90,7 +90,7 @@ std::vector<Stretch> stretches_of(const std::vector<FrameSlab>& slabs,
       stretch.place = slab.offset, stretch.rows = static_cast<long long>(own->second.size());
       stretch.data = own->second.data();
     } else if (!slab.packed) {
-      const std::vector<double>& values = slab.body->*slab.field->values;
+      const std::vector<double>& values = *values_of(*slab.body, *slab.field);
       stretch.width = slab.bytes * slab.field->components;
       stretch.place = slab.offset + stretch.width * slab.body->first;
       stretch.rows = static_cast<long long>(values.size()) / slab.field->components;

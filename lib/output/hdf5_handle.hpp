@@ -17,6 +17,9 @@ struct Handle {
   }
 };
 
+/// HDF5 prints nothing from now on, in this thread where it tells threads apart.
+inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
 /// HDF5 prints nothing in this scope: what fails is told by who looks at the results.
 class Quiet {
  public:

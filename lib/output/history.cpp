@@ -27,6 +27,14 @@ void append(std::string& header, const std::string& name, int dim) {
   for (int d = 0; d < dim; ++d) header += "," + name + k_axis[d];
 }
 
+/// Calls f(direction, side) for each side of the mesh that holds soil.
+template <class F>
+void for_each_wall(const Config& config, F&& f) {
+  for (int d = 0; d < config.dim; ++d)
+    for (int side = 0; side < 2; ++side)
+      if (config.mesh.walls[d][side] != Wall::free) f(d, side);
+}
+
 }  // namespace
 
 std::string history_header(const Config& config) {
@@ -39,25 +47,36 @@ std::string history_header(const Config& config) {
     for (int d = 0; d < config.dim; ++d) header += "," + body.name + "_" + k_axis[d] + "q999";
     append(header, body.name + "_centre_", config.dim);
     header += "," + body.name + "_grid_velocity";
+    for (const char* quantity : {"_mass", "_lost_mass", "_lost_energy"}) header += "," + body.name + quantity;
+    append(header, body.name + "_lost_momentum_", config.dim);
+    for (const char* number : {"_strays", "_limited", "_put_back"}) header += "," + body.name + number;
   }
   for (const RigidConfig& rigid : config.rigids)
     for (const char* quantity : {"_", "_velocity_", "_force_"})
       append(header, rigid.name + quantity, config.dim);
+  for_each_wall(config, [&](int d, int side) {
+    append(header, std::string("wall_") + k_axis[d] + (side == 0 ? "min" : "max") + "_force_", config.dim);
+  });
   return header;
 }
 
-std::string format_history_row(const HistoryRow& row, int dim) {
+std::string format_history_row(const HistoryRow& row, const Config& config) {
+  const int dim = config.dim;
   std::string text = std::to_string(row.step);
   for (double value : {row.time, row.dt, row.wall_time}) text += "," + text_of(value);
   for (const BodyRow& body : row.bodies) {
     for (int d = 0; d < dim; ++d) text += "," + text_of(body.lower[d]) + "," + text_of(body.upper[d]);
     text += "," + text_of(body.kinetic_energy);
     for (const Vec3* vector : {&body.momentum, &body.quantile, &body.centre}) append(text, *vector, dim);
-    text += "," + text_of(body.grid_velocity);
+    for (const double value : {body.grid_velocity, body.mass, body.lost_mass, body.lost_energy})
+      text += "," + text_of(value);
+    append(text, body.lost_momentum, dim);
+    for (const long number : {body.strays, body.limited, body.put_back}) text += "," + std::to_string(number);
   }
   for (const RigidRow& rigid : row.rigids)
     for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})
       append(text, *vector, dim);
+  for_each_wall(config, [&](int d, int side) { append(text, row.walls[d][side], dim); });
   return text;
 }
 
@@ -80,7 +99,7 @@ History::~History() {
 PetscErrorCode History::open(const Config& config, const std::string& rows) {
   PetscFunctionBeginUser;
   PetscCall(close());
-  dim_ = config.dim;
+  config_ = config;
   path_ = config.output.directory + "/history.csv";
   const std::string text = rows.empty() ? history_header(config) + "\n" : rows;
   PetscCall(replace_file(path_, text));
@@ -95,7 +114,7 @@ PetscErrorCode History::write(const HistoryRow& row) {
   PetscFunctionBeginUser;
   PetscCheck(descriptor_ >= 0, PETSC_COMM_SELF, PETSC_ERR_ORDER, "history.csv is not open");
   const off_t whole = ::lseek(descriptor_, 0, SEEK_END);
-  const std::string text = format_history_row(row, dim_) + "\n";
+  const std::string text = format_history_row(row, config_) + "\n";
   const PetscErrorCode failed = write_all(descriptor_, text, path_);
   // Should the cut fail too, there is nothing better to do than to report the write that failed first.
   if (failed && ::ftruncate(descriptor_, whole) != 0) errno = 0;

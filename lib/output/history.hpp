@@ -11,11 +11,12 @@
 
 namespace mpm {
 
-/// The header line, without a line end: step,time,dt,wall_time, then the columns of each body and each rigid.
+/// The header line, without a line end: step,time,dt,wall_time, then the columns of each body, each rigid and
+/// each side of the mesh that is not free.
 std::string history_header(const Config& config);
 
 /// A row in the same order, without a line end; enough digits to read the same numbers back.
-std::string format_history_row(const HistoryRow& row, int dim);
+std::string format_history_row(const HistoryRow& row, const Config& config);
 
 /// The first bytes of a history.csv, as all rows of a run up to some step.
 struct HistoryMark {
@@ -47,7 +48,7 @@ class History {
 
  private:
   std::string path_;
-  int dim_ = 2;
+  Config config_;
   int descriptor_ = -1;
   HistoryMark mark_;
 };

@@ -23,6 +23,7 @@ struct ProgressState {
 __attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...);
 
 std::string processor_name();                 // of this machine
+int usable_cores();                           // that this process may use
 std::string format_duration(double seconds);  // "42 s", "3 min 05 s", "2 h 07 min"
 std::string format_rate(double per_second);   // "12.3 M/s"
 std::string format_progress(

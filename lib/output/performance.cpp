@@ -22,10 +22,8 @@ std::string row_of(const FunctionTime& f, double wall, double bandwidth) {
 std::string table_of(const Performance& p) {
   std::string text = formatted("  %-30s %9s %11s %8s %11s %9s %8s\n", "function", "calls", "seconds", "share",
                                "GB moved", "GB/s", "of copy");
-  double sum = 0, rest = p.wall;
-  for (const FunctionTime& f : p.functions) sum += f.seconds;
-  for (FunctionTime f : p.functions) {
-    f.seconds *= std::min(1.0, p.stepping / sum);
+  double rest = p.wall;
+  for (const FunctionTime& f : functions_within_steps(p)) {
     text += row_of(f, p.wall, p.bandwidth);
     rest -= f.seconds;
   }
@@ -35,9 +33,24 @@ std::string table_of(const Performance& p) {
 
 }  // namespace
 
-std::string format_performance(const Performance& p) {
+std::vector<FunctionTime> functions_within_steps(const Performance& p) {
+  std::vector<FunctionTime> functions = p.functions;
+  double sum = 0;
+  for (const FunctionTime& f : functions) sum += f.seconds;
+  for (FunctionTime& f : functions)
+    if (sum > p.stepping) f.seconds *= p.stepping / sum;
+  return functions;
+}
+
+double moved_per_second(const Performance& p) {
   double bytes = 0;
   for (const FunctionTime& f : p.functions) bytes += f.bytes;
+  return bytes / p.stepping;
+}
+
+double updates_per_second(const Performance& p) { return double(p.steps) * p.particles / p.stepping; }
+
+std::string format_performance(const Performance& p) {
   std::string text = "time of the functions, and the least that they must move\n" + table_of(p);
   if (p.looks > 0) text += formatted("%ld steps, looked at by the host %ld times\n", p.steps, p.looks);
   if (p.rebuilds > 0)
@@ -47,10 +60,27 @@ std::string format_performance(const Performance& p) {
                     p.memory / 1e6, p.memory / std::max(p.particles, 1L));
   if (p.bandwidth > 0)
     text += formatted("%s: a copy reads and writes %.1f GB/s; the steps move %.1f GB/s, %.1f %% of it\n",
-                      p.device.c_str(), p.bandwidth / 1e9, bytes / p.stepping / 1e9,
-                      100 * bytes / p.stepping / p.bandwidth);
+                      p.device.c_str(), p.bandwidth / 1e9, moved_per_second(p) / 1e9,
+                      100 * moved_per_second(p) / p.bandwidth);
   return text + formatted("%.4g us a step without output; %s particle updates", 1e6 * p.stepping / p.steps,
-                          format_rate(double(p.steps) * p.particles / p.stepping).c_str());
+                          format_rate(updates_per_second(p)).c_str());
+}
+
+std::string format_ranks(const RankFigures& r) {
+  std::string text = formatted("%d ranks: %.0f to %.0f particles a rank, largest over mean %.3f\n", r.ranks,
+                               r.particles.least, r.particles.most, r.particles.balance());
+  text += formatted("  halo of at most %.0f nodes with %.0f neighbours, %.1f kB sent a step, %s\n",
+                    r.halo_nodes.most, r.neighbours.most, r.sent.most / 1e3, r.halo_path.c_str());
+  if (r.compute.most > 0)
+    text += formatted(
+        "  compute %.3f to %.3f s a rank, largest over mean %.3f; halo (pack and sum) %.3f to %.3f s, wait "
+        "%.3f to %.3f s\n",
+        r.compute.least, r.compute.most, r.compute.balance(), r.halo.least, r.halo.most, r.wait.least,
+        r.wait.most);
+  if (r.compute.most > 0 && r.held)
+    text +=
+        formatted("  devices held up by the halo for %.3f to %.3f s of it\n", r.held->least, r.held->most);
+  return text;
 }
 
 }  // namespace mpm

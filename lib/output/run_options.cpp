@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "output/files.hpp"
+#include "output/json.hpp"
 
 namespace mpm {
 namespace {
@@ -11,16 +12,6 @@ namespace {
 std::string padded(std::string text, size_t width) {
   if (text.size() < width) text.resize(width, ' ');
   return text;
-}
-
-/// Text as a JSON string.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
-  return out + "\"";
 }
 
 }  // namespace
@@ -42,11 +33,11 @@ std::string format_options(const std::vector<EffectiveOption>& options) {
 PetscErrorCode write_options_json(const std::string& folder, const std::string& version,
                                   const std::vector<EffectiveOption>& options) {
   PetscFunctionBeginUser;
-  std::string text = "{\n  \"version\": " + quoted(version) + ",\n  \"options\": {";
+  std::string text = "{\n  \"version\": " + json_text(version) + ",\n  \"options\": {";
   const char* separator = "\n";
   for (const EffectiveOption& option : options) {
     const std::string name = option.name.starts_with('-') ? option.name.substr(1) : option.name;
-    text += separator + ("    " + quoted(name) + ": " + quoted(option.value));
+    text += separator + ("    " + json_text(name) + ": " + json_text(option.value));
     separator = ",\n";
   }
   PetscCall(replace_file(folder + "/options.json", text + "\n  }\n}\n"));

@@ -25,25 +25,28 @@ long patch_of(const std::vector<double>& position, std::size_t p, const PatchGri
 
 /// The fields of a body's particles, and how many numbers of each a particle has.
 struct Field {
-  std::vector<double> BodyParticles::*values;
+  std::vector<double>* values;
   int width;
 };
-std::array<Field, 5> fields_of(int dim) {
-  return {{{&BodyParticles::position, dim},
-           {&BodyParticles::velocity, dim},
-           {&BodyParticles::stress, dim == 2 ? 4 : 6},
-           {&BodyParticles::plastic_strain, 1},
-           {&BodyParticles::velocity_gradient, dim * dim}}};
+std::vector<Field> fields_of(BodyParticles& body, int dim) {
+  std::vector<Field> fields = {{&body.position, dim},
+                               {&body.velocity, dim},
+                               {&body.stress, dim == 2 ? 4 : 6},
+                               {&body.volume, 1},
+                               {&body.mass, 1},
+                               {&body.reference_height, 1},
+                               {&body.velocity_gradient, dim * dim}};
+  for (StateField& state : body.state) fields.push_back({&state.values, 1});
+  return fields;
 }
 
 /// Of a body of which every rank has all particles: this rank's part.
 void keep_part(LatticePart part, int dim, BodyParticles& body) {
   const long count = static_cast<long>(body.position.size()) / dim;
   const long from = count * part.number / part.of, to = count * (part.number + 1) / part.of;
-  for (const auto& [values, width] : fields_of(dim)) {
-    std::vector<double>& all = body.*values;
-    if (!all.empty()) all = std::vector<double>(all.begin() + from * width, all.begin() + to * width);
-  }
+  for (const auto& [values, width] : fields_of(body, dim))
+    if (!values->empty())
+      *values = std::vector<double>(values->begin() + from * width, values->begin() + to * width);
 }
 
 /// Counts the particles of a body over all ranks; their ids follow each other from `first` on, which moves
@@ -84,10 +87,10 @@ PetscErrorCode send_to_owners(MPI_Comm comm, const PatchGrid& grid, double spaci
   std::vector<int> to;
   for (std::size_t p = 0; p < body->id.size(); ++p)
     to.push_back(owners[patch_of(body->position, p, grid, spacing)]);
-  for (const auto& [values, width] : fields_of(grid.dim)) {
-    int present = !(body->*values).empty();  // on some rank: this one may have no particle yet
+  for (const auto& [values, width] : fields_of(*body, grid.dim)) {
+    int present = !values->empty();  // on some rank: this one may have no particle yet
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &present, 1, MPI_INT, MPI_MAX, comm));
-    if (present) PetscCall(send_rows(comm, to, width, &(body->*values)));
+    if (present) PetscCall(send_rows(comm, to, width, values));
   }
   PetscCall(send_rows(comm, to, 1, &body->id));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -108,6 +111,7 @@ PetscErrorCode count_loads(MPI_Comm comm, const PatchGrid& grid, double spacing,
 /// What follows from all particles of a body, before most of them go.
 void take_gradients(const Config& config, BodyParticles& body) {
   if (config.velocity_update != VelocityUpdate::apic || body.velocity.empty()) return;
+  if (!body.velocity_gradient.empty()) return;  // a checkpoint tells them
   std::vector<double> cells = body.position;
   for (double& x : cells) x /= config.mesh.spacing;
   body.velocity_gradient = velocity_gradients(cells, body.velocity, config.dim);

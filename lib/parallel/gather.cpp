@@ -14,9 +14,28 @@ struct Part {
   std::vector<double> ParticleSnapshot::*values;
   int width;
 };
-constexpr Part k_parts[] = {{&ParticleSnapshot::position, 3},      {&ParticleSnapshot::velocity, 3},
-                            {&ParticleSnapshot::grid_velocity, 3}, {&ParticleSnapshot::stress, 6},
-                            {&ParticleSnapshot::volume, 1},        {&ParticleSnapshot::plastic_strain, 1}};
+constexpr Part k_parts[] = {{&ParticleSnapshot::position, 3},        {&ParticleSnapshot::velocity, 3},
+                            {&ParticleSnapshot::grid_velocity, 3},   {&ParticleSnapshot::stress, 6},
+                            {&ParticleSnapshot::volume, 1},          {&ParticleSnapshot::mass, 1},
+                            {&ParticleSnapshot::reference_height, 1}};
+
+/// The numbers of every field of a body, and their widths.
+std::vector<std::pair<std::vector<double>*, int>> fields_of(ParticleSnapshot& body) {
+  std::vector<std::pair<std::vector<double>*, int>> fields;
+  for (const auto& [values, width] : k_parts) fields.emplace_back(&(body.*values), width);
+  for (StateField& state : body.state) fields.emplace_back(&state.values, 1);
+  return fields;
+}
+
+/// Leaves out the rows that are not there.
+void close_gaps(const std::vector<char>& there, int width, std::vector<double>& rows) {
+  std::size_t kept = 0;
+  for (std::size_t n = 0; n < there.size(); ++n)
+    if (there[n] != 0)
+      std::copy_n(rows.begin() + static_cast<long>(n) * width, width,
+                  rows.begin() + static_cast<long>(kept++) * width);
+  rows.resize(kept * width);
+}
 
 }  // namespace
 
@@ -30,28 +49,35 @@ PetscErrorCode order_particles(MPI_Comm comm, long total, ParticleSnapshot* body
     to[p] = static_cast<int>(body->id[p] * long(ranks) / std::max(total, 1L));
     while (body->id[p] >= begin(to[p] + 1)) ++to[p];
   }
-  body->first = begin(rank);
-  body->total = total;
-  for (const auto& [values, width] : k_parts) {  // field by field: one of them at a time is there twice
+  std::vector<char> there;  // of the ids of this rank: those that have left the run are not
+  for (const auto& [values, width] : fields_of(*body)) {  // one at a time: each is there twice then
     const std::size_t row = width * sizeof(double), size = sizeof(double) + row;
     std::vector<std::vector<char>> out(ranks);
     for (std::size_t p = 0; p < here; ++p) {
       const double id = body->id[p];
       const char* const name = reinterpret_cast<const char*>(&id);
-      const char* const numbers = reinterpret_cast<const char*>(&(body->*values)[p * width]);
+      const char* const numbers = reinterpret_cast<const char*>(&(*values)[p * width]);
       out[to[p]].insert(out[to[p]].end(), name, name + sizeof id);
       out[to[p]].insert(out[to[p]].end(), numbers, numbers + row);
     }
     std::vector<char> in;
     PetscCall(exchange_records(comm, size, out, &in));
-    std::vector<double>& own = body->*values;
+    std::vector<double>& own = *values;
     own.assign((begin(rank + 1) - begin(rank)) * width, 0);
+    there.assign(begin(rank + 1) - begin(rank), 0);
     for (std::size_t at = 0; at < in.size(); at += size) {
       double id = 0;
       std::memcpy(&id, &in[at], sizeof id);
-      std::memcpy(&own[(static_cast<std::size_t>(id) - body->first) * width], &in[at + sizeof id], row);
+      const std::size_t place = static_cast<std::size_t>(id) - begin(rank);
+      there[place] = 1;
+      std::memcpy(&own[place * width], &in[at + sizeof id], row);
     }
+    close_gaps(there, width, own);
   }
+  long counts[2] = {static_cast<long>(std::count(there.begin(), there.end(), 1)), 0};
+  PetscCallMPI(MPI_Exscan(&counts[0], &counts[1], 1, MPI_LONG, MPI_SUM, comm));
+  body->first = rank == 0 ? 0 : counts[1];
+  PetscCallMPI(MPI_Allreduce(&counts[0], &body->total, 1, MPI_LONG, MPI_SUM, comm));
   body->id.clear();
   PetscFunctionReturn(PETSC_SUCCESS);
 }

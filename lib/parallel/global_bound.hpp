@@ -1,6 +1,6 @@
 #pragma once
-// The movement bound over all ranks, found without waiting: each step posts a reduction that the next step
-// ends, so that what is known of the others is some steps old, and a reserve stands for those steps.
+// The movement bound over all ranks. Each step posts a nonblocking reduction, which a later step ends. The
+// bound of the other ranks is therefore some steps old, and a reserve in the margin covers these steps.
 
 #include <petscsys.h>
 
@@ -9,11 +9,11 @@
 
 namespace mpm {
 
-/// What the ranks must know of each other before the next step.
+/// The report of a rank on its last step.
 struct BoundReport {
   double bound = 0;      // cells, that any point can have moved since the last rebuild
   double increment = 0;  // cells, of the last step
-  double stopped = 0;    // 1: a rank does no more steps, for its bound passed the margin or for a fault
+  double stopped = 0;    // 1: a rank does no more steps: its bound passed the margin, or there is a fault
 };
 
 class GlobalBound {
@@ -28,26 +28,26 @@ class GlobalBound {
 
   /// Starts the reduction of this rank's report.
   PetscErrorCode post(MPI_Comm comm, const BoundReport& own);
-  /// Ends the reduction of the report before the last one that was posted; `known` is false where there is
-  /// none. Its bound is the sum of the largest increments, as it is on one rank.
+  /// Ends the reduction of the last report but one; `known` is false where there is no such report. The bound
+  /// is the sum of the largest increments, as on one rank.
   PetscErrorCode last_but_one(bool* known, BoundReport* all);
-  /// What this rank posted last, if its reduction is under way.
+  /// The last report of this rank, if its reduction is under way.
   std::optional<BoundReport> pending() const {
     const Reduction& r = reductions_[last_];
     if (!r.posted) return std::nullopt;
     return BoundReport{r.own[0], r.own[1], r.own[2]};
   }
-  /// The sum of the largest increments since the lists were built, as far as it is known.
+  /// The sum of the largest increments since the lists were built, as far as reports are known.
   double sum() const { return sum_; }
   void set_sum(double sum) { sum_ = sum; }
-  /// Steps to a rebuild that the reports before a checkpoint have made due; 0: none is.
+  /// Steps to a rebuild that was already due in the checkpoint of a restart; 0: none.
   int due_in() const { return due_in_; }
   void set_due_in(int steps) { due_in_ = steps; }
-  /// Once a step: whether that rebuild is due now.
+  /// Call it once a step. Whether that rebuild is due now.
   bool count_down() { return due_in_ > 0 && --due_in_ == 0; }
-  /// Ends what is under way.
+  /// Ends all reductions under way.
   PetscErrorCode drain();
-  /// The largest of all, waited for.
+  /// The largest report of all ranks now; waits for them.
   static PetscErrorCode now(MPI_Comm comm, BoundReport* report);
 
  private:

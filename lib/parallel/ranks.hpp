@@ -1,6 +1,6 @@
 #pragma once
-// One rank among several: what it owns, what it exchanges in a step, and how particles and patches move
-// between ranks at a rebuild. On one rank there is none of it.
+// A rank of several: the patches that it owns, the halo exchange of a step, and the migration of particles
+// and patches at a rebuild. A run on one rank has no Ranks.
 
 #include <petscsys.h>
 
@@ -20,17 +20,17 @@
 
 namespace mpm {
 
-/// Particles there is room for at least, so that every field has its views.
+/// Least number of particles that a rank has room for, so that every field has its views.
 inline constexpr int k_least_room = 16;
 
-/// Whether shares are sent before all patches are computed.
+/// Whether nodal sums are sent before all patches are computed.
 template <class Space, class T, int Dim>
 bool sends_ahead(const State<Space, T, Dim>& s, const PartitionConfig& config);
 
-/// What a rank reports of itself at the end.
+/// The figures of a rank at the end of a run.
 struct RankReport {
-  double work = 0, halo = 0, wait = 0;  // s: kernels; packing, copying and summing shares; waiting for others
-  double held = 0;                      // s, of it the time for which a device had nothing else to do
+  double work = 0, halo = 0, wait = 0;  // s: kernels; packing, copying, summing the halo; waiting for ranks
+  double held = 0;                      // s, part of the wait in which a device had no other work
   double particles = 0, neighbours = 0, shared_nodes = 0;
   double sent = 0;  // bytes a step
 };
@@ -43,57 +43,63 @@ class Ranks {
   /// Brings the particles to the ranks that own their patches and makes the lists. After upload. Collective.
   PetscErrorCode start(MPI_Comm comm, const PartitionConfig& config, const Owners& owners, State_& s);
 
-  /// Function 3, the sum over ranks: the shares of soil and boundary, in one message a neighbour. Where they
-  /// were sent ahead it ends what is under way. What s.space and `queue` are given from now on finds the
-  /// sums. queue: that in which the rigids moved at the end of the step before.
+  /// The sum over ranks in function 3: the nodal sums of soil and boundary go to each neighbour in one
+  /// message. If the message has been sent ahead, add_soil ends that exchange. Kernels that s.space and
+  /// `queue` get after this call see the sums. queue: the stream in which the rigids moved at the end of the
+  /// last step.
   PetscErrorCode add_soil(State_& s, const Space& queue);
   PetscErrorCode add_soil(State_& s) { return add_soil(s, s.space); }
 
-  /// Whether the step sends ahead: it computes the border patches, whose nodes other ranks reach too, on a
-  /// queue of their own, calls send_ahead, and computes the inner patches while the shares travel.
+  /// Whether the step overlaps the halo exchange: it computes the border patches, whose nodes other ranks
+  /// reach too, on their own stream, calls send_ahead, and computes the inner patches while the messages
+  /// travel.
   bool overlaps(const State_& s) const { return sends_ahead(s, config_); }
-  /// The two parts. The border's queue goes on from where that of the state is now.
+  /// The two parts of the soil. The border's stream waits for the work that s.space has now.
   Part<Space> border(const State_& s);
   Part<Space> inner(const State_& s) const;
-  /// Sends the shares, which border(s) has summed.
+  /// Sends the nodal sums of the border, which kernels have made on its stream.
   PetscErrorCode send_ahead(State_& s);
-  /// What s.space is given behind this call finds the border's particles as they are then.
+  /// Kernels that s.space gets after this call see the border's particles as its stream leaves them.
   void join(const State_& s) { border_there_.hold(s.space); }
-  /// Whether the border's shares have been sent since the last add_soil.
+  /// Whether the border's sums have been sent since the last add_soil.
   bool sent_ahead() const { return ahead_ != Ahead::nothing; }
-  /// The same of what XPIC interpolates once more.
+  /// The sum over ranks of the nodal values of an XPIC pass.
   PetscErrorCode add_rest(State_& s);
-  /// After sum_present_soil: the soil's shares, for what is measured between two steps.
+  /// The sum over ranks of the soil's strength, at nodes near rigids.
+  PetscErrorCode add_strength(State_& s);
+  /// The sum over ranks of the soil after sum_present_soil, for measures between two steps.
   PetscErrorCode add_present_soil(State_& s);
-  /// The forces on rigids that move by them.
+  /// The sum over ranks of the forces on dynamic rigids.
   PetscErrorCode add_forces(State_& s);
-  /// The movement bound of all ranks as it was some steps ago (GlobalBound::k_late).
+  /// The movement bound of all ranks some steps ago (GlobalBound::k_late).
   PetscErrorCode look_back(bool* known, BoundReport* all) { return bound_.last_but_one(known, all); }
-  /// Once a step: whether a rebuild is due that was so before the checkpoint this run goes on from.
+  /// Call it once a step. Whether a rebuild is due now that was already due in the checkpoint of a restart.
   bool count_down() { return bound_.count_down(); }
   /// Ends the reductions under way.
   PetscErrorCode drain() { return bound_.drain(); }
 
-  /// What a checkpoint needs of the ranks beside their states: owners, and the movement bounds of all ranks.
-  /// Collective.
+  /// The parts of a checkpoint that are not in the ranks' states: owners, and the movement bounds of all
+  /// ranks. Collective.
   PetscErrorCode save(SavedState* saved) const;
-  /// After take_saved: the points to their owners, which are those of the checkpoint if it is of as many
-  /// ranks, the lists, and the rest of the state; `saved` becomes this rank's own. Collective.
+  /// Call it after take_saved. Brings the points to their owners, makes the lists, and restores the rest of
+  /// the state. The owners are those of the checkpoint if it has as many ranks. `saved` becomes this rank's
+  /// part. Collective.
   PetscErrorCode restore(State_& s, SavedState& saved);
 
-  /// After locate: patches and particles to their owners, order and lists. Collective.
+  /// Call it after locate. Brings patches and particles to their owners, sorts, and makes the lists.
+  /// Collective.
   PetscErrorCode rebuild(State_& s);
 
   MPI_Comm comm() const { return comm_; }
   const Owners& owners() const { return owners_; }
-  /// Whether the rigids' impulses are already those of all ranks.
+  /// Whether the rigids' impulses are sums over all ranks already.
   bool forces_shared() const { return forces_shared_; }
   WorkClock& clock() { return clock_; }
-  /// How shares travel, in words.
+  /// The path of halo messages, in words.
   std::string halo_words(const State_& s) const;
   RankReport report(const State_& s) const;
   std::size_t memory() const;
-  /// What the log should tell since the last call; empty where there is nothing.
+  /// Lines for the log since the last call; empty where there are none.
   std::string take_news() { return std::exchange(news_, {}); }
 
  private:
@@ -119,7 +125,7 @@ class Ranks {
   PetscErrorCode end_ahead(const State_& s, const Space& queue, bool with_bound);
   bool measures() const { return exchanges_ % k_measured_each == 0; }
   void measure_ahead();
-  /// What is known and under way of the steps before a rebuild.
+  /// Forgets reports and messages of the steps before a rebuild.
   PetscErrorCode forget();
   PetscErrorCode post_bound();
   void note_bound(const State_& s, const Space& queue);

@@ -110,6 +110,15 @@ PetscErrorCode Ranks<Space, T, Dim>::add_rest(State_& s) {
 }
 
 template <class Space, class T, int Dim>
+PetscErrorCode Ranks<Space, T, Dim>::add_strength(State_& s) {
+  PetscFunctionBeginUser;
+  Fields fields;
+  fields.add(s.nodes.strength.data(), StrengthShare::size, s.near_rigid.data());
+  PetscCall(add(s.space, fields, false));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::add_present_soil(State_& s) {
   PetscFunctionBeginUser;
   if (s.summed.soil && present_added_) PetscFunctionReturn(PETSC_SUCCESS);
@@ -196,6 +205,7 @@ PetscErrorCode Ranks<Space, T, Dim>::forget() {
   template void Ranks<Space, T, Dim>::note_bound(const State<Space, T, Dim>&, const Space&);   \
   template PetscErrorCode Ranks<Space, T, Dim>::add_soil(State<Space, T, Dim>&, const Space&); \
   template PetscErrorCode Ranks<Space, T, Dim>::add_rest(State<Space, T, Dim>&);               \
+  template PetscErrorCode Ranks<Space, T, Dim>::add_strength(State<Space, T, Dim>&);           \
   template PetscErrorCode Ranks<Space, T, Dim>::add_present_soil(State<Space, T, Dim>&);       \
   template Part<Space> Ranks<Space, T, Dim>::border(const State<Space, T, Dim>&);              \
   template Part<Space> Ranks<Space, T, Dim>::inner(const State<Space, T, Dim>&) const;         \

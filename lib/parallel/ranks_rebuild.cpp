@@ -167,6 +167,8 @@ PetscErrorCode Ranks<Space, T, Dim>::make_lists(State_& s) {
 
   const int width = std::max(SoilShare<Dim>::size + BoundaryShare<Dim>::size, Dim);
   PetscCall(transport_.set_up(plan.neighbours, plan.begin, width));
+  s.plan = plan_step(s);
+  if (overlaps(s)) s.plan.form = StepForm::overlapped;
   if (overlaps(s)) put_border_first(s, std::vector<int>(held.data(), held.data() + holding), plan.border);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

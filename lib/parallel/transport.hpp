@@ -1,5 +1,5 @@
 #pragma once
-// The way of nodal values from rank to rank: packed where kernels run, and brought to where they run.
+// Halo messages: nodal values that kernels pack on one rank, and that kernels on another rank read.
 
 #include <string>
 #include <type_traits>
@@ -11,24 +11,25 @@
 
 namespace mpm {
 
-/// One exchange after the other: send, start, finish, deliver. Entries are those of HaloPlan, neighbour by
-/// neighbour.
+/// An exchange is send, start, finish, deliver; the next exchange begins after it. The entries are those of
+/// HaloPlan, neighbour by neighbour.
 template <class Space, class T>
 class Transport {
  public:
-  /// Finds the path. Collective.
+  /// Chooses the path of the messages. Collective.
   PetscErrorCode start(MPI_Comm comm, HaloPath wanted);
-  /// Room for entries of up to `width` values and who gets which; nothing may be under way. Collective.
+  /// Makes room for entries of up to `width` values, and sets which neighbour gets which entries. No exchange
+  /// may be under way. Collective.
   PetscErrorCode set_up(const std::vector<int>& neighbours, const std::vector<int>& begin, int width);
 
-  /// Where kernels put the entries that go out.
+  /// The entries to send, where kernels write them.
   T* out() const { return out_.data(); }
-  /// What is packed in `space` goes on its way behind it, as far as a device can send it.
+  /// Sends the entries that kernels of `space` have packed, as far as a device can send them itself.
   PetscErrorCode send(const Space& space, int width);
-  /// After the fence of that space: what the host does for it; start does not wait for others.
+  /// The host's part of the message, after a fence of that space. start does not wait for other ranks.
   PetscErrorCode start(int width);
   PetscErrorCode finish();
-  /// Where the entries are that came in, for kernels of `space` behind this call.
+  /// The entries received, for kernels that `space` gets after this call.
   const T* deliver(const Space& space, int width);
 
   HaloPath path() const { return path_; }
@@ -38,7 +39,7 @@ class Transport {
 
  private:
   using Memory = typename Space::memory_space;
-  /// Memory that MPI reads: the device's own where that is the host's.
+  /// Memory that MPI reads; where kernels run on the host, that is their memory.
   using Staging = std::conditional_t<is_device<Space>, Kokkos::SharedHostPinnedSpace, Memory>;
   PetscErrorCode choose(HaloPath wanted);
   PetscErrorCode send_to_peers(const Space& space, int width);
@@ -51,10 +52,10 @@ class Transport {
   std::vector<int> neighbours_, begin_;
   NodeExchange exchange_;
   PeerMemory peers_;
-  std::size_t half_ = 0;  // values of one of the two halves of a peer's memory, which messages take in turn
+  std::size_t half_ = 0;  // values of a half of a peer's memory; messages use the two halves in turn
   long number_ = 0;       // of the last message
   Kokkos::View<T*, Memory> out_, in_;
-  Kokkos::View<T*, Staging> host_out_, host_in_;  // the same where MPI reads and writes them
+  Kokkos::View<T*, Staging> host_out_, host_in_;  // the same entries where MPI reads and writes them
 };
 
 }  // namespace mpm

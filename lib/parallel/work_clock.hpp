@@ -1,5 +1,6 @@
 #pragma once
-// How long a rank works and how long it waits for others: what balance is measured by.
+// The time for which a rank works and the time for which it waits for other ranks; the balance is measured by
+// it.
 
 #include <chrono>
 #include <ctime>
@@ -9,8 +10,8 @@ namespace mpm {
 /// Adds up the time between go_on and pause as work, and that between pause and go_on as waiting.
 class WorkClock {
  public:
-  /// Where kernels run on the host the processor's time counts as work, so that other programs on the machine
-  /// do not; on a device it is the wall clock's.
+  /// Where kernels run on the host, work is processor time, so that other programs on the machine do not
+  /// count. On a device, work is wall time.
   explicit WorkClock(bool device = false) : device_(device) {}
 
   void go_on() {
@@ -18,19 +19,19 @@ class WorkClock {
     paused_ = false;
     since_ = now();
   }
-  /// The kernels before it are done.
+  /// Call it when the kernels before it are done.
   void pause() {
     const double work = now() - since_;
     work_ += work, recent_ += work;
     paused_ = true;
     since_wall_ = wall();
   }
-  /// From here on nothing counts until go_on: what follows is neither work nor waiting.
+  /// Stops counting until go_on: the time between is neither work nor waiting.
   void stop() {
     pause();
     paused_ = false;
   }
-  /// So many seconds that counted as work a device had nothing to do.
+  /// Moves seconds from work to waiting: a device had no work in them.
   void idled(double seconds) { work_ -= seconds, recent_ -= seconds, wait_ += seconds; }
   double work() const { return work_; }
   double wait() const { return wait_; }

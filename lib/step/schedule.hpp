@@ -9,24 +9,34 @@
 
 namespace mpm {
 
-/// The steps of a run: all of dt but the last, which ends at time_end.
+/// The steps of a run: all of dt but the last, which ends at time_end. Where the step follows the stiffness
+/// of the soil, what a schedule says of later steps holds until dt changes.
 class Schedule {
  public:
   Schedule() = default;
-  Schedule(const TimeConfig& time, const OutputConfig& output, double dt)
-      : dt_(dt), end_(time.end), output_(output) {
-    whole_ = static_cast<long>(std::floor(time.end / dt * (1 + 1e-12)));
-    all_ = whole_ + (time.end - whole_ * dt > 1e-9 * dt ? 1 : 0);
+  Schedule(const TimeConfig& time, const OutputConfig& output, double dt) : Schedule(time, output, dt, {}) {}
+  /// From `begin` on with steps of dt.
+  struct Begin {
+    long step = 0;
+    double time = 0;  // s
+  };
+  Schedule(const TimeConfig& time, const OutputConfig& output, double dt, Begin begin)
+      : dt_(dt), end_(time.end), begin_(begin), output_(output) {
+    const double left = time.end - begin.time;
+    const long whole = static_cast<long>(std::floor(left / dt * (1 + 1e-12)));
+    whole_ = begin.step + whole;
+    all_ = whole_ + (left - whole * dt > 1e-9 * dt ? 1 : 0);
     last_ = time.max_steps ? std::min(*time.max_steps, all_) : all_;
   }
 
+  Begin begin() const { return begin_; }
   long last_step() const { return last_; }
   /// The last step of full length.
   long last_whole_step() const { return whole_; }
   /// Length of the step that starts after `step` steps [s].
-  double step_size(long step) const { return step < whole_ ? dt_ : end_ - whole_ * dt_; }
+  double step_size(long step) const { return step < whole_ ? dt_ : end_ - start_of(whole_); }
   /// Time after `step` steps [s].
-  double time_of(long step) const { return step >= all_ ? end_ : step * dt_; }
+  double time_of(long step) const { return step >= all_ ? end_ : start_of(step); }
 
   bool row_due(long step) const { return step == last_ || due(step, output_.history_interval); }
   /// Whether a row or a frame is due though the run goes on after this step.
@@ -43,18 +53,20 @@ class Schedule {
   }
 
  private:
-  /// The first step at or after each multiple of the interval.
+  double start_of(long step) const { return begin_.time + (step - begin_.step) * dt_; }
+  /// The first step at or after a time.
   long step_at(double time) const {
-    return static_cast<long>(std::ceil(std::min(time, 2 * end_) / dt_ - 1e-9));
+    return begin_.step + static_cast<long>(std::ceil((std::min(time, 2 * end_) - begin_.time) / dt_ - 1e-9));
   }
   /// The first of them after `step`.
   long next(long step, double interval) const {
-    const double multiple = std::floor(step * dt_ / interval * (1 + 1e-12) + 1e-9) + 1;
+    const double multiple = std::floor(start_of(step) / interval * (1 + 1e-12) + 1e-9) + 1;
     return std::max(step_at(multiple * interval), step + 1);
   }
   bool due(long step, double interval) const { return step > 0 && next(step - 1, interval) == step; }
 
   double dt_ = 1, end_ = 0;
+  Begin begin_;
   OutputConfig output_;
   long whole_ = 0, all_ = 0, last_ = 0;
 };

@@ -2,6 +2,7 @@
 // One time step, in the paper's words.
 
 #include "batches.hpp"
+#include "find_strays.hpp"
 #include "interpolation.hpp"
 #include "parallel/ranks.hpp"
 #include "step/beside.hpp"
@@ -39,12 +40,6 @@ void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& queue) {
   }
 }
 
-/// Function 1, where the step before has not done it.
-template <class Space, class T, int Dim>
-void prepare_nodes(State<Space, T, Dim>& s) {
-  if (!s.summed.soil) reset_nodes(s);
-}
-
 /// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
 /// needs it. Both may be there already.
 template <class Space, class T, int Dim>
@@ -69,21 +64,16 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
   soil_to_nodes(s, s.soil.points, bins_of(s.soil.bins, part), part.space);
 }
 
-/// The same on several ranks: where the others wait for it first, unless that has gone out already, and the
-/// rest while it travels.
+/// The soil's strength at the nodes near rigids, where a contact asks for it.
 template <class Space, class T, int Dim>
-PetscErrorCode soil_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks, const Space& queue) {
+PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks) {
   PetscFunctionBeginUser;
-  if (ranks) finish_sums(s);
-  if (!ranks || !ranks->overlaps(s)) {
-    soil_to_nodes(s, queue);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (!ranks->sent_ahead()) {
-    soil_to_nodes(s, ranks->border(s));
-    PetscCall(ranks->send_ahead(s));
-  }
-  soil_to_nodes(s, ranks->inner(s));
+  if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.strength, T(0));
+  for_all_soil(s, [&](const auto& set) {
+    interpolate<StrengthSource<Space, T, Dim>>(s, s.p2g.strategy, set.bins, {set.points, s.near_rigid},
+                                               s.nodes.strength);
+  });
+  if (ranks) PetscCall(ranks->add_strength(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,23 +87,9 @@ void sum_present_soil(State<Space, T, Dim>& s) {
   soil_to_nodes(s, s.space);
 }
 
-/// The update where it goes on to the sums of the next step: first the particles whose sums other ranks wait
-/// for, which travel while the rest is computed.
+/// The velocities of the soil's particles, where XPIC or APIC is chosen: a part of function 5.
 template <class Space, class T, int Dim>
-PetscErrorCode update_and_send(State<Space, T, Dim>& s, double dt, Ranks<Space, T, Dim>& ranks) {
-  PetscFunctionBeginUser;
-  const Part<Space> border = ranks.border(s);
-  update_particles(s, dt, border);
-  PetscCall(ranks.send_ahead(s));
-  update_particles(s, dt, ranks.inner(s));
-  ranks.join(s);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/// Function 5: velocities by XPIC or APIC where they are chosen, then the update of the soil's particles;
-/// with function 6 if `and_end`.
-template <class Space, class T, int Dim>
-PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T, Dim>* ranks, bool and_end) {
+PetscErrorCode update_velocities(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks) {
   PetscFunctionBeginUser;
   for (int pass = 0; pass < s.xpic_order; ++pass) {
     if (pass > 0) {
@@ -125,72 +101,192 @@ PetscErrorCode nodes_to_soil(State<Space, T, Dim>& s, double dt, Ranks<Space, T,
     xpic_pass(s, pass);
   }
   if (s.affine) take_affine(s);
-  if (ranks && ranks->overlaps(s) && sums_ahead(s))
-    PetscCall(update_and_send(s, dt, *ranks));
-  else if (s.batches.in_use())
-    update_by_batches(s, dt);
-  else if (and_end)
-    update_and_end(s, dt);
-  else
-    update_particles(s, dt);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Function 6, under the forces of all ranks.
+/// A step: its state, its length, and what it works with.
 template <class Space, class T, int Dim>
-PetscErrorCode move_rigids(State<Space, T, Dim>& s, double dt, Ranks<Space, T, Dim>* ranks,
-                           Beside<Space>* beside) {
-  PetscFunctionBeginUser;
-  if (ranks) PetscCall(ranks->add_forces(s));
-  move_rigids(s, dt, beside ? beside->fork(s.space) : s.space);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+struct Step {
+  State<Space, T, Dim>& s;
+  Timers& timers;
+  double dt;                    // s
+  Ranks<Space, T, Dim>* ranks;  // null on one rank
+  Beside<Space>* beside;        // a second stream of the device; null where there is none
 
-/// Advances one explicit step of dt [s]. Does nothing while s.control is paused. The rebuild, function 7, is
-/// the caller's, when the movement bound says so. ranks is null on one rank. Where the soil's sums are there
-/// already, what contact waits for, from the movement of the rigids on, may go `beside` the nodes far from
-/// it: these know of a pause a step late, and do then what the rebuild throws away. A small problem's rigids
-/// move in the launch of its particles, or whole steps are one launch, several of them if there are more
-/// `left`; what it does is taken off. Where functions are timed, they have the device for themselves.
+  /// The paper's step. Function 7, the rebuild, is the caller's, when the movement bound says so. Out of core
+  /// functions 3 and 5 take the soil batch by batch, and what function 5 does may be functions 1 and 3 of the
+  /// next step.
+  PetscErrorCode separate() const {
+    PetscFunctionBeginUser;
+    PetscCall(run(Function::reset, [&] { reset(); }));  // 1 initialise nodal variables
+    PetscCall(
+        run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, s.space); }));  // 2 rigid bodies to nodes
+    PetscCall(run(Function::soil_to_nodes, [&] { sum_soil(s.space); }));       // 3 soil to nodes
+    if (ranks) PetscCall(ranks->add_soil(s));                                  //   the sum over ranks
+    PetscCall(complete_nodes(s.space));                             //   strength, particles that are alone
+    PetscCall(run(Function::nodes, [&] { update_nodes(s, dt); }));  // 4 velocities, walls, contact
+    PetscCall(run(Function::particles, [&] { return update_soil(); }));      // 5 stress, movement
+    PetscCall(run(Function::rigids, [&] { return update_rigids(false); }));  // 6 move the rigid bodies
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+  /// Function 5 goes on to functions 1 and 3 of the next step, so that these are here behind a rebuild alone.
+  /// What contact waits for, from the movement of the rigids on, runs on the second stream, beside the nodes
+  /// far from rigids: these learn of a pause a step late, and do then what the rebuild throws away.
+  PetscErrorCode fused() const {
+    PetscFunctionBeginUser;
+    const bool ends = s.plan.form == StepForm::persistent && !timers.sampling();
+    const bool parts = has_stream(), parted = parts && s.summed.soil;
+    const Space& stream = parted ? beside->fork(s.space) : joined();
+    PetscCall(run(Function::reset, [&] { reset(); }));
+    PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
+    PetscCall(run(Function::soil_to_nodes, [&] { sum_soil(stream); }));
+    if (ranks) PetscCall(ranks->add_soil(s, stream));
+    PetscCall(complete_nodes(stream));
+    PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, stream); }));
+    if (parted) beside->join(s.space);
+    if (parted && !ranks) sum_forces(s, stream);
+    PetscCall(run(Function::particles, [&] { ends ? update_and_end(s, dt) : update_particles(s, dt); }));
+    if (!ends) PetscCall(run(Function::rigids, [&] { return update_rigids(parts && !ranks); }));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+  /// The sums at nodes that ranks share are made first, and travel while the inner patches are computed: in
+  /// function 3, or where function 5 goes on to the sums of the next step there.
+  PetscErrorCode overlapped() const {
+    PetscFunctionBeginUser;
+    const bool parts = has_stream(), parted = parts && s.summed.soil, moves = parts && s.plan.sums_ahead;
+    const Space& stream = parted ? beside->fork(s.space) : joined();
+    PetscCall(run(Function::reset, [&] { reset(); }));
+    PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
+    PetscCall(run(Function::soil_to_nodes, [&] { return send_soil(); }));
+    PetscCall(ranks->add_soil(s, stream));
+    PetscCall(complete_nodes(stream));
+    PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, stream); }));
+    if (parted) beside->join(s.space);
+    if (parted && moves && !ranks->forces_shared()) sum_forces(s, stream);
+    PetscCall(
+        run(Function::particles, [&] { return s.plan.sums_ahead ? update_and_send() : update_soil(); }));
+    PetscCall(run(Function::rigids, [&] { return update_rigids(moves); }));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+  /// Does up to `left` steps in one launch where the sums of the first step are there, else one step. Reduces
+  /// `left` by the number of steps done.
+  PetscErrorCode persistent(long* left) const {
+    PetscFunctionBeginUser;
+    if (timers.sampling() || !is_whole_step(s)) {
+      --*left;
+      PetscCall(fused());
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    const long most = *left;
+    const auto steps = [&] {  // functions 4 to 6, and 1 to 3 of the next step
+      const long done = whole_steps(s, dt, most);
+      *left -= done;
+      return done;
+    };
+    joined();
+    PetscCall(timers.run_many(Function::whole, most, steps, [&] { s.space.fence("mpm::step"); }));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+ private:
+  /// Runs one function of the paper and times it. work() returns an error code or nothing.
+  template <class Work>
+  PetscErrorCode run(Function f, Work&& work) const {
+    PetscFunctionBeginUser;
+    PetscErrorCode failed = PETSC_SUCCESS;
+    const auto all = [&] {
+      if constexpr (std::is_void_v<decltype(work())>)
+        work();
+      else
+        failed = work();
+    };
+    PetscCall(timers.run(f, all, [&] { s.space.fence("mpm::step"); }));
+    PetscCall(failed);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+  /// Whether nodes near rigids may go to the second stream. Functions that are timed have the device for
+  /// themselves.
+  bool has_stream() const { return beside && s.plan.nodes_apart && !s.shear_share && !timers.sampling(); }
+  /// The state's own stream, behind all that the second one has been given.
+  const Space& joined() const {
+    if (beside) beside->join(s.space);
+    return s.space;
+  }
+
+  void reset() const {
+    if (!s.summed.soil) reset_nodes(s);
+  }
+  void sum_soil(const Space& stream) const {
+    if (ranks) finish_sums(s);
+    soil_to_nodes(s, stream);
+  }
+  /// What only some runs ask of the nodes: the soil's strength, and which particles are alone till a rebuild.
+  PetscErrorCode complete_nodes(const Space& stream) const {
+    PetscFunctionBeginUser;
+    if (s.shear_share) PetscCall(strength_to_nodes(s, ranks));
+    if (!s.strays.known) mark_strays(s, stream);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscErrorCode update_soil() const {
+    PetscFunctionBeginUser;
+    PetscCall(update_velocities(s, ranks));
+    if (s.batches.in_use())
+      update_by_batches(s, dt);
+    else
+      update_particles(s, dt);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Under the forces of all ranks.
+  PetscErrorCode update_rigids(bool on_stream) const {
+    PetscFunctionBeginUser;
+    if (ranks) PetscCall(ranks->add_forces(s));
+    move_rigids(s, dt, on_stream ? beside->fork(s.space) : s.space);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Function 3, the border first, unless its sums have been sent already.
+  PetscErrorCode send_soil() const {
+    PetscFunctionBeginUser;
+    finish_sums(s);
+    if (!ranks->sent_ahead()) {
+      soil_to_nodes(s, ranks->border(s));
+      PetscCall(ranks->send_ahead(s));
+    }
+    soil_to_nodes(s, ranks->inner(s));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Function 5 with the sums of the next step, the border first.
+  PetscErrorCode update_and_send() const {
+    PetscFunctionBeginUser;
+    const Part<Space> border = ranks->border(s);
+    update_particles(s, dt, border);
+    PetscCall(ranks->send_ahead(s));
+    update_particles(s, dt, ranks->inner(s));
+    ranks->join(s);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+};
+
+/// Advances one explicit step of dt [s], or up to `left` steps where one launch does them. Reduces `left` by
+/// the number of steps done. Does nothing while s.control is paused.
 template <class Space, class T, int Dim>
 PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Space, T, Dim>* ranks = nullptr,
                     Beside<Space>* beside = nullptr, long* left = nullptr) {
   PetscFunctionBeginUser;
-  PetscErrorCode failed = PETSC_SUCCESS;
-  const auto wait = [&] { s.space.fence("mpm::step"); };
-  const auto run = [&](Function f, auto&& work) { return timers.run(f, work, wait); };
-  const bool may_go_beside = beside && nodes_apart(s) && !s.batches.in_use() && !timers.sampling();
-  const bool moves_beside = may_go_beside && sums_ahead(s) && (!ranks || ranks->overlaps(s));
-  const bool apart = may_go_beside && s.summed.soil;
-  if (beside && !apart) beside->join(s.space);
-  const Space& queue = apart ? beside->fork(s.space) : s.space;
-  const bool at_once = !ranks && ends_at_once(s) && !timers.sampling();
-  if (at_once && is_whole_step(s)) {
-    const long most = left ? *left : 1;
-    long done = 0;
-    const auto work = [&] { return done = whole_steps(s, dt, most); };
-    PetscCall(timers.run_many(Function::whole, most, work, wait));  // 4 to 6, and 1 to 3 of the next one
-    if (left) *left -= done;
-    PetscFunctionReturn(PETSC_SUCCESS);
+  const Step<Space, T, Dim> step{s, timers, dt, ranks, beside};
+  long one = 1;
+  if (left == nullptr) left = &one;
+  if (s.plan.form != StepForm::persistent) --*left;
+  switch (s.plan.form) {
+    case StepForm::separate:
+    case StepForm::out_of_core: PetscCall(step.separate()); break;
+    case StepForm::fused: PetscCall(step.fused()); break;
+    case StepForm::overlapped: PetscCall(step.overlapped()); break;
+    case StepForm::persistent: PetscCall(step.persistent(left)); break;
   }
-  if (left) --*left;
-  PetscCall(run(Function::reset, [&] { prepare_nodes(s); }));  // 1 initialise nodal variables
-  PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, queue); }));  // 2 rigid bodies to nodes
-  PetscCall(
-      run(Function::soil_to_nodes, [&] { failed = soil_to_nodes(s, ranks, queue); }));  // 3 soil to nodes
-  PetscCall(failed);
-  if (ranks) PetscCall(ranks->add_soil(s, queue));                       //   the sum over ranks
-  PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, queue); }));  // 4 velocities, walls, contact
-  if (apart) beside->join(s.space);
-  if (apart && moves_beside && !(ranks && ranks->forces_shared())) sum_forces(s, queue);
-  PetscCall(run(Function::particles,
-                [&] { failed = nodes_to_soil(s, dt, ranks, at_once); }));  // 5 stress, movement
-  PetscCall(failed);
-  if (at_once) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(run(Function::rigids, [&] {
-    failed = move_rigids(s, dt, ranks, moves_beside ? beside : nullptr);  // 6 move the rigid bodies
-  }));
-  PetscCall(failed);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -8,13 +8,6 @@
 
 namespace mpm {
 
-int model_index(const std::string& name) {
-  const auto models = material_models();
-  for (std::size_t k = 0; k < models.size(); ++k)
-    if (name == models[k]) return static_cast<int>(k);
-  return -1;
-}
-
 std::vector<Backend> available_backends() {
   return {
       Backend::serial,
@@ -35,6 +28,8 @@ const char* word_of(Backend backend) {
   }
 }
 
+const char* word_of(Precision precision) { return precision == Precision::single ? "single" : "double"; }
+
 std::unique_ptr<Stepper> make_stepper(const Config& config, MPI_Comm comm) {
 #define MPM_CHOOSE(Space, T, Dim)                                              \
   if (config.backend == backend_of<Space> && config.dim == Dim &&              \
@@ -43,17 +38,6 @@ std::unique_ptr<Stepper> make_stepper(const Config& config, MPI_Comm comm) {
   MPM_FOR_EACH(MPM_CHOOSE)
 #undef MPM_CHOOSE
   return nullptr;
-}
-
-double critical_time_step(const Config& config) {
-  double step = std::numeric_limits<double>::infinity();
-  for (const BodyConfig& body : config.bodies) {
-    const MaterialConfig& material = config.materials[body.material];
-    const double modulus =
-        wave_modulus(make_material<double>(model_index(material.model), material.parameters));
-    step = std::min(step, config.mesh.spacing / std::sqrt(modulus / material.density));
-  }
-  return step;
 }
 
 std::string kokkos_version() {
@@ -66,9 +50,16 @@ std::string device_name(Backend backend) {
   if (backend == Backend::cuda) return Kokkos::Cuda().cuda_device_prop().name;
 #endif
 #ifdef KOKKOS_ENABLE_OPENMP
-  if (backend == Backend::openmp) return std::to_string(Kokkos::OpenMP().concurrency()) + " threads";
+  if (backend == Backend::openmp) return std::to_string(thread_count(backend)) + " threads";
 #endif
   return backend == Backend::serial ? "1 thread" : "";
+}
+
+int thread_count([[maybe_unused]] Backend backend) {
+#ifdef KOKKOS_ENABLE_OPENMP
+  if (backend == Backend::openmp) return Kokkos::OpenMP().concurrency();
+#endif
+  return 1;
 }
 
 double copy_bandwidth(Backend backend) {

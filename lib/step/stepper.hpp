@@ -5,6 +5,7 @@
 #include <petscsys.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,14 +19,20 @@ namespace mpm {
 
 /// The particles of a body or rigid before the run.
 struct BodyParticles {
-  std::vector<double> position;        // m from the mesh's lower corner, dim components each
-  double spacing = 0;                  // m, between particles
-  double particle_volume = 0;          // m3
-  std::vector<double> velocity;        // m/s [dim N], or empty where the body's own holds for all
-  std::vector<double> stress;          // Pa [4 N in 2D, 6 N in 3D], likewise
-  std::vector<double> plastic_strain;  // - [N], or empty for none
-  long total = 0;                      // of all ranks; 0: those above
-  std::vector<int> id;                 // on several ranks: of each particle here, among those of all bodies
+  std::vector<double> position;              // m from the mesh's lower corner, dim components each
+  double spacing = 0;                        // m, between particles
+  double particle_volume = 0;                // m3
+  std::vector<double> velocity;              // m/s [dim N], or empty where the body's own holds for all
+  std::vector<double> stress;                // Pa [4 N in 2D, 6 N in 3D], likewise
+  std::vector<StateField> state;             // state variables that a file gives
+  std::vector<double> volume;                // m3 [N], or empty where particle_volume holds for all
+  std::vector<double> mass;                  // kg [N], or empty where particle_mass holds for all
+  double least_volume = 0, most_volume = 0;  // m3, of creation, of all ranks; 0: particle_volume
+  double particle_mass = 0;                  // kg; 0: density times particle_volume
+  double least_mass = 0;                     // kg, where the particles differ in mass, of all ranks; else 0
+  std::vector<double> reference_height;  // m, absolute, of creation [N]; or empty where they are just created
+  long total = 0;                        // of all ranks; 0: those above
+  std::vector<int> id;                   // on several ranks: of each particle here, among those of all bodies
   std::vector<double> velocity_gradient;  // m/s a cell [dim^2 N], where the neighbours may be on other ranks
 };
 
@@ -33,7 +40,8 @@ struct BodyParticles {
 struct Model {
   std::array<int, 3> patches{};  // with the ring outside the mesh
   std::vector<BodyParticles> bodies, rigids;
-  Owners owners;  // on several ranks: of each patch
+  Owners owners;          // on several ranks: of each patch
+  bool from_run = false;  // some particles are as another run left them: their stresses stay so at the start
 };
 
 /// Why the run cannot go on.
@@ -63,20 +71,23 @@ class Stepper {
   virtual ~Stepper() = default;
   /// Puts the particles on the device and orders them.
   virtual PetscErrorCode set_up(Model&& model, Failure* failure) = 0;
-  /// Does up to `steps` steps of dt [s], and fewer if a rebuild or a failure comes first, or if the device
-  /// turns out not to hold a launch of many.
-  virtual PetscErrorCode advance(long steps, double dt, Batch* batch) = 0;
+  /// Does up to `steps` steps of dt [s] from a time [s] on, and fewer if a rebuild or a failure comes first,
+  /// or if the device turns out not to hold a launch of many.
+  virtual PetscErrorCode advance(long steps, double time, double dt, Batch* batch) = 0;
   /// Bins, patches and lists anew.
   virtual PetscErrorCode rebuild(Failure* failure) = 0;
   /// Rows of the history; `interval` [s] is the time since the last call, over which the forces are a mean.
   virtual PetscErrorCode measure(double interval, HistoryRow* row) = 0;
+  /// Speed of the fastest wave in the soil as it is now [m/s].
+  virtual PetscErrorCode fastest_wave(double* speed) = 0;
   /// The frame; on several ranks each has a range of the particles of a body.
   virtual PetscErrorCode snapshot(Snapshot* snapshot) = 0;
   /// Rows of partition.csv, on rank 0: the patches that hold particles, with these and their rank.
   virtual PetscErrorCode ownership(std::vector<OwnedPatch>* patches) = 0;
-  /// What the log should tell of the rebuilds since the last call, and of the ranks at the end.
+  /// What the log should tell of the rebuilds since the last call.
   virtual std::string take_news() = 0;
-  virtual std::string ranks_report() const = 0;
+  /// None on one rank. Collective.
+  virtual std::optional<RankFigures> rank_figures() const = 0;
   /// All that this rank's part of the state is, between two steps, with no rebuild due.
   /// Collective.
   virtual PetscErrorCode save(SavedState* saved) const = 0;
@@ -99,13 +110,24 @@ std::unique_ptr<Stepper> make_stepper(const Config& config, MPI_Comm comm = PETS
 /// The backends compiled in, the slowest first.
 std::vector<Backend> available_backends();
 const char* word_of(Backend backend);
+const char* word_of(Precision precision);
 
-/// Largest stable step over the Courant number: spacing / fastest wave [s] (Eq. 14).
+/// Speed of the P wave in a body [m/s], where it is stiffest.
+double wave_speed(const Config& config, const BodyConfig& body);
+
+/// Largest stable step over the Courant number: spacing / fastest wave [s] (Eq. 14), of the soil as it is
+/// created, without stress.
 double critical_time_step(const Config& config);
+
+/// Whether the stiffness of some body depends on stress or state: its waves change their speed in the run.
+bool stiffness_changes(const Config& config);
 
 /// Version of Kokkos, and the name of the device that the backend runs on.
 std::string kokkos_version();
 std::string device_name(Backend backend);
+
+/// Threads of this process that run the backend's kernels; on a GPU the one that starts them.
+int thread_count(Backend backend);
 
 /// Bytes read and written per second by a copy on the device of a backend, measured now [bytes/s]; 0 if it
 /// cannot be.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "input/revolved.hpp"
+
 namespace mpm {
 namespace {
 
@@ -64,11 +66,66 @@ SurfaceInput polygon(const Shape& shape, const MeshConfig& mesh, int dim) {
   return out;
 }
 
+/// Radius [m] that corners of a convex polygon, anticlockwise, can be rounded by: half a cell, but no corner
+/// recedes by more than that, and no edge loses more than half its length.
+double rounding_of(const Polygon& polygon, double spacing) {
+  const double most = spacing / 2;
+  double radius = most;
+  const std::size_t count = polygon.size();
+  const auto half_turn = [&](std::size_t k) {  // at vertex k, rad
+    const Edge in = edge_of(polygon, (k + count - 1) % count), out = edge_of(polygon, k);
+    const double ax = in.to[0] - in.from[0], ay = in.to[1] - in.from[1], bx = out.to[0] - out.from[0],
+                 by = out.to[1] - out.from[1];
+    return std::atan2(ax * by - ay * bx, ax * bx + ay * by) / 2;
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t next = (k + 1) % count;
+    const double recedes = 1 / std::cos(half_turn(k)) - 1;
+    const double lost = std::tan(half_turn(k)) + std::tan(half_turn(next));
+    const double length = std::hypot(polygon[next][0] - polygon[k][0], polygon[next][1] - polygon[k][1]);
+    if (recedes > 1) radius = std::min(radius, most / recedes);
+    if (radius * lost > length / 2) radius = length / 2 / lost;
+  }
+  return radius;
+}
+
+/// Its edges moved inwards by a radius [m].
+Polygon made_smaller(const Polygon& polygon, double radius) {
+  const std::size_t count = polygon.size();
+  const auto inward = [&](std::size_t k) {
+    const Edge edge = edge_of(polygon, k);
+    const double x = edge.to[0] - edge.from[0], y = edge.to[1] - edge.from[1], length = std::hypot(x, y);
+    return Point2{-y / length, x / length};
+  };
+  Polygon smaller;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Point2 a = inward((k + count - 1) % count), b = inward(k);
+    const double share = radius / (1 + a[0] * b[0] + a[1] * b[1]);
+    smaller.push_back({polygon[k][0] + share * (a[0] + b[0]), polygon[k][1] + share * (a[1] + b[1])});
+  }
+  return smaller;
+}
+
+SurfaceInput revolved(const Shape& shape, const MeshConfig& mesh) {
+  SurfaceInput out;
+  out.kind = SurfaceKind::revolved;
+  const double slack = k_slack * mesh.spacing, beyond = mesh.upper[2] - mesh.lower[2];
+  const auto [low, high] = ends_of(shape);
+  const Polygon section =
+      section_of(shape, low < mesh.lower[2] + slack ? beyond : 0, high > mesh.upper[2] - slack ? beyond : 0);
+  out.radius = rounding_of(section, mesh.spacing);
+  for (const Point2& vertex : made_smaller(section, out.radius))
+    out.vertices.push_back({vertex[0], vertex[1] - shape.centre[2], false});
+  for (int d = 0; d < 3; ++d) out.centre[d] = shape.centre[d] - mesh.lower[d];
+  return out;
+}
+
 }  // namespace
 
 SurfaceInput surface_input(const Shape& shape, const MeshConfig& mesh, int dim) {
   if (shape.kind == ShapeKind::box) return box(shape, mesh, dim);
   if (shape.kind == ShapeKind::polygon) return polygon(shape, mesh, dim);
+  if (is_revolved(shape)) return revolved(shape, mesh);
   SurfaceInput out;
   out.kind = shape.kind == ShapeKind::disc ? SurfaceKind::disc : SurfaceKind::half_plane;
   const Vec3& centre = shape.kind == ShapeKind::disc ? shape.centre : shape.point;

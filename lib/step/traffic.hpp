@@ -12,7 +12,7 @@ namespace mpm {
 /// Bytes a particle of the fields that are sorted.
 template <class Points_>
 double bytes_of_point(Points_ points) {
-  double bytes = sizeof(*points.coordinate.data()) + sizeof(*points.cell.data()) + sizeof(*points.id.data());
+  double bytes = sizeof(*points.cell.data()) + sizeof(*points.id.data());
   for_each_field(points, [&](const auto& field) { bytes += sizeof(*field.data()); });
   return bytes;
 }
@@ -25,19 +25,24 @@ double bytes_to_nodes(const State<Space, T, Dim>& s) {
   double particle = sizeof(*p.coordinate.data()) + sizeof(*p.cell.data()) + sizeof(*p.body.data());
   particle += sizeof(*p.velocity.data()) + sizeof(*p.stress.data()) + sizeof(*p.volume.data());
   if (s.affine) particle += sizeof(*p.affine.data());
+  if (p.has_own_mass) particle += sizeof(*p.mass.data());
   return p.count * particle + s.patches.node_count() * double(sizeof(T) * SoilShare<Dim>::size);
 }
 
-/// Function 5: all that changes of a particle is read and written; cell, body and strength are read; the
+/// Function 5: what changes of a particle is read and written, the rest that the update looks at is read; the
 /// motion of each node. Each pass of XPIC reads places and takes and leaves a velocity, APIC's matrix is
 /// written.
 template <class Space, class T, int Dim>
 double bytes_to_particles(const State<Space, T, Dim>& s) {
-  const auto& p = s.soil.points;
+  auto p = s.soil.points;
+  double particle = sizeof(*p.cell.data()) + sizeof(*p.body.data());
+  for_each_field_of(
+      [&](const char* name, Use use, const auto& field) {
+        const bool counted = use == Use::none || std::string(name) == "body";  // above, of one body too
+        if (!counted) particle += (use == Use::changes ? 2 : 1) * sizeof(*field.data());
+      },
+      p);
   const double place = sizeof(*p.coordinate.data()) + sizeof(*p.cell.data()) + sizeof(*p.body.data());
-  double particle = place + sizeof(*p.coordinate.data()) + sizeof(*p.strength.data());
-  particle += 2 * (sizeof(*p.velocity.data()) + sizeof(*p.stress.data()));
-  particle += 2 * (sizeof(*p.volume.data()) + sizeof(*p.plastic_strain.data()));
   particle += s.xpic_order * (place + 2 * sizeof(*p.velocity.data()));
   if (s.affine) particle += sizeof(*p.affine.data());
   return p.count * particle + s.patches.node_count() * double(sizeof(T) * NodeMotion<Dim>::size);
@@ -55,7 +60,7 @@ double bytes_of(Function f, const State<Space, T, Dim>& s) {
   const double rigid_sums = s.rigid_points.size() * RigidShare<Dim>::size;
   const double sums = s.patches.node_count() * sizeof(T) * (SoilShare<Dim>::size + rigid_sums);
   const double soil_sums = s.patches.node_count() * double(sizeof(T) * SoilShare<Dim>::size);
-  const bool ahead = sums_ahead(s);  // then functions 1 and 3 are part of 4 and 5 of the step before
+  const bool ahead = s.plan.sums_ahead;  // then functions 1 and 3 are part of 4 and 5 of the step before
   switch (f) {
     case Function::reset: return ahead ? 0 : sums;
     case Function::rigid_to_nodes: return points * place;  // the few nodes that they reach are left out

@@ -1,6 +1,9 @@
 #include "step/typed_stepper.hpp"
+#include "input/shapes.hpp"
 #include "step/surface_input.hpp"
 #include "step/traffic.hpp"
+
+#include "parallel/together.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -11,10 +14,36 @@ namespace {
 // On a device functions are timed in step 20, 40, 80 ... of the run, later each thousand steps.
 constexpr long k_samples_apart = 1000;
 
-/// Absolute height of a particle [m]: the last direction is the vertical one.
+/// The reference heights of particles that are created now are their heights [m, absolute]; the last
+/// direction is the vertical one.
 template <int Dim>
-double height_of(const std::vector<double>& position, std::size_t p, const MeshConfig& mesh) {
-  return position[p * Dim + Dim - 1] + mesh.lower[Dim - 1];
+void note_heights(const MeshConfig& mesh, BodyParticles& particles) {
+  if (!particles.reference_height.empty()) return;
+  for (std::size_t p = 0; p < particles.position.size() / Dim; ++p)
+    particles.reference_height.push_back(particles.position[p * Dim + Dim - 1] + mesh.lower[Dim - 1]);
+}
+
+/// The state variables of the particles of a body [variable][particle]: those of their creation, but for
+/// those that a law changes and a file gives.
+template <int Dim>
+std::vector<std::vector<double>> start_state(const Config& config, const AnyMaterial<double>& law,
+                                             const BodyInput& in, BodyParticles& particles) {
+  const auto variables = state_variables(law.which);
+  const std::size_t count = in.position.size() / Dim;
+  std::vector<std::vector<double>> state(variables.size(), std::vector<double>(count));
+  ParticleStart start;
+  for (std::size_t p = 0; p < count && !variables.empty(); ++p) {
+    start.height = particles.reference_height[p];
+    for (int d = 0; d < Dim; ++d) start.position[d] = in.position[p * Dim + d] + config.mesh.lower[d];
+    for (int k = 0; k < sym_size<Dim> && !in.stress.empty(); ++k)
+      start.stress[k] = in.stress[p * sym_size<Dim> + k];
+    const auto values = initial_state(law, start);
+    for (std::size_t k = 0; k < values.size(); ++k) state[k][p] = values[k];
+  }
+  for (StateField& given : particles.state)
+    for (std::size_t k = 0; k < variables.size(); ++k)
+      if (variables[k].changes && given.name == variables[k].name) state[k] = std::move(given.values);
+  return state;
 }
 
 template <int Dim>
@@ -23,20 +52,20 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   const AnyMaterial<double> law = make_material<double>(model_index(material.model), material.parameters);
   BodyInput in;
   in.position = std::move(particles.position);
-  in.strength.resize(in.position.size() / Dim);
-  for (std::size_t p = 0; p < in.strength.size(); ++p)
-    in.strength[p] = strength_at(law, height_of<Dim>(in.position, p, config.mesh));
   in.particle_volume = particles.particle_volume;
   in.half_length = particles.spacing / config.mesh.spacing / 2;
   in.density = material.density;
   in.velocity = body.velocity;
   in.particle_velocity = std::move(particles.velocity);
-  in.plastic_strain = std::move(particles.plastic_strain);
+  in.volume = std::move(particles.volume), in.mass = std::move(particles.mass);
+  in.least_volume = particles.least_volume, in.most_volume = particles.most_volume;
+  in.particle_mass = particles.particle_mass, in.least_mass = particles.least_mass;
   in.stress = std::move(particles.stress);
   if (in.stress.empty() && body.stress != Sym6{})
-    for (std::size_t p = 0; p < in.strength.size(); ++p)
+    for (std::size_t p = 0; p < in.position.size() / Dim; ++p)
       in.stress.insert(in.stress.end(), body.stress.begin(), body.stress.begin() + sym_size<Dim>);
   in.material = body.material;
+  in.state = start_state<Dim>(config, law, in, particles);
   in.id = std::move(particles.id);
   in.velocity_gradient = std::move(particles.velocity_gradient);
   return in;
@@ -52,9 +81,12 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
   if (rigid.motion != Motion::fixed) in.velocity = rigid.velocity;
   const double mass = in.density * in.particle_volume * (in.position.size() / config.dim);
   for (int d = 0; d < 3; ++d) in.force[d] = rigid.force[d] + mass * config.gravity[d];
-  const bool only_friction = rigid.friction && !rigid.has_shear_limit;
+  const bool only_friction = rigid.friction && !rigid.has_shear_limit && !rigid.shear_share;
   in.shear_limit = only_friction ? std::numeric_limits<double>::infinity() : rigid.shear_limit;
+  in.shear_share = rigid.shear_share.value_or(-1);
   in.friction = rigid.friction.value_or(-1);
+  const Cuts cuts = cuts_of(rigid.shape, config.mesh, config.dim);
+  for (int d = 0; d < config.dim; ++d) in.held[d] = cuts[d][0] || cuts[d][1];
   in.surface = surface_input(rigid.shape, config.mesh, config.dim);
   in.surface_normal = rigid.contact_normal == ContactNormal::surface;
   in.separates = rigid.separates;
@@ -77,13 +109,15 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   GridInput grid{config_.mesh.spacing, config_.mesh.cells, model.patches, config_.mesh.walls};
   std::vector<MaterialInput> materials;
   for (const auto& m : config_.materials) materials.push_back({model_index(m.model), m.parameters});
-  std::vector<BodyInput> bodies;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+  for (BodyParticles& particles : model.bodies) {
     first_.push_back(total_);
-    const long here = static_cast<long>(model.bodies[b].position.size()) / Dim;
-    total_ += std::max(model.bodies[b].total, here);
-    bodies.push_back(body_input<Dim>(config_, config_.bodies[b], std::move(model.bodies[b])));
+    total_ += std::max(particles.total, static_cast<long>(particles.position.size()) / Dim);
+    note_heights<Dim>(config_.mesh, particles);
   }
+  PetscCall(keep_heights(model));
+  std::vector<BodyInput> bodies;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    bodies.push_back(body_input<Dim>(config_, config_.bodies[b], std::move(model.bodies[b])));
   std::vector<RigidInput> rigids;
   for (std::size_t r = 0; r < model.rigids.size(); ++r)
     rigids.push_back(rigid_input(config_, config_.rigids[r], std::move(model.rigids[r])));
@@ -96,8 +130,10 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.flip_share = config_.flip_share;
   if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;
   state_.affine = config_.velocity_update == VelocityUpdate::apic;
+  state_.strays.rule = config_.stray_particles;
   // On several ranks the pressure of a cell is averaged once all its particles are here.
   state_.f_bar_share = model.owners.empty() ? config_.f_bar_share : 0;
+  state_.keeps_stress = model.from_run;
   Fault fault{};
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
   *failure = fault.kind == FaultKind::none ? too_small() : describe(fault);
@@ -107,6 +143,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
     ranks_ = std::make_unique<Ranks<Space, T, Dim>>();
     PetscCallCXX(PetscCall(ranks_->start(comm_, config_.partition, model.owners, state_)));
   }
+  state_.keeps_stress = false;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -130,8 +167,9 @@ void TypedStepper<Space, T, Dim>::sample(bool on) {
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double dt, Batch* batch) {
+PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double time, double dt, Batch* batch) {
   PetscFunctionBeginUser;
+  state_.time = time;
   if (ranks_) {
     PetscCall(advance_together(steps, dt, batch));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,6 +213,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
   const auto work = [&] {
     locate(state_);
     control = look(state_);
+    if (control.lost > 0) note_lost(state_);
     if (control.fault_count == 0) sort_and_list(state_);
   };
   PetscCallCXX(PetscCall(timers_.run(Function::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
@@ -188,6 +227,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscFunctionBeginUser;
   collect_soil(state_);
   PetscCallCXX(*saved = save_state(state_));
+  PetscCall(save_for_starts(saved));
+  saved->particles = total_;
+  if (ranks_) PetscCall(gather_strays(saved));
   if (ranks_) PetscCall(ranks_->save(saved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -203,9 +245,12 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
                           rebuild_due(saved.bound, saved.increment, margin, GlobalBound::k_late);
   const bool near = !forced && (saved.margin > margin || unforeseen);
   *rebuilt = saved.bound > margin || near || (forced && since_rebuild >= *forced);
+  if (ranks_ && rank_of(comm_) > 0) std::fill(saved.lost.begin(), saved.lost.end(), 0);  // rank 0 has them
   Failure unfit;
   PetscCallCXX(unfit.what = take_saved(state_, saved));
-  if (sum_over_ranks(state_.soil.points.count) != total_ && unfit.what.empty())
+  double lost = 0;
+  for (const Lost& of_body : state_.strays.lost) lost += of_body.count;
+  if (sum_over_ranks(state_.soil.points.count + lost) != total_ && unfit.what.empty())
     unfit.what = "the number of particles";
   PetscCall(share(&unfit));
   PetscCheck(unfit.what.empty(), comm_, PETSC_ERR_ARG_SIZ,
@@ -266,11 +311,13 @@ Failure TypedStepper<Space, T, Dim>::describe(const Fault& fault) const {
   else
     std::snprintf(where, sizeof where, " at (%.9g, %.9g, %.9g) m ", x[0] + low[0], x[1] + low[1],
                   x[2] + low[2]);
-  const char* what = fault.kind == FaultKind::outside ? "is outside the mesh"
-                     : fault.kind == FaultKind::not_finite
-                         ? "has a position, velocity, stress or volume that is not finite"
-                     : fault.kind == FaultKind::inverted ? "has no volume left"
-                                                         : "moved more than a cell in one step";
+  const char* what =
+      fault.kind == FaultKind::outside      ? "is outside the mesh"
+      : fault.kind == FaultKind::not_finite ? "has a position, velocity, stress or volume that is not finite"
+      : fault.kind == FaultKind::volume
+          ? "has left 0.2 to 2 times its volume at the start (-stray_particles stop)"
+      : fault.kind == FaultKind::alone ? "is alone, with no other soil in reach (-stray_particles stop)"
+                                       : "moved more than a cell in one step";
   return {who + where + what};
 }
 

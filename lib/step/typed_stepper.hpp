@@ -2,21 +2,23 @@
 // The stepper for one execution space, real type and dimension.
 
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <string>
 
 #include "download.hpp"
 #include "download_nodes.hpp"
 #include "grid_velocity.hpp"
+#include "input/material_table.hpp"
 #include "measure.hpp"
+#include "parallel/kept_by_id.hpp"
 #include "save_state.hpp"
 #include "step/step.hpp"
 #include "step/stepper.hpp"
 #include "upload.hpp"
+#include "wall_force.hpp"
 
 namespace mpm {
-
-/// Index in Materials of a model by its name, -1 if unknown.
-int model_index(const std::string& name);
 
 template <class Space, class T, int Dim>
 class TypedStepper final : public Stepper {
@@ -24,13 +26,14 @@ class TypedStepper final : public Stepper {
   TypedStepper(const Config& config, MPI_Comm comm) : config_(config), comm_(comm) {}
 
   PetscErrorCode set_up(Model&& model, Failure* failure) override;
-  PetscErrorCode advance(long steps, double dt, Batch* batch) override;
+  PetscErrorCode advance(long steps, double time, double dt, Batch* batch) override;
   PetscErrorCode rebuild(Failure* failure) override;
   PetscErrorCode measure(double interval, HistoryRow* row) override;
+  PetscErrorCode fastest_wave(double* speed) override;
   PetscErrorCode snapshot(Snapshot* snapshot) override;
   PetscErrorCode ownership(std::vector<OwnedPatch>* patches) override;
   std::string take_news() override { return ranks_ ? ranks_->take_news() : ""; }
-  std::string ranks_report() const override;
+  std::optional<RankFigures> rank_figures() const override;
   PetscErrorCode save(SavedState* saved) const override;
   PetscErrorCode restore(SavedState&& saved, long since_rebuild, bool* rebuilt) override;
   std::vector<FunctionTime> times() const override;
@@ -51,7 +54,12 @@ class TypedStepper final : public Stepper {
   PetscErrorCode share(Failure* failure) const;
   PetscErrorCode sum_soil();
   PetscErrorCode measure_body(int body, BodyRow* row);
+  PetscErrorCode note_out_of_order(int body, BodyRow* row);
+  PetscErrorCode gather_strays(SavedState* saved) const;
   double sum_over_ranks(double own) const;
+  PetscErrorCode keep_heights(const Model& model);
+  /// What a start from a checkpoint needs and a restart has already.
+  PetscErrorCode save_for_starts(SavedState* saved) const;
   void sample(bool on);
   long until_sample() const;
 
@@ -62,9 +70,11 @@ class TypedStepper final : public Stepper {
   Beside<Space> beside_;
   Timers timers_;
   long steps_enqueued_ = 0, next_sample_ = 20;
-  double stepping_ = 0;      // s of wall time in advance
-  std::vector<long> first_;  // id of the first particle of each body
-  long total_ = 0;           // particles of all ranks
+  double stepping_ = 0;                                              // s of wall time in advance
+  double last_increment_ = std::numeric_limits<double>::infinity();  // cells, of all ranks, of the last batch
+  std::vector<long> first_;                                          // id of the first particle of each body
+  long total_ = 0;                                                   // particles of all ranks
+  KeptById heights_;  // m, absolute, where each particle was created
 };
 
 }  // namespace mpm

@@ -38,6 +38,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
     PetscCall(measure_body(b, &body));
     row->bodies.push_back(body);
   }
+  row->walls = wall_forces(state_);
+  if (ranks_)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, row->walls[0][0].data(), 18, MPI_DOUBLE, MPI_SUM, comm_));
   for (const Rigid<Dim>& r : take_rigids(state_)) {
     RigidRow rigid;
     double impulse[Dim];
@@ -55,12 +58,42 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
 }
 
 template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::fastest_wave(double* speed) {
+  PetscFunctionBeginUser;
+  collect_soil(state_);
+  *speed = mpm::fastest_wave(state_);
+  if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, speed, 1, MPI_DOUBLE, MPI_MAX, comm_));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The state variables of a body's particles [from, to) that frames have. Every body has a plastic strain
+/// there, so that pictures of all bodies may show it: zero where the law has none.
+std::vector<StateField> state_fields(const MaterialConfig& material, const SoilFields& soil, std::size_t from,
+                                     std::size_t to) {
+  std::vector<StateField> fields;
+  bool has_plastic_strain = false;
+  const auto variables = state_variables(model_index(material.model));
+  for (std::size_t k = 0; k < variables.size(); ++k) {
+    if (!variables[k].output) continue;
+    const auto& column = soil.history[k];
+    const auto begin = column.begin();
+    fields.push_back({variables[k].name, {begin + static_cast<long>(from), begin + static_cast<long>(to)}});
+    has_plastic_strain = has_plastic_strain || fields.back().name == "plastic_strain";
+  }
+  if (!has_plastic_strain) fields.push_back({"plastic_strain", std::vector<double>(to - from)});
+  return fields;
+}
+
+template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
   PetscFunctionBeginUser;
   collect_soil(state_);
   const SoilFields soil = download_soil(state_);
   PetscCall(sum_soil());
   const std::vector<double> grid_velocity = grid_velocities(state_);
+  std::vector<double> height;
+  PetscCall(heights_.look_up({soil.id.begin(), soil.id.end()}, &height));
+  out->dim = Dim;
   out->bodies.clear(), out->rigids.clear(), out->nodes.clear();
   for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
     const auto place_of = [&](long id) {
@@ -85,7 +118,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
         body.stress[6 * (p - from) + k] = soil.stress[p * sym_size<Dim> + k];
     }
     body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
-    body.plastic_strain.assign(soil.plastic_strain.begin() + from, soil.plastic_strain.begin() + to);
+    body.state = state_fields(config_.materials[config_.bodies[b].material], soil, from, to);
+    body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
+    body.reference_height.assign(height.begin() + from, height.begin() + to);
     if (ranks_)
       PetscCall(order_particles(comm_, (b + 1 < first_.size() ? first_[b + 1] : total_) - first_[b], &body));
     out->bodies.push_back(std::move(body));
@@ -108,6 +143,39 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     out->nodes = {node_snapshot<Dim>(download_nodes(state_), config_.mesh.lower)};
     if (ranks_) PetscCall(gather_nodes(comm_, &out->nodes[0]));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::keep_heights(const Model& model) {
+  PetscFunctionBeginUser;
+  std::vector<long> id;
+  std::vector<double> height;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const BodyParticles& body = model.bodies[b];
+    height.insert(height.end(), body.reference_height.begin(), body.reference_height.end());
+    for (long p = 0; p < static_cast<long>(body.reference_height.size()); ++p)
+      id.push_back(body.id.empty() ? first_[b] + p : body.id[p]);
+  }
+  PetscCall(heights_.keep(comm_, total_, id, height));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::save_for_starts(SavedState* saved) const {
+  PetscFunctionBeginUser;
+  SavedField height{"reference_height", 1, sizeof(double), {}};
+  PetscCall(heights_.look_up(saved->soil.id, &height.values));
+  const auto& soil = state_.soil.points;
+  if (!soil.has_own_mass) {  // else it is there
+    const auto bodies = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), soil.bodies);
+    SavedField mass{"mass", 1, sizeof(T), {}};
+    for (const SavedField& field : saved->soil.fields)
+      if (field.name == "body")
+        for (const double b : field.values) mass.values.push_back(bodies(static_cast<int>(b)).mass);
+    saved->soil.fields.push_back(std::move(mass));
+  }
+  saved->soil.fields.push_back(std::move(height));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,10 +221,13 @@ std::string TypedStepper<Space, T, Dim>::batches_report() const {
                           step / (step - update + kernels));
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                               \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::measure(double, HistoryRow*); \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot*);          \
-  template Failure TypedStepper<Space, T, Dim>::too_small() const;                   \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                     \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::measure(double, HistoryRow*);       \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::fastest_wave(double*);              \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot*);                \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::keep_heights(const Model&);         \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::save_for_starts(SavedState*) const; \
+  template Failure TypedStepper<Space, T, Dim>::too_small() const;                         \
   template std::string TypedStepper<Space, T, Dim>::batches_report() const;
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -30,13 +30,20 @@ std::size_t TypedStepper<Space, T, Dim>::memory() const {
 
 /// Steps until all are done, or until the ranks know, all at the same step, that lists must be rebuilt or
 /// that one of them cannot go on. What they know of each other is some steps old; a rank whose bound has
-/// passed the margin does no more steps, so that no particle is ever looked for where it is not.
+/// passed the margin does no more steps, so that no particle is ever looked for where it is not. Soil that is
+/// so fast that it may cross the margin in as many steps is looked at after each of them, and so is the first
+/// step of all.
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double dt, Batch* batch) {
   PetscFunctionBeginUser;
   const double start = WorkClock::wall(), margin = config_.p2g.margin;
   const int late =
       config_.p2g.rebuild_interval ? 0 : GlobalBound::k_late;  // a forced interval has no reserve
+  constexpr double k_growth = 2;  // of the speeds till the reports of a step are there
+  const auto is_swift = [&](double increment) {
+    return late > 0 && !(k_growth * (late + 1) * increment < margin);
+  };
+  if (is_swift(last_increment_)) steps = 1;
   restart_count(state_);
   ranks_->clock().go_on();
   long done = 0;
@@ -51,6 +58,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
     PetscCall(ranks_->look_back(&known, &all));
     const bool passed = late > 0 && known && rebuild_due(all.bound, all.increment, margin, late);
     due = ranks_->count_down() || passed || (known && all.stopped > 0);
+    if (known && is_swift(all.increment)) steps = done + 1;
   }
   beside_.join(state_.space);
   const Control own = look(state_);
@@ -58,6 +66,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
   const bool missed = own.steps != done;
   BoundReport now{own.bound, own.increment, own.fault_count > 0 || missed ? 1.0 : 0.0};
   PetscCall(GlobalBound::now(comm_, &now));
+  last_increment_ = now.increment;
   ranks_->clock().go_on();
   ranks_->clock().stop();
 
@@ -79,8 +88,10 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
           own.bound, margin);
     PetscCall(share(&batch->failure));
   }
-  // Where a batch ends must not matter, so what is known by now decides nothing but with a forced interval.
-  batch->rebuild = batch->failure.what.empty() && (late == 0 ? rebuild_due(now.bound, 0, margin, 0) : due);
+  // Where a batch ends must not matter, so what is known by now decides nothing but with a forced interval,
+  // and that the margin is passed: soil for which that can be is looked at after each step.
+  const bool beyond = rebuild_due(now.bound, 0, margin, 0);
+  batch->rebuild = batch->failure.what.empty() && (beyond || (late > 0 && due));
   batch->seconds = WorkClock::wall() - start;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &batch->seconds, 1, MPI_DOUBLE, MPI_MAX, comm_));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -97,6 +108,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure* failure) {
     const Control control = look(state_);
     *failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
     failed = share(failure);
+    if (control.lost > 0) note_lost(state_);
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = ranks_->rebuild(state_);
   };
   PetscCallCXX(PetscCall(timers_.run(Function::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
@@ -124,18 +136,24 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
     const auto reduce = [&](void* values, int count, MPI_Datatype type, MPI_Op op) {
       MPI_Allreduce(MPI_IN_PLACE, values, count, type, op, comm_);
     };
-    for (int d = 0; d < 3; ++d) m.centre[d] = m.count > 0 ? m.centre[d] * m.count : 0;
+    for (int d = 0; d < 3; ++d) m.centre[d] = m.count > 0 ? m.centre[d] * m.weight : 0;
     reduce(m.lower, 3, MPI_DOUBLE, MPI_MIN);
     reduce(m.upper, 3, MPI_DOUBLE, MPI_MAX);
     reduce(&m.kinetic_energy, 1, MPI_DOUBLE, MPI_SUM);
+    reduce(&m.stored_energy, 1, MPI_DOUBLE, MPI_SUM);
     reduce(m.momentum, 3, MPI_DOUBLE, MPI_SUM);
     reduce(m.centre, 3, MPI_DOUBLE, MPI_SUM);
-    reduce(&m.count, 1, MPI_LONG, MPI_SUM);
+    reduce(&m.mass, 1, MPI_DOUBLE, MPI_SUM);
+    reduce(&m.weight, 1, MPI_DOUBLE, MPI_SUM);
+    for (long* count : {&m.count, &m.alone, &m.limited}) reduce(count, 1, MPI_LONG, MPI_SUM);
     reduce(&speed, 1, MPI_DOUBLE, MPI_MAX);
-    for (int d = 0; d < 3; ++d) m.centre[d] /= m.count;
+    for (int d = 0; d < 3 && m.weight > 0; ++d) m.centre[d] /= m.weight;
     over.sum = [=](int* counts, int n) { reduce(counts, n, MPI_INT, MPI_SUM); };
     over.largest = [=](double* value) { reduce(value, 1, MPI_DOUBLE, MPI_MAX); };
   }
+  PetscCall(note_out_of_order(b, body));
+  body->mass = m.mass, body->strays = m.alone, body->limited = m.limited;
+  if (m.count == 0) PetscFunctionReturn(PETSC_SUCCESS);
   const long rank = m.count - m.count / 1000;  // of the 99.9 % quantile, the nearest one above
   const Vec3& origin = config_.mesh.lower;
   for (int d = 0; d < Dim; ++d) {
@@ -146,7 +164,40 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
     body->centre[d] = m.centre[d] + origin[d];
   }
   body->kinetic_energy = m.kinetic_energy;
+  body->stored_energy = m.stored_energy;
   body->grid_velocity = speed;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// What has left the run, and how many particles were put back on a wall.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::note_out_of_order(int b, BodyRow* body) {
+  PetscFunctionBeginUser;
+  const Lost& lost = state_.strays.lost[b];
+  const auto put_back = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.strays.put_back);
+  double sums[7] = {lost.mass,        lost.kinetic_energy, lost.momentum[0], lost.momentum[1],
+                    lost.momentum[2], double(put_back(b)), lost.count};
+  if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, comm_));
+  body->lost_mass = sums[0], body->lost_energy = sums[1];
+  for (int d = 0; d < 3; ++d) body->lost_momentum[d] = sums[2 + d];
+  body->put_back = static_cast<long>(sums[5]), body->lost_count = static_cast<long>(sums[6]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// What has left on all ranks, and all cells whose particles are alone, on every rank.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::gather_strays(SavedState* saved) const {
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, saved->lost.data(), static_cast<int>(saved->lost.size()),
+                             MPI_DOUBLE, MPI_SUM, comm_));
+  const char* const bytes = reinterpret_cast<const char*>(saved->alone.data());
+  std::vector<std::vector<char>> out(size_of(comm_), {bytes, bytes + saved->alone.size() * sizeof(long)});
+  std::vector<char> in;
+  PetscCall(exchange_records(comm_, sizeof(long), out, &in));
+  saved->alone.resize(in.size() / sizeof(long));
+  std::copy(in.begin(), in.end(), reinterpret_cast<char*>(saved->alone.data()));
+  std::sort(saved->alone.begin(), saved->alone.end());
+  saved->alone.erase(std::unique(saved->alone.begin(), saved->alone.end()), saved->alone.end());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,10 +225,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::ownership(std::vector<OwnedPatch>* p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Collective: a line for each figure, smallest and largest over the ranks.
 template <class Space, class T, int Dim>
-std::string TypedStepper<Space, T, Dim>::ranks_report() const {
-  if (!ranks_) return {};
+std::optional<RankFigures> TypedStepper<Space, T, Dim>::rank_figures() const {
+  if (!ranks_) return std::nullopt;
   const RankReport r = ranks_->report(state_);
   std::array<double, 8> low{r.work,       r.wait,         r.halo, r.particles,
                             r.neighbours, r.shared_nodes, r.sent, r.held},
@@ -186,20 +236,15 @@ std::string TypedStepper<Space, T, Dim>::ranks_report() const {
   MPI_Allreduce(MPI_IN_PLACE, high.data(), 8, MPI_DOUBLE, MPI_MAX, comm_);
   MPI_Allreduce(MPI_IN_PLACE, sum.data(), 8, MPI_DOUBLE, MPI_SUM, comm_);
   const int ranks = size_of(comm_);
-  const auto balance = [&](int k) { return sum[k] > 0 ? high[k] * ranks / sum[k] : 1.0; };
-  std::string text = formatted("%d ranks: %.0f to %.0f particles a rank, largest over mean %.3f\n", ranks,
-                               low[3], high[3], balance(3));
-  text += formatted("  halo of at most %.0f nodes with %.0f neighbours, %.1f kB sent a step, %s\n", high[5],
-                    high[4], high[6] / 1e3, ranks_->halo_words(state_).c_str());
-  if (high[0] > 0)
-    text += formatted(
-        "  compute %.3f to %.3f s a rank, largest over mean %.3f; halo (pack and sum) %.3f to %.3f s, wait "
-        "%.3f to "
-        "%.3f s\n",
-        low[0], high[0], balance(0), low[2], high[2], low[1], high[1]);
-  if (high[0] > 0 && is_device<Space> && ranks_->overlaps(state_))
-    text += formatted("  devices held up by the halo for %.3f to %.3f s of it\n", low[7], high[7]);
-  return text;
+  const auto spread = [&](int k) { return Spread{low[k], high[k], sum[k] / ranks}; };
+  RankFigures figures;
+  figures.ranks = ranks;
+  figures.compute = spread(0), figures.wait = spread(1), figures.halo = spread(2);
+  figures.particles = spread(3), figures.neighbours = spread(4), figures.halo_nodes = spread(5);
+  figures.sent = spread(6);
+  if (is_device<Space> && ranks_->overlaps(state_)) figures.held = spread(7);
+  figures.halo_path = ranks_->halo_words(state_);
+  return figures;
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                         \
@@ -210,8 +255,10 @@ std::string TypedStepper<Space, T, Dim>::ranks_report() const {
   template PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure*);             \
   template PetscErrorCode TypedStepper<Space, T, Dim>::sum_soil();                             \
   template PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int, BodyRow*);            \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::note_out_of_order(int, BodyRow*);       \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::gather_strays(SavedState*) const;       \
   template PetscErrorCode TypedStepper<Space, T, Dim>::ownership(std::vector<OwnedPatch>*);    \
-  template std::string TypedStepper<Space, T, Dim>::ranks_report() const;
+  template std::optional<RankFigures> TypedStepper<Space, T, Dim>::rank_figures() const;
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -41,6 +41,7 @@ Checkpoint some_checkpoint() {
                   {{"coordinate", 2, 8, {0, 0, .5, .5, 1, 1}},
                    {"body", 1, 2, {0, 1, 0}},
                    {"stress", 4, 8, std::vector<double>(12, 1)}}};
+  c.state.particles = 3, c.state.lost.assign(2 * k_lost, 0), c.state.alone = {387};
   c.state.rigids.resize(1);
   c.state.bounds = {1, 2, 3}, c.state.owners = {0, 1, 0};
   c.state.impulse = {{387}, {1}};
@@ -102,7 +103,7 @@ std::string read_file(const std::string& path) {
 void look_at(Checkpoint& c) {
   const Config config = some_config();
   (void)state_fault(c.state, config);
-  (void)contradictions(c, some_checkpoint().options, "FILE");
+  (void)compare_options(c, some_checkpoint().options, "FILE");
 }
 
 /// Reads the file as -restart does; what is wrong with it.

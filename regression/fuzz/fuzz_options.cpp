@@ -15,12 +15,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   fuzz::write_file(path, data, size);
   std::string words[] = {"mpm", "-options_file", path};
   char* arguments[] = {words[0].data(), words[1].data(), words[2].data(), nullptr};
+  char** left = arguments;
   int count = 3;
   InputReport report;
-  prepare_arguments(MPI_COMM_SELF, &count, arguments, report);
+  prepare_arguments(MPI_COMM_SELF, &count, &left, report);
   if (report.file_unread) return 0;
   if (PetscOptionsClear(nullptr) != PETSC_SUCCESS) __builtin_trap();
-  if (PetscOptionsInsertFile(PETSC_COMM_SELF, nullptr, path.c_str(), PETSC_FALSE) != PETSC_SUCCESS) return 0;
+  if (PetscOptionsInsertArgs(nullptr, count - 1, left + 1) != PETSC_SUCCESS) return 0;
   Config config;
   if (read_options(nullptr, {Backend::serial}, config, report) != PETSC_SUCCESS) __builtin_trap();
   for (const std::string& line : report.errors)

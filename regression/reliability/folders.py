@@ -117,7 +117,7 @@ def faults_of_folder(folder):
         elif path.name == "particles.xdmf":
             import xml.etree.ElementTree
             xml.etree.ElementTree.fromstring(path.read_text())
-        elif path.name == "options.json":
+        elif path.name in ("options.json", "performance.json"):
             import json
             json.loads(path.read_text())
         elif path.name == "history.csv":

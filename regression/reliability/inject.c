@@ -1,7 +1,7 @@
 /* Makes calls of the system fail, for tests; loaded by LD_PRELOAD.
  *
  *   INJECT_FOLDER   only files whose path begins so
- *   INJECT_CALL     write, fsync, rename or open
+ *   INJECT_CALL     write, fsync, rename or open; or malloc, of any folder and from INJECT_BYTES on
  *   INJECT_AFTER    so many calls succeed before all others fail
  *   INJECT_ERRNO    how: 28 no space left, 5 input/output error, 13 permission denied ...
  *   INJECT_PART     a write that fails has written this part of its bytes before, 0 to 1
@@ -35,6 +35,9 @@ static int of_ours(int descriptor) {
   return ours(path);
 }
 
+extern void* __libc_malloc(size_t);
+extern void* __libc_memalign(size_t, size_t);
+
 static ssize_t (*real_write(void))(int, const void*, size_t) {
   return (ssize_t(*)(int, const void*, size_t))dlsym(RTLD_NEXT, "write");
 }
@@ -55,6 +58,30 @@ static int fails(const char* call) {
   if (after == NULL || atomic_fetch_add(&calls, 1) < atol(after)) return 0;
   errno = how != NULL ? atoi(how) : ENOSPC;
   return 1;
+}
+
+/* Whether an allocation of this size is to fail. Reading the environment allocates nothing. */
+static int starved(size_t bytes) {
+  const char* least = getenv("INJECT_BYTES");
+  return least != NULL && bytes >= (size_t)atol(least) && fails("malloc");
+}
+
+void* malloc(size_t bytes) {
+  if (!starved(bytes)) return __libc_malloc(bytes);
+  errno = ENOMEM;
+  return NULL;
+}
+
+void* aligned_alloc(size_t alignment, size_t bytes) {
+  if (!starved(bytes)) return __libc_memalign(alignment, bytes);
+  errno = ENOMEM;
+  return NULL;
+}
+
+int posix_memalign(void** place, size_t alignment, size_t bytes) {
+  if (starved(bytes)) return ENOMEM;
+  *place = __libc_memalign(alignment, bytes);
+  return *place != NULL ? 0 : ENOMEM;
 }
 
 ssize_t write(int descriptor, const void* text, size_t bytes) {

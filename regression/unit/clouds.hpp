@@ -1,6 +1,7 @@
 #pragma once
 // Particles for tests, described once and put on every execution space, real type and dimension.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -128,10 +129,19 @@ std::vector<double> lattice(std::array<double, 3> low, std::array<double, 3> hig
   return position;
 }
 
+/// Undrained shear strength of each particle of a body of clay [Pa].
+inline std::vector<double>& strength_of(BodyInput& body) {
+  body.state.resize(state_size<VonMises<double>>);
+  return body.state[VonMises<double>::strength];
+}
+inline const std::vector<double>& strength_of(const BodyInput& body) {
+  return body.state[VonMises<double>::strength];
+}
+
 template <int Dim>
 BodyInput body_of(std::vector<double> position, int per_cell, double spacing, int material) {
   BodyInput body;
-  body.strength.assign(position.size() / Dim, 3000.0);
+  strength_of(body).assign(position.size() / Dim, 3000.0);
   body.position = std::move(position);
   body.particle_volume = std::pow(spacing / per_cell, Dim);
   body.half_length = 0.5 / per_cell;
@@ -174,12 +184,23 @@ BodyInput random_body(Dice& dice, std::array<int, 3> low, std::array<int, 3> hig
                 (cell[d] + (dice.below(4) == 0 ? special[dice.below(4)] : dice.uniform(0, 1))) * spacing);
       }
   BodyInput body = body_of<Dim>(std::move(position), per_cell, spacing, per_cell % 2);
-  for (double& strength : body.strength) strength = dice.uniform(1000, 3000);
+  for (double& strength : strength_of(body)) strength = dice.uniform(1000, 3000);
   for (std::size_t n = 0; n < body.position.size(); ++n)
     body.particle_velocity.push_back(dice.uniform(-1, 1));
-  for (std::size_t n = 0; n < body.strength.size() * sym_size<Dim>; ++n)
+  for (std::size_t n = 0; n < strength_of(body).size() * sym_size<Dim>; ++n)
     body.stress.push_back(dice.uniform(-3000, 3000));
   return body;
+}
+
+/// Gives each particle a mass of its own, at most this share above or below that of its body.
+inline void give_own_masses(Cloud& cloud, int seed, double spread) {
+  Dice dice{std::mt19937_64(seed)};
+  for (BodyInput& body : cloud.bodies) {
+    const double common = body.density * body.particle_volume;
+    for (std::size_t p = 0; p < strength_of(body).size(); ++p)
+      body.mass.push_back(common * (1 + spread * dice.uniform(-1, 1)));
+    body.least_mass = *std::min_element(body.mass.begin(), body.mass.end());
+  }
 }
 
 /// Bodies of 1 to 4 particles a cell edge: in the first and the last cells of the mesh, dense in the middle,

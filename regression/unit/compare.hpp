@@ -129,7 +129,11 @@ Table by_id(const Points_& points, const Field& field) {
 template <class Points_>
 std::vector<Table> carried_fields(Points_ points) {
   std::vector<Table> fields;
-  for_each_field(points, [&](const auto& field) { fields.push_back(by_id(points, field)); });
+  for_each_field_of(
+      [&](const char* name, Use, const auto& field) {
+        if (name != std::string("coordinate")) fields.push_back(by_id(points, field));
+      },
+      points);
   return fields;
 }
 

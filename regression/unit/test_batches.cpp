@@ -30,7 +30,7 @@ Cloud busy_cloud(int seed) {
     BodyInput& body = cloud.bodies.back();
     for (std::size_t n = 0; n < body.position.size(); ++n)
       body.particle_velocity.push_back(dice.uniform(-9, 9));
-    for (std::size_t n = 0; n < body.strength.size() * sym_size<Dim>; ++n)
+    for (std::size_t n = 0; n < strength_of(body).size() * sym_size<Dim>; ++n)
       body.stress.push_back(dice.uniform(-300, 300));
   }
   cloud.f_bar_share = 0.9;

@@ -6,7 +6,9 @@ usage: test_benchmark.py PATH_TO_mpm
 
 import importlib.machinery
 import importlib.util
+import json
 import pathlib
+import re
 import sys
 import tempfile
 import unittest
@@ -47,6 +49,35 @@ class Benchmark(unittest.TestCase):
             self.assertGreater(found["functions"]["soil particles to nodes"], 0)
             self.assertLessEqual(sum(found["functions"].values()), 1.1 * found["us"])
             self.assertGreater(found["copy"], found["moved"] / 10)
+
+    def test_performance_json(self):
+        """The figures are those of the log, to the digits that it has."""
+        options = "-options_file inputs/footing_coarse.opts -backend serial -p2g tile -time_max_steps 40 -p2g_rebuild_interval 7 "
+        with tempfile.TemporaryDirectory() as name:
+            told = runs.run(PROGRAM, options + runs.HISTORY, pathlib.Path(name) / "run")
+            log = (pathlib.Path(name) / "run" / "mpm.log").read_text()
+            version = json.loads((pathlib.Path(name) / "run" / "options.json").read_text())["version"]
+        self.assertEqual((told["program"], told["version"], told["outcome"]), ("mpm", version, "finished"))
+        self.assertEqual((told["dim"], told["precision"], told["backend"], told["strategy"]), (2, "double", "serial", "tile"))
+        self.assertEqual((told["ranks"], told["threads_per_rank"], told["first_step"], told["steps"]), (1, 1, 0, 40))
+        self.assertIn(f", {told['processor']}, {told['cores']} cores, 1 rank\n", log)
+        for each in told["functions"]:
+            row = f"  {each['name']:30} {each['calls']:9} {each['seconds']:11.3f} {100 * each['seconds'] / told['wall_seconds']:6.1f} %"
+            self.assertIn(row + (f" {each['bytes'] / 1e9:11.2f}" if each["bytes"] else ""), log)
+        self.assertEqual(len(re.findall(r" +\d+ +[\d.]+ +[\d.]+ %", log)), len(told["functions"]))
+        self.assertRegex(log, rf"wall time +{told['wall_seconds']:.3f} ")
+        rebuilds = [told["rebuilds"][name] for name in ("count", "shortest_interval_steps", "longest_interval_steps", "mean_interval_steps")]
+        self.assertIn("were rebuilt {} times, after {} to {} steps, {:.1f} on average\n".format(*rebuilds), log)
+        self.assertEqual(rebuilds, [5, 7, 7, 7])
+        self.assertIn(f"40 steps, looked at by the host {told['looks_of_host']} times\n", log)
+        self.assertIn(f"strategy tile; {told['memory_bytes'] / 1e6:.1f} MB on the device, "
+                      f"{told['memory_bytes'] / told['particles']:.1f} bytes a particle\n", log)
+        copy, moved = told["copy_bandwidth_bytes_per_second"], told["moved_bytes_per_second"]
+        self.assertIn(f"{told['device']}: a copy reads and writes {copy / 1e9:.1f} GB/s; the steps move {moved / 1e9:.1f} GB/s, "
+                      f"{100 * moved / copy:.1f} % of it\n", log)
+        self.assertIn(f"{1e6 * told['stepping_seconds'] / 40:.4g} us a step without output; "
+                      f"{told['particle_updates_per_second'] / 1e6:.1f} M/s particle updates\n", log)
+        self.assertIsNone(told["between_ranks"])
 
     def test_backends(self):
         self.assertIn("serial", runs.backends(PROGRAM))

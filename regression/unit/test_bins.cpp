@@ -77,7 +77,8 @@ std::string fault_of_patches(const State<Space, T, Dim>& s) {
   const int shortest = static_cast<int>(std::min_element(patches.c, patches.c + Dim) - patches.c);
   for (int slot = 0; slot < active; ++slot) {
     const int next = around(slot, Patch<Dim>::around / 2 + power(3, shortest));
-    if (next >= 0 && next != slot + 1) return "slots do not count the direction with the fewest patches first";
+    if (next >= 0 && next != slot + 1)
+      return "slots do not count the direction with the fewest patches first";
     bool needed = false;
     for (int k = 0; k < Patch<Dim>::around; ++k) {
       const int other = around(slot, k);
@@ -107,10 +108,11 @@ std::string fault_of(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void mark_by_id(const State<Space, T, Dim>& s) {
   const auto id = on_host(s.soil.points.id);
-  const auto plastic_strain = on_host(s.soil.points.plastic_strain), volume = on_host(s.soil.points.volume);
+  const auto& column = s.soil.points.history.column[VonMises<T>::plastic_strain];
+  const auto plastic_strain = on_host(column), volume = on_host(s.soil.points.volume);
   for (int p = 0; p < s.soil.points.count; ++p)
     plastic_strain(p) = id(p) + T(0.5), volume(p) = id(p) + T(0.25);
-  Kokkos::deep_copy(s.soil.points.plastic_strain, plastic_strain);
+  Kokkos::deep_copy(column, plastic_strain);
   Kokkos::deep_copy(s.soil.points.volume, volume);
 }
 
@@ -190,10 +192,10 @@ TEST_CASE("every field goes with its particle", "[bins]") {
     // The order after an upload is already not that of creation: compare with the input.
     std::size_t id = 0, wrong = 0;
     for (std::size_t b = 0; b < cloud.bodies.size(); ++b)
-      for (std::size_t p = 0; p < cloud.bodies[b].strength.size(); ++p, ++id) {
+      for (std::size_t p = 0; p < strength_of(cloud.bodies[b]).size(); ++p, ++id) {
         wrong +=
             soil[0].value[id * B::dim] != typename B::real(cloud.bodies[b].particle_velocity[p * B::dim]);
-        wrong += soil[4].value[id] != typename B::real(cloud.bodies[b].strength[p]);
+        wrong += soil[4].value[id] != typename B::real(strength_of(cloud.bodies[b])[p]);
         wrong += soil[5].value[id] != double(b);
       }
     CHECK(wrong == 0);
@@ -299,7 +301,7 @@ TEST_CASE("the memory of a state is what particles and nodes take, to a tenth", 
     cloud.bodies = {body_of<Dim>(lattice<Dim>({0, 0, 0}, end, 2, 0.1), 2, 0.1, 1)};
     const auto s = state_of<B>(cloud, P2G::tile);
     const double cells = power(double(edge), Dim);
-    const double a_cell = Footprint<T, Dim>::particle * power(2, Dim) + Footprint<T, Dim>::node +
+    const double a_cell = Footprint<T, Dim>::particle(2) * power(2, Dim) + Footprint<T, Dim>::node +
                           (has_windows(s.space) ? Footprint<T, Dim>::window : 0);
     const double expected = a_cell * cells;
     INFO(build.name());

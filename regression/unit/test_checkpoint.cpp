@@ -81,10 +81,13 @@ Checkpoint some_checkpoint() {
                {},
                12,
                {}};
-  c.run = {1234, 0.1 + 0.2, 1e-4, 0.3, 17.5, 16.5, 3, 4, 5, 6};
+  c.run = {1234, 0.1 + 0.2, 1e-4, 1220, 0.1 + 0.19, 0.3, 17.5, 16.5, 3, 4, 5, 6};
   c.history = {4096, 0xdeadbeef};
   c.state.bound = 0.1, c.state.increment = 1.0 / 3, c.state.margin = 0.25, c.state.due_in = 2;
   c.state.soil = some_points(k_soil);
+  c.state.particles = k_soil;
+  c.state.lost = {0, 1.5, 2.5, 3, 4, 5, 6};
+  c.state.alone_known = 1, c.state.alone = {17, 23};
   c.state.rigids = {{{1, 2, 0}, {3, 4, 0}, {5, 6, 0}, {7, 8, 0}},
                     {{-1, -2, 0}, {-3, -4, 0}, {-5, -6, 0}, {-7, -8, 0}}};
   c.state.bounds = {0.25, 0.5, 0.75}, c.state.owners = {0, 2, 1, 0};
@@ -161,11 +164,48 @@ TEST_CASE("a checkpoint reads as it was written, whichever rank had which point"
   REQUIRE(read.state.rigids.size() == 2);
   CHECK((read.state.rigids[0].velocity[1] == 4 && read.state.rigids[1].impulse[0] == -5));
   CHECK(read.state.rigids[1].binned[1] == -8);
+  CHECK((read.state.particles == k_soil && read.state.lost == wanted.state.lost));
+  CHECK((read.state.alone_known == 1 && read.state.alone == wanted.state.alone));
   CHECK(read.state.bounds == std::vector<double>{0.25, 0.5, 0.75});
   CHECK(read.state.owners == std::vector<long>{0, 2, 1, 0});
   CHECK(read.state.impulse.address == std::vector<long>{5, 7});
   CHECK(read.state.impulse.values == std::vector<double>{50, 51, 70, 71});
   CHECK(!fs::exists(path + ".tmp"));
+}
+
+TEST_CASE("a checkpoint tells which particles have left the run", "[checkpoint]") {
+  const std::string path = folder_of("lost") + "/checkpoint_1.h5";
+  const auto has_left = [](long id) { return id % 10 == 3 || id == k_soil - 1; };
+  Checkpoint c = some_checkpoint();
+  SavedPoints& soil = c.state.soil;
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < soil.id.size(); ++p) {
+    if (has_left(soil.id[p])) continue;
+    soil.id[kept] = soil.id[p], soil.address[kept] = soil.address[p];
+    for (SavedField& field : soil.fields)
+      for (int k = 0; k < field.components; ++k)
+        field.values[kept * field.components + k] = field.values[p * field.components + k];
+    ++kept;
+  }
+  soil.id.resize(kept), soil.address.resize(kept);
+  for (SavedField& field : soil.fields) field.values.resize(kept * field.components);
+  for (long id = 0; id < k_soil; ++id) c.state.lost[0] += has_left(id);
+  REQUIRE(write_checkpoint(PETSC_COMM_WORLD, path, std::move(c)) == PETSC_SUCCESS);
+  Checkpoint read;
+  std::string fault;
+  REQUIRE(read_checkpoint(PETSC_COMM_WORLD, path, read, &fault) == PETSC_SUCCESS);
+  REQUIRE(fault.empty());
+  const IdBlock block = block_of(k_soil, rank_of_this(), ranks_of_all());
+  std::size_t p = 0;
+  for (long id = block.first; id < block.first + block.count; ++id) {
+    if (has_left(id)) continue;
+    REQUIRE(p < read.state.soil.id.size());
+    CHECK((read.state.soil.id[p] == id && read.state.soil.address[p] == 1000 + 3 * id));
+    for (const SavedField& field : read.state.soil.fields)
+      CHECK(field.values.size() == field.components * read.state.soil.id.size());
+    ++p;
+  }
+  CHECK(p == read.state.soil.id.size());
 }
 
 TEST_CASE("a checkpoint in which anything changed is refused", "[checkpoint]") {
@@ -204,7 +244,7 @@ TEST_CASE("only what contradicts the state is refused at a restart", "[checkpoin
                {"-backend", "serial", "", true},
                {"-plate_friction", "0.3", "-", false}};
   const auto refused = [&](std::vector<EffectiveOption> now) {
-    return contradictions(c, now, "FILE").size();
+    return compare_options(c, now, "FILE").lines.size();
   };
   CHECK(refused(c.options) == 0);
   auto same = c.options;
@@ -218,10 +258,54 @@ TEST_CASE("only what contradicts the state is refused at a restart", "[checkpoin
   wrong[0].value = "0,-9", wrong[2].value = "0.1";
   wrong.pop_back();
   wrong.push_back({"-stone_shape", "disc", "", false});
-  const auto lines = contradictions(c, wrong, "FILE");
+  const auto lines = compare_options(c, wrong, "FILE").lines;
   REQUIRE(lines.size() == 4);
   CHECK(lines[0].starts_with("mpm: -gravity: given \"0,-9\", takes \"0,-10\""));
   CHECK(lines[3].find("-plate_friction") != std::string::npos);
+}
+
+TEST_CASE("a load changes at a restart where it is named, and is told", "[checkpoint]") {
+  Config config;
+  config.rigids.resize(2);
+  config.rigids[0].name = "plate", config.rigids[1].name = "pile";
+  config.rigids[0].motion = Motion::prescribed, config.rigids[0].velocity = {0, -2, 0};
+  config.rigids[1].motion = Motion::dynamic, config.rigids[1].velocity = {7, 0, 0};
+  Checkpoint c;
+  c.options = {{"-gravity", "0,-10", "m/s2", false},
+               {"-mesh_xmin", "roller", "", true},
+               {"-plate_velocity", "0,-1", "m/s", false},
+               {"-pile_force", "5,0", "N", false},
+               {"-mesh_spacing", "0.1", "m", false}};
+  auto now = c.options;
+  now[0].value = "0,-5", now[1] = {"-mesh_xmin", "fixed", "", false}, now[2].value = "0,-2";
+  now.erase(now.begin() + 3);
+  now.push_back({"-pile_density", "3", "kg/m3", false});
+  CHECK(compare_options(c, now, "FILE").lines.size() == 5);
+  CHECK(compare_options(c, now, "FILE", {"GRAVITY", "plate_velocity"}).lines.size() == 3);
+  const std::vector<std::string> all = {"gravity", "mesh_xmin", "plate_velocity", "pile_force",
+                                        "pile_density"};
+  const Comparison found = compare_options(c, now, "FILE", all);
+  CHECK(found.lines.empty());
+  REQUIRE(found.changes.size() == 5);
+  CHECK((found.changes[0].name == "-gravity" && found.changes[0].before == "0,-10" &&
+         found.changes[0].after == "0,-5"));
+  CHECK((found.changes[3].name == "-pile_density" && found.changes[3].before == "none"));
+  CHECK((found.changes[4].name == "-pile_force" && found.changes[4].after == "none"));
+
+  SavedState state;
+  state.rigids.resize(2);
+  state.rigids[0].velocity = {0, -1, 0}, state.rigids[1].velocity = {0.5, 0, 0};
+  apply_changes(found.changes, config, state);
+  CHECK(state.rigids[0].velocity == std::array<double, 3>{0, -2, 0});
+  CHECK(state.rigids[1].velocity == std::array<double, 3>{0.5, 0, 0});  // its force changed, no more
+  config.rigids[1].motion = Motion::fixed;
+  apply_changes({{"-pile_motion", "dynamic", "fixed"}}, config, state);
+  CHECK(state.rigids[1].velocity == std::array<double, 3>{});
+
+  for (const std::string& name : all) CHECK(is_load(name, config));
+  for (const char* name :
+       {"mesh_spacing", "mesh_zmin", "plate_shape", "stone_velocity", "time_step", "gravit"})
+    CHECK(!is_load(name, config));
 }
 
 TEST_CASE("the last two checkpoints are kept, and what is later goes at a restart", "[checkpoint]") {
@@ -231,16 +315,22 @@ TEST_CASE("the last two checkpoints are kept, and what is later goes at a restar
   for (const char* name :
        {"checkpoint_9.h5", "checkpoint_100.h5", "checkpoint_20.h5", "checkpoint_x.h5", "checkpoint_1",
         "checkpoint_300.h5.tmp", "frames/frame_00001.h5", "frames/frame_00007.h5", "frames/mine.h5"})
-    write_text(folder + "/" + name, "text");
-  CHECK(checkpoint_steps(folder) == std::vector<long>{9, 20, 100});
-  REQUIRE(keep_last_checkpoints(folder) == PETSC_SUCCESS);
-  CHECK(checkpoint_steps(folder) == std::vector<long>{20, 100});
+    write_text(folder + "/" + name, "\x89HDF\r\n\x1a\n cut short");
+  for (const char* name : {"checkpoint_8.h5", "checkpoint_500.h5", "frames/frame_00009.h5"})
+    write_text(folder + "/" + name, "of another program");
+  CHECK(checkpoint_steps(folder) == std::vector<long>{8, 9, 20, 100, 500});
   int removed = 0;
-  REQUIRE(go_back_to(folder, 20, 7, &removed) == PETSC_SUCCESS);
+  REQUIRE(remove_unfinished(folder, &removed) == PETSC_SUCCESS);
+  CHECK((removed == 1 && !fs::exists(folder + "/checkpoint_300.h5.tmp")));
+  REQUIRE(keep_last_checkpoints(folder) == PETSC_SUCCESS);
+  CHECK(checkpoint_steps(folder) == std::vector<long>{8, 100, 500});
+  REQUIRE(remove_later_checkpoints(folder, 20, &removed) == PETSC_SUCCESS);
+  CHECK((removed == 2 && checkpoint_steps(folder) == std::vector<long>{8, 500}));
+  REQUIRE(remove_later_frames(folder, 7, &removed) == PETSC_SUCCESS);
   CHECK(removed == 3);
-  CHECK(checkpoint_steps(folder) == std::vector<long>{20});
   CHECK((fs::exists(folder + "/checkpoint_x.h5") && fs::exists(folder + "/frames/frame_00001.h5")));
   CHECK((fs::exists(folder + "/frames/mine.h5") && !fs::exists(folder + "/frames/frame_00007.h5")));
+  CHECK(fs::exists(folder + "/frames/frame_00009.h5"));
 }
 
 TEST_CASE("a state that no kernel could take is refused", "[checkpoint]") {
@@ -250,8 +340,13 @@ TEST_CASE("a state that no kernel could take is refused", "[checkpoint]") {
   config.rigids.resize(1);
   SavedState sound;
   sound.rigids.resize(1);
+  sound.lost.resize(config.bodies.size() * k_lost);
   sound.soil.address = {(1 + 5) * 64 + 3};  // the first patch of the mesh: 5 patches a row with the ring
-  sound.soil.fields = {{"coordinate", 2, 8, {0.25, 1.2}}, {"body", 1, 2, {1}}};
+  sound.soil.fields = {{"coordinate", 2, 8, {0.25, 1.2}},
+                       {"body", 1, 2, {1}},
+                       {"velocity", 2, 8, {3, -4}},
+                       {"stress", 4, 8, {-1, -2, -3, 4}},
+                       {"volume", 1, 8, {0.1}}};
   REQUIRE(state_fault(sound, config).empty());
   const auto refused = [&](auto&& change) {
     SavedState state = sound;
@@ -265,6 +360,11 @@ TEST_CASE("a state that no kernel could take is refused", "[checkpoint]") {
   CHECK(refused([](SavedState& s) { s.soil.fields[0].values[1] = 3; }));
   CHECK(refused([](SavedState& s) { s.soil.fields[1].values[0] = 2; }));
   CHECK(refused([](SavedState& s) { s.soil.fields[1].values[0] = -1; }));
+  CHECK(refused([](SavedState& s) { s.soil.fields[4].values[0] = 0; }));
+  for (int n = 0; n < 5; ++n) {
+    CHECK(refused([n](SavedState& s) { s.soil.fields.erase(s.soil.fields.begin() + n); }));
+    CHECK(refused([n](SavedState& s) { ++s.soil.fields[n].components; }));
+  }
   CHECK(refused([](SavedState& s) { s.bound = 0.7; }));
   CHECK(refused([](SavedState& s) { s.rigids[0].velocity[0] = HUGE_VAL; }));
   CHECK(refused([](SavedState& s) { s.rigids.clear(); }));

@@ -49,46 +49,61 @@ std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
   using T = typename B::real;
   constexpr int Dim = B::dim;
   using M = NodeMotion<Dim>;
-  const auto& soil = s.soil.points;
+  auto soil = s.soil.points;
+  for (int k = 0; k < soil.history.columns; ++k) {  // of its own
+    const auto column = soil.history.column[k];
+    soil.history.column[k] = Kokkos::View<T*, typename B::Space::memory_space>("test", column.extent(0));
+    Kokkos::deep_copy(soil.history.column[k], column);
+  }
+  const NodePlaces places(s.grid, s.patches);
   const T inv = s.grid.inv_spacing;
-  const UpdateScalars<T> by{T(dt), inv, T(s.flip_share), T(1 - s.flip_share), T(s.f_bar_share)};
+  const UpdateScalars<T> by{T(dt),
+                            inv,
+                            T(s.flip_share),
+                            T(1 - s.flip_share),
+                            T(s.f_bar_share),
+                            T(s.strays.least_volume),
+                            T(s.strays.most_volume),
+                            false};
   std::vector<Taken<T, Dim>> taken(soil.count);
   std::vector<double> volume(s.patches.node_count()), sum = volume;
   for (int p = 0; p < soil.count; ++p) {
     Taken<T, Dim>& t = taken[p] = {};
-    for_each_node(soil, soil.bodies(soil.body(p)).half_length, s.patches.around, p,
-                  [&](int i, T w, const Vector<T, Dim>& grad, auto&&) {
-                    for (int k = 0; k < M::size; ++k) t.motion[k] += w * s.nodes.motion(i, k);
-                    for (int d = 0; d < Dim; ++d)
-                      for (int e = 0; e < Dim; ++e)
-                        t.gradient[d][e] += s.nodes.motion(i, M::velocity + d) * grad[e] * inv;
-                  });
+    for_each_node<Kind::motion>(soil, soil.bodies(soil.body(p)).half_length, places, p,
+                                [&](int i, T w, const Vector<T, Dim>& grad, auto&&, auto&& sign) {
+                                  T v[M::size];
+                                  for (int k = 0; k < M::size; ++k)
+                                    v[k] = sign(k % Dim) * s.nodes.motion(i, k);
+                                  for (int k = 0; k < M::size; ++k) t.motion[k] += w * v[k];
+                                  for (int d = 0; d < Dim; ++d)
+                                    for (int e = 0; e < Dim; ++e)
+                                      t.gradient[d][e] += v[M::velocity + d] * grad[e] * inv;
+                                });
     volume[soil.cell(p)] += soil.volume(p);
     for (int d = 0; d < Dim; ++d) sum[soil.cell(p)] += soil.volume(p) * t.gradient[d][d];
   }
   std::vector<Table> fields{{Dim, {}}, {Dim, {}}, {sym_size<Dim>, {}}, {1, {}}, {1, {}}};
   for (auto& field : fields) field.value.resize(std::size_t(field.width) * soil.count);
   for (int p = 0; p < soil.count; ++p) {
-    Particle<T, Dim> q{soil.coordinate(p),
-                       soil.velocity(p),
-                       soil.volume(p),
-                       {soil.stress(p), soil.plastic_strain(p), soil.strength(p)}};
+    Particle<T, Dim> q{soil.coordinate(p), soil.velocity(p), soil.stress(p), soil.volume(p)};
+    const ParticleLaw law{soil, p, soil.bodies(soil.body(p)).material, -1, false};
     const T mean = static_cast<T>(sum[soil.cell(p)] / volume[soil.cell(p)]);
-    advance(q, soil.materials(soil.bodies(soil.body(p)).material), taken[p], mean, by);
+    advance(q, law, taken[p], mean, by);
     const int id = soil.id(p);
     for (int d = 0; d < Dim; ++d) fields[0].value[id * Dim + d] = q.x[d];
     for (int d = 0; d < Dim; ++d) fields[1].value[id * Dim + d] = q.v[d];
-    for (int k = 0; k < sym_size<Dim>; ++k) fields[2].value[id * sym_size<Dim> + k] = q.material.stress[k];
+    for (int k = 0; k < sym_size<Dim>; ++k) fields[2].value[id * sym_size<Dim> + k] = q.stress[k];
     fields[3].value[id] = q.volume;
-    fields[4].value[id] = q.material.plastic_strain;
+    fields[4].value[id] = soil.history.column[VonMises<T>::plastic_strain](p);
   }
   return fields;
 }
 template <class B>
 std::vector<Table> moved_fields(const StateOf<B>& s) {
   const auto& soil = s.soil.points;
+  constexpr int plastic_strain = VonMises<typename B::real>::plastic_strain;
   return {by_id(soil, soil.coordinate), by_id(soil, soil.velocity), by_id(soil, soil.stress),
-          by_id(soil, soil.volume), by_id(soil, soil.plastic_strain)};
+          by_id(soil, soil.volume), by_id(soil, soil.history.column[plastic_strain])};
 }
 
 /// A random cloud, of which one cell holds more particles than any stage, of two bodies, and others are
@@ -254,7 +269,7 @@ TEST_CASE("a particle among many is named when it is wrong", "[lanes]") {
     cloud.materials = clays();
     cloud.bodies = {body_of<Dim>(lattice<Dim>({2, 2, 2}, {7, 5, 5}, 3, 0.1), 3, 0.1, 1)};
     const int wrong = 41;
-    cloud.bodies[0].stress.assign(cloud.bodies[0].strength.size() * sym_size<Dim>, 0.0);
+    cloud.bodies[0].stress.assign(strength_of(cloud.bodies[0]).size() * sym_size<Dim>, 0.0);
     cloud.bodies[0].stress[wrong * sym_size<Dim>] = std::numeric_limits<double>::infinity();
     auto s = state_of<B>(cloud);
     reset_nodes(s);

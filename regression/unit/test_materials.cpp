@@ -18,15 +18,42 @@ AnyMaterial<double> clay() { return make_material<double>(1, {k_young, k_poisson
 
 /// One step of a path of strain.
 template <class T, int Dim>
-struct Increment {
+struct PathStep {
   SymTensor<T, Dim> strain;
   Spin<T, Dim> spin;
 };
 
+/// Stress and state at a point; the state is that of clay.
+template <class T, int Dim>
+struct PointState {
+  SymTensor<T, Dim> stress;
+  T plastic_strain, strength;
+};
+
+/// Calls f(law, state) with the law of a material and its state at a point.
+template <class T, int Dim, class F>
+KOKKOS_INLINE_FUNCTION void with_state(const AnyMaterial<T>& material, PointState<T, Dim>& point,
+                                       const F& f) {
+  material.visit([&](const auto& law) {
+    LawState<T, state_size<std::decay_t<decltype(law)>>> state{};
+    T* const values[] = {&point.plastic_strain, &point.strength};
+    for (int k = 0; k < state.size; ++k) state[k] = *values[k];
+    f(law, state);
+    for (int k = 0; k < state.size; ++k) *values[k] = state[k];
+  });
+}
+
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void follow_step(const AnyMaterial<T>& material, PointState<T, Dim>& point,
+                                        const PathStep<T, Dim>& step) {
+  const Increment<T, T, Dim> by{step.strain, step.spin, {}, T(1), T(0)};
+  with_state(material, point, [&](const auto& law, auto& state) { law.update(point.stress, state, by); });
+}
+
 /// From a velocity gradient times dt.
 template <int Dim>
-Increment<double, Dim> increment_of(const double (&L)[Dim][Dim]) {
-  Increment<double, Dim> step{};
+PathStep<double, Dim> increment_of(const double (&L)[Dim][Dim]) {
+  PathStep<double, Dim> step{};
   for (int i = 0; i < Dim; ++i)
     for (int j = i; j < Dim; ++j) step.strain[sym_index<Dim>(i, j)] = (L[i][j] + L[j][i]) / 2;
   step.spin.c[0] = (L[0][1] - L[1][0]) / 2;
@@ -36,11 +63,11 @@ Increment<double, Dim> increment_of(const double (&L)[Dim][Dim]) {
 
 /// States after each step of a path.
 template <class T, int Dim>
-std::vector<MaterialState<T, Dim>> follow(const AnyMaterial<T>& material, MaterialState<T, Dim> state,
-                                          const std::vector<Increment<T, Dim>>& path) {
-  std::vector<MaterialState<T, Dim>> states;
+std::vector<PointState<T, Dim>> follow(const AnyMaterial<T>& material, PointState<T, Dim> state,
+                                       const std::vector<PathStep<T, Dim>>& path) {
+  std::vector<PointState<T, Dim>> states;
   for (const auto& step : path) {
-    material.visit([&](const auto& law) { law.update(state, step.strain, step.spin, T(1)); });
+    follow_step(material, state, step);
     states.push_back(state);
   }
   return states;
@@ -48,12 +75,12 @@ std::vector<MaterialState<T, Dim>> follow(const AnyMaterial<T>& material, Materi
 
 /// n equal steps of one velocity gradient; the last state.
 template <int Dim>
-MaterialState<double, Dim> after(const AnyMaterial<double>& material, const SymTensor<double, Dim>& stress,
-                                 const double (&total)[Dim][Dim], int n) {
+PointState<double, Dim> after(const AnyMaterial<double>& material, const SymTensor<double, Dim>& stress,
+                              const double (&total)[Dim][Dim], int n) {
   double L[Dim][Dim];
   for (int i = 0; i < Dim; ++i)
     for (int j = 0; j < Dim; ++j) L[i][j] = total[i][j] / n;
-  const std::vector<Increment<double, Dim>> path(n, increment_of<Dim>(L));
+  const std::vector<PathStep<double, Dim>> path(n, increment_of<Dim>(L));
   return follow<double, Dim>(material, {stress, 0, k_su}, path).back();
 }
 
@@ -68,19 +95,18 @@ double second_invariant(const SymTensor<T, Dim>& s) {
 
 /// The last state of a path that is followed on Space.
 template <class Space, class T, int Dim>
-MaterialState<T, Dim> last_on(const AnyMaterial<T>& material, const std::vector<Increment<T, Dim>>& path,
-                              T strength) {
+PointState<T, Dim> last_on(const AnyMaterial<T>& material, const std::vector<PathStep<T, Dim>>& path,
+                           T strength) {
   using Memory = typename Space::memory_space;
-  const Kokkos::View<Increment<T, Dim>*, Memory> steps("test", path.size());
-  const Kokkos::View<const Increment<T, Dim>*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(path.data(),
-                                                                                                path.size());
+  const Kokkos::View<PathStep<T, Dim>*, Memory> steps("test", path.size());
+  const Kokkos::View<const PathStep<T, Dim>*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(path.data(),
+                                                                                               path.size());
   Kokkos::deep_copy(steps, host);
-  const Kokkos::View<MaterialState<T, Dim>, Memory> out("test");
+  const Kokkos::View<PointState<T, Dim>, Memory> out("test");
   Kokkos::parallel_for(
       "test::path", Kokkos::RangePolicy<Space>(0, 1), KOKKOS_LAMBDA(int) {
-        MaterialState<T, Dim> state{{}, 0, strength};
-        for (std::size_t n = 0; n < steps.extent(0); ++n)
-          material.visit([&](const auto& law) { law.update(state, steps(n).strain, steps(n).spin, T(1)); });
+        PointState<T, Dim> state{{}, 0, strength};
+        for (std::size_t n = 0; n < steps.extent(0); ++n) follow_step(material, state, steps(n));
         out() = state;
       });
   return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), out)();
@@ -88,9 +114,9 @@ MaterialState<T, Dim> last_on(const AnyMaterial<T>& material, const std::vector<
 
 /// A random path of strain and spin, well beyond yield.
 template <class T, int Dim>
-std::vector<Increment<T, Dim>> random_path(int seed, int n, double size) {
+std::vector<PathStep<T, Dim>> random_path(int seed, int n, double size) {
   Dice dice{std::mt19937_64(seed)};
-  std::vector<Increment<T, Dim>> path(n);
+  std::vector<PathStep<T, Dim>> path(n);
   for (auto& step : path) {
     for (auto& e : step.strain.c) e = static_cast<T>(dice.uniform(-size, size));
     if (Dim == 2) step.strain[2] = 0;
@@ -124,6 +150,37 @@ TEST_CASE("the wave modulus is lambda + 2 G", "[materials]") {
   CHECK(std::fabs(wave_modulus(elastic()) /
                       (k_young * (1 - k_poisson) / ((1 + k_poisson) * (1 - 2 * k_poisson))) -
                   1) < 1e-14);
+}
+
+TEST_CASE("stiffness in proportion to strength: both grow with depth, their ratio stays", "[materials]") {
+  constexpr double k_rigidity = 500;
+  const auto law = make_material<double>(1, {0, k_poisson, 2000, 500, 4, k_rigidity});
+  for (const double height : {10., 4., 1., -2.}) {
+    const double strength = strength_at(law, height), young = k_rigidity * strength;
+    const auto same = make_material<double>(1, {young, k_poisson, strength});
+    CHECK(std::fabs(wave_modulus(law, height) / wave_modulus(same) - 1) < 1e-14);
+    const auto energy = [&](const AnyMaterial<double>& material) {
+      double stored = 0;
+      PointState<double, 2> point{{-1000, 300, -200, 500}, 0, strength};
+      with_state(material, point,
+                 [&](const auto& model, auto& state) { stored = model.stored_energy(point.stress, state); });
+      return stored;
+    };
+    CHECK(std::fabs(energy(law) / energy(same) - 1) < 1e-14);
+    for_each_build([&](auto build) {
+      using B = decltype(build);
+      using T = typename B::real;
+      const auto path = random_path<T, B::dim>(17, 200, 1e-3);
+      const auto grown = make_material<T>(1, {0, k_poisson, 2000, 500, 4, k_rigidity});
+      const auto plain = make_material<T>(1, {young, k_poisson, strength});
+      const auto ours = follow<T, B::dim>(grown, {{}, 0, T(strength)}, path).back(),
+                 theirs = follow<T, B::dim>(plain, {{}, 0, T(strength)}, path).back();
+      CHECK(theirs.plastic_strain > 0.01);
+      CHECK(std::fabs(double(ours.plastic_strain) / theirs.plastic_strain - 1) < B::of(1e-12, 1e-4));
+      for (int k = 0; k < sym_size<B::dim>; ++k)
+        CHECK(std::fabs(double(ours.stress[k]) - theirs.stress[k]) < B::of(1e-9, 0.1) * strength);
+    });
+  }
 }
 
 TEST_CASE("strength grows with depth below its datum only", "[materials]") {
@@ -226,7 +283,7 @@ TEST_CASE("no path of strain leaves the yield surface, and plastic strain never 
 
 TEST_CASE("a particle's own strength decides, not the model's", "[materials]") {
   const double L2[2][2] = {{0, 0.1}, {0, 0}};
-  const std::vector<Increment<double, 2>> path(1000, increment_of<2>({{0, L2[0][1] / 1000}, {0, 0}}));
+  const std::vector<PathStep<double, 2>> path(1000, increment_of<2>({{0, L2[0][1] / 1000}, {0, 0}}));
   for (double strength : {500., 9000.})
     CHECK(std::fabs(follow<double, 2>(clay(), {{}, 0, strength}, path).back().stress[3] / strength - 1) <
           1e-3);
@@ -235,7 +292,7 @@ TEST_CASE("a particle's own strength decides, not the model's", "[materials]") {
 TEST_CASE("3D equals 2D plane strain for the same increments", "[materials]") {
   for (const auto& law : {elastic(), clay()}) {
     const auto path_2d = random_path<double, 2>(32, 2000, 1e-3);
-    std::vector<Increment<double, 3>> path_3d;
+    std::vector<PathStep<double, 3>> path_3d;
     for (const auto& step : path_2d)
       path_3d.push_back({{step.strain[0], step.strain[1], 0, step.strain[3], 0, 0}, {step.spin.c[0], 0, 0}});
     const auto flat = follow<double, 2>(law, {{}, 0, k_su}, path_2d).back();
@@ -248,7 +305,7 @@ TEST_CASE("3D equals 2D plane strain for the same increments", "[materials]") {
 
 TEST_CASE("3D treats its axes alike", "[materials]") {
   const auto path = random_path<double, 3>(33, 500, 1e-3);
-  std::vector<Increment<double, 3>> turned;  // x to y, y to z, z to x
+  std::vector<PathStep<double, 3>> turned;  // x to y, y to z, z to x
   for (const auto& s : path)
     turned.push_back({{s.strain[2], s.strain[0], s.strain[1], s.strain[5], s.strain[3], s.strain[4]},
                       {s.spin.c[2], s.spin.c[0], s.spin.c[1]}});
@@ -267,7 +324,7 @@ TEST_CASE("every backend and real type follows a path of strain to the same stre
       const std::vector<double> parameters =
           model == 0 ? std::vector<double>{k_young, 0.3} : std::vector<double>{k_young, 0.3, k_su, 0, 0};
       const auto path = random_path<double, Dim>(34, 100, 1e-3);
-      std::vector<Increment<T, Dim>> own(path.size());
+      std::vector<PathStep<T, Dim>> own(path.size());
       for (std::size_t n = 0; n < path.size(); ++n) {
         for (int k = 0; k < sym_size<Dim>; ++k) own[n].strain[k] = static_cast<T>(path[n].strain[k]);
         for (std::size_t k = 0; k < std::size(path[n].spin.c); ++k)

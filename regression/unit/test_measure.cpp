@@ -16,9 +16,9 @@ namespace {
 std::vector<double> sorted_coordinates(const std::vector<double>& position, const Cloud& cloud, int body,
                                        int d, int dim) {
   std::size_t from = 0;
-  for (int b = 0; b < body; ++b) from += cloud.bodies[b].strength.size();
+  for (int b = 0; b < body; ++b) from += strength_of(cloud.bodies[b]).size();
   std::vector<double> x;
-  for (std::size_t p = from; p < from + cloud.bodies[body].strength.size(); ++p)
+  for (std::size_t p = from; p < from + strength_of(cloud.bodies[body]).size(); ++p)
     x.push_back(position[p * dim + d]);
   std::sort(x.begin(), x.end());
   return x;
@@ -138,7 +138,7 @@ TEST_CASE("the largest grid speed of a body is that of its particles", "[measure
     for (int body = 0; body < static_cast<int>(cloud.bodies.size()); ++body) {
       INFO(build.name() << " body " << body);
       double fastest = 0;
-      for (const std::size_t end = p + cloud.bodies[body].strength.size(); p < end; ++p) {
+      for (const std::size_t end = p + strength_of(cloud.bodies[body]).size(); p < end; ++p) {
         double square = 0;
         for (int d = 0; d < Dim; ++d) square += velocity[p * Dim + d] * velocity[p * Dim + d];
         fastest = std::max(fastest, std::sqrt(square));

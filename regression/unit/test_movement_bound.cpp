@@ -146,23 +146,16 @@ TEST_CASE("no step after the bound has passed the margin changes a bit, and a re
   });
 }
 
-TEST_CASE("a particle that leaves the mesh is reported with its id and place", "[movement_bound]") {
+TEST_CASE("a particle that leaves the mesh at a free side is no fault", "[movement_bound]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     INFO(build.name());
     Cloud cloud = block<B::dim>({0, 0, 0});
     auto lone = body_of<B::dim>({0.55, 1.93, 0.55}, 2, k_spacing, 0);  // the mesh ends at y = 2
-    lone.position.resize(B::dim), lone.strength.resize(1);
+    lone.position.resize(B::dim), strength_of(lone).resize(1);
     lone.velocity = {0, 1, 0};
     cloud.bodies.push_back(lone);
-    const Control control = control_after<B>(cloud, 0.02, 20);
-    REQUIRE(control.fault_count == 1);
-    CHECK(control.fault.kind == FaultKind::outside);
-    CHECK(control.fault.particle == static_cast<int>(cloud.bodies[0].strength.size()));
-    CHECK(std::fabs(control.fault.position[0] - 0.55) < B::of(1e-12, 1e-6));
-    CHECK(std::fabs(control.fault.position[1] - 2.05) <
-          B::of(1e-12, 1e-6));  // seen at the second rebuild, after 3 steps each
-    CHECK(control.paused == 1);
+    CHECK(control_after<B>(cloud, 0.02, 20).fault_count == 0);
   });
 }
 
@@ -193,7 +186,7 @@ TEST_CASE("a value that is not finite is reported with its particle, and nothing
         INFO(build.name() << ' ' << wrong << (in_stress ? " in the stress" : " in the velocity"));
         Cloud cloud = block<Dim>({0, 0, 0});
         auto lone = body_of<Dim>({0.55, 1.73, 0.55}, 2, k_spacing, 1);
-        lone.position.resize(Dim), lone.strength.resize(1);
+        lone.position.resize(Dim), strength_of(lone).resize(1);
         lone.stress.assign(sym_size<Dim>, 0.0);
         lone.particle_velocity.assign(Dim, 0.0);
         (in_stress ? lone.stress : lone.particle_velocity)[Dim - 1] = wrong;
@@ -203,7 +196,7 @@ TEST_CASE("a value that is not finite is reported with its particle, and nothing
         const Control control = look(s);
         REQUIRE(control.fault_count == 1);
         CHECK(control.fault.kind == FaultKind::not_finite);
-        CHECK(control.fault.particle == static_cast<int>(cloud.bodies[0].strength.size()));
+        CHECK(control.fault.particle == static_cast<int>(strength_of(cloud.bodies[0]).size()));
         CHECK(control.paused == 1);
         one_step(s, 1e-4);
         CHECK(look(s).steps == 1);
@@ -217,12 +210,12 @@ TEST_CASE("a particle that outruns the bins in one step is reported as too fast"
     INFO(build.name());
     Cloud cloud = block<B::dim>({0, 0, 0});
     auto lone = body_of<B::dim>({0.55, 1.05, 0.55}, 2, k_spacing, 0);
-    lone.position.resize(B::dim), lone.strength.resize(1);
+    lone.position.resize(B::dim), strength_of(lone).resize(1);
     lone.velocity = {0, -1, 0};
     cloud.bodies.push_back(lone);
     const Control control = control_after<B>(cloud, time_to_move(3, 1), 1);
     REQUIRE(control.fault_count == 1);
     CHECK(control.fault.kind == FaultKind::too_fast);
-    CHECK(control.fault.particle == static_cast<int>(cloud.bodies[0].strength.size()));
+    CHECK(control.fault.particle == static_cast<int>(strength_of(cloud.bodies[0]).size()));
   });
 }

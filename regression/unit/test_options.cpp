@@ -4,6 +4,7 @@
 
 #include <catch2/catch_test_macros.hpp>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <string>
 
@@ -75,7 +76,20 @@ TEST_CASE("a material has its model's parameters in the order of the model's tab
   CHECK(clay.name == "clay");
   CHECK(clay.model == "von_mises");
   CHECK(clay.density == 1500);
-  CHECK(clay.parameters == std::vector<double>{1e6, 0.3, 1000, 2000, 1.5});
+  CHECK(clay.parameters == std::vector<double>{1e6, 0.3, 1000, 2000, 1.5, 0});
+}
+
+TEST_CASE("rigidity takes the place of Young's modulus", "[options]") {
+  std::string deck = k_deck;
+  deck.erase(deck.find("-clay_young 1e6 "), std::string("-clay_young 1e6 ").size());
+  CHECK(config_of(deck + "-clay_rigidity 500").materials.at(0).parameters ==
+        std::vector<double>{0, 0.3, 1000, 0, 0, 500});
+  CHECK(read(deck).report.errors.at(0) ==
+        "mpm: -clay_young: not given, takes a number in Pa from 0.001 to 1e+15, or -clay_rigidity in its "
+        "place");
+  CHECK(read(k_deck + "-clay_rigidity 500").report.errors.at(0) ==
+        "mpm: -clay_young: given \"1e6\", takes nothing here: -clay_rigidity is in its place");
+  CHECK(read(deck + "-clay_rigidity 500 -clay_su 0").report.errors.size() == 1);
 }
 
 TEST_CASE("a rigid body has its motion and interface", "[options]") {
@@ -109,6 +123,27 @@ TEST_CASE("3D takes three components and a ball", "[options]") {
   CHECK(config.bodies.at(0).velocity == Vec3{0, 0, -2});
 }
 
+TEST_CASE("a cylinder and a cone have the height that was given, or that of their apex angle", "[options]") {
+  const std::string deck =
+      k_deck +
+      "-dim 3 -mesh_lower 0,0,0 -mesh_upper 8,6,6 -soil_lower 0,0,0 -soil_upper 8,6,2 -rigids pile "
+      "-pile_centre 4,3,2 -pile_radius 0.5 ";
+  const auto shape_of = [&](const std::string& more) { return config_of(deck + more).rigids.at(0).shape; };
+  const Shape pile = shape_of("-pile_shape cylinder -pile_height 3");
+  CHECK((pile.kind == ShapeKind::cylinder && pile.height == 3 && pile.tip_height == 0));
+  const Shape probe = shape_of("-pile_shape cylinder -pile_height 3 -pile_tip_angle_deg 90");
+  CHECK(std::abs(probe.tip_height - 0.5) < 1e-12);
+  const Shape cone = shape_of("-pile_shape cone -pile_tip_angle_deg 90");
+  CHECK((cone.kind == ShapeKind::cone && !cone.tip_up && std::abs(cone.height - 0.5) < 1e-12));
+  CHECK(shape_of("-pile_shape cone -pile_height 1.5 -pile_tip up").tip_up);
+}
+
+TEST_CASE("the shear limit may be a share of the strength", "[options]") {
+  const std::string deck = k_deck + "-rigids wall -wall_shape box -wall_lower 0,2 -wall_upper 1,5 ";
+  CHECK_FALSE(config_of(deck).rigids.at(0).shear_share);
+  CHECK(config_of(deck + "-wall_shear_share 0.4").rigids.at(0).shear_share == 0.4);
+}
+
 TEST_CASE("an initial stress has four components in 2D, six in 3D", "[options]") {
   CHECK(config_of(k_deck).bodies.at(0).stress == Sym6{});
   CHECK(config_of(k_deck + "-soil_stress -2e3,-4e3,-3e3,500").bodies.at(0).stress ==
@@ -118,28 +153,31 @@ TEST_CASE("an initial stress has four components in 2D, six in 3D", "[options]")
   CHECK(config_of(deep + "-soil_stress 1,2,3,4,5,6").bodies.at(0).stress == Sym6{1, 2, 3, 4, 5, 6});
 }
 
-TEST_CASE("what a file gives for every particle, the body does not take", "[options]") {
+TEST_CASE("particles of a file are those of a body there, and options take the place of what it gives",
+          "[options]") {
   const auto path =
       std::filesystem::temp_directory_path() / ("mpm_options_" + std::to_string(::getpid()) + ".h5");
-  ParticleSnapshot soil;
-  soil.name = "soil", soil.position = {1, 1, 0}, soil.volume = {0.0625}, soil.plastic_strain = {0};
-  soil.velocity = soil.grid_velocity = {0, 0, 0}, soil.stress.assign(6, 0);
-  REQUIRE(write_frame(path.string(), {0, 0, {soil}, {}}, Precision::single) == PETSC_SUCCESS);
-  const std::string deck =
-      k_deck.substr(0, k_deck.find("-soil_shape")) + "-soil_shape particles -soil_file " + path.string();
-  CHECK(config_of(deck).bodies.at(0).shape.kind == ShapeKind::particles);
-  CHECK(config_of(deck).bodies.at(0).shape.file == path.string());
-  const auto errors =
-      read(deck + " -soil_velocity 1,0 -soil_stress 0,0,0,0 -mesh_lower 1.5,0 -mesh_upper 3.5,2")
-          .report.errors;
+  ParticleSnapshot clay;
+  clay.name = "clay", clay.position = {1, 1, 0}, clay.volume = {0.0625},
+  clay.state = {{"plastic_strain", {0}}};
+  clay.velocity = clay.grid_velocity = {0, 0, 0}, clay.stress.assign(6, 0);
+  clay.mass = {93.75}, clay.reference_height = {1};
+  REQUIRE(write_frame(path.string(), {0, 0, {clay}, {}}, Precision::single) == PETSC_SUCCESS);
+  const std::string deck = k_deck.substr(0, k_deck.find("-soil_shape")) +
+                           "-soil_shape particles -soil_file_body clay -soil_file " + path.string();
+  const BodyConfig body = config_of(deck + " -soil_velocity 1,0").bodies.at(0);
+  CHECK((body.shape.kind == ShapeKind::particles && body.shape.file == path.string()));
+  CHECK((body.shape.file_body == "clay" && body.velocity_given && !body.stress_given));
+  CHECK(config_of(deck).bodies.at(0).velocity_given == false);
+  const std::string given = "mpm: -soil_file: given \"" + path.string() + "\", takes ";
+  const auto error_of = [&](const std::string& more) {
+    const auto errors = read(deck + more).report.errors;
+    return errors.size() == 1 ? errors[0] : std::to_string(errors.size()) + " errors";
+  };
+  CHECK(error_of(" -mesh_lower 1.5,0 -mesh_upper 3.5,2") ==
+        given + "particles inside the mesh, 1.5,0 to 3.5,2; particle 0 is at 1,1");
+  CHECK(error_of(" -soil_file_body soil") == given + "a file with the group soil");
   std::filesystem::remove(path);
-  REQUIRE(errors.size() == 3);
-  CHECK(errors[0] == "mpm: -soil_file: given \"" + path.string() +
-                         "\", takes particles inside the mesh, 1.5,0 to 3.5,2; particle 0 is at 1,1");
-  CHECK(errors[1] ==
-        "mpm: -soil_velocity: given \"1,0\", takes nothing here: soil_file gives it for every particle");
-  CHECK(errors[2] ==
-        "mpm: -soil_stress: given \"0,0,0,0\", takes nothing here: soil_file gives it for every particle");
 }
 
 TEST_CASE("a prism, a half plane and a turned box have their geometry", "[options]") {
@@ -182,11 +220,14 @@ TEST_CASE("the last of an option given twice holds", "[options]") {
 }
 
 TEST_CASE("all mistakes are reported together, each in a line of one form", "[options]") {
-  const auto errors = read(k_deck + "-time_end -1 -soil_upper 9,2 -claz_su 1 -damping x").report.errors;
+  const auto errors =
+      read(k_deck + "-time_end -1 -soil_upper 9,2 -mesh_xmax fixed -claz_su 1 -damping x").report.errors;
   REQUIRE(errors.size() == 4);
   CHECK(errors[0] == "mpm: -time_end: given \"-1\", takes a time in s greater than 0");
   CHECK(errors[1] == "mpm: -damping: given \"x\", takes a number of 0 or more and less than 1");
-  CHECK(errors[2] == "mpm: -soil_upper: given \"9,2\", takes a shape wholly inside the mesh, 0,0 to 8,6");
+  CHECK(errors[2] ==
+        "mpm: -soil_upper: given \"9,2\", takes a shape wholly inside the mesh, 0,0 to 8,6, or cut "
+        "by a side that is a roller");
   CHECK(errors[3] == "mpm: -claz_su: given \"1\", takes nothing: no such option, the nearest is -clay_su");
 }
 
@@ -200,7 +241,8 @@ TEST_CASE("a name's number does not make it inherit the options of the name with
   const auto errors =
       read(k_deck + "-rigids pile,pile_1 -pile_shape box -pile_lower 0,4 -pile_upper 1,5").report.errors;
   REQUIRE(errors.size() == 1);
-  CHECK(errors[0] == "mpm: -pile_1_shape: not given, takes box, polygon, disc, ball or half_plane");
+  CHECK(errors[0] ==
+        "mpm: -pile_1_shape: not given, takes box, polygon, disc, ball, cylinder, cone or half_plane");
 }
 
 TEST_CASE("a prefix keeps two simulations apart", "[options]") {
@@ -267,19 +309,102 @@ TEST_CASE("the nearest word is the one meant", "[options]") {
   CHECK_FALSE(nearest("zzz", words));
 }
 
+namespace {
+
+/// A folder of its own with decks, which goes with its scope.
+struct Decks {
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("mpm_decks_" + std::to_string(::getpid()));
+  Decks() { std::filesystem::create_directories(folder); }
+  ~Decks() { std::filesystem::remove_all(folder); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name) << text;
+    return (folder / name).string();
+  }
+};
+
+/// What is left for PETSc of a command line, behind the words that are put before it.
+std::string prepared(std::vector<std::string> words, InputReport& report) {
+  words.insert(words.begin(), "mpm");
+  std::vector<char*> pointers;
+  for (auto& word : words) pointers.push_back(word.data());
+  int argc = static_cast<int>(words.size());
+  pointers.push_back(nullptr);
+  char** argv = pointers.data();
+  prepare_arguments(PETSC_COMM_SELF, &argc, &argv, report);
+  CHECK(std::string(argv[0]) == "mpm");
+  CHECK(argv[argc] == nullptr);
+  constexpr int k_before = 5;
+  std::string left;
+  for (int k = k_before; k < argc; ++k) left += (k > k_before ? " " : "") + std::string(argv[k]);
+  return left;
+}
+
+}  // namespace
+
 TEST_CASE("arguments that PETSc would pass over or die of are taken out and reported", "[options]") {
-  std::string words[] = {"mpm",  "-help", "-time_end", "2", "s", "-options_file", "/nowhere/none.opts",
-                         "-dim", "2"};
-  char* argv[10] = {};
-  int argc = 9;
-  for (int k = 0; k < argc; ++k) argv[k] = words[k].data();
   InputReport report;
-  prepare_arguments(PETSC_COMM_WORLD, &argc, argv, report);
-  REQUIRE(argc == 5);
-  CHECK(std::string(argv[1]) == "-time_end");
-  CHECK(std::string(argv[4]) == "2");
-  CHECK(argv[5] == nullptr);
+  CHECK(prepared({"-help", "-time_end", "2", "s", "-options_file", "/nowhere/none.opts", "-dim", "2"},
+                 report) == "");
   CHECK(report.help);
   CHECK(report.file_unread);
   CHECK(report.errors.size() == 2);
+}
+
+TEST_CASE("the command line wins over decks, decks over what they include before", "[options]") {
+  const Decks decks;
+  const auto inner = decks.write("inner.opts", "-a 1\n-b 1 # one\n-c 1\nalias -d -e\n");
+  const auto outer = decks.write("outer.opts", "-options_file " + inner + "\n-b 2\n-c 2\n-d \"4 5\"\n-f\n");
+  InputReport report;
+  CHECK(prepared({"-c", "3", "-options_file", outer, "-prefix_push", "p_", "-g", "-1", "-prefix_pop"},
+                 report) == "-a 1 -b 1 -c 1 -b 2 -c 2 -e 4 5 -f -c 3 -p_g -1");
+  CHECK(report.errors.empty());
+  CHECK(report.options_file == outer);
+  CHECK(report.replaced == std::vector<std::string>{"b", "1", "c", "1", "c", "2"});
+}
+
+TEST_CASE("a deck's mistakes are told by file and line, and no option of it is left", "[options]") {
+  const Decks decks;
+  const auto path = decks.write("a.opts", "-dim 2\n-options_file " + decks.write("b.opts", "-x 1\n-y 1 2\n") +
+                                              "\n-options_file none.opts\n-prefix_pop\n");
+  InputReport report;
+  CHECK(prepared({"-options_file", path}, report) == "");
+  REQUIRE(report.errors.size() == 3);
+  CHECK(report.errors[0].find("b.opts:2: given \"-y 1 2\", takes -NAME VALUE") != std::string::npos);
+  CHECK(
+      report.errors[1].find("a.opts:3: -options_file: given \"none.opts\", takes a file that can be read") !=
+      std::string::npos);
+  CHECK(report.errors[2].find("a.opts:4: -prefix_pop: given without") != std::string::npos);
+}
+
+TEST_CASE("a deck that includes itself, another form or an endless file ends in one line", "[options]") {
+  const Decks decks;
+  const auto self = (decks.folder / "self.opts").string();
+  decks.write("self.opts", "-dim 2\n-options_file " + self + "\n");
+  const auto yaml = decks.write("deck.txt", "a:\n  b: 1\n  c: 2\n  d: 3\n");
+  for (const auto& [file, says] : {std::pair{self, "self.opts:2: -options_file: given"},
+                                   std::pair{yaml, "given 4 lines of another form"},
+                                   std::pair{std::string("/dev/zero"), "takes a deck of at most 64 MiB"}}) {
+    InputReport report;
+    prepared({"-options_file", file}, report);
+    REQUIRE(report.errors.size() == 1);
+    CHECK(report.errors[0].find(says) != std::string::npos);
+  }
+}
+
+TEST_CASE("what a shorter list leaves out is one warning", "[options]") {
+  const std::string rigids =
+      "-pipe_shape disc -pipe_centre 3,4 -pipe_radius 0.5 -plate_shape box -plate_lower 5,4 -plate_upper "
+      "6,5 ";
+  InputReport report;
+  Config config;
+  report.replaced = {"rigids", "pipe,plate"};
+  REQUIRE(PetscOptionsInsertString(nullptr, (k_deck + rigids + "-rigids plate -soil_cut_out pipe").c_str()) ==
+          PETSC_SUCCESS);
+  REQUIRE(read_options(nullptr, {Backend::serial}, config, report) == PETSC_SUCCESS);
+  REQUIRE(PetscOptionsClear(nullptr) == PETSC_SUCCESS);
+  CHECK(join(report.errors, "\n") == "");
+  CHECK(config.rigids.size() == 1);
+  REQUIRE(report.warnings.size() == 1);
+  CHECK(report.warnings[0] == "warning: -rigids: given \"plate\", so 3 options of pipe are not used");
 }

@@ -4,6 +4,8 @@
 #include <hdf5.h>
 #include <petscsys.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch_test_macros.hpp>
@@ -16,10 +18,14 @@
 #include <sstream>
 
 #include "output/files.hpp"
+#include "output/folder_lock.hpp"
 #include "output/frames.hpp"
 #include "output/history.hpp"
+#include "output/json.hpp"
 #include "output/log.hpp"
+#include "output/own_files.hpp"
 #include "output/performance.hpp"
+#include "output/performance_json.hpp"
 #include "output/remembered.hpp"
 #include "output/run_options.hpp"
 #include "parallel/together.hpp"
@@ -87,6 +93,10 @@ Config footing_like(const std::string& folder, int dim) {
 HistoryRow some_row() {
   HistoryRow row{12, 1.0 / 3, 6e-5, 0.1, {BodyRow{}}, {RigidRow{}}};
   row.bodies[0] = {{0, -1e-300, 0}, {3, 4.1, 0}, 2.0 / 7, {1e-17, -0.25, 0}, {2.9, 4, 0}, {1.5, 2.1, 0}, 0.7};
+  row.bodies[0].mass = 900.25, row.bodies[0].lost_mass = 3.5, row.bodies[0].lost_energy = 0.125;
+  row.bodies[0].lost_momentum = {0.1, -0.2, 0};
+  row.bodies[0].strays = 7, row.bodies[0].limited = 1, row.bodies[0].put_back = 2;
+  row.walls[0][0] = {-3.25, 0, 0}, row.walls[1][1] = {0, -1e5, 0};
   row.rigids[0] = {{0, -0.02, 0}, {0, -0.1, 0}, {1.5, 8765.4321, 0}};
   return row;
 }
@@ -98,7 +108,11 @@ ParticleSnapshot some_particles(const std::string& name, int count, bool body) {
   for (int k = 0; k < 3 * count; ++k) p.position.push_back(200 + k / 7.0), p.velocity.push_back(-k / 3.0);
   for (int k = 0; body && k < 3 * count; ++k) p.grid_velocity.push_back(k / 9.0);
   for (int k = 0; body && k < 6 * count; ++k) p.stress.push_back(1000.0 * k);
-  for (int k = 0; body && k < count; ++k) p.volume.push_back(0.25), p.plastic_strain.push_back(0.1 * k);
+  if (body) p.state = {{"plastic_strain", {}}};
+  for (int k = 0; body && k < count; ++k) {
+    p.volume.push_back(0.25), p.state[0].values.push_back(0.1 * k);
+    p.mass.push_back(500 + k / 3.0), p.reference_height.push_back(-2 + k / 7.0);
+  }
   return p;
 }
 
@@ -115,7 +129,7 @@ void take_share(ParticleSnapshot& body, int rank, int ranks) {
     values = {values.begin() + body.first * width, values.begin() + end * width};
   };
   cut(body.position, 3), cut(body.velocity, 3), cut(body.grid_velocity, 3), cut(body.stress, 6);
-  cut(body.volume, 1), cut(body.plastic_strain, 1);
+  cut(body.volume, 1), cut(body.state[0].values, 1), cut(body.mass, 1), cut(body.reference_height, 1);
 }
 
 /// A path that all ranks know.
@@ -188,8 +202,11 @@ int temporary_files(const std::string& folder) {
 TEST_CASE("the history's columns are those of the manual", "[output]") {
   CHECK(history_header(footing_like("", 2)) ==
         "step,time,dt,wall_time,soil_xmin,soil_xmax,soil_ymin,soil_ymax,soil_kinetic_energy,soil_momentum_x,"
-        "soil_momentum_y,soil_xq999,soil_yq999,soil_centre_x,soil_centre_y,soil_grid_velocity,plate_x,plate_"
-        "y,plate_velocity_x,plate_velocity_y,plate_force_x,plate_force_y");
+        "soil_momentum_y,soil_xq999,soil_yq999,soil_centre_x,soil_centre_y,soil_grid_velocity,soil_"
+        "mass,soil_lost_mass,soil_lost_energy,soil_lost_momentum_x,soil_lost_momentum_y,soil_strays,soil_"
+        "limited,soil_put_back,plate_x,plate_y,plate_velocity_x,plate_velocity_y,plate_force_x,plate_force_y,"
+        "wall_xmin_force_x,wall_xmin_force_y,wall_xmax_force_x,wall_xmax_force_y,wall_ymin_force_x,wall_ymin_"
+        "force_y,wall_ymax_force_x,wall_ymax_force_y");
   CHECK_THAT(history_header(footing_like("", 3)),
              ContainsSubstring("soil_ymax,soil_zmin,soil_zmax,soil_kinetic_energy"));
   CHECK_THAT(history_header(footing_like("", 3)),
@@ -201,13 +218,14 @@ TEST_CASE("the history's columns are those of the manual", "[output]") {
 
 TEST_CASE("a row of the history reads back to the same numbers", "[output]") {
   const HistoryRow row = some_row();
-  const auto words = split(format_history_row(row, 2), ',');
-  const double expected[] = {12,      row.time, row.dt, row.wall_time, 0,   3,        -1e-300, 4.1,
-                             2.0 / 7, 1e-17,    -0.25,  2.9,           4,   1.5,      2.1,     0.7,
-                             0,       -0.02,    0,      -0.1,          1.5, 8765.4321};
+  const auto words = split(format_history_row(row, footing_like("", 2)), ',');
+  const double expected[] = {
+      12,  row.time, row.dt, row.wall_time, 0,     3,     -1e-300, 4.1,  2.0 / 7, 1e-17, -0.25, 2.9, 4,
+      1.5, 2.1,      0.7,    900.25,        3.5,   0.125, 0.1,     -0.2, 7,       1,     2,     0,   -0.02,
+      0,   -0.1,     1.5,    8765.4321,     -3.25, 0,     0,       0,    0,       0,     0,     -1e5};
   REQUIRE(words.size() == std::size(expected));
   for (size_t k = 0; k < words.size(); ++k) CHECK(std::strtod(words[k].c_str(), nullptr) == expected[k]);
-  CHECK(split(format_history_row(row, 3), ',').size() ==
+  CHECK(split(format_history_row(row, footing_like("", 3)), ',').size() ==
         split(history_header(footing_like("", 3)), ',').size());
 }
 
@@ -249,6 +267,9 @@ TEST_CASE("a frame reads back", "[output]") {
   if (!single) CHECK(grid_velocity.values == snapshot.bodies[0].grid_velocity);
   CHECK(read_dataset(path, "soil/volume").shape == std::vector<hsize_t>{5});
   CHECK(read_dataset(path, "soil/plastic_strain").values.size() == 5);
+  CHECK(read_dataset(path, "soil/mass").bytes == (single ? 4 : 8));
+  const Dataset height = read_dataset(path, "soil/reference_height");  // exact: strengths follow it
+  CHECK((height.bytes == 8 && height.values == snapshot.bodies[0].reference_height));
   CHECK(read_dataset(path, "plate/velocity").shape == std::vector<hsize_t>{2, 3});
   CHECK(temporary_files(folder.path) == 0);
 }
@@ -267,6 +288,10 @@ TEST_CASE("the index names every frame and every field", "[output]") {
         "0 5 1 1 5 1", "Dimensions=\"5 6\"", "Time Value=\"0.5\"", "Precision=\"4\"", "Precision=\"8\""})
     CHECK_THAT(index, ContainsSubstring(item));
   CHECK_THAT(index, !ContainsSubstring("plate/stress"));
+  CHECK_THAT(index, ContainsSubstring(
+                        "Precision=\"8\" Dimensions=\"5\">frames/frame_00000.h5:/soil/reference_height"));
+  CHECK_THAT(index, ContainsSubstring("Precision=\"4\" Dimensions=\"5\">frames/frame_00000.h5:/soil/mass"));
+  CHECK_THAT(index, !ContainsSubstring("plate/mass"));
   CHECK(temporary_files(folder.path) == 0);
 }
 
@@ -337,15 +362,127 @@ TEST_CASE("a frame that several ranks cannot write fails on all of them and leav
 
 TEST_CASE("an earlier run's files go, others stay", "[output]") {
   const Folder folder;
-  for (const char* name :
-       {"history.csv", "mpm.log", "runout.png", "velocity.png", "frames/frame_00007.h5",
-        "frames/frame_00008.h5.tmp", "checkpoint_100.h5", "notes.txt", "my_checkpoint_100.h5"})
-    std::ofstream(folder / name) << "old";
+  const auto make = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder / name, std::ios::binary) << text;
+  };
+  const std::string picture = "\x89PNG\r\n....IHDR....tEXtSoftware Matplotlib version 3";
+  make("history.csv", "step,time,dt,wall_time,soil_xmin\n0,0,1,0,0\n"), make("mpm.log", "mpm 0.1.0  today\n");
+  make("performance.json", performance_json({}));
+  make("runout.png", picture), make("frames/frame_00008.h5.tmp", "half of it"), make("checkpoint_200.h5", "");
+  make("checkpoint_300.h5", "\x89HDF\r\n\x1a\n and then rubbish");
+  REQUIRE(write_frame(folder / "frames/frame_00007.h5", some_snapshot(), Precision::double_) ==
+          PETSC_SUCCESS);
+  const std::vector<std::string> others = {
+      "notes.txt",           "my_checkpoint_100.h5", "checkpoint_notes.h5",        "checkpoint_01.h5",
+      "checkpoint_100.h5",   "velocity.png",         "frames/frame_mine.h5",       "frames/frame_7.h5",
+      "frames/frame_012.h5", "options.json",         "frames/frame_000001.h5.tmp", "frames/history.csv"};
+  for (const std::string& name : others) make(name, "of a user");
+  CHECK(foreign_file(folder.path) == folder / "checkpoint_100.h5");
   int removed = 0;
   REQUIRE(prepare_output_folder(folder.path, &removed) == PETSC_SUCCESS);
-  CHECK(removed == 7);
-  CHECK(fs::exists(folder / "notes.txt"));
-  CHECK(fs::exists(folder / "my_checkpoint_100.h5"));
+  CHECK(removed == 8);
+  for (const std::string& name : others) CHECK(contents(folder / name) == "of a user");
+}
+
+TEST_CASE("a file under our name is ours by what is in it, and never a pipe, a link or a folder",
+          "[output]") {
+  const Folder folder;
+  CHECK(foreign_file(folder.path).empty());
+  const auto alone = [&](const std::string& name, auto&& make) {
+    make(folder / name);
+    const std::string foreign = foreign_file(folder.path);
+    fs::remove_all(folder / name);
+    return foreign;
+  };
+  const auto text = [](const std::string& words) {
+    return [words](const std::string& path) { std::ofstream(path, std::ios::binary) << words; };
+  };
+  CHECK(alone("history.csv", text("step,time,dt,wall_time\n")).empty());
+  CHECK(alone("history.csv", text(std::string(4096, '\0'))).empty());  // what a crash leaves
+  CHECK(!alone("history.csv", text("year,rain\n")).empty());
+  CHECK(!alone("history.csv", [](const std::string& path) {
+           REQUIRE(::mkfifo(path.c_str(), 0600) == 0);
+         }).empty());
+  CHECK(!alone("mpm.log", [](const std::string& path) { fs::create_symlink("/dev/null", path); }).empty());
+  CHECK(!alone("options.json", [](const std::string& path) { fs::create_directory(path); }).empty());
+  CHECK(alone("checkpoint_7.h5", text("bits\nmpm checkpoint, 4 bytes before this line")).empty());
+  CHECK(!alone("checkpoint_7.h5", text("weights of a network")).empty());
+  const auto hdf5 = [](const char* attribute) {
+    return [attribute](const std::string& path) {
+      const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+      for (const char* name : {"time", attribute}) {
+        const hid_t space = H5Screate(H5S_SCALAR);
+        H5Aclose(H5Acreate2(file, name, H5T_NATIVE_INT, space, H5P_DEFAULT, H5P_DEFAULT));
+        H5Sclose(space);
+      }
+      H5Fclose(file);
+    };
+  };
+  CHECK(alone("frames/frame_00000.h5", hdf5("step")).empty());
+  CHECK(!alone("frames/frame_00000.h5", hdf5("epoch")).empty());
+  CHECK(alone("frames/frame_mine.h5", hdf5("epoch")).empty());  // no name of ours
+}
+
+TEST_CASE("a folder is locked until its run is gone", "[output]") {
+  const Folder folder;
+  std::string other;
+  FolderLock first, second;
+  REQUIRE(first.take(folder.path, &other) == PETSC_SUCCESS);
+  CHECK((other.empty() && first.left_by().empty() && fs::exists(folder / "mpm.lock")));
+  REQUIRE(second.take(folder.path, &other) == PETSC_SUCCESS);
+  CHECK_THAT(other, ContainsSubstring("process " + std::to_string(::getpid()) + " on "));
+  CHECK_THAT(other, ContainsSubstring(", since 20"));
+  CHECK(!second.held());
+  REQUIRE(first.take(folder.path, &other) == PETSC_SUCCESS);  // it has it
+  CHECK(other.empty());
+  first.release();
+  CHECK(!fs::exists(folder / "mpm.lock"));
+  REQUIRE(second.take(folder.path, &other) == PETSC_SUCCESS);
+  CHECK((other.empty() && second.held()));
+}
+
+TEST_CASE("a lock whose run was killed is taken over, and a file of others of its name is not", "[output]") {
+  const Folder folder;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    FolderLock lock;
+    std::string other;
+    const bool taken = lock.take(folder.path, &other) == PETSC_SUCCESS && lock.held();
+    ::_exit(taken ? 0 : 1);  // as if killed: the lock is not given back
+  }
+  int status = 1;
+  REQUIRE((::waitpid(child, &status, 0) == child && status == 0));
+  REQUIRE(fs::exists(folder / "mpm.lock"));
+  std::string other;
+  {
+    FolderLock lock;
+    REQUIRE(lock.take(folder.path, &other) == PETSC_SUCCESS);
+    CHECK((other.empty() && lock.held()));
+    CHECK_THAT(lock.left_by(), ContainsSubstring("process " + std::to_string(child) + " on "));
+  }
+  CHECK(!fs::exists(folder / "mpm.lock"));
+  std::ofstream(folder / "mpm.lock") << "my notes";
+  FolderLock lock;
+  REQUIRE(lock.take(folder.path, &other) == PETSC_SUCCESS);
+  CHECK((!lock.held() && other.find("no lock of this program") != std::string::npos));
+  CHECK(contents(folder / "mpm.lock") == "my notes");
+}
+
+TEST_CASE("options.json is JSON whatever bytes a path has", "[output]") {
+  const Folder folder;
+  const auto written = [&](const std::string& value) {
+    REQUIRE(write_options_json(folder.path, "1", {{"-soil_file", value, "", false}}) == PETSC_SUCCESS);
+    const std::string text = contents(folder / "options.json");
+    const auto from = text.find("\"soil_file\": ") + 13;
+    return text.substr(from, text.find('\n', from) - from);
+  };
+  CHECK(written("a\"b\\c") == R"("a\"b\\c")");
+  CHECK(written("sch\xc3\xb6n \xe2\x82\xac \xf0\x9f\x98\x80") ==
+        "\"sch\xc3\xb6n \xe2\x82\xac \xf0\x9f\x98\x80\"");
+  CHECK(written("sch\xf6n") == R"("sch\ufffdn")");              // Latin-1
+  CHECK(written("\xc3") == R"("\ufffd")");                      // cut
+  CHECK(written("\xc0\xaf") == R"("\ufffd\ufffd")");            // overlong
+  CHECK(written("\xed\xa0\x80") == R"("\ufffd\ufffd\ufffd")");  // half of a pair
 }
 
 TEST_CASE("a folder that cannot be made is an error", "[output]") {
@@ -389,6 +526,89 @@ TEST_CASE("times that the waiting has made longer than the steps are scaled", "[
   for (const char* part :
        {"2.000   50.0 %        3.00       1.5", "1.000   25.0 %", "1.000   25.0 %\n  wall time"})
     CHECK_THAT(report, ContainsSubstring(part));
+}
+
+TEST_CASE("performance.json has the figures of the report, with units in the names", "[output]") {
+  const Folder folder;
+  Performance p;
+  p.functions = {{"interpolate", 100, 6.0, 3e9}, {"move \"it\"", 50, 2.0, 0}};
+  p.wall = 4.5, p.stepping = 4, p.steps = 100, p.particles = 1000, p.looks = 7;
+  p.rebuilds = 3, p.shortest = 20, p.longest = 40, p.interval = 30.5;
+  p.version = "1.0", p.outcome = "stopped", p.strategy = "tile", p.device = "2 threads", p.memory = 19e6;
+  p.backend = "openmp", p.precision = "single", p.processor = "some \\ processor", p.dim = 2, p.ranks = 4;
+  p.threads = 2, p.cores = 8, p.first_step = 200, p.time = 0.1;
+  RankFigures ranks;
+  ranks.ranks = 4, ranks.particles = {200, 300, 250}, ranks.wait = {0.25, 0.5, 0.375};
+  ranks.halo_path = "through host memory";
+  p.between_ranks = ranks;
+  REQUIRE(write_performance_json(folder.path, p) == PETSC_SUCCESS);
+  CHECK(contents(folder / "performance.json") == R"({
+  "program": "mpm",
+  "version": "1.0",
+  "outcome": "stopped",
+  "dim": 2,
+  "precision": "single",
+  "backend": "openmp",
+  "strategy": "tile",
+  "device": "2 threads",
+  "processor": "some \\ processor",
+  "cores": 8,
+  "threads_per_rank": 2,
+  "ranks": 4,
+  "particles": 1000,
+  "first_step": 200,
+  "steps": 100,
+  "end_time_seconds": 0.1,
+  "wall_seconds": 4.5,
+  "stepping_seconds": 4,
+  "particle_updates_per_second": 25000,
+  "memory_bytes": 1.9e+07,
+  "copy_bandwidth_bytes_per_second": null,
+  "moved_bytes_per_second": 7.5e+08,
+  "looks_of_host": 7,
+  "rebuilds": {
+    "count": 3,
+    "shortest_interval_steps": 20,
+    "longest_interval_steps": 40,
+    "mean_interval_steps": 30.5
+  },
+  "functions": [
+    {"name": "interpolate", "calls": 100, "seconds": 3, "bytes": 3e+09},
+    {"name": "move \"it\"", "calls": 50, "seconds": 1, "bytes": null}
+  ],
+  "between_ranks": {
+    "particles": {"least": 200, "most": 300, "mean": 250},
+    "neighbours": {"least": 0, "most": 0, "mean": 0},
+    "halo_nodes": {"least": 0, "most": 0, "mean": 0},
+    "sent_bytes_per_step": {"least": 0, "most": 0, "mean": 0},
+    "compute_seconds": {"least": 0, "most": 0, "mean": 0},
+    "halo_seconds": {"least": 0, "most": 0, "mean": 0},
+    "wait_seconds": {"least": 0.25, "most": 0.5, "mean": 0.375},
+    "held_seconds": null,
+    "halo_path": "through host memory"
+  }
+}
+)");
+  CHECK_THAT(format_ranks(ranks), ContainsSubstring("200 to 300 particles a rank, largest over mean 1.200"));
+}
+
+TEST_CASE("performance.json has no figures that are not finite, and goes before a run goes on", "[output]") {
+  const Folder folder;
+  const std::string text = performance_json({});
+  for (const char* part : {"\"steps\": 0,", "\"particle_updates_per_second\": null,", "\"functions\": [],",
+                           "\"mean_interval_steps\": null\n", "\"between_ranks\": null\n"})
+    CHECK_THAT(text, ContainsSubstring(part));
+  CHECK(json_number(std::nan("")) == "null");
+  CHECK(std::stod(json_number(1.0 / 3)) == 1.0 / 3);
+  REQUIRE(write_performance_json(folder.path, {}) == PETSC_SUCCESS);
+  CHECK(foreign_file(folder.path).empty());
+  REQUIRE(forget_performance_json(folder.path) == PETSC_SUCCESS);
+  CHECK(!fs::exists(folder / "performance.json"));
+  REQUIRE(forget_performance_json(folder.path) == PETSC_SUCCESS);
+  std::ofstream(folder / "performance.json") << "{\n  \"program\": \"another\"\n}\n";
+  CHECK(foreign_file(folder.path) == folder / "performance.json");
+  REQUIRE(forget_performance_json(folder.path) == PETSC_SUCCESS);
+  CHECK(fs::exists(folder / "performance.json"));
 }
 
 TEST_CASE("a figure is measured once a key, and every time where it cannot be kept", "[output]") {

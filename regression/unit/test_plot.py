@@ -1,9 +1,7 @@
 #!/usr/bin/env python3
-"""What scripts/results.py and runout.py compute and scripts/plot draws, on a made-up footing and slide.
+"""What scripts/results.py, factor.py and runout.py compute and scripts/plot draws, on a made-up footing, pipe and slide.
 Needs numpy, h5py and matplotlib."""
 
-import importlib.machinery
-import importlib.util
 import json
 import pathlib
 import sys
@@ -16,15 +14,15 @@ import numpy as np
 sys.dont_write_bytecode = True
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 sys.path.insert(0, str(SCRIPTS))
+import factor  # noqa: E402
+import plot_curves  # noqa: E402
+import plot_fields  # noqa: E402
 import results  # noqa: E402
 import runout  # noqa: E402
 
-loader = importlib.machinery.SourceFileLoader("plot", str(SCRIPTS / "plot"))
-plot = importlib.util.module_from_spec(importlib.util.spec_from_loader("plot", loader))
-loader.exec_module(plot)
-
 OPTIONS = {"dim": "2", "mesh_lower": "0,0", "mesh_upper": "3,4.5", "mesh_spacing": "0.05", "mesh_xmin": "roller",
-           "materials": "clay", "clay_model": "von_mises", "clay_su": "3000", "bodies": "soil", "rigids": "plate",
+           "materials": "clay", "clay_model": "von_mises", "clay_su": "3000", "clay_young": "1.5e6", "clay_poisson": "0.49",
+           "bodies": "soil", "soil_material": "clay", "soil_shape": "box", "soil_lower": "0,0", "soil_upper": "3,4", "rigids": "plate",
            "plate_shape": "box", "plate_lower": "0,4", "plate_upper": "0.5,4.05", "plate_motion": "prescribed",
            "plate_velocity": "0,-0.1", "plate_friction": "none"}
 
@@ -115,8 +113,9 @@ class Slide(unittest.TestCase):
     def test_pictures(self):
         write_slide(self.folder)
         run = results.Run(self.folder)
-        self.assertIsNone(plot.draw_curves(run, []))
-        for path in (plot.draw_runout(run, [run]), plot.draw_velocity(run), plot.draw_velocity(run, 1.0), plot.draw_field(run)):
+        self.assertIsNone(plot_curves.draw_curves(run, []))
+        for path in (plot_curves.draw_runout(run, [run], 1.0), plot_fields.draw_velocity(run), plot_fields.draw_velocity(run, 1.0),
+                     plot_fields.draw_field(run)):
             self.assertGreater(path.stat().st_size, 10000)
 
 
@@ -165,15 +164,83 @@ class Plot(unittest.TestCase):
     def test_pictures(self):
         write_run(self.folder, nc=5.5)
         run = results.Run(self.folder)
-        for path in (plot.draw_curves(run, []), plot.draw_field(run)):
+        for path in (plot_curves.draw_curves(run, [run], time=1.0), plot_fields.draw_field(run)):
             self.assertGreater(path.stat().st_size, 10000)
+
+    def factor_with(self, **changes):
+        """Factor of the plate where some options are others, and whether it is drawn without being asked for."""
+        run = results.Run(self.folder)
+        run.options.update(changes)
+        found = factor.factor(run, "plate")
+        return found, plot_curves.has_factor(run, "plate", False)
+
+    def test_only_a_footing_on_clay_of_one_strength_has_a_factor_unasked(self):
+        write_run(self.folder, nc=5.5)
+        found, drawn = self.factor_with()
+        self.assertTrue(drawn and found.footing and found.half)
+        self.assertAlmostEqual(found.unit_force, 1500)
+        self.assertAlmostEqual(found.width, 1)
+        other = {"bodies": "soil,sand", "sand_shape": "box", "sand_lower": "0,0", "sand_upper": "3,1", "materials": "clay,stiff"}
+        for changes in ({"clay_su_gradient": "1000"}, {"plate_shape": "disc", "plate_centre": "1,4.5", "plate_radius": "0.5"},
+                        {"plate_lower": "0,3", "plate_upper": "0.5,3.05"}, {"plate_velocity": "0.1,0"},
+                        {"plate_angle_deg": "10"}, {"soil_shape": "polygon", "soil_polygon": "0,0,3,0,3,2,0,4"},
+                        {"clay_model": "linear_elastic"}, {"geometry": "axisymmetric"}, {"plate_motion": "fixed"},
+                        {**other, "sand_material": "stiff", "stiff_model": "von_mises", "stiff_su": "9000"},
+                        {**other, "sand_material": "stiff", "stiff_model": "linear_elastic"}):
+            self.assertFalse(self.factor_with(**changes)[1], changes)
+        self.assertTrue(self.factor_with(**other, sand_material="clay")[1])
+
+    def test_a_factor_that_is_asked_for(self):
+        write_run(self.folder, nc=5.5)
+        pipe = {"plate_shape": "disc", "plate_centre": "1,4.5", "plate_radius": "0.5", "clay_su_datum": "4",
+                "clay_su_gradient": "1000"}
+        self.assertAlmostEqual(self.factor_with(**pipe)[0].unit_force, 3000 * 1)  # its underside is at the datum
+        sideways = {**pipe, "plate_centre": "1,3", "plate_velocity": "0.1,0"}
+        self.assertAlmostEqual(self.factor_with(**sideways)[0].unit_force, 4000 * 1)  # its middle is 1 m below
+        self.assertIsNone(self.factor_with(**pipe, plate_velocity="0.1,-0.1")[0])
+        three = {"dim": "3", "plate_velocity": "0,0,-0.1"}
+        box = {**three, "plate_lower": "0,0,4", "plate_upper": "0.5,0.25,4.1"}
+        self.assertAlmostEqual(self.factor_with(**box)[0].unit_force, 3000 * 0.5 * 0.25)
+        ball = {**three, "plate_shape": "ball", "plate_centre": "1,1,4.5", "plate_radius": "0.5"}
+        self.assertAlmostEqual(self.factor_with(**ball)[0].unit_force, 3000 * np.pi / 4)
+        cut = {**ball, "mesh_lower": "1,1,0", "mesh_upper": "3,3,6"}
+        self.assertAlmostEqual(self.factor_with(**cut)[0].unit_force, 3000 * np.pi / 16)  # a quarter of it
+        self.assertIsNone(self.factor_with(**{**three, "plate_shape": "polygon", "plate_polygon": "0,4,1,4,0,5"})[0])
+
+    def test_the_force_of_a_pushed_rigid_is_against_its_way(self):
+        write_run(self.folder, nc=5.5)
+        run = results.Run(self.folder)
+        way, force, weight = plot_curves.pushed(run, "plate", factor.factor(run, "plate"))
+        np.testing.assert_allclose(force, 5.5 * 1500)
+        self.assertAlmostEqual(weight.sum(), 0.2)
+        self.assertAlmostEqual(way[0], 0.0002)
+
+    def test_stored_curves_are_for_their_clay(self):
+        write_run(self.folder, nc=5.5)
+        for changes, has in (({}, True), ({"clay_young": "3e6"}, False), ({"clay_poisson": "0.3"}, False),
+                             ({"gravity": "0,-9.81"}, False)):
+            run = results.Run(self.folder)
+            run.options.update(changes)
+            self.assertEqual(plot_curves.stored_curve(run, "plate", factor.factor(run, "plate")) is not None, has, changes)
+
+    def test_the_force_on_a_fixed_rigid_is_drawn_in_kilonewtons_over_time(self):
+        write_run(self.folder, nc=5.5, plate_motion="fixed")
+        run = results.Run(self.folder)
+        run.history["time"] = run.history.pop("step")
+        axes = plot_curves.plt.figure().add_subplot()
+        plot_curves.draw_force(axes, run, "plate", [])
+        x, y = axes.lines[0].get_data()
+        np.testing.assert_allclose(x, run.history["time"])
+        np.testing.assert_allclose(y, 5.5 * 1.5)
+        self.assertEqual(axes.get_ylabel(), "force of the soil (kN/m)")
+        self.assertGreater(plot_curves.draw_curves(run, []).stat().st_size, 10000)
 
     def test_an_empty_folder_gives_no_picture(self):
         run = results.Run(self.folder)
-        self.assertIsNone(plot.draw_curves(run, []))
-        self.assertIsNone(plot.draw_runout(run, []))
-        self.assertIsNone(plot.draw_velocity(run))
-        self.assertIsNone(plot.draw_field(run))
+        self.assertIsNone(plot_curves.draw_curves(run, []))
+        self.assertIsNone(plot_curves.draw_runout(run, []))
+        self.assertIsNone(plot_fields.draw_velocity(run))
+        self.assertIsNone(plot_fields.draw_field(run))
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "clouds.hpp"
+#include "parallel/kept_by_id.hpp"
 #include "parallel/ranks.hpp"
 #include "parallel/together.hpp"
 #include "step/step.hpp"
@@ -39,7 +40,7 @@ Cloud share_of_cloud(const Cloud& whole, int rank, int ranks) {
   Cloud own = whole;
   int first = 0;
   for (BodyInput& body : own.bodies) {
-    const int count = static_cast<int>(body.strength.size());
+    const int count = static_cast<int>(strength_of(body).size());
     for (int p = rank; p < count; p += ranks) body.id.push_back(first + p);
     first += count;
     if (whole.affine) {  // from all neighbours of a particle
@@ -48,8 +49,8 @@ Cloud share_of_cloud(const Cloud& whole, int rank, int ranks) {
       body.velocity_gradient = velocity_gradients(cells, body.particle_velocity, Dim);
       keep(body.velocity_gradient, Dim * Dim);
     }
-    keep(body.position, Dim), keep(body.strength, 1), keep(body.particle_velocity, Dim);
-    keep(body.stress, sym_size<Dim>);
+    keep(body.position, Dim), keep(strength_of(body), 1), keep(body.particle_velocity, Dim);
+    keep(body.stress, sym_size<Dim>), keep(body.mass, 1);
   }
   return own;
 }
@@ -111,7 +112,7 @@ template <class State_>
 std::vector<double> particles_of(const State_& s, long total, MPI_Comm comm) {
   const SoilFields f = download_soil(s);
   const std::size_t vectors = f.position.size() + f.velocity.size() + f.stress.size();
-  const std::size_t width = f.id.empty() ? 0 : vectors / f.id.size() + 3;
+  const std::size_t width = f.id.empty() ? 0 : vectors / f.id.size() + f.history.size() + 2;
   unsigned long all_width = width;
   MPI_Allreduce(MPI_IN_PLACE, &all_width, 1, MPI_UNSIGNED_LONG, MPI_MAX, comm);
   std::vector<double> values(total * all_width);
@@ -121,7 +122,8 @@ std::vector<double> particles_of(const State_& s, long total, MPI_Comm comm) {
       const std::size_t n = from.size() / f.id.size();
       for (std::size_t k = 0; k < n; ++k) *to++ = from[p * n + k];
     };
-    put(f.position), put(f.velocity), put(f.stress), put(f.volume), put(f.plastic_strain);
+    put(f.position), put(f.velocity), put(f.stress), put(f.volume);
+    for (const auto& column : f.history) put(column);
     *to = 1;  // how often the id is there
   }
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
@@ -201,13 +203,14 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
                            Way{P2G::tile, HaloPath::peer, false});
   for_each_reference([&](auto build) {
     using B = decltype(build);
-    for (const int kind : {0, 1, 2}) {  // FLIP, XPIC, APIC
+    for (const int kind : {0, 1, 2, 3}) {  // FLIP, XPIC, APIC, FLIP with own masses
       Cloud cloud = random_cloud<B::dim>(3, Wall::roller);
       cloud.gravity = {0, -9.81, 0};
       keep_inside<B::dim>(cloud);
       cloud.f_bar_share = 0.5;
       if (kind == 1) cloud.xpic_order = 3, cloud.flip_share = 0;
       if (kind == 2) cloud.affine = true, cloud.flip_share = 0;
+      if (kind == 3) give_own_masses(cloud, 3, 0.6);
       Pair<B> pair(cloud, {PartitionKind::metis, 1.0001, way.path, way.overlap}, 6, way.strategy);
       constexpr double k_dt = 1e-5;  // s: lone particles bear stresses that throw them far
       Timers timers;
@@ -260,6 +263,26 @@ TEST_CASE("friction's impulses follow the nodes to the ranks that come to reach 
     for (int i = 0; i < pair.here.patches.node_count(); ++i)
       if (reached[i]) REQUIRE((now(0, i) == expected(0, i) && now(1, i) == expected(1, i)));
   });
+}
+
+TEST_CASE("what is kept by id is told to whichever rank asks, whoever gave it", "[migration]") {
+  const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
+  const auto number_of = [](long id) { return 1.0 / (3 + id); };
+  for (const long total : {0L, 1L, 2L, 17L, 1000L}) {
+    Dice dice{std::mt19937_64(total)};  // the same on all ranks
+    std::vector<long> given, asked;
+    std::vector<double> numbers, found, expected;
+    for (long id = total - 1; id >= 0; --id)
+      if (dice.below(size) == rank) given.push_back(id), numbers.push_back(number_of(id));
+    KeptById kept;
+    REQUIRE(kept.keep(MPI_COMM_WORLD, total, given, numbers) == PETSC_SUCCESS);
+    for (int n = 0; n < 20 * ((rank + 1) % 3) && total > 0; ++n) asked.push_back((7L * n + rank) % total);
+    for (const long id : asked) expected.push_back(number_of(id));
+    REQUIRE(kept.look_up(asked, &found) == PETSC_SUCCESS);
+    CHECK(found == expected);
+    REQUIRE(kept.look_up(given, &found) == PETSC_SUCCESS);
+    CHECK(found == numbers);
+  }
 }
 
 TEST_CASE("ranks agree on an error and on the words of one of them", "[halo]") {

@@ -165,7 +165,7 @@ TEST_CASE("particles represent the volume of every shape as the lattice is refin
 TEST_CASE("volumes are exact", "[shapes]") {
   Shape rounded = box({0, 0, 0}, {2, 2, 2});
   rounded.fillet = 1;  // a disc, a ball
-  const MeshConfig any;
+  const MeshConfig any = mesh_of({-100, -100, -100}, {100, 100, 100}, 1);
   CHECK(shape_volume(rounded, any, 2) == Approx(std::numbers::pi));
   CHECK(shape_volume(rounded, any, 3) == Approx(4 * std::numbers::pi / 3));
   CHECK(shape_volume(box({0, 0, 0}, {2, 3, 4}), any, 3) == Approx(24));

@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <limits>
 
+#include "checkpoint/checkpoint.hpp"
 #include "input/particle_file.hpp"
+#include "output/frame_fields.hpp"
 #include "output/frames.hpp"
 #include "step/stepper.hpp"
 
@@ -19,7 +21,7 @@ namespace {
 
 constexpr Vec3 k_lower = {1, -2, 3};  // m, of the mesh
 
-/// A mesh of 8 cells a side, one linear elastic material and one body.
+/// A mesh of 8 cells a side, clay and one body.
 Config config_of(int dim) {
   Config config;
   config.dim = dim;
@@ -27,7 +29,7 @@ Config config_of(int dim) {
   config.mesh.lower = k_lower;
   for (int d = 0; d < dim; ++d) config.mesh.upper[d] = k_lower[d] + 8;
   config.mesh.cells = {8, 8, dim == 3 ? 8 : 1};
-  config.materials = {{"rock", "linear_elastic", 2000, {1e6, 0.3}}};
+  config.materials = {{"clay", "von_mises", 2000, {1e6, 0.3, 1e3}}};
   config.bodies.emplace_back().name = "soil";
   return config;
 }
@@ -66,22 +68,29 @@ struct File {
   ~File() { std::filesystem::remove_all(folder); }
   /// What is wrong with a file of these particles; empty where nothing is.
   std::string fault(const ParticleSnapshot& particles, int dim = 2) {
-    REQUIRE(write_frame(path, {0, 0, {particles}, {}}, Precision::double_) == PETSC_SUCCESS);
     ParticleTable table;
-    return read_particles(path, "soil", config_of(dim).mesh, dim, table);
+    return fault(particles, table, dim);
+  }
+  /// The same; a frame tells the dimension of its run.
+  std::string fault(const ParticleSnapshot& particles, ParticleTable& table, int dim, int dim_of_frame = 0,
+                    const FrameStyle& style = {}) {
+    REQUIRE(write_frame(path, {0.5, 12, {particles}, {}, {}, dim_of_frame}, Precision::double_, style) ==
+            PETSC_SUCCESS);
+    return read_particles({path, "soil", true, true, {"plastic_strain"}}, config_of(dim).mesh, dim, table);
   }
 };
 
 /// Three particles of which no two numbers are the same; in 2D as a frame has them, with zeros.
 ParticleSnapshot three(int dim) {
   ParticleSnapshot p;
-  p.name = "soil";
+  p.name = "soil", p.state = {{"plastic_strain", {}}};
   for (int n = 0; n < 3; ++n) {
     for (int d = 0; d < 3; ++d) p.position.push_back(d < dim ? k_lower[d] + 1 + n + d / 8. : 0);
     for (int d = 0; d < 3; ++d) p.velocity.push_back(d < dim ? 1 + n + d / 4. : 0);
     for (int k = 0; k < 6; ++k) p.stress.push_back(k < 4 || dim == 3 ? -1000 * (n + 1) + k : 0);
-    p.plastic_strain.push_back(0.25 * n);
-    p.volume.push_back(0.125);
+    p.state[0].values.push_back(0.25 * n);
+    p.volume.push_back(0.125 + n / 64.);
+    p.mass.push_back(250 + n / 3.), p.reference_height.push_back(k_lower[dim - 1] + n / 7.);
   }
   p.grid_velocity = p.velocity;
   return p;
@@ -114,18 +123,23 @@ TEST_CASE("a body whose particles a frame lists starts as the frame's did", "[st
     const ParticleSnapshot expected = three(dim);
     REQUIRE(file.fault(expected, dim).empty());
     ParticleTable table;
-    CHECK(read_particles(file.path, "soil", config.mesh, dim, table).empty());
+    CHECK(file.fault(expected, table, dim, dim).empty());
+    CHECK(table.origin == "frame of step 12, 0.5 s");
     BodyParticles particles;
     particles.position = table.position, particles.velocity = table.velocity;
-    particles.stress = table.stress, particles.plastic_strain = table.plastic_strain;
-    particles.spacing = 0.5, particles.particle_volume = table.particle_volume;
+    particles.stress = table.stress, particles.state = table.state;
+    particles.volume = table.volume, particles.mass = table.mass, particles.least_mass = 250;
+    particles.reference_height = table.reference_height, particles.spacing = 0.5;
     for (std::size_t k = 0; k < particles.position.size(); ++k) particles.position[k] -= k_lower[k % dim];
     const ParticleSnapshot start = start_of(config, particles);
     CHECK(start.position == expected.position);
     CHECK(start.velocity == expected.velocity);
     CHECK(start.stress == expected.stress);
     CHECK(start.volume == expected.volume);
-    CHECK(start.plastic_strain == expected.plastic_strain);
+    REQUIRE((start.state.size() == 1 && start.state[0].name == "plastic_strain"));
+    CHECK(start.state[0].values == expected.state[0].values);
+    CHECK(start.mass == expected.mass);
+    CHECK(start.reference_height == expected.reference_height);
   }
 }
 
@@ -138,9 +152,11 @@ TEST_CASE("a file of particles is refused for the first thing that is wrong with
     return file.fault(particles);
   };
   CHECK_THAT(spoilt([](auto&) {}), Equals(""));
-  CHECK_THAT(spoilt([](auto& p) { p.volume[1] *= 1 + 5e-7; }), Equals(""));
-  CHECK_THAT(spoilt([](auto& p) { p.volume[1] *= 1 + 2e-6; }), StartsWith("particles whose volumes are"));
-  CHECK_THAT(spoilt([](auto& p) { p.volume = {0, 0, 0}; }), StartsWith("particles whose volumes are"));
+  CHECK_THAT(spoilt([](auto& p) { p.volume[1] *= 2; }), Equals(""));
+  CHECK_THAT(spoilt([](auto& p) { p.volume[1] = 0; }),
+             Equals("particles whose volume is greater than 0; that of particle 1 is 0"));
+  CHECK_THAT(spoilt([](auto& p) { p.mass[2] = -1; }),
+             Equals("particles whose mass is greater than 0; that of particle 2 is -1"));
   CHECK_THAT(spoilt([](auto& p) { p.position[3] = 9; }),  // the upper side is not in a cell
              Equals("particles inside the mesh, 1,-2 to 9,6; particle 1 is at 9,0.125"));
   CHECK_THAT(spoilt([](auto& p) { p.position[7] = -2.1; }), StartsWith("particles inside the mesh"));
@@ -149,4 +165,130 @@ TEST_CASE("a file of particles is refused for the first thing that is wrong with
   CHECK_THAT(spoilt([](auto& p) { p.name = "clay"; }), Equals("a file with the group soil"));
   CHECK_THAT(spoilt([](auto& p) { p = {}, p.name = "soil"; }),
              Equals("a file whose soil/position is N x 3 numbers"));
+}
+
+TEST_CASE("a frame that lacks what a start needs is refused by the field's name, a file of one's own not",
+          "[start]") {
+  File file;
+  for (const char* left_out :
+       {"velocity", "stress", "volume", "plastic_strain", "mass", "reference_height"}) {
+    FrameStyle style;
+    for (const std::string& name : frame_field_names())
+      if (name != left_out) style.fields.push_back(name);
+    ParticleTable table;
+    const std::string fault = file.fault(three(2), table, 2, 2, style);
+    CHECK(fault.find("soil/" + std::string(left_out)) != std::string::npos);
+    const bool required = std::string(left_out) == "volume";
+    CHECK(file.fault(three(2), table, 2, 0, style).empty() == !required);
+  }
+  ParticleTable table;
+  FrameStyle still{{"volume", "plastic_strain", "mass", "reference_height"}, 0};
+  CHECK(!file.fault(three(2), table, 2, 2, still).empty());
+  CHECK(read_particles({file.path, "soil", false, false}, config_of(2).mesh, 2, table).empty());
+  CHECK((table.velocity.empty() && table.stress.empty() && table.mass.size() == 3));
+  CHECK(file.fault(three(2), table, 3, 2) == "a frame of a run in 3D");
+
+  ParticleSnapshot beyond = three(2);  // as a run may leave them between two rebuilds
+  beyond.position[0] = k_lower[0] - 0.4, beyond.position[4] = k_lower[1] + 8;
+  CHECK(!file.fault(beyond, table, 2).empty());
+  CHECK(file.fault(beyond, table, 2, 2).empty());
+  CHECK((table.put_inside == 2 && table.position[0] > k_lower[0] && table.position[0] < k_lower[0] + 1e-5));
+  CHECK((table.position[3] < k_lower[1] + 8 && table.position[3] > k_lower[1] + 8 - 1e-5));
+  CHECK(table.position[1] == beyond.position[1]);
+  beyond.position[0] = k_lower[0] - 0.6;
+  CHECK(!file.fault(beyond, table, 2, 2).empty());
+}
+
+TEST_CASE("a strength follows the height where the particle was created", "[start]") {
+  for (int dim : {2, 3}) {
+    Config config = config_of(dim);
+    if (!make_stepper(config)) continue;
+    config.materials = {{"clay", "von_mises", 2000, {1e6, 0.3, 1000, 500, 6}}};
+    BodyParticles particles = pair_of(dim);
+    particles.reference_height = {4.5, 3.25};
+    const auto stepper = make_stepper(config);
+    Model model;
+    for (int d = 0; d < 3; ++d) model.patches[d] = d < dim ? 8 / (dim == 2 ? 8 : 4) + 2 : 1;
+    model.bodies.push_back(particles);
+    Failure failure;
+    REQUIRE(stepper->set_up(std::move(model), &failure) == PETSC_SUCCESS);
+    SavedState saved;
+    REQUIRE(stepper->save(&saved) == PETSC_SUCCESS);
+    for (const SavedField& field : saved.soil.fields)
+      for (std::size_t p = 0; p < 2; ++p) {
+        const double height = particles.reference_height[saved.soil.id[p]];
+        if (field.name == "strength") CHECK(field.values[p] == 1000 + 500 * (6 - height));
+        if (field.name == "reference_height") CHECK(field.values[p] == height);
+        if (field.name == "mass") CHECK(field.values[p] == 2000 * std::pow(0.5, dim));
+      }
+    CHECK(saved.soil.fields.back().name == "reference_height");
+  }
+}
+
+TEST_CASE("particles of a checkpoint are those of its frame, by the body's name", "[start]") {
+  for (int dim : {2, 3}) {
+    Config config = config_of(dim);
+    config.bodies.insert(config.bodies.begin(), BodyConfig{});
+    config.bodies[0].name = "fill";
+    config.velocity_update = VelocityUpdate::apic;
+    if (!make_stepper(config)) continue;
+    const auto stepper = make_stepper(config);
+    Model model;
+    for (int d = 0; d < 3; ++d) model.patches[d] = d < dim ? 8 / (dim == 2 ? 8 : 4) + 2 : 1;
+    model.bodies = {pair_of(dim), pair_of(dim)};
+    BodyParticles& soil = model.bodies[1];
+    for (double& x : soil.position) x += 1.0 / 3;
+    for (std::size_t k = 0; k < soil.position.size(); ++k) soil.velocity.push_back(1 + 0.1 * k);
+    soil.mass = {240, 260.125}, soil.least_mass = 240, soil.volume = {0.12, 0.13};
+    soil.reference_height = {2.5, -1}, soil.state = {{"plastic_strain", {0.5, 0}}};
+    Failure failure;
+    REQUIRE(stepper->set_up(std::move(model), &failure) == PETSC_SUCCESS);
+    Batch batch;
+    REQUIRE(stepper->advance(3, 0, 1e-3, &batch) == PETSC_SUCCESS);
+    Snapshot frame;
+    Checkpoint c;
+    REQUIRE(stepper->snapshot(&frame) == PETSC_SUCCESS);
+    REQUIRE(stepper->save(&c.state) == PETSC_SUCCESS);
+    c.version = "1", c.dim = dim, c.backend = "serial", c.precision = "double", c.strategy = "tile";
+    c.options = {{"-bodies", "fill,soil", "", false},
+                 {"-soil_material", "clay", "", false},
+                 {"-clay_model", "von_mises", "", false},
+                 {"-mesh_lower", dim == 2 ? "1,-2" : "1,-2,3", "m", false},
+                 {"-mesh_upper", dim == 2 ? "9,6" : "9,6,11", "m", false},
+                 {"-mesh_spacing", "1", "m", false}};
+    File file;
+    REQUIRE(write_checkpoint(PETSC_COMM_SELF, file.path, std::move(c)) == PETSC_SUCCESS);
+    REQUIRE(write_frame(file.path + ".frame", frame, Precision::double_) == PETSC_SUCCESS);
+
+    MeshConfig finer = config.mesh;  // and larger
+    finer.spacing = 0.5, finer.lower[0] = 0, finer.cells = {18, 16, dim == 3 ? 16 : 1};
+    ParticleTable from_frame, from_checkpoint;
+    const std::vector<std::string> state = {"plastic_strain"};
+    REQUIRE(
+        read_particles({file.path + ".frame", "soil", true, true, state}, finer, dim, from_frame).empty());
+    REQUIRE(read_particles({file.path, "soil", true, true, state}, finer, dim, from_checkpoint).empty());
+    for (const auto& table : {from_frame, from_checkpoint}) {
+      REQUIRE((table.state.size() == 1 && table.state[0].name == state[0]));
+      CHECK(table.state[0].values == from_frame.state[0].values);
+      CHECK(table.state[0].values.at(0) == 0.5);
+    }
+    for (auto values : {&ParticleTable::position, &ParticleTable::velocity, &ParticleTable::stress,
+                        &ParticleTable::volume, &ParticleTable::mass, &ParticleTable::reference_height}) {
+      const std::vector<double>&a = from_frame.*values, &b = from_checkpoint.*values;
+      REQUIRE((a.size() == b.size() && !a.empty()));
+      for (std::size_t k = 0; k < a.size(); ++k) CHECK(std::fabs(a[k] - b[k]) <= 1e-14 * std::fabs(a[k]));
+    }
+    CHECK(from_checkpoint.mass == std::vector<double>{240, 260.125});
+    CHECK(from_checkpoint.reference_height == std::vector<double>{2.5, -1});
+    CHECK(from_frame.velocity_gradient.empty());
+    CHECK(static_cast<int>(from_checkpoint.velocity_gradient.size()) == 2 * dim * dim);
+
+    ParticleTable table;
+    CHECK(read_particles({file.path, "rock"}, finer, dim, table) ==
+          "a checkpoint with the body rock; it has fill, soil");
+    CHECK(read_particles({file.path, "soil"}, finer, 5 - dim, table) ==
+          "a checkpoint of a run in " + std::to_string(5 - dim) + "D");
+    finer.lower[1] = 5, finer.cells[1] = 2;
+    CHECK(read_particles({file.path, "soil"}, finer, dim, table).starts_with("particles inside the mesh"));
+  }
 }

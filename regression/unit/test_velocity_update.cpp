@@ -34,7 +34,7 @@ Cloud holed_block() {
 template <int Dim>
 void set_linear(BodyInput& body, const double (&A)[3][3], const std::array<double, 3>& b) {
   body.particle_velocity.clear();
-  for (std::size_t p = 0; p < body.strength.size(); ++p)
+  for (std::size_t p = 0; p < strength_of(body).size(); ++p)
     for (int d = 0; d < Dim; ++d) {
       double v = b[d];
       for (int e = 0; e < Dim; ++e) v += A[d][e] * body.position[p * Dim + e];
@@ -62,7 +62,7 @@ std::vector<Table> velocities_after(const Cloud& cloud, P2G how, int n) {
 /// The transfer from nodes to particles and back, S S+, as a full matrix over particles of one mass.
 template <int Dim>
 std::vector<double> transfer(const BodyInput& body) {
-  const int count = static_cast<int>(body.strength.size()), edge = 18;
+  const int count = static_cast<int>(strength_of(body).size()), edge = 18;
   int nodes = 1;
   for (int d = 0; d < Dim; ++d) nodes *= edge;
   std::vector<double> S(std::size_t(count) * nodes), P(std::size_t(count) * count), mass(nodes);
@@ -181,7 +181,7 @@ TEST_CASE("XPIC takes out what no node sees, and lets a smooth field be the more
       cloud.xpic_order = m;
       const Table got = velocities_after<B>(cloud, P2G::tile, 1)[0];
       std::array<double, 2> largest{};
-      for (std::size_t p = 0; p < body.strength.size(); ++p) {
+      for (std::size_t p = 0; p < strength_of(body).size(); ++p) {
         bool inside = true;
         for (int d = 0; d < Dim; ++d) {
           const double x = body.position[p * Dim + d] / k_spacing;
@@ -200,7 +200,7 @@ TEST_CASE("XPIC takes out what no node sees, and lets a smooth field be the more
     for (int m : {1, 2, 3}) CHECK(change(m)[1] < B::of(1e-14, 1e-6));
 
     for (double& v : body.particle_velocity) v = 0;
-    for (std::size_t p = 0; p < body.strength.size(); ++p)  // a shear wave of 12 cells
+    for (std::size_t p = 0; p < strength_of(body).size(); ++p)  // a shear wave of 12 cells
       body.particle_velocity[p * Dim] = std::sin(2 * M_PI * body.position[p * Dim + 1] / (12 * k_spacing));
     const double first = change(1)[0];
     CHECK(first > 0.02);
@@ -227,7 +227,7 @@ TEST_CASE("APIC keeps a linear field of velocity at free surfaces, from the firs
         std::vector<Table> expected{{Dim, body.particle_velocity}};
         if (cloud.affine) {
           expected.push_back({Dim * Dim, {}});
-          for (std::size_t n = 0; n < body.strength.size() * Dim * Dim; ++n)
+          for (std::size_t n = 0; n < strength_of(body).size() * Dim * Dim; ++n)
             expected[1].value.push_back(field[n / Dim % Dim][n % Dim] * k_spacing);
         }
         const auto got = velocities_after<B>(cloud, how, steps);
@@ -258,7 +258,7 @@ TEST_CASE("XPIC and APIC keep momentum, and APIC angular momentum", "[velocity_u
     BodyInput& body = cloud.bodies[0];
     set_random(body);
     Dice dice{std::mt19937_64(31)};
-    for (std::size_t n = 0; n < body.strength.size() * sym_size<Dim>; ++n)
+    for (std::size_t n = 0; n < strength_of(body).size() * sym_size<Dim>; ++n)
       body.stress.push_back(dice.uniform(-3000, 3000));
     cloud.flip_share = 0;
     for (int order : {0, 2, 5}) {
@@ -272,7 +272,7 @@ TEST_CASE("XPIC and APIC keep momentum, and APIC angular momentum", "[velocity_u
         return sum;
       };
       const double before[] = {total(0), total(1), total(Dim - 1)};
-      const double tolerance = B::of(1e-13, 1e-5) * static_cast<double>(body.strength.size());
+      const double tolerance = B::of(1e-13, 1e-5) * static_cast<double>(strength_of(body).size());
       const std::vector<double> x = soil_fields(s)[0].value;
       const auto turning = s.affine ? angular_momentum<B>(s, x) : std::vector<double>{};
       one_step(s, k_dt);

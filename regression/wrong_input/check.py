@@ -6,6 +6,12 @@ Usage: check.py PATH_TO_mpm [WORD ...]   (WORD: only rows whose options hold it)
 Each row of wrong_input.tsv is run by itself in an empty folder with base.opts, a deck that is right. Checked are the
 exit status, that stderr has exactly the lines expected, each of which names what was given and what is taken, and that
 a refused run left no file behind. Rows of status 3 are runs that fail on their way: their one line says where and when.
+Rows of status 0 that expect lines are runs that warn: each is in a line of its own on stdout, and in the log if there is one.
+
+Beside options of mpm a row may have
+    !NAME         that line of base.opts is left out; !options_file: the deck is not given
+    +FILE=TEXT    a file in the folder; ~ is a space in it, ; a line end. +stdin=TEXT is the standard input
+    NAME=VALUE    a variable of the environment
 """
 import os
 import pathlib
@@ -33,11 +39,28 @@ def write_deck(folder, left_out):
 
 
 def run(binary, options, folder):
+    """The result, and the files that were there before."""
     words = options.split()
-    deck = write_deck(folder, [word[1:] for word in words if word.startswith("!")])
-    command = [binary, "-options_file", str(deck)] + [word for word in words if not word.startswith("!")]
-    environment = dict(os.environ, OMP_PROC_BIND="false", OMP_NUM_THREADS="1")
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
+    left_out = [word[1:] for word in words if word.startswith("!")]
+    deck = write_deck(folder, left_out)
+    environment = dict(os.environ, OMP_PROC_BIND="false", OMP_NUM_THREADS="1", HOME=str(folder))
+    command = [binary] + ([] if "options_file" in left_out else ["-options_file", str(deck)])
+    there, given = {deck.name}, None
+    for word in words:
+        name, _, text = word.partition("=")
+        if word.startswith("+"):
+            text = text.replace("~", " ").replace(";", "\n") + "\n"
+            if name == "+stdin":
+                given = text
+            else:
+                (folder / name[1:]).write_text(text)
+                there.add(name[1:])
+        elif name.isupper() and "=" in word:
+            environment[name] = text
+        elif not word.startswith("!"):
+            command.append(word)
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120,
+                          input=given), there
 
 
 def match(lines, fragments):
@@ -62,9 +85,14 @@ def not_of_our_form(lines):
 def check(binary, status, options, fragments):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        result = run(binary, options, folder)
-        written = sorted(path.name for path in folder.iterdir() if path.name != "base.opts")
+        result, there = run(binary, options, folder)
+        written = sorted(path.name for path in folder.iterdir() if path.name not in there)
+        logs = [path.read_text().splitlines() for path in folder.glob("out/*/mpm.log")]
     faults = [] if result.returncode == status else [f"status {result.returncode}, expected {status}"]
+    if status == 0 and fragments:
+        for lines in [result.stdout.splitlines()] + logs:
+            faults += [fault for fault in match([line for line in lines if line.startswith("warning: ")], fragments)
+                       if not fault.startswith("not expected")]
     if status == 0:
         faults += [f"stderr: {line}" for line in result.stderr.splitlines() if line.startswith("mpm: -")]
         if "-help" in options and "-mesh_spacing\n" not in result.stdout:

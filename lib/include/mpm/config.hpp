@@ -25,10 +25,12 @@ struct MeshConfig {
   std::array<std::array<Wall, 2>, 3> walls{};  // [direction][0 lower, 1 upper side]; default roller
 };
 
-enum class ShapeKind { box, polygon, disc, half_plane, particles };
+enum class ShapeKind { box, polygon, disc, cylinder, cone, half_plane, particles };
 enum class Fill { centre, cell };
 
-/// A region of space and the lattice of particles that fills it. The vertical axis is y in 2D and z in 3D.
+/// A region of space and the lattice of particles that fills it. The vertical axis is y in 2D and z in 3D. A
+/// box that is not turned, a disc, a cylinder and a cone may reach beyond sides of the mesh that are planes of
+/// symmetry (roller); only what is inside is filled.
 struct Shape {
   ShapeKind kind = ShapeKind::box;
   Vec3 lower{}, upper{};                       // m, box, before it is turned
@@ -36,10 +38,14 @@ struct Shape {
   double angle = 0;                            // rad, box: turned about `lower`, from x to the vertical axis
   std::vector<std::array<double, 2>> polygon;  // m, vertices in order: x and the vertical coordinate
   std::array<double, 2> width{};               // m, polygon in 3D: the prism's lower and upper y
-  Vec3 centre{};                               // m, disc (ball in 3D)
-  double radius = 0;                           // m, disc
+  Vec3 centre{};          // m, disc (ball in 3D); cylinder: lower end of its vertical axis; cone: its tip
+  double radius = 0;      // m, disc, cylinder; cone: of its base
+  double height = 0;      // m, cylinder (with its tip), cone
+  double tip_height = 0;  // m, cylinder: of the cone that its lower end is; 0 where that is flat
+  bool tip_up = false;    // cone: its tip is its highest point, not its lowest
   Vec3 point{}, normal{};                      // m, -, half_plane: on its face; outward, of length 1
-  std::string file;                            // particles (of a body): the HDF5 file that lists them
+  std::string file, file_body;                 // particles (of a body): the HDF5 file that lists them, and
+                                               // the body's name there
   int particles_per_cell = 2;                  // in each direction
   Fill fill = Fill::centre;
 };
@@ -55,10 +61,13 @@ struct MaterialConfig {
 struct BodyConfig {
   std::string name;
   Shape shape;
-  int material = 0;          // index into Config::materials
-  Vec3 velocity{};           // m/s, initial
-  Sym6 stress{};             // Pa, initial, tension positive
-  std::vector<int> cut_out;  // indices into Config::rigids: particles in their shapes are left out
+  int material = 0;             // index into Config::materials
+  Vec3 velocity{};              // m/s, initial
+  Sym6 stress{};                // Pa, initial, tension positive
+  bool velocity_given = false;  // by the options: a file's do not count then
+  bool stress_given = false;
+  std::vector<int> cut_out;         // indices into Config::rigids: particles in their shapes are left out
+  std::vector<int> cut_out_bodies;  // the same of Config::bodies
 };
 
 /// Where the normals of a contact come from: the body's own surface, or its nodal mass gradient (Eq. 3).
@@ -75,7 +84,8 @@ struct RigidConfig {
   double density = 0;              // kg/m3 (dynamic)
   Vec3 force{};                    // N, external (dynamic), beside gravity
   double shear_limit = 0;          // Pa, largest shear stress of the interface; 0 is smooth
-  std::optional<double> friction;  // -, Coulomb coefficient
+  std::optional<double> shear_share;  // -, the limit as a share of the soil's strength, instead of it
+  std::optional<double> friction;     // -, Coulomb coefficient
   ContactNormal contact_normal = ContactNormal::surface;
   bool separates = true;         // the soil may part from it
   bool penalty = true;           // the normal correction decreases with the gap (Geo-contact)
@@ -132,6 +142,7 @@ struct OutputConfig {
       checkpoint_interval;                // s between checkpoints; none: only when the run is told to stop
   std::optional<double> wall_time_limit;  // s of wall time after which the run stops
   std::string restart;                    // the checkpoint to go on from, or "latest"; empty: from the start
+  std::vector<std::string> restart_change;  // names of options, without dash, that may differ from its own
 };
 
 inline constexpr double k_gib = 1024.0 * 1024 * 1024;  // bytes
@@ -151,6 +162,7 @@ struct Config {
   VelocityUpdate velocity_update = VelocityUpdate::flip;
   int xpic_order = 2;         // -, m of XPIC(m), with xpic
   double flip_share = 1;      // -, share of FLIP in the velocity update, the rest PIC, or XPIC with xpic
+  StrayRule stray_particles = StrayRule::keep;
   double f_bar_share = 0.98;  // -, share of the cell's mean in a particle's dilatation (F-bar)
   std::vector<MaterialConfig> materials;
   std::vector<BodyConfig> bodies;

@@ -3,6 +3,7 @@
 
 #include <petscsys.h>
 
+#include <functional>
 #include <memory>
 
 namespace mpm {
@@ -30,6 +31,8 @@ class Simulation {
   PetscErrorCode set_from_options(MPI_Comm comm, const char* prefix, const InputReport& arguments);
   /// Whether there is something to run.
   bool ready() const;
+  /// To be called once when all is set up and the steps begin.
+  void on_first_step(std::function<void()> call);
   /// Runs to the end and writes all results.
   PetscErrorCode run();
   Outcome outcome() const;
@@ -40,6 +43,7 @@ class Simulation {
 };
 
 /// Takes what PETSc must not see out of the command line; see input/options.hpp.
-std::unique_ptr<InputReport, void (*)(InputReport*)> prepare_arguments(MPI_Comm comm, int* argc, char** argv);
+std::unique_ptr<InputReport, void (*)(InputReport*)> prepare_arguments(MPI_Comm comm, int* argc,
+                                                                       char*** argv);
 
 }  // namespace mpm

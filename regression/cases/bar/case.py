@@ -1,10 +1,10 @@
 """Vibrating elastic bar
 
 A bar of 25 m, fixed at one end, starts with the velocity of its first mode, $v_0 \\sin(\\pi x / 2L)$ with
-$v_0 = 0.1$ m/s. It is stress-free at the start, $\\nu = 0$, and rollers hold its sides, so it stretches along its axis only.
+$v_0 = 0.1$ m/s. The bar is stress-free at the start, $\\nu = 0$, and rollers hold its sides, so the bar stretches along its axis only.
 Its centre of mass must move as $v = (2 v_0/\\pi) \\cos \\omega t$ with $\\omega = \\pi c / 2L$, $c = \\sqrt{E/\\rho}$, period
-10 s, and keep its energy. Halving the cells must quarter the error of the period. The strain reaches 0.8 %; what that adds to
-the period of the linear theory (about $10^{-5}$) is neglected. The Courant number is 0.1, so that the error is the mesh's.
+10 s, and keep its energy. Halving the cells must quarter the error of the period. The strain reaches 0.8 %; its effect on
+the period of the linear theory (about $10^{-5}$) is neglected. The Courant number is 0.1, so that the mesh causes the error.
 """
 
 import numpy as np

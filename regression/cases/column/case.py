@@ -1,11 +1,11 @@
 """Column under its own weight
 
-A column of soil, held sideways, settles under its weight. Whatever its stiffness, at rest the soil that was at the height
-$Y$ carries what lay above it, $\\sigma_{yy} = -\\rho_0 g (H - Y)$. `mpm` adds up increments of strain, which is logarithmic
+A column of soil, held sideways, settles under its weight. Whatever the stiffness, at rest the soil that was at the height
+$Y$ carries the soil above it, $\\sigma_{yy} = -\\rho_0 g (H - Y)$. `mpm` adds up increments of strain, which is logarithmic
 strain here, so $Y$ follows the particle however much the column has been compressed: by 4 % at the base (E = 1 MPa) and by
 33 % (E = 100 kPa). The mean error of the stress over $\\rho g H$ must fall at least as fast as the cells. A stiff column
 ($M = \\lambda + 2G$, strains of 0.15 %) must settle by $\\rho g H^2 / 2M$ at its top, with
-$\\sigma_h/\\sigma_v = \\nu/(1-\\nu)$, in 2D and 3D; what the finite strain adds to this is 0.05 %. At strains of order 1
+$\\sigma_h/\\sigma_v = \\nu/(1-\\nu)$, in 2D and 3D; the finite strain adds 0.05 % to this. At strains of order 1
 particles of a fixed size overlap, and the order falls below one.
 """
 
@@ -17,7 +17,7 @@ from row import Row
 LOWER, HEIGHT = (0.3, -0.7), 50.0
 CELLS = (10, 20, 40, 80)
 SOFT = {"4 %": "", "33 %": " -soil_young 1e5 -time_end 120 -output_interval 120"}
-OVERLAP = "Particles keep their size: compressed by a third, they overlap, and then the error stops falling with the cells."
+OVERLAP = "Particles keep their size: compressed by a third, they overlap, and the error is 1.8 % whatever the cells."
 STIFF, POISSON, WEIGHT, STIFF_HEIGHT = 1e8, 0.3, 2e4, 10.0
 
 
@@ -71,9 +71,9 @@ def check(runs):
         errors = [stress_error(runs[f"{strain.split()[0]}_{n}"]) for n in CELLS]
         why = OVERLAP if strain == "33 %" else ""
         yield Row(f"order of the stress over {CELLS} cells, strain {strain}", -order(CELLS, errors), 1, 0.1,
-                  "first order", at_least=True, shortfall=why, bound=0.95)
+                  "first order", at_least=True, shortfall=why, bound=1.05)
         yield Row(f"mean error of the stress over rho g H, {CELLS[-1]} cells, strain {strain}", errors[-1], 0, 0.01,
-                  "equilibrium", shortfall=why, bound=0.03)
+                  "equilibrium", shortfall=why, bound=0.02)
     for dim in ("2D", "3D"):
         run = runs[f"stiff_{dim}"]
         stress = last_frame(run, "column")["stress"]

@@ -1,11 +1,11 @@
 """Vertical cut
 
 A vertical cut of height $H$ in clay of strength $s_u$ stands up to $\\gamma H / s_u = 3.78$ (limit analysis: between the
-bounds 3.772 and 3.786). The gravity is raised from run to run. Below the limit the bank comes to rest within 0.3 s;
-above it, it goes on sliding, the faster the further it is beyond the limit. The answer is the number at which the mean speed
+bounds 3.772 and 3.786). The gravity is raised from run to run. Below the limit the bank comes to rest within 0.3 s.
+Above the limit the bank slides on, and faster with increasing excess over the limit. The answer is the number at which the mean speed
 of the bank from 0.3 s to 0.6 s is zero, on the straight line of least squares through the runs that slide. Later the bank has
-sunk by so much that it stands again, lower. Local damping takes a share of the force that is out of balance; it changes
-neither what is in balance nor the sign of what is not. Walls are 2 H from the face, the ground below is 1 H deep; the
+sunk so far that it stands again, at a lower height. Local damping removes a fraction of the unbalanced force; it changes
+neither balanced forces nor the sign of the unbalanced force. Walls are 2 H from the face, the ground below is 1 H deep; the
 mechanism is a wedge of about 45° through the toe.
 """
 

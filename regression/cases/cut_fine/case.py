@@ -1,6 +1,6 @@
 """Vertical cut, finer
 
-The case `cut` with 80 cells over the height instead of 40: eight times the work, so it is run on a GPU or on all cores, in
+The case `cut` with 80 cells over the height instead of 40: eight times the work, so the case runs on a GPU or on all cores, in
 double precision.
 """
 

@@ -1,10 +1,10 @@
 """Slab dragged over clay
 
 A slab whose interface slips at $\\tau_{max}$ is dragged over clay, and needs the force $\\tau_{max} A$: whatever the clay does
-below, and wherever its ends are in their cells. The interface must touch for that, so the clay carries a pressure of 3 kPa from the
-start; the slab moves by 0.3 m (six cells), and is lowered by 0.3 mm meanwhile. The clay is a strip that lies wholly under the slab, so $A$ is that of the strip. In one more run
-the clay is wider than the slab, whose front end then meets clay: nodes at the surface, up to a cell ahead, are pushed before
-it, which raises the force by 29 %. The mean force over the last two thirds is compared.
+below, and wherever its ends are in their cells. The interface must stay in contact, so the clay carries a pressure of 3 kPa from the
+start; the slab moves by 0.3 m (six cells), and is lowered by 0.3 mm meanwhile. The clay is a strip that lies wholly under the slab,
+so $A$ is that of the strip. In one more run the clay is wider than the slab, whose front end then meets clay: the slab pushes nodes
+at the surface, up to a cell ahead, which raises the force by 29 %. The mean force over the last two thirds is compared.
 """
 
 import numpy as np

@@ -1,10 +1,10 @@
-"""The footing in other clothes
+"""Variants of the footing
 
-The footing of footing_coarse as the whole of it instead of half, in single precision, 200 m away, and with every strategy.
-All must give the same curve.
+The whole footing of footing_coarse instead of half of it, in single precision, 200 m away, and with every strategy.
+All runs must give the same curve.
 
-Positions count from the mesh's lower corner. So there are two runs 200 m away: one whose mesh moves with the footing,
-and one whose mesh begins 200 m before it. In the latter the footing is mirrored, with its plane of symmetry at the upper
+Positions count from the mesh's lower corner. There are therefore two runs 200 m away: one whose mesh moves with the footing,
+and one whose mesh begins 200 m before the footing. In the latter the footing is mirrored, with its plane of symmetry at the upper
 side of the mesh, and a smooth rigid bank stands where the far side was.
 """
 

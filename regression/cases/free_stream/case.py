@@ -1,8 +1,8 @@
 """Free flight
 
-A body that moves with one velocity must go on so: its velocity stays, it is not strained, and it moves by $v t$. In `mpm`
+A body that moves with one velocity must keep that velocity, must not be strained, and must move by $v t$. In `mpm`
 this holds to round-off if the weights of each particle sum to 1 and their gradients to 0, wherever the particle is, and if
-nodes of hardly any mass at the edge of the body do no harm. The mesh begins at odd numbers; the body crosses 28 cells.
+nodes with almost no mass at the edge of the body cause no error. The mesh begins at odd numbers; the body crosses 28 cells.
 """
 
 import numpy as np

@@ -1,10 +1,10 @@
 """Block on an incline
 
-A block on a plane of 30°. *Limiting shear* $\\tau_{max}$: it slides with $a = g \\sin\\theta - \\tau_{max} A/m$, whatever its
-weight, or stays if $\\tau_{max} A > m g \\sin\\theta$. *Coulomb friction*: $a = g (\\sin\\theta - \\mu \\cos\\theta)$, or it
-stays if $\\mu \\ge \\tan\\theta$. The block starts from rest with the vertical stress of its weight; the shear stress has to
-build up, which rocks the block a little: the acceleration is that of the centre of mass after 0.2 s, and the speed of a block
-that stays is the mean over the last 0.1 s of 1 s. The ends of the block do not lie on nodes.
+A block on a plane of 30°. *Limiting shear* $\\tau_{max}$: it slides with $a = g \\sin\\theta - \\tau_{max} A/m$, whatever
+its weight, or stays if $\\tau_{max} A > m g \\sin\\theta$. *Coulomb friction*: $a = g (\\sin\\theta - \\mu \\cos\\theta)$,
+or it stays if $\\mu \\ge \\tan\\theta$. The block starts from rest with the vertical stress of its weight. The shear stress
+has to build up, which rocks the block a little. The acceleration is therefore that of the centre of mass after 0.2 s, and
+the speed of a block that stays is the mean over the last 0.1 s of 1 s. The ends of the block do not lie on nodes.
 """
 
 import numpy as np

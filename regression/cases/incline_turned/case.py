@@ -1,9 +1,9 @@
 """Area of the contact, at every angle
 
 The block of the incline slides down planes that climb by 0°, 5°, 17° and 45° in the mesh, and start at several places within
-a cell. Gravity is turned with the plane, so the answer is always the same: the interface must hold the block by
-$\\tau_{max} A$ with $A$ the block's area, $a = g_t - \\tau_{max} A/m$. What is compared is the area that acts, $(g_t - a)\\,m /
-\\tau_{max}$, over that of the block.
+a cell. Gravity is turned with the plane, so the answer is always the same: the interface must hold the block with the force
+$\\tau_{max} A$, where $A$ is the block's area, $a = g_t - \\tau_{max} A/m$. The check compares the acting area, $(g_t - a)\\,m /
+\\tau_{max}$, with the area of the block.
 """
 
 import numpy as np

@@ -2,8 +2,8 @@
 
 A slab of clay, 40 m long and 5 m high, slides on a rough base that slopes by 5 degrees, and comes to rest after about
 11 s and 20 to 25 m. Cells of 0.1 m, 79,456 particles, 75,000 steps. The expected run-out spans the published one and
-those of an independent solver with two kinds of contact normals. When it stopped the paper tells (11 s), but this
-depends on the least rest of motion, so that it is no answer to be held.
+those of an independent solver with two kinds of contact normals. The paper gives the time at which the slide stops
+(11 s), but this time depends on the smallest residual motion, so it is no answer for a check.
 """
 
 from landslide_checks import draw_curve, rows

@@ -1,7 +1,7 @@
 """Patch tests
 
 *One stress everywhere.* A block fills a mesh whose sides hold it, under a stress with all components that is the same
-everywhere. Nothing is out of balance, so nothing may move: the gradients of the weights must sum to zero over the particles
+everywhere. All forces balance, so nothing may move: the gradients of the weights must sum to zero over the particles
 of each node, up to the walls. *One strain everywhere.* The block starts with a velocity that is linear in space. After one
 step the stress must be that of Hooke's law for this strain at every particle that is more than two cells from the surface, and
 the particles must have moved with the linear field. In 2D and 3D, the corner of the mesh at odd numbers.

@@ -7,7 +7,7 @@ $$N = \\pi + 2\\Delta + 2\\cos\\Delta + 4\\left(\\cos\\tfrac{\\Delta}{2} + \\sin
 
 (Randolph & Houlsby 1984): 9.14 for a smooth pipe to 11.94 for a fully rough one. It is exact at $a = 1$, and a lower bound
 within a few percent of the upper one below. No edge and no surface is near, so this is the cleanest test of the shear limit
-on a curved interface. The clay stands under a pressure of 12 $s_u$ at the start, so that it does not part from the pipe; the
+on a curved interface. The clay is under a pressure of 12 $s_u$ at the start, so that it does not separate from the pipe; the
 pressure has no other effect on clay of this strength. The walls are 4.5 D from the pipe, the mechanism reaches about 1.5 D.
 The mean over the displacements from 0.04 D to 0.06 D is compared.
 """

@@ -1,7 +1,7 @@
 """Deep pipe, finer
 
-The smooth and the rough pipe of the case `pipe` with 32 cells across the pipe instead of 16: eight times the work, so it is
-run on a GPU or on all cores, in double precision.
+The smooth and the rough pipe of the case `pipe` with 32 cells across the pipe instead of 16: eight times the work, so the case
+runs on a GPU or on all cores, in double precision.
 """
 
 import case as cases

@@ -1,9 +1,9 @@
 """Slab pushed over clay by a force
 
 A rigid slab of mass $M$ that is free to move is pressed on a strip of clay that lies wholly under it, and pushed over it by a
-horizontal force $F$, larger than what the interface can hold, $\\tau_{max} A$. It must take the acceleration
+horizontal force $F$, larger than the resistance of the interface, $\\tau_{max} A$. The slab must have the acceleration
 $(F - \\tau_{max} A)/M$. The clay carries the vertical force (3 kPa) from the start. The acceleration is taken from
-0.05 s on, when the shear has built up. What is compared is the resistance $F - M a$ over $\\tau_{max} A$.
+0.05 s on, when the shear has built up. The check compares the resistance $F - M a$ with $\\tau_{max} A$.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Rigid body that is free to move
 
 Two problems. *Hit*: a rigid disc hits an elastic one, and a rigid ball an elastic one, without gravity and walls: the
-momentum of both together must stay, to round-off. *Fall*: under gravity alone the body must fall by $g t^2/2$.
+total momentum must be conserved to round-off. *Fall*: under gravity alone the body must fall by $g t^2/2$.
 """
 
 import numpy as np

@@ -3,8 +3,8 @@
 A cylinder rolls down a slope of $\\theta$ = 20° without slip if $\\mu \\ge \\tan\\theta/3$, by $x = g \\sin\\theta\\, t^2/3$;
 with less friction it slips, $x = g t^2 (\\sin\\theta - \\mu \\cos\\theta)/2$. A ball that does not slip takes
 $x = 5 g \\sin\\theta\\, t^2/14$. The body is elastic and stiff (its weight flattens it by $10^{-3}$ of its radius), and
-contact begins at a gap of a twentieth of a cell. The acceleration of its centre of mass is compared, from 0.2 s on: with 20
-cells over the radius of the cylinder, with 10, and with 5 over that of the ball.
+contact begins at a gap of a twentieth of a cell. The check compares the acceleration of its centre of mass from 0.2 s on: with 20
+cells over the radius of the cylinder, with 10, and with 5 over the radius of the ball.
 """
 
 import numpy as np

@@ -1,11 +1,12 @@
 """Simple shear to 200 %
 
 A block of elastic material is sheared to $\\gamma = 2$. With the Jaumann rate its stress must follow
-$\\sigma_{xy} = G \\sin\\gamma$, $\\sigma_{xx} = -\\sigma_{yy} = G (1 - \\cos\\gamma)$. The particles move on straight lines at
-constant speed, which needs no force; the block is made so dense that its stress does not change that (by $10^{-9}$). At the
-free surfaces nodes are covered on one side only, and FLIP does not carry a velocity that is linear there; the particles
-within a cell of the centre, which are compared, do not feel it. With APIC the whole block is compared. The stress is turned by the whole spin of a step before the
-step's increment is added, an error of first order in the step: it is what remains at 4000 steps. In 3D the shear is in the vertical plane.
+$\\sigma_{xy} = G \\sin\\gamma$, $\\sigma_{xx} = -\\sigma_{yy} = G (1 - \\cos\\gamma)$. The particles move on straight lines
+at constant speed, which needs no force. The block is so dense that its stress changes this motion by only $10^{-9}$. At the
+free surfaces, nodes are covered on one side only, and FLIP does not preserve a linear velocity there; this does not affect
+the particles within a cell of the centre, which the check compares. With APIC the check compares the whole block. The whole
+spin of a step turns the stress before the step's increment is added, an error of first order in the step, which remains at
+4000 steps. In 3D the shear is in the vertical plane.
 """
 
 import numpy as np

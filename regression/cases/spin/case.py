@@ -6,10 +6,10 @@ $$\\sigma_{rr} = k\\,(3 - 2\\nu)(R^2 - r^2), \\qquad \\sigma_{\\theta\\theta} = 
 k = \\frac{\\rho\\omega^2}{8 (1 - \\nu)} ,$$
 
 with which it starts. After one turn the stress of every particle, which has turned by 360° with it, must be the same as at
-the start, the particles must be back where they were, and angular momentum and energy must have been kept. Strains are
-0.2 %. In 3D a slice of it, two cells thick, spins in the vertical plane. (A stress that turns by 360° at a point, without a
-mesh, is kept to $10^{-12}$ by a unit test.) FLIP strains the soil at a
-free surface that turns, and is shown beside APIC, which does not.
+the start, the particles must be back at their positions, and angular momentum and energy must be conserved. Strains are
+0.2 %. In 3D a slice of the disc, two cells thick, spins in the vertical plane. (A unit test turns a stress at a point, without a
+mesh, by 360° and recovers it to $10^{-12}$.) FLIP strains the soil at a free surface that turns; the table shows FLIP and APIC,
+which does not strain it.
 """
 
 import numpy as np

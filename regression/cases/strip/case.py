@@ -4,7 +4,7 @@ A strip of width $B$ on weightless clay of strength $s_u$ fails at $q = (2 + \\p
 (Prandtl 1921; von Mises clay in plane strain with $\\sqrt{J_2} = s_u$). The exact value is for small penetration, so the mean
 over 0.02-0.05 $B$ is compared: the clay has yielded by 0.02 $B$, and the trench adds little before 0.05 $B$. The speed of
 0.1 m/s is 1/2000 of that of a wave. Sides are 2.5 $B$ from the edge and the bottom is 4 $B$ down, beyond the mechanism of a
-rough strip (1.5 $B$). The case `strip_fine` goes on to $d = B/80$ and $d = 0$.
+rough strip (1.5 $B$). The case `strip_fine` continues to $d = B/80$ and $d = 0$.
 """
 
 from footing_checks import EXACT

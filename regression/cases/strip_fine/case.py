@@ -1,8 +1,8 @@
 """Strip footing, finer
 
-The case `strip` once more with cells of $B$/80, beside $B$/40: eight times the work, so it is run on a GPU or on all cores, in
-double precision. The straight line through the two, over $d$, gives the answer at $d = 0$. Some of what is left is no error: a
-footing that has sunk by 0.035 $B$, the mean of the window, stands in a trough.
+The case `strip` with cells of $B$/80 and of $B$/40: eight times the work, so the case runs on a GPU or on all cores, in
+double precision. The straight line through the two answers, over $d$, gives the answer at $d = 0$. A part of the difference is no
+error: a footing that has sunk by 0.035 $B$, the mean of the window, stands in a trough.
 """
 
 import case as cases

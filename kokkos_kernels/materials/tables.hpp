@@ -1,0 +1,26 @@
+#pragma once
+// What the tables of the laws say, for code that does not see the laws.
+
+#include <vector>
+
+namespace mpm {
+
+/// One state variable of a law: what each of its particles carries beside the stress. Sorting, migration,
+/// checkpoints, batches, frames and starts from files follow the table of a law's state variables.
+struct StateVariable {
+  const char* name;  // in frames, checkpoints and files of particles
+  const char* unit;
+  bool changes = true;  // update() changes it; else it follows from where the particle was created
+  bool output = true;   // frames have it
+};
+
+/// Name of each model in the list, in its order.
+std::vector<const char*> material_models();
+
+/// Whether the stiffness of the model of this index in Materials depends on stress or state.
+bool stiffness_changes(int which);
+
+/// State variables of the model of this index in Materials.
+std::vector<StateVariable> state_variables(int which);
+
+}  // namespace mpm

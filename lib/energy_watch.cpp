@@ -1,0 +1,63 @@
+#include "energy_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "output/log.hpp"
+
+namespace mpm {
+namespace {
+
+double kinetic_energy_of(const HistoryRow& row) {
+  double sum = 0;
+  for (const BodyRow& body : row.bodies) sum += body.kinetic_energy;
+  return sum;
+}
+
+long lost_of(const HistoryRow& row) {
+  long sum = 0;
+  for (const BodyRow& body : row.bodies) sum += body.lost_count;
+  return sum;
+}
+
+}  // namespace
+
+void EnergyWatch::begin(const HistoryRow& row, double wave_energy) {
+  constexpr double k_round_off = 1e-10;
+  last_ = row;
+  available_ = 0;
+  for (const BodyRow& body : row.bodies) available_ += body.kinetic_energy + body.stored_energy;
+  passed_ = available_;
+  least_ = k_round_off * wave_energy;
+}
+
+void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
+  const auto add = [&](double work) { available_ += work, passed_ += std::fabs(work); };
+  for (std::size_t b = 0; b < row.bodies.size(); ++b)
+    for (int d = 0; d < config.dim; ++d)
+      add(row.bodies[b].mass * config.gravity[d] * (row.bodies[b].centre[d] - last_.bodies[b].centre[d]));
+  for (std::size_t r = 0; r < row.rigids.size(); ++r)
+    for (int d = 0; d < config.dim; ++d)
+      add(std::fabs(row.rigids[r].force[d] *
+                    (row.rigids[r].displacement[d] - last_.rigids[r].displacement[d])));
+}
+
+std::string EnergyWatch::look(const HistoryRow& row, const Config& config) {
+  constexpr double k_slack = 0.5;  // of what has passed: forces are means over the rows
+  const double now = kinetic_energy_of(row);
+  if (lost_of(row) != lost_of(last_)) {  // the centre tells no work where soil has left
+    const double passed = passed_, least = least_;
+    begin(row, 0);
+    passed_ = std::max(passed, passed_), least_ = least;
+    return {};
+  }
+  add_work(row, config);
+  last_ = row;
+  if (!(now > available_ + k_slack * passed_ + least_)) return {};
+  return formatted(
+      "the kinetic energy has grown to %.4g J, and only %.4g J of it have a source (the energy at the start, "
+      "gravity, rigids): the time step is not stable for this soil; take a smaller -time_courant",
+      now, available_);
+}
+
+}  // namespace mpm

@@ -1,0 +1,44 @@
+// Particles of a file that are in the place of something else.
+
+#include "input/filled.hpp"
+#include "input/particle_file.hpp"
+
+namespace mpm {
+namespace {
+
+/// Keeps the rows that are not marked. Every row has equally many components; there may be none.
+void keep_rows(const std::vector<char>& out, std::vector<double>& field) {
+  const std::size_t components = field.size() / out.size();
+  std::size_t kept = 0;
+  for (std::size_t row = 0; row < out.size(); ++row) {
+    if (out[row]) continue;
+    for (std::size_t c = 0; c < components; ++c) field[kept++] = field[row * components + c];
+  }
+  field.resize(kept);
+}
+
+}  // namespace
+
+long cut_particles(const std::vector<Shape>& cut_out, const MeshConfig& mesh, int dim, ParticleTable& table) {
+  if (cut_out.empty() || table.position.empty()) return 0;
+  std::vector<Region> holes;
+  for (const Shape& shape : cut_out) holes.emplace_back(shape, dim, 1e-9 * mesh.spacing);
+  std::vector<char> out(table.position.size() / dim);
+  long count = 0;
+  for (std::size_t row = 0; row < out.size(); ++row) {
+    Vec3 x{};
+    for (int d = 0; d < dim; ++d) x[d] = table.position[row * dim + d];
+    for (Region& hole : holes) {
+      hole.enter_row(x[dim - 1], x[dim - 1]);
+      if (hole.holds(x)) out[row] = 1;
+    }
+    count += out[row];
+  }
+  for (auto* field : {&table.position, &table.velocity, &table.stress, &table.volume, &table.mass,
+                      &table.reference_height, &table.velocity_gradient})
+    keep_rows(out, *field);
+  for (StateField& state : table.state) keep_rows(out, state.values);
+  return count;
+}
+
+}  // namespace mpm

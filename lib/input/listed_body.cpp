@@ -1,0 +1,106 @@
+// What a body takes from a file that lists its particles, and what from options.
+
+#include <cmath>
+#include <filesystem>
+
+#include "input/groups.hpp"
+#include "input/material_table.hpp"
+#include "input/text.hpp"
+#include "output/own_files.hpp"
+
+namespace mpm {
+namespace {
+
+/// Whether the run would remove a file, with the frames and checkpoints that are in its folder.
+bool will_be_removed(const std::string& file, const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path path = fs::weakly_canonical(file, none), own = fs::weakly_canonical(folder, none);
+  const std::string name = path.filename().string();
+  return (path.parent_path() == own && is_written_name(name, false)) ||
+         (path.parent_path() == own / "frames" && is_written_name(name, true));
+}
+
+/// What the numbers of a file must be for the arithmetic to have room; empty where they are.
+std::string beyond_bounds(const ParticleTable& table, const MeshConfig& mesh, int dim) {
+  const double cell = std::pow(mesh.spacing, dim), far = k_coordinate.highest;
+  struct Field {
+    const char* name;
+    const std::vector<double>& values;
+    int components;
+    double most;
+  };
+  constexpr double k_largest_state = 1e12;  // whatever its unit
+  std::vector<Field> fields = {{"velocity", table.velocity, dim, k_speed.highest},
+                               {"velocity_gradient", table.velocity_gradient, dim * dim, k_speed.highest},
+                               {"stress", table.stress, dim == 2 ? 4 : 6, k_stress.highest},
+                               {"volume", table.volume, 1, 10 * cell},
+                               {"mass", table.mass, 1, 10 * cell * k_density.highest},
+                               {"reference_height", table.reference_height, 1, far}};
+  for (const StateField& state : table.state)
+    fields.push_back({state.name.c_str(), state.values, 1, k_largest_state});
+  for (const Field& field : fields)
+    for (std::size_t n = 0; n < field.values.size(); ++n)
+      if (!(std::abs(field.values[n]) <= field.most))
+        return std::string("particles whose ") + field.name + " is at most " + text_of(field.most) +
+               "; that of particle " + std::to_string(n / field.components) + " is " +
+               text_of(field.values[n]);
+  return "";
+}
+
+}  // namespace
+
+ParticleSource source_of(const BodyConfig& body) {
+  return {body.shape.file, body.shape.file_body, !body.velocity_given, !body.stress_given};
+}
+
+ParticleSource source_of(const BodyConfig& body, const Config& config) {
+  ParticleSource source = source_of(body);
+  if (body.material >= static_cast<int>(config.materials.size())) return source;  // reported
+  for (const StateVariable& variable : state_variables(config.materials[body.material].model))
+    if (variable.changes) source.state.push_back(variable.name);
+  return source;
+}
+
+void check_particles(OptionReader& in, const BodyConfig& body, const Config& config, const MeshConfig& mesh,
+                     ParticleTable& table) {
+  const std::string option = body.name + "_file";
+  if (will_be_removed(body.shape.file, config.output.directory))
+    return in.reject(option, "a file that this run does not remove; give another -output_dir than " +
+                                 config.output.directory);
+  std::string fault = read_particles(source_of(body, config), mesh, config.dim, table);
+  if (fault.empty()) fault = beyond_bounds(table, mesh, config.dim);
+  if (!fault.empty()) {
+    table = {};
+    in.reject(option, fault);
+  }
+}
+
+void check_density(OptionReader& in, const BodyConfig& body, const Config& config,
+                   const ParticleTable& table) {
+  // The time step is that of the material's density; with the default Courant number it is stable by 1.44.
+  constexpr double k_apart = 1.25;
+  if (table.position.empty() || body.material >= static_cast<int>(config.materials.size())) return;
+  const MaterialConfig& material = config.materials[body.material];
+  const double mean = mean_density(table, material.density), ratio = mean / material.density;
+  if (!(material.density > 0) || (ratio < k_apart && ratio > 1 / k_apart)) return;
+  in.reject(body.name + "_file", "particles whose mass over volume is about the density of " + material.name +
+                                     ", " + text_of(material.density) + " kg/m3; together they have " +
+                                     text_of(mean));
+}
+
+void read_start(OptionReader& in, int dim, BodyConfig& body) {
+  const std::string from_file = "; where a file lists the particles, in lieu of theirs";
+  body.velocity_given = in.vector({.name = body.name + "_velocity",
+                                   .meaning = "initial velocity" + from_file,
+                                   .unit = "m/s",
+                                   .range = k_speed},
+                                  dim, body.velocity);
+  body.stress_given = in.tensor({.name = body.name + "_stress",
+                                 .meaning = "initial stress, tension positive" + from_file,
+                                 .unit = "Pa",
+                                 .range = k_stress},
+                                dim, body.stress);
+}
+
+}  // namespace mpm

@@ -1,0 +1,17 @@
+#pragma once
+// What the tables of the laws say of a material, by the word of its model.
+
+#include <string>
+#include <vector>
+
+#include "materials/tables.hpp"
+
+namespace mpm {
+
+/// Index in Materials of the model of this name; -1 where there is none.
+int model_index(const std::string& name);
+
+/// The state variables of the law of this name; none where there is no such law.
+std::vector<StateVariable> state_variables(const std::string& model);
+
+}  // namespace mpm

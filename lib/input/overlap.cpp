@@ -1,0 +1,168 @@
+#include "input/overlap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "input/filled.hpp"
+#include "input/groups.hpp"
+#include "input/text.hpp"
+#include "parallel/together.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double k_most_points = 5e7;  // of a pair
+constexpr double k_nothing = 1e-6;     // of a particle's width
+
+/// Points in the part of space where the bounds of two shapes meet: an odd number in each direction, so that
+/// there is one in the middle of what is thin.
+struct Samples {
+  Bounds common;
+  Vec3 step{};
+  std::array<long, 3> count{1, 1, 1};
+  double touch = 0;  // m: what is thinner is no overlap
+  bool any = true;
+
+  Samples(const Filled& a, const Filled& b, int dim) {
+    const double coarse = std::max(a.width, b.width), whole = a.listed || b.listed ? 1 : 0.5;
+    // The bounds of a half plane have some round-off to spare.
+    touch = std::max(k_nothing * coarse, std::min({whole * coarse, a.thinnest / 2, b.thinnest / 2}));
+    double points = 1, edge = coarse / 2;
+    for (int d = 0; d < dim; ++d) {
+      common.lower[d] = std::max(a.bounds.lower[d], b.bounds.lower[d]);
+      common.upper[d] = std::min(a.bounds.upper[d], b.bounds.upper[d]);
+      const double extent = common.upper[d] - common.lower[d];
+      any = any && extent > touch * (1 + 1e-6);
+      points *= std::max(1.0, extent / edge);
+    }
+    if (!any) return;
+    edge *= std::pow(std::max(1.0, points / k_most_points), 1.0 / dim);
+    for (int d = 0; d < dim; ++d) {
+      const double extent = common.upper[d] - common.lower[d];
+      count[d] = 2 * std::lround(std::ceil(extent / edge / 2)) + 1;
+      step[d] = extent / static_cast<double>(count[d]);
+    }
+  }
+  double at(long k, int d) const { return common.lower[d] + (static_cast<double>(k) + 0.5) * step[d]; }
+};
+
+/// The directions in which a point must be deep inside: along the axes and between them.
+std::vector<Vec3> directions_of(int dim) {
+  std::vector<Vec3> directions;
+  for (int d = 0; d < dim; ++d)
+    for (const double sign : {-1.0, 1.0}) directions.emplace_back()[d] = sign;
+  for (int k = 0; k < 1 << dim; ++k) {
+    Vec3& diagonal = directions.emplace_back();
+    for (int d = 0; d < dim; ++d) diagonal[d] = (k >> d & 1 ? 1 : -1) / std::sqrt(double(dim));
+  }
+  return directions;
+}
+
+/// Where two shapes overlap.
+struct Pair {
+  Filled& a;
+  Filled& b;
+  int dim;
+  std::vector<Vec3> directions;
+
+  bool hold(const Vec3& x) const { return a.holds(x) && b.holds(x); }
+
+  bool hold_deep(const Vec3& x, double depth) const {
+    return std::all_of(directions.begin(), directions.end(), [&](const Vec3& along) {
+      Vec3 y = x;
+      for (int d = 0; d < dim; ++d) y[d] += depth * along[d];
+      return hold(y);
+    });
+  }
+
+  /// How many of this rank's points both hold, and whether one of them is deep inside.
+  std::array<long, 2> count(const Samples& samples, int rank, int ranks) const {
+    const int up = dim - 1;
+    const double depth = samples.touch / 2 * (1 - 1e-6);
+    long held = 0, deep = 0;
+    for (long row = rank; row < samples.count[up]; row += ranks) {
+      Vec3 x{};
+      x[up] = samples.at(row, up);
+      a.enter_row(x[up] - depth, x[up] + depth), b.enter_row(x[up] - depth, x[up] + depth);
+      for (long j = 0; j < (dim == 3 ? samples.count[1] : 1); ++j) {
+        if (dim == 3) x[1] = samples.at(j, 1);
+        for (long i = 0; i < samples.count[0]; ++i) {
+          x[0] = samples.at(i, 0);
+          if (!hold(x)) continue;
+          ++held;
+          if (deep == 0) deep = hold_deep(x, depth);
+        }
+      }
+    }
+    return {held, deep};
+  }
+};
+
+/// The volume of an overlap of two shapes, 0 where they do not overlap.
+PetscErrorCode overlap_of(MPI_Comm comm, Filled& a, Filled& b, int dim, double* volume) {
+  PetscFunctionBeginUser;
+  *volume = 0;
+  const Samples samples(a, b, dim);
+  if (!samples.any) PetscFunctionReturn(PETSC_SUCCESS);
+  std::array<long, 2> found{};
+  PetscCallCXX(found = (Pair{a, b, dim, directions_of(dim)}.count(samples, rank_of(comm), size_of(comm))));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found.data(), 2, MPI_LONG, MPI_SUM, comm));
+  if (found[1] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  *volume = static_cast<double>(found[0]);
+  for (int d = 0; d < dim; ++d) *volume *= samples.step[d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace
+
+PetscErrorCode find_overlaps(MPI_Comm comm, const Config& config, std::vector<Overlap>* overlaps) {
+  PetscFunctionBeginUser;
+  const int bodies = static_cast<int>(config.bodies.size()),
+            all = bodies + static_cast<int>(config.rigids.size());
+  std::vector<std::unique_ptr<Filled>> filled;
+  for (const BodyConfig& body : config.bodies) {
+    const auto holes = cut_out_of(config, body);
+    const bool listed = body.shape.kind == ShapeKind::particles;
+    PetscCallCXX(filled.push_back(
+        listed ? std::make_unique<Filled>(body.shape, source_of(body), holes, config.mesh, config.dim)
+               : std::make_unique<Filled>(body.shape, holes, config.mesh, config.dim)));
+  }
+  for (const RigidConfig& rigid : config.rigids)
+    PetscCallCXX(filled.push_back(
+        std::make_unique<Filled>(rigid.shape, std::vector<Shape>{}, config.mesh, config.dim)));
+  for (int a = 0; a < bodies; ++a)
+    for (int b = a + 1; b < all; ++b) {
+      Overlap overlap;
+      PetscCall(overlap_of(comm, *filled[a], *filled[b], config.dim, &overlap.volume));
+      if (overlap.volume == 0) continue;
+      const bool second = b < bodies && filled[b]->volume > filled[a]->volume;
+      overlap.body = second ? b : a;
+      overlap.other = second       ? config.bodies[a].name
+                      : b < bodies ? config.bodies[b].name
+                                   : config.rigids[b - bodies].name;
+      overlaps->push_back(overlap);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+std::vector<std::string> describe(const std::vector<Overlap>& overlaps, const Config& config) {
+  constexpr std::size_t k_most = 10;
+  std::vector<std::string> lines;
+  for (std::size_t k = 0; k < std::min(k_most, overlaps.size()); ++k) {
+    const BodyConfig& body = config.bodies[overlaps[k].body];
+    std::vector<std::string> names;
+    for (const int rigid : body.cut_out) names.push_back(config.rigids[rigid].name);
+    for (const int other : body.cut_out_bodies) names.push_back(config.bodies[other].name);
+    char volume[40];
+    std::snprintf(volume, sizeof volume, "%.4g %s", overlaps[k].volume, config.dim == 2 ? "m2" : "m3");
+    lines.push_back("mpm: -" + body.name +
+                    "_cut_out: " + (names.empty() ? "not given" : "given \"" + join(names) + "\"") +
+                    ", takes " + overlaps[k].other + (names.empty() ? "" : " too") +
+                    ", or shapes that do not overlap: " + body.name + " and " + overlaps[k].other + " have " +
+                    volume + " in common");
+  }
+  return lines;
+}
+
+}  // namespace mpm

@@ -1,0 +1,23 @@
+#pragma once
+// What the log tells once: soil that is no longer as the rest of it.
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "mpm/config.hpp"
+#include "output/snapshot.hpp"
+
+namespace mpm {
+
+/// Looks at the rows of the history for what happens the first time in a run.
+class Notices {
+ public:
+  /// A line for each thing that has happened since the last row and was not told before, with advice.
+  std::vector<std::string> look(const HistoryRow& row, const Config& config);
+
+ private:
+  std::set<std::string> told_;  // what happened, to which body
+};
+
+}  // namespace mpm

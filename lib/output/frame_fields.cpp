@@ -1,0 +1,40 @@
+#include "output/frame_fields.hpp"
+
+#include "materials/tables.hpp"
+
+namespace mpm {
+
+const std::vector<Field>& frame_fields() {
+  static const std::vector<Field> fields = [] {
+    std::vector<Field> all = {
+        {"position", "m", 3, Of::all, &ParticleSnapshot::position},
+        {"velocity", "m/s", 3, Of::all, &ParticleSnapshot::velocity},
+        {"grid_velocity", "m/s", 3, Of::bodies, &ParticleSnapshot::grid_velocity},
+        {"stress", "Pa", 6, Of::bodies, &ParticleSnapshot::stress},
+        {"volume", "m3", 1, Of::bodies, &ParticleSnapshot::volume},
+    };
+    const auto is_new = [&](const char* name) {
+      return std::none_of(all.begin(), all.end(),
+                          [&](const Field& f) { return std::string(f.name) == name; });
+    };
+    for (int model = 0; model < static_cast<int>(material_models().size()); ++model)
+      for (const StateVariable& variable : state_variables(model))
+        if (variable.output && is_new(variable.name))
+          all.push_back({variable.name, variable.unit, 1, Of::bodies, nullptr});
+    const Field last[] = {{"mass", "kg", 1, Of::bodies_and_nodes, &ParticleSnapshot::mass},
+                          {"reference_height", "m", 1, Of::bodies, &ParticleSnapshot::reference_height},
+                          {"number", "-", 1, Of::nodes, &ParticleSnapshot::number}};
+    all.insert(all.end(), std::begin(last), std::end(last));
+    return all;
+  }();
+  return fields;
+}
+
+const std::vector<double>* values_of(const ParticleSnapshot& particles, const Field& field) {
+  if (field.values != nullptr) return &(particles.*field.values);
+  for (const StateField& state : particles.state)
+    if (state.name == field.name) return &state.values;
+  return nullptr;
+}
+
+}  // namespace mpm

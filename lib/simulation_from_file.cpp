@@ -1,0 +1,88 @@
+// Bodies whose particles come from a file: of the user's, or of another run.
+
+#include <algorithm>
+#include <numeric>
+
+#include "input/groups.hpp"
+#include "simulation_body.hpp"
+
+namespace mpm {
+namespace {
+
+bool all_equal(const std::vector<double>& x) {
+  return std::all_of(x.begin(), x.end(), [&](double value) { return value == x.front(); });
+}
+
+/// Masses and volumes: one figure for all particles where they are the same.
+void take_masses(ParticleTable&& table, double density, BodyParticles& particles) {
+  particles.particle_volume = table.volume.front();
+  const bool has_mass = !table.mass.empty();
+  if (!has_mass)
+    for (const double volume : table.volume) table.mass.push_back(density * volume);
+  if (has_mass) particles.particle_mass = table.mass.front();
+  // What a file of the user's own tells may be anything; what a run left has changed since it was created.
+  const bool from_run = !table.origin.empty();
+  for (std::size_t p = 0; p < table.volume.size(); ++p)
+    for (const double volume :
+         {table.mass[p] / density, from_run ? table.mass[p] / density : table.volume[p]}) {
+      particles.least_volume = particles.most_volume > 0 ? std::min(particles.least_volume, volume) : volume;
+      particles.most_volume = std::max(particles.most_volume, volume);
+    }
+  if (!all_equal(table.volume)) particles.volume = std::move(table.volume);
+  if (all_equal(table.mass)) return;
+  particles.least_mass = *std::min_element(table.mass.begin(), table.mass.end());
+  particles.mass = std::move(table.mass);
+}
+
+/// What the file does not tell, and what takes its place, for the log.
+std::string missing(const ParticleTable& table, const BodyConfig& body) {
+  std::string text;
+  const auto add = [&](const std::string& line) { text += "\n  " + line; };
+  if (table.mass.empty()) add("without masses: they are the material's density times the volumes");
+  if (table.reference_height.empty())
+    add("without reference heights: strengths that grow with depth are those of where the particles are now");
+  if (table.put_inside > 0)
+    add(formatted("%ld that were less than half a cell outside the mesh are put to its side",
+                  table.put_inside));
+  if (body.velocity_given) add("their velocity is that of -" + body.name + "_velocity");
+  if (body.stress_given) add("their stress is that of -" + body.name + "_stress");
+  return text;
+}
+
+double sum(const std::vector<double>& x) { return std::accumulate(x.begin(), x.end(), 0.0); }
+
+}  // namespace
+
+/// Particles that a file lists, read again after they were checked with the options.
+PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles* particles, bool* from_run) {
+  PetscFunctionBeginUser;
+  ParticleTable table;
+  std::string fault;
+  PetscCallCXX(fault = read_particles(source_of(body, config), config.mesh, config.dim, table));
+  PetscCheck(fault.empty(), comm, PETSC_ERR_FILE_READ, "%s has changed: it should be %s",
+             body.shape.file.c_str(), fault.c_str());
+  const long cut = cut_particles(cut_out_of(config, body), config.mesh, config.dim, table);
+  if (cut > 0)
+    PetscCall(log.print("body %s: %ld particles of the file were cut out", body.name.c_str(), cut));
+  const double density = config.materials[body.material].density;
+  const double volume = sum(table.volume), mass = mean_density(table, density) * volume;
+  const std::string origin =
+      table.origin.empty() ? "" : " (body " + body.shape.file_body + ", " + table.origin + ")";
+  PetscCall(log.line(formatted("body %s: %ld particles of %s%s stand for %.6g %s, %.9g kg", body.name.c_str(),
+                               static_cast<long>(table.volume.size()), body.shape.file.c_str(),
+                               origin.c_str(), volume, config.dim == 2 ? "m2" : "m3", mass) +
+                     missing(table, body)));
+  *from_run = *from_run || !table.origin.empty();
+  particles->position = std::move(table.position);
+  particles->spacing = config.mesh.spacing / body.shape.particles_per_cell;
+  particles->velocity = std::move(table.velocity);
+  particles->stress = std::move(table.stress);
+  particles->state = std::move(table.state);
+  particles->reference_height = std::move(table.reference_height);
+  if (config.velocity_update == VelocityUpdate::apic)
+    particles->velocity_gradient = std::move(table.velocity_gradient);
+  PetscCallCXX(take_masses(std::move(table), density, *particles));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm

@@ -1,0 +1,79 @@
+// The length of the time step: at the start, and where it follows the stiffness of the soil.
+
+#include <cmath>
+#include <cstdio>
+
+#include "input/courant.hpp"
+#include "simulation_body.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double k_round_off = 1e-12;
+constexpr long k_follow_every =
+    20;  // steps from one measure of the fastest wave to the next; rebuilds do not matter
+constexpr double k_growth = 1.1;  // largest growth of the step from one measure to the next
+constexpr double k_told = 0.2;    // least change of the step that the log tells
+
+}  // namespace
+
+/// The step from the Courant number (Eq. 14), or the user's where it is stable.
+PetscErrorCode Simulation::Body::choose_time_step() {
+  PetscFunctionBeginUser;
+  const double critical = critical_time_step(config);
+  follows = stiffness_changes(config);
+  dt = config.time.step.value_or(config.time.courant * critical);
+  const double largest = largest_courant(config) * critical;
+  if (dt > largest * (1 + k_round_off)) {
+    char line[200];
+    std::snprintf(
+        line, sizeof line,
+        "mpm: -time_step: given \"%g\", takes a time in s of at most %.6g, above which the step is unstable",
+        dt, largest);
+    report.errors.push_back(line);
+  }
+  if (config.time.end / dt > k_most_steps) {
+    char line[200];
+    std::snprintf(line, sizeof line,
+                  "mpm: -time_end: given \"%g\", takes at most %g s with time steps of %g s (1e12 steps)",
+                  config.time.end, k_most_steps * dt, dt);
+    report.errors.push_back(line);
+  } else {
+    schedule = Schedule(config.time, config.output, dt);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+long Simulation::Body::next_look_at_waves() const {
+  return follows ? (step / k_follow_every + 1) * k_follow_every : schedule.last_step();
+}
+
+/// If the stiffness of some soil changes, every k_follow_every steps: measures the fastest wave and computes
+/// dt from it by the Courant number. If the user has fixed dt, the run fails once that dt is not stable.
+PetscErrorCode Simulation::Body::follow_stiffness() {
+  PetscFunctionBeginUser;
+  if (!follows || step % k_follow_every != 0 || waves_at == step) PetscFunctionReturn(PETSC_SUCCESS);
+  waves_at = step;
+  double speed = 0;
+  PetscCall(stepper->fastest_wave(&speed));
+  if (!(speed > 0)) PetscFunctionReturn(PETSC_SUCCESS);  // no soil is left
+  const double critical = config.mesh.spacing / speed, largest = largest_courant(config) * critical;
+  if (config.time.step) {
+    if (dt > largest * (1 + k_round_off))
+      PetscCall(
+          fail(formatted("-time_step: given \"%g\", takes at most %.6g s now that the soil has become "
+                         "stiffer, with waves of %.4g m/s; leave it out, and the step follows the soil",
+                         *config.time.step, largest, speed)));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  const double wanted = config.time.courant * critical;
+  dt = step > 0 ? std::min(wanted, k_growth * dt) : wanted;
+  schedule = Schedule(config.time, config.output, dt, {step, schedule.time_of(step)});
+  if (told_dt > 0 && std::fabs(dt - told_dt) <= k_told * told_dt) PetscFunctionReturn(PETSC_SUCCESS);
+  if (told_dt > 0)
+    PetscCall(log.print("step %ld: the time step follows the stiffness of the soil: %.4g s", step, dt));
+  told_dt = dt;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm

@@ -1,0 +1,34 @@
+// What the materials of a configuration say of its time step.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "input/material_table.hpp"
+#include "input/shapes.hpp"
+#include "materials/any.hpp"
+#include "step/stepper.hpp"
+
+namespace mpm {
+
+double wave_speed(const Config& config, const BodyConfig& body) {
+  const MaterialConfig& material = config.materials[body.material];
+  const double lowest = bounds_of(body.shape, config.mesh, config.dim).lower[config.dim - 1];
+  const auto law = make_material<double>(model_index(material.model), material.parameters);
+  return std::sqrt(wave_modulus(law, lowest) / material.density);
+}
+
+bool stiffness_changes(const Config& config) {
+  return std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& body) {
+    return stiffness_changes(model_index(config.materials[body.material].model));
+  });
+}
+
+double critical_time_step(const Config& config) {
+  double step = std::numeric_limits<double>::infinity();
+  for (const BodyConfig& body : config.bodies)
+    step = std::min(step, config.mesh.spacing / wave_speed(config, body));
+  return step;
+}
+
+}  // namespace mpm

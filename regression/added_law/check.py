@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+"""A law with two state variables is one header and one line: this adds path_dependent.hpp to a copy of the program, builds it,
+and holds the state of its particles against what it must be.
+
+    check.py SOURCE BUILD [--jobs N]
+
+SOURCE is the source tree, BUILD a folder for the copy and what is built of it. Where the dependencies are comes from
+BUILD/../CMakeCache.txt.
+"""
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+DECK = HERE / "deck.opts"
+sys.path.insert(0, str(HERE.parent / "reliability"))
+from folders import ENVIRONMENT, checkpoints, differences, fresh  # noqa: E402
+
+VARIABLES = {"created_at": "m", "shear_path": "-"}
+
+
+def put(path, text):
+    """Writes a file where it is not so already, so that what has not changed is not built again."""
+    if not path.exists() or path.read_text() != text:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
+def copy_with_law(source, copy):
+    """The program's source with the law's header, and its line in the list of materials."""
+    for part in ("CMakeLists.txt", "cmake", "kokkos_kernels", "lib", "app"):
+        for path in [source / part] if (source / part).is_file() else (source / part).rglob("*"):
+            if path.is_file() and path.name != "list.hpp":
+                put(copy / path.relative_to(source), path.read_text())
+    materials = "kokkos_kernels/materials"
+    put(copy / materials / "path_dependent.hpp", (HERE / "path_dependent.hpp").read_text())
+    before = (source / materials / "list.hpp").read_text()
+    after = before.replace('#include "materials/von_mises.hpp"\n',
+                           '#include "materials/path_dependent.hpp"\n#include "materials/von_mises.hpp"\n')
+    after = after.replace("VonMises>;", "VonMises, PathDependent>;")
+    assert len(after.splitlines()) == len(before.splitlines()) + 1 and "PathDependent>;" in after
+    put(copy / materials / "list.hpp", after)
+
+
+def build(source, folder, jobs):
+    """The program with the law, double precision in 2D alone."""
+    copy_with_law(source, folder / "source")
+    cache = (folder.parent / "CMakeCache.txt").read_text()
+    known = re.findall(r"^(\w+_ROOT|Kokkos_DIR|CMAKE_PREFIX_PATH|CMAKE_CXX_COMPILER\w*|CMAKE_C_COMPILER):(?!INTERNAL)\w+=(.+)$",
+                       cache, re.M)
+    known = [f"-D{name}={value}" for name, value in known]
+    subprocess.run(["cmake", "-S", folder / "source", "-B", folder / "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DMPM_TESTS=OFF",
+                    "-DMPM_REALS=double", "-DMPM_DIMS=2", *known], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", folder / "build", "-j", str(jobs), "--target", "mpm"], check=True,
+                   stdout=subprocess.DEVNULL)
+    return folder / "build/app/mpm"
+
+
+class Checks:
+    def __init__(self, binary, base):
+        self.binary, self.base = binary, base
+        self.whole = fresh(base / "whole")
+        self.go(self.whole)
+
+    def go(self, folder, *options, ranks=1, status=0, deck=DECK):
+        launch = ["mpirun", "-n", str(ranks), "--bind-to", "none"] if ranks > 1 else []
+        done = subprocess.run([*launch, str(self.binary), "-options_file", str(deck), "-output_dir", str(folder), "-backend", "serial",
+                               "-progress", "off", *map(str, options)], capture_output=True, text=True,
+                              env={**ENVIRONMENT, "OMPI_MCA_rmaps_base_oversubscribe": "1"}, timeout=600)
+        assert done.returncode == status, (done.returncode, done.stdout[-2000:], done.stderr)
+        return done.stdout + done.stderr
+
+    def last_frame(self, folder):
+        return h5py.File(sorted(folder.glob("frames/frame_*.h5"))[-1])
+
+    def check_frames(self):
+        """Frames hold each variable by its name, of the bodies whose law has it, sorted with its particle."""
+        with h5py.File(self.whole / "frames/frame_00000.h5") as start, self.last_frame(self.whole) as end:
+            for name, unit in VARIABLES.items():
+                assert end[f"block/{name}"].attrs["unit"] in (unit, unit.encode()), dict(end[f"block/{name}"].attrs)
+                assert f"heap/{name}" not in end
+            assert np.array_equal(end["block/created_at"][:], start["block/position"][:, 0])
+            moved = end["block/position"][:, 0] - start["block/position"][:, 0]
+            assert moved.min() > 1, "the block has left its first cells, so that its particles were sorted anew"
+            path = end["block/shear_path"][:]
+            assert (start["block/shear_path"][:] == 0).all() and path.min() > 0 and np.ptp(path) > 1e-3
+            assert end["heap/plastic_strain"][:].max() > 0
+        index = (self.whole / "particles.xdmf").read_text()
+        assert all(name in index for name in VARIABLES)
+
+    def check_ranks(self):
+        """State goes with its particle from rank to rank."""
+        with self.last_frame(self.whole) as one:
+            for ranks in (2, 3):
+                folder = fresh(self.base / f"ranks_{ranks}")
+                self.go(folder, "-p2g", "gather", ranks=ranks)
+                with self.last_frame(folder) as several:
+                    assert np.array_equal(several["block/created_at"][:], one["block/created_at"][:])
+                    apart = np.abs(several["block/shear_path"][:] - one["block/shear_path"][:]).max()
+                    assert apart < 1e-9, (ranks, apart)
+
+    def check_restart(self):
+        """A run that goes on from a checkpoint gives the same bits, and another may start from its state."""
+        folder = fresh(self.base / "again")
+        shutil.copytree(self.whole, folder)
+        first = checkpoints(folder)[0]
+        self.go(folder, "-restart", first)
+        assert not differences(self.whole, folder), differences(self.whole, folder)
+        lines = [line for line in DECK.read_text().splitlines() if not re.match("-block_(shape|lower|upper|velocity)|-heap_|-bodies", line)]
+        deck = self.base / "start.opts"
+        for source in (sorted(self.whole.glob("frames/frame_*.h5"))[-1], checkpoints(self.whole)[-1]):
+            deck.write_text("\n".join([*lines, "-bodies block", "-block_shape particles", f"-block_file {source}"]) + "\n")
+            started = fresh(self.base / "started")
+            self.go(started, "-time_max_steps", 1, deck=deck)
+            with h5py.File(started / "frames/frame_00000.h5") as start, self.last_frame(self.whole) as end:
+                assert np.array_equal(start["block/shear_path"][:], end["block/shear_path"][:])
+
+    def steps_of(self, folder):
+        """Columns step, time and dt of a history."""
+        return np.genfromtxt(folder / "history.csv", delimiter=",", names=True)[["step", "time", "dt"]]
+
+    def check_time(self):
+        """A law is told the time: the path counts from then on."""
+        folder = fresh(self.base / "since")
+        self.go(folder, "-soft_since", 0.45)
+        for frame in sorted(folder.glob("frames/frame_*.h5")):
+            with h5py.File(frame) as now:
+                assert (now["block/shear_path"][:].max() > 0) == (now.attrs["time"] > 0.45), (frame, now.attrs["time"])
+
+    def check_time_step(self):
+        """The step follows the fastest wave, the same on ranks; a fixed one that becomes unsafe ends the run."""
+        alone = self.base / "alone.opts"
+        alone.write_text("".join("-bodies block\n" if line.startswith("-bodies") else line
+                                 for line in DECK.read_text().splitlines(True) if not line.startswith("-heap_")))
+        told = {}
+        for change in (-3, 30):
+            more = ("-soft_change", change, "-block_lower", "0.5,0", "-block_upper", "1.5,0.75", "-block_velocity", "1,-1")
+            folder = fresh(self.base / "follows")
+            told[change] = self.go(folder, *more, deck=alone)
+            one = self.steps_of(folder)
+            with self.last_frame(folder) as end:
+                young = 4e5 * np.maximum(0.1, 1 + change * np.maximum(0, end["block/shear_path"][:] - 1e-3))
+                modulus = young * 0.7 / (1.3 * 0.4)
+                wave = np.sqrt((modulus * end["block/volume"][:] / end["block/mass"][:]).max())
+            assert abs(one["dt"][-2] / (0.5 * 0.125 / wave) - 1) < 0.03, (one["dt"][-3:], 0.5 * 0.125 / wave)
+            assert abs(one["dt"][-2] / one["dt"][0] - 1) > 0.05, one["dt"]
+            assert (np.diff(one["time"]) > 0).all() and one["time"][-1] == 0.6
+            folder = fresh(self.base / "follows_on_ranks")
+            self.go(folder, *more, "-p2g", "gather", deck=alone, ranks=2)
+            assert np.abs(self.steps_of(folder)["dt"] / one["dt"] - 1).max() < 1e-9
+        assert "the time step follows the stiffness of the soil" in told[30], told[30]
+        text = self.go(fresh(self.base / "fixed"), *more, "-time_step", 2.2e-3, deck=alone, status=3)
+        assert re.search(r"mpm: step \d+, time [\d.]+ s: -time_step: given \"0.0022\", takes at most", text), text
+
+    def check_dry_run(self):
+        """The dry run counts the columns in use, and tells the fields."""
+        sizes = {}
+        plain = self.base / "plain.opts"
+        plain.write_text("".join(line for line in DECK.read_text().splitlines(True) if "change" not in line and "threshold" not in line))
+        for model in ("path_dependent", "linear_elastic"):
+            more = ("-soft_model", model, "-heap_material", "soft", "-mesh_spacing", 0.02, "-block_particles_per_cell", 8)
+            text = self.go(self.base / "dry", *more, "-dry_run", deck=plain)
+            sizes[model] = 1e6 * float(re.search(r"memory +([\d.]+) MB on the device", text)[1])
+            particles = int(re.search(r"(\d+) particles", text)[1])
+        more = (sizes["path_dependent"] - sizes["linear_elastic"]) / particles
+        assert 0.9 < more / (len(VARIABLES) * 8) < 2.1, (sizes, particles)  # room for growth and sorting is more of the same
+
+    def check_message(self):
+        """The law's own check of its parameters is one line with the option."""
+        text = self.go(self.base / "wrong", "-soft_threshold", 0, status=2)
+        assert "-soft_threshold: given \"0\", takes a path greater than 0 where -soft_change is given" in text, text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("source", type=pathlib.Path)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    given = parser.parse_args()
+    checks = Checks(build(given.source.resolve(), given.build.resolve(), given.jobs), given.build.resolve() / "runs")
+    for name in (name for name in dir(checks) if name.startswith("check_")):
+        getattr(checks, name)()
+        print(f"{name[6:]:12} as it should be", flush=True)
+
+
+if __name__ == "__main__":
+    main()

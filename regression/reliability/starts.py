@@ -1,0 +1,298 @@
+#!/usr/bin/env python3
+"""Runs that start from what another run left: from its last frame and from its checkpoint.
+
+    starts.py MPM [--precisions double,single] [--folder FOLDER] [--decks 20] [TEST ...]
+
+column    a column that has settled under its weight stays at rest in a new run, with its mass and its strengths
+cut       a run cut in two by a frame, or by a checkpoint, goes on as the whole one
+decks     random decks: what a start holds is what was left, in 2D and 3D, with every velocity update, on 1 and 2 ranks
+refused   what a start and -restart_change do not take: one line, and nothing is written
+changed   -restart_change: loads, rigids and sides of the mesh that change at a restart
+"""
+import argparse
+import pathlib
+import random
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+from folders import checkpoints, frames, fresh, rows, run
+
+FIELDS = ("position", "velocity", "stress", "volume", "plastic_strain", "mass", "reference_height")
+
+
+def column(dim, cells=8, width=2):
+    """A column between rollers whose strength grows with depth."""
+    side = ",".join(["0"] * (dim - 1) + ["0"]), ",".join([str(width)] * (dim - 1) + [str(cells + 2)])
+    top = ",".join([str(width)] * (dim - 1) + [str(cells)])
+    vertical = "z" if dim == 3 else "y"
+    return (f"-dim {dim} -mesh_lower {side[0]} -mesh_upper {side[1]} -mesh_spacing 1 -mesh_{vertical}min fixed "
+            f"-mesh_{vertical}max free -gravity {','.join(['0'] * (dim - 1) + ['-10'])} -materials clay "
+            "-clay_model von_mises -clay_density 1800 -clay_young 3e6 -clay_poisson 0.3 -clay_su 5e4 "
+            f"-clay_su_gradient 2e3 -clay_su_datum {cells} -bodies soil -soil_material clay").split(), \
+        f"-soil_shape box -soil_lower {side[0]} -soil_upper {top}".split()
+
+
+def from_file(path, *more):
+    return ["-soil_shape", "particles", "-soil_file", str(path), *more]
+
+
+def bodies(path, name="soil"):
+    with h5py.File(path) as file:
+        return {key: item[()] for key, item in file[name].items()}
+
+
+def saved(path):
+    with h5py.File(path) as file:
+        return {key: item[()] for key, item in file["soil"].items()}
+
+
+def apart(a, b):
+    """Largest difference over the largest value."""
+    if a.shape != b.shape or not (np.isfinite(a).all() and np.isfinite(b).all()):
+        return np.inf
+    return np.abs(a - b).max() / max(np.abs(b).max(), 1e-300)
+
+
+def history(folder, name):
+    lines = rows(folder)
+    return np.array([float(line[lines[0].index(name)]) for line in lines[1:]])
+
+
+class Tests:
+    def __init__(self, binary, base, decks):
+        self.binary, self.base, self.decks = binary, base, decks
+        self.count = 0
+        self.empty = base / "empty.opts"
+        self.empty.write_text("\n")
+
+    def check(self, good, what):
+        self.count += 1
+        if not good:
+            sys.exit(f"starts.py: {what}")
+
+    def run(self, name, *options, ranks=1, status=0):
+        prefix = ("mpirun", "-n", str(ranks), "--bind-to", "none") if ranks > 1 else ()
+        folder = self.base / name
+        if "-restart" not in options:
+            fresh(folder)
+        done = run(self.binary, self.empty, folder, "-backend", "serial", *options, status=status, prefix=prefix)
+        return folder, done
+
+    def test_column(self, precision):
+        exact = 1e-13 if precision == "double" else 1e-5
+        for dim, ranks, update in ((2, 1, "flip"), (2, 2, "apic"), (3, 1, "apic"), (3, 2, "flip")):
+            base, box = column(dim)
+            what = f"{dim}D, {ranks} ranks, {update}, {precision}"
+            common = [*base, "-precision", precision, "-velocity_update", update, "-damping", 0.7]
+            name = f"column_{dim}_{ranks}_{update}_{precision}"
+            end = 2.0
+            first, _ = self.run(name, *common, *box, "-time_end", end, "-output_interval", end / 2,
+                                "-checkpoint_interval", end, ranks=ranks)
+            mark, left = saved(checkpoints(first)[-1]), bodies(frames(first)[-1])
+            self.check(len(set(left["mass"])) == 1 and len(set(left["volume"])) > 1, f"{what}: masses of a settled column")
+            created = bodies(frames(first)[0])
+            self.check((left["reference_height"] == created["position"][:, dim - 1]).all(), f"{what}: reference heights")
+            settled = created["position"][:, dim - 1] - left["position"][:, dim - 1]
+            self.check(settled.max() > 0.05, f"{what}: the column settles by {settled.max():.3g} m")
+            speeds = history(first, "soil_grid_velocity")
+            self.check(speeds[-1] < 0.05 * speeds.max(), f"{what}: {speeds[-1]:.3g} m/s are left of {speeds.max():.3g}")
+            for source in (frames(first)[-1], checkpoints(first)[-1]):
+                second, _ = self.run(name + "_again", *common, *from_file(source), "-time_end", end / 2,
+                                     "-output_interval", end / 2, "-checkpoint_interval", end / 2, ranks=ranks)
+                again, end_of_it = bodies(frames(second)[0]), bodies(frames(second)[-1])
+                for key in FIELDS:
+                    self.check(apart(again[key], left[key]) <= exact, f"{what}: {key} of {source.name}: "
+                               f"{apart(again[key], left[key]):.3g}")
+                self.check((end_of_it["mass"] == left["mass"]).all(), f"{what}: masses at the end")
+                strength = saved(checkpoints(second)[-1])["strength"]
+                self.check(apart(strength, mark["strength"]) <= (0 if precision == "double" else 1e-7),
+                           f"{what}: strengths of {source.name}")
+                wrong = 5e4 + 2e3 * (8 - left["position"][:, dim - 1])
+                self.check(apart(strength[:, 0], wrong) > 1e-3, f"{what}: strengths of creation differ from those of now")
+                speed = history(second, "soil_grid_velocity").max()
+                self.check(speed < 1.05 * speeds[-1] + 0.005 * speeds.max(),
+                           f"{what}: from {source.name} {speed:.3g} m/s, before {speeds[-1]:.3g}, at first {speeds.max():.3g}")
+                moved = np.abs(end_of_it["position"] - left["position"]).max()
+                self.check(moved < 0.02 * settled.max(), f"{what}: from {source.name} it moves {moved:.3g} m")
+
+    def test_cut(self, precision):
+        """A bank that falls over itself. F-bar brings pressures together when lists are rebuilt, and a start makes them anew:
+        only without F-bar the parts are the whole to round-off, with it they differ as a whole run does whose lists are
+        rebuilt at other times."""
+        round_off = 1e-12 if precision == "double" else 2e-3
+        for dim, ranks in ((2, 1), (3, 2)):
+            base, box = column(dim, cells=6, width=6)
+            box[-1] = ",".join(["3"] * (dim - 1) + ["6"])
+            base[base.index("-clay_su") + 1] = "1e3"
+            for f_bar in (0, 0.98):
+                common = [*base, "-precision", precision, "-f_bar_share", f_bar, "-time_step", 2e-3, "-p2g", "gather"]
+                name = f"cut_{dim}_{ranks}_{precision}"
+                ends = [*common, *box, "-time_end", 0.4, "-output_interval", 0.2, "-checkpoint_interval", 0.2]
+                whole, _ = self.run(name + "_whole", *ends, ranks=ranks)
+                other, _ = self.run(name + "_other", *ends, "-p2g_margin", 0.35, ranks=ranks)
+                before, wanted = (bodies(frames(whole)[k]) for k in (1, -1))
+                again = bodies(frames(other)[-1])
+                for source in (frames(whole)[1], checkpoints(whole)[0]):
+                    part, _ = self.run(name + "_part", *common, *from_file(source), "-time_end", 0.2, ranks=ranks)
+                    found = bodies(frames(part)[-1])
+                    for key in FIELDS:
+                        change = max(apart(wanted[key], before[key]), round_off)
+                        differs, usual = (apart(values[key], wanted[key]) / change for values in (found, again))
+                        print(f"    {dim}D, ranks {ranks}, F-bar {f_bar}, {source.name}, {key}: {differs:.2e} of its change; "
+                              f"other lists {usual:.2e}")
+                        self.check(differs < (round_off if f_bar == 0 else max(3 * usual, round_off)),
+                                   f"cut, {dim}D, {ranks} ranks, F-bar {f_bar}, {precision}, {source.name}: {key} differs "
+                                   f"by {differs:.3g} of its change, with other lists by {usual:.3g}")
+
+    def random_deck(self, chance):
+        dim, cells = chance.choice((2, 3)), chance.randint(3, 6)
+        base, box = column(dim, cells, chance.randint(2, 4))
+        base += ["-velocity_update", chance.choice(("flip", "pic", "xpic", "apic")),
+                 "-p2g", chance.choice(("sequential", "atomic", "mosaic", "gather", "tile"))]
+        base[base.index("-clay_su") + 1] = str(chance.choice((500, 5000, 5e5)))
+        start = ["-soil_particles_per_cell", str(chance.randint(1, 3)),
+                 "-soil_velocity", ",".join(f"{chance.uniform(-1, 1):.3f}" for _ in range(dim))]
+        return dim, base, box + start, start[:2]
+
+    def test_decks(self, precision):
+        chance = random.Random(17)
+        round_off = 2e-14 if precision == "double" else 2e-6
+        for n in range(self.decks):
+            dim, base, box, width = self.random_deck(chance)
+            ranks = [chance.choice((1, 2)), chance.choice((1, 2))]
+            common = [*base, "-precision", precision]
+            first, _ = self.run("deck", *common, *box, "-time_end", 0.05, "-output_interval", 0.05,
+                                "-checkpoint_interval", 0.05, ranks=ranks[0])
+            left = bodies(frames(first)[-1])
+            total = left["mass"].sum(dtype=float)
+            for source in (frames(first)[-1], checkpoints(first)[-1]):
+                options = [str(word).replace("soil", "bank") for word in
+                           [*common, *from_file(source), "-soil_file_body", "SOIL", *width]]
+                options[options.index("SOIL")] = "soil"
+                options[options.index("-bank_file") + 1] = str(source)
+                second, done = self.run("deck_again", *options, "-time_end", 0.02, "-output_interval", 0.02,
+                                        "-checkpoint_interval", 0.02, ranks=ranks[1])
+                found, end = (bodies(frames(second)[k], "bank") for k in (0, -1))
+                what = f"deck {n} ({dim}D, {ranks} ranks, {' '.join(base[-4:])}), {source.name}"
+                for key in FIELDS:
+                    self.check(apart(found[key], left[key]) <= round_off, f"{what}: {key} {apart(found[key], left[key]):.3g}")
+                for state in (found, end):
+                    self.check((state["mass"] == left["mass"]).all(), f"{what}: mass")
+                    self.check((state["reference_height"] == left["reference_height"]).all(), f"{what}: heights")
+                    self.check(abs(state["mass"].sum(dtype=float) / total - 1) < 1e-14, f"{what}: total mass")
+                strengths = (saved(checkpoints(folder)[-1])["strength"] for folder in (first, second))
+                self.check(apart(*strengths) <= round_off, f"{what}: strengths")
+                self.check(f"(body soil, {'frame' if 'frame' in source.name else 'checkpoint'} of step" in done.stdout,
+                           f"{what}: the log tells where it starts")
+
+    def own_masses(self, path, left, **change):
+        with h5py.File(path, "w") as file:
+            group = file.create_group("soil")
+            for key, values in {**left, **change}.items():
+                if values is not None:
+                    group[key] = values
+        return path
+
+    def test_refused(self, precision):
+        base, box = column(2, 4)
+        common = [*base, "-precision", precision, "-time_end", 0.02]
+        first, _ = self.run("left", *common, *box, "-output_interval", 0.02, "-checkpoint_interval", 0.02)
+        bare, _ = self.run("bare", *common, *box, "-output_interval", 0.02, "-output_fields", "velocity,volume,mass,plastic_strain")
+        frame, mark = frames(first)[-1], checkpoints(first)[-1]
+        solid, other = column(3, 4)
+        left = bodies(frame)
+        light = self.own_masses(self.base / "light.h5", left, mass=left["mass"] / 2)
+        damaged = self.base / "damaged.h5"
+        damaged.write_bytes(mark.read_bytes()[:-200] + b"x" + mark.read_bytes()[-199:])
+        odd = [str(word).replace("soil", "bank") for word in common]
+        cases = [
+            ([*common, *from_file(frames(bare)[-1])], ["a frame with soil/stress, which -output_fields of its run left out"]),
+            ([*solid, "-time_end", 0.02, *from_file(frame)], ["takes a frame of a run in 3D"]),
+            ([*solid, "-time_end", 0.02, *from_file(mark)], ["takes a checkpoint of a run in 3D"]),
+            ([*common, *from_file(mark, "-soil_file_body", "sand")], ["takes a checkpoint with the body sand; it has soil"]),
+            ([*odd, "-bank_shape", "particles", "-bank_file", str(frame)], ["takes a file with the group bank"]),
+            ([*common, *from_file(light)], ["takes particles whose mass over volume is about the density of clay, 1800 kg/m3"]),
+            ([*common, *from_file(damaged)], ["-soil_file: given"]),
+            ([*common, *from_file(mark), "-mesh_upper", "2,3"], ["takes particles inside the mesh"]),
+            ([*common, *box, "-restart_change", "gravity"], ["-restart_change: given \"gravity\", takes nothing here: there is no -restart"]),
+            ([*common, *box, "-restart", str(mark), "-restart_change", "gravity,mesh_spacing"],
+             ["-restart_change: given \"gravity,mesh_spacing\", takes names of options among gravity"]),
+            ([*common, *box, "-restart", str(mark), "-gravity", "0,-5"], ["-gravity: given \"0,-5\", takes \"0,-10\""]),
+            ([*common, *box, "-restart", str(mark), "-restart_change", "gravity", "-gravity", "0,-5", "-f_bar_share", 0.5],
+             ["-f_bar_share: given \"0.5\", takes \"0.98\""]),
+        ]
+        for options, lines in cases:
+            folder = fresh(self.base / "refused")
+            done = run(self.binary, self.empty, folder, "-backend", "serial", *options, status=2)
+            told = done.stderr.splitlines()
+            self.check(len(told) == len(lines) and all(b in a for a, b in zip(told, lines)), f"{lines}: {told}")
+            self.check(not folder.exists(), f"{lines}: {folder} was written")
+        for source in (frame, mark):  # the run would remove what it starts from
+            done = run(self.binary, self.empty, first, *common, *from_file(source), status=2)
+            self.check("takes a file that this run does not remove" in done.stderr, done.stderr)
+            self.check(source.exists(), f"{source} has gone")
+        self.plain_files(common, left)
+
+    def plain_files(self, common, left):
+        """A file of one's own may leave out what is not needed; masses follow the volumes then."""
+        position = left["position"]
+        volume = 0.25 * np.where(position[:, 0] < 1, 1.5, 0.5)
+        path = self.own_masses(self.base / "plain.h5", {"position": position, "volume": volume})
+        second, done = self.run("plain", *common, *from_file(path), "-soil_velocity", "0.5,0", "-history_interval", 0.01)
+        again = bodies(frames(second)[0])
+        self.check((again["volume"] == volume).all() and apart(again["mass"], 1800 * volume) < 1e-7, "plain: masses")
+        self.check((again["velocity"][:, 0] == 0.5).all(), "plain: velocity")
+        self.check("without masses" in done.stdout and "without reference heights" in done.stdout, done.stdout)
+        momentum = history(second, "soil_momentum_x")[0]
+        self.check(abs(momentum / (0.5 * 1800 * volume.sum()) - 1) < 1e-6, f"plain: momentum {momentum}")
+
+    def test_changed(self, precision):
+        small = 1e-9 if precision == "double" else 1e-4
+        base = ("-dim 2 -mesh_lower 0,0 -mesh_upper 8,8 -mesh_spacing 1 -materials rock -rock_model linear_elastic "
+                "-rock_density 2000 -rock_young 1e6 -rock_poisson 0.2 -bodies soil -soil_material rock -soil_shape box "
+                "-soil_lower 2,4 -soil_upper 4,6 -rigids plate -plate_shape box -plate_lower 6,1 -plate_upper 7,2 "
+                "-plate_motion prescribed -plate_velocity 0,0.5 -time_step 1e-3 -history_interval 0.01").split()
+        common = [*base, "-precision", precision]
+        first, _ = self.run("fall", *common, "-time_end", 0.1, "-checkpoint_interval", 0.1, "-gravity", "0,-1")
+        change = ["-restart", "latest", "-time_end", 0.2, "-gravity", "0,-3", "-plate_velocity", "0,-2",
+                  "-mesh_xmin", "fixed", "-damping", 0, "-checkpoint_interval", 0.1]
+        _, done = self.run("fall", *common, *change, "-restart_change", "gravity,plate_velocity,mesh_xmin,damping")
+        for line in ("changed here: -gravity 0,-1 -> 0,-3", "changed here: -plate_velocity 0,0.5 -> 0,-2",
+                     "changed here: -mesh_xmin roller -> fixed"):
+            self.check(line in done.stdout, f"{line} is missing in\n{done.stdout}")
+        self.check("-damping" not in done.stdout.split("goes on from")[1], "damping has not changed")
+        time, speed = history(first, "time"), history(first, "soil_momentum_y") / (4 * 2000)
+        expected = np.where(time < 0.1, -time, -0.1 - 3 * (time - 0.1))
+        self.check(np.abs(speed - expected).max() < 1e3 * small * 0.4, f"falls with {np.abs(speed - expected).max()}")
+        plate = history(first, "plate_y")
+        self.check(np.abs(plate - np.where(time < 0.1, 0.5 * time, 0.05 - 2 * (time - 0.1))).max() < 1e-9, f"plate {plate}")
+        self.check(len(time) == 21, f"{len(time)} rows")
+        with h5py.File(checkpoints(first)[-1]) as file:  # the next restart compares with what holds now
+            text = file["options"][()].tobytes().decode()
+        self.check("-gravity\t0,-3" in text, text)
+        run(self.binary, self.empty, first, "-backend", "serial", *common, "-restart", "latest", "-time_end", 0.3, "-gravity", "0,-3",
+            "-plate_velocity", "0,-2", "-mesh_xmin", "fixed", "-damping", 0)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("binary")
+    parser.add_argument("tests", nargs="*")
+    parser.add_argument("--precisions", default="double")
+    parser.add_argument("--folder")
+    parser.add_argument("--decks", type=int, default=20)
+    given = parser.parse_intermixed_args()
+    base = pathlib.Path(given.folder or tempfile.mkdtemp(prefix="mpm_starts_"))
+    base.mkdir(parents=True, exist_ok=True)
+    tests = Tests(pathlib.Path(given.binary).resolve(), base.resolve(), given.decks)
+    for name in given.tests or ("column", "cut", "decks", "refused", "changed"):
+        for precision in given.precisions.split(","):
+            before = tests.count
+            getattr(tests, f"test_{name}")(precision)
+            print(f"{name}, {precision}: {tests.count - before} checks")
+
+
+main()

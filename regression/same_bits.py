@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Whether two programs give the same bits: for a change that must not change a result.
+
+    regression/same_bits.py BEFORE AFTER [--steps 100] [--precisions double,single] [--strategies tile,gather] [--long] [CASE ...]
+
+Runs each case of the suite with both programs on the back end serial, and compares histories and frames bit by bit. --long
+takes the long cases too. The exit status is 1 where anything differs, which is listed.
+"""
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE / "reliability")]
+
+import case as cases  # noqa: E402
+from folders import differences  # noqa: E402
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("before", type=Path)
+    parser.add_argument("after", type=Path)
+    parser.add_argument("--steps", type=int, default=100)
+    parser.add_argument("--precisions", default="double,single")
+    parser.add_argument("--strategies", default="tile,gather")
+    parser.add_argument("--long", action="store_true")
+    parser.add_argument("cases", nargs="*")
+    return parser.parse_intermixed_args()
+
+
+def compare(given, case, run, variant, strategy, base):
+    """What differs between the two programs in one run."""
+    more = f"-p2g {strategy} -time_max_steps {given.steps}"
+    folders = []
+    for name, program in (("before", given.before), ("after", given.after)):
+        folders.append(base / name)
+        cases.run_program(program.resolve(), case, run, variant, base / name, more)
+    return differences(*(folder / run for folder in folders))
+
+
+def main():
+    given = arguments()
+    count = different = 0
+    for name in given.cases or cases.names():
+        case = cases.Case(name)
+        if case.is_long() and not given.long:
+            continue
+        for variant in case.variants(["serial"], given.precisions.split(",")):
+            for run in case.runs:
+                for strategy in given.strategies.split(","):
+                    with tempfile.TemporaryDirectory(prefix="mpm_bits_") as folder:
+                        found = compare(given, case, run, variant, strategy, Path(folder))
+                    count, different = count + 1, different + bool(found)
+                    if found:
+                        print(f"{name} {run} {variant[1]} {strategy}: {'; '.join(found[:5])}", flush=True)
+    print(f"{count} runs with both programs, {different} differ")
+    return 1 if different else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,112 @@
+// Energy without a source, Courant numbers, and what the log tells once.
+
+#include <catch2/catch_approx.hpp>
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+
+#include "energy_watch.hpp"
+#include "input/courant.hpp"
+#include "notices.hpp"
+
+using namespace mpm;
+
+namespace {
+
+Config config_of_one_body() {
+  Config config;
+  config.gravity = {0, -10, 0};
+  config.mesh.upper = {4, 3, 0}, config.mesh.spacing = 0.1;
+  config.bodies.resize(1);
+  config.bodies[0].name = "soil";
+  return config;
+}
+
+/// One body of 2 kg at this height [m], with this kinetic energy [J].
+HistoryRow row_of(double height, double energy) {
+  HistoryRow row;
+  row.step = 1;
+  row.bodies.resize(1);
+  row.bodies[0].mass = 2;
+  row.bodies[0].centre = {1, height, 0};
+  row.bodies[0].kinetic_energy = energy;
+  return row;
+}
+
+}  // namespace
+
+TEST_CASE("soil may have the energy that it began with and what gravity gives it, and no more",
+          "[energy_watch]") {
+  const Config config = config_of_one_body();
+  EnergyWatch watch;
+  watch.begin(row_of(2, 1), 1e6);
+  CHECK(watch.look(row_of(1.5, 11), config).empty());  // fell by 0.5 m
+  CHECK(watch.look(row_of(2, 1), config).empty());     // and rose again
+  CHECK(watch.look(row_of(2, 9), config).empty());     // within half of what has passed, 21 J
+  CHECK_FALSE(watch.look(row_of(2, 13), config).empty());
+}
+
+TEST_CASE("stored energy and the work of rigids are sources", "[energy_watch]") {
+  const Config config = config_of_one_body();
+  EnergyWatch watch;
+  HistoryRow start = row_of(2, 0);
+  start.bodies[0].stored_energy = 5;
+  start.rigids.resize(1);
+  watch.begin(start, 1e6);
+  HistoryRow pushed = row_of(2, 8);
+  pushed.rigids.resize(1);
+  pushed.rigids[0].force = {0, 30, 0}, pushed.rigids[0].displacement = {0, -0.1, 0};
+  CHECK(watch.look(pushed, config).empty());
+  EnergyWatch without;
+  without.begin(row_of(2, 0), 1e6);
+  CHECK_FALSE(without.look(row_of(2, 8), config).empty());
+}
+
+TEST_CASE("round-off is no energy, and soil that leaves begins the account anew", "[energy_watch]") {
+  const Config config = config_of_one_body();
+  EnergyWatch watch;
+  watch.begin(row_of(2, 0), 1e6);
+  CHECK(watch.look(row_of(2, 5e-5), config).empty());
+  HistoryRow left = row_of(3, 100);
+  left.bodies[0].lost_count = 1;
+  CHECK(watch.look(left, config).empty());
+  HistoryRow next = row_of(3, 160);
+  next.bodies[0].lost_count = 1;
+  CHECK_FALSE(watch.look(next, config).empty());
+}
+
+TEST_CASE("the largest Courant number is that of the rim of the body with the most particles",
+          "[energy_watch]") {
+  for (int dim : {2, 3})
+    for (int n : {1, 2, 3, 4, 6, 8, 12, 16}) {
+      Config config = config_of_one_body();
+      config.dim = dim;
+      config.bodies.resize(2);
+      config.bodies[1].shape.particles_per_cell = n;
+      config.bodies[0].shape.particles_per_cell = std::max(1, n - 1);
+      const double rim = n == 1 ? std::sqrt(2.0 / (3 * dim)) : std::sqrt(2.0 / (dim * n));
+      const double body = n == 2 ? std::sqrt(2.0 / (3 * dim)) : rim;  // the other body's with n = 2
+      const double expected = std::min(0.6, body);
+      CHECK(largest_courant(config) == Catch::Approx(expected));
+      CHECK(standard_courant(config) == Catch::Approx(std::min(0.5, 0.95 * expected)));
+      config.f_bar_share = 0;
+      CHECK(largest_courant(config) == Catch::Approx(std::min(0.6, 0.94 * body)));
+      config.f_bar_share = 0.98, config.damping = 0.44;
+      CHECK(largest_courant(config) == Catch::Approx(std::min(0.6, body / 1.2)));
+    }
+}
+
+TEST_CASE("the log tells once what happens to soil for the first time", "[energy_watch]") {
+  Config config = config_of_one_body();
+  Notices notices;
+  HistoryRow row = row_of(1, 0);
+  CHECK(notices.look(row, config).empty());
+  row.bodies[0].strays = 3, row.bodies[0].put_back = 1;
+  CHECK(notices.look(row, config).size() == 2);
+  row.bodies[0].limited = 2;
+  CHECK(notices.look(row, config).size() == 1);
+  row.bodies[0].lost_count = 1, row.bodies[0].upper = {2, 2.98, 0};
+  const auto lines = notices.look(row, config);
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[1].find("-mesh_ymax") != std::string::npos);
+  CHECK(notices.look(row, config).empty());
+}
