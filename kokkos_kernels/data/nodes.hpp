@@ -7,7 +7,7 @@
 #include "base/spaces.hpp"
 #include "base/types.hpp"
 #include "data/patches.hpp"
-#include "physics/surface.hpp"
+#include "data/surface.hpp"
 
 namespace mpm {
 

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
+#include "base/half_length.hpp"
 #include "base/types.hpp"
 #include "data/patches.hpp"
 #include "physics/materials/any.hpp"
-#include "physics/shape_gimp.hpp"
 
 namespace mpm {
 

@@ -1,7 +1,6 @@
 #include "functions/find_strays.hpp"
 
 #include "loops/particle_to_node.hpp"
-#include "rebuild/rebuild.hpp"
 
 namespace mpm {
 namespace {

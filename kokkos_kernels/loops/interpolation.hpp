@@ -1,7 +1,7 @@
 #pragma once
 // What the step asks of an interpolation.
 
-#include "functions/step_kernels.hpp"
+#include "data/state.hpp"
 #include "loops/particle_to_node.hpp"
 
 namespace mpm {

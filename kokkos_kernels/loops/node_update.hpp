@@ -3,11 +3,12 @@
 
 #include "base/lanes.hpp"
 #include "base/lone_thread.hpp"
+#include "data/state.hpp"
 #include "device/warp.hpp"
-#include "functions/step_kernels.hpp"
 #include "loops/particle_to_node.hpp"
 #include "loops/window.hpp"
 #include "physics/contact.hpp"
+#include "physics/surface.hpp"
 
 namespace mpm {
 

@@ -15,11 +15,6 @@ inline constexpr int teams_at_once = sizeof(T) == sizeof(float) ? (Dim == 2 ? 9 
 template <class Space, class T, int Dim>
 using PatchTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, teams_at_once<T, Dim>>>;
 
-/// Asks a GPU to fetch what p points at into its second cache.
-KOKKOS_INLINE_FUNCTION void prefetch([[maybe_unused]] const void* p) {
-  KOKKOS_IF_ON_DEVICE((asm volatile("prefetch.global.L2 [%0];" ::"l"(p));))
-}
-
 /// Place in the window of the node k steps from the first one that a particle reaches.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION int window_place(const Coord<Dim>& cell, const AxisWeights<T> (&a)[Dim],

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "data/memory_of.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
-#include "transfer/download.hpp"
 
 namespace mpm {
 namespace {

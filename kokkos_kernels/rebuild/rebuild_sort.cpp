@@ -3,6 +3,7 @@
 
 #include "functions/step_kernels.hpp"
 #include "physics/share.hpp"
+#include "physics/surface.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
 

@@ -1,4 +1,5 @@
 #include "step/typed_stepper.hpp"
+#include "device/device_agrees.hpp"
 #include "input/shapes.hpp"
 #include "step/surface_input.hpp"
 #include "step/traffic.hpp"

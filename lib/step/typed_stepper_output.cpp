@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "data/memory_of.hpp"
 #include "output/log.hpp"
 #include "parallel/gather.hpp"
 #include "step/typed_stepper.hpp"

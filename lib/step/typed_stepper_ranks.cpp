@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "data/memory_of.hpp"
 #include "output/log.hpp"
 #include "parallel/together.hpp"
 #include "step/typed_stepper.hpp"

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "compare.hpp"
+#include "data/memory_of.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/download.hpp"
 #include "transfer/save_state.hpp"

@@ -6,6 +6,7 @@
 
 #include "compare.hpp"
 #include "data/footprint.hpp"
+#include "data/memory_of.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -7,6 +7,7 @@
 #include "compare.hpp"
 #include "loops/window.hpp"
 #include "physics/contact.hpp"
+#include "physics/surface.hpp"
 #include "step/surface_input.hpp"
 
 using namespace mpm;

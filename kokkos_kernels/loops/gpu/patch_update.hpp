@@ -1,7 +1,8 @@
 #pragma once
 // What a team of a device does to the particles of a patch (function 5), and to the nodes of the next step.
 
-#include "functions/step_kernels.hpp"
+#include "data/state.hpp"
+#include "device/warp.hpp"
 #include "loops/gpu/tile.hpp"
 #include "physics/advance.hpp"
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "device/warp.hpp"
 #include "loops/end_step.hpp"
 #include "loops/gpu/patch_update.hpp"
 #include "loops/node_update.hpp"
@@ -15,13 +16,6 @@ inline constexpr int k_rigids_at_once = 4;  // with points, which are arguments 
 
 /// Polls after which the last team assumes that the device cannot hold all teams at once: some ms.
 inline constexpr int k_patience = 20'000;
-
-/// Makes what this thread wrote, or read from teams that it waited for, visible to teams that wait for its
-/// next write.
-KOKKOS_INLINE_FUNCTION void fence_of_teams() {
-  KOKKOS_IF_ON_DEVICE((asm volatile("fence.acq_rel.gpu;" ::: "memory");))  // Kokkos' fence orders more
-  KOKKOS_IF_ON_HOST((Kokkos::memory_fence();))
-}
 
 /// The launch. The first teams move the points of rigids to their next positions and add their mass to the
 /// nodes. Each of the other teams takes a slot. The last team waits for all others, moves the rigids and
