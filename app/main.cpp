@@ -11,9 +11,9 @@
 #include <string>
 #include <thread>
 
+#include "base/subnormals.hpp"
 #include "mpm/devices.hpp"
 #include "mpm/simulation.hpp"
-#include "subnormals.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@ set_target_properties(mpm PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 install(TARGETS mpm RUNTIME)
 install(TARGETS mpm_lib mpm_kernels EXPORT mpmTargets ARCHIVE)
 install(DIRECTORY lib/include/mpm TYPE INCLUDE FILES_MATCHING PATTERN "*.hpp")
-install(FILES kokkos_kernels/choices.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mpm)  # config.hpp includes it
+install(FILES kokkos_kernels/base/choices.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mpm)  # config.hpp includes it
 install(DIRECTORY inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN "*.opts")
 install(FILES README.md LICENSE TYPE DOC)
 

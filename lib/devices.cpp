@@ -13,9 +13,9 @@
 #include <memory>
 #include <string>
 
+#include "base/subnormals.hpp"
 #include "gpu.hpp"
 #include "input/launch.hpp"
-#include "subnormals.hpp"
 
 #ifdef KOKKOS_ENABLE_CUDA
 #define KOKKOS_IMPL_PUBLIC_INCLUDE  // the header refuses others than Kokkos' own

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "footprint.hpp"
+#include "data/footprint.hpp"
 #include "input/particle_file.hpp"
 #include "input/shapes.hpp"
 #include "mesh/background.hpp"

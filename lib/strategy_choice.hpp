@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "choices.hpp"
+#include "base/choices.hpp"
 
 namespace mpm {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "data/saved_state.hpp"
 #include "input/options.hpp"
 #include "output/history.hpp"
-#include "saved_state.hpp"
 
 namespace mpm {
 

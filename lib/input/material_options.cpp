@@ -6,8 +6,8 @@
 
 #include "input/groups.hpp"
 #include "input/text.hpp"
-#include "materials/any.hpp"
-#include "materials/list.hpp"
+#include "physics/materials/any.hpp"
+#include "physics/materials/list.hpp"
 
 namespace mpm {
 namespace {

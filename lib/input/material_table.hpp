@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "materials/tables.hpp"
+#include "physics/materials/tables.hpp"
 
 namespace mpm {
 

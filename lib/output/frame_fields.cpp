@@ -1,6 +1,6 @@
 #include "output/frame_fields.hpp"
 
-#include "materials/tables.hpp"
+#include "physics/materials/tables.hpp"
 
 namespace mpm {
 

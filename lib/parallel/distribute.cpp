@@ -8,7 +8,7 @@
 #include "input/shapes.hpp"
 #include "parallel/partition.hpp"
 #include "parallel/together.hpp"
-#include "velocity_gradients.hpp"
+#include "transfer/velocity_gradients.hpp"
 
 namespace mpm {
 namespace {

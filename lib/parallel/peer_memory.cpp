@@ -8,8 +8,8 @@
 #include <new>
 #include <thread>
 
+#include "base/spaces.hpp"
 #include "parallel/together.hpp"
-#include "spaces.hpp"
 
 namespace mpm {
 namespace {

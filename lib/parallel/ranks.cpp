@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "functions/step_kernels.hpp"
 #include "output/log.hpp"
 #include "parallel/together.hpp"
-#include "rebuild.hpp"
-#include "step_kernels.hpp"
+#include "rebuild/rebuild.hpp"
 
 namespace mpm {
 namespace {

@@ -7,16 +7,16 @@
 #include <string>
 #include <utility>
 
-#include "halo.hpp"
-#include "migrate.hpp"
+#include "data/saved_state.hpp"
+#include "device/queues.hpp"
+#include "functions/halo.hpp"
+#include "functions/share_impulse.hpp"
 #include "mpm/config.hpp"
 #include "parallel/global_bound.hpp"
 #include "parallel/halo_plan.hpp"
 #include "parallel/transport.hpp"
 #include "parallel/work_clock.hpp"
-#include "queues.hpp"
-#include "saved_state.hpp"
-#include "share_impulse.hpp"
+#include "rebuild/migrate.hpp"
 
 namespace mpm {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "loops/particle_to_node.hpp"
 #include "parallel/ranks.hpp"
-#include "particle_to_node.hpp"
 
 namespace mpm {
 

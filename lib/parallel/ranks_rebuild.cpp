@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <set>
 
+#include "functions/step_kernels.hpp"
 #include "output/log.hpp"
 #include "parallel/partition.hpp"
 #include "parallel/ranks.hpp"
 #include "parallel/together.hpp"
-#include "rebuild.hpp"
-#include "save_state.hpp"
-#include "step_kernels.hpp"
+#include "rebuild/rebuild.hpp"
+#include "transfer/save_state.hpp"
 
 namespace mpm {
 namespace {

@@ -7,7 +7,7 @@
 #include <mpi-ext.h>
 #endif
 
-#include "rebuild.hpp"
+#include "rebuild/rebuild.hpp"
 
 namespace mpm {
 namespace {

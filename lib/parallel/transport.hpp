@@ -4,10 +4,10 @@
 #include <string>
 #include <type_traits>
 
+#include "base/spaces.hpp"
 #include "mpm/config.hpp"
 #include "parallel/exchange.hpp"
 #include "parallel/peer_memory.hpp"
-#include "spaces.hpp"
 
 namespace mpm {
 

@@ -2,7 +2,7 @@
 // A second queue of the device for the movement of the rigids and what nodes near them wait for, while those
 // far from them are updated.
 
-#include "queues.hpp"
+#include "device/queues.hpp"
 
 namespace mpm {
 

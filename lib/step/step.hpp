@@ -1,14 +1,14 @@
 #pragma once
 // One time step, in the paper's words.
 
-#include "batches.hpp"
-#include "find_strays.hpp"
-#include "interpolation.hpp"
+#include "functions/find_strays.hpp"
+#include "functions/step_kernels.hpp"
+#include "functions/velocity_update.hpp"
+#include "loops/interpolation.hpp"
 #include "parallel/ranks.hpp"
+#include "rebuild/batches.hpp"
 #include "step/beside.hpp"
 #include "step/timers.hpp"
-#include "step_kernels.hpp"
-#include "velocity_update.hpp"
 
 namespace mpm {
 

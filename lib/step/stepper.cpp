@@ -3,7 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include "copy_bandwidth.hpp"
+#include "device/copy_bandwidth.hpp"
 #include "step/typed_stepper.hpp"
 
 namespace mpm {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "data/saved_state.hpp"
 #include "mpm/config.hpp"
 #include "output/performance.hpp"
 #include "output/snapshot.hpp"
 #include "parallel/patch_grid.hpp"
-#include "saved_state.hpp"
 
 namespace mpm {
 

@@ -2,7 +2,7 @@
 // A rigid body's shape as the surface that contact kernels measure from.
 
 #include "mpm/config.hpp"
-#include "upload.hpp"
+#include "transfer/upload.hpp"
 
 namespace mpm {
 

@@ -4,8 +4,8 @@
 // has lost it, lists, windows and passes over unchanged data are not counted. So a function's share of the
 // copy bandwidth tells how near it is to the limit of memory.
 
+#include "functions/step_kernels.hpp"
 #include "step/timers.hpp"
-#include "step_kernels.hpp"
 
 namespace mpm {
 

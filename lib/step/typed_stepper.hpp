@@ -6,17 +6,17 @@
 #include <optional>
 #include <string>
 
-#include "download.hpp"
-#include "download_nodes.hpp"
-#include "grid_velocity.hpp"
+#include "functions/grid_velocity.hpp"
+#include "functions/wall_force.hpp"
 #include "input/material_table.hpp"
-#include "measure.hpp"
 #include "parallel/kept_by_id.hpp"
-#include "save_state.hpp"
 #include "step/step.hpp"
 #include "step/stepper.hpp"
-#include "upload.hpp"
-#include "wall_force.hpp"
+#include "transfer/download.hpp"
+#include "transfer/download_nodes.hpp"
+#include "transfer/measure.hpp"
+#include "transfer/save_state.hpp"
+#include "transfer/upload.hpp"
 
 namespace mpm {
 

@@ -6,7 +6,7 @@
 
 #include "input/material_table.hpp"
 #include "input/shapes.hpp"
-#include "materials/any.hpp"
+#include "physics/materials/any.hpp"
 #include "step/stepper.hpp"
 
 namespace mpm {

@@ -39,11 +39,11 @@ def copy_with_law(source, copy):
         for path in [source / part] if (source / part).is_file() else (source / part).rglob("*"):
             if path.is_file() and path.name != "list.hpp":
                 put(copy / path.relative_to(source), path.read_text())
-    materials = "kokkos_kernels/materials"
+    materials = "kokkos_kernels/physics/materials"
     put(copy / materials / "path_dependent.hpp", (HERE / "path_dependent.hpp").read_text())
     before = (source / materials / "list.hpp").read_text()
-    after = before.replace('#include "materials/von_mises.hpp"\n',
-                           '#include "materials/path_dependent.hpp"\n#include "materials/von_mises.hpp"\n')
+    last = '#include "physics/materials/von_mises.hpp"\n'
+    after = before.replace(last, '#include "physics/materials/path_dependent.hpp"\n' + last)
     after = after.replace("VonMises>;", "VonMises, PathDependent>;")
     assert len(after.splitlines()) == len(before.splitlines()) + 1 and "PathDependent>;" in after
     put(copy / materials / "list.hpp", after)

@@ -2,7 +2,7 @@
 #include <array>
 #include <limits>
 
-#include "materials/material.hpp"
+#include "physics/materials/material.hpp"
 
 namespace mpm {
 

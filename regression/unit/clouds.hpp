@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "download.hpp"
-#include "step_kernels.hpp"
-#include "upload.hpp"
+#include "functions/step_kernels.hpp"
+#include "transfer/download.hpp"
+#include "transfer/upload.hpp"
 
 namespace mpm::test {
 

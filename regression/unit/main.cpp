@@ -6,7 +6,7 @@
 #include <Kokkos_Core.hpp>
 #include <catch2/catch_session.hpp>
 
-#include "subnormals.hpp"
+#include "base/subnormals.hpp"
 
 namespace {
 

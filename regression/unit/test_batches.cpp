@@ -5,10 +5,10 @@
 #include <cstring>
 #include <set>
 
-#include "batches.hpp"
 #include "compare.hpp"
-#include "download.hpp"
-#include "save_state.hpp"
+#include "rebuild/batches.hpp"
+#include "transfer/download.hpp"
+#include "transfer/save_state.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

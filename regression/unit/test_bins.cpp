@@ -5,7 +5,7 @@
 #include <set>
 
 #include "compare.hpp"
-#include "footprint.hpp"
+#include "data/footprint.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -3,7 +3,7 @@
 #include <catch2/catch_test_macros.hpp>
 
 #include "compare.hpp"
-#include "contact.hpp"
+#include "physics/contact.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

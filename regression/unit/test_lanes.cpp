@@ -3,8 +3,8 @@
 #include <array>
 #include <catch2/catch_test_macros.hpp>
 
-#include "advance.hpp"
 #include "compare.hpp"
+#include "physics/advance.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

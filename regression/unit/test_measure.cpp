@@ -4,8 +4,8 @@
 #include <catch2/catch_test_macros.hpp>
 
 #include "compare.hpp"
-#include "grid_velocity.hpp"
-#include "measure.hpp"
+#include "functions/grid_velocity.hpp"
+#include "transfer/measure.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -2,11 +2,11 @@
 
 #include <catch2/catch_test_macros.hpp>
 
-#include "batches.hpp"
 #include "compare.hpp"
-#include "measure.hpp"
-#include "save_state.hpp"
-#include "velocity_update.hpp"
+#include "functions/velocity_update.hpp"
+#include "rebuild/batches.hpp"
+#include "transfer/measure.hpp"
+#include "transfer/save_state.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

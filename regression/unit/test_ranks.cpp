@@ -13,7 +13,7 @@
 #include "parallel/ranks.hpp"
 #include "parallel/together.hpp"
 #include "step/step.hpp"
-#include "velocity_gradients.hpp"
+#include "transfer/velocity_gradients.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

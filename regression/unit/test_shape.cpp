@@ -4,7 +4,7 @@
 #include <catch2/catch_test_macros.hpp>
 
 #include "clouds.hpp"
-#include "shape_gimp.hpp"
+#include "physics/shape_gimp.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

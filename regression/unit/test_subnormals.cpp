@@ -3,8 +3,8 @@
 #include <catch2/catch_test_macros.hpp>
 #include <limits>
 
-#include "spaces.hpp"
-#include "subnormals.hpp"
+#include "base/spaces.hpp"
+#include "base/subnormals.hpp"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "compare.hpp"
-#include "contact.hpp"
+#include "loops/window.hpp"
+#include "physics/contact.hpp"
 #include "step/surface_input.hpp"
-#include "window.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -3,7 +3,7 @@
 #include <catch2/catch_test_macros.hpp>
 
 #include "clouds.hpp"
-#include "copy_bandwidth.hpp"
+#include "device/copy_bandwidth.hpp"
 #include "step/traffic.hpp"
 
 using namespace mpm;

@@ -4,7 +4,7 @@
 #include <catch2/catch_test_macros.hpp>
 
 #include "compare.hpp"
-#include "velocity_gradients.hpp"
+#include "transfer/velocity_gradients.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

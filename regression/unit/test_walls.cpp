@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "compare.hpp"
-#include "measure.hpp"
-#include "wall_force.hpp"
+#include "functions/wall_force.hpp"
+#include "transfer/measure.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -1,0 +1,39 @@
+#pragma once
+// What a team of threads does on a GPU, done by one thread of a processor.
+
+#include <Kokkos_Core.hpp>
+
+#include "base/spaces.hpp"
+
+namespace mpm {
+
+/// A team of one.
+struct LoneThread {
+  int league = 0;
+  KOKKOS_INLINE_FUNCTION int league_rank() const { return league; }
+  KOKKOS_INLINE_FUNCTION static constexpr int team_rank() { return 0; }
+  KOKKOS_INLINE_FUNCTION static constexpr int team_size() { return 1; }
+  KOKKOS_INLINE_FUNCTION static void team_barrier() {}
+};
+
+/// Calls f(n) for n < count, by the threads of a team.
+template <class Team, class F>
+KOKKOS_INLINE_FUNCTION void for_team(const Team& team, int count, F&& f) {
+  Kokkos::parallel_for(Kokkos::TeamThreadRange(team, count), f);
+}
+template <class F>
+KOKKOS_INLINE_FUNCTION void for_team(const LoneThread&, int count, F&& f) {
+  for (int n = 0; n < count; ++n) f(n);
+}
+
+/// Calls f by one thread of a team.
+template <class Team, class F>
+KOKKOS_INLINE_FUNCTION void once(const Team& team, F&& f) {
+  Kokkos::single(Kokkos::PerTeam(team), f);
+}
+template <class F>
+KOKKOS_INLINE_FUNCTION void once(const LoneThread&, F&& f) {
+  f();
+}
+
+}  // namespace mpm

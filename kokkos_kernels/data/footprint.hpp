@@ -1,0 +1,32 @@
+#pragma once
+// What particles and nodes take of the device's memory, from their types alone.
+
+#include "data/nodes.hpp"
+#include "data/particles.hpp"
+
+namespace mpm {
+
+/// Bytes that a State holds for each particle of the soil, with what sorts it, for each node, and, of the
+/// windows that threads of a processor sum to (`tile`), for each cell. Lists of the strategies come on top.
+template <class T, int Dim>
+struct Footprint {
+  static constexpr double grown = 17.0 / 16;  // ensure() leaves room
+  /// columns: of the history of the laws.
+  static constexpr double particle(int columns) {
+    return 2 * sizeof(Vector<T, Dim>) + sizeof(SymTensor<T, Dim>) + (1 + columns) * sizeof(T) +
+           sizeof(std::uint16_t) + 2 * sizeof(int) + sizeof(long) +
+           grown * (sizeof(int) + sizeof(Vector<T, Dim>));
+  }
+  static constexpr double node =
+      grown *
+      (sizeof(T) * (SoilShare<Dim>::size + NodeMotion<Dim>::size + BoundaryShare<Dim>::size) + sizeof(int));
+  /// Of a rigid, with what sorts it.
+  static constexpr double rigid_point =
+      2 * sizeof(Vector<T, Dim>) + sizeof(Vector<double, Dim>) + 3 * sizeof(int) + sizeof(long);
+  /// Of the patch table, for every patch of the mesh and of the ring round it.
+  static constexpr double patch = 2 * sizeof(int);
+  static constexpr double window =
+      grown * double(sizeof(T) * SoilShare<Dim>::size * Patch<Dim>::window) / Patch<Dim>::cells;
+};
+
+}  // namespace mpm

@@ -1,0 +1,170 @@
+#pragma once
+// Nodal fields, the rigid bodies' state, and the control block that lives on the device.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/spaces.hpp"
+#include "base/types.hpp"
+#include "data/patches.hpp"
+#include "physics/surface.hpp"
+
+namespace mpm {
+
+/// A nodal field of N values a node, together in memory.
+template <class Space, class T, int N>
+using NodeField = Kokkos::View<T* [N], Kokkos::LayoutRight, typename Space::memory_space>;
+
+/// Values that soil gives a node: mass [kg], momentum [kg m/s], internal force [N].
+template <int Dim>
+struct SoilShare {
+  static constexpr int mass = 0, momentum = 1, force = 1 + Dim, size = 1 + 2 * Dim;
+};
+/// What soil near a rigid gives a node beside: its boundary as a vector out of it [m2] and its volume [m3].
+template <int Dim>
+struct BoundaryShare {
+  static constexpr int area = 0, volume = Dim, size = Dim + 1;
+};
+/// What soil near a rigid gives a node where the shear limit is a share of its strength: strength times
+/// volume [Pa m3], and volume [m3], so that their ratio is the mean strength there, whatever becomes of other
+/// sums.
+struct StrengthShare {
+  static constexpr int strength = 0, volume = 1, size = 2;
+};
+/// Values that a rigid gives a node: mass [kg], mass gradient times the cell's edge [kg] (Eq. 3).
+template <int Dim>
+struct RigidShare {
+  static constexpr int mass = 0, normal = 1, size = 1 + Dim;
+};
+/// Values that a node gives the soil: velocity at the end of the step [m/s], acceleration [m/s2].
+template <int Dim>
+struct NodeMotion {
+  static constexpr int velocity = 0, acceleration = Dim, size = 2 * Dim;
+};
+
+/// NodeMotion of one node, read and written at once.
+template <class T, int Dim>
+struct alignas(group_alignment<T, NodeMotion<Dim>::size>) MotionValues {
+  T c[NodeMotion<Dim>::size];
+  KOKKOS_INLINE_FUNCTION const T& operator[](int k) const { return c[k]; }
+};
+
+/// What particles and rigids give the nodes.
+template <class Space, class T, int Dim>
+struct NodeSums {
+  NodeField<Space, T, SoilShare<Dim>::size> soil;
+  NodeField<Space, T, BoundaryShare<Dim>::size> boundary;  // of the soil; allocated with rigids
+  Kokkos::View<T* * [RigidShare<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space>
+      rigid;  // [rigid][node]; allocated where a normal comes from the mass gradient
+};
+
+template <class Space, class T, int Dim>
+struct Nodes : NodeSums<Space, T, Dim> {
+  NodeField<Space, T, NodeMotion<Dim>::size> motion;
+  NodeField<Space, T, StrengthShare::size> strength;  // allocated where a contact asks for it
+  NodeField<Space, T, Dim> rest;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
+  Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
+      impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step
+};
+
+/// A rigid body on the device.
+template <int Dim>
+struct Rigid {
+  Vector<double, Dim> displacement;  // m, since the start
+  Vector<double, Dim> binned;        // m, displacement when its points were binned
+  Vector<double, Dim> velocity;      // m/s
+  Vector<double, Dim> impulse;       // N s, of the soil on it since the host last took it
+  Vector<double, Dim> force;         // N, external and weight
+  double mass;                       // kg
+  bool dynamic;
+  bool held[Dim];  // a plane of symmetry cuts it, across which it does not move
+  Surface<Dim> surface;
+  bool surface_normal;  // normals from the surface, not from the mass gradient
+  bool separates;       // the soil may part from it
+  double reach;         // m, gap at which the contact ends; 0: it does not depend on the gap
+  double exponent;      // -, of its decrease with the gap
+  double shear_limit;   // Pa, infinite where only the friction limits
+  double shear_share;   // -, of the soil's strength instead of the limit; negative: none
+  double friction;      // -, negative: none
+  double mass_cut;      // kg, nodes below it are not touched
+};
+
+/// Why a run cannot go on.
+enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone };
+
+/// The first fault that a kernel met.
+struct Fault {
+  FaultKind kind;
+  int particle;        // id
+  double position[3];  // m from the mesh's lower corner
+};
+
+/// Why steps are paused, as bits.
+namespace Pause {
+inline constexpr int due = 1,  // the bound passed the margin, a rebuild is due, or a fault
+    last = 2,                  // within a launch of several steps: the one at hand is its last
+    apart = 4;                 // the teams of such a launch were not on the device together
+}  // namespace Pause
+
+/// What steers the steps between two looks of the host. A step does nothing while `paused`.
+struct Control {
+  double bound;      // cells that any point can have moved since the last rebuild
+  double increment;  // of the last step
+  int ended;         // steps that whole_steps has ended
+  int paused;        // Pause; beside `ended`, to be read with it
+  int due_in;        // steps to a rebuild that is due; 0: none is
+  int steps;         // steps done since the host last looked
+  int lost;          // particles that the last locate() found to leave the run
+  int fault_count;
+  Fault fault;
+};
+
+/// How many teams of a launch have begun, and how many are done with their part of the step.
+struct Roll {
+  int begun, arrived;
+};
+
+/// What teams of one launch that wait for each other look at.
+struct Signal {
+  int ended, paused;
+};
+static_assert(offsetof(Control, ended) % sizeof(Signal) == 0 &&
+              offsetof(Control, paused) == offsetof(Control, ended) + sizeof(int));
+
+/// Whether lists must be rebuilt `late` steps after the one that these are of [cells]; speeds may grow by
+/// half until then. Several ranks know of each other only so late; one rank rebuilds at the same steps all
+/// the same.
+KOKKOS_INLINE_FUNCTION bool rebuild_due(double bound, double increment, double margin, int late) {
+  constexpr double k_growth = 1.5;
+  return !(bound + late * k_growth * increment <= margin);
+}
+
+template <class Space>
+using ControlView = Kokkos::View<Control, typename Space::memory_space>;
+
+/// The largest movement of a particle in the present step [cells]. Each patch notes that of its own at one of
+/// several places, since all at one would wait for each other.
+template <class Space>
+struct Movements {
+  static constexpr int places = is_device<Space> ? 256 : 16;
+  // Of numbers that are not negative the bits have the same order, and integers a GPU compares in its memory.
+  Kokkos::View<std::uint64_t[places], typename Space::memory_space> bits;
+
+  KOKKOS_INLINE_FUNCTION void note(int slot, double moved) const {
+    Kokkos::atomic_max(&bits(slot % places), Kokkos::bit_cast<std::uint64_t>(moved));
+  }
+  KOKKOS_INLINE_FUNCTION double noted(int place) const { return Kokkos::bit_cast<double>(bits(place)); }
+  KOKKOS_INLINE_FUNCTION void begin(int place) const { bits(place) = 0; }
+};
+
+/// Notes a fault; the first one is kept.
+template <class ControlView_>
+KOKKOS_INLINE_FUNCTION void report(const ControlView_& control, FaultKind kind, int particle,
+                                   const double* position, int dim) {
+  if (Kokkos::atomic_fetch_add(&control().fault_count, 1) != 0) return;
+  control().fault.kind = kind;
+  control().fault.particle = particle;
+  for (int d = 0; d < dim; ++d) control().fault.position[d] = position[d];
+}
+
+}  // namespace mpm

@@ -1,0 +1,179 @@
+#pragma once
+// Material points, as plain structs of views. A position is a cell and a coordinate in that cell: [0, 1) when
+// the particles are binned, and up to the margin beyond while they drift between two rebuilds.
+
+#include <cstdint>
+
+#include "base/types.hpp"
+#include "data/patches.hpp"
+#include "physics/materials/any.hpp"
+#include "physics/shape_gimp.hpp"
+
+namespace mpm {
+
+/// Where points are, and in which order: by slot, by cell in it, and by id in the cell.
+template <class Space, class T, int Dim>
+struct Points {
+  using Memory = typename Space::memory_space;
+  int count = 0;  // points that have a slot, the first ones
+  int all = 0;    // points in memory: those behind are far from the soil, or go to another rank
+  Kokkos::View<Vector<T, Dim>*, Memory> coordinate;  // cells, from the lower corner of `cell`
+  Kokkos::View<int*, Memory> cell;                   // number of the cell where the point was binned
+  Kokkos::View<int*, Memory> id;                     // order of creation
+};
+
+/// What all particles of a body share.
+template <class T>
+struct BodyProperties {
+  T mass;                     // kg, of one particle, where the particles have none of their own
+  HalfLength<T> half_length;  // cells, of one particle
+  int material;               // index into Soil::materials
+};
+
+/// State variables [variable][particle]: column k holds variable k of the particle's law, whichever law that
+/// is. As many columns are in use as the law with the most variables has; the others take no memory.
+template <class Space, class T>
+struct History {
+  Kokkos::Array<Kokkos::View<T*, typename Space::memory_space>, k_most_state> column;
+  Kokkos::Array<const char*, k_most_state> name{};  // of each column in use
+  Kokkos::Array<bool, k_most_state> changes{};      // some law changes it
+  int columns = 0;                                  // in use
+};
+
+/// The soil: the particles of all deformable bodies.
+template <class Space, class T, int Dim>
+struct Soil : Points<Space, T, Dim> {
+  using Memory = typename Space::memory_space;
+  Kokkos::View<Vector<T, Dim>*, Memory> velocity;   // m/s
+  Kokkos::View<SymTensor<T, Dim>*, Memory> stress;  // Pa, Cauchy, tension positive
+  Kokkos::View<T*, Memory> volume;                  // m3, current
+  History<Space, T> history;                        // state variables of the laws
+  Kokkos::View<std::uint16_t*, Memory> body;        // index into bodies
+  Kokkos::View<Matrix<T, Dim>*, Memory> affine;     // m/s a cell, C_p of APIC; of extent 0 without it
+  Kokkos::View<T*, Memory> mass;                    // kg, in use where has_own_mass
+
+  Kokkos::View<BodyProperties<T>*, Memory> bodies;
+  Kokkos::View<AnyMaterial<T>*, Memory> materials;
+  bool has_own_mass = false;  // the particles of some body differ in mass; the same on all ranks
+
+  /// Mass [kg] of particle p, which is of this body.
+  KOKKOS_INLINE_FUNCTION T mass_of(int p, const BodyProperties<T>& of) const {
+    return has_own_mass ? mass(p) : of.mass;
+  }
+  /// The values of the state variables of particle p, whose law this is.
+  template <class Law>
+  KOKKOS_INLINE_FUNCTION LawState<T, state_size<Law>> state_of(const Law&, int p) const {
+    LawState<T, state_size<Law>> state;
+    for (int k = 0; k < state_size<Law>; ++k) state[k] = history.column[k](p);
+    return state;
+  }
+  /// What its body gives particle p, with its own mass.
+  KOKKOS_INLINE_FUNCTION BodyProperties<T> properties(int p) const {
+    BodyProperties<T> of = bodies(body(p));
+    of.mass = mass_of(p, of);
+    return of;
+  }
+};
+
+/// The particles of one rigid body. They keep their place in the body, so that their motion gathers no
+/// round-off.
+template <class Space, class T, int Dim>
+struct RigidPoints : Points<Space, T, Dim> {
+  using Memory = typename Space::memory_space;
+  Kokkos::View<Vector<double, Dim>*, Memory> home;  // cells from the mesh's lower corner, at the start
+  T mass = 0;                                       // kg, of one particle
+  HalfLength<T> half_length{};                      // cells
+  bool surface_normal = false;                      // contact does not ask for their mass at the nodes
+};
+
+/// What the update of the particles (function 5) does with a field.
+enum class Use { none, reads, changes };
+
+/// Calls f(name, use, field...) for every field that holds one entry a particle, but cell and id, of some
+/// sets of the same kind at once. The one table of fields: sorting, migration, checkpoints, batches, memory
+/// and the bytes that a step moves follow it.
+template <class F, class Soil_, class... Others>
+requires requires(Soil_& s) { s.history; }
+void for_each_field_of(F&& f, Soil_& s, Others&... others) {
+  f("coordinate", Use::changes, s.coordinate, others.coordinate...);
+  f("velocity", Use::changes, s.velocity, others.velocity...);
+  f("stress", Use::changes, s.stress, others.stress...);
+  f("volume", Use::changes, s.volume, others.volume...);
+  for (int k = 0; k < s.history.columns; ++k)
+    f(s.history.name[k], s.history.changes[k] ? Use::changes : Use::reads, s.history.column[k],
+      others.history.column[k]...);
+  f("body", s.bodies.extent(0) > 1 ? Use::reads : Use::none, s.body, others.body...);
+  if (s.affine.extent(0) > 0) f("affine", Use::none, s.affine, others.affine...);
+  if (s.has_own_mass) f("mass", Use::reads, s.mass, others.mass...);
+}
+template <class F, class RigidPoints_>
+requires requires(RigidPoints_& s) { s.home; }
+void for_each_field_of(F&& f, RigidPoints_& s) {
+  f("coordinate", Use::none, s.coordinate), f("home", Use::none, s.home);
+}
+/// The fields alone.
+template <class Points_, class F>
+void for_each_field(Points_& points, F&& f) {
+  for_each_field_of([&](const char*, Use, auto& field) { f(field); }, points);
+}
+
+/// Places for the sums of windows, so that many threads can make them at once.
+template <class Space>
+struct Windows {
+  Kokkos::View<int*, typename Space::memory_space>
+      place;  // of the window of a slot, from 1 on; 0: it has none
+  Kokkos::View<char*, typename Space::memory_space> sums;  // of the windows, one after the other
+};
+/// Whether the strategy `tile` needs them.
+template <class Space>
+bool has_windows(const Space& space) {
+  return backend_of<Space> == Backend::openmp && space.concurrency() > 1;
+}
+
+/// Ranges of points by cell, and the lists of the strategies that need them. Valid while no point has moved
+/// further than the margin that they were built with.
+template <class Space>
+struct Bins {
+  using Memory = typename Space::memory_space;
+  Kokkos::View<int*, Memory> begin;      // first point of a cell [cells + 1]
+  int first_slot = 0, last_slot = 0;     // slots that may hold points: [first_slot, last_slot)
+  Kokkos::View<int*, Memory> by_colour;  // slots that hold points, ordered by colour; on a processor all are
+                                         // of one, so that they rise
+  int colour_begin[8 + 1] = {};          // ranges of by_colour
+  int border = 0;  // of by_colour, on several ranks: slots in front that share nodes with other ranks, all
+                   // colours of them; but with OpenMP, where slots rise
+  Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]
+  Kokkos::View<int*, Memory> list;        // gather: points that may reach the node, in order
+  Kokkos::View<long*, Memory> blocks;     // mosaic: blocks that hold points, ordered by colour
+  int block_begin[8 + 1] = {};            // mosaic: ranges of blocks by colour
+  Windows<Space> windows;                 // tile, many threads of a processor
+};
+
+/// Some of the slots that hold points, [first, last) of Bins::by_colour, and the queue that works on them.
+/// Several parts: on a device, and with one thread.
+template <class Space>
+struct Part {
+  Space space;
+  int first, last;
+};
+
+/// The bins with these slots alone.
+template <class Space>
+Bins<Space> bins_of(const Bins<Space>& all, const Part<Space>& part) {
+  Bins<Space> bins = all;
+  bins.colour_begin[0] = part.first;
+  for (int colour = 1; colour <= 8; ++colour) bins.colour_begin[colour] = part.last;
+  return bins;
+}
+
+/// A set of points with what orders it.
+template <class Space, class Points_>
+struct Sorted {
+  Points_ points;
+  Bins<Space> bins;
+  Kokkos::View<long*, typename Space::memory_space>
+      address;  // scratch of a rebuild: Grid::address_of each point
+  Kokkos::View<int*, typename Space::memory_space> order;  // scratch of a rebuild: former place of each point
+};
+
+}  // namespace mpm

@@ -1,0 +1,83 @@
+#pragma once
+// Everything that a time step works on, for one execution space, real type and dimension.
+
+#include <cstdint>
+#include <vector>
+
+#include "data/nodes.hpp"
+#include "data/soil_batches.hpp"
+#include "data/step_plan.hpp"
+#include "data/strays.hpp"
+
+namespace mpm {
+
+/// Strategy and what its lists are built with.
+struct P2GPlan {
+  P2G strategy = P2G::automatic;
+  double margin = 0.5;  // cells
+  int mosaic_cells = 3;
+};
+
+/// Which nodal fields hold the sums of what they are of, as it is now.
+struct Summed {
+  bool soil = false, boundary = false, rigids = false;
+  bool in_windows = false;  // those of the soil and its boundary: the windows hold them, for update_nodes
+};
+
+template <class Space, class T, int Dim>
+struct State {
+  using Memory = typename Space::memory_space;
+  Space space;
+  P2GPlan p2g;
+  Grid<T, Dim> grid;
+  Patches<Space, Dim> patches;
+  Sorted<Space, Soil<Space, T, Dim>> soil;
+  int law = -1;  // index in Materials of the law of all bodies; -1: they differ
+  Strays<Space> strays;
+  Batches<Space, T, Dim> batches;  // of the soil, where the device's memory does not hold it all
+  std::vector<Sorted<Space, RigidPoints<Space, T, Dim>>> rigid_points;
+  Kokkos::View<Rigid<Dim>*, Memory> rigids;
+  Kokkos::View<Vertex*, Memory> vertices;  // of the rigids' polygons
+  Kokkos::View<int*, Memory> near_slots;   // where a rigid may touch a node that the slot's particles reach
+  Kokkos::View<int*, Memory> near_rigid;   // by slot: its place among those, from 1 on; 0 elsewhere
+  int near_count = 0;
+  Windows<Space> boundary_windows, strength_windows;  // of the patches near a rigid
+  Kokkos::View<double*, Memory>
+      slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
+  Nodes<Space, T, Dim> nodes;
+  NodeSums<Space, T, Dim> next_sums, last_sums;  // of whole_steps, which sets last_sums to zero
+  bool next_zero = false;                        // `next_sums` fits and is zero
+  bool together = true;  // as far as is known the device holds all teams of whole_steps at once
+  Kokkos::View<std::uint64_t*, Memory>
+      counted;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
+  ControlView<Space> control;
+  Movements<Space> movements;
+  Kokkos::View<Roll, Memory> roll;
+  Kokkos::View<double*, Memory> sums;  // N, force of the soil on each rigid in this step
+  Kokkos::View<char*, Memory>
+      spare;  // scratch of a rebuild: one field in its new order; of a step: dilatations, XPIC
+  Kokkos::View<int*, Memory> marks;  // scratch of a rebuild: which patches hold points
+
+  double time = 0;                // s, before the steps that Control::steps counts
+  double spacing = 0;             // m, edge of a cell, whatever T is
+  Vector<double, Dim> gravity{};  // m/s2
+  double damping = 0;             // -
+  double flip_share = 1;          // -, what is not FLIP is PIC, or XPIC
+  int xpic_order = 0;             // m of XPIC(m), 0 without it
+  bool affine = false;            // APIC: Soil::affine is in use; flip_share is then 0
+  double f_bar_share = 0;         // -
+  bool keeps_stress = false;      // sorting brings no pressures together: at a start from another run
+  double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
+  int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them
+  StepPlan plan;                  // of the steps until the next rebuild
+  Summed summed;                  // what the step before has summed already
+  bool forces_summed = false;  // `sums` holds the forces of this step, of all ranks if a rigid moves by them
+  bool rigid_moves = false;    // some rigid is not fixed
+  bool rigid_dynamic = false;  // some rigid moves by the forces on it
+  bool mass_normals = false;   // some rigid's normals are those of its mass gradient
+  bool soil_boundary = false;  // some contact needs the soil's boundary at the nodes
+  bool shear_share = false;    // some contact needs the soil's strength at the nodes
+  bool has_friction = false;   // some contact has Coulomb friction
+};
+
+}  // namespace mpm

@@ -1,0 +1,41 @@
+#pragma once
+// Soil that has left the others: particles that hardly any other is in reach of, and those that left the run.
+
+#include <vector>
+
+#include "base/choices.hpp"
+#include "base/spaces.hpp"
+#include "data/nodes.hpp"
+
+namespace mpm {
+
+/// What has left the run through a free side, or was removed: of one body, on this rank, since the start.
+struct Lost {
+  double count = 0, mass = 0, kinetic_energy = 0;  // -, kg, J
+  double momentum[3] = {};                         // kg m/s
+};
+
+/// Least and most volume of a particle, of that of the smallest and largest particle at the start. A particle
+/// of twice its volume is as stiff as two with half its mass: beyond it the time step is not stable any more.
+inline constexpr double k_least_volume = 0.2, k_most_volume = 2;
+
+/// Whether the particles of a cell, by its number, are alone. alone: Strays::alone
+template <class Alone>
+KOKKOS_INLINE_FUNCTION bool is_alone(const Alone& alone, int cell) {
+  static_assert(Patch<2>::cells == 64 && Patch<3>::cells == 64, "a bit a cell");
+  return (alone(cell / 64) >> (cell % 64) & 1) != 0;
+}
+
+/// Which particles are alone, and what has left.
+template <class Space>
+struct Strays {
+  using Memory = typename Space::memory_space;
+  StrayRule rule = StrayRule::keep;
+  Kokkos::View<std::uint64_t*, Memory> alone;  // by slot, a bit a cell: its particles are alone
+  bool known = false;                          // `alone` is of the present lists
+  Kokkos::View<int*, Memory> put_back;         // by body: particles that were put back at a wall
+  double least_volume = 0, most_volume = 0;    // m3, of any particle
+  std::vector<Lost> lost;                      // by body
+};
+
+}  // namespace mpm

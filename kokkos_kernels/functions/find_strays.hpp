@@ -1,0 +1,17 @@
+#pragma once
+// What becomes of soil that has left the others.
+
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// Finds the particles that are alone, from the nodes' masses once those of all ranks are there, for as long
+/// as the lists hold; sort_and_list() has marked none. With StrayRule::stop one is a fault.
+template <class Space, class T, int Dim>
+void mark_strays(State<Space, T, Dim>& s, const Space& queue);
+
+/// Adds the particles that locate() has found to leave the run, those without an address, to Strays::lost.
+template <class Space, class T, int Dim>
+void note_lost(State<Space, T, Dim>& s);
+
+}  // namespace mpm

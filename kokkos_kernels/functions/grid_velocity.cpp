@@ -1,0 +1,80 @@
+#include "functions/grid_velocity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "loops/particle_to_node.hpp"
+
+namespace mpm {
+namespace {
+
+/// The nodes' velocity at a particle, m/s.
+template <class Space, class T, int Dim>
+struct GridVelocity {
+  Soil<Space, T, Dim> points;
+  NodeField<Space, T, SoilShare<Dim>::size> nodes;
+  NodePlaces<Space, T, Dim> places;
+
+  explicit GridVelocity(const State<Space, T, Dim>& s)
+      : points(s.soil.points), nodes(s.nodes.soil), places(s.grid, s.patches) {}
+
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> operator()(int p) const {
+    using S = SoilShare<Dim>;
+    Vector<double, Dim> v = filled<double, Dim>(0);
+    for_each_node<Kind::motion>(points, points.bodies(points.body(p)).half_length, places, p,
+                                [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
+                                  const double m_i = nodes(i, S::mass);
+                                  if (!(m_i > 0)) return;  // a share too small for T
+                                  for (int d = 0; d < Dim; ++d)
+                                    v[d] += w * sign(d) * (nodes(i, S::momentum + d) / m_i);
+                                });
+    return v;
+  }
+};
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+double largest_grid_speed(const State<Space, T, Dim>& s, int body) {
+  const GridVelocity<Space, T, Dim> velocity(s);
+  const auto body_of = s.soil.points.body;
+  double square = 0;
+  Kokkos::parallel_reduce(
+      "mpm::largest_grid_speed", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+      KOKKOS_LAMBDA(int p, double& largest) {
+        if (body_of(p) != body) return;
+        const Vector<double, Dim> v = velocity(p);
+        largest = Kokkos::fmax(largest, dot(v, v));
+      },
+      Kokkos::Max<double>(square));
+  return std::sqrt(std::max(square, 0.0));
+}
+
+template <class Space, class T, int Dim>
+std::vector<double> grid_velocities(const State<Space, T, Dim>& s) {
+  const GridVelocity<Space, T, Dim> velocity(s);
+  const int count = s.soil.points.count;
+  const Kokkos::View<Vector<double, Dim>*, typename Space::memory_space> values("mpm::grid_velocity", count);
+  Kokkos::parallel_for(
+      "mpm::grid_velocities", Kokkos::RangePolicy<Space>(s.space, 0, count),
+      KOKKOS_LAMBDA(int p) { values(p) = velocity(p); });
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), values);
+  const auto id = Kokkos::create_mirror_view_and_copy(
+      Kokkos::HostSpace(), Kokkos::subview(s.soil.points.id, Kokkos::make_pair(0, count)));
+  std::vector<int> by_id(count);
+  std::iota(by_id.begin(), by_id.end(), 0);
+  std::sort(by_id.begin(), by_id.end(), [&](int p, int q) { return id(p) < id(q); });
+  std::vector<double> out;
+  out.reserve(std::size_t(count) * Dim);
+  for (const int p : by_id)
+    for (int d = 0; d < Dim; ++d) out.push_back(host(p)[d]);
+  return out;
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                  \
+  template double largest_grid_speed(const State<Space, T, Dim>&, int); \
+  template std::vector<double> grid_velocities(const State<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

@@ -1,0 +1,25 @@
+#pragma once
+// The velocity with which the nodes move the particles, for what a run shows. FLIP's particles carry noise
+// that no node feels, so that their own velocities neither tell rest from motion nor make a picture; nor do
+// those of light nodes, which follow one particle.
+//
+// The velocity of a particle is sum S v_i with the nodal velocity of Eq. (6), momentum over mass, without
+// walls and contact. The sums at the nodes must be those of the particles where they are now:
+// sum_present_soil (lib/step/step.hpp).
+
+#include <vector>
+
+#include "base/spaces.hpp"
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// Largest speed of a body's particles, by the nodes [m/s].
+template <class Space, class T, int Dim>
+double largest_grid_speed(const State<Space, T, Dim>& s, int body);
+
+/// Velocity of every particle of this rank, by the nodes [m/s], in the order of id: [Dim N].
+template <class Space, class T, int Dim>
+std::vector<double> grid_velocities(const State<Space, T, Dim>& s);
+
+}  // namespace mpm

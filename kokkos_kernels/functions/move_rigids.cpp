@@ -1,0 +1,112 @@
+#include <vector>
+
+#include "functions/step_kernels.hpp"
+#include "loops/end_step.hpp"
+#include "loops/particle_to_node.hpp"
+#include "loops/window.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+void move_rigid_points(State<Space, T, Dim>& s, const Space& queue) {
+  for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
+    const auto points = s.rigid_points[r].points;
+    if (points.surface_normal) continue;  // only a rebuild asks for them, and finds them itself
+    const RigidSource<Space, T, Dim> source{points, s.rigids, r, s.patches.origin, s.spacing};
+    constexpr int k_few = 2000;  // one thread is done with them before the others have come together
+    if (!is_device<Space> && points.count < k_few) {
+      for (int p = 0; p < points.count; ++p) source.move(p);
+      continue;
+    }
+    Kokkos::parallel_for(  // also while the steps are paused: it gives the same again
+        "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(queue, 0, points.count)),
+        KOKKOS_LAMBDA(int p) { source.move(p); });
+  }
+}
+
+namespace {
+
+template <class Space, class T, int Dim, class Work>
+void launch_end_by_teams(const EndStep<Space, T, Dim>& end, const Space& queue, int teams, const Work& work) {
+  constexpr int threads = 1024;
+  using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<threads, 1>>;
+  const int room = end.room(threads);
+  const std::size_t bytes = scratch_bytes<double>(room);
+  const int level = bytes > 32 * 1024 ? 1 : 0;
+  Kokkos::parallel_for(
+      "mpm::end_step",
+      light(Team(queue, teams, threads).set_scratch_size(level, Kokkos::PerTeam(bytes + k_scratch_slack))),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (!end.control().paused) work(end, team, scratch<double>(team, room, level));
+      });
+}
+
+/// Teams of a thousand threads, which sum the forces of thousands of slots: `work` does what one of them
+/// does. On a processor one thread does it all, before the others would have come together.
+template <class Space, class T, int Dim, class Work>
+void launch_end(const EndStep<Space, T, Dim>& end, const Space& queue, int teams, const Work& work) {
+  if constexpr (is_device<Space>) {
+    launch_end_by_teams(end, queue, teams, work);
+  } else {
+    Kokkos::parallel_for("mpm::end_step", Kokkos::RangePolicy<Kokkos::Serial>(0, teams), [&](int team) {
+      std::vector<double> part(end.room(1));
+      if (!end.control().paused) work(end, LoneThread{team}, part.data());
+    });
+  }
+}
+
+struct Sum {
+  template <class End, class Team>
+  KOKKOS_INLINE_FUNCTION void operator()(const End& end, const Team& team, double* part) const {
+    end.sum(team, team.league_rank(), part);
+  }
+};
+struct Move {
+  template <class End, class Team>
+  KOKKOS_INLINE_FUNCTION void operator()(const End& end, const Team& team, double* part) const {
+    end(team, part);
+  }
+};
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void sum_forces(State<Space, T, Dim>& s, const Space& queue) {
+  const int values = Dim * static_cast<int>(s.rigid_points.size());
+  if (values > 0) launch_end(EndStep<Space, T, Dim>(s, 0), queue, values, Sum{});
+  s.forces_summed = true;
+}
+
+template <class Space, class T, int Dim>
+void move_rigids(State<Space, T, Dim>& s, double dt, const Space& queue) {
+  launch_end(EndStep<Space, T, Dim>(s, dt), queue, 1, Move{});
+  s.forces_summed = false;
+  if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, queue);
+}
+
+template <class Space, class T, int Dim>
+Control look(const State<Space, T, Dim>& s) {
+  Control c;
+  Kokkos::View<Control, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(&c);
+  Kokkos::deep_copy(s.space, host, s.control);
+  s.space.fence("mpm::look");
+  return c;
+}
+
+template <class Space, class T, int Dim>
+void restart_count(State<Space, T, Dim>& s) {
+  const auto control = s.control;
+  Kokkos::parallel_for(
+      "mpm::restart_count", Kokkos::RangePolicy<Space>(s.space, 0, 1),
+      KOKKOS_LAMBDA(int) { control().steps = 0; });
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                    \
+  template void sum_forces(State<Space, T, Dim>&, const Space&);          \
+  template void move_rigids(State<Space, T, Dim>&, double, const Space&); \
+  template void move_rigid_points(State<Space, T, Dim>&, const Space&);   \
+  template Control look(const State<Space, T, Dim>&);                     \
+  template void restart_count(State<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

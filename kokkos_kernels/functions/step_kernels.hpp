@@ -1,0 +1,86 @@
+#pragma once
+// The functions of a time step beside the interpolation to nodes; each is one function of the paper.
+
+#include "base/spaces.hpp"
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// The plan of the steps until the next rebuild, on one rank; several ranks may overlap theirs. After lists
+/// are made.
+template <class Space, class T, int Dim>
+StepPlan plan_step(const State<Space, T, Dim>& s);
+
+/// 1. Sets the nodal sums to zero, where they have to be.
+template <class Space, class T, int Dim>
+void reset_nodes(State<Space, T, Dim>& s);
+
+/// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
+/// contact forces in s.slot_forces. Where the plan has sums_ahead and not writes_sums, it leaves the nodal
+/// sums at zero, which is function 1 of the next step. dt [s]. queue: that of the nodes near rigids, if the
+/// plan has nodes_apart; the others are on s.space.
+template <class Space, class T, int Dim>
+void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue);
+template <class Space, class T, int Dim>
+void update_nodes(State<Space, T, Dim>& s, double dt) {
+  update_nodes(s, dt, s.space);
+}
+/// Brings to the nodes the sums that update_particles has left in windows for update_nodes.
+template <class Space, class T, int Dim>
+void finish_sums(State<Space, T, Dim>& s);
+/// Whether one launch has room for function 5 with function 3 of the next step, function 6, and function 2 of
+/// the next step.
+template <class Space, class T, int Dim>
+bool ends_in_launch(const State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void update_and_end(State<Space, T, Dim>& s, double dt);
+
+/// Whether one launch is to do whole steps: functions 4 to 6, and 1 to 3 of the next step. It can where the
+/// sums of this step are there, no contact has friction, and no rigid moves by the force on it while the
+/// mass gradient tells its normals, and it pays where patches are few.
+template <class Space, class T, int Dim>
+bool is_whole_step(const State<Space, T, Dim>& s);
+/// As many of the next `most` steps as one launch may do; returns how many it will, if the steps are not
+/// paused before.
+template <class Space, class T, int Dim>
+int whole_steps(State<Space, T, Dim>& s, double dt, long most);
+/// Where steps are paused since the device does not hold all teams of a launch at once: they go on, one a
+/// launch.
+template <class Space, class T, int Dim>
+void go_on_apart(State<Space, T, Dim>& s);
+
+/// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves
+/// the furthest movement of a particle in s.control. Where sums_ahead, adds the soil as it then is to the
+/// nodes. dt [s].
+template <class Space, class T, int Dim>
+void update_particles(State<Space, T, Dim>& s, double dt);
+/// The same for some of the slots, where sums_ahead.
+template <class Space, class T, int Dim>
+void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part);
+
+/// Forces of the soil on the rigids in this step, from s.slot_forces to s.sums [N]; else move_rigids does it.
+template <class Space, class T, int Dim>
+void sum_forces(State<Space, T, Dim>& s, const Space& queue);
+
+/// 6. Moves the rigid bodies (Eq. 7), counts the step, and adds what any point can have moved to the bound.
+/// dt [s].
+template <class Space, class T, int Dim>
+void move_rigids(State<Space, T, Dim>& s, double dt, const Space& queue);
+template <class Space, class T, int Dim>
+void move_rigids(State<Space, T, Dim>& s, double dt) {
+  move_rigids(s, dt, s.space);
+}
+
+/// Coordinates of the rigids' points, where their mass gives a normal, from where the rigids are.
+template <class Space, class T, int Dim>
+void move_rigid_points(State<Space, T, Dim>& s, const Space& queue);
+
+/// Copy of the control block on the host. Waits for the steps before it.
+template <class Space, class T, int Dim>
+Control look(const State<Space, T, Dim>& s);
+
+/// Sets the count of steps since the last look to zero.
+template <class Space, class T, int Dim>
+void restart_count(State<Space, T, Dim>& s);
+
+}  // namespace mpm

@@ -1,0 +1,93 @@
+#include "loops/cpu/host_nodes.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+void reset_nodes(State<Space, T, Dim>& s) {
+  using Team = Kokkos::TeamPolicy<Space>;
+  s.summed = {}, s.next_zero = false;
+  if (s.plan.writes_sums) return;
+  const auto nodes = s.nodes;
+  const auto control = s.control;
+  const int rigids = s.mass_normals ? static_cast<int>(s.rigid_points.size()) : 0;
+  const bool boundary = s.soil_boundary;
+  Kokkos::parallel_for(
+      "mpm::reset_nodes", light(Team(s.space, s.patches.slots, node_threads<Space, Dim>)),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (!control().paused) clear_sums(team, nodes, team.league_rank(), boundary, rigids);
+      });
+}
+
+namespace {
+
+/// So many teams share a multiprocessor that contact, which needs many registers, hides what it waits for.
+template <class Space, int Dim>
+using NodeTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, 12>>;
+
+template <class Space, class T, int Dim>
+void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& queue) {
+  using Team = NodeTeam<Space, Dim>;
+  using Member = typename Team::member_type;
+  using Update = UpdateNodes<Space, T, Dim>;
+  const Update update = node_update_of(s, dt);
+  const int room = update.value_count * Update::cells, values = update.value_count;
+  const auto near = s.near_rigid, near_slots = s.near_slots;
+  const auto control = s.control;
+  const std::size_t near_bytes = scratch_bytes<double>(room) + k_scratch_slack;
+  constexpr std::size_t k_fast = 32 * 1024;  // bytes that every back end has; some thirty rigids need more
+  const int level = near_bytes > k_fast ? 1 : 0;
+  const auto some_near = [&](const Space& space, int teams) {
+    return light(
+        Team(space, teams, node_threads<Space, Dim>).set_scratch_size(level, Kokkos::PerTeam(near_bytes)));
+  };
+  if (s.near_count > 0 && !s.plan.nodes_apart)
+    return Kokkos::parallel_for(
+        "mpm::update_nodes", some_near(s.space, s.patches.slots), KOKKOS_LAMBDA(const Member& team) {
+          if (control().paused) return;
+          const int slot = team.league_rank(), n = near(slot);
+          if (n > 0)
+            update.update_near(team, update.nodes, slot, n - 1, scratch<double>(team, room, level));
+          else
+            update.update_far(team, update.nodes, slot);
+        });
+  Kokkos::parallel_for(
+      "mpm::update_nodes", light(Team(s.space, s.patches.slots, node_threads<Space, Dim>)),
+      KOKKOS_LAMBDA(const Member& team) {
+        const int slot = team.league_rank();
+        if (!control().paused && (values == 0 || near(slot) == 0))
+          update.update_far(team, update.nodes, slot);
+      });
+  if (s.plan.nodes_apart)
+    Kokkos::parallel_for(
+        "mpm::update_nodes_near_rigids", some_near(queue, s.near_count), KOKKOS_LAMBDA(const Member& team) {
+          const int n = team.league_rank();
+          if (!control().paused)
+            update.update_near(team, update.nodes, near_slots(n), n, scratch<double>(team, room, level));
+        });
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue) {
+  if constexpr (is_device<Space>)
+    update_nodes_by_teams(s, dt, queue);
+  else
+    update_nodes_on_host(s, dt);
+}
+
+template <class Space, class T, int Dim>
+void finish_sums(State<Space, T, Dim>& s) {
+  if constexpr (!is_device<Space>) {
+    if (s.summed.in_windows) give_nodes_on_host(s);
+  }
+  s.summed.in_windows = false;
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                     \
+  template void reset_nodes(State<Space, T, Dim>&);                        \
+  template void update_nodes(State<Space, T, Dim>&, double, const Space&); \
+  template void finish_sums(State<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

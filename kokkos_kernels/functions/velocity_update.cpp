@@ -1,0 +1,71 @@
+#include "functions/velocity_update.hpp"
+
+#include "loops/particle_to_node.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+void xpic_pass(State<Space, T, Dim>& s, int pass) {
+  using S = SoilShare<Dim>;
+  const auto soil = s.soil.points;
+  const NodePlaces places(s.grid, s.patches);
+  const auto sums = s.nodes.soil;
+  const auto again = s.nodes.rest;
+  const auto rest = rest_of(s);
+  const auto control = s.control;
+  const bool first = pass == 0, last = pass == s.xpic_order - 1;
+  const T xpic = T(1 - s.flip_share);
+  Kokkos::parallel_for(
+      "mpm::xpic_pass", light(Kokkos::RangePolicy<Space>(s.space, 0, soil.count)), KOKKOS_LAMBDA(int p) {
+        if (control().paused) return;
+        Vector<T, Dim> r = first ? soil.velocity(p) : rest(p);
+        for_each_node<Kind::motion>(soil, soil.bodies(soil.body(p)).half_length, places, p,
+                                    [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
+                                      const T m_i = sums(i, S::mass);
+                                      if (!(m_i > 0)) return;  // a share too small for T
+                                      for (int d = 0; d < Dim; ++d)
+                                        r[d] -= w * sign(d) *
+                                                ((first ? sums(i, S::momentum + d) : again(i, d)) / m_i);
+                                    });
+        if (last) {
+          for (int d = 0; d < Dim; ++d) soil.velocity(p)[d] -= xpic * r[d];
+        } else {
+          rest(p) = r;
+        }
+      });
+}
+
+template <class Space, class T, int Dim>
+void take_affine(State<Space, T, Dim>& s) {
+  const auto soil = s.soil.points;
+  const NodePlaces places(s.grid, s.patches);
+  const auto motion = s.nodes.motion;
+  const auto control = s.control;
+  Kokkos::parallel_for(
+      "mpm::take_affine", light(Kokkos::RangePolicy<Space>(s.space, 0, soil.count)), KOKKOS_LAMBDA(int p) {
+        if (control().paused) return;
+        Matrix<T, Dim> c{};
+        Vector<T, Dim> spread{};  // D_p, diagonal because weights are products that reproduce linear fields
+        for_each_node<Kind::motion>(soil, soil.bodies(soil.body(p)).half_length, places, p,
+                                    [&](int i, T w, const Vector<T, Dim>&, auto&& offset, auto&& sign) {
+                                      const Vector<T, Dim> r = offset();
+                                      Vector<T, Dim> v;
+                                      for (int d = 0; d < Dim; ++d)
+                                        v[d] = sign(d) * motion(i, NodeMotion<Dim>::velocity + d);
+                                      for (int e = 0; e < Dim; ++e) {
+                                        spread[e] += w * r[e] * r[e];
+                                        for (int d = 0; d < Dim; ++d) c(d, e) += w * v[d] * r[e];
+                                      }
+                                    });
+        for (int d = 0; d < Dim; ++d)
+          for (int e = 0; e < Dim; ++e) c(d, e) /= spread[e];
+        soil.affine(p) = c;
+      });
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                 \
+  template void xpic_pass(State<Space, T, Dim>&, int); \
+  template void take_affine(State<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

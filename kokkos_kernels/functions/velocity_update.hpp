@@ -1,0 +1,28 @@
+#pragma once
+// What XPIC and APIC do beside update_particles, before it and with the nodes of the same step. FLIP and PIC
+// need neither.
+
+#include "base/spaces.hpp"
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// What XPIC has left of the particles' velocities [m/s, by particle]; in s.spare.
+template <class Space, class T, int Dim>
+auto rest_of(const State<Space, T, Dim>& s) {
+  return Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged>(
+      reinterpret_cast<Vector<T, Dim>*>(s.spare.data()), s.soil.points.count);
+}
+
+/// Pass number `pass` of XPIC(m) (Hammerquist & Nairn 2017): r_p <- r_p - sum_i S_ip r_i, from r_p = v_p,
+/// where r_i is the rest as the nodes see it: of the first pass v_i of Eq. (6), then s.nodes.rest over the
+/// mass. The last pass takes the rest, (I - S S+)^m v_p, out of v_p, but for the share of FLIP.
+template <class Space, class T, int Dim>
+void xpic_pass(State<Space, T, Dim>& s, int pass);
+
+/// C_p of APIC (Jiang et al. 2015) from the velocities at the end of the step: C_p = B_p D_p^-1 with
+/// B_p = sum S v_i (x_i - x_p)^T and D_p = sum S (x_i - x_p)(x_i - x_p)^T.
+template <class Space, class T, int Dim>
+void take_affine(State<Space, T, Dim>& s);
+
+}  // namespace mpm

@@ -1,0 +1,333 @@
+#pragma once
+// update_particles on a processor: a thread moves the particles of a patch, as many at once as an instruction
+// takes.
+
+#include "data/state.hpp"
+#include "loops/cpu/host_window.hpp"
+#include "physics/advance.hpp"
+#include "physics/walls.hpp"
+
+namespace mpm {
+
+/// The update of a law for all lanes.
+template <class Law, class R, class T, int Dim, int N>
+KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stress, LawState<R, N>& state,
+                                         const Increment<R, T, Dim>& by) {
+  if constexpr (!has_scalar_update<Law>()) {
+    law.update(stress, state, by);
+  } else {
+    for (int l = 0; l < R::k_count; ++l) {
+      SymTensor<T, Dim> own_stress;
+      LawState<T, N> own_state;
+      Increment<T, T, Dim> own_by;
+      own_by.dt = by.dt, own_by.clock = by.clock;
+      for (int k = 0; k < sym_size<Dim>; ++k)
+        own_stress[k] = stress[k][l], own_by.strain[k] = by.strain[k][l];
+      for (int k = 0; k < (Dim == 2 ? 1 : 3); ++k) own_by.spin.c[k] = by.spin.c[k][l];
+      for (int k = 0; k < Dim * Dim; ++k)
+        own_by.gradient[k / Dim][k % Dim] = by.gradient[k / Dim][k % Dim][l];
+      for (int k = 0; k < N; ++k) own_state[k] = state[k][l];
+      law.update(own_stress, own_state, own_by);
+      for (int k = 0; k < sym_size<Dim>; ++k) stress[k].set(l, own_stress[k]);
+      for (int k = 0; k < N; ++k) state[k].set(l, own_state[k]);
+    }
+  }
+}
+
+/// The laws of the particles [p, p + count), as many as R has lanes at most, with their state in memory.
+/// Those that fly freely, being alone, carry no stress and keep their state.
+template <class R, class Space, class T, int Dim>
+struct LawLanes {
+  const Soil<Space, T, Dim>& soil;
+  int p, count;
+  bool one_law;  // only material[0] is set
+  bool some_fly = false;
+  R flies = 0;  // 1 where a particle does
+  int material[R::k_count] = {};
+
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(SymTensor<R, Dim>& stress,
+                                              const Increment<R, T, Dim>& by) const {
+    if (one_law && !some_fly)
+      update(material[0], stress, by, [](const R& now, const R&) { return now; });
+    else
+      update_some(stress, by);
+  }
+
+  /// Each law takes all lanes; those that are not of its material keep what they have.
+  [[gnu::noinline]] KOKKOS_FUNCTION void update_some(SymTensor<R, Dim>& stress,
+                                                     const Increment<R, T, Dim>& by) const {
+    const SymTensor<R, Dim> old = stress;
+    bool done[R::k_count] = {};
+    const auto material_of = [&](int l) { return material[one_law ? 0 : l]; };
+    for (int l = 0; l < R::k_count; ++l) {
+      if (done[l]) continue;
+      R own = 0;
+      for (int k = l; k < R::k_count; ++k)
+        if (material_of(k) == material_of(l)) done[k] = true, own.set(k, T(1));
+      const auto mine = own > 0;
+      SymTensor<R, Dim> now = old;
+      const auto moves = (own > 0) & (flies < 1);
+      update(material_of(l), now, by,
+             [&](const R& after, const R& was) { return select(moves, after, was); });
+      for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(mine, now[k], stress[k]);
+    }
+    for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(flies > 0, R(0), stress[k]);
+  }
+
+  /// kept(after, before): what becomes of a state variable.
+  template <class Kept>
+  KOKKOS_FORCEINLINE_FUNCTION void update(int m, SymTensor<R, Dim>& stress, const Increment<R, T, Dim>& by,
+                                          const Kept& kept) const {
+    soil.materials.data()[m].visit([&](const auto& law) {
+      using Law = std::decay_t<decltype(law)>;
+      LawState<R, state_size<Law>> was, state;
+      for (int k = 0; k < state.size; ++k) {
+        load_field(soil.history.column[k], p, count, was[k]);
+        state[k] = was[k];
+      }
+      update_lanes(law, stress, state, by);
+      for (int k = 0; k < state.size; ++k) {
+        if (!Law::state()[k].changes) continue;
+        state[k] = kept(state[k], was[k]);
+        if (any_of(state[k] != was[k])) store_field(state[k], soil.history.column[k], p, count);
+      }
+    });
+  }
+};
+
+/// Moves the particles of patches.
+template <class Space, class T, int Dim>
+struct HostParticles {
+  static constexpr int W = native_lanes<T>, cells = Patch<Dim>::cells, window = Patch<Dim>::window;
+  using R = Lanes<T, W>;
+  static constexpr int k_motion = NodeMotion<Dim>::size;
+  static constexpr int k_node = k_motion <= 4 ? 4 : 8;  // values of a node, with a gap in 3D
+  using Node = Lanes<T, k_node>;
+  static constexpr int k_room = 2048 / sizeof(T);  // particles on the stage, which the cache holds
+  static constexpr int k_pitch = k_room + W;       // not a power of two: values would drive each other out
+  /// What the particles of some cells take from the nodes, in their order, each value apart.
+  struct alignas(R) Stage {
+    T motion[k_motion][k_pitch], gradient[Dim * Dim][k_pitch];  // m/s, m/s2; 1/s
+    T mean[k_pitch];    // 1/s, dilatation rate of the particle's cell; first its share of it
+    int base[k_pitch];  // window_base of its cell
+    bool one_body;      // all particles of the patch
+    bool at_wall;       // the patch
+  };
+
+  Soil<Space, T, Dim> soil;
+  decltype(Bins<Space>::begin) begin;
+  decltype(Patches<Space, Dim>::around) around;
+  decltype(Patches<Space, Dim>::origin) origin;
+  decltype(Nodes<Space, T, Dim>::motion) motion;
+  ControlView<Space> control;
+  Grid<T, Dim> grid;
+  decltype(Strays<Space>::alone) alone;
+  decltype(Strays<Space>::put_back) put_back;
+  UpdateScalars<T> by;
+  double spacing;
+
+  /// Asks for what the next slot takes from the nodes.
+  void fetch_nodes(int slot) const {
+    const int last = last_around<Dim>(around, slot);
+    if (last >= 0) fetch(&motion(last * cells, 0), cells * k_motion * sizeof(T));
+  }
+  /// The particles of a slot. Returns the largest component of their movements [cells].
+  T operator()(int slot) const {
+    alignas(Node) T nodes[window][k_node];
+    for_each_run<Dim>(around, slot, [&](int place, int node, auto count) {
+      for (int n = 0; n < count; ++n)
+        for (int k = 0; k < k_motion; ++k) nodes[place + n][k] = motion(node + n, k);
+    });
+    for (int n = 0; n < window; ++n)
+      for (int k = k_motion; k < k_node; ++k) nodes[n][k] = 0;
+    Stage stage;
+    const Coord<Dim> from = origin(slot);
+    stage.at_wall = reaches_wall(grid, from);
+    if (stage.at_wall) mirror_images(grid, from, [&](int n) -> T* { return nodes[n]; });
+    stage.one_body = of_one_body(soil, begin(slot * cells), begin((slot + 1) * cells));
+    R moved = 0;
+    for (int c = 0, end; c < cells; c = end) {  // as many whole cells as the stage holds
+      const int from = begin(slot * cells + c);
+      for (end = c + 1; end < cells && begin(slot * cells + end + 1) - from <= k_room;) ++end;
+      if (begin(slot * cells + end) - from <= k_room)
+        move_cells(nodes, slot, c, end, stage, moved);
+      else
+        move_crowd(nodes, slot, c, stage, moved);
+    }
+    return largest_of(moved);
+  }
+
+  using Window = const T (&)[window][k_node];
+
+  void move_cells(Window nodes, int slot, int c, int end, Stage& stage, R& moved) const {
+    const int from = begin(slot * cells + c), to = begin(slot * cells + end);
+    for (int k = c; k < end; ++k)
+      for (int p = begin(slot * cells + k); p < begin(slot * cells + k + 1); ++p)
+        stage.base[p - from] = window_base<Dim>(k);
+    take(nodes, from, to, stage);
+    if (by.f_bar > 0) weigh_dilatation(from, to, stage);
+    for (int k = c; k < end; ++k) {
+      T volume = 0, sum = 0;
+      const int first = begin(slot * cells + k), last = begin(slot * cells + k + 1);
+      if (by.f_bar > 0) add_dilatation(first, last, stage, from, volume, sum);
+      const T mean = volume > 0 ? sum / volume : T(0);
+      for (int p = first; p < last; ++p) stage.mean[p - from] = mean;
+    }
+    for (int n = to - from; n % W != 0; ++n) stage.mean[n] = stage.mean[n - 1];
+    for (int p = from; p < to; p += W) move_block(p, Kokkos::min(W, to - p), slot, stage, p - from, moved);
+  }
+
+  /// One cell with more particles than the stage holds: they take from the nodes twice.
+  void move_crowd(Window nodes, int slot, int c, Stage& stage, R& moved) const {
+    const int from = begin(slot * cells + c), to = begin(slot * cells + c + 1);
+    T volume = 0, sum = 0;
+    for (int pass = by.f_bar > 0 ? 0 : 1; pass < 2; ++pass)
+      for (int first = from; first < to; first += k_room) {
+        const int last = Kokkos::min(first + k_room, to);
+        for (int n = 0; n < k_room; ++n) stage.base[n] = window_base<Dim>(c);
+        take(nodes, first, last, stage);
+        if (pass == 0) {
+          weigh_dilatation(first, last, stage);
+          add_dilatation(first, last, stage, first, volume, sum);
+          continue;
+        }
+        for (int n = 0; n < k_room; ++n) stage.mean[n] = volume > 0 ? sum / volume : T(0);
+        for (int p = first; p < last; p += W)
+          move_block(p, Kokkos::min(W, last - p), slot, stage, p - first, moved);
+      }
+  }
+
+  /// The particles [from, to) take from the nodes; the weights of many at once, then the values of a node at
+  /// once.
+  void take(Window nodes, int from, int to, Stage& stage) const {
+    for (int p = from; p < to; p += W) {
+      const int count = Kokkos::min(W, to - p), n = p - from;
+      R x[Dim];
+      load_field(soil.coordinate, p, count, x);
+      const HalfLength<R> half = bodies_of<R>(soil, p, count, stage.one_body).half_length;
+      alignas(R) T weight[Dim][2][3][W], shift[W];
+      R to_first = 0;
+      for (int d = 0, step = 1; d < Dim; ++d, step *= Patch<Dim>::window_edge) {
+        const AxisWeights<R> a = axis_weights_near(x[d], half);
+        for (int k = 0; k < 3; ++k) a.w[k].store(weight[d][0][k]), a.g[k].store(weight[d][1][k]);
+        to_first += T(step) * (a.first + 1);
+      }
+      to_first.store(shift);
+      for (int l = 0; l < W; ++l) {  // also those that only fill the lanes
+        AxisWeights<T> a[Dim];
+        for (int d = 0; d < Dim; ++d)
+          for (int k = 0; k < 3; ++k) a[d].w[k] = weight[d][0][k][l], a[d].g[k] = weight[d][1][k][l];
+        take_one(nodes[stage.base[n + Kokkos::min(l, count - 1)] + static_cast<int>(shift[l])], a, n + l,
+                 stage);
+      }
+    }
+  }
+
+  /// Particle n of the stage, with the weights `a`; first: the lowest node that it reaches.
+  KOKKOS_INLINE_FUNCTION void take_one(const T* first, const AxisWeights<T> (&a)[Dim], int n,
+                                       Stage& stage) const {
+    constexpr int across = Patch<Dim>::window_edge;
+    Node value[1] = {T(0)}, gradient[1][Dim] = {};
+    for (int d = 0; d < Dim; ++d) gradient[0][d] = T(0);
+    interpolate_by_lines(
+        a,
+        [&](const Vector<int, Dim>& k) {
+          const int place = k[0] + across * (k[1] + (Dim == 3 ? across * k[Dim - 1] : 0));
+          struct {
+            Node v;
+            KOKKOS_INLINE_FUNCTION const Node& operator[](int) const { return v; }
+          } node{Node::load(first + place * k_node)};
+          return node;
+        },
+        value, gradient);
+    for (int k = 0; k < k_motion; ++k) stage.motion[k][n] = value[0][k];
+    for (int i = 0; i < Dim; ++i)
+      for (int d = 0; d < Dim; ++d) stage.gradient[i * Dim + d][n] = gradient[0][d][i] * by.inv_spacing;
+  }
+
+  /// Volume times dilatation rate of the particles [from, to) [m3/s], all of the stage, to stage.mean.
+  void weigh_dilatation(int from, int to, Stage& stage) const {
+    for (int p = from; p < to; p += W) {
+      R volume, rate = 0;
+      load_field(soil.volume, p, Kokkos::min(W, to - p), volume);
+      for (int d = 0; d < Dim; ++d) rate += R::load(stage.gradient[d * (Dim + 1)] + (p - from));
+      (rate * volume).store(stage.mean + (p - from));
+    }
+  }
+  /// Adds the volumes [m3] of the particles [first, last), and with their dilatation rates [m3/s]. from: the
+  /// first particle of the stage.
+  void add_dilatation(int first, int last, const Stage& stage, int from, T& volume, T& sum) const {
+    for (int p = first; p < last; ++p) {
+      volume += soil.volume(p);
+      sum += stage.mean[p - from];
+    }
+  }
+
+  /// `count` particles from p on, of the stage from n on; `moved` by lane.
+  KOKKOS_INLINE_FUNCTION void move_block(int p, int count, int slot, const Stage& stage, int n,
+                                         R& moved) const {
+    Particle<R, Dim> q;
+    load_field(soil.coordinate, p, count, q.x.c);
+    load_field(soil.velocity, p, count, q.v.c);
+    load_field(soil.stress, p, count, q.stress.c);
+    load_field(soil.volume, p, count, q.volume);
+    Taken<R, Dim> t;
+    for (int k = 0; k < k_motion; ++k) t.motion[k] = R::load(stage.motion[k] + n);
+    for (int k = 0; k < Dim * Dim; ++k) t.gradient[k / Dim][k % Dim] = R::load(stage.gradient[k] + n);
+    LawLanes<R, Space, T, Dim> law{.soil = soil, .p = p, .count = count, .one_law = stage.one_body};
+    for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
+      law.material[l] = soil.bodies(soil.body(p + Kokkos::min(l, count - 1))).material;
+    if (alone(slot) != 0) find_alone(law);
+    const R volume = q.volume, own = advance(q, law, t, R::load(stage.mean + n), by);
+    if (law.some_fly) q.volume = select(law.flies > 0, volume, q.volume);
+    if (stage.at_wall) put_back_on_walls(q, p, count, slot);
+    store_field(q.x.c, soil.coordinate, p, count);
+    store_field(q.v.c, soil.velocity, p, count);
+    store_field(q.stress.c, soil.stress, p, count);
+    store_field(q.volume, soil.volume, p, count);
+    const bool limited = by.volume_is_fault && any_of(is_volume_limited(q, by));
+    if (limited || any_of(!(is_finite(q) & (own <= 1)))) find_faults(q, own, p, count, slot);
+    moved = Kokkos::fmax(moved, own);
+  }
+
+  /// Which particles of the block are alone.
+  [[gnu::noinline]] KOKKOS_FUNCTION void find_alone(LawLanes<R, Space, T, Dim>& law) const {
+    for (int l = 0; l < law.count; ++l) {
+      if (!is_alone(alone, soil.cell(law.p + l))) continue;
+      law.flies.set(l, T(1));
+      law.some_fly = true;
+    }
+  }
+
+  /// Particles of the block that have passed a wall are put on it (put_on_walls).
+  void put_back_on_walls(Particle<R, Dim>& q, int p, int count, int slot) const {
+    auto at_home = (q.x[0] >= 0) & (q.x[0] < 1);
+    for (int d = 1; d < Dim; ++d) at_home = at_home & (q.x[d] >= 0) & (q.x[d] < 1);
+    if (!any_of(!at_home)) return;  // no cell lies beyond a wall
+    for (int l = 0; l < count; ++l) {
+      Vector<T, Dim> x, v;
+      for (int d = 0; d < Dim; ++d) x[d] = q.x[d][l], v[d] = q.v[d][l];
+      if (!put_on_walls(grid, in_mesh(origin(slot), coord_of<Dim>(soil.cell(p + l))), x, v)) continue;
+      for (int d = 0; d < Dim; ++d) q.x[d].set(l, x[d]), q.v[d].set(l, v[d]);
+      Kokkos::atomic_inc(&put_back(soil.body(p + l)));
+    }
+  }
+
+  [[gnu::noinline]] KOKKOS_FUNCTION void find_faults(const Particle<R, Dim>& block, const R& moved, int p,
+                                                     int count, int slot) const {
+    for (int l = 0; l < count; ++l) {
+      Particle<T, Dim> q;
+      for (int d = 0; d < Dim; ++d) q.x[d] = block.x[d][l], q.v[d] = block.v[d][l];
+      q.volume = block.volume[l];
+      for (int k = 0; k < sym_size<Dim>; ++k) q.stress[k] = block.stress[k][l];
+      const FaultKind fault = fault_of(q, moved[l], by);
+      if (fault == FaultKind::none) continue;
+      const Coord<Dim> cell = coord_of<Dim>(soil.cell(p + l));
+      double position[3] = {};
+      for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
+      report(control, fault, soil.id(p + l), position, Dim);
+    }
+  }
+};
+
+}  // namespace mpm

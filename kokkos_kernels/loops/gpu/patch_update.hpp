@@ -1,0 +1,289 @@
+#pragma once
+// What a team of a device does to the particles of a patch (function 5), and to the nodes of the next step.
+
+#include "functions/step_kernels.hpp"
+#include "loops/gpu/tile.hpp"
+#include "physics/advance.hpp"
+
+namespace mpm {
+
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const MotionValues<T, Dim>* window,
+                                                     const Coord<Dim>& cell, const AxisWeights<T> (&a)[Dim],
+                                                     T inv_spacing) {
+  Taken<T, Dim> t{};
+  interpolate_by_lines(
+      a, [&](const Vector<int, Dim>& k) { return window[window_place(cell, a, k)]; }, t.motion, t.gradient);
+  for (int d = 0; d < Dim; ++d)
+    for (int e = 0; e < Dim; ++e) t.gradient[d][e] *= inv_spacing;
+  return t;
+}
+
+/// The dilatation rate alone, sum v_i . grad S_ip [1/s].
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const MotionValues<T, Dim>* window, const Coord<Dim>& cell,
+                                               const AxisWeights<T> (&a)[Dim], T inv_spacing) {
+  T sum = 0;
+  for_each_weight(a, [&](const Vector<int, Dim>& k, T, const Vector<T, Dim>& grad) {
+    const MotionValues<T, Dim> node = window[window_place(cell, a, k)];
+    for (int d = 0; d < Dim; ++d) sum += node[NodeMotion<Dim>::velocity + d] * grad[d];
+  });
+  return sum * inv_spacing;
+}
+
+/// A team moves the particles of a patch. If Sums, it adds them where they now are to
+/// the nodes for the next step, as the strategy `tile` does: a particle is read and written once a step.
+template <class Space, class T, int Dim, bool Sums>
+struct UpdateParticles {
+  using Source = SoilSource<Space, T, Dim>;
+  using Boundary = BoundarySource<Space, T, Dim>;
+  using Tile_ = Tile<Source>;
+  using Team = PatchTeam<Space, T, Dim>;
+  using Member = typename Team::member_type;
+  using Memory = typename Space::memory_space;
+  static constexpr int cells = Patch<Dim>::cells, window = Patch<Dim>::window;
+  static constexpr int threads = team_threads<Space>;
+  /// What is left of a tile where nothing is summed.
+  struct Nothing {
+    KOKKOS_INLINE_FUNCTION explicit Nothing(Scratch&) {}
+    KOKKOS_INLINE_FUNCTION void set_node(int, int) const {}
+    static constexpr std::size_t bytes() { return 0; }
+  };
+  using TileOrNothing = std::conditional_t<Sums, Tile_, Nothing>;
+
+  Source source;
+  Kokkos::View<int*, Memory> begin, slots;
+  decltype(Patches<Space, Dim>::around) around;
+  Kokkos::View<Coord<Dim>*, Memory> origin;
+  NodeField<Space, T, NodeMotion<Dim>::size> motion;
+  NodeSums<Space, T, Dim> sums;  // of the next step
+  Kokkos::View<int*, Memory> near_rigid;
+  ControlView<Space> control;
+  Movements<Space> movements;
+  Kokkos::View<T*, Memory, Kokkos::MemoryUnmanaged> dilatation;  // 1/s, by particle
+  Grid<T, Dim> grid;
+  WallReach<Dim> reach;
+  decltype(Strays<Space>::alone) alone;
+  decltype(Strays<Space>::put_back) put_back;
+  UpdateScalars<T> by;
+  double spacing;
+  int first;      // of slots
+  int law;        // index in Materials of that of all bodies; -1: they differ
+  bool one_body;  // no particle needs to be asked which its body is
+  bool has_boundary;
+
+  static constexpr std::size_t bytes() {
+    const std::size_t own =
+        scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) + TileOrNothing::bytes();
+    return Sums && Tile<Boundary>::bytes() > own ? Tile<Boundary>::bytes() : own;
+  }
+
+  KOKKOS_FUNCTION void operator()(const Member& team) const {
+    const int paused = control().paused, slot = slots(first + team.league_rank());  // both asked for at once
+    if (!paused) update(team, Scratch(team, bytes()), slot);
+  }
+
+  KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot) const {
+    prefetch_particles(team, slot);
+    const auto number_of = [&](int n) {
+      return number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n));
+    };
+    update(team, all, slot, sums, number_of, [&](int, int number) {
+      return *reinterpret_cast<const MotionValues<T, Dim>*>(&motion(number, 0));
+    });
+  }
+
+  /// all: bytes(). out: the sums of the next step. number_of(n): of node n of the window. motion_of(n,
+  /// number): what becomes of it.
+  template <class Number, class Motion>
+  KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot,
+                                     const NodeSums<Space, T, Dim>& out, const Number& number_of,
+                                     const Motion& motion_of) const {
+    const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
+    const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
+    Scratch scratch = all;
+    MotionValues<T, Dim>* const nodes = scratch.take<MotionValues<T, Dim>>(window);
+    T* const mean = scratch.take<T>(cells);
+    const TileOrNothing tile(scratch);
+    const Coord<Dim> from = origin(slot);  // asked for before the nodes are waited for
+    const bool lone = alone(slot) != 0;
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
+      const int number = number_of(n);
+      tile.set_node(n, number);
+      nodes[n] = motion_of(n, number);
+    });
+    const bool uncommon = reach(from) || lone;
+    if (reach(from)) mirror(team, from, nodes);
+    T moved = 0;
+    // Compiled twice: the rule of walls takes no registers where most patches are.
+    const auto particle = [&](int p) {
+      return uncommon ? step_particle<true>(nodes, mean, slot, p, body, moved)
+                      : step_particle<false>(nodes, mean, slot, p, body, moved);
+    };
+    if constexpr (Sums) {
+      tile.clear(team, cell_begin);
+      team.team_barrier();
+      if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
+      tile.add(team, particle);
+      note_movement(team, slot, moved);
+      if (uncommon && reach(origin(slot)))  // read again: kept, the origin would take registers above
+        tile.give_window(team, out.soil, grid, origin(slot));
+      else
+        tile.give_window(team, out.soil);
+      if (has_boundary && near_rigid(slot) != 0) {
+        team.team_barrier();
+        sum_patch(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, number_of, cell_begin,
+                  grid, origin(slot), out.boundary);
+      }
+    } else {
+      team.team_barrier();
+      if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
+      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), particle);
+      note_movement(team, slot, moved);
+    }
+  }
+
+  /// The nodes beyond walls take the motion of their images.
+  KOKKOS_INLINE_FUNCTION void mirror(const Member& team, const Coord<Dim>& from,
+                                     MotionValues<T, Dim>* nodes) const {
+    team.team_barrier();
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
+      const int image = image_in_window(grid, from, n);
+      if (image == n) return;
+      const ImageSigns<Kind::motion, T, Dim> sign(grid, from, n);
+      for (int k = 0; k < NodeMotion<Dim>::size; ++k) nodes[n].c[k] = sign(k % Dim) * nodes[image].c[k];
+    });
+  }
+
+  /// Asks the memory for what the particles of a thread hold, before their nodes are there.
+  KOKKOS_INLINE_FUNCTION void prefetch_particles(const Member& team, int slot) const {
+    const auto& soil = source.points;
+    const int end = begin((slot + 1) * cells);
+    for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
+      prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
+      prefetch(&soil.volume(p));
+      for (int k = 0; k < soil.history.columns; ++k) prefetch(&soil.history.column[k](p));
+    }
+  }
+
+  /// Notes the largest of the movements [cells] of each warp.
+  KOKKOS_INLINE_FUNCTION void note_movement(const Member& team, int slot, T moved) const {
+    const T most = largest_of_warp(moved);
+    if (team.team_rank() % k_warp == 0) movements.note(slot, most);
+  }
+
+  /// Mean dilatation rate of each cell [1/s], weighted by volume.
+  template <class Begin>
+  KOKKOS_INLINE_FUNCTION void average_dilatation(const Member& team, const Begin& cell_begin,
+                                                 const MotionValues<T, Dim>* nodes, T* mean) const {
+    const auto& soil = source.points;
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), [&](int p) {
+      with_weights_near(soil.coordinate(p), soil.bodies(one_body ? 0 : soil.body(p)).half_length,
+                        [&](const AxisWeights<T>(&a)[Dim]) {
+                          dilatation(p) = dilatation_from_nodes<T, Dim>(nodes, coord_of<Dim>(soil.cell(p)), a,
+                                                                        by.inv_spacing);
+                        });
+    });
+    team.team_barrier();
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
+      T volume = 0, sum = 0;
+      for (int p = cell_begin(c); p < cell_begin(c + 1); ++p) {
+        volume += soil.volume(p);
+        sum += soil.volume(p) * dilatation(p);
+      }
+      mean[c] = volume > 0 ? sum / volume : T(0);
+    });
+    team.team_barrier();
+  }
+
+  /// Moves particle p; `moved` [cells] becomes the largest movement so far. Uncommon: its patch is at a wall
+  /// or holds particles that are alone. Returns what the particle then gives.
+  template <bool Uncommon>
+  KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const MotionValues<T, Dim>* nodes, const T* mean,
+                                                             int slot, int p, const BodyProperties<T>& common,
+                                                             T& moved) const {
+    const auto& soil = source.points;
+    BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
+    const int place = soil.cell(p) - slot * cells;
+    const Coord<Dim> cell = coord_of<Dim>(place);
+    Particle<T, Dim> q{soil.coordinate(p), soil.velocity(p), soil.stress(p), soil.volume(p)};
+    const bool flies = Uncommon && is_alone(alone, soil.cell(p));
+    T own = 0;
+    with_weights_near(q.x, body.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+      own = advance(q, ParticleLaw<Space, T, Dim>{soil, p, body.material, law, flies},
+                    take_from_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean[place] : T(0), by);
+    });
+    if (flies) q.volume = soil.volume(p);
+    soil.coordinate(p) = q.x;
+    soil.velocity(p) = q.v;
+    bool leaves_cell = false;
+    for (int d = 0; d < Dim; ++d) leaves_cell |= !(q.x[d] >= 0 && q.x[d] < 1);
+    if (Uncommon && leaves_cell) {
+      const auto cell_along = [&](int d) {
+        return origin(slot)[d] + (place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1));
+      };
+      if (put_on_walls(grid, cell_along, soil.coordinate(p), soil.velocity(p)))
+        Kokkos::atomic_inc(&put_back(soil.body(p)));
+      q.x = soil.coordinate(p), q.v = soil.velocity(p);
+    }
+    soil.volume(p) = q.volume;
+    soil.stress(p) = q.stress;
+    const FaultKind fault = fault_of(q, own, by);
+    if (fault != FaultKind::none) {
+      double position[3] = {};
+      for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
+      report(control, fault, soil.id(p), position, Dim);
+    }
+    moved = Kokkos::fmax(moved, own);
+    body.mass = soil.mass_of(p, body);
+    return {q.x, source.point(body, q.v, q.stress, q.volume)};
+  }
+};
+
+/// Whether a team has room for the update and the sums that follow.
+template <class Space, class T, int Dim>
+inline constexpr bool sums_fit = scratch_fits<Space, T, Dim>(UpdateParticles<Space, T, Dim, true>::bytes());
+
+template <class Space, class T, int Dim>
+UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
+  const double flip = s.xpic_order > 0 ? 1 : s.flip_share;  // XPIC has changed the velocities already
+  return {.dt = T(dt),
+          .inv_spacing = s.grid.inv_spacing,
+          .flip = T(flip),
+          .pic = T(1 - flip),
+          .f_bar = T(s.f_bar_share),
+          .least_volume = T(s.strays.least_volume),
+          .most_volume = T(s.strays.most_volume),
+          .volume_is_fault = s.strays.rule == StrayRule::stop,
+          .clock = {.start = s.time, .dt = dt, .steps = &s.control.data()->steps}};
+}
+
+template <class Update, class Space, class T, int Dim>
+Update update_of(const State<Space, T, Dim>& s, double dt, int first) {
+  const auto& set = s.soil;
+  const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
+      reinterpret_cast<T*>(s.spare.data()), set.points.count);
+  return {.source = {set.points, s.grid.inv_spacing},
+          .begin = set.bins.begin,
+          .slots = set.bins.by_colour,
+          .around = s.patches.around,
+          .origin = s.patches.origin,
+          .motion = s.nodes.motion,
+          .sums = s.nodes,
+          .near_rigid = s.near_rigid,
+          .control = s.control,
+          .movements = s.movements,
+          .dilatation = dilatation,
+          .grid = s.grid,
+          .reach = WallReach<Dim>(s.grid),
+          .alone = s.strays.alone,
+          .put_back = s.strays.put_back,
+          .by = update_scalars(s, dt),
+          .spacing = s.spacing,
+          .first = first,
+          .law = s.law,
+          .one_body = set.points.bodies.extent(0) == 1,
+          .has_boundary = s.soil_boundary};
+}
+
+}  // namespace mpm

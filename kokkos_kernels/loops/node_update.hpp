@@ -1,0 +1,311 @@
+#pragma once
+// What becomes of a node in a step (function 4): its velocity and acceleration, the walls, and contact.
+
+#include "base/lanes.hpp"
+#include "base/lone_thread.hpp"
+#include "device/warp.hpp"
+#include "functions/step_kernels.hpp"
+#include "loops/particle_to_node.hpp"
+#include "loops/window.hpp"
+#include "physics/contact.hpp"
+
+namespace mpm {
+
+/// Threads of a team that takes the nodes of a slot.
+template <class Space, int Dim>
+inline constexpr int node_threads = is_device<Space> ? Patch<Dim>::cells : 1;
+
+/// Sets the sums of a slot's nodes to zero, neighbours in memory by neighbouring threads.
+template <class Team, class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T, Dim>& nodes, int slot,
+                                       bool boundary, int rigids) {
+  constexpr int cells = Patch<Dim>::cells;
+  const auto clear = [&](T* values, int count) { for_team(team, count, [&](int n) { values[n] = 0; }); };
+  clear(&nodes.soil(slot * cells, 0), cells * SoilShare<Dim>::size);
+  if (boundary) clear(&nodes.boundary(slot * cells, 0), cells * BoundaryShare<Dim>::size);
+  for (int r = 0; r < rigids; ++r) clear(&nodes.rigid(r, slot * cells, 0), cells * RigidShare<Dim>::size);
+}
+
+/// The node's part of the step.
+template <class Space, class T, int Dim>
+struct UpdateNodes {
+  using S = SoilShare<Dim>;
+  static constexpr int cells = Patch<Dim>::cells;
+  int value_count;
+  NodePlaces<Space, T, Dim> places;
+  Nodes<Space, T, Dim> nodes;
+  Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
+  Kokkos::View<Vertex*, typename Space::memory_space> vertices;
+  Kokkos::View<double*, typename Space::memory_space> forces;
+  Kokkos::View<std::uint64_t*, typename Space::memory_space> counted;
+  Vector<T, Dim> g;
+  T dt, inv_dt, damping, mass_cut;
+  double spacing;
+  bool has_boundary, has_friction, has_mass_normals, clears;
+
+  /// The nodes of a slot, number n of those near a rigid, under their sums. Leaves the force on each rigid
+  /// [N] in `forces`, summed in an order that is always the same. force: [values][cells]
+  template <class Team, class Sums>
+  KOKKOS_INLINE_FUNCTION void update_near(const Team& team, const Sums& sums, int slot, int n,
+                                          double* force) const {
+    for_team(team, cells, [&](int k) {
+      for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
+      update(sums, slot * cells + k, true, force + k);
+      if (counted.extent(0) == 0 || (counted(slot) >> k & 1) != 0) return;
+      for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank tells it
+    });
+    team.team_barrier();
+    leave_forces(team, force, n);
+    if (clears) clear_sums(team, nodes, slot, has_boundary, has_mass_normals ? rigids.extent(0) : 0);
+  }
+
+  /// Sums the forces on the rigids of a slot's nodes, number n of those near a rigid: a warp each.
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION void leave_forces(const Team& team, const double* force, int n) const {
+    const int thread = team.team_rank(), size = team.team_size(), lanes = size < k_warp ? size : k_warp;
+    for (int v = thread / k_warp; v < value_count; v += (size + k_warp - 1) / k_warp) {
+      double sum = 0;
+      for (int k = thread % k_warp; k < cells; k += lanes) sum += force[v * cells + k];
+      sum = sum_of_warp(sum);
+      if (thread % k_warp == 0) forces(n * value_count + v) = sum;
+    }
+  }
+
+  template <class Sums>
+  KOKKOS_INLINE_FUNCTION void update(const Sums& sums, int i, bool near, double* force) const {
+    Coord<Dim> at = coord_of<Dim>(i);
+    const Coord<Dim> from = places.origin(i / cells);
+    for (int d = 0; d < Dim; ++d) at[d] += from[d];
+    keep(i, motion(sums, rigids.data(), i, at, near, force));
+  }
+  /// Mass [kg] below which a node is at rest: so little that 1 / m_i might overflow.
+  KOKKOS_INLINE_FUNCTION T at_rest() const { return T(1e-12) * mass_cut; }
+
+  /// Velocities of a node before and after the step, without walls and contact, by number or by lane. inv_m:
+  /// 1 / its mass
+  template <class R>
+  KOKKOS_FORCEINLINE_FUNCTION void accelerate(const R (&soil)[S::size], R inv_m, Vector<R, Dim>& v_old,
+                                              Vector<R, Dim>& v) const {
+    const R inv_m_force = select(soil[S::mass] > mass_cut, inv_m, R(0));  // on less mass it is round-off
+    for (int d = 0; d < Dim; ++d) {
+      v_old[d] = soil[S::momentum + d] * inv_m;       // Eq. (6)
+      R a = soil[S::force + d] * inv_m_force + g[d];  // Eq. (8)
+      a -= damping * Kokkos::fabs(a) * select(v_old[d] > 0, R(1), select(v_old[d] < 0, R(-1), R(0)));
+      v[d] = v_old[d] + a * dt;  // Eq. (9)
+    }
+  }
+
+  KOKKOS_INLINE_FUNCTION void keep(int i, const MotionValues<T, Dim>& motion) const {
+    *reinterpret_cast<MotionValues<T, Dim>*>(&nodes.motion(i, 0)) = motion;
+  }
+
+  /// A node and what it was given.
+  struct Node {
+    int i;
+    Coord<Dim> at;
+    unsigned sides;
+    T soil[S::size], boundary[BoundaryShare<Dim>::size];
+    T inv_m;
+  };
+
+  /// What becomes of node i, which is `at`, under its sums; bodies: the rigids; near: one of them may touch
+  /// the node. Adds component d of the force on rigid r to force[(r Dim + d) cells], unless it is null.
+  template <class Sums>
+  KOKKOS_INLINE_FUNCTION MotionValues<T, Dim> motion(const Sums& sums, const Rigid<Dim>* bodies, int i,
+                                                     const Coord<Dim>& at, bool near, double* force) const {
+    Node node{i, at, 0, {}, {}, 0};
+    for (int n = 0; n < S::size; ++n) node.soil[n] = sums.soil(i, n);  // all asked for at once
+    if (near && has_boundary)
+      for (int n = 0; n < BoundaryShare<Dim>::size; ++n) node.boundary[n] = sums.boundary(i, n);
+    const T m_i = node.soil[S::mass];
+    Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
+    MPM_ROLLED
+    for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r)
+      nodes.impulse(r, i) *= k_memory<T>;
+    if (m_i > at_rest()) {
+      node.inv_m = 1 / m_i;
+      accelerate(node.soil, node.inv_m, v_old, v);
+      node.sides = sides_of(places.grid, at);
+      apply_walls(places.grid, node.sides, v);
+      const int touching = near && m_i > mass_cut ? static_cast<int>(rigids.extent(0)) : 0;
+      MPM_ROLLED
+      for (int r = 0; r < touching; ++r)
+        touch(sums, node, bodies[r], r, v, force == nullptr ? force : force + r * Dim * cells);
+      apply_walls(places.grid, node.sides, v);
+    }
+    MotionValues<T, Dim> motion;
+    for (int d = 0; d < Dim; ++d) {
+      motion.c[NodeMotion<Dim>::velocity + d] = v[d];
+      motion.c[NodeMotion<Dim>::acceleration + d] = (v[d] - v_old[d]) * inv_dt;  // feels contact and walls
+    }
+    return motion;
+  }
+
+  /// The nodes of a slot far from every rigid.
+  template <class Team, class Sums>
+  KOKKOS_INLINE_FUNCTION void update_far(const Team& team, const Sums& sums, int slot) const {
+    for_team(team, cells, [&](int k) { update(sums, slot * cells + k, false, nullptr); });
+    team.team_barrier();
+    if (clears) clear_sums(team, nodes, slot, false, 0);
+  }
+
+  /// The same, far from walls too and without friction, for the lanes of a processor: a row at once.
+  template <class Team, class Sums>
+  void update_rows(const Team& team, const Sums& sums, int slot) const {
+    using Row = typename Sums::Row;
+    for (int k = 0; k < sums.rows; ++k) {
+      const auto& soil = sums.of_soil[k];
+      Vector<Row, Dim> v_old, v;
+      const auto moves = soil[S::mass] > at_rest();
+      accelerate(soil, select(moves, T(1) / soil[S::mass], T(0)), v_old, v);
+      Row motion[NodeMotion<Dim>::size];
+      for (int d = 0; d < Dim; ++d) {
+        v[d] = select(moves, v[d], T(0));
+        motion[NodeMotion<Dim>::velocity + d] = v[d];
+        motion[NodeMotion<Dim>::acceleration + d] = (v[d] - v_old[d]) * inv_dt;
+      }
+      store_groups(motion, &nodes.motion((slot * sums.rows + k) * Row::k_count, 0));
+    }
+    if (clears) clear_sums(team, nodes, slot, false, 0);
+  }
+
+  /// Contact with rigid r; adds the force of the soil on it (Eq. 10) to force[0], force[cells] ..., unless it
+  /// is null.
+  template <class Sums>
+  KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, const Node& node, const Rigid<Dim>& rigid, int r,
+                                    Vector<T, Dim>& v, double* force) const {
+    T given[RigidShare<Dim>::size] = {};  // asked for before the rigid tells whether it matters
+    for (int n = 0; n < RigidShare<Dim>::size && has_mass_normals; ++n) given[n] = sums.rigid(r, node.i, n);
+    const T m_i = node.soil[S::mass];
+    Vector<T, Dim> n, v_r, boundary;
+    for (int d = 0; d < Dim; ++d) {
+      v_r[d] = static_cast<T>(rigid.velocity[d]);
+      boundary[d] = node.boundary[BoundaryShare<Dim>::area + d];
+    }
+    double distance = 0;
+    Vector<double, Dim> out{};
+    const bool reaches = rigid.surface_normal || rigid.reach > 0
+                             ? look_at_surface(rigid, node.at, boundary, distance, out)
+                             : true;
+    if (rigid.surface_normal ? !(reaches && surface_normal(out, node.sides, n))
+                             : !mass_normal(rigid, given, node.sides, n))
+      return;
+    const T area = Kokkos::fmax(T(0), dot(boundary, n));
+    Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction) };
+    const T limit = shear_limit(rigid, node.i);
+    if (limit < Kokkos::Experimental::infinity<T>::value)
+      interface.shear_speed = limit * area * dt * node.inv_m;
+    T pressing = 0;
+    for (int d = 0; d < Dim; ++d) pressing += (node.soil[S::force + d] * node.inv_m + g[d]) * n[d];
+    interface.pressing = pressing * dt;
+    interface.separates = rigid.separates;
+    // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
+    // well, the body would act thicker than it is.
+    interface.within_soil = rigid.surface_normal && distance > spacing / 2;
+    if (rigid.reach > 0) {
+      const T depth = surface_depth(node.boundary[BoundaryShare<Dim>::volume] / places.grid.spacing, area);
+      const T gap = static_cast<T>(distance) + depth * places.grid.spacing;
+      interface.penalty = penalty(gap, T(rigid.reach), T(rigid.exponent));
+      // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
+      if (gap > Kokkos::fmax(T(rigid.reach), places.grid.spacing / 2)) return;
+    }
+    if (has_friction) interface.stock = nodes.impulse(r, node.i) * node.inv_m;
+    const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
+    if (has_friction) nodes.impulse(r, node.i) = interface.stock * m_i;
+    for (int d = 0; d < Dim; ++d) {
+      v[d] += change[d];
+      if (force != nullptr) force[d * cells] -= static_cast<double>(m_i) * change[d] * inv_dt;
+    }
+  }
+
+  /// Largest shear stress of the interface at node i [Pa], infinite where only the friction limits.
+  KOKKOS_INLINE_FUNCTION T shear_limit(const Rigid<Dim>& rigid, int i) const {
+    if (rigid.shear_share < 0) return static_cast<T>(rigid.shear_limit);
+    const T volume = nodes.strength(i, StrengthShare::volume);
+    if (!(volume > 0)) return 0;
+    return static_cast<T>(rigid.shear_share) * (nodes.strength(i, StrengthShare::strength) / volume);
+  }
+
+  /// Place of a node in the frame of a rigid's surface [m]. Bodies go on beyond the mesh.
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> place(const Rigid<Dim>& rigid, const Coord<Dim>& at) const {
+    Vector<double, Dim> x;
+    for (int d = 0; d < Dim; ++d)
+      x[d] = Kokkos::max(0, Kokkos::min(at[d], places.grid.cells[d])) * spacing - rigid.displacement[d];
+    return x;
+  }
+
+  /// Area of a cell's face [m^2; m in 2D].
+  KOKKOS_INLINE_FUNCTION T face() const { return power(places.grid.spacing, Dim - 1); }
+
+  /// Inward unit normal from the rigid's mass gradient; false where it is out of touch. given: RigidShare.
+  KOKKOS_INLINE_FUNCTION bool mass_normal(const Rigid<Dim>& rigid, const T* given, unsigned sides,
+                                          Vector<T, Dim>& n) const {
+    const T m_r = given[RigidShare<Dim>::mass];
+    for (int d = 0; d < Dim; ++d) n[d] = given[RigidShare<Dim>::normal + d];
+    return m_r > rigid.mass_cut && inward_normal(places.grid, sides, m_r, n);
+  }
+
+  /// Distance [m] of a node from the rigid's own surface, and the normal out of it that contact takes. Where
+  /// the soil's boundary says that the soil is at another face, as in a thin plate, the node looks a second
+  /// time, from a cell's edge further towards the soil. False where the rigid does not reach into the node's
+  /// cells.
+  KOKKOS_INLINE_FUNCTION bool look_at_surface(const Rigid<Dim>& rigid, const Coord<Dim>& at,
+                                              const Vector<T, Dim>& boundary, double& distance,
+                                              Vector<double, Dim>& out) const {
+    constexpr double k_overlap = 1e-3;  // cells: less is no touch
+    // Not at a right angle, as a footing's edge is to the soil under it: there round-off would decide.
+    constexpr T k_facing = T(0.1);   // cosine
+    constexpr T k_bounds = T(1e-3);  // of a cell's face: less is the soil's interior
+    Vector<double, Dim> x = place(rigid, at);
+    bool reaches = true;
+    MPM_ROLLED
+    for (int look = 0; look < 2; ++look) {
+      const Distance<Dim> to = distance_to(rigid.surface, vertices, x);
+      out = to.normal;
+      if (look > 0) break;
+      distance = to.value;
+      double reach = -k_overlap, against = 0;
+      for (int d = 0; d < Dim; ++d) {
+        reach += Kokkos::fabs(out[d]);
+        against += boundary[d] * out[d];
+      }
+      reaches = distance <= reach * spacing;
+      const T length = Kokkos::sqrt(dot(boundary, boundary));
+      if (!reaches || !(against > -k_facing * length && length > k_bounds * face())) break;
+      for (int d = 0; d < Dim; ++d) x[d] -= spacing * boundary[d] / length;
+    }
+    return reaches;
+  }
+
+  /// The inward unit normal, of one out of the surface.
+  KOKKOS_INLINE_FUNCTION bool surface_normal(const Vector<double, Dim>& out, unsigned sides,
+                                             Vector<T, Dim>& n) const {
+    for (int d = 0; d < Dim; ++d) n[d] = static_cast<T>(out[d]);
+    return inward_normal(places.grid, sides, T(1), n);
+  }
+};
+
+template <class Space, class T, int Dim>
+UpdateNodes<Space, T, Dim> node_update_of(const State<Space, T, Dim>& s, double dt) {
+  UpdateNodes<Space, T, Dim> update{.value_count = Dim * static_cast<int>(s.rigid_points.size()),
+                                    .places = {s.grid, s.patches},
+                                    .nodes = s.nodes,
+                                    .rigids = s.rigids,
+                                    .vertices = s.vertices,
+                                    .forces = s.slot_forces,
+                                    .counted = s.counted,
+                                    .g = {},
+                                    .dt = T(dt),
+                                    .inv_dt = T(1 / dt),
+                                    .damping = T(s.damping),
+                                    .mass_cut = T(s.mass_cut),
+                                    .spacing = s.spacing,
+                                    .has_boundary = s.soil_boundary,
+                                    .has_friction = s.has_friction,
+                                    .has_mass_normals = s.mass_normals,
+                                    .clears = s.plan.sums_ahead && !s.plan.writes_sums};
+  for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
+  return update;
+}
+
+}  // namespace mpm

@@ -1,0 +1,116 @@
+#include "loops/particle_to_node.hpp"
+
+namespace mpm {
+
+/// Half length of a point [cells], soil or rigid.
+template <class Points_>
+KOKKOS_INLINE_FUNCTION auto half_length_of(const Points_& points, int p) {
+  if constexpr (requires { points.bodies; })
+    return points.bodies(points.body(p)).half_length;
+  else
+    return points.half_length;
+}
+
+/// Sums the shares of the particles in the list of a node, and in those of its images beyond walls.
+template <class Source>
+struct GatherByNode {
+  using T = typename Source::real;
+  using Memory = typename Source::Space::memory_space;
+  static constexpr int Dim = Source::dim;
+  Source source;
+  NodePlaces<typename Source::Space, T, Dim> places;
+  Kokkos::View<int*, Memory> list_begin, list;
+  NodeField<typename Source::Space, T, Source::size> out;
+  ControlView<typename Source::Space> control;
+
+  // The sums of a node are made in the order of its list, so the result has the same bits on every run.
+  KOKKOS_FUNCTION void operator()(int i) const {
+    if (control().paused) return;
+    const Coord<Dim> from = places.origin(i / Patch<Dim>::cells), in = coord_of<Dim>(i);
+    T sum[Source::size] = {};
+    bool some = false;
+    // Along each axis the node itself, its image in the lower wall, and that in the upper one.
+    for (int images = 0; images < power(3, Dim); ++images) {
+      Coord<Dim> at;
+      bool is = true;
+      for (int d = 0, rest = images; d < Dim; ++d, rest /= 3)
+        is = is && image_of(d, from[d] + in[d], rest % 3, at[d]);
+      if (!is) continue;
+      Coord<Dim> place;
+      for (int d = 0; d < Dim; ++d) place[d] = at[d] - from[d];
+      const int node = number_at<decltype(places.around), Dim>(places.around, i / Patch<Dim>::cells, place);
+      if (node >= 0) some |= add_list(node, at, sum);
+    }
+    if (!some) return;
+    for (int k = 0; k < Source::size; ++k) out(i, k) += sum[k];
+  }
+
+  /// The coordinate of a node at `own` along d, or of what is its image in a wall. False where there is none,
+  /// and for a node that lies beyond a wall itself.
+  KOKKOS_INLINE_FUNCTION bool image_of(int d, int own, int which, int& at) const {
+    const auto& grid = places.grid;
+    if (image_along(grid, d, own) != own) return false;
+    at = which == 0 ? own : which == 1 ? -own : 2 * grid.cells[d] - own;
+    const bool next = which == 1 ? own == 1 : own == grid.cells[d] - 1;
+    return which == 0 || (next && grid.wall[d][which - 1] != Wall::free);
+  }
+
+  /// What the particles in the list of a node at `at` give, with the signs of its image. False if there are
+  /// none.
+  KOKKOS_INLINE_FUNCTION bool add_list(int node, const Coord<Dim>& at, T (&sum)[Source::size]) const {
+    T sign[Source::size];
+    for (int v = 0; v < Source::size; ++v) {
+      sign[v] = 1;
+      for (int d = 0; d < Dim; ++d)
+        sign[v] *= image_sign<Source::kind, T>(places.grid, d, at[d], Source::component(v));
+    }
+    const int first = list_begin(node), last = list_begin(node + 1);
+    for (int n = first; n < last; ++n)
+      add_point(list(n), at, [&](int v, T share) { sum[v] += sign[v] * share; });
+    return last > first;
+  }
+
+  template <class Add>
+  KOKKOS_INLINE_FUNCTION void add_point(int p, const Coord<Dim>& at, const Add& add) const {
+    const int cell = source.points.cell(p);
+    if (source.skips(cell / Patch<Dim>::cells)) return;
+    const Coord<Dim> from = places.origin(cell / Patch<Dim>::cells), place = coord_of<Dim>(cell);
+    Vector<T, Dim> x = source.points.coordinate(p), grad;
+    const auto half_length = half_length_of(source.points, p);
+    T s[Dim], ds[Dim], w = 1;
+    for (int d = 0; d < Dim; ++d) {
+      x[d] += from[d] + place[d] - at[d];  // from the node
+      node_weight(x[d], half_length, s[d], ds[d]);
+      w *= s[d];
+    }
+    if (!(w > 0)) return;  // the list holds what may come here till the next rebuild
+    for (int d = 0; d < Dim; ++d) {
+      grad[d] = ds[d];
+      for (int e = 0; e < Dim; ++e) grad[d] *= e == d ? T(1) : s[e];
+    }
+    const auto offset = [&] {
+      Vector<T, Dim> r;
+      for (int d = 0; d < Dim; ++d) r[d] = -x[d];
+      return r;
+    };
+    give<Source>(source.load(p), w, grad, offset, add);
+  }
+};
+
+template <class Source>
+void gather_by_node(const Interpolation<Source>& it) {
+  // Neighbouring nodes ask for the same particles, and the caches of a GPU hold those of so many threads
+  // only.
+  constexpr int k_share_of_threads = 40;  // %
+  const Kokkos::RangePolicy<typename Source::Space> nodes(it.space, 0, it.patches.node_count());
+  Kokkos::parallel_for(
+      "mpm::gather_by_node",
+      light(Kokkos::Experimental::prefer(nodes, Kokkos::Experimental::DesiredOccupancy(k_share_of_threads))),
+      GatherByNode<Source>{
+          it.source, {it.grid, it.patches}, it.bins.list_begin, it.bins.list, it.out, it.control});
+}
+
+#define MPM_STRATEGY gather_by_node
+MPM_FOR_EACH(MPM_INSTANTIATE_STRATEGY)
+
+}  // namespace mpm

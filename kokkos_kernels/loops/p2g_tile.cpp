@@ -1,0 +1,50 @@
+#include "loops/cpu/host_sums.hpp"
+#include "loops/gpu/tile.hpp"
+
+namespace mpm {
+
+// On a device all patches at once, by atomic additions to the nodes.
+template <class Source>
+void sum_on_device(const Interpolation<Source>& it) {
+  using Space = typename Source::Space;
+  constexpr int Dim = Source::dim, cells = Patch<Dim>::cells;
+  using Team = PatchTeam<Space, typename Source::real, Dim>;
+  using Tile_ = Tile<Source>;
+  const auto source = it.source;
+  const auto around = it.patches.around;
+  const auto begin = it.bins.begin;
+  const auto by_colour = it.bins.by_colour;
+  const auto grid = it.grid;
+  const auto origin = it.patches.origin;
+  const auto out = it.out;
+  const auto control = it.control;
+  const int first = it.bins.colour_begin[0], teams = it.bins.colour_begin[Patch<Dim>::colours] - first;
+  if (teams == 0) return;
+
+  Kokkos::parallel_for(
+      "mpm::reduce_by_tile",
+      light(Team(it.space, teams, team_threads<Space>)
+                .set_scratch_size(0, Kokkos::PerTeam(Tile_::bytes() + k_scratch_slack))),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (control().paused) return;
+        const int slot = by_colour(first + team.league_rank());
+        if (source.skips(slot)) return;
+        sum_patch(
+            team, Scratch(team, Tile_::bytes()), source,
+            [&](int n) { return number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n)); },
+            [&](int c) { return begin(slot * cells + c); }, grid, origin(slot), out);
+      });
+}
+
+template <class Source>
+void reduce_by_tile(const Interpolation<Source>& it) {
+  if constexpr (is_device<typename Source::Space>)
+    sum_on_device(it);
+  else
+    sum_on_host(it);
+}
+
+#define MPM_STRATEGY reduce_by_tile
+MPM_FOR_EACH(MPM_INSTANTIATE_STRATEGY)
+
+}  // namespace mpm

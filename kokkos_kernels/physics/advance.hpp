@@ -1,0 +1,133 @@
+#pragma once
+// What one step does to one particle (Eqs (11)-(13)), or to as many as an instruction of a processor takes at
+// once. The real type R of a particle is T, or lanes of T; parameters are T.
+
+#include "base/lanes.hpp"
+#include "data/nodes.hpp"
+#include "data/particles.hpp"
+
+namespace mpm {
+
+/// What a particle takes from the nodes.
+template <class T, int Dim>
+struct Taken {
+  T motion[NodeMotion<Dim>::size];  // m/s, m/s2
+  T gradient[Dim][Dim];             // 1/s, L_ij = dv_i/dx_j
+};
+
+/// Strain increment (symmetric part of L dt, tensor shear strains) and spin increment (skew part) of a
+/// velocity gradient L [1/s].
+template <class R, class T, int Dim>
+KOKKOS_INLINE_FUNCTION Increment<R, T, Dim> increment_of(const R (&L)[Dim][Dim], T dt, const Clock& clock) {
+  Increment<R, T, Dim> by;
+  by.dt = dt, by.clock = clock;
+  for (int k = 0; k < sym_size<Dim>; ++k) by.strain[k] = 0;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) by.gradient[i][j] = L[i][j];
+  for (int i = 0; i < Dim; ++i)
+    for (int j = i; j < Dim; ++j) by.strain[sym_index<Dim>(i, j)] = dt * (L[i][j] + L[j][i]) / 2;
+  by.spin.c[0] = dt * (L[0][1] - L[1][0]) / 2;
+  if constexpr (Dim == 3) {
+    by.spin.c[1] = dt * (L[1][2] - L[2][1]) / 2;
+    by.spin.c[2] = dt * (L[2][0] - L[0][2]) / 2;
+  }
+  return by;
+}
+
+/// Scalars of the particle update.
+template <class T>
+struct UpdateScalars {
+  T dt, inv_spacing, flip, pic, f_bar;
+  T least_volume, most_volume;  // m3
+  bool volume_is_fault;         // one that is at a bound
+  Clock clock{};
+};
+
+/// What a step changes of a particle.
+template <class T, int Dim>
+struct Particle {
+  Vector<T, Dim> x, v;       // cells, m/s
+  SymTensor<T, Dim> stress;  // Pa
+  T volume;                  // m3
+};
+
+/// The law of particle p, with its state in memory. A particle that flies freely, being alone, carries no
+/// stress and keeps its state.
+template <class Space, class T, int Dim>
+struct ParticleLaw {
+  const Soil<Space, T, Dim>& soil;
+  int p, material;
+  int which;  // index of the law in Materials, or -1 where only the material tells it. A kernel that is given
+              // the index need not read it from memory before it reads the parameters.
+  bool flies;
+
+  KOKKOS_INLINE_FUNCTION void operator()(SymTensor<T, Dim>& stress, const Increment<T, T, Dim>& by) const {
+    if (flies) {
+      for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = 0;
+      return;
+    }
+    const AnyMaterial<T>& of = soil.materials(material);
+    of.visit_as(which >= 0 ? which : of.which, [&](const auto& law) {
+      using Law = std::decay_t<decltype(law)>;
+      const auto was = soil.state_of(law, p);
+      auto state = was;
+      law.update(stress, state, by);
+      for (int k = 0; k < state.size; ++k)
+        if (Law::state()[k].changes && state[k] != was[k]) soil.history.column[k](p) = state[k];
+    });
+  }
+};
+
+/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The share f_bar of its
+/// dilatation is that of its cell, `mean_dilatation` [1/s]. law(stress, increment) changes the stress.
+/// Returns the largest component of the particle's movement [cells].
+template <class R, class T, int Dim, class Law>
+KOKKOS_INLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law, const Taken<R, Dim>& t,
+                                 R mean_dilatation, const UpdateScalars<T>& by) {
+  Increment<R, T, Dim> increment = increment_of(t.gradient, by.dt, by.clock);
+  R trace = 0;
+  for (int d = 0; d < Dim; ++d) trace += increment.strain[d];
+  const R correction = by.f_bar * (by.dt * mean_dilatation - trace);
+  for (int d = 0; d < 3; ++d) increment.strain[d] += correction * T(1.0 / 3);
+  trace += correction;
+  law(q.stress, increment);
+
+  // exp(trace) to second order: no drift in rotation
+  q.volume *= (2 + trace) / (2 - trace);
+  q.volume = Kokkos::fmin(by.most_volume, Kokkos::fmax(by.least_volume, q.volume));
+  R moved = 0;
+  for (int d = 0; d < Dim; ++d) {
+    const R v_i = t.motion[NodeMotion<Dim>::velocity + d], a_i = t.motion[NodeMotion<Dim>::acceleration + d];
+    q.v[d] = by.flip * (q.v[d] + by.dt * a_i) + by.pic * v_i;
+    const R movement = by.dt * v_i * by.inv_spacing;
+    q.x[d] += movement;
+    moved = Kokkos::fmax(moved, Kokkos::fabs(movement));
+  }
+  return moved;
+}
+
+/// Whether all values of a particle are finite; by lane where R is lanes.
+template <class R, int Dim>
+KOKKOS_INLINE_FUNCTION auto is_finite(const Particle<R, Dim>& q) {
+  R sum = q.volume;
+  for (int d = 0; d < Dim; ++d) sum += q.x[d] + q.v[d];
+  for (int k = 0; k < sym_size<Dim>; ++k) sum += q.stress[k];
+  return 0 * sum == 0;  // 0 times what is not finite is not zero
+}
+
+/// Whether the volume of a particle is at a bound; by lane where R is lanes.
+template <class R, class T, int Dim>
+KOKKOS_INLINE_FUNCTION auto is_volume_limited(const Particle<R, Dim>& q, const UpdateScalars<T>& by) {
+  return !((q.volume > by.least_volume) & (q.volume < by.most_volume));
+}
+
+/// What is wrong with a particle that moved by `moved` [cells] in the step: not finite, a volume that the run
+/// does not allow, or so fast that the computation cannot be trusted.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION FaultKind fault_of(const Particle<T, Dim>& q, T moved, const UpdateScalars<T>& by) {
+  if (!is_finite(q)) return FaultKind::not_finite;
+  if (by.volume_is_fault && is_volume_limited(q, by)) return FaultKind::volume;
+  return moved <= 1 ? FaultKind::none : FaultKind::too_fast;
+}
+
+}  // namespace mpm

@@ -1,0 +1,93 @@
+#pragma once
+// Contact of the soil with a rigid body at a node.
+
+#include "physics/walls.hpp"
+
+namespace mpm {
+
+/// Inward unit normal of a rigid body at a node from its mass gradient (Eq. 3), whose sign points out of the
+/// body. The mirrored half of a body at a roller is missing, so the gradient's component normal to it is left
+/// out. False where the gradient says nothing: in the interior of the body it is round-off, or points to its
+/// far face.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool inward_normal(const Grid<T, Dim>& grid, unsigned sides, T mass,
+                                          Vector<T, Dim>& n) {
+  for (int d = 0; d < Dim; ++d)
+    for (int side = 0; side < 2; ++side)
+      if ((sides >> (2 * d + side) & 1u) && grid.wall[d][side] == Wall::roller) n[d] = 0;
+  const T length = Kokkos::sqrt(dot(n, n));
+  constexpr T k_interior = T(0.05);  // of the mass a cell's edge
+  if (!(length > k_interior * mass)) return false;
+  const T share = -1 / length;
+  for (int d = 0; d < Dim; ++d) n[d] *= share;
+  return true;
+}
+
+/// How far beyond a node the soil begins along the normal [cells], negative where the node is in it, from the
+/// soil's volume over a cell's edge and its area [the same units] at the node: for a plane face across the
+/// node's cells the integrals of S_i are (1 - h)^2 / 2 and 1 - h. A face that covers a part of the cells
+/// scales both, and an inclined one hardly changes their ratio.
+template <class T>
+KOKKOS_INLINE_FUNCTION T surface_depth(T volume, T area) {
+  if (2 * volume <= area) return 1 - 2 * volume / area;
+  if (!(area > 0)) return -1;
+  const T ratio = volume / area;
+  return 2 / (ratio + Kokkos::sqrt(ratio * ratio + 2)) - 1;
+}
+
+/// Share of the normal correction at a gap [m] between body and soil (the "Geo-contact" penalty of Ma, Wang
+/// and Randolph 2014, in the form 1 - (gap/reach)^k): 1 in touch, 0 from `reach` on.
+template <class T>
+KOKKOS_INLINE_FUNCTION T penalty(T gap, T reach, T exponent) {
+  if (gap <= 0) return 1;
+  return gap < reach ? 1 - Kokkos::pow(gap / reach, exponent) : T(0);
+}
+
+/// What a step leaves of the normal impulse that friction has not used.
+template <class T>
+inline constexpr T k_memory = T(0.998);
+
+/// What a contact needs to know of the interface at a node.
+template <class T>
+struct Interface {
+  T shear_speed;   // m/s: shear limit x area x dt / nodal mass, the largest change of the tangential velocity
+  T friction;      // -, negative: none
+  T pressing = 0;  // m/s: what the soil's own force and weight press towards the rigid x dt / nodal mass
+  T stock = 0;     // m/s: normal impulse not yet used by friction / nodal mass; updated
+  T penalty = 1;   // -, share of the normal correction
+  bool separates = true;
+  bool within_soil =
+      false;  // more than half a cell from the surface: it is not stopped, and nothing presses it
+};
+
+/// Correction dV of the soil's velocity v at a node; v_r velocity of the rigid, n inward unit normal. No soil
+/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a share of the normal
+/// impulse of this step and of what earlier ones left (`stock`): the impulse of a node rings with the soil's
+/// elastic waves, and a body that sticks on the whole must not slip in each trough. Where it slips the stock
+/// is used up, so that the friction is that of each step.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v, const Vector<T, Dim>& v_r,
+                                                         const Vector<T, Dim>& n, Interface<T>& interface) {
+  Vector<T, Dim> relative, change = filled<T, Dim>(0);
+  for (int d = 0; d < Dim; ++d) relative[d] = v[d] - v_r[d];
+  const T approach = dot(relative, n);
+  const T stop = (interface.within_soil ? T(0) : interface.penalty) *
+                 (interface.separates ? Kokkos::fmax(T(0), approach) : approach);
+  Vector<T, Dim> slip;
+  for (int d = 0; d < Dim; ++d) slip[d] = relative[d] - approach * n[d];
+  const T speed = Kokkos::sqrt(dot(slip, slip));
+  constexpr T k_leaves = T(0.1);  // of the slip: a node in the soil that moves away faster is not in touch
+  const bool touches = !interface.separates || approach > 0 || interface.pressing > 0 ||
+                       (interface.within_soil && -approach < k_leaves * speed);
+  T largest = touches ? interface.shear_speed : T(0);
+  if (interface.friction >= 0) {
+    interface.stock += Kokkos::fmax(T(0), stop);
+    largest = Kokkos::fmin(interface.shear_speed, interface.friction * interface.stock);
+  }
+  const T share = largest >= speed ? T(1) : largest / speed;
+  if (interface.friction > 0) interface.stock -= share * speed / interface.friction;
+  for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - share * slip[d];
+  return change;
+}
+
+}  // namespace mpm

@@ -1,0 +1,98 @@
+#include "physics/materials/any.hpp"
+
+#include <cmath>
+#include <new>
+
+namespace mpm {
+namespace {
+
+template <class T, template <class> class... Models>
+AnyMaterial<T> make(ModelList<Models...>, int which, const std::vector<double>& values) {
+  AnyMaterial<T> any;
+  any.which = which;
+  int k = 0;
+  auto fill = [&](auto* model) {
+    using Model = std::remove_pointer_t<decltype(model)>;
+    new (any.bytes) Model{};
+    std::size_t n = 0;
+    for (const auto& parameter : Model::parameters()) {
+      const bool left_out = n >= values.size() && !std::isnan(parameter.standard);
+      reinterpret_cast<Model*>(any.bytes)->*parameter.member =
+          static_cast<T>(left_out ? parameter.standard : values.at(n));
+      ++n;
+    }
+    reinterpret_cast<Model*>(any.bytes)->prepare();
+  };
+  (void)((which == k++ ? (fill(static_cast<Models<T>*>(nullptr)), true) : false) || ...);
+  return any;
+}
+
+template <template <class> class... Models>
+std::vector<const char*> names(ModelList<Models...>) {
+  return {Models<double>::k_name...};
+}
+
+template <template <class> class... Models>
+std::vector<std::vector<StateVariable>> tables(ModelList<Models...>) {
+  const auto list = [](const auto& table) { return std::vector<StateVariable>(table.begin(), table.end()); };
+  return {list(Models<double>::state())...};
+}
+
+template <template <class> class... Models>
+std::vector<bool> changing(ModelList<Models...>) {
+  return {stiffness_changes<Models<double>>()...};
+}
+
+/// The state of a particle that is created at a height [m] without stress.
+template <class Law>
+auto start_of(const Law& law, double height) {
+  LawState<double, state_size<Law>> state{};
+  const auto start = law.initial_state({.height = height});
+  for (std::size_t k = 0; k < start.size(); ++k) state[static_cast<int>(k)] = start[k];
+  return state;
+}
+
+}  // namespace
+
+template <class T>
+AnyMaterial<T> make_material(int which, const std::vector<double>& parameters) {
+  return make<T>(Materials{}, which, parameters);
+}
+template AnyMaterial<float> make_material<float>(int, const std::vector<double>&);
+template AnyMaterial<double> make_material<double>(int, const std::vector<double>&);
+
+std::vector<const char*> material_models() { return names(Materials{}); }
+
+std::vector<StateVariable> state_variables(int which) { return tables(Materials{})[which]; }
+
+bool stiffness_changes(int which) { return changing(Materials{})[which]; }
+
+ParameterFault parameter_fault(const AnyMaterial<double>& material) {
+  ParameterFault fault;
+  material.visit([&](const auto& law) { fault = law.check(); });
+  return fault;
+}
+
+std::vector<double> initial_state(const AnyMaterial<double>& material, const ParticleStart& at) {
+  std::vector<double> values;
+  material.visit([&](const auto& law) {
+    const auto state = law.initial_state(at);
+    values.assign(state.begin(), state.end());
+  });
+  return values;
+}
+
+double wave_modulus(const AnyMaterial<double>& material, double height) {
+  double modulus = 0;
+  material.visit(
+      [&](const auto& law) { modulus = law.wave_modulus(SymTensor<double, 3>{}, start_of(law, height)); });
+  return modulus;
+}
+
+double strength_at(const AnyMaterial<double>& material, double height) {
+  double strength = 0;
+  material.visit([&](const auto& law) { strength = law.shear_strength(start_of(law, height)); });
+  return strength;
+}
+
+}  // namespace mpm

@@ -1,0 +1,60 @@
+#pragma once
+// One material of any model, for device tables: which model, and its parameters.
+
+#include <cstddef>
+#include <vector>
+
+#include "physics/materials/list.hpp"
+
+namespace mpm {
+
+template <class T, class List>
+struct OneOf;
+
+/// Holds one of the models of the list; `visit` calls f with it.
+template <class T, template <class> class... Models>
+struct OneOf<T, ModelList<Models...>> {
+  static constexpr std::size_t k_bytes = Kokkos::max({sizeof(Models<T>)...});
+  int which = -1;
+  alignas(16) unsigned char bytes[k_bytes];
+
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void visit(F&& f) const {
+    visit_as(which, f);
+  }
+  /// The same where the caller knows which model it is.
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void visit_as(int known, F&& f) const {
+    int k = 0;
+    (void)((known == k++ ? (f(*reinterpret_cast<const Models<T>*>(bytes)), true) : false) || ...);
+  }
+};
+
+template <class T>
+using AnyMaterial = OneOf<T, Materials>;
+
+/// A material by its model's index in Materials and its parameters in the order of the model's table. The
+/// last ones may be left out where they have defaults.
+template <class T>
+AnyMaterial<T> make_material(int which, const std::vector<double>& parameters);
+
+/// The most state variables of any law.
+template <template <class> class... Models>
+constexpr int most_state(ModelList<Models...>) {
+  return Kokkos::max({1, state_size<Models<double>>...});
+}
+inline constexpr int k_most_state = most_state(Materials{});
+
+/// What is wrong with the parameters of a material together.
+ParameterFault parameter_fault(const AnyMaterial<double>& material);
+
+/// Values of the state variables of a particle that is created now.
+std::vector<double> initial_state(const AnyMaterial<double>& material, const ParticleStart& at);
+
+/// lambda + 2 G [Pa] of a material that is created at a height [m] without stress.
+double wave_modulus(const AnyMaterial<double>& material, double height = 0);
+
+/// Undrained shear strength [Pa] of a material that is created at a height [m] without stress.
+double strength_at(const AnyMaterial<double>& material, double height);
+
+}  // namespace mpm

@@ -1,0 +1,16 @@
+#pragma once
+// The list of materials. To add one: its own header, included here, and its name in the list.
+
+#include "physics/materials/linear_elastic.hpp"
+#include "physics/materials/von_mises.hpp"
+
+namespace mpm {
+
+template <template <class> class... Models>
+struct ModelList {
+  static constexpr int k_size = sizeof...(Models);
+};
+
+using Materials = ModelList<LinearElastic, VonMises>;
+
+}  // namespace mpm

@@ -1,0 +1,159 @@
+#pragma once
+// What every law shares: its tables of parameters and of state variables, what its update is given, and the
+// rotation of stress. docs/CONTRIBUTING.md tells how a law is written.
+
+#include <array>
+#include <string>
+
+#include "base/types.hpp"
+#include "device/warp.hpp"
+#include "physics/materials/tables.hpp"
+
+namespace mpm {
+
+/// One row of a model's table of parameters: everything that the option reader, -help and the checks need.
+template <class Model>
+struct Parameter {
+  const char* key;  // option key: -NAME_key
+  typename Model::real Model::*member;
+  const char* unit;
+  const char* meaning;
+  double lowest, highest;            // accepted range, inclusive
+  double standard;                   // default; NaN where the parameter is required
+  const char* instead_of = nullptr;  // key of the parameter whose place it takes where it is given
+};
+
+/// How a particle is when it is created: a law's initial_state() follows from it.
+struct ParticleStart {
+  std::array<double, 3> position{};  // m; along the vertical, the last axis of the mesh, in `height`
+  double height = 0;                 // m, reference height
+  std::array<double, 6> stress{};    // Pa: xx yy zz xy yz zx, tension positive
+};
+
+/// What is wrong with the parameters of a law together.
+struct ParameterFault {
+  std::string key;    // option key of the parameter to change; empty: nothing is wrong
+  std::string takes;  // the end of "takes ..."; -NAME_ stands for the prefix of the material's options
+};
+
+/// The values of a law's state variables at a particle, in the order of its table. N may be 0.
+template <class R, int N>
+struct LawState {
+  static constexpr int size = N;
+  R c[N > 0 ? N : 1];
+  KOKKOS_INLINE_FUNCTION R& operator[](int k) { return c[k]; }
+  KOKKOS_INLINE_FUNCTION const R& operator[](int k) const { return c[k]; }
+};
+
+/// The time at the start of a step [s]: `start`, and the steps of dt that were done since.
+struct Clock {
+  double start = 0, dt = 0;
+  const int* steps = nullptr;  // in the memory of the execution space, where another team may count them
+  KOKKOS_INLINE_FUNCTION double now() const { return start + dt * load_of_others(steps); }
+};
+
+/// What a step does to a particle, as its law sees it. R: the real type T, or lanes of it.
+template <class R, class T, int Dim>
+struct Increment {
+  SymTensor<R, Dim> strain;  // -, tensor shear strains, with the cell's share of dilatation (F-bar)
+  Spin<R, Dim> spin;         // -
+  R gradient[Dim][Dim];      // 1/s, L_ij = dv_i/dx_j
+  T dt;                      // s
+  Clock clock;
+  /// Time at the start of the step [s]; only laws that ask for it read it.
+  KOKKOS_INLINE_FUNCTION T time() const { return static_cast<T>(clock.now()); }
+};
+
+/// Number of state variables of a law.
+template <class Law>
+inline constexpr int state_size = static_cast<int>(Law::state().size());
+
+/// Whether a law's update is written for one particle (k_scalar_update), as one with many branches is, and
+/// not for lanes too.
+template <class Law>
+constexpr bool has_scalar_update() {
+  if constexpr (requires { Law::k_scalar_update; }) return Law::k_scalar_update;
+  return false;
+}
+/// Whether the stiffness of a law depends on stress or state (k_stiffness_changes), so that the time step has
+/// to follow it.
+template <class Law>
+constexpr bool stiffness_changes() {
+  if constexpr (requires { Law::k_stiffness_changes; }) return Law::k_stiffness_changes;
+  return false;
+}
+
+/// Stress turned with the material by the spin times dt: Q s Q^T with Q = (I - w/2)^-1 (I + w/2), which is a
+/// rotation for any w (Hughes & Winget 1980), so that the Jaumann rate keeps the invariants.
+template <class T>
+KOKKOS_INLINE_FUNCTION SymTensor<T, 2> rotated(const SymTensor<T, 2>& s, const Spin<T, 2>& w) {
+  const T h = w.c[0] / 2, scale = 1 / (1 + h * h);
+  const T cos_a = (1 - h * h) * scale, sin_a = 2 * h * scale;
+  const T mean = (s[0] + s[1]) / 2, half = (s[0] - s[1]) / 2;
+  const T cos_2a = cos_a * cos_a - sin_a * sin_a, sin_2a = 2 * sin_a * cos_a;
+  const T half_new = cos_2a * half + sin_2a * s[3];
+  return {mean + half_new, mean - half_new, s[2], cos_2a * s[3] - sin_2a * half};
+}
+
+template <class T>
+KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const Spin<T, 3>& w) {
+  // Cayley transform of the skew tensor W with axial vector a: Q = I + (2/(1+|a|^2/4)) (W/2 + W^2/4)
+  const T half[3][3] = {
+      {0, w.c[0] / 2, -w.c[2] / 2}, {-w.c[0] / 2, 0, w.c[1] / 2}, {w.c[2] / 2, -w.c[1] / 2, 0}};
+  const T scale = 2 / (1 + (w.c[0] * w.c[0] + w.c[1] * w.c[1] + w.c[2] * w.c[2]) / 4);
+  T q[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      T square = 0;
+      for (int k = 0; k < 3; ++k) square += half[i][k] * half[k][j];
+      q[i][j] = (i == j) + scale * (half[i][j] + square);
+    }
+  SymTensor<T, 3> r;
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) {
+      T sum = 0;
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < 3; ++l) sum += q[i][k] * s[sym_index<3>(k, l)] * q[j][l];
+      r[sym_index<3>(i, j)] = sum;
+    }
+  return r;
+}
+
+/// Mean stress (s_xx + s_yy + s_zz) / 3.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T mean_of(const SymTensor<T, Dim>& s) {
+  return (s[0] + s[1] + s[2]) * T(1.0 / 3);
+}
+
+/// Adds the isotropic elastic stress increment lambda tr(e) I + 2 G e to s. Shear strains are tensor
+/// components.
+template <class R, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void add_elastic(SymTensor<R, Dim>& s, const SymTensor<R, Dim>& e, T lambda,
+                                        T shear_modulus) {
+  const R mean = lambda * (e[0] + e[1] + e[2]);
+  for (int k = 0; k < sym_size<Dim>; ++k) s[k] += 2 * shear_modulus * e[k] + (k < 3 ? mean : R(0));
+}
+
+/// Elastic energy of a volume under an isotropic stress-strain law [J/m3].
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T elastic_energy(const SymTensor<T, Dim>& s, T lambda, T shear_modulus) {
+  const T mean = mean_of(s), bulk_modulus = lambda + shear_modulus * T(2.0 / 3);
+  T j2 = 0;
+  for (int k = 0; k < sym_size<Dim>; ++k) {
+    const T deviator = k < 3 ? s[k] - mean : s[k];
+    j2 += k < 3 ? deviator * deviator / 2 : deviator * deviator;
+  }
+  return mean * mean / (2 * bulk_modulus) + j2 / (2 * shear_modulus);
+}
+
+/// Elastic constants of Young's modulus and Poisson's ratio.
+template <class T>
+KOKKOS_INLINE_FUNCTION T shear_modulus_of(T young, T poisson) {
+  return young / (2 * (1 + poisson));
+}
+template <class T>
+KOKKOS_INLINE_FUNCTION T lame_of(T young, T poisson) {
+  return young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+}
+
+}  // namespace mpm

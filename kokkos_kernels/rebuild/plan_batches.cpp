@@ -1,0 +1,202 @@
+// Where the soil lives, and how it is cut into batches.
+
+#include <algorithm>
+#include <array>
+
+#include "rebuild/batches.hpp"
+#include "rebuild/rebuild.hpp"
+#include "transfer/download.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr int k_most_places = 64;
+/// Particles of a batch below which starting kernels and copies takes longer than they do.
+template <class Space>
+constexpr int k_worth = is_device<Space> ? 1 << 18 : 1 << 10;
+
+/// Cuts memory into arrays; without memory it only counts.
+struct Cutter {
+  char* from = nullptr;
+  std::size_t end = 0;  // bytes
+
+  /// An array of the entries [first, last), numbered so.
+  template <class View>
+  void cut(View& view, std::size_t first, std::size_t last) {
+    using Value = typename View::value_type;
+    constexpr std::size_t k_line = 256;
+    if (from) view = View(reinterpret_cast<Value*>(from + end) - first, last);
+    end += ((last - first) * sizeof(Value) + k_line - 1) / k_line * k_line;
+  }
+};
+
+/// Lays a batch's place out; returns its bytes.
+template <class Space, class T, int Dim>
+std::size_t lay_out(const State<Space, T, Dim>& s, char* from, SoilBatch<Space, T, Dim>& batch) {
+  Cutter cutter{from};
+  for_each_of_step(s.soil.points, batch.set.points,
+                   [&](const auto&, auto& there, Use) { cutter.cut(there, batch.first, batch.last); });
+  Kokkos::View<T*, typename Space::memory_space> dilatation;
+  if (s.f_bar_share > 0) cutter.cut(dilatation, batch.first, batch.last);
+  batch.spare =
+      decltype(batch.spare)(reinterpret_cast<char*>(dilatation.data()), dilatation.extent(0) * sizeof(T));
+  return cutter.end;
+}
+template <class Space, class T, int Dim>
+std::size_t bytes_of(const State<Space, T, Dim>& s, int particles) {
+  SoilBatch<Space, T, Dim> batch;
+  batch.last = particles;
+  return lay_out(s, nullptr, batch);
+}
+
+template <class View>
+auto on_host(const View& view, int count) {
+  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(),
+                                             Kokkos::subview(view, Kokkos::make_pair(0, count)));
+}
+
+/// First particle of each slot, and behind the last.
+template <class Space, class T, int Dim>
+Kokkos::View<int*, Kokkos::HostSpace> first_of_slots(const State<Space, T, Dim>& s) {
+  const int slots = s.patches.slots;
+  const Kokkos::View<int*, typename Space::memory_space> first("mpm::first_of_slots", slots + 1);
+  const auto begin = s.soil.bins.begin;
+  Kokkos::parallel_for(
+      "mpm::first_of_slots", Kokkos::RangePolicy<Space>(s.space, 0, slots + 1),
+      KOKKOS_LAMBDA(int slot) { first(slot) = begin(slot * Patch<Dim>::cells); });
+  s.space.fence("mpm::first_of_slots");
+  return on_host(first, slots + 1);
+}
+
+/// Puts whole patches together as long as they have at most `most` particles.
+template <class Space, class T, int Dim, class First>
+void cut_into_batches(State<Space, T, Dim>& s, const First& first, int most) {
+  auto& all = s.batches.all;
+  const int slots = s.patches.slots;
+  all.clear();
+  for (int slot = 0; slot < slots; ++slot) {
+    if (first(slot) == first(slot + 1)) continue;
+    if (all.empty() || first(slot + 1) - all.back().first > most) {
+      SoilBatch<Space, T, Dim>& batch = all.emplace_back();
+      batch.first = first(slot);
+      batch.set.bins.first_slot = slot;
+    }
+    all.back().last = first(slot + 1);
+    all.back().set.bins.last_slot = slot + 1;
+  }
+}
+
+/// Bins::by_colour of every batch.
+template <class Space, class T, int Dim>
+void list_slots(State<Space, T, Dim>& s) {
+  constexpr int colours = Patch<Dim>::colours;
+  const auto& whole = s.soil.bins;
+  auto& b = s.batches;
+  const int count = whole.colour_begin[colours];
+  ensure(b.slots, count);
+  const auto by_colour = on_host(whole.by_colour, count);
+  std::vector<std::array<std::vector<int>, colours>> lists(b.all.size());
+  for (int colour = 0, n = 0; colour < colours; ++colour)
+    for (std::size_t batch = 0; n < whole.colour_begin[colour + 1]; ++n) {  // slots rise within a colour
+      while (by_colour(n) >= b.all[batch].set.bins.last_slot) ++batch;
+      lists[batch][colour].push_back(by_colour(n));
+    }
+  const auto slots = Kokkos::create_mirror_view(b.slots);
+  int end = 0;
+  for (std::size_t n = 0; n < lists.size(); ++n) {
+    Bins<Space>& bins = b.all[n].set.bins;
+    const int begin = end;
+    bins.begin = whole.begin, bins.windows = whole.windows;
+    for (int colour = 0; colour < colours; ++colour) {
+      for (const int slot : lists[n][colour]) slots(end++) = slot;
+      bins.colour_begin[colour + 1] = end - begin;
+    }
+    bins.by_colour = Kokkos::subview(b.slots, Kokkos::make_pair(begin, end));
+  }
+  Kokkos::deep_copy(b.slots, slots);
+}
+
+/// Gives each batch its place. As many as can stay on the device.
+template <class Space, class T, int Dim>
+void give_places(State<Space, T, Dim>& s, std::size_t bytes_of_place) {
+  auto& b = s.batches;
+  const int stay = static_cast<int>(b.all.size()) <= b.places ? b.places : b.places - k_turns;
+  for (int n = 0; n < static_cast<int>(b.all.size()); ++n) {
+    SoilBatch<Space, T, Dim>& batch = b.all[n];
+    batch.stays = n < stay;
+    batch.place = batch.stays ? n : stay + (n - stay) % k_turns;
+    batch.set.points = s.soil.points;  // what is not copied stays at home
+    batch.set.points.count = batch.last;
+    lay_out(s, b.room.data() + batch.place * bytes_of_place, batch);
+  }
+}
+
+template <class Space>
+std::vector<Space> streams_beside(const Space& space) {
+  if constexpr (is_device<Space>)
+    return Kokkos::Experimental::partition_space(space, std::vector<int>(k_turns, 1));
+  else
+    return std::vector<Space>(k_turns, space);
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void store_soil(State<Space, T, Dim>& s, int count, std::size_t spare_bytes) {
+  auto& soil = s.soil.points;
+  spare_bytes = std::max(spare_bytes, count * spare_of_point(soil));
+  Cutter cutter;
+  const auto cut = [&] {
+    const auto field = [&](auto& view) { cutter.cut(view, 0, count); };
+    field(soil.cell), field(soil.id), field(s.soil.address), field(s.soil.order);
+    for_each_field(soil, field);
+    cutter.cut(s.spare, 0, spare_bytes);
+  };
+  cut();
+  s.batches.store =
+      decltype(s.batches.store)(Kokkos::view_alloc("mpm::store", Kokkos::WithoutInitializing), cutter.end);
+  cutter = {s.batches.store.data(), 0};
+  cut();
+}
+
+template <class Space, class T, int Dim>
+void plan_batches(State<Space, T, Dim>& s) {
+  auto& b = s.batches;
+  const auto first = first_of_slots(s);
+  int largest = 1;  // particles of a patch
+  for (int slot = 0; slot < s.patches.slots; ++slot)
+    largest = std::max(largest, first(slot + 1) - first(slot));
+  b.all.clear();
+  b.loaded = false;
+  ensure(b.slots, s.soil.bins.colour_begin[Patch<Dim>::colours]);
+  const double beside = double(memory_of(s)) - b.room.extent(0),
+               least = k_turns * double(bytes_of(s, largest));
+  b.least = beside + least;
+  if (b.limit < b.least) return;
+
+  // What is beside the batches may grow a little without that they need other room.
+  const double free = std::max(least, b.limit - beside * 17 / 16);
+  const double a_particle = bytes_of(s, 1 << 20) / double(1 << 20);
+  b.places = static_cast<int>(std::clamp(free / a_particle / std::max(largest, k_worth<Space>),
+                                         double(k_turns), double(k_most_places)));
+  int most = static_cast<int>(std::min(free / b.places / a_particle, double(s.soil.points.count)));
+  most = std::max(most, largest);
+  while (most > largest && b.places * double(bytes_of(s, most)) > free) most -= std::max(1, most / 1000);
+  cut_into_batches(s, first, most);
+  b.places = std::min(b.places, static_cast<int>(b.all.size()));
+  const std::size_t place = bytes_of(s, most), room = place * b.places;
+  if (b.room.extent(0) < room || beside + b.room.extent(0) > b.limit) {
+    b.room = {};  // the old one goes before the new one comes
+    b.room = decltype(b.room)(Kokkos::view_alloc("mpm::room", Kokkos::WithoutInitializing), room);
+  }
+  list_slots(s);
+  give_places(s, place);
+  if (b.streams.empty()) b.streams = streams_beside(s.space);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                               \
+  template void store_soil(State<Space, T, Dim>&, int, std::size_t); \
+  template void plan_batches(State<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

@@ -1,0 +1,99 @@
+#pragma once
+// Function 7: bins, patch table and lists anew, before a particle can have moved further than the margin.
+
+#include <algorithm>
+
+#include "base/spaces.hpp"
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// Finds the cell of every point (Sorted::address) from where it is now, and brings the soil's coordinates
+/// back to [0, 1). Soil outside the mesh: beyond a free side it leaves the run and gets no address, as do
+/// strays that are to be removed; Control::lost is their number. Beyond a wall it is put back on it, and what
+/// it had of velocity against the wall is gone. A rigid's point outside the mesh is a fault in s.control.
+template <class Space, class T, int Dim>
+void locate(State<Space, T, Dim>& s);
+
+/// The rigids' part of it.
+template <class Space, class T, int Dim>
+void locate_rigids(State<Space, T, Dim>& s);
+
+/// Makes the patch table, the order of the points, their bins and the strategy's lists from the points'
+/// addresses, and resets the movement bound. Nodal fields are laid out anew and hold nothing.
+template <class Space, class T, int Dim>
+void sort_and_list(State<Space, T, Dim>& s);
+
+/// Both of them.
+template <class Space, class T, int Dim>
+void rebuild(State<Space, T, Dim>& s) {
+  locate(s);
+  sort_and_list(s);
+}
+
+/// Nodal impulses that outlive a rebuild, with the patches that they were of.
+template <class Space, class T, int Dim>
+struct KeptImpulse {
+  Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space> impulse;
+  Kokkos::View<int*, typename Space::memory_space> number;
+  int slots = 0;
+};
+
+// Parts of sort_and_list.
+template <class Space, class T, int Dim>
+KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void restore_impulse(State<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& kept);
+template <class Space, class T, int Dim>
+void activate_patches(State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void sort_points(State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void build_lists(State<Space, T, Dim>& s);
+/// Notes which slots have a rigid near: a node that soil and a rigid share is reached from no other slot.
+template <class Space, class T, int Dim>
+void mark_near_rigids(State<Space, T, Dim>& s);
+/// Brings the mean stress of each particle towards that of its cell by the share of F-bar: the particles of a
+/// cell dilate together until the next rebuild, so their pressures begin together.
+template <class Space, class T, int Dim>
+void average_pressure(State<Space, T, Dim>& s);
+
+/// What the sort moves of a value at a time, so that its scratch memory stays small: a particle's vector, or
+/// as much of a tensor.
+template <class Value>
+struct SortedPart {
+  using type = Value;
+};
+template <class T, int Dim>
+struct SortedPart<SymTensor<T, Dim>> {
+  using type = Vector<T, 2>;
+};
+template <class T, int Dim>
+struct SortedPart<Matrix<T, Dim>> {
+  using type = Vector<T, Dim>;
+};
+template <class Value>
+using PartOf = typename SortedPart<Value>::type;
+
+/// Bytes of scratch memory that sorting takes a point.
+template <class Points_>
+std::size_t spare_of_point(Points_& points) {
+  std::size_t widest = sizeof(int);
+  for_each_field(points, [&](const auto& field) {
+    widest = std::max(widest, sizeof(PartOf<typename std::decay_t<decltype(field)>::value_type>));
+  });
+  return widest;
+}
+
+/// Makes a view hold at least n entries; its content is lost when it grows. What has grown once may grow
+/// again, and gets some room for it.
+template <class View>
+void ensure(View& view, std::size_t n) {
+  if (view.extent(0) >= n) return;
+  const std::string label = view.label();
+  const bool grows = view.extent(0) > 0;
+  view = View();  // the old memory goes before the new one comes
+  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), grows ? n + n / 16 : n);
+}
+
+}  // namespace mpm

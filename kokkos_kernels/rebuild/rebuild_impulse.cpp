@@ -1,0 +1,41 @@
+#include "rebuild/rebuild.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>& s) {
+  KeptImpulse<Space, T, Dim> kept;
+  if (!s.has_friction || s.nodes.impulse.extent(1) == 0) return kept;
+  kept.slots = s.patches.slots;
+  kept.impulse = s.nodes.impulse;  // restore_impulse makes a new one
+  kept.number =
+      decltype(kept.number)(Kokkos::view_alloc("mpm::kept_number", Kokkos::WithoutInitializing), kept.slots);
+  Kokkos::deep_copy(s.space, kept.number,
+                    Kokkos::subview(s.patches.number, Kokkos::make_pair(0, kept.slots)));
+  return kept;
+}
+
+template <class Space, class T, int Dim>
+void restore_impulse(State<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& kept) {
+  const int rigids = static_cast<int>(s.rigid_points.size());
+  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", rigids, s.patches.node_count());
+  const auto old = kept.impulse;
+  const auto number = kept.number;
+  const auto impulse = s.nodes.impulse;
+  const auto slot_of = s.patches.slot_of;
+  Kokkos::parallel_for(
+      "mpm::restore_impulse", Kokkos::RangePolicy<Space>(s.space, 0, kept.slots * Patch<Dim>::cells),
+      KOKKOS_LAMBDA(int i) {
+        const int slot = slot_of(number(i / Patch<Dim>::cells));
+        if (slot < 0) return;
+        const int now = slot * Patch<Dim>::cells + i % Patch<Dim>::cells;
+        for (int r = 0; r < rigids; ++r) impulse(r, now) = old(r, i);
+      });
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                           \
+  template KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>&); \
+  template void restore_impulse(State<Space, T, Dim>&, const KeptImpulse<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

@@ -1,0 +1,347 @@
+// The order of the points: by slot, by cell in it, by id in the cell. A counting sort, then each cell's few
+// points are put in order of id, so that the result does not depend on how threads ran.
+
+#include "functions/step_kernels.hpp"
+#include "physics/share.hpp"
+#include "rebuild/batches.hpp"
+#include "rebuild/rebuild.hpp"
+
+namespace mpm {
+namespace {
+
+/// Bins behind those of the cells, for points of patches without a mark. They are many, so that threads do
+/// not wait for one another, and a patch has one, so that its points stay about together.
+constexpr int k_rest_bins = 1024;
+
+/// Numbers of points by bin become the first point of each, and of the one behind the last. A thread takes
+/// `together` bins at a time, of which there is a multiple.
+template <class Space, class Begin>
+void begin_of_bins(const Space& space, const Begin& begin, int bins, int together) {
+  const int groups = bins / together;
+  Kokkos::parallel_scan(
+      "mpm::begin_of_bins", Kokkos::RangePolicy<Space>(space, 0, groups),
+      KOKKOS_LAMBDA(int group, int& sum, bool last) {
+        for (int c = group * together; c < (group + 1) * together; ++c) {
+          const int n = begin(c);
+          if (last) begin(c) = sum;
+          sum += n;
+        }
+        if (last && group == groups - 1) begin(bins) = sum;
+      });
+}
+
+/// Cells of the points under the new patch table, counted and summed to ranges. Points of patches without a
+/// mark have none: they go behind the others.
+template <class Space, class Points_, class Slots>
+void count_by_cell(const Space& space, Sorted<Space, Points_>& set, const Slots& slot_of, const Slots& marks,
+                   int cells, int cells_per_patch) {
+  using Range = Kokkos::RangePolicy<Space>;
+  const int bins = cells + k_rest_bins;
+  ensure(set.bins.begin, bins + 1);
+  ensure(set.order, set.points.all);
+  const auto begin = set.bins.begin, order = set.order;
+  const auto cell = set.points.cell;
+  const auto address = set.address;
+  Kokkos::parallel_for(
+      "mpm::clear_bins", Range(space, 0, bins + 1), KOKKOS_LAMBDA(int c) { begin(c) = 0; });
+  Kokkos::parallel_for(
+      "mpm::count_by_cell", Range(space, 0, set.points.all), KOKKOS_LAMBDA(int p) {
+        const long patch = address(p) / cells_per_patch;
+        const bool held = address(p) >= 0 && marks(patch) != 0;
+        const int c = held ? slot_of(patch) * cells_per_patch + static_cast<int>(address(p) % cells_per_patch)
+                           : cells + static_cast<int>((address(p) < 0 ? p : patch) % k_rest_bins);
+        cell(p) = c;
+        order(p) = Kokkos::atomic_fetch_add(&begin(c), 1);  // place in the cell, for now
+      });
+  begin_of_bins(space, begin, bins, cells_per_patch);
+}
+
+/// set.order becomes the former place of each point of the new order, and the points' cells are in it.
+/// `spare` is scratch.
+template <class Space, class Points_, class Spare>
+void order_points(const Space& space, Sorted<Space, Points_>& set, const Spare& spare, int cells) {
+  using Range = Kokkos::RangePolicy<Space>;
+  const int count = set.points.all;
+  const auto begin = set.bins.begin, order = set.order;
+  const auto cell = set.points.cell, id = set.points.id;
+  Kokkos::View<int*, typename Space::memory_space, Kokkos::MemoryUnmanaged> former(
+      reinterpret_cast<int*>(spare.data()), count);
+  Kokkos::parallel_for(
+      "mpm::place_points", Range(space, 0, count),
+      KOKKOS_LAMBDA(int p) { former(begin(cell(p)) + order(p)) = p; });
+  Kokkos::parallel_for(
+      "mpm::order_in_cell", Range(space, 0, cells), KOKKOS_LAMBDA(int c) {
+        for (int n = begin(c) + 1; n < begin(c + 1); ++n) {
+          const int p = former(n);
+          int m = n;
+          for (; m > begin(c) && id(former(m - 1)) > id(p); --m) former(m) = former(m - 1);
+          former(m) = p;
+        }
+        for (int n = begin(c); n < begin(c + 1); ++n) cell(n) = c;
+      });
+  Kokkos::parallel_for(
+      "mpm::keep_order", Range(space, 0, count), KOKKOS_LAMBDA(int p) { order(p) = former(p); });
+}
+
+/// Puts one field into the new order, piece by piece of its values.
+template <class Space, class Field, class Order, class Spare>
+void permute(const Space& space, const Field& field, const Order& order, int count, const Spare& spare) {
+  using Range = Kokkos::RangePolicy<Space>;
+  using Value = typename Field::value_type;
+  using Part = PartOf<Value>;
+  constexpr int parts = sizeof(Value) / sizeof(Part);
+  Part* const sorted = reinterpret_cast<Part*>(spare.data());
+  Part* const whole = reinterpret_cast<Part*>(field.data());
+  for (int k = 0; k < parts; ++k) {
+    Kokkos::parallel_for(
+        "mpm::permute", Range(space, 0, count),
+        KOKKOS_LAMBDA(int p) { sorted[p] = whole[std::size_t(order(p)) * parts + k]; });
+    Kokkos::parallel_for(
+        "mpm::permute_back", Range(space, 0, count),
+        KOKKOS_LAMBDA(int p) { whole[std::size_t(p) * parts + k] = sorted[p]; });
+  }
+}
+
+/// Whether a field is the same for all points, so that no order changes it.
+template <class Space, class T, int Dim>
+bool is_uniform(const Soil<Space, T, Dim>& soil, const void* field) {
+  return field == soil.body.data() && soil.bodies.extent(0) == 1;
+}
+template <class Space, class T, int Dim>
+bool is_uniform(const RigidPoints<Space, T, Dim>&, const void*) {
+  return false;
+}
+
+template <class Space, class Points_, class Order, class Spare>
+void permute_fields(const Space& space, Points_& points, const Order& order, const Spare& spare) {
+  const auto field = [&](const auto& view) { permute(space, view, order, points.all, spare); };
+  field(points.id);
+  for_each_field(points, [&](const auto& view) {
+    if (!is_uniform(points, view.data())) field(view);
+  });
+}
+/// Points that live in memory of the host are moved there by its own threads: a device would read and write
+/// it in pieces.
+template <class Space, class Points_, class Spare>
+void permute_fields(const Space& space, Sorted<Space, Points_>& set, const Spare& spare) {
+  if constexpr (is_device<Space>) {
+    const bool at_host = set.order.use_count() == 0;  // memory of Batches::store
+    if (at_host) {
+      const Kokkos::DefaultHostExecutionSpace threads;
+      const Kokkos::View<int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> order(set.order.data(),
+                                                                                 set.order.extent(0));
+      space.fence("mpm::before the host's threads");
+      permute_fields(threads, set.points, order, spare);
+      return threads.fence("mpm::permute_fields");
+    }
+  }
+  permute_fields(space, set.points, set.order, spare);
+}
+
+/// Numbers of slots of each colour that hold points, and of the points.
+template <int Dim>
+struct Held {
+  int slots[Patch<Dim>::colours] = {}, points = 0;
+  KOKKOS_INLINE_FUNCTION Held& operator+=(const Held& other) {
+    for (int colour = 0; colour < Patch<Dim>::colours; ++colour) slots[colour] += other.slots[colour];
+    points += other.points;
+    return *this;
+  }
+};
+
+/// Colour of the patch of a slot, -1 where it holds no points.
+template <class Space, int Dim>
+struct ColourOfSlot {
+  Kokkos::View<int*, typename Space::memory_space> begin;
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  KOKKOS_INLINE_FUNCTION int operator()(int slot) const {
+    if (begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells)) return -1;
+    int colour = 0;
+    for (int d = 0; d < Dim && is_device<Space>; ++d)
+      colour |= ((origin(slot)[d] >> Patch<Dim>::log_edge) & 1) << d;
+    return colour;
+  }
+};
+
+/// What holds points: how many of them have a slot, and these slots, ordered by the colour of their patch.
+template <class Space, class Points_, int Dim>
+void list_held(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches) {
+  using Range = Kokkos::RangePolicy<Space>;
+  const int slots = patches.slots;
+  ensure(set.bins.by_colour, slots);
+  const auto by_colour = set.bins.by_colour, begin = set.bins.begin;
+  const ColourOfSlot<Space, Dim> colour_of{begin, patches.origin};
+  Held<Dim> held, first;
+  Kokkos::parallel_reduce(
+      "mpm::count_held", Range(space, 0, slots),
+      KOKKOS_LAMBDA(int slot, Held<Dim>& n) {
+        const int colour = colour_of(slot);
+        if (colour >= 0) ++n.slots[colour];
+        if (slot == slots - 1) n.points = begin(slots * Patch<Dim>::cells);
+      },
+      held);
+  set.points.count = held.points;
+  set.bins.first_slot = 0, set.bins.last_slot = slots;
+  set.bins.colour_begin[0] = 0;
+  for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
+    first.slots[colour] = set.bins.colour_begin[colour];
+    set.bins.colour_begin[colour + 1] = first.slots[colour] + held.slots[colour];
+  }
+  Kokkos::parallel_scan(
+      "mpm::slots_by_colour", Range(space, 0, slots), KOKKOS_LAMBDA(int slot, Held<Dim>& n, bool last) {
+        const int colour = colour_of(slot);
+        if (colour < 0) return;
+        if (last) by_colour(first.slots[colour] + n.slots[colour]) = slot;
+        ++n.slots[colour];
+      });
+}
+
+template <class Space, class Points_, int Dim, class Spare>
+void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches,
+              const Kokkos::View<int*, typename Space::memory_space>& marks, Spare& spare) {
+  const int cells = patches.node_count();
+  ensure(spare, spare_of_point(set.points) * set.points.all);
+  count_by_cell(space, set, patches.slot_of, marks, cells, Patch<Dim>::cells);
+  order_points(space, set, spare, cells);
+  permute_fields(space, set, spare);
+  list_held(space, set, patches);
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void sort_points(State<Space, T, Dim>& s) {
+  sort_set(s.space, s.soil, s.patches, s.marks, s.spare);
+  s.soil.points.all = s.soil.points.count;  // what is left belongs to other ranks now
+  for (auto& set : s.rigid_points) sort_set(s.space, set, s.patches, s.marks, s.spare);
+}
+
+/// Distance [cells] of a surface from the middle of a patch, beyond which it touches no node that particles
+/// of the patch reach, until the next rebuild: half the diagonal of their window, the reach of a contact (a
+/// cell along each axis), and the movement till then.
+template <int Dim>
+double far_from_patch(double margin) {
+  constexpr double half = Patch<Dim>::edge / 2 + 1, step_beyond_margin = 0.5;
+  return std::sqrt(static_cast<double>(Dim)) * (half + 1) + margin + step_beyond_margin;
+}
+
+template <class Space, class T, int Dim>
+void mark_near_rigids(State<Space, T, Dim>& s) {
+  ensure(s.near_rigid, s.patches.slots);
+  const auto near = s.near_rigid;
+  const auto around = s.patches.around;
+  const auto origin = s.patches.origin;
+  const auto number = s.patches.number;
+  const auto rigids = s.rigids;
+  const auto vertices = s.vertices;
+  const auto grid = s.grid;
+  const double spacing = s.spacing, far = far_from_patch<Dim>(s.p2g.margin) * spacing;
+  const int slots = s.patches.slots;
+  Kokkos::deep_copy(s.space, near, 0);
+  for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
+    const auto begin = s.rigid_points[r].bins.begin;
+    Kokkos::parallel_for(
+        "mpm::mark_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
+          bool holds = grid.field_of(number(slot)) > 0;  // where no rigid has points
+          for (int k = 0; k < Patch<Dim>::around; ++k) {
+            const int other = around(slot, k);
+            holds |= other >= 0 && begin(other * Patch<Dim>::cells) < begin((other + 1) * Patch<Dim>::cells);
+          }
+          if (!holds) return;
+          const Rigid<Dim>& rigid = rigids(r);
+          Vector<double, Dim> middle;  // bodies go on beyond the mesh
+          for (int d = 0; d < Dim; ++d) {
+            const int at = origin(slot)[d] + Patch<Dim>::edge / 2;
+            middle[d] = Kokkos::max(0, Kokkos::min(at, grid.cells[d])) * spacing - rigid.displacement[d];
+          }
+          if (rigid.surface_normal && distance_to(rigid.surface, vertices, middle).value > far) return;
+          near(slot) = 1;
+        });
+  }
+  ensure(s.near_slots, slots);
+  const auto list = s.near_slots;
+  Kokkos::parallel_scan(
+      "mpm::list_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots),
+      KOKKOS_LAMBDA(int slot, int& n, bool last) {
+        if (near(slot) == 0) return;
+        if (last) list(n) = slot, near(slot) = n + 1;
+        ++n;
+      },
+      s.near_count);
+  if (s.soil_boundary && has_windows(s.space)) {
+    s.boundary_windows.place = near;
+    ensure(s.boundary_windows.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.near_count);
+  }
+  if (s.shear_share && has_windows(s.space)) {
+    s.strength_windows.place = near;
+    ensure(s.strength_windows.sums, window_bytes<StrengthSource<Space, T, Dim>> * s.near_count);
+  }
+  ensure(s.slot_forces, std::size_t(s.near_count) * Dim * s.rigid_points.size());
+}
+
+template <class Space, class T, int Dim>
+void average_pressure(State<Space, T, Dim>& s) {
+  const auto soil = s.soil.points;
+  const auto begin = s.soil.bins.begin;
+  const T share = static_cast<T>(s.f_bar_share);
+  Kokkos::parallel_for(
+      "mpm::average_pressure", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
+      KOKKOS_LAMBDA(int cell) {
+        T volume = 0, sum = 0;
+        for (int p = begin(cell); p < begin(cell + 1); ++p) {
+          volume += soil.volume(p);
+          sum += soil.volume(p) * mean_of(soil.stress(p));
+        }
+        for (int p = begin(cell); p < begin(cell + 1); ++p) {
+          const T change = share * (sum / volume - mean_of(soil.stress(p)));
+          for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
+        }
+      });
+}
+
+template <class Space, class T, int Dim>
+void sort_and_list(State<Space, T, Dim>& s) {
+  const auto kept = keep_impulse(s);
+  activate_patches(s);
+  if (s.has_friction) restore_impulse(s, kept);
+  sort_points(s);
+  build_lists(s);
+  if (!s.rigid_points.empty()) mark_near_rigids(s);
+  if (s.f_bar_share > 0 && !s.keeps_stress) average_pressure(s);
+
+  s.plan = plan_step(s);
+  s.summed = {};
+  s.strays.known = false;
+  ensure(s.strays.alone, s.patches.slots);
+  Kokkos::deep_copy(s.space, s.strays.alone, 0);
+  const int nodes = s.patches.node_count();
+  ensure(s.nodes.soil, nodes);
+  ensure(s.nodes.motion, nodes);
+  if (s.xpic_order > 0) ensure(s.nodes.rest, nodes);
+  if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
+  if (s.shear_share) ensure(s.nodes.strength, nodes);
+  if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
+    s.nodes.rigid = decltype(s.nodes.rigid)(
+        Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),
+        nodes + (s.nodes.rigid.extent(1) > 0 ? nodes / 16 : 0));
+  if (s.mass_normals && s.plan.writes_sums)
+    Kokkos::deep_copy(s.space, s.nodes.rigid, T(0));  // only those near rigids are written
+  if (s.batches.in_use()) plan_batches(s);
+  const auto control = s.control;
+  Kokkos::parallel_for(
+      "mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
+        control().bound = 0;
+        control().due_in = 0;
+        control().lost = 0;
+        control().paused = control().fault_count > 0;
+      });
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                   \
+  template void sort_points(State<Space, T, Dim>&);      \
+  template void mark_near_rigids(State<Space, T, Dim>&); \
+  template void average_pressure(State<Space, T, Dim>&); \
+  template void sort_and_list(State<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

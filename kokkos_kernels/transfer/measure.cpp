@@ -1,0 +1,173 @@
+#include "transfer/measure.hpp"
+
+namespace mpm {
+namespace {
+
+/// The measure as a sum for parallel_reduce.
+template <int Dim>
+struct Sum {
+  BodyMeasure m;
+  KOKKOS_INLINE_FUNCTION Sum() : m{} {
+    for (int d = 0; d < 3; ++d) {
+      m.lower[d] = Kokkos::Experimental::finite_max<double>::value;
+      m.upper[d] = -m.lower[d];
+    }
+  }
+  KOKKOS_INLINE_FUNCTION Sum& operator+=(const Sum& other) {
+    for (int d = 0; d < Dim; ++d) {
+      m.lower[d] = Kokkos::fmin(m.lower[d], other.m.lower[d]);
+      m.upper[d] = Kokkos::fmax(m.upper[d], other.m.upper[d]);
+      m.momentum[d] += other.m.momentum[d];
+      m.centre[d] += other.m.centre[d];
+    }
+    m.kinetic_energy += other.m.kinetic_energy;
+    m.stored_energy += other.m.stored_energy;
+    m.mass += other.m.mass, m.weight += other.m.weight;
+    m.count += other.m.count, m.alone += other.m.alone, m.limited += other.m.limited;
+    return *this;
+  }
+};
+
+/// Where particles are, m from the mesh's lower corner.
+template <class Space, class T, int Dim>
+struct Positions {
+  Soil<Space, T, Dim> soil;
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  double spacing;  // m
+
+  KOKKOS_INLINE_FUNCTION double operator()(int p, int d) const {
+    const int cell = soil.cell(p);
+    return (double(origin(cell / Patch<Dim>::cells)[d]) + coord_of<Dim>(cell)[d] + soil.coordinate(p)[d]) *
+           spacing;
+  }
+};
+
+/// A coordinate as a whole number of steps from the lower end of an extent. It never falls where x grows, so
+/// that an order by it is an order by x.
+struct Ruler {
+  static constexpr int digit = 12, digits = 2;  // bits of a digit
+  double lower, scale;                          // m, steps/m
+
+  Ruler(double low, double high) : lower(low), scale(high > low ? (1 << digit * digits) / (high - low) : 0) {}
+  KOKKOS_INLINE_FUNCTION int operator()(double x) const {
+    constexpr double last = (1 << digit * digits) - 1;
+    return static_cast<int>(Kokkos::fmax(0.0, Kokkos::fmin(last, (x - lower) * scale)));
+  }
+};
+
+}  // namespace
+}  // namespace mpm
+
+namespace Kokkos {
+template <int Dim>
+struct reduction_identity<mpm::Sum<Dim>> {
+  KOKKOS_FORCEINLINE_FUNCTION static mpm::Sum<Dim> sum() { return {}; }
+};
+}  // namespace Kokkos
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
+  // A sum of as many equal numbers, one after the other, would gather round-off of their number. A device
+  // adds pair by pair.
+  constexpr int together = is_device<Space> ? 1 : 256;
+  const auto soil = s.soil.points;
+  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
+  const int count = soil.count;
+  const auto alone = s.strays.alone;
+  const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
+  Sum<Dim> total;
+  Kokkos::parallel_reduce(
+      "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, (count + together - 1) / together),
+      KOKKOS_LAMBDA(int part, Sum<Dim>& sum) {
+        Sum<Dim> own;
+        const auto common = soil.bodies(body);
+        const int end = Kokkos::min(count, (part + 1) * together);
+        for (int p = part * together; p < end; ++p) {
+          if (soil.body(p) != body) continue;
+          const double mass = soil.mass_of(p, common), weight = soil.has_own_mass ? mass : 1;
+          for (int d = 0; d < Dim; ++d) {
+            const double x = position(p, d), v = soil.velocity(p)[d];
+            own.m.lower[d] = Kokkos::fmin(own.m.lower[d], x);
+            own.m.upper[d] = Kokkos::fmax(own.m.upper[d], x);
+            own.m.momentum[d] += mass * v;
+            own.m.centre[d] += weight * x;
+            own.m.kinetic_energy += mass * v * v / 2;
+          }
+          own.m.mass += mass, own.m.weight += weight;
+          soil.materials(common.material).visit([&](const auto& law) {
+            own.m.stored_energy +=
+                double(soil.volume(p)) * law.stored_energy(soil.stress(p), soil.state_of(law, p));
+          });
+          own.m.alone += is_alone(alone, soil.cell(p));
+          own.m.limited += soil.volume(p) <= least || soil.volume(p) >= most;
+          ++own.m.count;
+        }
+        sum += own;
+      },
+      Kokkos::Sum<Sum<Dim>>(total));
+  for (int d = 0; d < Dim && total.m.weight > 0; ++d) total.m.centre[d] /= total.m.weight;
+  return total.m;
+}
+
+template <class Space, class T, int Dim>
+double fastest_wave(const State<Space, T, Dim>& s) {
+  const auto soil = s.soil.points;
+  double fastest = 0;  // m2/s2
+  Kokkos::parallel_reduce(
+      "mpm::fastest_wave", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
+      KOKKOS_LAMBDA(int p, double& largest) {
+        const auto of = soil.properties(p);
+        soil.materials(of.material).visit([&](const auto& law) {
+          const double modulus = law.wave_modulus(soil.stress(p), soil.state_of(law, p));
+          largest = Kokkos::fmax(largest, modulus * soil.volume(p) / of.mass);
+        });
+      },
+      Kokkos::Max<double>(fastest));
+  return Kokkos::sqrt(Kokkos::fmax(0.0, fastest));
+}
+
+template <class Space, class T, int Dim>
+double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
+                         const OverRanks& over) {
+  const auto soil = s.soil.points;
+  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
+  const Ruler ruler(m.lower[d], m.upper[d]);
+  const Kokkos::RangePolicy<Space> range(s.space, 0, soil.count);
+  const Kokkos::View<int*, typename Space::memory_space> counts("mpm::ranked_coordinate", 1 << Ruler::digit);
+  int place = 0;  // on the ruler, of the particle sought: digit by digit, the highest first
+  for (int shift = Ruler::digit * (Ruler::digits - 1); shift >= 0; shift -= Ruler::digit) {
+    Kokkos::deep_copy(s.space, counts, 0);
+    Kokkos::parallel_for(
+        "mpm::count_by_digit", range, KOKKOS_LAMBDA(int p) {
+          if (soil.body(p) != body) return;
+          const int at = ruler(position(p, d)) >> shift;
+          if (at >> Ruler::digit == place) Kokkos::atomic_inc(&counts(at - (place << Ruler::digit)));
+        });
+    const auto count = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), counts);
+    if (over.sum) over.sum(count.data(), 1 << Ruler::digit);
+    int digit = 0;
+    while (rank > count(digit)) rank -= count(digit++);
+    place = (place << Ruler::digit) + digit;
+  }
+  double x = m.lower[d];
+  Kokkos::parallel_reduce(
+      "mpm::largest_of_digits", range,
+      KOKKOS_LAMBDA(int p, double& largest) {
+        if (soil.body(p) == body && ruler(position(p, d)) == place)
+          largest = Kokkos::fmax(largest, position(p, d));
+      },
+      Kokkos::Max<double>(x));
+  if (over.largest) over.largest(&x);
+  return x;
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                                               \
+  template BodyMeasure measure(const State<Space, T, Dim>&, int);                                    \
+  template double fastest_wave(const State<Space, T, Dim>&);                                         \
+  template double ranked_coordinate(const State<Space, T, Dim>&, int, int, long, const BodyMeasure&, \
+                                    const OverRanks&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

@@ -1,0 +1,41 @@
+#pragma once
+// Sums, extents and quantiles over the particles of a body, for the history and the checks.
+
+#include <functional>
+
+#include "base/spaces.hpp"
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// Extent and centre of mass [m from the mesh's lower corner], kinetic and stored energy [J], momentum [kg
+/// m/s] and mass [kg] of one body, and the number of its particles, of those that are alone, and of those
+/// whose volume is at a bound. The centre is a mean by `weight`: the mass, or where all particles have one
+/// mass their number, which is exact.
+struct BodyMeasure {
+  double lower[3], upper[3], kinetic_energy, stored_energy, momentum[3], centre[3], mass, weight;
+  long count, alone, limited;
+};
+
+template <class Space, class T, int Dim>
+BodyMeasure measure(const State<Space, T, Dim>& s, int body);
+
+/// Speed of the fastest wave in any particle as it is now [m/s] (Eq. 14); 0 without particles.
+template <class Space, class T, int Dim>
+double fastest_wave(const State<Space, T, Dim>& s);
+
+/// What a measure asks of the other ranks: numbers summed, the largest one taken, each in its place. Empty on
+/// one rank.
+struct OverRanks {
+  std::function<void(int*, int)> sum;
+  std::function<void(double*)> largest;
+};
+
+/// The rank-th smallest coordinate (1 <= rank <= m.count) of a body's particles along d [m from the mesh's
+/// lower corner]; m is the measure of the whole body. It is a particle's coordinate, at most 2^-24 of the
+/// body's extent above the exact one, and the same whatever the number of threads.
+template <class Space, class T, int Dim>
+double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
+                         const OverRanks& over = {});
+
+}  // namespace mpm

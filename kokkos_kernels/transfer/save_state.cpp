@@ -1,0 +1,282 @@
+#include "transfer/save_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "functions/step_kernels.hpp"
+#include "rebuild/rebuild.hpp"
+
+namespace mpm {
+namespace {
+
+/// The number that an entry of a field is made of, and how many of them it has.
+template <class Value>
+auto number_of(const Value& value) {
+  if constexpr (std::is_arithmetic_v<Value>)
+    return value;
+  else
+    return value.c[0];
+}
+template <class Value>
+using Number = decltype(number_of(std::declval<Value>()));
+template <class Value>
+constexpr int components_of = sizeof(Value) / sizeof(Number<Value>);
+
+template <class View>
+SavedField save_field(const std::string& name, const View& view, int count) {
+  using Value = typename View::non_const_value_type;
+  constexpr int n = components_of<Value>;
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+  SavedField field{name, n, static_cast<int>(sizeof(Number<Value>)), {}};
+  field.values.resize(std::size_t(count) * n);
+  const auto* numbers = reinterpret_cast<const Number<Value>*>(host.data());
+  std::copy(numbers, numbers + field.values.size(), field.values.begin());
+  return field;
+}
+
+/// Addresses of the cells where points are binned.
+template <class Space, int Dim, class Cells>
+std::vector<long> addresses_of(const Patches<Space, Dim>& patches, const Cells& cells, int count) {
+  const auto cell = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), cells);
+  const auto number = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), patches.number);
+  std::vector<long> address(count);
+  for (int p = 0; p < count; ++p) address[p] = address_of_node<Dim>(number, cell(p));
+  return address;
+}
+
+template <class Patches_, class Points_>
+SavedPoints save_points(const Patches_& patches, Points_ points) {
+  SavedPoints saved;
+  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
+  saved.id.assign(id.data(), id.data() + points.count);
+  saved.address = addresses_of(patches, points.cell, points.count);
+  const auto save = [&](const char* name, Use, const auto& field) {
+    saved.fields.push_back(save_field(name, field, points.count));
+  };
+  for_each_field_of(save, points);
+  return saved;
+}
+
+template <class Space, class T, int Dim>
+SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
+  SavedImpulse saved;
+  if (!s.has_friction) return saved;
+  const auto number = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.number);
+  const auto impulse = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
+  // Of several ranks one answers for a node: what the others have there may be long out of date.
+  const auto counted = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.counted);
+  const int rigids = static_cast<int>(s.rigid_points.size());
+  const auto holds_some = [&](int i) {
+    if (counted.extent(0) > 0 && (counted(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0)
+      return false;
+    for (int r = 0; r < rigids; ++r)
+      if (impulse(r, i) != 0 || std::signbit(impulse(r, i))) return true;
+    return false;
+  };
+  for (int i = 0; i < s.patches.node_count(); ++i) {
+    if (!holds_some(i)) continue;
+    saved.address.push_back(address_of_node<Dim>(number, i));
+    for (int r = 0; r < rigids; ++r) saved.values.push_back(impulse(r, i));
+  }
+  return saved;
+}
+
+/// What has left the run, and which cells hold particles that are alone.
+template <class Space, class T, int Dim>
+void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
+  const auto put_back = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.put_back);
+  for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
+    const Lost& lost = s.strays.lost[b];
+    const double numbers[k_lost] = {lost.count,       lost.mass,        lost.kinetic_energy, lost.momentum[0],
+                                    lost.momentum[1], lost.momentum[2], double(put_back(b))};
+    saved.lost.insert(saved.lost.end(), numbers, numbers + k_lost);
+  }
+  saved.alone_known = s.strays.known ? 1 : 0;
+  if (!s.strays.known) return;
+  const auto alone = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.alone);
+  const auto number = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.number);
+  for (int c = 0; c < s.patches.node_count(); ++c)
+    if (is_alone(alone, c)) saved.alone.push_back(address_of_node<Dim>(number, c));
+}
+
+template <class Space, class T, int Dim>
+void restore_lost(State<Space, T, Dim>& s, const SavedState& saved) {
+  const auto put_back = Kokkos::create_mirror_view(s.strays.put_back);
+  for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
+    const double* const numbers = &saved.lost[b * k_lost];
+    s.strays.lost[b] = {numbers[0], numbers[1], numbers[2], {numbers[3], numbers[4], numbers[5]}};
+    put_back(b) = static_cast<int>(numbers[6]);
+  }
+  Kokkos::deep_copy(s.strays.put_back, put_back);
+}
+
+/// After the lists were made.
+template <class Space, class T, int Dim>
+void restore_alone(State<Space, T, Dim>& s, const SavedState& saved) {
+  s.strays.known = saved.alone_known != 0;
+  const auto alone = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.alone);
+  const auto slot_of = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.slot_of);
+  for (const long address : saved.alone)
+    if (const int slot = slot_of(address / Patch<Dim>::cells); slot >= 0)
+      alone(slot) |= std::uint64_t(1) << (address % Patch<Dim>::cells);
+  Kokkos::deep_copy(s.strays.alone, alone);
+}
+
+/// Makes a view hold n entries; its content is lost where it had another number.
+template <class View>
+void resize(View& view, std::size_t n) {
+  const std::string label = view.label();
+  if (view.extent(0) != n) view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), n);
+}
+
+/// Puts a saved field into a view of `count` entries. False where there is none of its name and size.
+template <class View>
+bool restore_field(const std::string& name, View& view, const SavedPoints& saved, int count) {
+  using Value = typename View::non_const_value_type;
+  constexpr int n = components_of<Value>;
+  const auto field = std::find_if(saved.fields.begin(), saved.fields.end(),
+                                  [&](const SavedField& f) { return f.name == name; });
+  if (field == saved.fields.end() || field->components != n || field->values.size() != std::size_t(count) * n)
+    return false;
+  resize(view, count);
+  const auto host = Kokkos::create_mirror_view(view);
+  auto* numbers = reinterpret_cast<Number<Value>*>(host.data());
+  for (std::size_t k = 0; k < field->values.size(); ++k)
+    numbers[k] = static_cast<Number<Value>>(field->values[k]);
+  Kokkos::deep_copy(view, host);
+  return true;
+}
+
+template <class View>
+void restore_whole(View& view, const std::vector<long>& values) {
+  resize(view, values.size());
+  const auto host = Kokkos::create_mirror_view(view);
+  for (std::size_t p = 0; p < values.size(); ++p)
+    host(p) = static_cast<typename View::non_const_value_type>(values[p]);
+  Kokkos::deep_copy(view, host);
+}
+
+/// Points with their addresses, not sorted yet. The name of a field that does not fit, or nothing.
+template <class Space, class Points_>
+std::string restore_points(Sorted<Space, Points_>& set, const SavedPoints& saved) {
+  auto& points = set.points;
+  points.count = points.all = static_cast<int>(saved.id.size());
+  std::string missing;
+  const auto restore = [&](const char* name, Use, auto& view) {
+    if (!restore_field(name, view, saved, points.count)) missing = name;
+  };
+  for_each_field_of(restore, points);
+  restore_whole(points.id, saved.id);
+  restore_whole(set.address, saved.address);
+  restore_whole(points.cell, saved.address);  // sorting gives the cells; only the length counts
+  return missing;
+}
+
+/// binned: the rigids stand where their points were binned, else where they are.
+template <class Space, class T, int Dim>
+void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved, bool binned) {
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  for (std::size_t r = 0; r < saved.rigids.size(); ++r)
+    for (int d = 0; d < Dim; ++d) {
+      const SavedRigid& from = saved.rigids[r];
+      host(r).displacement[d] = binned ? from.binned[d] : from.displacement[d];
+      host(r).binned[d] = from.binned[d];
+      host(r).velocity[d] = from.velocity[d];
+      host(r).impulse[d] = from.impulse[d];
+    }
+  Kokkos::deep_copy(s.rigids, host);
+}
+
+/// The patches are those of the run, so each node that held something is there.
+template <class Space, class T, int Dim>
+void restore_nodes(State<Space, T, Dim>& s, const SavedImpulse& saved) {
+  if (!s.has_friction) return;
+  const int rigids = static_cast<int>(s.rigid_points.size());
+  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", rigids, s.patches.node_count());
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
+  const auto slot_of = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.slot_of);
+  for (std::size_t n = 0; n < saved.address.size(); ++n) {
+    const int slot = slot_of(saved.address[n] / Patch<Dim>::cells);
+    if (slot < 0) continue;
+    const int i = slot * Patch<Dim>::cells + static_cast<int>(saved.address[n] % Patch<Dim>::cells);
+    for (int r = 0; r < rigids; ++r) host(r, i) = static_cast<T>(saved.values[n * rigids + r]);
+  }
+  Kokkos::deep_copy(s.nodes.impulse, host);
+}
+
+template <class Space, class T, int Dim>
+void restore_control(State<Space, T, Dim>& s, const SavedState& saved) {
+  const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
+  control().bound = saved.bound;
+  control().increment = saved.increment;
+  control().due_in = s.rebuild_late > 0 ? saved.due_in : 0;
+  control().paused = 0;
+  Kokkos::deep_copy(s.control, control);
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+SavedState save_state(const State<Space, T, Dim>& s) {
+  s.space.fence("mpm::save_state");
+  SavedState saved;
+  const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
+  saved.bound = control().bound, saved.increment = control().increment;
+  saved.margin = s.p2g.margin, saved.due_in = control().due_in;
+  saved.soil = save_points(s.patches, s.soil.points);
+  const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
+    SavedRigid& rigid = saved.rigids.emplace_back();
+    for (int d = 0; d < Dim; ++d) {
+      rigid.displacement[d] = rigids(r).displacement[d];
+      rigid.velocity[d] = rigids(r).velocity[d];
+      rigid.impulse[d] = rigids(r).impulse[d];
+      rigid.binned[d] = rigids(r).binned[d];
+    }
+  }
+  saved.impulse = save_impulse(s);
+  save_strays(s, saved);
+  return saved;
+}
+
+template <class Space, class T, int Dim>
+std::string take_saved(State<Space, T, Dim>& s, const SavedState& saved) {
+  if (saved.rigids.size() != s.rigid_points.size()) return "the number of rigids";
+  if (saved.lost.size() != s.strays.lost.size() * k_lost) return "the number of bodies";
+  restore_lost(s, saved);
+  const std::string missing = restore_points(s.soil, saved.soil);
+  if (!missing.empty()) return missing;
+  restore_rigids(s, saved, true);
+  locate_rigids(s);
+  return {};
+}
+
+template <class Space, class T, int Dim>
+void list_saved(State<Space, T, Dim>& s) {
+  // A rebuild brings the pressures of a cell together (F-bar); here none is made, only its tables.
+  const bool keeps = std::exchange(s.keeps_stress, true);
+  sort_and_list(s);
+  s.keeps_stress = keeps;
+}
+
+template <class Space, class T, int Dim>
+void finish_saved(State<Space, T, Dim>& s, const SavedState& saved) {
+  restore_rigids(s, saved, false);
+  move_rigid_points(s, s.space);
+  restore_nodes(s, saved.impulse);
+  restore_alone(s, saved);
+  restore_control(s, saved);
+  s.summed = {};
+  s.space.fence("mpm::restore_state");
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                       \
+  template SavedState save_state(const State<Space, T, Dim>& s);             \
+  template std::string take_saved(State<Space, T, Dim>&, const SavedState&); \
+  template void list_saved(State<Space, T, Dim>&);                           \
+  template void finish_saved(State<Space, T, Dim>&, const SavedState&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

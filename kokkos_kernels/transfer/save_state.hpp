@@ -1,0 +1,35 @@
+#pragma once
+// From a State to a SavedState and back. Between two steps only, with no rebuild due.
+
+#include "base/spaces.hpp"
+#include "data/saved_state.hpp"
+#include "data/state.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+SavedState save_state(const State<Space, T, Dim>& s);
+
+// A saved state takes the place of what `upload` made from the same input in three parts, between which
+// several ranks bring its points to their owners: the points, their order and lists, and all that hangs on
+// these. The next step then gives the bits that it would have given, where space and real type are the same.
+
+/// Empty, or what does not fit.
+template <class Space, class T, int Dim>
+std::string take_saved(State<Space, T, Dim>& s, const SavedState& saved);
+template <class Space, class T, int Dim>
+void list_saved(State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void finish_saved(State<Space, T, Dim>& s, const SavedState& saved);
+
+/// All of it, on one rank. Empty, or what does not fit.
+template <class Space, class T, int Dim>
+std::string restore_state(State<Space, T, Dim>& s, const SavedState& saved) {
+  const std::string unfit = take_saved(s, saved);
+  if (!unfit.empty()) return unfit;
+  list_saved(s);
+  finish_saved(s, saved);
+  return {};
+}
+
+}  // namespace mpm

@@ -1,0 +1,88 @@
+#pragma once
+// From a description on the host to a State on the device.
+
+#include <array>
+#include <vector>
+
+#include "rebuild/rebuild.hpp"
+
+namespace mpm {
+
+/// Whether a kernel reads from views what the host wrote there: false where the host compiler and the device
+/// compiler lay out Kokkos' views differently.
+template <class Space>
+bool device_agrees(const Space& space);
+
+/// The background mesh for kernels.
+struct GridInput {
+  double spacing = 1;  // m
+  std::array<int, 3> cells{};
+  std::array<int, 3> patches{};  // with the ring outside
+  std::array<std::array<Wall, 2>, 3> walls{};
+};
+
+struct MaterialInput {
+  int model = 0;                   // index into Materials
+  std::vector<double> parameters;  // in the order of the model's table
+};
+
+/// Particles of one deformable body. Positions are from the mesh's lower corner, Dim components each.
+struct BodyInput {
+  std::vector<double> position;            // m [Dim N]
+  std::vector<double> stress;              // Pa [sym_size N], or empty for none
+  std::vector<double> particle_velocity;   // m/s [Dim N], or empty where `velocity` holds for all
+  std::vector<std::vector<double>> state;  // of each state variable of the law [N], or empty for zero
+  std::vector<double> volume;              // m3 [N], or empty where particle_volume holds for all
+  std::vector<double> mass;                // kg [N], or empty where particle_mass holds for all
+  std::vector<double> velocity_gradient;   // m/s a cell [Dim^2 N], or empty where the velocities tell it
+  std::vector<int> id;                     // [N], or empty where they are counted from 0
+  double particle_volume = 0;              // m3
+  double least_volume = 0;                 // m3, of all ranks, as they were created; 0: that above
+  double most_volume = 0;                  // m3, likewise
+  double particle_mass = 0;                // kg; 0: density times particle_volume
+  double half_length = 0.25;               // cells
+  double density = 0;                      // kg/m3
+  double least_mass = 0;                   // kg, where they differ in mass, of all ranks; else 0
+  std::array<double, 3> velocity{};        // m/s
+  int material = 0;
+  int velocity_field = 0;  // bodies of one field stick to one another, those of two do not feel each other
+};
+
+/// The surface of a rigid body, as Surface has it.
+struct SurfaceInput {
+  SurfaceKind kind = SurfaceKind::box;
+  std::array<double, 3> centre{}, half{}, normal{};
+  double radius = 0, angle = 0;  // m, rad
+  std::vector<Vertex> vertices;
+};
+
+template <int Dim>
+Surface<Dim> surface_of(const SurfaceInput& in);
+
+/// Particles of one rigid body.
+struct RigidInput {
+  std::vector<double> position;      // m [Dim N]
+  double particle_volume = 0;        // m3
+  double half_length = 0.125;        // cells
+  double density = 1;                // kg/m3
+  std::array<double, 3> velocity{};  // m/s
+  std::array<double, 3> force{};     // N, external and weight
+  bool dynamic = false;
+  std::array<bool, 3> held{};  // a plane of symmetry cuts it, across which it does not move
+  double shear_limit = 0;      // Pa, infinite where only the friction limits
+  double shear_share = -1;     // -, of the soil's strength instead of the limit; negative: none
+  double friction = -1;        // -, negative: none
+  SurfaceInput surface;
+  bool surface_normal = false;  // contact normals from the surface, not from the mass gradient
+  bool separates = true;        // the soil may part from it
+  double reach = 0;             // m, gap at which the contact ends; 0: it does not depend on the gap
+  double exponent = 6;          // -, of its decrease with the gap
+};
+
+/// Puts the particles on the device and makes patches, bins and lists. s.p2g and the scalars of s are set by
+/// the caller, before. Returns the first fault (a particle outside the mesh), if any.
+template <class Space, class T, int Dim>
+Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
+             const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids);
+
+}  // namespace mpm
