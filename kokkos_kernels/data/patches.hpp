@@ -41,8 +41,8 @@ KOKKOS_INLINE_FUNCTION constexpr Coord<Dim> coord_of(int place) {
 }
 
 /// The background mesh as kernels see it. One ring of patches lies outside the mesh on every side, for the
-/// nodes that a particle at a wall reaches. Each velocity field has a whole grid of patches of its own, numbered
-/// behind those of the field before it, so that bodies of two fields share no node.
+/// nodes that a particle at a wall reaches. Each velocity field has a whole grid of patches of its own,
+/// numbered behind those of the field before it, so that bodies of two fields share no node.
 template <class T, int Dim>
 struct Grid {
   T spacing, inv_spacing;  // m, 1/m

@@ -10,8 +10,8 @@
 namespace mpm {
 namespace {
 
-/// Number in the whole grid of the k-th patch round the one of a field with lower cell `at`, -1 where there is
-/// none.
+/// Number in the whole grid of the k-th patch round the one of a field with lower cell `at`, -1 where there
+/// is none.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION long patch_around(const Grid<T, Dim>& grid, Coord<Dim> at, int field, int k) {
   for (int d = 0; d < Dim; ++d, k /= 3) {
@@ -65,8 +65,8 @@ void mark_soil(const State<Space, T, Dim>& s, const Marks& marks) {
 }
 
 /// Marks the patches of the first velocity field that hold points of a rigid and lie at those of the soil: no
-/// other point of it reaches a node that soil reaches before the next rebuild. Contact in the other fields asks
-/// the rigid's surface alone.
+/// other point of it reaches a node that soil reaches before the next rebuild. Contact in the other fields
+/// asks the rigid's surface alone.
 template <class Space, class T, int Dim, class Points_, class Marks>
 void mark_rigid(const State<Space, T, Dim>& s, const Sorted<Space, Points_>& set, const Marks& marks) {
   const auto address = set.address;
