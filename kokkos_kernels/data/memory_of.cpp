@@ -18,7 +18,8 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   };
   add_set(s.soil);
   for (const auto& set : s.rigid_points) add_set(set);
-  add(s.patches.slot_of), add(s.patches.origin), add(s.patches.around), add(s.marks), add(s.spare);
+  add(s.patches.slot_of), add(s.patches.number), add(s.patches.origin), add(s.patches.around), add(s.marks),
+      add(s.spare);
   add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.boundary), add(s.nodes.impulse);
   add(s.nodes.strength), add(s.nodes.rigid), add(s.near_rigid), add(s.vertices), add(s.strays.alone);
   add(s.boundary_windows.sums), add(s.strength_windows.sums);

@@ -41,12 +41,14 @@ KOKKOS_INLINE_FUNCTION constexpr Coord<Dim> coord_of(int place) {
 }
 
 /// The background mesh as kernels see it. One ring of patches lies outside the mesh on every side, for the
-/// nodes that a particle at a wall reaches.
+/// nodes that a particle at a wall reaches. Each velocity field has a whole grid of patches of its own,
+/// numbered behind those of the field before it, so that bodies of two fields share no node.
 template <class T, int Dim>
 struct Grid {
   T spacing, inv_spacing;  // m, 1/m
   Coord<Dim> cells;        // of the mesh
-  Coord<Dim> patches;      // with the ring outside
+  Coord<Dim> patches;      // of a velocity field, with the ring outside
+  int fields = 1;          // velocity fields
   Wall wall[Dim][2];       // lower and upper side of each direction
 
   KOKKOS_INLINE_FUNCTION bool holds(const Coord<Dim>& cell) const {
@@ -55,10 +57,14 @@ struct Grid {
     return true;
   }
   /// Number of the patch of a cell in the whole grid of patches, the ring outside included.
-  KOKKOS_INLINE_FUNCTION long patch_of(const Coord<Dim>& cell) const {
-    long n = 0;
+  KOKKOS_INLINE_FUNCTION long patch_of(const Coord<Dim>& cell, int field = 0) const {
+    long n = field;
     for (int d = Dim - 1; d >= 0; --d) n = n * patches[d] + (cell[d] >> Patch<Dim>::log_edge) + 1;
     return n;
+  }
+  /// Velocity field of a patch by its number.
+  KOKKOS_INLINE_FUNCTION int field_of(long patch) const {
+    return fields == 1 ? 0 : static_cast<int>(patch / patches_of_field());
   }
   /// Lower cell of a patch, the inverse of patch_of.
   KOKKOS_INLINE_FUNCTION Coord<Dim> origin_of(long patch) const {
@@ -71,14 +77,17 @@ struct Grid {
   }
   /// Address of a cell in the whole grid: patch_of * Patch::cells + place_of. Orders cells as the particles
   /// are.
-  KOKKOS_INLINE_FUNCTION long address_of(const Coord<Dim>& cell) const {
-    return patch_of(cell) * Patch<Dim>::cells + place_of<Dim>(cell);
+  KOKKOS_INLINE_FUNCTION long address_of(const Coord<Dim>& cell, int field = 0) const {
+    return patch_of(cell, field) * Patch<Dim>::cells + place_of<Dim>(cell);
   }
-  KOKKOS_INLINE_FUNCTION long patch_count() const {
+  /// Patches of one velocity field.
+  KOKKOS_INLINE_FUNCTION long patches_of_field() const {
     long n = 1;
     for (int d = 0; d < Dim; ++d) n *= patches[d];
     return n;
   }
+  /// Patches of all fields.
+  KOKKOS_INLINE_FUNCTION long patch_count() const { return fields * patches_of_field(); }
 };
 
 /// The patch table: which patches are active, where, and what lies around them.
@@ -88,12 +97,20 @@ struct Patches {
   int slots = 0;
   Coord<Dim> turn{};  // directions as slots count them, the one with the fewest patches first
   Kokkos::View<int*, Memory> slot_of;        // by Grid::patch_of; -1 where not active
+  Kokkos::View<int*, Memory> number;         // of the patch of a slot, Grid::patch_of
   Kokkos::View<Coord<Dim>*, Memory> origin;  // lower cell of a slot
   Kokkos::View<int * [Patch<Dim>::around], Kokkos::LayoutRight, Memory>
-      around;  // slots round a slot; -1 none
+      around;  // slots round a slot, of its field; -1 none
 
   int node_count() const { return slots * Patch<Dim>::cells; }
 };
+
+/// Address in the whole grid, as Grid::address_of, of the node (or cell) with number i. `number`: of
+/// Patches.
+template <int Dim, class Numbers>
+KOKKOS_INLINE_FUNCTION long address_of_node(const Numbers& number, int i) {
+  return long(number(i / Patch<Dim>::cells)) * Patch<Dim>::cells + i % Patch<Dim>::cells;
+}
 
 /// Number of the node (or cell) at place c of a slot, where c may reach into the patches around it.
 template <class Around, int Dim>

@@ -28,8 +28,7 @@ NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s) {
   const int nodes = s.counted.extent(0) > 0 ? s.patches.node_count() : 0;
   const auto impulse = s.nodes.impulse;
   const auto counted = s.counted;
-  const auto origin = s.patches.origin;
-  const auto grid = s.grid;
+  const auto number = s.patches.number;
   const Kokkos::View<int*, typename Space::memory_space> which("mpm::nodes_with_impulse", nodes);
   int found = 0;
   Kokkos::parallel_scan(
@@ -48,7 +47,7 @@ NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s) {
   Kokkos::parallel_for(
       "mpm::list_impulses", Range(s.space, 0, found), KOKKOS_LAMBDA(int n) {
         const int i = which(n);
-        node(n) = grid.patch_of(origin(i / Patch<Dim>::cells)) * Patch<Dim>::cells + i % Patch<Dim>::cells;
+        node(n) = address_of_node<Dim>(number, i);
         for (int r = 0; r < rigids; ++r) value(n * rigids + r) = impulse(r, i);
       });
   s.space.fence("mpm::list_impulses");

@@ -26,8 +26,8 @@ void scatter_mosaic(const Interpolation<Source>& it) {
         "mpm::scatter_mosaic", light(Kokkos::RangePolicy<typename Source::Space>(it.space, first, last)),
         KOKKOS_LAMBDA(int b) {
           if (control().paused) return;
-          for_each_cell_of_block(grid, blocks(b), edge, [&](const Coord<Dim>& c) {
-            const int slot = slot_of(grid.patch_of(c));
+          for_each_cell_of_block(grid, blocks(b), edge, [&](const Coord<Dim>& c, int field) {
+            const int slot = slot_of(grid.patch_of(c, field));
             if (slot < 0) return;
             const int cell = slot * Patch<Dim>::cells + place_of<Dim>(c);
             for (int p = begin(cell); p < begin(cell + 1); ++p)

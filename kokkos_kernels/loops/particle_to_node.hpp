@@ -69,7 +69,8 @@ KOKKOS_INLINE_FUNCTION int blocks_along(const Grid<T, Dim>& grid, int d, int edg
   return (grid.cells[d] + edge - 1) / edge;
 }
 
-/// Calls f(cell) for every cell of the mosaic's block number b; blocks are numbered first direction fastest.
+/// Calls f(cell, field) for every cell of the mosaic's block number b; blocks are numbered first direction
+/// fastest, and those of a velocity field behind those of the field before it.
 template <class T, int Dim, class F>
 KOKKOS_INLINE_FUNCTION void for_each_cell_of_block(const Grid<T, Dim>& grid, long b, int edge, F&& f) {
   Coord<Dim> low{}, high{};
@@ -84,7 +85,7 @@ KOKKOS_INLINE_FUNCTION void for_each_cell_of_block(const Grid<T, Dim>& grid, lon
     for (c[1] = low[1]; c[1] < high[1]; ++c[1])
       for (c[0] = low[0]; c[0] < high[0]; ++c[0]) {
         if constexpr (Dim == 3) c[2] = z;
-        f(c);
+        f(c, static_cast<int>(b));
       }
 }
 

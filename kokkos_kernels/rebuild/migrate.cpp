@@ -76,17 +76,20 @@ std::vector<Leaver> find_leavers(State<Space, T, Dim>& s,
                                  const Kokkos::View<int*, typename Space::memory_space>& owner, int own) {
   using Range = Kokkos::RangePolicy<Space>;
   const auto address = s.soil.address;
+  const long patches = s.grid.patches_of_field();
   const int count = s.soil.points.count;
   int found = 0;
   Kokkos::parallel_reduce(
       "mpm::count_leavers", Range(s.space, 0, count),
-      KOKKOS_LAMBDA(int p, int& n) { n += address(p) >= 0 && owner(address(p) / Patch<Dim>::cells) != own; },
+      KOKKOS_LAMBDA(int p, int& n) {
+        n += address(p) >= 0 && owner(address(p) / Patch<Dim>::cells % patches) != own;
+      },
       found);
   if (found == 0) return {};
   const Unmanaged<Leaver, Space> leavers = scratch_of<Leaver>(s, found);
   Kokkos::parallel_scan(
       "mpm::find_leavers", Range(s.space, 0, count), KOKKOS_LAMBDA(int p, int& n, bool last) {
-        const int rank = address(p) >= 0 ? owner(address(p) / Patch<Dim>::cells) : own;
+        const int rank = address(p) >= 0 ? owner(address(p) / Patch<Dim>::cells % patches) : own;
         if (rank == own) return;
         if (last) leavers(n) = {p, rank};
         ++n;
@@ -144,11 +147,12 @@ void reserve_particles(State<Space, T, Dim>& s, int n) {
 
 template <class Space, class T, int Dim>
 std::vector<int> count_by_patch(const State<Space, T, Dim>& s) {
-  const Kokkos::View<int*, typename Space::memory_space> counts("mpm::count_by_patch", s.grid.patch_count());
+  const long patches = s.grid.patches_of_field();
+  const Kokkos::View<int*, typename Space::memory_space> counts("mpm::count_by_patch", patches);
   const auto address = s.soil.address;
   Kokkos::parallel_for(
       "mpm::count_by_patch", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.all), KOKKOS_LAMBDA(int p) {
-        if (address(p) >= 0) Kokkos::atomic_inc(&counts(address(p) / Patch<Dim>::cells));
+        if (address(p) >= 0) Kokkos::atomic_inc(&counts(address(p) / Patch<Dim>::cells % patches));
       });
   s.space.fence("mpm::count_by_patch");
   const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), counts);

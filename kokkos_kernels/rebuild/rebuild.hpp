@@ -35,7 +35,7 @@ void rebuild(State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 struct KeptImpulse {
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space> impulse;
-  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  Kokkos::View<int*, typename Space::memory_space> number;
   int slots = 0;
 };
 

@@ -8,10 +8,10 @@ KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>& s) {
   if (!s.has_friction || s.nodes.impulse.extent(1) == 0) return kept;
   kept.slots = s.patches.slots;
   kept.impulse = s.nodes.impulse;  // restore_impulse makes a new one
-  kept.origin =
-      decltype(kept.origin)(Kokkos::view_alloc("mpm::kept_origin", Kokkos::WithoutInitializing), kept.slots);
-  Kokkos::deep_copy(s.space, kept.origin,
-                    Kokkos::subview(s.patches.origin, Kokkos::make_pair(0, kept.slots)));
+  kept.number =
+      decltype(kept.number)(Kokkos::view_alloc("mpm::kept_number", Kokkos::WithoutInitializing), kept.slots);
+  Kokkos::deep_copy(s.space, kept.number,
+                    Kokkos::subview(s.patches.number, Kokkos::make_pair(0, kept.slots)));
   return kept;
 }
 
@@ -20,14 +20,13 @@ void restore_impulse(State<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& 
   const int rigids = static_cast<int>(s.rigid_points.size());
   s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", rigids, s.patches.node_count());
   const auto old = kept.impulse;
-  const auto origin = kept.origin;
+  const auto number = kept.number;
   const auto impulse = s.nodes.impulse;
   const auto slot_of = s.patches.slot_of;
-  const auto grid = s.grid;
   Kokkos::parallel_for(
       "mpm::restore_impulse", Kokkos::RangePolicy<Space>(s.space, 0, kept.slots * Patch<Dim>::cells),
       KOKKOS_LAMBDA(int i) {
-        const int slot = slot_of(grid.patch_of(origin(i / Patch<Dim>::cells)));
+        const int slot = slot_of(number(i / Patch<Dim>::cells));
         if (slot < 0) return;
         const int now = slot * Patch<Dim>::cells + i % Patch<Dim>::cells;
         for (int r = 0; r < rigids; ++r) impulse(r, now) = old(r, i);

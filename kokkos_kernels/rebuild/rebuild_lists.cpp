@@ -75,7 +75,7 @@ void build_node_lists(const Space& space, const Source& source, const Patches<Sp
 template <class Space, class T, int Dim>
 void build_blocks(const Space& space, const Grid<T, Dim>& grid, const Patches<Space, Dim>& patches,
                   Bins<Space>& bins, int edge) {
-  long count = 1;
+  long count = grid.fields;
   for (int d = 0; d < Dim; ++d) count *= blocks_along(grid, d, edge);
   ensure(bins.blocks, count);
   const auto blocks = bins.blocks;
@@ -94,8 +94,8 @@ void build_blocks(const Space& space, const Grid<T, Dim>& grid, const Patches<Sp
             own |= static_cast<int>((rest % blocks_along(grid, d, edge)) & 1) << d;
           if (own != colour) return;
           bool holds = false;
-          for_each_cell_of_block(grid, b, edge, [&](const Coord<Dim>& c) {
-            const int slot = slot_of(grid.patch_of(c));
+          for_each_cell_of_block(grid, b, edge, [&](const Coord<Dim>& c, int field) {
+            const int slot = slot_of(grid.patch_of(c, field));
             if (slot < 0) return;
             const int cell = slot * Patch<Dim>::cells + place_of<Dim>(c);
             holds = holds || begin(cell) < begin(cell + 1);

@@ -10,15 +10,16 @@
 namespace mpm {
 namespace {
 
-/// Number in the whole grid of the k-th patch round the one with lower cell `at`, -1 where there is none.
+/// Number in the whole grid of the k-th patch round the one of a field with lower cell `at`, -1 where there
+/// is none.
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION long patch_around(const Grid<T, Dim>& grid, Coord<Dim> at, int k) {
+KOKKOS_INLINE_FUNCTION long patch_around(const Grid<T, Dim>& grid, Coord<Dim> at, int field, int k) {
   for (int d = 0; d < Dim; ++d, k /= 3) {
     at[d] += (k % 3 - 1) * Patch<Dim>::edge;
     const int patch = (at[d] >> Patch<Dim>::log_edge) + 1;
     if (patch < 0 || patch >= grid.patches[d]) return -1;
   }
-  return grid.patch_of(at);
+  return grid.patch_of(at, field);
 }
 
 /// The directions, that with the fewest patches first.
@@ -29,13 +30,13 @@ Coord<Dim> shortest_first(const Grid<T, Dim>& grid) {
   std::stable_sort(turn.c, turn.c + Dim, [&](int a, int b) { return grid.patches[a] < grid.patches[b]; });
   return turn;
 }
-/// Lower cell of the n-th patch of the whole grid, where directions take turns: so the patches round one are
-/// near it in memory too.
+/// Lower cell of the n-th patch of a field, where directions take turns: so the patches round one are near it
+/// in memory too.
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION Coord<Dim> origin_in_turn(const Grid<T, Dim>& grid, const Coord<Dim>& turn, int n) {
+KOKKOS_INLINE_FUNCTION Coord<Dim> origin_in_turn(const Grid<T, Dim>& grid, const Coord<Dim>& turn, long n) {
   Coord<Dim> c{};
   for (int k = 0; k < Dim; ++k) {
-    c[turn[k]] = (n % grid.patches[turn[k]] - 1) * Patch<Dim>::edge;
+    c[turn[k]] = (static_cast<int>(n % grid.patches[turn[k]]) - 1) * Patch<Dim>::edge;
     n /= grid.patches[turn[k]];
   }
   return c;
@@ -63,8 +64,9 @@ void mark_soil(const State<Space, T, Dim>& s, const Marks& marks) {
       });
 }
 
-/// Marks the patches that hold points of a rigid and lie at those of the soil: no other point of it reaches a
-/// node that soil reaches before the next rebuild.
+/// Marks the patches of the first velocity field that hold points of a rigid and lie at those of the soil: no
+/// other point of it reaches a node that soil reaches before the next rebuild. Contact in the other fields
+/// asks the rigid's surface alone.
 template <class Space, class T, int Dim, class Points_, class Marks>
 void mark_rigid(const State<Space, T, Dim>& s, const Sorted<Space, Points_>& set, const Marks& marks) {
   const auto address = set.address;
@@ -75,7 +77,7 @@ void mark_rigid(const State<Space, T, Dim>& s, const Sorted<Space, Points_>& set
         if (own < 0 || Kokkos::atomic_load(&marks(own)) != 0) return;
         const Coord<Dim> at = grid.origin_of(own);
         for (int k = 0; k < Patch<Dim>::around; ++k) {
-          const long other = patch_around(grid, at, k);
+          const long other = patch_around(grid, at, 0, k);
           if (other < 0 || Kokkos::atomic_load(&marks(other)) != k_soil) continue;
           Kokkos::atomic_store(&marks(own), k_rigid);
           return;
@@ -120,6 +122,7 @@ void locate(State<Space, T, Dim>& s) {
   collect_soil(s);
   const auto grid = s.grid;
   const auto origin = s.patches.origin;
+  const auto number = s.patches.number;
   const auto control = s.control;
   const auto soil = s.soil.points;
   const auto address = s.soil.address;
@@ -144,7 +147,7 @@ void locate(State<Space, T, Dim>& s) {
         bool leaves = removes && (is_alone(alone, cell) || soil.volume(p) <= least || soil.volume(p) >= most);
         leaves = leaves || !grid.holds(c);
         soil.coordinate(p) = x;
-        address(p) = leaves ? -1 : grid.address_of(c);
+        address(p) = leaves ? -1 : grid.address_of(c, grid.field_of(number(cell / Patch<Dim>::cells)));
         if (leaves) Kokkos::atomic_inc(&control().lost);
       });
   locate_rigids(s);
@@ -168,19 +171,22 @@ void activate_patches(State<Space, T, Dim>& s) {
   Kokkos::parallel_scan(
       "mpm::number_patches", Range(s.space, 0, patch_count),
       KOKKOS_LAMBDA(int n, int& slot, bool last) {
-        const Coord<Dim> at = origin_in_turn(grid, turn, n);
+        const int field = grid.field_of(n);
+        const Coord<Dim> at = origin_in_turn(grid, turn, n - field * grid.patches_of_field());
         bool active = false;
         for (int k = 0; k < Patch<Dim>::around && !active; ++k) {
-          const long other = patch_around(grid, at, k);
+          const long other = patch_around(grid, at, field, k);
           active = other >= 0 && marks(other) != 0;
         }
-        if (last) slot_of(grid.patch_of(at)) = active ? slot : -1;
+        if (last) slot_of(grid.patch_of(at, field)) = active ? slot : -1;
         slot += active;
       },
       patches.slots);
 
+  ensure(patches.number, patches.slots);
   ensure(patches.origin, patches.slots);
   ensure(patches.around, patches.slots);
+  const auto number = patches.number;
   const auto origin = patches.origin;
   const auto around = patches.around;
   Kokkos::parallel_for(
@@ -188,9 +194,10 @@ void activate_patches(State<Space, T, Dim>& s) {
         const int slot = slot_of(n);
         if (slot < 0) return;
         const Coord<Dim> at = grid.origin_of(n);
+        number(slot) = n;
         origin(slot) = at;
         for (int k = 0; k < Patch<Dim>::around; ++k) {
-          const long other = patch_around(grid, at, k);
+          const long other = patch_around(grid, at, grid.field_of(n), k);
           around(slot, k) = other < 0 ? -1 : slot_of(other);
         }
       });

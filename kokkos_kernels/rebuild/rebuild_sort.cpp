@@ -232,6 +232,7 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
   const auto near = s.near_rigid;
   const auto around = s.patches.around;
   const auto origin = s.patches.origin;
+  const auto number = s.patches.number;
   const auto rigids = s.rigids;
   const auto vertices = s.vertices;
   const auto grid = s.grid;
@@ -242,7 +243,7 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
     const auto begin = s.rigid_points[r].bins.begin;
     Kokkos::parallel_for(
         "mpm::mark_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
-          bool holds = false;
+          bool holds = grid.field_of(number(slot)) > 0;  // where no rigid has points
           for (int k = 0; k < Patch<Dim>::around; ++k) {
             const int other = around(slot, k);
             holds |= other >= 0 && begin(other * Patch<Dim>::cells) < begin((other + 1) * Patch<Dim>::cells);

@@ -37,24 +37,21 @@ SavedField save_field(const std::string& name, const View& view, int count) {
 }
 
 /// Addresses of the cells where points are binned.
-template <class T, int Dim, class Patches_, class Cells>
-std::vector<long> addresses_of(const Grid<T, Dim>& grid, const Patches_& patches, const Cells& cells,
-                               int count) {
+template <class Space, int Dim, class Cells>
+std::vector<long> addresses_of(const Patches<Space, Dim>& patches, const Cells& cells, int count) {
   const auto cell = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), cells);
-  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), patches.origin);
-  constexpr int in_patch = Patch<Dim>::cells;
+  const auto number = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), patches.number);
   std::vector<long> address(count);
-  for (int p = 0; p < count; ++p)
-    address[p] = grid.patch_of(origin(cell(p) / in_patch)) * in_patch + cell(p) % in_patch;
+  for (int p = 0; p < count; ++p) address[p] = address_of_node<Dim>(number, cell(p));
   return address;
 }
 
-template <class Grid_, class Patches_, class Points_>
-SavedPoints save_points(const Grid_& grid, const Patches_& patches, Points_ points) {
+template <class Patches_, class Points_>
+SavedPoints save_points(const Patches_& patches, Points_ points) {
   SavedPoints saved;
   const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
   saved.id.assign(id.data(), id.data() + points.count);
-  saved.address = addresses_of(grid, patches, points.cell, points.count);
+  saved.address = addresses_of(patches, points.cell, points.count);
   const auto save = [&](const char* name, Use, const auto& field) {
     saved.fields.push_back(save_field(name, field, points.count));
   };
@@ -66,7 +63,7 @@ template <class Space, class T, int Dim>
 SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
   SavedImpulse saved;
   if (!s.has_friction) return saved;
-  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
+  const auto number = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.number);
   const auto impulse = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
   // Of several ranks one answers for a node: what the others have there may be long out of date.
   const auto counted = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.counted);
@@ -80,8 +77,7 @@ SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
   };
   for (int i = 0; i < s.patches.node_count(); ++i) {
     if (!holds_some(i)) continue;
-    saved.address.push_back(s.grid.patch_of(origin(i / Patch<Dim>::cells)) * Patch<Dim>::cells +
-                            i % Patch<Dim>::cells);
+    saved.address.push_back(address_of_node<Dim>(number, i));
     for (int r = 0; r < rigids; ++r) saved.values.push_back(impulse(r, i));
   }
   return saved;
@@ -100,10 +96,9 @@ void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
   saved.alone_known = s.strays.known ? 1 : 0;
   if (!s.strays.known) return;
   const auto alone = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.alone);
-  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
-  constexpr int cells = Patch<Dim>::cells;
+  const auto number = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.number);
   for (int c = 0; c < s.patches.node_count(); ++c)
-    if (is_alone(alone, c)) saved.alone.push_back(s.grid.patch_of(origin(c / cells)) * cells + c % cells);
+    if (is_alone(alone, c)) saved.alone.push_back(address_of_node<Dim>(number, c));
 }
 
 template <class Space, class T, int Dim>
@@ -230,7 +225,7 @@ SavedState save_state(const State<Space, T, Dim>& s) {
   const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
   saved.bound = control().bound, saved.increment = control().increment;
   saved.margin = s.p2g.margin, saved.due_in = control().due_in;
-  saved.soil = save_points(s.grid, s.patches, s.soil.points);
+  saved.soil = save_points(s.patches, s.soil.points);
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
   for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
     SavedRigid& rigid = saved.rigids.emplace_back();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "rebuild/batches.hpp"
@@ -21,10 +22,10 @@ void fill_view(View& view, const std::string& label, int count, Get&& get) {
 }
 
 /// Cell and coordinate in it of positions [m from the mesh's lower corner]; those outside the mesh are a
-/// fault.
-template <class Space, class T, int Dim, class Points_>
+/// fault. field_of(p): velocity field of point p.
+template <class Space, class T, int Dim, class Points_, class Field>
 void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<double>& position,
-                  Sorted<Space, Points_>& set, Fault& fault) {
+                  const Field& field_of, Sorted<Space, Points_>& set, Fault& fault) {
   const int count = set.points.all = set.points.count;
   std::vector<long> address(count);
   std::vector<Vector<T, Dim>> coordinate(count);
@@ -41,7 +42,7 @@ void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<do
       fault.particle = p;
       for (int d = 0; d < Dim; ++d) fault.position[d] = position[std::size_t(p) * Dim + d];
     }
-    address[p] = grid.holds(c) ? grid.address_of(c) : 0;
+    address[p] = grid.holds(c) ? grid.address_of(c, field_of(p)) : 0;
   }
   fill_view(set.address, "mpm::address", count, [&](int p) { return address[p]; });
   fill_view(set.points.coordinate, "mpm::coordinate", count, [&](int p) { return coordinate[p]; });
@@ -102,7 +103,10 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       std::any_of(bodies.begin(), bodies.end(), [](const BodyInput& body) { return body.least_mass > 0; });
   name_columns(soil.history, materials, bodies);
   if (s.batches.in_use()) store_soil(s, soil.count, spare_of_rigids<Space, T, Dim>(rigids));
-  place_points(s.grid, s.spacing, position, s.soil, fault);
+  s.grid.fields = 1;
+  for (const BodyInput& body : bodies) s.grid.fields = std::max(s.grid.fields, body.velocity_field + 1);
+  const auto field_of = [&](int p) { return bodies[body_of[p]].velocity_field; };
+  place_points(s.grid, s.spacing, position, field_of, s.soil, fault);
 
   const auto in_body = [&](int p) { return p - first[body_of[p]]; };
   const auto id_of = [&](int p) {
@@ -187,7 +191,10 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
     points.half_length = static_cast<T>(rigids[r].half_length);
     points.surface_normal = rigids[r].surface_normal;
     const bool sound = fault.kind == FaultKind::none;
-    place_points(s.grid, spacing, rigids[r].position, s.rigid_points[r], fault);
+    if (s.grid.fields > 1 && !rigids[r].surface_normal)
+      throw std::invalid_argument("normals from the mass gradient know one velocity field only");
+    const auto first_field = [](int) { return 0; };
+    place_points(s.grid, spacing, rigids[r].position, first_field, s.rigid_points[r], fault);
     if (sound && fault.kind != FaultKind::none) fault.particle = -1 - static_cast<int>(r);
     fill_view(points.home, "mpm::home", points.count, [&](int p) {
       Vector<double, Dim> x;

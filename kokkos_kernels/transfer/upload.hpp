@@ -40,6 +40,7 @@ struct BodyInput {
   double least_mass = 0;                   // kg, where they differ in mass, of all ranks; else 0
   std::array<double, 3> velocity{};        // m/s
   int material = 0;
+  int velocity_field = 0;  // bodies of one field stick to one another, those of two do not feel each other
 };
 
 /// The surface of a rigid body, as Surface has it.

@@ -77,7 +77,7 @@ class Planner {
 
   /// Whether all patches round n are in the grid.
   bool inside(long n) const {
-    const std::array<int, 3> at = grid_.place(n);
+    const std::array<int, 3> at = grid_.place(grid_.in_first_field(n));
     bool in = true;
     for (int d = 0; d < grid_.dim; ++d) in = in && at[d] > 0 && at[d] < grid_.patches[d] - 1;
     return in;
@@ -87,7 +87,7 @@ class Planner {
   bool reach_alone(long n, std::uint64_t* mine) const {
     for (const auto& [offset, mask] : around_) {
       if (!occupied_[n + offset]) continue;
-      if (owners_[n + offset] != own_) return false;
+      if (owners_[grid_.in_first_field(n + offset)] != own_) return false;
       *mine |= mask;
     }
     return true;
@@ -98,7 +98,7 @@ class Planner {
     reach_.clear();
     grid_.for_each_around(n, [&](long other, const std::array<int, 3>& offset) {
       if (!occupied_[other]) return;
-      const int rank = owners_[other];
+      const int rank = owners_[grid_.in_first_field(other)];
       auto at = std::find_if(reach_.begin(), reach_.end(), [&](const auto& r) { return r.first >= rank; });
       if (at == reach_.end() || at->first != rank) at = reach_.insert(at, {rank, 0});
       at->second |= mask_of(offset);

@@ -8,12 +8,16 @@
 namespace mpm {
 
 /// The patches of the mesh with the ring outside it, numbered as Grid::patch_of does: first direction
-/// fastest.
+/// fastest, a velocity field behind the other.
 struct PatchGrid {
   int dim = 2;
   std::array<int, 3> patches{1, 1, 1};
+  int fields = 1;
 
+  /// Patches of one field.
   long count() const { return long(patches[0]) * patches[1] * patches[2]; }
+  /// Patch n of any field as one of the first field, at the same place: patches at one place have one owner.
+  long in_first_field(long n) const { return fields == 1 ? n : n % count(); }
   long number(const std::array<int, 3>& at) const {
     return (long(at[2]) * patches[1] + at[1]) * patches[0] + at[0];
   }
@@ -26,7 +30,8 @@ struct PatchGrid {
   /// direction.
   template <class F>
   void for_each_around(long n, F&& f) const {
-    const std::array<int, 3> at = place(n);
+    const long field = n - in_first_field(n);
+    const std::array<int, 3> at = place(n - field);
     std::array<int, 3> offset{};
     for (offset[2] = dim == 3 ? -1 : 0; offset[2] <= (dim == 3 ? 1 : 0); ++offset[2])
       for (offset[1] = -1; offset[1] <= 1; ++offset[1])
@@ -34,12 +39,12 @@ struct PatchGrid {
           const std::array<int, 3> other{at[0] + offset[0], at[1] + offset[1], at[2] + offset[2]};
           bool in = true;
           for (int d = 0; d < 3; ++d) in = in && other[d] >= 0 && other[d] < patches[d];
-          if (in) f(number(other), offset);
+          if (in) f(field + number(other), offset);
         }
   }
 };
 
-/// The rank of each patch of the whole grid: the same table on every rank.
+/// The rank of each patch of one field: the same table on every rank.
 using Owners = std::vector<int>;
 
 }  // namespace mpm

@@ -30,6 +30,7 @@ PetscErrorCode Ranks<Space, T, Dim>::start(MPI_Comm comm, const PartitionConfig&
   clock_ = WorkClock(is_device<Space>);
   grid_.dim = Dim;
   for (int d = 0; d < Dim; ++d) grid_.patches[d] = s.grid.patches[d];
+  grid_.fields = s.grid.fields;
   seen_ = decltype(seen_)("mpm::seen");
   PetscCall(transport_.start(comm, config.halo_path));
   if (overlaps(s)) side_.open(s.space);

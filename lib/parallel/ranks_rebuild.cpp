@@ -144,12 +144,11 @@ PetscErrorCode Ranks<Space, T, Dim>::migrate(State_& s, long* moved) {
 template <class Space, class T, int Dim>
 PetscErrorCode Ranks<Space, T, Dim>::make_lists(State_& s) {
   PetscFunctionBeginUser;
-  const auto origin = on_host(s.patches.origin, s.patches.slots);
+  const auto number = on_host(s.patches.number, s.patches.slots);
   const int holding = s.soil.bins.colour_begin[Patch<Dim>::colours];
   const auto held = on_host(s.soil.bins.by_colour, holding);
-  std::vector<long> slots(s.patches.slots);
-  for (int slot = 0; slot < s.patches.slots; ++slot) slots[slot] = s.grid.patch_of(origin(slot));
-  occupied_.assign(grid_.count(), 0);
+  const std::vector<long> slots(number.data(), number.data() + s.patches.slots);
+  occupied_.assign(grid_.fields * grid_.count(), 0);
   for (int n = 0; n < holding; ++n) occupied_[slots[held(n)]] = 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, occupied_.data(), static_cast<int>(occupied_.size()),
                              MPI_UNSIGNED_CHAR, MPI_MAX, comm_));
@@ -192,7 +191,7 @@ PetscErrorCode Ranks<Space, T, Dim>::share_impulses(State_& s, const NodeImpulse
   for (std::size_t n = 0; n < own.node.size(); ++n) {
     std::set<int> reaching;
     grid_.for_each_around(own.node[n] / Patch<Dim>::cells, [&](long other, const std::array<int, 3>&) {
-      if (occupied_[other]) reaching.insert(owners_[other]);
+      if (occupied_[other]) reaching.insert(owners_[grid_.in_first_field(other)]);
     });
     for (const int r : reaching) {
       const char* const node = reinterpret_cast<const char*>(&own.node[n]);

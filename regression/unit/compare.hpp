@@ -62,12 +62,11 @@ struct Table {
 template <class Space, class T, int Dim, class Field>
 Table nodes_of(const State<Space, T, Dim>& s, const Field& field) {
   const auto host = on_host(field);
-  const auto origin = on_host(s.patches.origin);
+  const auto number = on_host(s.patches.number);
   Table table{static_cast<int>(field.extent(1)), {}};
   table.value.resize(s.grid.patch_count() * Patch<Dim>::cells * table.width);
   for (int i = 0; i < s.patches.node_count(); ++i) {
-    const long at =
-        s.grid.patch_of(origin(i / Patch<Dim>::cells)) * Patch<Dim>::cells + i % Patch<Dim>::cells;
+    const long at = address_of_node<Dim>(number, i);
     for (int k = 0; k < table.width; ++k) table.value[at * table.width + k] = host(i, k);
   }
   return table;

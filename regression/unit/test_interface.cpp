@@ -51,14 +51,14 @@ TEST_CASE("a share of one strength is the limit that it comes to", "[interface]"
         auto smooth = state_of<B>(cloud, how);
         cloud.rigids[0].shear_share = 0.4;
         auto shared = state_of<B>(cloud, how);
-        for (auto* s : {&limited, &smooth, &shared}) run_steps(*s, 1e-4, 6);
+        // A node that was in contact has no relative velocity but round-off, which then decides whether it
+        // still touches. With mass gradients and sums of threads in any order, only the first step is the
+        // same twice.
+        const int steps = how == P2G::atomic && !surface ? 1 : 6;
+        for (auto* s : {&limited, &smooth, &shared}) run_steps(*s, 1e-4, steps);
         INFO(build.name() << ' ' << strategy_name(how) << (surface ? " surface" : " gradient"));
-        // With mass gradients in 3D round-off decides whether some nodes touch: two runs of one cloud with
-        // atomic sums by many threads may differ by 2e-3.
-        const bool noisy = how == P2G::atomic && !surface && B::dim == 3;
-        CHECK(largest_difference(soil_fields(shared), soil_fields(limited)) <
-              (noisy ? 4e-3 : B::of(1e-11, 1e-3)));
-        CHECK(largest_difference(soil_fields(shared), soil_fields(smooth)) > 1e-2);
+        CHECK(largest_difference(soil_fields(shared), soil_fields(limited)) < B::of(1e-11, 1e-3));
+        CHECK(largest_difference(soil_fields(shared), soil_fields(smooth)) > (steps == 1 ? 3e-3 : 1e-2));
       }
   });
 }

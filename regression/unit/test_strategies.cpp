@@ -46,7 +46,7 @@ int shared_nodes(const StateOf<Reference<Dim>>& s) {
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
     std::map<int, long> owner;
     for (int b = bins.block_begin[colour]; b < bins.block_begin[colour + 1]; ++b)
-      for_each_cell_of_block(s.grid, bins.blocks(b), s.p2g.mosaic_cells, [&](const Coord<Dim>& c) {
+      for_each_cell_of_block(s.grid, bins.blocks(b), s.p2g.mosaic_cells, [&](const Coord<Dim>& c, int) {
         const int slot = s.patches.slot_of(s.grid.patch_of(c));
         if (slot < 0) return;
         const int cell = slot * Patch<Dim>::cells + place_of<Dim>(c);
