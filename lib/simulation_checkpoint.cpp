@@ -6,7 +6,7 @@
 #include "checkpoint/changes.hpp"
 #include "checkpoint/folder.hpp"
 #include "output/files.hpp"
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 #include "signals.hpp"
 #include "simulation_body.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "memory_need.hpp"
 #include "output/frame_fields.hpp"
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {

@@ -12,11 +12,11 @@
 #include "mesh/background.hpp"
 #include "output/files.hpp"
 #include "output/hdf5_handle.hpp"
+#include "output/measurement_cache.hpp"
 #include "output/performance_json.hpp"
-#include "output/remembered.hpp"
 #include "output/run_options.hpp"
+#include "parallel/collectives.hpp"
 #include "parallel/distribute.hpp"
-#include "parallel/together.hpp"
 #include "signals.hpp"
 #include "simulation_body.hpp"
 
@@ -182,7 +182,8 @@ PetscErrorCode Simulation::Body::start() {
   const std::string processor = backend == Backend::cuda ? "" : processor_name();
   const std::string device =
       formatted("%s, %s %s", word_of(backend), device_name(backend).c_str(), processor.c_str());
-  if (first) bandwidth = remembered("copy_bandwidth", device, [&] { return copy_bandwidth(backend); });
+  if (first)
+    bandwidth = cached_measurement("copy_bandwidth", device, [&] { return copy_bandwidth(backend); });
   Model model;
   Failure failure;
   PetscCall(load(&model));

@@ -11,16 +11,17 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   };
   const auto add_set = [&](const auto& set) {
     add(set.points.cell), add(set.points.id), add(set.address), add(set.order);
-    add(set.bins.begin), add(set.bins.by_colour), add(set.bins.list_begin), add(set.bins.list),
+    add(set.bins.begin), add(set.bins.active_slots), add(set.bins.list_begin), add(set.bins.list),
         add(set.bins.blocks), add(set.bins.windows.place), add(set.bins.windows.sums);
     auto points = set.points;
     for_each_field(points, add);
   };
   add_set(s.soil);
   for (const auto& set : s.rigid_points) add_set(set);
-  add(s.patches.slot_of), add(s.patches.number), add(s.patches.origin), add(s.patches.around), add(s.marks),
-      add(s.spare);
-  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.boundary), add(s.nodes.impulse);
+  add(s.patches.slot_of), add(s.patches.number), add(s.patches.origin), add(s.patches.neighbours),
+      add(s.marks), add(s.scratch);
+  add(s.nodes.soil), add(s.nodes.kinematics), add(s.nodes.residual), add(s.nodes.boundary),
+      add(s.nodes.impulse);
   add(s.nodes.strength), add(s.nodes.rigid), add(s.near_rigid), add(s.vertices), add(s.strays.alone);
   add(s.boundary_windows.sums), add(s.strength_windows.sums);
   for (const auto* more : {&s.next_sums, &s.last_sums})

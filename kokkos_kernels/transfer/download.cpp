@@ -55,13 +55,15 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int rigid) {
   const auto& points = s.rigid_points[rigid].points;
-  const auto home = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.home);
+  const auto reference_position =
+      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.reference_position);
   const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
   std::vector<double> position(std::size_t(points.all) * Dim);
   for (int p = 0; p < points.all; ++p)
     for (int d = 0; d < Dim; ++d)
-      position[std::size_t(id(p)) * Dim + d] = home(p)[d] * s.spacing + rigids(rigid).displacement[d];
+      position[std::size_t(id(p)) * Dim + d] =
+          reference_position(p)[d] * s.spacing + rigids(rigid).displacement[d];
   return position;
 }
 

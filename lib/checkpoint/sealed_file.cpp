@@ -13,7 +13,7 @@
 #include "checksum.hpp"
 #include "output/files.hpp"
 #include "output/log.hpp"
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 #include "regular_file.hpp"
 
 namespace mpm {

@@ -10,7 +10,7 @@
 #include "output/files.hpp"
 #include "output/hdf5_handle.hpp"
 #include "output/shared_file.hpp"
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 
 namespace mpm {
 namespace {

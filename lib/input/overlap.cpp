@@ -7,7 +7,7 @@
 #include "input/filled.hpp"
 #include "input/groups.hpp"
 #include "input/text.hpp"
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 
 namespace mpm {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "output/files.hpp"
 #include "output/frame_file.hpp"
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 
 namespace mpm {
 namespace {

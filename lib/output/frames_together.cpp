@@ -13,7 +13,7 @@
 #include "output/frame_file.hpp"
 #include "output/frames.hpp"
 #include "output/shared_file.hpp"
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 
 namespace mpm {
 namespace {

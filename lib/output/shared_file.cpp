@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "output/files.hpp"
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 
 namespace mpm {
 namespace fs = std::filesystem;

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "input/shapes.hpp"
+#include "parallel/collectives.hpp"
 #include "parallel/partition.hpp"
-#include "parallel/together.hpp"
 #include "transfer/velocity_gradients.hpp"
 
 namespace mpm {

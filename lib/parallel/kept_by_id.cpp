@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 
 namespace mpm {
 namespace {

@@ -8,7 +8,7 @@
 #include <queue>
 
 #include "mesh/background.hpp"
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 
 namespace mpm {
 namespace {

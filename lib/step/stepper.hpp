@@ -85,7 +85,7 @@ class Stepper {
   /// Rows of partition.csv, on rank 0: the patches that hold particles, with these and their rank.
   virtual PetscErrorCode ownership(std::vector<OwnedPatch>* patches) = 0;
   /// What the log should tell of the rebuilds since the last call.
-  virtual std::string take_news() = 0;
+  virtual std::string drain_log() = 0;
   /// None on one rank. Collective.
   virtual std::optional<RankFigures> rank_figures() const = 0;
   /// All that this rank's part of the state is, between two steps, with no rebuild due.

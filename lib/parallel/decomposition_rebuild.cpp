@@ -5,9 +5,9 @@
 
 #include "functions/step_kernels.hpp"
 #include "output/log.hpp"
+#include "parallel/collectives.hpp"
+#include "parallel/decomposition.hpp"
 #include "parallel/partition.hpp"
-#include "parallel/ranks.hpp"
-#include "parallel/together.hpp"
 #include "rebuild/rebuild.hpp"
 #include "transfer/save_state.hpp"
 
@@ -39,7 +39,7 @@ constexpr double k_worth = 0.02;  // least gain in balance for which patches cha
 }  // namespace
 
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::rebuild(State_& s) {
+PetscErrorCode Decomposition<Space, T, Dim>::rebuild(State_& s) {
   PetscFunctionBeginUser;
   clock_.stop();
   PetscCall(forget());
@@ -55,8 +55,8 @@ PetscErrorCode Ranks<Space, T, Dim>::rebuild(State_& s) {
   present_added_ = false;
   note_bound(s, s.space);
   s.space.fence("mpm::note_bound");
-  if (!news_.empty())
-    news_ += formatted("; %ld particles changed their rank, %.3g s", moved, WorkClock::wall() - before);
+  if (!log_lines_.empty())
+    log_lines_ += formatted("; %ld particles changed their rank, %.3g s", moved, WorkClock::wall() - before);
   clock_.stop();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -64,7 +64,7 @@ PetscErrorCode Ranks<Space, T, Dim>::rebuild(State_& s) {
 /// Gives patches to other ranks where that mends the balance of the work since it was judged last. What is
 /// too short to measure is kept for the next time; until the first time the particles tell the balance.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::rebalance(State_& s) {
+PetscErrorCode Decomposition<Space, T, Dim>::rebalance(State_& s) {
   constexpr double k_measurable = 0.05;  // s of work a rank
   PetscFunctionBeginUser;
   if (config_.kind != PartitionKind::metis) PetscFunctionReturn(PETSC_SUCCESS);
@@ -89,8 +89,8 @@ PetscErrorCode Ranks<Space, T, Dim>::rebalance(State_& s) {
 
 /// figures: work [s] and particles of each rank; timed: the work tells what a particle costs.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::choose_owners(State_& s, const std::vector<double>& figures,
-                                                   double imbalance, bool timed) {
+PetscErrorCode Decomposition<Space, T, Dim>::choose_owners(State_& s, const std::vector<double>& figures,
+                                                           double imbalance, bool timed) {
   constexpr double k_dearest = 2;  // times the mean: beyond it the clock is not believed
   PetscFunctionBeginUser;
   const double start = WorkClock::wall();
@@ -113,14 +113,14 @@ PetscErrorCode Ranks<Space, T, Dim>::choose_owners(State_& s, const std::vector<
   if (futile_ > 0) PetscFunctionReturn(PETSC_SUCCESS);
   owners_ = owners;
   send_owners_to_device();
-  news_ = formatted("patches changed hands: imbalance of the %s %.3f, now about %.3f (cut in %.3g s)",
-                    timed ? "work" : "particles", imbalance, then, WorkClock::wall() - start);
+  log_lines_ = formatted("patches changed hands: imbalance of the %s %.3f, now about %.3f (cut in %.3g s)",
+                         timed ? "work" : "particles", imbalance, then, WorkClock::wall() - start);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// moved: particles of all ranks that changed theirs.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::migrate(State_& s, long* moved) {
+PetscErrorCode Decomposition<Space, T, Dim>::migrate(State_& s, long* moved) {
   PetscFunctionBeginUser;
   std::vector<Leaver> leavers = find_leavers(s, owner_, rank_);
   std::stable_sort(leavers.begin(), leavers.end(),
@@ -142,11 +142,11 @@ PetscErrorCode Ranks<Space, T, Dim>::migrate(State_& s, long* moved) {
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::make_lists(State_& s) {
+PetscErrorCode Decomposition<Space, T, Dim>::make_lists(State_& s) {
   PetscFunctionBeginUser;
   const auto number = on_host(s.patches.number, s.patches.slots);
   const int holding = s.soil.bins.colour_begin[Patch<Dim>::colours];
-  const auto held = on_host(s.soil.bins.by_colour, holding);
+  const auto held = on_host(s.soil.bins.active_slots, holding);
   const std::vector<long> slots(number.data(), number.data() + s.patches.slots);
   occupied_.assign(grid_.fields * grid_.count(), 0);
   for (int n = 0; n < holding; ++n) occupied_[slots[held(n)]] = 1;
@@ -161,10 +161,11 @@ PetscErrorCode Ranks<Space, T, Dim>::make_lists(State_& s) {
   fill(lists_.shared_node, plan.shared);
   fill(lists_.begin, plan.first);
   fill(lists_.source, plan.source);
-  ensure(s.counted, std::max<std::size_t>(plan.counted.size(), 1));  // of extent 0 it would mean one rank
-  fill(s.counted, plan.counted);
+  ensure(s.owned_nodes,
+         std::max<std::size_t>(plan.owned_nodes.size(), 1));  // of extent 0 it would mean one rank
+  fill(s.owned_nodes, plan.owned_nodes);
 
-  const int width = std::max(SoilShare<Dim>::size + BoundaryShare<Dim>::size, Dim);
+  const int width = std::max(SoilTerms<Dim>::size + BoundaryTerms<Dim>::size, Dim);
   PetscCall(transport_.set_up(plan.neighbours, plan.begin, width));
   s.plan = plan_step(s);
   if (overlaps(s)) s.plan.form = StepForm::overlapped;
@@ -174,17 +175,17 @@ PetscErrorCode Ranks<Space, T, Dim>::make_lists(State_& s) {
 
 /// Orders the slots that hold particles, `held`, so that those on the border (HaloPlan) come first.
 template <class Space, class T, int Dim>
-void Ranks<Space, T, Dim>::put_border_first(State_& s, std::vector<int> held,
-                                            const std::vector<char>& border) {
+void Decomposition<Space, T, Dim>::put_border_first(State_& s, std::vector<int> held,
+                                                    const std::vector<char>& border) {
   const auto inner =
       std::stable_partition(held.begin(), held.end(), [&](int slot) { return border[slot] != 0; });
   s.soil.bins.border = static_cast<int>(inner - held.begin());
-  fill(s.soil.bins.by_colour, held);
+  fill(s.soil.bins.active_slots, held);
 }
 
 /// Sends the impulses of the nodes that this rank answered for to all ranks that reach them now.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::share_impulses(State_& s, const NodeImpulses<T>& own) {
+PetscErrorCode Decomposition<Space, T, Dim>::share_impulses(State_& s, const NodeImpulses<T>& own) {
   PetscFunctionBeginUser;
   const std::size_t rigids = s.rigid_points.size(), size = sizeof(long) + rigids * sizeof(T);
   std::vector<std::vector<char>> out(size_);
@@ -217,7 +218,7 @@ PetscErrorCode Ranks<Space, T, Dim>::share_impulses(State_& s, const NodeImpulse
 /// What differs from rank to rank goes to SavedState::bounds, k_bounds numbers and three a rigid of each
 /// rank.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::save(SavedState* saved) const {
+PetscErrorCode Decomposition<Space, T, Dim>::save(SavedState* saved) const {
   PetscFunctionBeginUser;
   const std::optional<BoundReport> report = bound_.pending();
   std::vector<double> own{saved->bound,
@@ -255,7 +256,7 @@ PetscErrorCode Ranks<Space, T, Dim>::save(SavedState* saved) const {
 
 /// The part of a checkpoint that differs from rank to rank: that of this rank, if it is of as many.
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved) {
+PetscErrorCode Decomposition<Space, T, Dim>::take_own(SavedState& saved) {
   PetscFunctionBeginUser;
   const std::size_t width = k_bounds + 3 * saved.rigids.size();
   seen_() = {};
@@ -282,7 +283,7 @@ PetscErrorCode Ranks<Space, T, Dim>::take_own(SavedState& saved) {
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved) {
+PetscErrorCode Decomposition<Space, T, Dim>::restore(State_& s, SavedState& saved) {
   PetscFunctionBeginUser;
   long moved = 0;
   PetscCall(take_own(saved));
@@ -296,12 +297,12 @@ PetscErrorCode Ranks<Space, T, Dim>::restore(State_& s, SavedState& saved) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                       \
-  template PetscErrorCode Ranks<Space, T, Dim>::save(SavedState*) const;                     \
-  template PetscErrorCode Ranks<Space, T, Dim>::restore(State<Space, T, Dim>&, SavedState&); \
-  template PetscErrorCode Ranks<Space, T, Dim>::rebuild(State<Space, T, Dim>&);              \
-  template PetscErrorCode Ranks<Space, T, Dim>::migrate(State<Space, T, Dim>&, long*);       \
-  template PetscErrorCode Ranks<Space, T, Dim>::make_lists(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                                               \
+  template PetscErrorCode Decomposition<Space, T, Dim>::save(SavedState*) const;                     \
+  template PetscErrorCode Decomposition<Space, T, Dim>::restore(State<Space, T, Dim>&, SavedState&); \
+  template PetscErrorCode Decomposition<Space, T, Dim>::rebuild(State<Space, T, Dim>&);              \
+  template PetscErrorCode Decomposition<Space, T, Dim>::migrate(State<Space, T, Dim>&, long*);       \
+  template PetscErrorCode Decomposition<Space, T, Dim>::make_lists(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

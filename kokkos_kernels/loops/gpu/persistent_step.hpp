@@ -1,6 +1,6 @@
 #pragma once
-// The persistent launch: it does several functions of a step, or many steps one after the other, and its
-// teams wait for each other.
+// The persistent step: one launch does several functions of a step, or many steps one after the other, and
+// its teams wait for each other.
 
 #include <cstdint>
 #include <type_traits>
@@ -12,33 +12,33 @@
 
 namespace mpm {
 
-inline constexpr int k_rigids_at_once = 4;  // with points, which are arguments of the launch
+inline constexpr int k_most_rigids = 4;  // with points, which are arguments of the launch
 
-/// Polls after which the last team assumes that the device cannot hold all teams at once: some ms.
+/// Polls after which the last team assumes that the teams are not co-resident on the device: some ms.
 inline constexpr int k_patience = 20'000;
 
 /// The launch. The first teams move the points of rigids to their next positions and add their mass to the
 /// nodes. Each of the other teams takes a slot. The last team waits for all others, moves the rigids and
 /// counts the step.
 ///
-/// If Whole, the team of a slot itself updates all nodes that its particles reach, so that no team waits for
-/// another team's nodes. The team keeps the motion of the slot's own nodes, and sums the force of these nodes
-/// on the rigids. Otherwise the nodes have been updated by an earlier launch.
+/// If WithNodes, the team of a slot itself updates all nodes that its particles reach, so that no team waits
+/// for another team's nodes. The team keeps the motion of the slot's own nodes, and sums the force of these
+/// nodes on the rigids. Otherwise the nodes have been updated by an earlier launch.
 ///
-/// A launch does many steps if Whole. Between two steps all teams wait for the last team, which requires that
-/// the device holds all teams at once. If some teams have not begun when the others have finished the first
-/// step, the launch ends with that step. The last team decides this. The part of the last team goes to the
-/// team that begins first, so that it is never one of those that have not begun.
-template <class Space, class T, int Dim, bool Whole>
-struct StepAtOnce {
+/// A launch does many steps if WithNodes. Between two steps all teams wait for the last team, which requires
+/// that all teams are co-resident on the device. If some teams have not begun when the others have finished
+/// the first step, the launch ends with that step. The last team decides this. The part of the last team goes
+/// to the team that begins first, so that it is never one of those that have not begun.
+template <class Space, class T, int Dim, bool WithNodes>
+struct PersistentStep {
   static constexpr int threads = team_threads<Space>;
   using Update = UpdateParticles<Space, T, Dim, true>;
   using NodeUpdate = UpdateNodes<Space, T, Dim>;
   using Member = typename Update::Member;
-  using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_rigids_at_once>;
+  using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_most_rigids>;
   using Sums = NodeSums<Space, T, Dim>;
   static constexpr int cells = Patch<Dim>::cells;
-  using Bounds = Kokkos::LaunchBounds<threads, Whole ? 3 : teams_at_once<T, Dim>>;
+  using Bounds = Kokkos::LaunchBounds<threads, WithNodes ? 3 : teams_at_once<T, Dim>>;
   using Team = Kokkos::TeamPolicy<Space, Bounds>;
   Update update;
   NodeUpdate nodes;
@@ -47,12 +47,12 @@ struct StepAtOnce {
   int rigid_count, rigid_teams, steps;
   // Of the step at hand, of the next one, and of the last one, which are set to zero. They take turns.
   Kokkos::Array<Sums, 3> sums;
-  Kokkos::View<Roll, typename Space::memory_space> roll;
+  Kokkos::View<LaunchBarrier, typename Space::memory_space> launch_barrier;
 
   static constexpr std::size_t bytes(int values) {
-    return (Whole ? scratch_bytes<int>(Update::window) + scratch_bytes<Rigid<Dim>>(values / Dim) +
-                        scratch_bytes<double>(values * cells)
-                  : 0) +
+    return (WithNodes ? scratch_bytes<int>(Update::window) + scratch_bytes<Rigid<Dim>>(values / Dim) +
+                            scratch_bytes<double>(values * cells)
+                      : 0) +
            Update::bytes();
   }
 
@@ -72,11 +72,13 @@ struct StepAtOnce {
     if (steps > 1)
       Kokkos::single(
           Kokkos::PerTeam(team),
-          [&](int& taken) { taken = (Kokkos::atomic_fetch_add(&roll().begun, 1) + others) % (others + 1); },
+          [&](int& taken) {
+            taken = (Kokkos::atomic_fetch_add(&launch_barrier().begun, 1) + others) % (others + 1);
+          },
           part);
     Scratch scratch(team, bytes(nodes.value_count));
     Slot slot{};
-    if (Whole && part >= rigid_teams && part < others) slot = slot_of(team, scratch, part - rigid_teams);
+    if (WithNodes && part >= rigid_teams && part < others) slot = slot_of(team, scratch, part - rigid_teams);
     for (int k = 0; k < steps; ++k) {
       int paused = 0;
       if (part < others) {
@@ -93,7 +95,8 @@ struct StepAtOnce {
     const bool empty = update.begin(number * cells) == update.begin((number + 1) * cells);
     const Slot slot{number, nodes.value_count > 0 ? update.near_rigid(number) : 0, update.origin(number),
                     empty, scratch.take<int>(Update::window)};
-    for_each_of_window<Dim>(team, update.around, number, [&](int n, int node) { slot.numbers[n] = node; });
+    for_each_of_window<Dim>(team, update.neighbours, number,
+                            [&](int n, int node) { slot.numbers[n] = node; });
     return slot;
   }
 
@@ -101,7 +104,7 @@ struct StepAtOnce {
                                    int k) const {
     if (part < rigid_teams)
       rigids_to_nodes(team, part, Scratch(scratch).template take<double>(0), sums[(k + 1) % 3]);
-    else if constexpr (Whole)
+    else if constexpr (WithNodes)
       step_slot(team, scratch, slot, sums[k % 3], sums[(k + 1) % 3], sums[(k + 2) % 3]);
     else
       update.update(team, scratch, update.slots(part - rigid_teams));
@@ -116,7 +119,7 @@ struct StepAtOnce {
         Kokkos::PerTeam(team),
         [&](int& why) {
           fence_of_teams();  // what this team noted is there for the last one
-          Kokkos::atomic_inc(&roll().arrived);
+          Kokkos::atomic_inc(&launch_barrier().arrived);
           Signal signal{ended, 0};
           while (waits && signal.ended == ended && signal.paused == 0) signal = signal_of(update.control());
           fence_of_teams();
@@ -130,7 +133,7 @@ struct StepAtOnce {
   KOKKOS_INLINE_FUNCTION int end_step(const Member& team, Scratch scratch, int others, bool impatient) const {
     Control& control = update.control();
     Kokkos::single(Kokkos::PerTeam(team), [&] {
-      for (int looks = 0; load_of_others(&roll().arrived) < others; ++looks)
+      for (int looks = 0; load_of_others(&launch_barrier().arrived) < others; ++looks)
         if (impatient && looks == k_patience) Kokkos::atomic_or(&control.paused, Pause::last);
       fence_of_teams();
     });
@@ -140,9 +143,9 @@ struct StepAtOnce {
     Kokkos::single(
         Kokkos::PerTeam(team),
         [&](int& why) {
-          if ((control.paused & Pause::last) != 0) control.paused += Pause::apart - Pause::last;
+          if ((control.paused & Pause::last) != 0) control.paused += Pause::not_co_resident - Pause::last;
           why = control.paused;
-          roll() = {};
+          launch_barrier() = {};
           fence_of_teams();
           Kokkos::atomic_inc(&control.ended);
         },
@@ -155,7 +158,7 @@ struct StepAtOnce {
     MPM_ROLLED
     for (int k = 0; k < rigid_count; ++k) {
       const auto& source = rigids[k];
-      const Vector<double, Dim> to = end.template next_displacement<!Whole>(team, source.rigid, room);
+      const Vector<double, Dim> to = end.template next_displacement<!WithNodes>(team, source.rigid, room);
       const int all = rigid_teams * threads;
       MPM_ROLLED
       for (int p = part * threads + team.team_rank(); p < source.points.count; p += all) {
@@ -180,12 +183,13 @@ struct StepAtOnce {
       bool own = true;
       for (int d = 0; d < Dim; ++d)
         at[d] += place[d], own = own && place[d] >= 0 && place[d] < Patch<Dim>::edge;
-      if (slot.empty && !own) return MotionValues<T, Dim>{};
+      if (slot.empty && !own) return KinematicValues<T, Dim>{};
       double* const told = own && slot.near > 0 ? force + place_of<Dim>(place) : nullptr;
       for (int v = 0; v < nodes.value_count && told != nullptr; ++v) told[v * cells] = 0;
-      const MotionValues<T, Dim> motion = nodes.motion(present, bodies, number, at, slot.near > 0, told);
-      if (own) nodes.keep(number, motion);
-      return motion;
+      const KinematicValues<T, Dim> kinematics =
+          nodes.kinematics(present, bodies, number, at, slot.near > 0, told);
+      if (own) nodes.keep(number, kinematics);
+      return kinematics;
     };
     update.update(
         team, scratch, slot.number, next, [&](int n) { return slot.numbers[n]; }, motion_of);

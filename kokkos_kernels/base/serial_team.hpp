@@ -1,5 +1,5 @@
 #pragma once
-// What a team of threads does on a GPU, done by one thread of a processor.
+// The serial team: one thread of a processor does what a team of threads does on a GPU.
 
 #include <Kokkos_Core.hpp>
 
@@ -8,7 +8,7 @@
 namespace mpm {
 
 /// A team of one.
-struct LoneThread {
+struct SerialTeam {
   int league = 0;
   KOKKOS_INLINE_FUNCTION int league_rank() const { return league; }
   KOKKOS_INLINE_FUNCTION static constexpr int team_rank() { return 0; }
@@ -22,7 +22,7 @@ KOKKOS_INLINE_FUNCTION void for_team(const Team& team, int count, F&& f) {
   Kokkos::parallel_for(Kokkos::TeamThreadRange(team, count), f);
 }
 template <class F>
-KOKKOS_INLINE_FUNCTION void for_team(const LoneThread&, int count, F&& f) {
+KOKKOS_INLINE_FUNCTION void for_team(const SerialTeam&, int count, F&& f) {
   for (int n = 0; n < count; ++n) f(n);
 }
 
@@ -32,7 +32,7 @@ KOKKOS_INLINE_FUNCTION void once(const Team& team, F&& f) {
   Kokkos::single(Kokkos::PerTeam(team), f);
 }
 template <class F>
-KOKKOS_INLINE_FUNCTION void once(const LoneThread&, F&& f) {
+KOKKOS_INLINE_FUNCTION void once(const SerialTeam&, F&& f) {
   f();
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// How fast a strategy is, found by a few steps.
+// Autotune: how fast a strategy is, measured in a few steps.
 
 #include <algorithm>
 #include <optional>

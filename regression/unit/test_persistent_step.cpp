@@ -19,15 +19,15 @@ int steps_in_launches(State<Space, T, Dim>& s, double dt, int n, int most) {
       interpolate(s);
       s.summed = {true, s.soil_boundary, true};
     }
-    const bool whole = is_whole_step(s);
-    REQUIRE((whole || (!s.together && s.patches.slots > 1000)));
+    const bool whole = can_persist(s);
+    REQUIRE((whole || (!s.co_resident && s.patches.slots > 1000)));
     restart_count(s);
-    const int asked = whole ? whole_steps(s, dt, std::min(n, most)) : 1;
+    const int asked = whole ? run_persistent_steps(s, dt, std::min(n, most)) : 1;
     if (!whole) one_step(s, dt);
-    const Control control = look(s);
+    const Control control = read_control(s);
     REQUIRE(control.fault_count == 0);
     REQUIRE((control.steps == asked || (control.paused != 0 && control.steps > 0)));
-    if ((control.paused & Pause::apart) != 0) go_on_apart(s);
+    if ((control.paused & Pause::not_co_resident) != 0) resume_single_steps(s);
     if ((control.paused & Pause::due) != 0) rebuild(s), ++rebuilds;
     n -= control.steps;
   }
@@ -43,7 +43,7 @@ int steps_by_function(State<Space, T, Dim>& s, double dt, int n) {
   timers.sample(true);
   for (; n > 0; --n) {
     if (step(s, timers, dt) != PETSC_SUCCESS) throw std::runtime_error("a step failed");
-    if (look(s).paused) rebuild(s), ++rebuilds;
+    if (read_control(s).paused) rebuild(s), ++rebuilds;
   }
   return rebuilds;
 }
@@ -77,7 +77,7 @@ Cloud two_rigids(bool surface, bool dynamic) {
 
 }  // namespace
 
-TEST_CASE("a step in one launch is the step function by function, across rebuilds", "[step_at_once]") {
+TEST_CASE("a step in one launch is the step function by function, across rebuilds", "[persistent_step]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     for (const bool surface : {false, true}) {
@@ -85,7 +85,7 @@ TEST_CASE("a step in one launch is the step function by function, across rebuild
         for (const double f_bar : {0.0, 0.9}) {
           const int most = f_bar > 0 ? 1 : 7;
           Cloud cloud = two_rigids<B::dim>(surface, dynamic);
-          cloud.f_bar_share = f_bar;
+          cloud.f_bar_fraction = f_bar;
           auto one = state_of<B>(cloud, P2G::tile), two = state_of<B>(cloud, P2G::tile);
           interpolate(one);
           one.summed = {true, one.soil_boundary, true};
@@ -93,10 +93,10 @@ TEST_CASE("a step in one launch is the step function by function, across rebuild
           INFO(B::name() << (surface ? " surface" : " mass") << (dynamic ? " dynamic" : "") << " F-bar "
                          << f_bar);
           if (by_mass)
-            CHECK_FALSE(is_whole_step(one));
+            CHECK_FALSE(can_persist(one));
           else
-            CHECK((is_whole_step(one) || B::dim == 3));  // in 3D a team may lack the memory
-          if (!is_whole_step(one)) continue;
+            CHECK((can_persist(one) || B::dim == 3));  // in 3D a team may lack the memory
+          if (!can_persist(one)) continue;
           const int steps = 60, rebuilds = steps_in_launches(one, 2e-4, steps, most);
           CHECK(rebuilds > 1);
           CHECK(steps_by_function(two, 2e-4, steps) == rebuilds);
@@ -110,22 +110,22 @@ TEST_CASE("a step in one launch is the step function by function, across rebuild
             }
             CHECK(theirs(r).impulse[1] > 1);  // the soil resists
           }
-          CHECK(std::fabs(look(one).bound - look(two).bound) < B::of(1e-10, 1e-6));
+          CHECK(std::fabs(read_control(one).bound - read_control(two).bound) < B::of(1e-10, 1e-6));
         }
       }
     }
   });
 }
 
-TEST_CASE("steps in one launch and function by function take turns", "[step_at_once]") {
+TEST_CASE("steps in one launch and function by function take turns", "[persistent_step]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     const Cloud cloud = two_rigids<B::dim>(false, false);
     auto one = state_of<B>(cloud, P2G::tile), two = state_of<B>(cloud, P2G::tile);
     interpolate(one);
     one.summed = {true, one.soil_boundary, true};
-    CHECK((is_whole_step(one) || B::dim == 3));
-    if (!is_whole_step(one)) return;
+    CHECK((can_persist(one) || B::dim == 3));
+    if (!can_persist(one)) return;
     for (int n = 0; n < 4; ++n) {
       steps_in_launches(one, 2e-4, 5 + n, 4);
       steps_by_function(one, 2e-4, 1 + n);
@@ -136,7 +136,7 @@ TEST_CASE("steps in one launch and function by function take turns", "[step_at_o
   });
 }
 
-TEST_CASE("teams that a device does not hold at once do one step a launch, or two", "[step_at_once]") {
+TEST_CASE("teams that a device does not hold at once do one step a launch, or two", "[persistent_step]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     if constexpr (B::dim == 2)
@@ -151,7 +151,7 @@ TEST_CASE("teams that a device does not hold at once do one step a launch, or tw
         auto one = state_of<B>(cloud, P2G::tile), two = state_of<B>(cloud, P2G::tile);
         INFO(B::name() << ' ' << width);
         steps_in_launches(one, 2e-4, 10, 5);
-        CHECK(one.together == !is_device<typename B::Space>);
+        CHECK(one.co_resident == !is_device<typename B::Space>);
         steps_by_function(two, 2e-4, 10);
         CHECK(largest_difference(soil_fields(one), soil_fields(two)) < B::of(1e-10, 1e-3));
       }

@@ -9,7 +9,7 @@
 namespace mpm {
 
 // A Point holds what a particle gives, as plain T, so that a strategy may keep it value by value. Each value
-// of a node's share goes with the weight, or with components of its gradient, which takes(value, d) tells:
+// of a node's term goes with the weight, or with components of its gradient, which takes(value, d) tells:
 //   S factor(q, value)   or   sum over d of dS/dx_d slope(q, value, d)
 // component(value) is the direction of a value that is a component of a vector, -1 of a scalar; with `kind`
 // it tells the sign of its image in a wall.
@@ -20,7 +20,7 @@ template <class Space_, class T, int Dim>
 struct SoilSource {
   using Space = Space_;
   using real = T;
-  static constexpr int dim = Dim, size = SoilShare<Dim>::size;
+  static constexpr int dim = Dim, size = SoilTerms<Dim>::size;
   static constexpr Kind kind = Kind::motion;
   template <class R>
   struct PointOf {
@@ -52,16 +52,16 @@ struct SoilSource {
     return q;
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
-    return value == SoilShare<Dim>::mass ? -1 : (value - SoilShare<Dim>::momentum) % Dim;
+    return value == SoilTerms<Dim>::mass ? -1 : (value - SoilTerms<Dim>::momentum) % Dim;
   }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int) {
-    return value >= SoilShare<Dim>::force;
+    return value >= SoilTerms<Dim>::force;
   }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
-    return value == SoilShare<Dim>::mass ? q.mass : q.momentum[value - SoilShare<Dim>::momentum];
+    return value == SoilTerms<Dim>::mass ? q.mass : q.momentum[value - SoilTerms<Dim>::momentum];
   }
   KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int value, int d) {
-    return q.stress_volume[place(value - SoilShare<Dim>::force, d)];
+    return q.stress_volume[place(value - SoilTerms<Dim>::force, d)];
   }
 };
 
@@ -79,20 +79,20 @@ struct AffineSource : SoilSource<Space_, T, Dim> {
     for (int k = 0; k < Dim * Dim; ++k) q.affine[k] = q.mass * this->points.affine(p)[k];
     return q;
   }
-  /// What comes to the share of a node with weight w, `offset` [cells] from the particle.
+  /// What comes to the term of a node with weight w, `offset` [cells] from the particle.
   template <class W, class Add>
   KOKKOS_INLINE_FUNCTION static void give_more(const Point& q, W w, const Vector<W, Dim>& offset, Add&& add) {
     for (int d = 0; d < Dim; ++d) {
       W more = q.affine[d * Dim] * offset[0];
       for (int e = 1; e < Dim; ++e) more += q.affine[d * Dim + e] * offset[e];
-      add(SoilShare<Dim>::momentum + d, w * more);
+      add(SoilTerms<Dim>::momentum + d, w * more);
     }
   }
 };
 
 /// Any velocity of the particles to nodes, as momentum: sum S m_p r_p. XPIC sends what is left of theirs.
 template <class Space_, class T, int Dim>
-struct RestSource {
+struct ResidualSource {
   using Space = Space_;
   using real = T;
   static constexpr int dim = Dim, size = Dim;
@@ -102,13 +102,13 @@ struct RestSource {
     T momentum[Dim];
   };
   Soil<Space, T, Dim> points;
-  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> rest;  // m/s
+  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> residual;  // m/s
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     const BodyProperties<T> body = points.properties(p);
     Point q{body.half_length, {}};
-    for (int d = 0; d < Dim; ++d) q.momentum[d] = body.mass * rest(p)[d];
+    for (int d = 0; d < Dim; ++d) q.momentum[d] = body.mass * residual(p)[d];
     return q;
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value; }
@@ -124,7 +124,7 @@ template <class Space_, class T, int Dim>
 struct BoundarySource {
   using Space = Space_;
   using real = T;
-  static constexpr int dim = Dim, size = BoundaryShare<Dim>::size;
+  static constexpr int dim = Dim, size = BoundaryTerms<Dim>::size;
   static constexpr Kind kind = Kind::geometry;
   struct Point {
     HalfLength<T> half_length;
@@ -141,10 +141,10 @@ struct BoundarySource {
     return {points.bodies(points.body(p)).half_length, volume * inv_spacing, volume};
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
-    return value < BoundaryShare<Dim>::volume ? value : -1;
+    return value < BoundaryTerms<Dim>::volume ? value : -1;
   }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
-    return value == BoundaryShare<Dim>::area + d;
+    return value == BoundaryTerms<Dim>::area + d;
   }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.volume; }
   KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.area; }
@@ -155,7 +155,7 @@ template <class Space_, class T, int Dim>
 struct StrengthSource {
   using Space = Space_;
   using real = T;
-  static constexpr int dim = Dim, size = StrengthShare::size;
+  static constexpr int dim = Dim, size = StrengthTerms::size;
   static constexpr Kind kind = Kind::geometry;
   struct Point {
     HalfLength<T> half_length;
@@ -177,7 +177,7 @@ struct StrengthSource {
   KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
-    return value == StrengthShare::strength ? q.strength : q.volume;
+    return value == StrengthTerms::strength ? q.strength : q.volume;
   }
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
@@ -188,7 +188,7 @@ template <class Space_, class T, int Dim>
 struct RigidSource {
   using Space = Space_;
   using real = T;
-  static constexpr int dim = Dim, size = RigidShare<Dim>::size;
+  static constexpr int dim = Dim, size = RigidTerms<Dim>::size;
   static constexpr Kind kind = Kind::geometry;
   struct Point {
     HalfLength<T> half_length;
@@ -208,26 +208,26 @@ struct RigidSource {
     const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(points.cell(p));
     for (int d = 0; d < Dim; ++d)
       points.coordinate(p)[d] =
-          static_cast<T>(points.home(p)[d] + displacement[d] / spacing - from[d] - cell[d]);
+          static_cast<T>(points.reference_position(p)[d] + displacement[d] / spacing - from[d] - cell[d]);
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
-    return value - RigidShare<Dim>::normal;  // -1 of the mass
+    return value - RigidTerms<Dim>::normal;  // -1 of the mass
   }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
-    return value == RigidShare<Dim>::normal + d;
+    return value == RigidTerms<Dim>::normal + d;
   }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.mass; }
   KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.mass; }
 };
 
-/// The first component of the gradient, from d on, that goes into a value of the share; Source::dim if none.
+/// The first component of the gradient, from d on, that goes into a value of the term; Source::dim if none.
 template <class Source>
 KOKKOS_INLINE_FUNCTION constexpr int first_taken(int value, int d = 0) {
   while (d < Source::dim && !Source::takes(value, d)) ++d;
   return d;
 }
 
-/// The share of a node with weight w and its gradient `grad` [1/cell], by add(value, share). offset() [cells]
+/// The term of a node with weight w and its gradient `grad` [1/cell], by add(value, term). offset() [cells]
 /// from the particle to the node is asked for where the source takes one.
 template <class Source, class W, int Dim, class Offset, class Add>
 KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, W w, const Vector<W, Dim>& grad,
@@ -237,11 +237,11 @@ KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, W w, const Vec
     if constexpr (first == Dim) {
       add(value, w * Source::factor(q, value));
     } else {
-      W share = grad[first] * Source::slope(q, value, first);
+      W term = grad[first] * Source::slope(q, value, first);
       unrolled<Dim>([&](auto d) {
-        if constexpr (d > first && Source::takes(value, d)) share += grad[d] * Source::slope(q, value, d);
+        if constexpr (d > first && Source::takes(value, d)) term += grad[d] * Source::slope(q, value, d);
       });
-      add(value, share);
+      add(value, term);
     }
   });
   if constexpr (requires { Source::takes_offset; }) Source::give_more(q, w, offset(), add);
@@ -270,7 +270,7 @@ inline constexpr std::size_t window_bytes =
 #define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
   X(SoilSource, Space, T, Dim)                \
   X(AffineSource, Space, T, Dim)              \
-  X(RestSource, Space, T, Dim)                \
+  X(ResidualSource, Space, T, Dim)            \
   X(BoundarySource, Space, T, Dim)            \
   X(StrengthSource, Space, T, Dim)            \
   X(RigidSource, Space, T, Dim)

@@ -26,7 +26,7 @@ double bytes_to_nodes(const State<Space, T, Dim>& s) {
   particle += sizeof(*p.velocity.data()) + sizeof(*p.stress.data()) + sizeof(*p.volume.data());
   if (s.affine) particle += sizeof(*p.affine.data());
   if (p.has_own_mass) particle += sizeof(*p.mass.data());
-  return p.count * particle + s.patches.node_count() * double(sizeof(T) * SoilShare<Dim>::size);
+  return p.count * particle + s.patches.node_count() * double(sizeof(T) * SoilTerms<Dim>::size);
 }
 
 /// Function 5: what changes of a particle is read and written, the rest that the update looks at is read; the
@@ -45,33 +45,33 @@ double bytes_to_particles(const State<Space, T, Dim>& s) {
   const double place = sizeof(*p.coordinate.data()) + sizeof(*p.cell.data()) + sizeof(*p.body.data());
   particle += s.xpic_order * (place + 2 * sizeof(*p.velocity.data()));
   if (s.affine) particle += sizeof(*p.affine.data());
-  return p.count * particle + s.patches.node_count() * double(sizeof(T) * NodeMotion<Dim>::size);
+  return p.count * particle + s.patches.node_count() * double(sizeof(T) * NodeKinematics<Dim>::size);
 }
 
 /// Bytes that one call of a function must move.
 template <class Space, class T, int Dim>
-double bytes_of(Function f, const State<Space, T, Dim>& s) {
+double bytes_of(StepPhase f, const State<Space, T, Dim>& s) {
   double points = 0, sorted = s.soil.points.count * bytes_of_point(s.soil.points);  // of the rigids; of all
   for (const auto& set : s.rigid_points) {
     points += set.points.count;
     sorted += set.points.count * bytes_of_point(set.points);
   }
   constexpr double place = sizeof(Vector<T, Dim>) + sizeof(int), home = sizeof(Vector<double, Dim>);
-  const double rigid_sums = s.rigid_points.size() * RigidShare<Dim>::size;
-  const double sums = s.patches.node_count() * sizeof(T) * (SoilShare<Dim>::size + rigid_sums);
-  const double soil_sums = s.patches.node_count() * double(sizeof(T) * SoilShare<Dim>::size);
+  const double rigid_sums = s.rigid_points.size() * RigidTerms<Dim>::size;
+  const double sums = s.patches.node_count() * sizeof(T) * (SoilTerms<Dim>::size + rigid_sums);
+  const double soil_sums = s.patches.node_count() * double(sizeof(T) * SoilTerms<Dim>::size);
   const bool ahead = s.plan.sums_ahead;  // then functions 1 and 3 are part of 4 and 5 of the step before
   switch (f) {
-    case Function::reset: return ahead ? 0 : sums;
-    case Function::rigid_to_nodes: return points * place;  // the few nodes that they reach are left out
-    case Function::soil_to_nodes: return ahead ? 0 : bytes_to_nodes(s);
-    case Function::nodes:
-      return (ahead ? 2 : 1) * sums + s.patches.node_count() * double(sizeof(T) * NodeMotion<Dim>::size);
-    case Function::particles: return bytes_to_particles(s) + (ahead ? soil_sums : 0);
-    case Function::rigids: return s.rigid_moves ? points * (place + home) : 0;
-    case Function::whole:
-      return bytes_of(Function::rigid_to_nodes, s) + bytes_of(Function::nodes, s) +
-             bytes_of(Function::particles, s) + bytes_of(Function::rigids, s);
+    case StepPhase::reset: return ahead ? 0 : sums;
+    case StepPhase::rigid_to_nodes: return points * place;  // the few nodes that they reach are left out
+    case StepPhase::soil_to_nodes: return ahead ? 0 : bytes_to_nodes(s);
+    case StepPhase::nodes:
+      return (ahead ? 2 : 1) * sums + s.patches.node_count() * double(sizeof(T) * NodeKinematics<Dim>::size);
+    case StepPhase::particles: return bytes_to_particles(s) + (ahead ? soil_sums : 0);
+    case StepPhase::rigids: return s.rigid_moves ? points * (place + home) : 0;
+    case StepPhase::persistent:
+      return bytes_of(StepPhase::rigid_to_nodes, s) + bytes_of(StepPhase::nodes, s) +
+             bytes_of(StepPhase::particles, s) + bytes_of(StepPhase::rigids, s);
     default: return 2 * sorted;
   }
 }

@@ -1,10 +1,10 @@
-#include "parallel/ranks.hpp"
+#include "parallel/decomposition.hpp"
 
 #include <algorithm>
 
 #include "functions/step_kernels.hpp"
 #include "output/log.hpp"
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
@@ -19,8 +19,8 @@ auto head(const View& view, std::size_t n) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::start(MPI_Comm comm, const PartitionConfig& config, const Owners& owners,
-                                           State_& s) {
+PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm comm, const PartitionConfig& config,
+                                                   const Owners& owners, State_& s) {
   PetscFunctionBeginUser;
   comm_ = comm;
   rank_ = rank_of(comm);
@@ -52,7 +52,7 @@ PetscErrorCode Ranks<Space, T, Dim>::start(MPI_Comm comm, const PartitionConfig&
 }
 
 template <class Space, class T, int Dim>
-void Ranks<Space, T, Dim>::send_owners_to_device() {
+void Decomposition<Space, T, Dim>::send_owners_to_device() {
   ensure(owner_, owners_.size());
   const Kokkos::View<const int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(owners_.data(),
                                                                                   owners_.size());
@@ -60,26 +60,26 @@ void Ranks<Space, T, Dim>::send_owners_to_device() {
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode Ranks<Space, T, Dim>::add_forces(State_& s) {
+PetscErrorCode Decomposition<Space, T, Dim>::add_forces(State_& s) {
   PetscFunctionBeginUser;
   if (!forces_shared_) PetscFunctionReturn(PETSC_SUCCESS);
-  // The forces are there since the nodes are: where shares have been sent ahead nobody waits for inner
+  // The forces are there since the nodes are: where ghost sums have been sent ahead nobody waits for inner
   // patches.
   const Space& space = sent_ahead() ? side_.space() : s.space;
   sum_forces(s, space);
-  const auto sums = Kokkos::create_mirror_view(s.sums);
-  Kokkos::deep_copy(space, sums, s.sums);
+  const auto sums = Kokkos::create_mirror_view(s.rigid_force);
+  Kokkos::deep_copy(space, sums, s.rigid_force);
   space.fence("mpm::add_forces");
   clock_.pause();
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.extent(0)), MPI_DOUBLE, MPI_SUM, comm_));
   clock_.go_on();
-  Kokkos::deep_copy(s.space, s.sums, sums);
+  Kokkos::deep_copy(s.space, s.rigid_force, sums);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 template <class Space, class T, int Dim>
-RankReport Ranks<Space, T, Dim>::report(const State_& s) const {
+RankReport Decomposition<Space, T, Dim>::report(const State_& s) const {
   RankReport report;
   report.work = clock_.work();
   report.wait = clock_.wait();
@@ -88,31 +88,31 @@ RankReport Ranks<Space, T, Dim>::report(const State_& s) const {
   report.particles = s.soil.points.count;
   report.neighbours = neighbours_;
   report.shared_nodes = lists_.shared;
-  const int width = SoilShare<Dim>::size + (s.soil_boundary ? BoundaryShare<Dim>::size : 0);
+  const int width = SoilTerms<Dim>::size + (s.soil_boundary ? BoundaryTerms<Dim>::size : 0);
   report.sent = double(lists_.sent) * width * sizeof(T);
   return report;
 }
 
 template <class Space, class T, int Dim>
-std::string Ranks<Space, T, Dim>::halo_words(const State_& s) const {
+std::string Decomposition<Space, T, Dim>::halo_words(const State_& s) const {
   return std::string(transport_.words()) + (overlaps(s) ? ", while inner patches are computed" : "");
 }
 
 template <class Space, class T, int Dim>
-std::size_t Ranks<Space, T, Dim>::memory() const {
+std::size_t Decomposition<Space, T, Dim>::memory() const {
   const auto bytes = [](const auto& view) { return view.span() * sizeof(*view.data()); };
   return transport_.memory() + bytes(owner_) + bytes(lists_.node) + bytes(lists_.shared_node) +
          bytes(lists_.begin) + bytes(lists_.source);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                 \
-  template PetscErrorCode Ranks<Space, T, Dim>::start(MPI_Comm, const PartitionConfig&, const Owners&, \
-                                                      State<Space, T, Dim>&);                          \
-  template void Ranks<Space, T, Dim>::send_owners_to_device();                                         \
-  template PetscErrorCode Ranks<Space, T, Dim>::add_forces(State<Space, T, Dim>&);                     \
-  template RankReport Ranks<Space, T, Dim>::report(const State<Space, T, Dim>&) const;                 \
-  template std::string Ranks<Space, T, Dim>::halo_words(const State<Space, T, Dim>&) const;            \
-  template std::size_t Ranks<Space, T, Dim>::memory() const;
+#define MPM_INSTANTIATE(Space, T, Dim)                                                               \
+  template PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm, const PartitionConfig&,      \
+                                                              const Owners&, State<Space, T, Dim>&); \
+  template void Decomposition<Space, T, Dim>::send_owners_to_device();                               \
+  template PetscErrorCode Decomposition<Space, T, Dim>::add_forces(State<Space, T, Dim>&);           \
+  template RankReport Decomposition<Space, T, Dim>::report(const State<Space, T, Dim>&) const;       \
+  template std::string Decomposition<Space, T, Dim>::halo_words(const State<Space, T, Dim>&) const;  \
+  template std::size_t Decomposition<Space, T, Dim>::memory() const;
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -3,8 +3,8 @@
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 
+#include "autotune.hpp"
 #include "strategy_choice.hpp"
-#include "trial.hpp"
 
 using namespace mpm;
 
@@ -19,7 +19,7 @@ PetscErrorCode advance(long steps, Batch* batch) {
 
 }  // namespace
 
-TEST_CASE("a trial takes the time of a step from the largest batch", "[trial]") {
+TEST_CASE("the autotune takes the time of a step from the largest batch", "[autotune]") {
   long largest = 0;
   const auto seconds = time_of_steps([&](long steps, Batch* batch) {
     largest = std::max(largest, steps);
@@ -30,7 +30,7 @@ TEST_CASE("a trial takes the time of a step from the largest batch", "[trial]") 
   CHECK(*seconds == Catch::Approx(10e-6 + 50e-6 / 128));
 }
 
-TEST_CASE("a trial goes on where a device does not hold a launch of many steps", "[trial]") {
+TEST_CASE("the autotune goes on where a device does not hold a launch of many steps", "[autotune]") {
   bool together = true;
   const auto seconds = time_of_steps([&](long steps, Batch* batch) {
     const bool ends = together && steps > 1;
@@ -41,7 +41,7 @@ TEST_CASE("a trial goes on where a device does not hold a launch of many steps",
   CHECK(*seconds == Catch::Approx(10e-6 + 50e-6 / 128));
 }
 
-TEST_CASE("a trial ends at a rebuild, at a failure, and where time is up", "[trial]") {
+TEST_CASE("the autotune ends at a rebuild, at a failure, and where time is up", "[autotune]") {
   long done = 0;
   const auto until = [&](long last, auto&& how) {
     return [&done, last, how](long steps, Batch* batch) {
@@ -74,18 +74,18 @@ TEST_CASE("a trial ends at a rebuild, at a failure, and where time is up", "[tri
 namespace {
 
 /// Rounds of tile, gather, mosaic and atomic, in milliseconds.
-std::vector<TrialTimes> rounds_of(std::vector<double> tile, std::vector<double> gather,
-                                  std::vector<double> mosaic, std::vector<double> atomic) {
-  std::vector<TrialTimes> trials = {
+std::vector<AutotuneTimes> rounds_of(std::vector<double> tile, std::vector<double> gather,
+                                     std::vector<double> mosaic, std::vector<double> atomic) {
+  std::vector<AutotuneTimes> candidates = {
       {P2G::tile, tile}, {P2G::gather, gather}, {P2G::mosaic, mosaic}, {P2G::atomic, atomic}};
-  for (TrialTimes& trial : trials)
-    for (double& seconds : trial.seconds) seconds *= 1e-3;
-  return trials;
+  for (AutotuneTimes& candidate : candidates)
+    for (double& seconds : candidate.seconds) seconds *= 1e-3;
+  return candidates;
 }
 
 }  // namespace
 
-TEST_CASE("the fastest strategy is taken and kept where its rounds agree", "[trial]") {
+TEST_CASE("the fastest strategy is taken and kept where its rounds agree", "[autotune]") {
   const auto tile =
       choose_by_times(rounds_of({10, 10.1, 10.2}, {14, 14, 15}, {12, 12, 13}, {20, 20, 20}), 0.5);
   CHECK(tile.strategy == P2G::tile);
@@ -96,7 +96,7 @@ TEST_CASE("the fastest strategy is taken and kept where its rounds agree", "[tri
   CHECK(mosaic.clear);
 }
 
-TEST_CASE("a tie goes to tile, then to the earlier in the list", "[trial]") {
+TEST_CASE("a tie goes to tile, then to the earlier in the list", "[autotune]") {
   const auto tile =
       choose_by_times(rounds_of({12.5, 12.5, 12.5}, {14, 14, 14}, {12, 12, 12}, {20, 20, 20}), 0);
   CHECK(tile.strategy == P2G::tile);
@@ -111,14 +111,14 @@ TEST_CASE("a tie goes to tile, then to the earlier in the list", "[trial]") {
   CHECK(gather.clear);
 }
 
-TEST_CASE("one slow round changes nothing, as others may use the machine meanwhile", "[trial]") {
+TEST_CASE("one slow round changes nothing, as others may use the machine meanwhile", "[autotune]") {
   const auto choice =
       choose_by_times(rounds_of({15.5, 40, 15.6}, {18, 18, 90}, {19.5, 19.5, 19.6}, {30, 30, 30}), 0.5);
   CHECK(choice.strategy == P2G::tile);
   CHECK(choice.clear);
 }
 
-TEST_CASE("what a busy machine tells is not kept", "[trial]") {
+TEST_CASE("what a busy machine tells is not kept", "[autotune]") {
   // Tile's true 15.5 ms were met once: it is taken, but most of its rounds would have said mosaic.
   const auto noisy =
       choose_by_times(rounds_of({31, 15.5, 29}, {40, 33, 36}, {19.5, 24, 19.8}, {30, 41, 50}), 0.5);
@@ -136,7 +136,7 @@ TEST_CASE("what a busy machine tells is not kept", "[trial]") {
   CHECK(!loaded.clear);
 }
 
-TEST_CASE("a strategy that makes no step is left out; without any there is no choice", "[trial]") {
+TEST_CASE("a strategy that makes no step is left out; without any there is no choice", "[autotune]") {
   const auto choice = choose_by_times(rounds_of({}, {14, 14, 14}, {}, {20, 20, 20}), 0);
   CHECK(choice.strategy == P2G::gather);
   CHECK(choice.clear);
@@ -147,15 +147,15 @@ TEST_CASE("a strategy that makes no step is left out; without any there is no ch
   CHECK(choose_by_times({}, 0).strategy == P2G::automatic);
 }
 
-TEST_CASE("what takes three times the fastest is tried once", "[trial]") {
-  const auto trials = rounds_of({10, 12}, {31, 31}, {29, 29}, {});
-  CHECK(!is_beaten(trials[0], trials));
-  CHECK(is_beaten(trials[1], trials));
-  CHECK(!is_beaten(trials[2], trials));
-  CHECK(!is_beaten(trials[3], trials));  // it has not been tried
+TEST_CASE("what takes three times the fastest is tried once", "[autotune]") {
+  const auto candidates = rounds_of({10, 12}, {31, 31}, {29, 29}, {});
+  CHECK(!is_beaten(candidates[0], candidates));
+  CHECK(is_beaten(candidates[1], candidates));
+  CHECK(!is_beaten(candidates[2], candidates));
+  CHECK(!is_beaten(candidates[3], candidates));  // it has not been tried
 }
 
-TEST_CASE("least and median of rounds", "[trial]") {
+TEST_CASE("least and median of rounds", "[autotune]") {
   CHECK(least_of({}) == 0);
   CHECK(median_of({}) == 0);
   CHECK(least_of({3, 1, 2}) == 1);

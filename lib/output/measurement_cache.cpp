@@ -1,4 +1,4 @@
-#include "output/remembered.hpp"
+#include "output/measurement_cache.hpp"
 
 #include <unistd.h>
 
@@ -47,7 +47,8 @@ void write(const fs::path& path, const std::map<std::string, double>& kept) {
 
 }  // namespace
 
-double remembered(const std::string& name, const std::string& key, const std::function<double()>& measure) {
+double cached_measurement(const std::string& name, const std::string& key,
+                          const std::function<double()>& measure) {
   const fs::path folder = cache_folder();
   if (folder.empty()) return measure();
   std::map<std::string, double> kept = read(folder / name);

@@ -4,7 +4,7 @@
 
 #include "clouds.hpp"
 #include "device/copy_bandwidth.hpp"
-#include "step/traffic.hpp"
+#include "step/bytes_moved.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -29,12 +29,12 @@ void check_bytes() {
   const double particles = s.soil.points.count, nodes = s.patches.node_count();
   REQUIRE(particles == std::pow(18, B::dim));
   const double sums = nodes * real * (1 + 2 * B::dim), motion = nodes * real * 2 * B::dim;
-  CHECK(bytes_of(Function::reset, s) == sums);
-  CHECK(bytes_of(Function::nodes, s) == sums + motion);
-  CHECK(bytes_of(Function::soil_to_nodes, s) == particles * (k_to_nodes[at] * real + 4 + 2) + sums);
-  CHECK(bytes_of(Function::particles, s) == particles * (k_update[at] * real + 4 + 2) + motion);
-  CHECK(bytes_of(Function::rigid_to_nodes, s) == 0);
-  CHECK(bytes_of(Function::rigids, s) == 0);
+  CHECK(bytes_of(StepPhase::reset, s) == sums);
+  CHECK(bytes_of(StepPhase::nodes, s) == sums + motion);
+  CHECK(bytes_of(StepPhase::soil_to_nodes, s) == particles * (k_to_nodes[at] * real + 4 + 2) + sums);
+  CHECK(bytes_of(StepPhase::particles, s) == particles * (k_update[at] * real + 4 + 2) + motion);
+  CHECK(bytes_of(StepPhase::rigid_to_nodes, s) == 0);
+  CHECK(bytes_of(StepPhase::rigids, s) == 0);
 }
 
 template <class Space>
@@ -47,11 +47,11 @@ void check_copy() {
 
 }  // namespace
 
-TEST_CASE("the least traffic of a particle and a node is what is counted by hand", "[traffic]") {
+TEST_CASE("the least bytes moved of a particle and a node are what is counted by hand", "[bytes_moved]") {
   for_each_build([](auto build) { check_bytes<decltype(build)>(); });
 }
 
-TEST_CASE("a copy has a bandwidth", "[traffic]") {
+TEST_CASE("a copy has a bandwidth", "[bytes_moved]") {
   check_copy<Kokkos::Serial>();
   check_copy<Kokkos::DefaultExecutionSpace>();
 }

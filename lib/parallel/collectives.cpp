@@ -1,4 +1,4 @@
-#include "parallel/together.hpp"
+#include "parallel/collectives.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,31 +1,32 @@
 #pragma once
-// Two queues of work on one device, and marks in them that order and time what they hold. Where kernels run
-// on the host there is one queue, and a mark has nothing to do.
+// Two streams of work on one device, and events that order and time the work in them. Where kernels run on
+// the host there is one stream, and an event does nothing.
 
 #include "base/spaces.hpp"
 
 namespace mpm {
 
-/// A place in a queue. To note the time at it as well holds the queue up for a microsecond or two.
+/// An event in a stream. A timed event also notes its time, which delays the stream by a microsecond or two.
 template <class Space>
-class Mark {
+class StreamEvent {
  public:
   enum Kind { untimed, timed };
-  explicit Mark(Kind = untimed) {}
-  void set(const Space&) {}
-  /// What the queue is given from now on waits for this mark.
-  void hold(const Space&) const {}
+  explicit StreamEvent(Kind = untimed) {}
+  /// Records the event behind the work that the stream has now.
+  void record(const Space&) {}
+  /// Work that the stream gets from now on waits for this event.
+  void wait(const Space&) const {}
 };
 
-/// Seconds from one timed mark to another that have both been passed; 0 where one of them was never set.
+/// Seconds between two timed events that have both completed; 0 where one of them was never recorded.
 template <class Space>
-double seconds_between(const Mark<Space>&, const Mark<Space>&) {
+double seconds_between(const StreamEvent<Space>&, const StreamEvent<Space>&) {
   return 0;
 }
 
-/// A second queue of the device of another one; its kernels go first.
+/// A second stream on the device of another stream. Its kernels have priority.
 template <class Space>
-class SideQueue {
+class SideStream {
  public:
   void open(const Space& main) { space_ = main; }
   const Space& space() const { return space_; }
@@ -36,20 +37,21 @@ class SideQueue {
 
 #ifdef KOKKOS_ENABLE_CUDA
 template <>
-class Mark<Kokkos::Cuda> {
+class StreamEvent<Kokkos::Cuda> {
  public:
   enum Kind { untimed, timed };
-  explicit Mark(Kind kind = untimed) : flags_(kind == timed ? cudaEventDefault : cudaEventDisableTiming) {}
-  Mark(const Mark&) = delete;
-  Mark& operator=(const Mark&) = delete;
-  ~Mark() {
+  explicit StreamEvent(Kind kind = untimed)
+      : flags_(kind == timed ? cudaEventDefault : cudaEventDisableTiming) {}
+  StreamEvent(const StreamEvent&) = delete;
+  StreamEvent& operator=(const StreamEvent&) = delete;
+  ~StreamEvent() {
     if (event_ != nullptr) (void)cudaEventDestroy(event_);
   }
-  void set(const Kokkos::Cuda& space) {
+  void record(const Kokkos::Cuda& space) {
     if (event_ == nullptr) KOKKOS_IMPL_CUDA_SAFE_CALL(cudaEventCreateWithFlags(&event_, flags_));
     KOKKOS_IMPL_CUDA_SAFE_CALL(cudaEventRecord(event_, space.cuda_stream()));
   }
-  void hold(const Kokkos::Cuda& space) const {
+  void wait(const Kokkos::Cuda& space) const {
     if (event_ != nullptr) KOKKOS_IMPL_CUDA_SAFE_CALL(cudaStreamWaitEvent(space.cuda_stream(), event_, 0));
   }
   cudaEvent_t event() const { return event_; }
@@ -59,7 +61,7 @@ class Mark<Kokkos::Cuda> {
   unsigned flags_;
 };
 
-inline double seconds_between(const Mark<Kokkos::Cuda>& from, const Mark<Kokkos::Cuda>& to) {
+inline double seconds_between(const StreamEvent<Kokkos::Cuda>& from, const StreamEvent<Kokkos::Cuda>& to) {
   float milliseconds = 0;
   if (from.event() == nullptr || to.event() == nullptr) return 0;
   KOKKOS_IMPL_CUDA_SAFE_CALL(cudaEventElapsedTime(&milliseconds, from.event(), to.event()));
@@ -67,12 +69,12 @@ inline double seconds_between(const Mark<Kokkos::Cuda>& from, const Mark<Kokkos:
 }
 
 template <>
-class SideQueue<Kokkos::Cuda> {
+class SideStream<Kokkos::Cuda> {
  public:
-  SideQueue() = default;
-  SideQueue(const SideQueue&) = delete;
-  SideQueue& operator=(const SideQueue&) = delete;
-  ~SideQueue() {
+  SideStream() = default;
+  SideStream(const SideStream&) = delete;
+  SideStream& operator=(const SideStream&) = delete;
+  ~SideStream() {
     space_ = {};
     if (stream_ != nullptr) (void)cudaStreamDestroy(stream_);
   }

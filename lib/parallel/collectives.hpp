@@ -1,6 +1,5 @@
 #pragma once
-// What ranks do together beside the exchange of a step: agree on errors and texts, and send each other
-// records.
+// Collectives beside the exchange of a step: ranks agree on errors and texts, and send each other records.
 
 #include <petscsys.h>
 

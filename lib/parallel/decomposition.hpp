@@ -1,6 +1,6 @@
 #pragma once
 // A rank of several: the patches that it owns, the halo exchange of a step, and the migration of particles
-// and patches at a rebuild. A run on one rank has no Ranks.
+// and patches at a rebuild. A run on one rank has no Decomposition.
 
 #include <petscsys.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "data/saved_state.hpp"
-#include "device/queues.hpp"
+#include "device/stream_event.hpp"
 #include "functions/halo.hpp"
 #include "functions/share_impulse.hpp"
 #include "mpm/config.hpp"
@@ -36,7 +36,7 @@ struct RankReport {
 };
 
 template <class Space, class T, int Dim>
-class Ranks {
+class Decomposition {
  public:
   using State_ = State<Space, T, Dim>;
 
@@ -45,9 +45,9 @@ class Ranks {
 
   /// The sum over ranks in function 3: the nodal sums of soil and boundary go to each neighbour in one
   /// message. If the message has been sent ahead, add_soil ends that exchange. Kernels that s.space and
-  /// `queue` get after this call see the sums. queue: the stream in which the rigids moved at the end of the
-  /// last step.
-  PetscErrorCode add_soil(State_& s, const Space& queue);
+  /// `stream` get after this call see the sums. stream: the stream in which the rigids moved at the end of
+  /// the last step.
+  PetscErrorCode add_soil(State_& s, const Space& stream);
   PetscErrorCode add_soil(State_& s) { return add_soil(s, s.space); }
 
   /// Whether the step overlaps the halo exchange: it computes the border patches, whose nodes other ranks
@@ -60,11 +60,11 @@ class Ranks {
   /// Sends the nodal sums of the border, which kernels have made on its stream.
   PetscErrorCode send_ahead(State_& s);
   /// Kernels that s.space gets after this call see the border's particles as its stream leaves them.
-  void join(const State_& s) { border_there_.hold(s.space); }
+  void join(const State_& s) { border_there_.wait(s.space); }
   /// Whether the border's sums have been sent since the last add_soil.
   bool sent_ahead() const { return ahead_ != Ahead::nothing; }
-  /// The sum over ranks of the nodal values of an XPIC pass.
-  PetscErrorCode add_rest(State_& s);
+  /// The sum over ranks of the nodal values of the residual of an XPIC pass.
+  PetscErrorCode add_residual(State_& s);
   /// The sum over ranks of the soil's strength, at nodes near rigids.
   PetscErrorCode add_strength(State_& s);
   /// The sum over ranks of the soil after sum_present_soil, for measures between two steps.
@@ -100,7 +100,7 @@ class Ranks {
   RankReport report(const State_& s) const;
   std::size_t memory() const;
   /// Lines for the log since the last call; empty where there are none.
-  std::string take_news() { return std::exchange(news_, {}); }
+  std::string drain_log() { return std::exchange(log_lines_, {}); }
 
  private:
   using Memory = typename Space::memory_space;
@@ -115,20 +115,20 @@ class Ranks {
       width += size;
     }
   };
-  enum class Ahead { nothing, under_way, added };  // of the shares that were sent ahead
+  enum class Ahead { nothing, under_way, added };  // of the ghost sums that were sent ahead
 
   Fields soil_fields(const State_& s, bool soil, bool boundary) const;
   PetscErrorCode send(const Space& space, const Fields& fields);
   PetscErrorCode exchange(int width, bool with_bound);
   void sum(const Space& space, const Fields& fields);
   PetscErrorCode add(const Space& space, const Fields& fields, bool with_bound);
-  PetscErrorCode end_ahead(const State_& s, const Space& queue, bool with_bound);
+  PetscErrorCode end_ahead(const State_& s, const Space& stream, bool with_bound);
   bool measures() const { return exchanges_ % k_measured_each == 0; }
   void measure_ahead();
   /// Forgets reports and messages of the steps before a rebuild.
   PetscErrorCode forget();
   PetscErrorCode post_bound();
-  void note_bound(const State_& s, const Space& queue);
+  void note_bound(const State_& s, const Space& stream);
   void put_border_first(State_& s, std::vector<int> held, const std::vector<char>& border);
   PetscErrorCode take_own(SavedState& saved);
   PetscErrorCode rebalance(State_& s);
@@ -149,13 +149,13 @@ class Ranks {
   HaloLists<Space> lists_;
   Transport<Space, T> transport_;
   int neighbours_ = 0;
-  SideQueue<Space> side_;  // of the border's kernels and of the halo
+  SideStream<Space> side_;  // of the border's kernels and of the halo
   Ahead ahead_ = Ahead::nothing;
   Fields on_their_way_;
-  using Mark_ = Mark<Space>;
-  Mark_ nodes_there_, border_there_, added_;
-  Mark_ packing_{Mark_::timed}, packed_{Mark_::timed}, idle_{Mark_::timed}, adding_{Mark_::timed},
-      over_{Mark_::timed};  // of one exchange in k_measured_each
+  using Event = StreamEvent<Space>;
+  Event nodes_there_, border_there_, added_;
+  Event packing_{Event::timed}, packed_{Event::timed}, idle_{Event::timed}, adding_{Event::timed},
+      over_{Event::timed};  // of one exchange in k_measured_each
   static constexpr int k_measured_each = 8;
   long exchanges_ = 0;  // that were sent ahead
   Kokkos::View<Control, Staging> seen_;
@@ -164,11 +164,11 @@ class Ranks {
   bool forces_shared_ = false;
 
   WorkClock clock_;
-  double halo_ = 0;     // s, packing and summing shares; on a device where they were sent ahead
+  double halo_ = 0;     // s, packing and summing ghost sums; on a device where they were sent ahead
   double held_ = 0;     // s, a device's that waited for it
   double futile_ = 0;   // imbalance that a new cut could not mend
   bool timed_ = false;  // the balance has been judged by measured work
-  std::string news_;
+  std::string log_lines_;
 };
 
 }  // namespace mpm
