@@ -11,9 +11,10 @@
 #include <utility>
 
 #include "autotune.hpp"
+#include "common/collectives.hpp"
+#include "common/text.hpp"
 #include "memory_need.hpp"
 #include "output/measurement_cache.hpp"
-#include "parallel/collectives.hpp"
 #include "simulation_body.hpp"
 #include "strategy_choice.hpp"
 

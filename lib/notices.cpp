@@ -1,6 +1,6 @@
 #include "notices.hpp"
 
-#include "output/log.hpp"
+#include "common/text.hpp"
 
 namespace mpm {
 

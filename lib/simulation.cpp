@@ -5,9 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "common/collectives.hpp"
+#include "common/text.hpp"
 #include "output/files.hpp"
 #include "output/performance_json.hpp"
-#include "parallel/collectives.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "input/text.hpp"
+#include "common/collectives.hpp"
+#include "common/text.hpp"
 #include "output/own_files.hpp"
-#include "parallel/collectives.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {

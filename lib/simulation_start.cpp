@@ -3,22 +3,22 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/collectives.hpp"
+#include "common/hdf5_handle.hpp"
+#include "common/text.hpp"
 #include "gpu.hpp"
 #include "input/courant.hpp"
 #include "input/overlap.hpp"
-#include "input/text.hpp"
-#include "input/warnings.hpp"
+#include "input/run_options.hpp"
 #include "memory_need.hpp"
 #include "mesh/background.hpp"
 #include "output/files.hpp"
-#include "output/hdf5_handle.hpp"
 #include "output/measurement_cache.hpp"
 #include "output/performance_json.hpp"
-#include "output/run_options.hpp"
-#include "parallel/collectives.hpp"
 #include "parallel/distribute.hpp"
 #include "signals.hpp"
 #include "simulation_body.hpp"
+#include "warnings.hpp"
 
 namespace mpm {
 Simulation::Simulation() : body_(std::make_unique<Body>()) {}

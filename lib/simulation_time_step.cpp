@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/text.hpp"
 #include "input/courant.hpp"
 #include "simulation_body.hpp"
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/material_table.hpp"
+#include "common/text.hpp"
 #include "input/groups.hpp"
-#include "input/material_table.hpp"
-#include "input/text.hpp"
 #include "output/own_files.hpp"
 
 namespace mpm {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/text.hpp"
 #include "input/groups.hpp"
-#include "input/text.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/materials/list.hpp"
 

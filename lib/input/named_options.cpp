@@ -4,9 +4,9 @@
 #include <cctype>
 #include <set>
 
+#include "common/text.hpp"
 #include "input/groups.hpp"
 #include "input/petsc_names.hpp"
-#include "input/text.hpp"
 
 namespace mpm {
 namespace {

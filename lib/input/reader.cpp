@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "common/text.hpp"
 #include "input/petsc_names.hpp"
-#include "input/text.hpp"
 
 namespace mpm {
 namespace {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <map>
 
-#include "numbers.hpp"
+#include "common/numbers.hpp"
 
 namespace mpm {
 namespace {

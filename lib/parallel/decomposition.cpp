@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
+#include "common/collectives.hpp"
 #include "functions/step_kernels.hpp"
-#include "output/log.hpp"
-#include "parallel/collectives.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "common/collectives.hpp"
+#include "common/text.hpp"
 #include "functions/step_kernels.hpp"
-#include "output/log.hpp"
-#include "parallel/collectives.hpp"
 #include "parallel/decomposition.hpp"
 #include "parallel/partition.hpp"
 #include "rebuild/rebuild.hpp"

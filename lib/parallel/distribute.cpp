@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/collectives.hpp"
 #include "input/shapes.hpp"
-#include "parallel/collectives.hpp"
 #include "parallel/partition.hpp"
 #include "transfer/velocity_gradients.hpp"
 

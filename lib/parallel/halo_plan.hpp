@@ -2,7 +2,7 @@
 // Which nodes a rank shares with which others. Every rank finds the same lists from the same tables, without
 // a word to the others.
 
-#include "parallel/patch_grid.hpp"
+#include "mesh/patch_grid.hpp"
 
 namespace mpm {
 

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <queue>
 
+#include "common/collectives.hpp"
 #include "mesh/background.hpp"
-#include "parallel/collectives.hpp"
 
 namespace mpm {
 namespace {

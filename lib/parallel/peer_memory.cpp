@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "base/spaces.hpp"
-#include "parallel/collectives.hpp"
+#include "common/collectives.hpp"
 
 namespace mpm {
 namespace {

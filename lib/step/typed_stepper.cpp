@@ -4,7 +4,7 @@
 #include "step/bytes_moved.hpp"
 #include "step/surface_input.hpp"
 
-#include "parallel/collectives.hpp"
+#include "common/collectives.hpp"
 
 #include <algorithm>
 #include <cstdio>

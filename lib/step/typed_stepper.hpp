@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "common/material_table.hpp"
 #include "functions/grid_velocity.hpp"
 #include "functions/wall_force.hpp"
-#include "input/material_table.hpp"
 #include "parallel/kept_by_id.hpp"
 #include "step/step.hpp"
 #include "step/stepper.hpp"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "common/text.hpp"
 #include "data/memory_of.hpp"
-#include "output/log.hpp"
 #include "parallel/gather.hpp"
 #include "step/typed_stepper.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/collectives.hpp"
+#include "common/text.hpp"
 #include "data/memory_of.hpp"
-#include "output/log.hpp"
-#include "parallel/collectives.hpp"
 #include "step/typed_stepper.hpp"
 
 namespace mpm {
@@ -155,7 +155,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
   PetscCall(note_out_of_order(b, body));
   body->mass = m.mass, body->strays = m.alone, body->limited = m.limited;
   if (m.count == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  const long rank = m.count - m.count / 1000;  // of the 99.9 % quantile, the nearest one above
+  const long rank = m.count - m.count / 1000;  // of the 99.9th percentile, the nearest one above
   const Vec3& origin = config_.mesh.lower;
   for (int d = 0; d < Dim; ++d) {
     body->lower[d] = m.lower[d] + origin[d];

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "input/material_table.hpp"
+#include "common/material_table.hpp"
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
 #include "step/stepper.hpp"

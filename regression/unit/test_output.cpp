@@ -17,6 +17,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/collectives.hpp"
+#include "input/run_options.hpp"
 #include "output/files.hpp"
 #include "output/folder_lock.hpp"
 #include "output/frames.hpp"
@@ -27,8 +29,6 @@
 #include "output/own_files.hpp"
 #include "output/performance.hpp"
 #include "output/performance_json.hpp"
-#include "output/run_options.hpp"
-#include "parallel/collectives.hpp"
 
 using namespace mpm;
 using Catch::Matchers::ContainsSubstring;

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "clouds.hpp"
-#include "parallel/collectives.hpp"
+#include "common/collectives.hpp"
 #include "parallel/decomposition.hpp"
 #include "parallel/kept_by_id.hpp"
 #include "step/step.hpp"

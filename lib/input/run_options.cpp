@@ -1,4 +1,4 @@
-#include "output/run_options.hpp"
+#include "input/run_options.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "checksum.hpp"
+#include "common/checksum.hpp"
 
 #include <zlib.h>
 

@@ -1,8 +1,10 @@
-#include "input/text.hpp"
+#include "common/text.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdarg>
+#include <cstdio>
 
 namespace mpm {
 namespace {
@@ -24,6 +26,15 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 std::optional<long> parse_integer(std::string_view text) { return parse_whole<long>(text); }
+
+std::string formatted(const char* format, ...) {
+  char buffer[512];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof buffer, format, arguments);
+  va_end(arguments);
+  return buffer;
+}
 
 std::string text_of(std::span<const double> x) {
   std::vector<std::string> pieces;

@@ -1,13 +1,12 @@
-#include "input/warnings.hpp"
+#include "warnings.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "common/text.hpp"
 #include "input/groups.hpp"
 #include "input/shapes.hpp"
-#include "input/text.hpp"
-#include "output/log.hpp"
 #include "step/stepper.hpp"
 
 namespace mpm {

@@ -1,4 +1,4 @@
-#include "parallel/collectives.hpp"
+#include "common/collectives.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "input/material_table.hpp"
+#include "common/material_table.hpp"
 
 namespace mpm {
 

@@ -51,7 +51,7 @@ struct BodyRow {
   Vec3 lower{}, upper{};              // m, extent of its particles
   double kinetic_energy = 0;          // J
   Vec3 momentum{};                    // kg m/s
-  Vec3 quantile{};                    // m, what 99.9 % of its particles do not pass
+  Vec3 quantile{};                    // m, 99.9th percentile of the coordinates of its particles
   Vec3 centre{};                      // m, of mass
   double grid_velocity = 0;           // m/s, the largest at which the nodes move a particle of it
   double stored_energy = 0;           // J, elastic

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "numbers.hpp"
+#include "common/numbers.hpp"
 
 namespace mpm {
 
@@ -17,6 +17,9 @@ std::optional<double> parse_number(std::string_view text);
 
 /// The whole text as a whole number; none as above.
 std::optional<long> parse_integer(std::string_view text);
+
+/// As sprintf, to a string of up to 511 characters.
+__attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...);
 
 /// Numbers as on the command line.
 std::string text_of(std::span<const double> x);

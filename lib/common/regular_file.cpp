@@ -1,4 +1,4 @@
-#include "regular_file.hpp"
+#include "common/regular_file.hpp"
 
 #include <filesystem>
 #include <system_error>
