@@ -1,8 +1,13 @@
 #pragma once
 // The list of materials. To add one: its own header, included here, and its name in the list.
 
+#include "materials/j2_hardening.hpp"
 #include "materials/linear_elastic.hpp"
+#include "materials/mu_i.hpp"
+#include "materials/newtonian.hpp"
+#include "materials/power_elastic.hpp"
 #include "materials/von_mises.hpp"
+#include "materials/yield_stress_fluid.hpp"
 
 namespace mpm {
 
@@ -11,6 +16,7 @@ struct ModelList {
   static constexpr int k_size = sizeof...(Models);
 };
 
-using Materials = ModelList<LinearElastic, VonMises>;
+using Materials =
+    ModelList<LinearElastic, VonMises, MuI, Newtonian, YieldStressFluid, PowerElastic, J2Hardening>;
 
 }  // namespace mpm

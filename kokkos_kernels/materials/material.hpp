@@ -68,6 +68,14 @@ struct Increment {
 template <class Law>
 inline constexpr int state_size = static_cast<int>(Law::state().size());
 
+/// Whether the particles of a law carry its state variable k: all do, unless the law has a member `carries`
+/// that tells it by the parameters. Only the last variables of a table may be missing.
+template <class Law>
+KOKKOS_INLINE_FUNCTION bool carries(const Law& law, int k) {
+  if constexpr (requires { law.carries(k); }) return law.carries(k);
+  return true;
+}
+
 /// Whether a law's update is written for one particle (k_scalar_update), as one with many branches is, and
 /// not for lanes too.
 template <class Law>
