@@ -73,6 +73,14 @@ ParameterFault parameter_fault(const AnyMaterial<double>& material) {
   return fault;
 }
 
+std::string warning_of(const AnyMaterial<double>& material) {
+  std::string lines;
+  material.visit([&](const auto& law) {
+    if constexpr (requires { law.warning(); }) lines = law.warning();
+  });
+  return lines;
+}
+
 std::vector<double> initial_state(const AnyMaterial<double>& material, const ParticleStart& at) {
   std::vector<double> values;
   material.visit([&](const auto& law) {

@@ -2,6 +2,7 @@
 // One material of any model, for device tables: which model, and its parameters.
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "materials/list.hpp"
@@ -47,6 +48,10 @@ inline constexpr int k_most_state = most_state(Materials{});
 
 /// What is wrong with the parameters of a material together.
 ParameterFault parameter_fault(const AnyMaterial<double>& material);
+
+/// What the log says of the parameters of a material (the optional member `warning` of a law): lines, in
+/// which -NAME_ stands for the prefix of the material's options; empty where there is nothing to say.
+std::string warning_of(const AnyMaterial<double>& material);
 
 /// Values of the state variables of a particle that is created now.
 std::vector<double> initial_state(const AnyMaterial<double>& material, const ParticleStart& at);

@@ -1,7 +1,10 @@
 #pragma once
 // The list of materials. To add one: its own header, included here, and its name in the list.
 
+#include "materials/drucker_prager.hpp"
 #include "materials/linear_elastic.hpp"
+#include "materials/mohr_coulomb.hpp"
+#include "materials/tresca.hpp"
 #include "materials/von_mises.hpp"
 
 namespace mpm {
@@ -11,6 +14,6 @@ struct ModelList {
   static constexpr int k_size = sizeof...(Models);
 };
 
-using Materials = ModelList<LinearElastic, VonMises>;
+using Materials = ModelList<LinearElastic, VonMises, Tresca, MohrCoulomb, DruckerPrager>;
 
 }  // namespace mpm
