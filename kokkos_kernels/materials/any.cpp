@@ -97,6 +97,14 @@ double largest_time_step(const AnyMaterial<double>& material, double spacing, do
   return step;
 }
 
+std::string warning_of(const AnyMaterial<double>& material) {
+  std::string lines;
+  material.visit([&](const auto& law) {
+    if constexpr (requires { law.warning(); }) lines = law.warning();
+  });
+  return lines;
+}
+
 std::vector<double> initial_state(const AnyMaterial<double>& material, const ParticleStart& at) {
   std::vector<double> values;
   material.visit([&](const auto& law) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "materials/list.hpp"
@@ -56,6 +57,10 @@ std::vector<StateVariable> state_variables(const AnyMaterial<double>& material);
 /// largest_time_step), as an explicit viscosity, with cells of an edge `spacing` [m] and a density [kg/m3];
 /// infinite where the waves alone count.
 double largest_time_step(const AnyMaterial<double>& material, double spacing, double density, int dim);
+
+/// What the log says of the parameters of a material (the optional member `warning` of a law): lines, in
+/// which -NAME_ stands for the prefix of the material's options; empty where there is nothing to say.
+std::string warning_of(const AnyMaterial<double>& material);
 
 /// Values of the state variables that a particle carries which is created now.
 std::vector<double> initial_state(const AnyMaterial<double>& material, const ParticleStart& at);

@@ -1,11 +1,14 @@
 #pragma once
 // The list of materials. To add one: its own header, included here, and its name in the list.
 
+#include "materials/drucker_prager.hpp"
 #include "materials/j2_hardening.hpp"
 #include "materials/linear_elastic.hpp"
+#include "materials/mohr_coulomb.hpp"
 #include "materials/mu_i.hpp"
 #include "materials/newtonian.hpp"
 #include "materials/power_elastic.hpp"
+#include "materials/tresca.hpp"
 #include "materials/von_mises.hpp"
 #include "materials/yield_stress_fluid.hpp"
 
@@ -16,7 +19,7 @@ struct ModelList {
   static constexpr int k_size = sizeof...(Models);
 };
 
-using Materials =
-    ModelList<LinearElastic, VonMises, MuI, Newtonian, YieldStressFluid, PowerElastic, J2Hardening>;
+using Materials = ModelList<LinearElastic, VonMises, Tresca, MohrCoulomb, DruckerPrager, MuI, Newtonian,
+                            YieldStressFluid, PowerElastic, J2Hardening>;
 
 }  // namespace mpm

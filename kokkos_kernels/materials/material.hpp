@@ -11,6 +11,12 @@
 
 namespace mpm {
 
+/// A word that an option takes, and the value that a parameter then has.
+struct ParameterWord {
+  const char* word = nullptr;
+  double value = 0;
+};
+
 /// One row of a model's table of parameters: everything that the option reader, -help and the checks need.
 template <class Model>
 struct Parameter {
@@ -18,9 +24,10 @@ struct Parameter {
   typename Model::real Model::*member;
   const char* unit;
   const char* meaning;
-  double lowest, highest;            // accepted range, inclusive
-  double standard;                   // default; NaN where the parameter is required
-  const char* instead_of = nullptr;  // key of the parameter whose place it takes where it is given
+  double lowest, highest;                   // accepted range of numbers, inclusive; 0, -1: words alone
+  double standard;                          // default; NaN where the parameter is required
+  const char* instead_of = nullptr;         // key of the parameter whose place it takes where it is given
+  std::array<ParameterWord, 3> words = {};  // words, beside or in lieu of numbers; a list may be shorter
 };
 
 /// How a particle is when it is created: a law's initial_state() follows from it.
@@ -133,6 +140,17 @@ KOKKOS_INLINE_FUNCTION T mean_of(const SymTensor<T, Dim>& s) {
   return (s[0] + s[1] + s[2]) * T(1.0 / 3);
 }
 
+/// J2 = s : s / 2 [Pa2] of the deviator s of a stress with this mean.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T second_invariant(const SymTensor<T, Dim>& s, T mean) {
+  T j2 = 0;
+  for (int k = 0; k < sym_size<Dim>; ++k) {
+    const T deviator = k < 3 ? s[k] - mean : s[k];
+    j2 += k < 3 ? deviator * deviator / 2 : deviator * deviator;
+  }
+  return j2;
+}
+
 /// Adds the isotropic elastic stress increment lambda tr(e) I + 2 G e to s. Shear strains are tensor
 /// components.
 template <class R, class T, int Dim>
@@ -146,12 +164,7 @@ KOKKOS_INLINE_FUNCTION void add_elastic(SymTensor<R, Dim>& s, const SymTensor<R,
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION T elastic_energy(const SymTensor<T, Dim>& s, T lambda, T shear_modulus) {
   const T mean = mean_of(s), bulk_modulus = lambda + shear_modulus * T(2.0 / 3);
-  T j2 = 0;
-  for (int k = 0; k < sym_size<Dim>; ++k) {
-    const T deviator = k < 3 ? s[k] - mean : s[k];
-    j2 += k < 3 ? deviator * deviator / 2 : deviator * deviator;
-  }
-  return mean * mean / (2 * bulk_modulus) + j2 / (2 * shear_modulus);
+  return mean * mean / (2 * bulk_modulus) + second_invariant(s, mean) / (2 * shear_modulus);
 }
 
 /// Elastic constants of Young's modulus and Poisson's ratio.

@@ -44,8 +44,8 @@ def copy_with_law(source, copy):
     before = (source / materials / "list.hpp").read_text()
     after = before.replace('#include "materials/von_mises.hpp"\n',
                            '#include "materials/path_dependent.hpp"\n#include "materials/von_mises.hpp"\n')
-    after = after.replace("VonMises>;", "VonMises, PathDependent>;")
-    assert len(after.splitlines()) == len(before.splitlines()) + 1 and "PathDependent>;" in after
+    after, lists = re.subn(r"(using Materials =\s+ModelList<[^>]+)>;", r"\1, PathDependent>;", after)
+    assert len(after.splitlines()) == len(before.splitlines()) + 1 and lists == 1
     put(copy / materials / "list.hpp", after)
 
 
