@@ -13,12 +13,25 @@
 #include <utility>
 #include <vector>
 
+#include "clouds.hpp"
 #include "materials/material.hpp"
 
 namespace mpm::test {
 
 using Sym = std::array<double, 6>;  // xx yy zz xy yz zx
 using Values = std::vector<std::pair<std::string, double>>;
+
+/// Random components; some states have equal or zero ones.
+inline Sym random_sym(Dice& dice, double size, bool flat) {
+  Sym s{};
+  for (int k = 0; k < (flat ? 4 : 6); ++k) s[k] = dice.uniform(-size, size);
+  const int special = dice.below(12);
+  if (special == 0) s[1] = s[0];
+  if (special == 1) s[1] = s[2] = s[0];
+  if (special == 2) s[3] = s[4] = s[5] = 0;
+  if (special == 3) s = {s[0], s[0], s[0], 0, 0, 0};
+  return s;
+}
 
 /// A law with parameters by their keys; those left out have their defaults.
 template <class Law>
@@ -78,8 +91,8 @@ struct Point {
   }
 };
 
-/// A file of replays/: total strain, stress and plastic strain of each row. The environment's MPM_REPLAYS names
-/// the folder where the program no longer lies by its source (scripts/bundle_launch).
+/// A file of replays/: total strain, stress and plastic strain of each row. The environment's MPM_REPLAYS
+/// names the folder where the program no longer lies by its source (scripts/bundle_launch).
 struct Replay {
   struct Row {
     Sym strain, stress;

@@ -37,18 +37,6 @@ struct RandomSoil {
   }
 };
 
-/// Random components; some states have equal or zero ones.
-Sym random_sym(Dice& dice, double size, bool flat) {
-  Sym s{};
-  for (int k = 0; k < (flat ? 4 : 6); ++k) s[k] = dice.uniform(-size, size);
-  const int special = dice.below(12);
-  if (special == 0) s[1] = s[0];
-  if (special == 1) s[1] = s[2] = s[0];
-  if (special == 2) s[3] = s[4] = s[5] = 0;
-  if (special == 3) s = {s[0], s[0], s[0], 0, 0, 0};
-  return s;
-}
-
 /// How far outside of the yield surface of a material point its stress is, in double [Pa].
 double outside_of(const Tresca<double>& law, double su, const SymTensor<double, 3>& s) {
   const auto sorted = sorted_down(principal_of(s, mean_of(s)).value);
@@ -209,60 +197,6 @@ void check_states(long n, int seed) {
   CHECK(worst.yielding < n * 19 / 20);
 }
 
-const Values k_clay_values{{"young", 5e5}, {"poisson", 0.45}, {"su", 1000}, {"tension", 300}};
-const Values k_sand_values{{"young", 1e6},       {"poisson", 0.3},    {"cohesion", 1000},
-                           {"friction_deg", 35}, {"dilation_deg", 8}, {"tension", 700}};
-
-/// Stresses after a step on Space: those of `start`, strained by `by`.
-template <class Space, class Law, int Dim>
-std::vector<SymTensor<typename Law::real, Dim>> after_step(const Law& law, const std::vector<Sym>& start,
-                                                           const std::vector<Sym>& by) {
-  using T = typename Law::real;
-  using Stress = SymTensor<T, Dim>;
-  const int n = static_cast<int>(start.size());
-  const Kokkos::View<Stress*, typename Space::memory_space> stress("test", n), strain("test", n);
-  const auto host_stress = Kokkos::create_mirror_view(stress),
-             host_strain = Kokkos::create_mirror_view(strain);
-  for (int p = 0; p < n; ++p)
-    for (int k = 0; k < sym_size<Dim>; ++k) {
-      host_stress(p)[k] = static_cast<T>(start[p][k]);
-      host_strain(p)[k] = static_cast<T>(by[p][k]);
-    }
-  Kokkos::deep_copy(stress, host_stress);
-  Kokkos::deep_copy(strain, host_strain);
-  const T second = static_cast<T>(law.initial_state({})[1]);
-  Kokkos::parallel_for(
-      "test::laws", Kokkos::RangePolicy<Space>(0, n), KOKKOS_LAMBDA(int p) {
-        LawState<T, 2> state{{0, second}};
-        Increment<T, T, Dim> increment{};
-        increment.strain = strain(p);
-        law.update(stress(p), state, increment);
-      });
-  Kokkos::deep_copy(host_stress, stress);
-  return {host_stress.data(), host_stress.data() + n};
-}
-
-/// The same stresses as the reference (one thread of the processor, double precision, 3D) on a back end.
-template <class B, template <class> class Law>
-void check_on(const Values& values) {
-  using T = typename B::real;
-  Dice dice{std::mt19937_64(7)};
-  std::vector<Sym> start, by;
-  for (int p = 0; p < 20000; ++p) {
-    start.push_back(random_sym(dice, 3000, B::dim == 2));
-    by.push_back(random_sym(dice, 5e-3, B::dim == 2));
-    if (B::dim == 2) by.back()[2] = 0;
-  }
-  const auto right = after_step<Kokkos::Serial, Law<double>, 3>(law_of<Law<double>>(values), start, by);
-  const auto got = after_step<typename B::Space, Law<T>, B::dim>(law_of<Law<T>>(values), start, by);
-  double apart = 0;
-  for (std::size_t p = 0; p < got.size(); ++p)
-    for (int k = 0; k < sym_size<B::dim>; ++k)
-      apart = std::fmax(apart, std::fabs(double(got[p][k]) - right[p][k]));
-  INFO(B::name() << " " << Law<T>::k_name);
-  CHECK(apart < B::of(1e-9, 0.05));
-}
-
 }  // namespace
 
 TEST_CASE("random states return to the yield surface, dissipate, and agree in 2D, 3D and single precision",
@@ -270,16 +204,6 @@ TEST_CASE("random states return to the yield surface, dissipate, and agree in 2D
   check_states<Tresca>(100000, 1);
   check_states<MohrCoulomb>(100000, 2);
   check_states<DruckerPrager>(100000, 3);
-}
-
-TEST_CASE("every back end returns random stresses to the same point", "[frictional_laws]") {
-  for_each_build([](auto build) {
-    check_on<decltype(build), Tresca>(k_clay_values);
-    check_on<decltype(build), MohrCoulomb>(k_sand_values);
-    Values cone = k_sand_values;
-    cone.push_back({"match", DruckerPrager<double>::compression});
-    check_on<decltype(build), DruckerPrager>(cone);
-  });
 }
 
 TEST_CASE("a million random states of each frictional law", "[frictional_laws][.long]") {
