@@ -83,7 +83,7 @@ struct DruckerPrager : FrictionalSoil<T> {
     const bool has_apex = apex_over_cohesion > 0, has_tension = this->tension >= 0;
     const R c = state[cohesion_of_particle], strength = strength_over_cohesion * c;
     const R apex = has_apex ? apex_over_cohesion * c : R(this->tension);
-    const R cap = has_tension ? Kokkos::fmin(R(this->tension), apex) : apex;
+    const R cap = has_tension ? Kokkos::fmin(this->tension, apex) : apex;
     s = rotated(s, by.spin);
     add_elastic(s, by.strain, this->lambda, shear_modulus);
 
@@ -96,7 +96,8 @@ struct DruckerPrager : FrictionalSoil<T> {
     if (has_apex || has_tension) {
       const auto below = (p_new <= cap) & (r - shear_modulus * l >= 0);
       p_new = select(below, p_new, cap);
-      r_new = select(below, r_new, Kokkos::fmin(r, Kokkos::fmax(strength - slope * cap, R(0))));
+      const R on_cone = Kokkos::fmax(strength - slope * cap, R(0));
+      r_new = select(below, r_new, select(r < on_cone, r, on_cone));
     }
     const R share = r_new / select(r > 0, r, R(1));
     for (int k = 0; k < sym_size<Dim>; ++k)

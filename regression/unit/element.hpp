@@ -2,7 +2,9 @@
 // A single material point for tests of laws: its parameters by name, paths of strain, paths under a constant
 // stress, and replays of files.
 
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <initializer_list>
 #include <sstream>
@@ -11,12 +13,25 @@
 #include <utility>
 #include <vector>
 
+#include "clouds.hpp"
 #include "materials/material.hpp"
 
 namespace mpm::test {
 
 using Sym = std::array<double, 6>;  // xx yy zz xy yz zx
 using Values = std::vector<std::pair<std::string, double>>;
+
+/// Random components; some states have equal or zero ones.
+inline Sym random_sym(Dice& dice, double size, bool flat) {
+  Sym s{};
+  for (int k = 0; k < (flat ? 4 : 6); ++k) s[k] = dice.uniform(-size, size);
+  const int special = dice.below(12);
+  if (special == 0) s[1] = s[0];
+  if (special == 1) s[1] = s[2] = s[0];
+  if (special == 2) s[3] = s[4] = s[5] = 0;
+  if (special == 3) s = {s[0], s[0], s[0], 0, 0, 0};
+  return s;
+}
 
 /// A law with parameters by their keys; those left out have their defaults.
 template <class Law>
@@ -76,7 +91,8 @@ struct Point {
   }
 };
 
-/// A file of replays/: total strain, stress and plastic strain of each row.
+/// A file of replays/: total strain, stress and plastic strain of each row. The environment's MPM_REPLAYS
+/// names the folder where the program no longer lies by its source (scripts/bundle_launch).
 struct Replay {
   struct Row {
     Sym strain, stress;
@@ -85,7 +101,8 @@ struct Replay {
   std::vector<Row> rows;
 
   explicit Replay(const std::string& name) {
-    std::ifstream file(std::string(MPM_REPLAYS) + "/" + name + ".csv");
+    const char* elsewhere = std::getenv("MPM_REPLAYS");
+    std::ifstream file(std::string(elsewhere != nullptr ? elsewhere : MPM_REPLAYS) + "/" + name + ".csv");
     for (std::string line; std::getline(file, line);) {
       if (line.empty() || line[0] == '#' || line[0] == 't') continue;
       std::istringstream cells(line);

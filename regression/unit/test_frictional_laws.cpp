@@ -42,7 +42,52 @@ void check_replay(const std::string& name, const Values& values) {
   check(replay<Law<float>, 2>(law_of<Law<float>>(values), file, 40), "single 2D");
 }
 
+/// How many stresses after a step from each of many stresses of any size are not finite.
+template <class Law, int Dim>
+int not_finite_of(const Values& values) {
+  int bad = 0;
+  const auto law = law_of<Law>(values);
+  for (double size = 1e-42; size < 1e14; size *= 10)
+    for (const Sym& form : {Sym{1, 1, 1, 0, 0, 0}, Sym{-1, -1, -1, 0, 0, 0}, Sym{1, -1, 0, 0, 0, 0},
+                            Sym{1, 1, 1, 1, 1, 1}, Sym{0, 0, 0, 1, -1, 0}, Sym{-1, 0.5, 0.5, 1e-9, 0, 1e-20}})
+      for (const double strain : {0., 1e-42, 1e-20, 1e-3, 0.2})
+        for (const Sym& by : {Sym{1, 1, 1, 0, 0, 0}, Sym{-1, -1, -1, 0, 0, 0}, Sym{1, -1, 0, 1, -1, 1}}) {
+          Sym start = form, increment = by;
+          for (int k = 0; k < 6; ++k) start[k] *= size, increment[k] *= strain;
+          Point<Law, Dim> point(law, start);
+          point.strain(increment);
+          point.strain({});
+          for (const auto& x : point.stress.c) bad += !std::isfinite(x);
+          bad += !std::isfinite(point.state[0]);
+        }
+  return bad;
+}
+
+template <template <class> class Law>
+void check_finite(const Values& values) {
+  CAPTURE(Law<double>::k_name);
+  CHECK(not_finite_of<Law<double>, 2>(values) == 0);
+  CHECK(not_finite_of<Law<double>, 3>(values) == 0);
+  CHECK(not_finite_of<Law<float>, 2>(values) == 0);
+  CHECK(not_finite_of<Law<float>, 3>(values) == 0);
+}
+
 }  // namespace
+
+TEST_CASE("no finite stress and strain give a number that is not finite", "[frictional_laws]") {
+  check_finite<Tresca>(k_clay);
+  for (const double cohesion : {0., 1e-30, 5000.}) {
+    Values soil{{"young", 2e7}, {"poisson", 0.3}, {"cohesion", cohesion}, {"friction_deg", 30}};
+    check_finite<MohrCoulomb>(soil);
+    for (const int match : {0, 1, 2}) {
+      Values cone = soil;
+      cone.push_back({"match", match});
+      check_finite<DruckerPrager>(cone);
+    }
+    soil.push_back({"tension", 0});
+    check_finite<MohrCoulomb>(soil);
+  }
+}
 
 TEST_CASE("random paths in plane strain and 3D follow an independent program", "[frictional_laws]") {
   const Values sand{{"young", 2e7},       {"poisson", 0.3},     {"cohesion", 5000},
