@@ -37,6 +37,12 @@ struct ParticleStart {
   std::array<double, 6> stress{};    // Pa: xx yy zz xy yz zx, tension positive
 };
 
+/// What a law may know of the run that it is for (its optional member prepare_for).
+struct RunFigures {
+  double spacing = 0;           // m, edge of the mesh's cells
+  double largest_pressure = 0;  // Pa, largest initial mean stress in compression of its soil; 0: not known
+};
+
 /// What is wrong with the parameters of a law together.
 struct ParameterFault {
   std::string key;    // option key of the parameter to change; empty: nothing is wrong
@@ -132,6 +138,15 @@ KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const S
       r[sym_index<3>(i, j)] = sum;
     }
   return r;
+}
+
+/// Adds to a sum with what is left of it: `rest` keeps what the sum has rounded off (Kahan 1965), so that a
+/// sum of many small increments does not stand still in single precision.
+template <class T>
+KOKKOS_INLINE_FUNCTION void add_with_rest(T& sum, T& rest, T increment) {
+  const T whole = increment + rest, next = sum + whole;
+  rest = whole - (next - sum);
+  sum = next;
 }
 
 /// Mean stress (s_xx + s_yy + s_zz) / 3.
