@@ -9,12 +9,7 @@ namespace mpm {
 /// is the shear stress.
 template <class R, int Dim>
 KOKKOS_INLINE_FUNCTION R shear_stress_of(const SymTensor<R, Dim>& stress, const R& mean) {
-  R j2 = 0;
-  for (int k = 0; k < sym_size<Dim>; ++k) {
-    const R deviator = k < 3 ? stress[k] - mean : stress[k];
-    j2 += k < 3 ? deviator * deviator / 2 : deviator * deviator;
-  }
-  return Kokkos::sqrt(j2);
+  return Kokkos::sqrt(second_invariant(stress, mean));
 }
 
 /// Adds 2 G e' [Pa] to a stress, with the deviator e' of the strain e whose trace is `dilatation`. The mean

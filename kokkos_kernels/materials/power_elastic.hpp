@@ -97,9 +97,10 @@ struct PowerElastic {
 
  private:
   /// Growth of X [Pa] above pressure_min from x, where K is `modulus` [Pa]: X' = (X^(1-n) + (1-n) c dv)^
-  /// (1/(1-n)), n = 1: X exp(c dv). A step changes X by a factor of at most e^4.
+  /// (1/(1-n)), n = 1: X exp(c dv). A step changes X by a factor of at most e^20,
+  /// so that what is finite stays finite.
   KOKKOS_FUNCTION T power_growth(T x, T modulus, T compression) const {
-    constexpr T k_most = 4, k_least = -0.999999;  // of rest * change: X' > 0, which `span` grants otherwise
+    constexpr T k_most = 20, k_least = -0.999999;  // of rest * change: X' > 0, which `span` grants otherwise
     const T change = modulus * compression / x;
     const T rest = 1 - exponent;
     const T log_ratio = rest == 0 ? change : Kokkos::log1p(Kokkos::fmax(k_least, rest * change)) / rest;

@@ -15,7 +15,7 @@ struct YieldFlowRoot {
   T first, second;
 
   KOKKOS_INLINE_FUNCTION static YieldFlowRoot of(T log_a, T p) {
-    constexpr int k_iterations = sizeof(T) == 4 ? 4 : 6;
+    constexpr int k_iterations = sizeof(T) == 4 ? 5 : 6;
     T w = Kokkos::fmin(T(0), -log_a / p);
     for (int n = 0; n < k_iterations; ++n) {
       const T a = Kokkos::exp(w), b = Kokkos::exp(log_a + p * w);
@@ -49,7 +49,14 @@ struct YieldStressFluid {
          {"consistency", &Law::consistency, "Pa s^n", "shear stress beyond yield at the rate 1/s", 0, 1e12,
           required},
          {"exponent", &Law::exponent, "-", "exponent n of the rate; 1: Bingham", 0.05, 3, 1},
-         {"tension", &Law::tension, "-", "0: no tensile mean stress; 1: it is kept", 0, 1, 0}});
+         {.key = "tension",
+          .member = &Law::tension,
+          .unit = "",
+          .meaning = "whether the fluid takes a tensile mean stress",
+          .lowest = 0,
+          .highest = -1,
+          .standard = 0,
+          .words = {{{"off", 0}, {"on", 1}}}}});
   }
   /// Called once the parameters are set.
   void prepare() {

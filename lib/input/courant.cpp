@@ -29,9 +29,7 @@ double standard_courant(const Config& config) {
 double step_of(const StepLimits& limits, double courant, const Config& config) {
   if (!std::isfinite(limits.viscous)) return courant * limits.wave;
   const double largest = largest_courant(config), share = courant / largest;
-  // the nodes at the rim of a body meet stiffer particles, as with waves: two a cell's edge are the measure
-  const double viscous = limits.viscous * std::min(1.0, config.dim * largest * largest);
-  const double wave = largest * limits.wave, rate = 1 / viscous;
+  const double wave = largest * limits.wave, rate = 1 / limits.viscous;
   return 2 * share * share / (rate + std::hypot(rate, 2 * share / wave));
 }
 

@@ -64,11 +64,11 @@ struct Point {
     const auto values = law.initial_state({.position = {}, .height = 0, .stress = start});
     for (int k = 0; k < N; ++k) state[k] = static_cast<T>(values[k]);
   }
-  /// One increment of strain (tensor shear strains), without spin.
-  void strain(const Sym& by) {
+  /// One increment of strain (tensor shear strains) in a step dt [s], without spin.
+  void strain(const Sym& by, double dt = 1) {
     Increment<T, T, Dim> increment{};
     for (int k = 0; k < sym_size<Dim>; ++k) increment.strain[k] = static_cast<T>(by[k]);
-    increment.dt = 1;
+    increment.dt = static_cast<T>(dt);
     law.update(stress, state, increment);
   }
   /// One increment along `free` besides, of the size that gives stress component k the value `target` [Pa].
@@ -91,12 +91,13 @@ struct Point {
   }
 };
 
-/// A file of replays/: total strain, stress and plastic strain of each row. The environment's MPM_REPLAYS
-/// names the folder where the program no longer lies by its source (scripts/bundle_launch).
+/// A file of replays/: time, total strain, stress and plastic strain (0 where the law has none) of each row.
+/// The environment's MPM_REPLAYS names the folder where the program no longer lies by its source
+/// (scripts/bundle_launch).
 struct Replay {
   struct Row {
     Sym strain, stress;
-    double plastic_strain;
+    double plastic_strain, time;  // -, s
   };
   std::vector<Row> rows;
 
@@ -110,7 +111,8 @@ struct Replay {
       for (std::string cell; std::getline(cells, cell, ',');) values.push_back(std::stod(cell));
       Row row{};
       for (int k = 0; k < 6; ++k) row.strain[k] = values.at(1 + k), row.stress[k] = values.at(7 + k);
-      row.plastic_strain = values.at(13);
+      row.plastic_strain = values.size() > 13 ? values[13] : 0;
+      row.time = values[0];
       rows.push_back(row);
     }
     if (rows.size() < 2) throw std::runtime_error("no replay " + name);
@@ -133,7 +135,8 @@ Misfit replay(const Law& law, const Replay& file, int parts) {
   for (std::size_t n = 1; n < file.rows.size(); ++n) {
     Sym by, got{};
     for (int k = 0; k < 6; ++k) by[k] = (file.rows[n].strain[k] - file.rows[n - 1].strain[k]) / parts;
-    for (int part = 0; part < parts; ++part) point.strain(by);
+    const double dt = (file.rows[n].time - file.rows[n - 1].time) / parts;
+    for (int part = 0; part < parts; ++part) point.strain(by, dt);
     for (int k = 0; k < sym_size<Dim>; ++k) got[k] = point.stress[k];
     const auto& right = file.rows[n];
     const auto keep = [](double& most, double value) { most = std::fmax(most, std::fabs(value)); };
@@ -145,7 +148,7 @@ Misfit replay(const Law& law, const Replay& file, int parts) {
       keep(apart.deviator, got[k] - of_got - (right.stress[k] - of_mean));
     }
     keep(largest.plastic_strain, right.plastic_strain);
-    keep(apart.plastic_strain, double(point.state[0]) - right.plastic_strain);
+    if (point.state.size > 0) keep(apart.plastic_strain, double(point.state[0]) - right.plastic_strain);
   }
   return {apart.mean / std::fmax(largest.mean, largest.deviator), apart.deviator / largest.deviator,
           apart.plastic_strain / std::fmax(largest.plastic_strain, 1e-6)};
