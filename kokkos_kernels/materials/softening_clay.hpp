@@ -132,8 +132,8 @@ struct SofteningClay : Clay<T> {
     const T rapid = su_p * rate_effect(state, by);
     s = rotated(s, by.spin);
     add_elastic(s, by.strain, e.lambda + e.lambda_over_su * su_p, shear_modulus);
-    const T more = surface == tresca ? return_to_hexagon(s, state, shear_modulus, rapid)
-                                     : return_to_circle(s, state, shear_modulus, rapid);
+    const T more = surface == T(tresca) ? return_to_hexagon(s, state, shear_modulus, rapid)
+                                        : return_to_circle(s, state, shear_modulus, rapid);
     if (more > 0) add_with_rest(state[plastic_strain], state[plastic_strain_rest], more);
   }
 
