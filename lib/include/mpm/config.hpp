@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "choices.hpp"
+#include "base/choices.hpp"
 
 namespace mpm {
 
