@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/choices.hpp"
+#include "choices.hpp"
 
 namespace mpm {
 
