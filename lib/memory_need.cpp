@@ -29,8 +29,7 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   constexpr double k_ring = 1.1;  // the patches round the soil
   int columns = 0;
   for (const BodyConfig& body : config.bodies)
-    columns =
-        std::max(columns, static_cast<int>(state_variables(config.materials[body.material].model).size()));
+    columns = std::max(columns, static_cast<int>(state_variables(config.materials[body.material]).size()));
   double a_particle = Footprint<T, Dim>::particle(columns);
   if (config.p2g.strategy == P2G::gather) {
     // a particle is in the lists of the nodes that it may reach before the margin is used up

@@ -185,6 +185,7 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
     const Stiffness soil(material, bounds.lower[up]);
     if (told[body.material]) continue;
     told[body.material] = 1;
+    for (const std::string& line : warnings_of_law(material)) lines.push_back("warning: " + line);
     warn_of_rigidity(material.name, soil, lines);
     warn_of_units(config, material, soil, bounds.upper[up] - bounds.lower[up], lines);
   }

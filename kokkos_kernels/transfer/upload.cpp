@@ -64,8 +64,8 @@ std::size_t scratch_of_rigids(const std::vector<RigidInput>& rigids) {
   return most * scratch_of_point(points);
 }
 
-/// As many columns as the laws of the bodies need, and their names: those of the variables where the laws
-/// agree.
+/// As many columns as the materials of the bodies need, and their names: those of the variables where the
+/// laws agree.
 template <class Space, class T>
 void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& materials,
                   const std::vector<BodyInput>& bodies) {
@@ -76,7 +76,8 @@ void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& 
   }();
   history.columns = 0;
   for (const BodyInput& body : bodies) {
-    const auto variables = state_variables(materials[body.material].model);
+    const MaterialInput& material = materials[body.material];
+    const auto variables = state_variables(material.model, material.parameters);
     for (int k = 0; k < static_cast<int>(variables.size()); ++k) {
       const bool first = k >= history.columns;
       const std::string name = variables[k].name;

@@ -14,4 +14,9 @@ std::vector<StateVariable> state_variables(const std::string& model) {
   return index < 0 ? std::vector<StateVariable>{} : state_variables(index);
 }
 
+std::vector<StateVariable> state_variables(const MaterialConfig& material) {
+  const int index = model_index(material.model);
+  return index < 0 ? std::vector<StateVariable>{} : state_variables(index, material.parameters);
+}
+
 }  // namespace mpm

@@ -26,4 +26,11 @@ double standard_courant(const Config& config) {
   return std::min(k_standard, k_reserve * largest_courant(config));
 }
 
+double step_of(const StepLimits& limits, double courant, const Config& config) {
+  if (!std::isfinite(limits.viscous)) return courant * limits.wave;
+  const double largest = largest_courant(config), share = courant / largest;
+  const double wave = largest * limits.wave, rate = 1 / limits.viscous;
+  return 2 * share * share / (rate + std::hypot(rate, 2 * share / wave));
+}
+
 }  // namespace mpm

@@ -18,6 +18,9 @@ void read_material(OptionReader& in, const std::string& name, MaterialConfig& ma
 /// A parameter of a material by its key; NaN where its model has none of that name.
 double parameter_of(const MaterialConfig& material, const std::string& key);
 
+/// What the law of a material says of its parameters for the log.
+std::vector<std::string> warnings_of_law(const MaterialConfig& material);
+
 /// Whether soil of a material has a strength, somewhere.
 bool has_strength(const MaterialConfig& material);
 

@@ -89,8 +89,12 @@ const char* word_of(Precision precision);
 double wave_speed(const Config& config, const BodyConfig& body);
 
 /// Largest stable step over the Courant number: spacing / fastest wave [s] (Eq. 14), of the soil as it is
-/// created, without stress.
+/// created.
 double critical_time_step(const Config& config);
+
+/// Largest stable step [s] of what laws add to the waves, as an explicit viscosity (largest_time_step of
+/// materials/any.hpp); infinite where no law adds anything.
+double viscous_time_step(const Config& config);
 
 /// Whether the stiffness of some body depends on stress or state: its waves change their speed in the run.
 bool stiffness_changes(const Config& config);

@@ -29,7 +29,7 @@ void note_heights(const MeshConfig& mesh, BodyParticles& particles) {
 template <int Dim>
 std::vector<std::vector<double>> start_state(const Config& config, const AnyMaterial<double>& law,
                                              const BodyInput& in, BodyParticles& particles) {
-  const auto variables = state_variables(law.which);
+  const auto variables = state_variables(law);
   const std::size_t count = in.position.size() / Dim;
   std::vector<std::vector<double>> state(variables.size(), std::vector<double>(count));
   ParticleStart start;

@@ -82,7 +82,8 @@ struct LawLanes {
       using Law = std::decay_t<decltype(law)>;
       LawState<R, state_size<Law>> was, state;
       for (int k = 0; k < state.size; ++k) {
-        load_field(soil.history.column[k], p, count, was[k]);
+        was[k] = 0;
+        if (carries(law, k)) load_field(soil.history.column[k], p, count, was[k]);
         state[k] = was[k];
       }
       update_lanes(law, stress, state, by);

@@ -20,7 +20,10 @@ std::vector<const char*> material_models();
 /// Whether the stiffness of the model of this index in Materials depends on stress or state.
 bool stiffness_changes(int which);
 
-/// State variables of the model of this index in Materials.
+/// All state variables of the model of this index in Materials; a material may do without some.
 std::vector<StateVariable> state_variables(int which);
+
+/// The state variables that the particles of a material of this model and these parameters carry.
+std::vector<StateVariable> state_variables(int which, const std::vector<double>& parameters);
 
 }  // namespace mpm
