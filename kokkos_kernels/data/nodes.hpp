@@ -90,7 +90,7 @@ struct Rigid {
 };
 
 /// Why a run cannot go on.
-enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone };
+enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone, law };
 
 /// The first fault that a kernel met.
 struct Fault {

@@ -74,6 +74,8 @@ struct ParticleLaw {
       law.update(stress, state, by);
       for (int k = 0; k < state.size; ++k)
         if (Law::state()[k].changes && state[k] != was[k]) soil.history.column[k](p) = state[k];
+      if constexpr (can_fail<Law>())
+        if (law.failed(state)) stress[0] = Kokkos::Experimental::quiet_NaN_v<T>;  // fault_of() finds it
     });
   }
 };
@@ -120,6 +122,17 @@ KOKKOS_INLINE_FUNCTION auto is_finite(const Particle<R, Dim>& q) {
 template <class R, class T, int Dim>
 KOKKOS_INLINE_FUNCTION auto is_volume_limited(const Particle<R, Dim>& q, const UpdateScalars<T>& by) {
   return !((q.volume > by.least_volume) & (q.volume < by.most_volume));
+}
+
+/// Whether the law of particle p calls the particle's state a failure. Its stress is then not finite, so that
+/// only particles whose stress is not finite need be asked.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool has_failed(const Soil<Space, T, Dim>& soil, int p) {
+  bool failed = false;
+  soil.materials(soil.bodies(soil.body(p)).material).visit([&](const auto& law) {
+    if constexpr (can_fail<std::decay_t<decltype(law)>>()) failed = law.failed(soil.state_of(law, p));
+  });
+  return failed;
 }
 
 /// What is wrong with a particle that moved by `moved` [cells] in the step: not finite, a volume that the run

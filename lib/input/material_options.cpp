@@ -170,6 +170,21 @@ std::vector<std::string> warnings_of_law(const MaterialConfig& material) {
   return text.empty() ? std::vector<std::string>{} : split(with_prefix(text, material.name), '\n');
 }
 
+void prepare_material(MaterialConfig& material, double spacing, double largest_pressure) {
+  material.parameters =
+      parameters_for(model_index(material.model), material.parameters, {spacing, largest_pressure});
+}
+
+bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
+                 const Sym6& stress) {
+  const auto law = make_material<double>(model_index(material.model), material.parameters);
+  const ParameterFault fault = start_fault(law, {.position = {}, .height = height, .stress = stress});
+  if (fault.key.empty()) return true;
+  const bool of_body = fault.key == "stress";
+  in.reject((of_body ? body : material.name) + "_" + fault.key, with_prefix(fault.takes, material.name));
+  return false;
+}
+
 bool has_strength(const MaterialConfig& material) {
   constexpr double k_far = 1e9;  // m
   const int model = model_index(material.model);

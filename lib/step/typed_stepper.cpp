@@ -297,12 +297,14 @@ template <class Space, class T, int Dim>
 Failure TypedStepper<Space, T, Dim>::describe(const Fault& fault) const {
   if (fault.kind == FaultKind::none) return {};
   std::string who;
+  const char* of_law = "";
   if (fault.particle < 0) {
     who = "rigid " + config_.rigids[-1 - fault.particle].name;
   } else {
     std::size_t b = first_.size() - 1;
     while (b > 0 && first_[b] > fault.particle) --b;
     who = "particle " + std::to_string(fault.particle - first_[b]) + " of body " + config_.bodies[b].name;
+    of_law = failure_of(model_index(config_.materials[config_.bodies[b].material].model));
   }
   char where[120];
   const double* x = fault.position;
@@ -317,6 +319,7 @@ Failure TypedStepper<Space, T, Dim>::describe(const Fault& fault) const {
       : fault.kind == FaultKind::not_finite ? "has a position, velocity, stress or volume that is not finite"
       : fault.kind == FaultKind::volume
           ? "has left 0.2 to 2 times its volume at the start (-stray_particles stop)"
+      : fault.kind == FaultKind::law   ? of_law
       : fault.kind == FaultKind::alone ? "is alone, with no other soil in reach (-stray_particles stop)"
                                        : "moved more than a cell in one step";
   return {who + where + what};

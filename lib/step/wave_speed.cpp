@@ -15,7 +15,10 @@ double wave_speed(const Config& config, const BodyConfig& body) {
   const MaterialConfig& material = config.materials[body.material];
   const double lowest = bounds_of(body.shape, config.mesh, config.dim).lower[config.dim - 1];
   const auto law = make_material<double>(model_index(material.model), material.parameters);
-  return std::sqrt(wave_modulus(law, lowest, body.stress) / material.density);
+  Sym6 stress = body.stress;
+  const bool of_file = body.shape.kind == ShapeKind::particles && !body.stress_given;
+  if (of_file) stress = {-body.largest_pressure, -body.largest_pressure, -body.largest_pressure};
+  return std::sqrt(wave_modulus(law, lowest, stress) / material.density);
 }
 
 bool stiffness_changes(const Config& config) {

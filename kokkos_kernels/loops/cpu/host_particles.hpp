@@ -92,7 +92,19 @@ struct LawLanes {
         state[k] = kept(state[k], was[k]);
         if (any_of(state[k] != was[k])) store_field(state[k], soil.history.column[k], p, count);
       }
+      if constexpr (can_fail<Law>()) mark_failed(law, state, stress);
     });
+  }
+
+  /// The stress of a particle that its law calls failed is made not finite: fault_of() finds it.
+  template <class Law>
+  KOKKOS_INLINE_FUNCTION void mark_failed(const Law& law, const LawState<R, state_size<Law>>& state,
+                                          SymTensor<R, Dim>& stress) const {
+    for (int l = 0; l < count; ++l) {
+      LawState<T, state_size<Law>> own;
+      for (int k = 0; k < own.size; ++k) own[k] = state[k][l];
+      if (law.failed(own)) stress[0].set(l, Kokkos::Experimental::quiet_NaN_v<T>);
+    }
   }
 };
 
@@ -321,8 +333,9 @@ struct HostParticles {
       for (int d = 0; d < Dim; ++d) q.x[d] = block.x[d][l], q.v[d] = block.v[d][l];
       q.volume = block.volume[l];
       for (int k = 0; k < sym_size<Dim>; ++k) q.stress[k] = block.stress[k][l];
-      const FaultKind fault = fault_of(q, moved[l], by);
+      FaultKind fault = fault_of(q, moved[l], by);
       if (fault == FaultKind::none) continue;
+      if (fault == FaultKind::not_finite && has_failed(soil, p + l)) fault = FaultKind::law;
       const Coord<Dim> cell = coord_of<Dim>(soil.cell(p + l));
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;

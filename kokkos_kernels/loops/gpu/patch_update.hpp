@@ -231,8 +231,9 @@ struct UpdateParticles {
     }
     soil.volume(p) = q.volume;
     soil.stress(p) = q.stress;
-    const FaultKind fault = fault_of(q, own, by);
+    FaultKind fault = fault_of(q, own, by);
     if (fault != FaultKind::none) {
+      if (fault == FaultKind::not_finite && has_failed(soil, p)) fault = FaultKind::law;
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
       report(control, fault, soil.id(p), position, Dim);

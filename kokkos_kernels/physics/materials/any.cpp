@@ -44,6 +44,17 @@ std::vector<bool> changing(ModelList<Models...>) {
   return {stiffness_changes<Models<double>>()...};
 }
 
+template <class Law>
+constexpr const char* failure_of_law() {
+  if constexpr (can_fail<Law>()) return Law::k_failure;
+  return "";
+}
+
+template <template <class> class... Models>
+std::vector<const char*> failures(ModelList<Models...>) {
+  return {failure_of_law<Models<double>>()...};
+}
+
 /// The state of a particle that is created at a height [m] with a stress [Pa].
 template <class Law>
 auto start_of(const Law& law, double height, const std::array<double, 6>& stress = {}) {
@@ -73,6 +84,28 @@ ParameterFault parameter_fault(const AnyMaterial<double>& material) {
   material.visit([&](const auto& law) { fault = law.check(); });
   return fault;
 }
+
+ParameterFault start_fault(const AnyMaterial<double>& material, const ParticleStart& at) {
+  ParameterFault fault;
+  material.visit([&](const auto& law) {
+    if constexpr (requires { law.start_fault(at); }) fault = law.start_fault(at);
+  });
+  return fault;
+}
+
+std::vector<double> parameters_for(int which, const std::vector<double>& parameters, const RunFigures& run) {
+  std::vector<double> values = parameters;
+  make_material<double>(which, parameters).visit([&](auto law) {
+    if constexpr (requires { law.prepare_for(run); }) {
+      law.prepare_for(run);
+      values.clear();
+      for (const auto& parameter : law.parameters()) values.push_back(law.*parameter.member);
+    }
+  });
+  return values;
+}
+
+const char* failure_of(int which) { return failures(Materials{})[which]; }
 
 std::vector<StateVariable> state_variables(const AnyMaterial<double>& material) {
   std::vector<StateVariable> carried;

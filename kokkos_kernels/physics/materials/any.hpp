@@ -50,6 +50,14 @@ inline constexpr int k_most_state = most_state(Materials{});
 /// What is wrong with the parameters of a material together.
 ParameterFault parameter_fault(const AnyMaterial<double>& material);
 
+/// What is wrong with a particle that is created so (the optional member start_fault of a law). The key
+/// "stress" is an option of the particle's body, all others are options of the material.
+ParameterFault start_fault(const AnyMaterial<double>& material, const ParticleStart& at);
+
+/// The parameters of a material for one run (the optional member prepare_for of a law). To do it again
+/// changes nothing.
+std::vector<double> parameters_for(int which, const std::vector<double>& parameters, const RunFigures& run);
+
 /// The state variables that the particles of a material carry.
 std::vector<StateVariable> state_variables(const AnyMaterial<double>& material);
 

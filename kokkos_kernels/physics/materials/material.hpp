@@ -104,6 +104,14 @@ constexpr bool stiffness_changes() {
   return false;
 }
 
+/// Whether a law has states that end the run (failed).
+template <class Law>
+constexpr bool can_fail() {
+  return requires(const Law& law, const LawState<typename Law::real, state_size<Law>>& state) {
+    law.failed(state);
+  };
+}
+
 /// Stress turned with the material by the spin times dt: Q s Q^T with Q = (I - w/2)^-1 (I + w/2), which is a
 /// rotation for any w (Hughes & Winget 1980), so that the Jaumann rate keeps the invariants.
 template <class T>

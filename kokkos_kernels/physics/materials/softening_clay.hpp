@@ -103,6 +103,11 @@ struct SofteningClay : Clay<T> {
     if (const ParameterFault fault = Clay<T>::check(); !fault.key.empty()) return fault;
     return xi95_cell > 0 ? ParameterFault{} : brittleness_fault(this->su);
   }
+  std::string warning() const {
+    if (!(xi95_cell > 0)) return "";
+    return "-NAME_xi95_cell: xi95 is " + std::to_string(xi95) + " for the mesh's cells of " +
+           std::to_string(xi95_cell) + " m";
+  }
   ParameterFault start_fault(const ParticleStart& at) const {
     return brittleness_fault(Clay<T>::initial_state(at)[strength]);
   }
