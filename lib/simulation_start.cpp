@@ -210,10 +210,11 @@ PetscErrorCode Simulation::Body::start() {
     PetscCall(log.print("time step %.9g s, Courant number %.4f, of at most %.4f; %ld steps to %g s", dt,
                         dt / critical_time_step(config), largest_courant(config), schedule.last_step(),
                         schedule.time_of(schedule.last_step())));
-  if (const double viscous = viscous_time_step(config); std::isfinite(viscous)) {
-    const double waves = largest_courant(config) * critical_time_step(config);
-    PetscCall(log.print("the time step is at most %.6g s by waves and %.6g s by viscosity: %s governs", waves,
-                        viscous, waves < viscous ? "the first" : "the second"));
+  if (const StepLimits limits{critical_time_step(config), viscous_time_step(config)};
+      std::isfinite(limits.viscous)) {
+    const auto [waves, viscosity] = largest_steps(limits, config);
+    PetscCall(log.print("stable time step: %.6g s by waves alone, %.6g s by viscosity alone: %s governs",
+                        waves, viscosity, waves < viscosity ? "the speed of waves" : "the viscosity"));
   }
   if (restart) {
     PetscCall(resume());

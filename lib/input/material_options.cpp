@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "common/material_table.hpp"
 #include "common/text.hpp"
@@ -92,17 +93,14 @@ void read_parameters(OptionReader& in, const std::string& name, const Model& mod
   }
 }
 
-/// Rejects the parameters that only other models have.
+/// Rejects the parameters that only other models have, each once.
 void reject_others(OptionReader& in, const std::string& name, const Model& model,
                    const std::vector<Model>& models) {
-  const auto has = [](const Model& m, const std::string& key) {
-    for (const auto& option : m.options)
-      if (option.name == key) return true;
-    return false;
-  };
+  std::set<std::string> known;
+  for (const auto& option : model.options) known.insert(option.name);
   for (const Model& other : models)
     for (const auto& option : other.options)
-      if (!has(model, option.name))
+      if (known.insert(option.name).second)
         in.not_taken(name + "_" + option.name, "the model " + model.name + " has no such parameter");
 }
 

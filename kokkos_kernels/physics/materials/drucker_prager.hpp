@@ -73,7 +73,8 @@ struct DruckerPrager : FrictionalSoil<T> {
         "mohr_coulomb%s",
         extra,
         s >= 0.6 ? ", and soil with this angle of friction does not fail by a rising cell pressure" : "");
-    return lines + (lines.empty() ? "" : "\n") + line;
+    if (!lines.empty()) lines += '\n';
+    return lines += line;
   }
 
   template <class R, int Dim>

@@ -92,7 +92,8 @@ struct FrictionalSoil {
     const auto add = [&lines](const char* form, auto... values) {
       char line[256];
       std::snprintf(line, sizeof line, form, values...);
-      lines += (lines.empty() ? "" : "\n") + std::string(line);
+      if (!lines.empty()) lines += '\n';
+      lines += line;
     };
     if (friction_deg > 0 && friction_deg < 1)
       add("-NAME_friction_deg: %g is an angle in degrees; is it given in radians?", double(friction_deg));
