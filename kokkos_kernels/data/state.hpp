@@ -6,6 +6,7 @@
 
 #include "data/nodes.hpp"
 #include "data/soil_batches.hpp"
+#include "data/split_patches.hpp"
 #include "data/step_plan.hpp"
 #include "data/strays.hpp"
 
@@ -33,7 +34,9 @@ struct State {
   Patches<Space, Dim> patches;
   ParticleSet<Space, Soil<Space, T, Dim>> soil;
   int law = -1;  // index in Materials of the law of all bodies; -1: they differ
+  bool light_laws = false;  // all of them are of LightMaterials
   Strays<Space> strays;
+  SplitPatches<Space> split;
   Batches<Space, T, Dim> batches;  // of the soil, where the device's memory does not hold it all
   std::vector<ParticleSet<Space, RigidPoints<Space, T, Dim>>> rigid_points;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;

@@ -13,11 +13,11 @@ namespace {
 constexpr int k_most_patches = 1000;
 constexpr long k_most_steps = 1000;  // of one launch: a device that also shows pictures must not wait long
 
-template <bool WithNodes, class Space, class T, int Dim>
-PersistentStep<Space, T, Dim, WithNodes> persistent_step(const State<Space, T, Dim>& s, double dt,
-                                                         int steps) {
-  PersistentStep<Space, T, Dim, WithNodes> f{
-      update_of<typename PersistentStep<Space, T, Dim, WithNodes>::Update>(s, dt, 0),
+template <bool WithNodes, class Laws, class Space, class T, int Dim>
+auto persistent_step(const State<Space, T, Dim>& s, double dt, int steps) {
+  using Functor = PersistentStep<Space, T, Dim, WithNodes, Laws>;
+  Functor f{
+      update_of<typename Functor::Update>(s, dt, s.soil.bins.active_slots, 0),
       node_update_of(s, dt),
       {s, dt},
       {},
@@ -36,12 +36,20 @@ PersistentStep<Space, T, Dim, WithNodes> persistent_step(const State<Space, T, D
 }
 
 template <class Space, class Functor>
-void launch_persistent(const Space& space, int slots, const Functor& f) {
+void launch_functor(const Space& space, int slots, const Functor& f) {
   static_assert(!is_device<Space> || sizeof(Functor) <= 4000, "CUDA sends arguments of 4 KiB with a launch");
   typename Functor::Team team(space, f.rigid_teams + slots + 1, Functor::threads);
   Kokkos::parallel_for(
       "mpm::persistent_step",
       light(team.set_scratch_size(0, Kokkos::PerTeam(f.bytes(f.nodes.value_count) + k_scratch_slack))), f);
+}
+
+template <bool WithNodes, class Space, class T, int Dim>
+void launch_persistent(const State<Space, T, Dim>& s, int slots, double dt, int steps) {
+  if (s.light_laws)
+    launch_functor(s.space, slots, persistent_step<WithNodes, LightMaterials>(s, dt, steps));
+  else
+    launch_functor(s.space, slots, persistent_step<WithNodes, Materials>(s, dt, steps));
 }
 
 /// Makes sure that the sums of the next and of the last step have room, and that the next one's are zero.
@@ -65,7 +73,7 @@ void prepare_sums(State<Space, T, Dim>& s) {
 /// Whether a launch of this kind has room for its rigids.
 template <bool WithNodes, class Space, class T, int Dim>
 bool has_room(const State<Space, T, Dim>& s) {
-  using Step = PersistentStep<Space, T, Dim, WithNodes>;
+  using Step = PersistentStep<Space, T, Dim, WithNodes, Materials>;
   int with_points = 0;
   for (const auto& set : s.rigid_points) with_points += !set.points.surface_normal;
   const int values = Dim * static_cast<int>(s.rigid_points.size());
@@ -85,8 +93,7 @@ bool ends_in_launch(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void update_and_end(State<Space, T, Dim>& s, double dt) {
   if constexpr (is_device<Space> && sums_fit<Space, T, Dim>) {
-    launch_persistent(s.space, s.soil.bins.colour_begin[Patch<Dim>::colours],
-                      persistent_step<false>(s, dt, 1));
+    launch_persistent<false>(s, s.soil.bins.colour_begin[Patch<Dim>::colours], dt, 1);
     s.summed = {true, s.soil_boundary, true};
   }
 }
@@ -108,7 +115,7 @@ int run_persistent_steps(State<Space, T, Dim>& s, double dt, long most) {
   if constexpr (sums_fit<Space, T, Dim>) {
     const int steps = is_device<Space> && s.co_resident ? static_cast<int>(std::min(most, k_most_steps)) : 1;
     prepare_sums(s);
-    launch_persistent(s.space, s.patches.slots, persistent_step<true>(s, dt, steps));
+    launch_persistent<true>(s, s.patches.slots, dt, steps);
     NodeSums<Space, T, Dim>& sums = s.nodes;
     for (int n = 0; n < steps % 3; ++n) {
       std::swap(sums, s.next_sums);  // and what was read is zero one step later

@@ -51,12 +51,16 @@ void resume_single_steps(State<Space, T, Dim>& s);
 
 /// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves
 /// the furthest movement of a particle in s.control. Where sums_ahead, adds the soil as it then is to the
-/// nodes. dt [s].
+/// nodes. dt [s]. aside: the stream of the patches that are not common, where State::split tells them.
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt);
+void update_particles(State<Space, T, Dim>& s, double dt, const Space& aside);
+template <class Space, class T, int Dim>
+void update_particles(State<Space, T, Dim>& s, double dt) {
+  update_particles(s, dt, s.space);
+}
 /// The same for some of the slots, where sums_ahead.
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part);
+void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside);
 
 /// Forces of the soil on the rigids in this step, from s.slot_forces to s.rigid_force [N]; else move_rigids
 /// does it.

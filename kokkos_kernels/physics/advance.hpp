@@ -51,9 +51,9 @@ struct Particle {
   T volume;                  // m3
 };
 
-/// The law of particle p, with its state in memory. A particle that flies freely, being alone, carries no
-/// stress and keeps its state.
-template <class Space, class T, int Dim>
+/// The law of particle p, which is one of the list Laws, with its state in memory. A particle that flies
+/// freely, being alone, carries no stress and keeps its state.
+template <class Space, class T, int Dim, class Laws>
 struct ParticleLaw {
   const Soil<Space, T, Dim>& soil;
   int p, material;
@@ -67,7 +67,7 @@ struct ParticleLaw {
       return;
     }
     const AnyMaterial<T>& of = soil.materials(material);
-    of.visit_as(which >= 0 ? which : of.which, [&](const auto& law) {
+    of.visit_as(Laws{}, which >= 0 ? which : of.which, [&](const auto& law) {
       using Law = std::decay_t<decltype(law)>;
       const auto was = soil.state_of(law, p);
       auto state = was;

@@ -143,20 +143,50 @@ KOKKOS_INLINE_FUNCTION int image_in_window(const Grid<T, Dim>& grid, const Coord
   return place;
 }
 
-/// What node n of a window has of component k of a vector, or of a scalar (k < 0), of its image_in_window().
-template <Kind kind, class T, int Dim>
-struct ImageSigns {
-  T of[Dim];  // by component
-
-  KOKKOS_INLINE_FUNCTION ImageSigns(const Grid<T, Dim>& grid, const Coord<Dim>& origin, int n) {
-    const Coord<Dim> c = window_coord<Dim>(n);
-    for (int k = 0; k < Dim; ++k) {
-      of[k] = 1;
-      for (int d = 0; d < Dim; ++d) of[k] *= image_sign<kind, T>(grid, d, origin[d] + c[d], k);
-    }
-  }
-  KOKKOS_INLINE_FUNCTION T operator()(int k) const { return k < 0 ? T(1) : of[k]; }
+/// Images of the nodes of a team's window. Where none of them lies at a wall or beyond it:
+struct NoImages {
+  /// Place in the window of the image of node n.
+  KOKKOS_INLINE_FUNCTION int operator()(int n) const { return n; }
 };
+/// And for a patch anywhere, at `origin`.
+template <class T, int Dim>
+struct WindowImages {
+  const Grid<T, Dim>& grid;
+  Coord<Dim> origin;
+  bool at_wall;  // the window holds nodes at a wall or beyond it
+
+  KOKKOS_INLINE_FUNCTION WindowImages(const Grid<T, Dim>& mesh, const WallReach<Dim>& reach,
+                                      const Coord<Dim>& from)
+      : grid(mesh), origin(from), at_wall(reach(from)) {}
+  KOKKOS_INLINE_FUNCTION int operator()(int n) const {
+    return at_wall ? image_in_window(grid, origin, n) : n;
+  }
+};
+
+/// What node n has of component k of a vector, or of a scalar (k < 0), of its image.
+template <Kind kind, class T>
+KOKKOS_INLINE_FUNCTION T sign_of(const NoImages&, int, int) {
+  return 1;
+}
+template <Kind kind, class T, int Dim>
+KOKKOS_INLINE_FUNCTION T sign_of(const WindowImages<T, Dim>& images, int n, int k) {
+  T sign = 1;
+  if (!images.at_wall || k < 0) return sign;
+  const Coord<Dim> c = window_coord<Dim>(n);
+  for (int d = 0; d < Dim; ++d) sign *= image_sign<kind, T>(images.grid, d, images.origin[d] + c[d], k);
+  return sign;
+}
+
+/// Turns the motion that node n of a window has taken from its image.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void turn_motion(const NoImages&, int, KinematicValues<T, Dim>&) {}
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void turn_motion(const WindowImages<T, Dim>& images, int n,
+                                        KinematicValues<T, Dim>& motion) {
+  if (images(n) == n) return;
+  for (int k = 0; k < NodeKinematics<Dim>::size; ++k)
+    motion.c[k] *= sign_of<Kind::motion, T>(images, n, k % Dim);
+}
 
 /// Calls f(place, image, at) for each node of a window that lies at a wall normal to direction d or beyond
 /// it: its place in the window, that of its image, and its coordinate along d. Directions follow one another:

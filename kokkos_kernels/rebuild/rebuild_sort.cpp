@@ -315,6 +315,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   s.plan = plan_step(s);
   s.summed = {};
   s.strays.known = false;
+  s.split.parts.clear();
   ensure(s.strays.alone, s.patches.slots);
   Kokkos::deep_copy(s.space, s.strays.alone, 0);
   const int nodes = s.patches.node_count();

@@ -155,8 +155,12 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()),
             [&](int m) { return make_material<T>(materials[m].model, materials[m].parameters); });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
-  for (const BodyInput& body : bodies)
-    if (materials[body.material].model != s.law) s.law = -1;
+  s.light_laws = true;
+  for (const BodyInput& body : bodies) {
+    const int model = materials[body.material].model;
+    if (model != s.law) s.law = -1;
+    s.light_laws = s.light_laws && has_model(LightMaterials{}, model);
+  }
 }
 
 /// C_p of APIC at the start: the gradient of each body's velocities, so that a linear field is kept from the

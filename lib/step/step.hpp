@@ -2,6 +2,7 @@
 // One time step, in the paper's words.
 
 #include "functions/find_strays.hpp"
+#include "functions/split_patches.hpp"
 #include "functions/step_kernels.hpp"
 #include "functions/velocity_update.hpp"
 #include "loops/interpolation.hpp"
@@ -147,7 +148,7 @@ struct Step {
     PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt, stream); }));
     if (parted) overlap->join(s.space);
     if (parted && !ranks) sum_forces(s, stream);
-    PetscCall(run(StepPhase::particles, [&] { ends ? update_and_end(s, dt) : update_particles(s, dt); }));
+    PetscCall(run(StepPhase::particles, [&] { ends ? update_and_end(s, dt) : update_patches(); }));
     if (!ends) PetscCall(run(StepPhase::rigids, [&] { return update_rigids(parts && !ranks); }));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -230,7 +231,16 @@ struct Step {
     PetscFunctionBeginUser;
     if (s.shear_share) PetscCall(strength_to_nodes(s, ranks));
     if (!s.strays.known) mark_strays(s, stream);
+    if (wants_split(s) && s.split.parts.empty()) split_patches(s, stream);
     PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Function 5 of a part of the soil, or of all of it. The overlap stream takes the patches that are not
+  /// common.
+  template <class... Some>
+  void update_patches(const Some&... part) const {
+    const bool aside = overlap && s.split.has_others() && !timers.sampling();
+    update_particles(s, dt, part..., aside ? overlap->fork(s.space) : s.space);
+    if (aside) overlap->join(s.space);
   }
   PetscErrorCode update_soil() const {
     PetscFunctionBeginUser;
@@ -238,7 +248,7 @@ struct Step {
     if (s.batches.in_use())
       update_by_batches(s, dt);
     else
-      update_particles(s, dt);
+      update_patches();
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Under the forces of all ranks.
@@ -263,9 +273,9 @@ struct Step {
   PetscErrorCode update_and_send() const {
     PetscFunctionBeginUser;
     const Part<Space> border = ranks->border(s);
-    update_particles(s, dt, border);
+    update_particles(s, dt, border, border.space);
     PetscCall(ranks->send_ahead(s));
-    update_particles(s, dt, ranks->inner(s));
+    update_patches(ranks->inner(s));
     ranks->join(s);
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -22,13 +22,14 @@ struct OneOf<T, ModelList<Models...>> {
 
   template <class F>
   KOKKOS_INLINE_FUNCTION void visit(F&& f) const {
-    visit_as(which, f);
+    visit_as(ModelList<Models...>{}, which, f);
   }
-  /// The same where the caller knows which model it is.
-  template <class F>
-  KOKKOS_INLINE_FUNCTION void visit_as(int known, F&& f) const {
-    int k = 0;
-    (void)((known == k++ ? (f(*reinterpret_cast<const Models<T>*>(bytes)), true) : false) || ...);
+  /// The same where the caller knows which model it is, and that it is of some list.
+  template <template <class> class... Some, class F>
+  KOKKOS_INLINE_FUNCTION void visit_as(ModelList<Some...>, int known, F&& f) const {
+    (void)((known == model_index_in<Some>(Materials{}) ? (f(*reinterpret_cast<const Some<T>*>(bytes)), true)
+                                                       : false) ||
+           ...);
   }
 };
 
