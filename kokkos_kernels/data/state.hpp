@@ -33,7 +33,7 @@ struct State {
   Grid<T, Dim> grid;
   Patches<Space, Dim> patches;
   ParticleSet<Space, Soil<Space, T, Dim>> soil;
-  int law = -1;  // index in Materials of the law of all bodies; -1: they differ
+  int law = -1;             // index in Materials of the law of all bodies; -1: they differ
   bool light_laws = false;  // all of them are of LightMaterials
   Strays<Space> strays;
   SplitPatches<Space> split;

@@ -16,16 +16,15 @@ constexpr long k_most_steps = 1000;  // of one launch: a device that also shows 
 template <bool WithNodes, class Laws, class Space, class T, int Dim>
 auto persistent_step(const State<Space, T, Dim>& s, double dt, int steps) {
   using Functor = PersistentStep<Space, T, Dim, WithNodes, Laws>;
-  Functor f{
-      update_of<typename Functor::Update>(s, dt, s.soil.bins.active_slots, 0),
-      node_update_of(s, dt),
-      {s, dt},
-      {},
-      0,
-      0,
-      steps,
-      {s.nodes, WithNodes ? s.next_sums : s.nodes, s.last_sums},
-      s.launch_barrier};
+  Functor f{update_of<typename Functor::Update>(s, dt, s.soil.bins.active_slots, 0),
+            node_update_of(s, dt),
+            {s, dt},
+            {},
+            0,
+            0,
+            steps,
+            {s.nodes, WithNodes ? s.next_sums : s.nodes, s.last_sums},
+            s.launch_barrier};
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& points = s.rigid_points[r].points;
     if (points.surface_normal) continue;

@@ -5,7 +5,8 @@
 
 namespace mpm {
 
-/// Whether steps are done with split patches. The persistent step and batches have one kernel for all patches.
+/// Whether steps are done with split patches. The persistent step and batches have one kernel for all
+/// patches.
 template <class Space, class T, int Dim>
 bool wants_split(const State<Space, T, Dim>& s) {
   return is_device<Space> && s.plan.form != StepForm::persistent && s.plan.form != StepForm::out_of_core;

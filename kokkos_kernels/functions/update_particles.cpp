@@ -25,8 +25,8 @@ void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const
     launch_for<Sums, kind, Materials>(s, dt, slots, part);
 }
 
-/// The patches that are not common are few and take longer each. They are launched first, on a stream of their
-/// own, so that common patches fill the device beside them.
+/// The patches that are not common are few and take longer each. They are launched first, on a stream of
+/// their own, so that common patches fill the device beside them.
 template <bool Sums, class Space, class T, int Dim>
 void update_on_device(State<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside) {
   if (!s.split.holds(part))

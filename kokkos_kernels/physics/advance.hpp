@@ -71,7 +71,12 @@ struct ParticleLaw {
       using Law = std::decay_t<decltype(law)>;
       const auto was = soil.state_of(law, p);
       auto state = was;
-      law.update(stress, state, by);
+      if constexpr (has_called_update<Law>()) {
+        const auto after = called_update<Law, Dim>(law, {stress, state}, by);
+        stress = after.stress, state = after.state;
+      } else {
+        law.update(stress, state, by);
+      }
       for (int k = 0; k < state.size; ++k)
         if (Law::state()[k].changes && state[k] != was[k]) soil.history.column[k](p) = state[k];
       if constexpr (can_fail<Law>())
@@ -124,12 +129,13 @@ KOKKOS_INLINE_FUNCTION auto is_volume_limited(const Particle<R, Dim>& q, const U
   return !((q.volume > by.least_volume) & (q.volume < by.most_volume));
 }
 
-/// Whether the law of particle p calls the particle's state a failure. Its stress is then not finite, so that
-/// only particles whose stress is not finite need be asked.
-template <class Space, class T, int Dim>
+/// Whether the law of particle p, one of the list Laws, calls the particle's state a failure. Its stress is
+/// then not finite, so that only particles whose stress is not finite need be asked.
+template <class Laws = Materials, class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool has_failed(const Soil<Space, T, Dim>& soil, int p) {
   bool failed = false;
-  soil.materials(soil.bodies(soil.body(p)).material).visit([&](const auto& law) {
+  const AnyMaterial<T>& of = soil.materials(soil.bodies(soil.body(p)).material);
+  of.visit_as(Laws{}, of.which, [&](const auto& law) {
     if constexpr (can_fail<std::decay_t<decltype(law)>>()) failed = law.failed(soil.state_of(law, p));
   });
   return failed;

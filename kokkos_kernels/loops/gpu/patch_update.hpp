@@ -33,8 +33,8 @@ KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const KinematicValues<T, Dim>* wi
   return sum * inv_spacing;
 }
 
-/// The patches that a kernel is for. A patch is common if its window holds no node at a wall or beyond it, and
-/// none of its particles is alone.
+/// The patches that a kernel is for. A patch is common if its window holds no node at a wall or beyond it,
+/// and none of its particles is alone.
 enum class PatchKind { common, any };
 
 /// A team moves the particles of a patch, whose laws are of the list Laws. If Sums, it adds them where they
@@ -159,7 +159,8 @@ struct UpdateParticles {
     for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
       prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
       prefetch(&soil.volume(p));
-      for (int k = 0; k < soil.history.columns; ++k) prefetch(&soil.history.column[k](p));
+      for (int k = 0; k < most_state(Laws{}); ++k)
+        if (k < soil.history.columns) prefetch(&soil.history.column[k](p));
     }
   }
 
@@ -218,7 +219,7 @@ struct UpdateParticles {
     soil.stress(p) = q.stress;
     FaultKind fault = fault_of(q, own, by);
     if (fault != FaultKind::none) {
-      if (fault == FaultKind::not_finite && has_failed(soil, p)) fault = FaultKind::law;
+      if (fault == FaultKind::not_finite && has_failed<Laws>(soil, p)) fault = FaultKind::law;
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
       report(control, fault, soil.id(p), position, Dim);
@@ -263,7 +264,8 @@ UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
 }
 
 template <class Update, class Space, class T, int Dim>
-Update update_of(const State<Space, T, Dim>& s, double dt, const Kokkos::View<int*, typename Space::memory_space>& slots, int first) {
+Update update_of(const State<Space, T, Dim>& s, double dt,
+                 const Kokkos::View<int*, typename Space::memory_space>& slots, int first) {
   const auto& set = s.soil;
   const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
       reinterpret_cast<T*>(s.scratch.data()), set.points.count);

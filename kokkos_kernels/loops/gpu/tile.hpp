@@ -74,8 +74,8 @@ class Tile {
         begin_(scratch.take<int>(cells + 1)),
         to_(scratch.take<int>(window)) {}
 
-  /// Before all else, as clear(), and the team must wait for both: the number of node n of the window, that of
-  /// its image where it lies beyond a wall.
+  /// Before all else, as clear(), and the team must wait for both: the number of node n of the window, that
+  /// of its image where it lies beyond a wall.
   KOKKOS_INLINE_FUNCTION void set_node(int n, int number) const { to_[n] = number - n; }
 
   /// begin(c): first particle of cell c of the patch.
@@ -239,8 +239,8 @@ class Tile {
 /// `images` tells it; cell_begin(c): the first point of cell c of the patch.
 template <class Source, class Team, class Number, class Begin, class Images, class Field>
 KOKKOS_INLINE_FUNCTION void sum_patch(const Team& team, Scratch scratch, const Source& source,
-                                      const Number& number_of, const Begin& cell_begin,
-                                      const Images& images, const Field& out) {
+                                      const Number& number_of, const Begin& cell_begin, const Images& images,
+                                      const Field& out) {
   using Tile_ = Tile<Source>;
   const Tile_ tile(scratch);
   Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Source::dim>::window),

@@ -16,7 +16,7 @@ template <class T>
 struct CamClay {
   using real = T;
   static constexpr const char* k_name = "cam_clay";
-  static constexpr bool k_scalar_update = true, k_stiffness_changes = true;
+  static constexpr bool k_scalar_update = true, k_called_update = true, k_stiffness_changes = true;
   /// What a failed particle is said to have; see failed().
   static constexpr const char* k_failure =
       "has a specific volume of 1.02 or less, or strained by more than 0.0064 in one step: cam_clay does not "
@@ -180,8 +180,7 @@ struct CamClay {
     const T slope2 = critical_state_ratio * critical_state_ratio;
     if (q * q / slope2 + over * (over - 1) <= 0) return;
     const CamClayReturn<T> to_surface{{least / pc}, p / pc, -dilatation, a, b, q, over, shear / pc, slope2};
-    T l, x;  // multiplier times Pc, plastic volume strain
-    to_surface.solve(l, x);
+    const auto [l, x] = root_of(to_surface);  // multiplier times Pc, plastic volume strain
     const T less = rise - elastic.change(p, a * (-dilatation - x)), softer = 6 * (shear / pc) * l / slope2;
     const bool free = !(trial - less > 0);
     const T from = mean_of(s), share = 1 / (1 + softer);

@@ -110,12 +110,24 @@ struct CamClayReturn {
     x = volume_of(l);
   }
 
-  KOKKOS_INLINE_FUNCTION void solve(T& l, T& x) const {
+  struct Root {
+    T l, x;
+  };
+  KOKKOS_INLINE_FUNCTION Root solve() const {
     constexpr T k_converged = T(1e-4);
-    iterate(l, x);
-    const Point now = at(l, x);
-    if (!(Kokkos::fabs(now.of_x) < k_converged && Kokkos::fabs(now.of_f) < k_converged)) bisect(l, x);
+    Root root;
+    iterate(root.l, root.x);
+    const Point now = at(root.l, root.x);
+    if (!(Kokkos::fabs(now.of_x) < k_converged && Kokkos::fabs(now.of_f) < k_converged))
+      bisect(root.l, root.x);
+    return root;
   }
 };
+
+/// Its solution.
+template <class T>
+MPM_CALLED_FUNCTION typename CamClayReturn<T>::Root root_of(CamClayReturn<T> equations) {
+  return equations.solve();
+}
 
 }  // namespace mpm

@@ -96,6 +96,13 @@ constexpr bool has_scalar_update() {
   if constexpr (requires { Law::k_scalar_update; }) return Law::k_scalar_update;
   return false;
 }
+/// Whether a GPU calls a law's update as a function (k_called_update), as one that takes many registers, so
+/// that the kernel needs none for it.
+template <class Law>
+constexpr bool has_called_update() {
+  if constexpr (requires { Law::k_called_update; }) return Law::k_called_update;
+  return false;
+}
 /// Whether the stiffness of a law depends on stress or state (k_stiffness_changes), so that the time step has
 /// to follow it.
 template <class Law>
@@ -110,6 +117,20 @@ constexpr bool can_fail() {
   return requires(const Law& law, const LawState<typename Law::real, state_size<Law>>& state) {
     law.failed(state);
   };
+}
+
+/// What a law makes of a particle.
+template <class Law, int Dim>
+struct Updated {
+  SymTensor<typename Law::real, Dim> stress;
+  LawState<typename Law::real, state_size<Law>> state;
+};
+/// A law's update of one particle, as a function that a GPU calls.
+template <class Law, int Dim>
+MPM_CALLED_FUNCTION Updated<Law, Dim> called_update(
+    const Law& law, Updated<Law, Dim> particle, Increment<typename Law::real, typename Law::real, Dim> by) {
+  law.update(particle.stress, particle.state, by);
+  return particle;
 }
 
 /// Stress turned with the material by the spin times dt: Q s Q^T with Q = (I - w/2)^-1 (I + w/2), which is a

@@ -15,7 +15,7 @@ template <class T>
 struct PowerElastic {
   using real = T;
   static constexpr const char* k_name = "power_elastic";
-  static constexpr bool k_scalar_update = true, k_stiffness_changes = true;
+  static constexpr bool k_scalar_update = true, k_called_update = true, k_stiffness_changes = true;
   T bulk_modulus, pressure_reference, exponent, pressure_offset, pressure_min, poisson;
   T factor;       // Pa^(1-n), K / X^n
   T shear_share;  // -, G / K
@@ -44,7 +44,7 @@ struct PowerElastic {
   std::array<double, 0> initial_state(const ParticleStart&) const { return {}; }
 
   /// K [Pa] at X = P + pressure_offset [Pa].
-  KOKKOS_FUNCTION T bulk_modulus_at(T x) const {
+  MPM_CALLED_FUNCTION T bulk_modulus_at(T x) const {
     return factor * Kokkos::pow(Kokkos::fmax(x, pressure_min), exponent);
   }
   /// K + 4 G / 3 [Pa], which gives the speed of the fastest wave (Eq. 14).
@@ -79,7 +79,7 @@ struct PowerElastic {
 
   /// Growth of X [Pa] from x by a volume strain, compression positive: exact, and to round-off of the growth,
   /// which may be far below that of X. Below pressure_min the modulus is constant.
-  KOKKOS_FUNCTION T growth(T x, T compression) const {
+  MPM_CALLED_FUNCTION T growth(T x, T compression) const {
     const T least = pressure_min, slope = bulk_modulus_at(least);  // Pa
     if (x < least) {
       const T straight = slope * compression;
