@@ -137,12 +137,11 @@ struct UpdateParticles {
       if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
       tile.add(team, particle);
       note_movement(team, slot, moved);
-      const Images again = images_at(slot);  // kept, they would take registers above
-      tile.give_window(team, out.soil, again);
+      tile.give_window(team, out.soil, images);
       if (has_boundary && near_rigid(slot) != 0) {
         team.team_barrier();
         sum_patch(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, number_of, cell_begin,
-                  again, out.boundary);
+                  images, out.boundary);
       }
     } else {
       team.team_barrier();
