@@ -10,18 +10,20 @@
 #include <optional>
 #include <utility>
 
+#include "autotune.hpp"
+#include "common/collectives.hpp"
+#include "common/text.hpp"
 #include "memory_need.hpp"
-#include "output/remembered.hpp"
-#include "parallel/together.hpp"
+#include "output/measurement_cache.hpp"
 #include "simulation_body.hpp"
 #include "strategy_choice.hpp"
-#include "trial.hpp"
 
 namespace mpm {
 namespace {
 
-/// What trials of another number found does not count: raise it when a trial measures something else.
-constexpr int k_trial = 3;
+/// Version of the autotune: results of another version do not count. Raise it when the autotune measures
+/// something else.
+constexpr int k_autotune = 3;
 
 /// Those worth trying, the one that a tie goes to first: `sequential` is one thread, `atomic` on one thread a
 /// slower `sequential`.
@@ -38,7 +40,7 @@ double machine_load() {
   return ::getloadavg(&load, 1) == 1 && cores > 0 ? load / cores : 0;
 }
 
-/// A strategy under trial, with a copy of the problem.
+/// A strategy in the autotune, with a copy of the problem.
 class Contestant {
  public:
   Contestant(const Config& config, MPI_Comm comm, P2G strategy) : config_(config), comm_(comm) {
@@ -46,7 +48,7 @@ class Contestant {
     times.strategy = strategy;
   }
 
-  /// Makes its copy. It is out of the trial where that fails, as where its lists do not fit into memory.
+  /// Makes its copy. It is out of the autotune where that fails, as where its lists do not fit into memory.
   void set_up(Model model) {
     stepper_ = make_stepper(config_, comm_);
     Failure failure;
@@ -78,7 +80,7 @@ class Contestant {
     due_ = false;
   }
 
-  TrialTimes times;
+  AutotuneTimes times;
   std::string name;  // its word
   double spent = 0;  // s, in all its rounds
 
@@ -103,9 +105,9 @@ std::vector<Contestant> try_all(const Config& config, MPI_Comm comm, const Model
   std::vector<Contestant> all;
   for (const P2G strategy : candidates(config.backend)) all.emplace_back(config, comm, strategy);
   bool keep = true, decided = false;
-  std::vector<TrialTimes> times;
+  std::vector<AutotuneTimes> times;
   for (int round = 0; round < k_most && !(decided && round >= k_fewest); ++round) {
-    const std::vector<TrialTimes> before = std::exchange(times, {});
+    const std::vector<AutotuneTimes> before = std::exchange(times, {});
     double spent = 0;
     for (Contestant& each : all) {
       if (!is_beaten(each.times, before)) {
@@ -133,7 +135,7 @@ std::string figures_of(const std::vector<Contestant>& all) {
 }
 
 /// What the log tells of a choice.
-std::string tell(const StrategyChoice& choice, const std::vector<Contestant>& all, double load) {
+std::string report_choice(const StrategyChoice& choice, const std::vector<Contestant>& all, double load) {
   std::string text = "strategies on the first steps: " + figures_of(all) + " a step; ";
   for (const Contestant& each : all)
     if (each.times.strategy == choice.strategy) text += each.name;
@@ -152,27 +154,27 @@ PetscErrorCode Simulation::Body::choose_strategy(const Model& model, const std::
   const int size = static_cast<int>(std::lround(std::log2(double(coordinates) / config.dim)));
   const int ranks = size_of(comm);
   const std::string key =
-      formatted("mpm %s, trial %d, %s, %s, %dD, 2^%d particles", k_version, k_trial, device.c_str(),
+      formatted("mpm %s, trial %d, %s, %s, %dD, 2^%d particles", k_version, k_autotune, device.c_str(),
                 config.precision == Precision::single ? "single" : "double", config.dim, size) +
       (ranks > 1 ? formatted(", %d ranks", ranks) : "");
   const bool first = rank_of(comm) == 0;
   double load = machine_load();
-  double kept = first ? remembered("fastest_strategy", key, [] { return 0.0; }) : 0;
+  double kept = first ? cached_measurement("fastest_strategy", key, [] { return 0.0; }) : 0;
   PetscCall(share_numbers(comm, 1, &kept));  // what rank 0 remembers; if it does not, all try
   PetscCall(share_numbers(comm, 1, &load));
   if (kept == 0) {
-    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);  // what a trial cannot do, the run may
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);  // what the autotune cannot do, the run may
     const std::vector<Contestant> all = try_all(config, comm, model, dt);
     PetscPopErrorHandler();
-    std::vector<TrialTimes> times;
+    std::vector<AutotuneTimes> times;
     for (const Contestant& each : all) times.push_back(each.times);
     const StrategyChoice choice = choose_by_times(times, load);
     if (choice.strategy != P2G::automatic) {
       kept = 1.0 + static_cast<int>(choice.strategy);
-      PetscCall(log.line(tell(choice, all, load)));
+      PetscCall(log.line(report_choice(choice, all, load)));
     }
     PetscCall(share_numbers(comm, 1, &kept));
-    if (first && choice.clear) remembered("fastest_strategy", key, [&] { return kept; });
+    if (first && choice.clear) cached_measurement("fastest_strategy", key, [&] { return kept; });
   }
   if (kept >= 1 && kept <= static_cast<int>(P2G::automatic))
     config.p2g.strategy = static_cast<P2G>(int(kept) - 1);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "output/log.hpp"
+#include "common/text.hpp"
 
 namespace mpm {
 namespace {

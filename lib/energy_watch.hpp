@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "common/snapshot.hpp"
 #include "mpm/config.hpp"
-#include "output/snapshot.hpp"
 
 namespace mpm {
 

@@ -14,10 +14,10 @@
 // the same for all others.
 namespace {
 
-template <class Function>
-Function* of_driver(const char* name) {
+template <class StepPhase>
+StepPhase* of_driver(const char* name) {
   static void* const driver = dlopen("libcuda.so.1", RTLD_NOW);
-  return driver != nullptr ? reinterpret_cast<Function*>(dlsym(driver, name)) : nullptr;
+  return driver != nullptr ? reinterpret_cast<StepPhase*>(dlsym(driver, name)) : nullptr;
 }
 
 }  // namespace

@@ -1,19 +1,16 @@
 #include "memory_need.hpp"
 
-#include "input/material_table.hpp"
-
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 
+#include "common/host_memory.hpp"
+#include "common/material_table.hpp"
+#include "common/text.hpp"
 #include "data/footprint.hpp"
 #include "input/particle_file.hpp"
 #include "input/shapes.hpp"
 #include "mesh/background.hpp"
-#include "output/log.hpp"
 #include "step/stepper.hpp"
 
 namespace mpm {
@@ -32,8 +29,7 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   constexpr double k_ring = 1.1;  // the patches round the soil
   int columns = 0;
   for (const BodyConfig& body : config.bodies)
-    columns =
-        std::max(columns, static_cast<int>(state_variables(config.materials[body.material].model).size()));
+    columns = std::max(columns, static_cast<int>(state_variables(config.materials[body.material]).size()));
   double a_particle = Footprint<T, Dim>::particle(columns);
   if (config.p2g.strategy == P2G::gather) {
     // a particle is in the lists of the nodes that it may reach before the margin is used up
@@ -99,22 +95,6 @@ double free_memory(Backend backend) {
 #endif
   (void)backend;
   return free_host_memory();
-}
-
-/// What a limit on the process's memory (ulimit -v) leaves; infinite where there is none.
-static double free_in_process() {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return HUGE_VAL;
-  double pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return std::max(double(limit.rlim_cur) - pages * double(sysconf(_SC_PAGESIZE)), 1.0);
-}
-
-double free_host_memory() {
-  std::ifstream file("/proc/meminfo");
-  for (std::string name, rest; file >> name && std::getline(file, rest);)
-    if (name == "MemAvailable:") return std::min(1024 * std::stod(rest), free_in_process());
-  return 0;
 }
 
 /// The part of the whole need that falls to one rank, or to the ranks of one node that share its memory.

@@ -21,9 +21,8 @@ struct MemoryNeed {
 };
 MemoryNeed memory_need(const Config& config);
 
-/// Bytes that are free where a backend's kernels run, and on the host; 0 where the system does not tell.
+/// Bytes that are free where a backend's kernels run; 0 where the system does not tell.
 double free_memory(Backend backend);
-double free_host_memory();
 
 /// Why a run cannot fit, as a line for the user; empty if it can.
 /// On several ranks it is that of the rank that asks; its node holds others too. Collective.

@@ -1,12 +1,12 @@
 #include "notices.hpp"
 
-#include "output/log.hpp"
+#include "common/text.hpp"
 
 namespace mpm {
 
 std::vector<std::string> Notices::look(const HistoryRow& row, const Config& config) {
   std::vector<std::string> lines;
-  const auto tell = [&](bool happened, const std::string& body, const char* what, const std::string& line) {
+  const auto report = [&](bool happened, const std::string& body, const char* what, const std::string& line) {
     if (happened && told_.insert(body + what).second)
       lines.push_back(formatted("step %ld, time %.6g s: ", row.step, row.time) + "body " + body + ": " +
                       line);
@@ -16,30 +16,30 @@ std::vector<std::string> Notices::look(const HistoryRow& row, const Config& conf
   for (std::size_t b = 0; b < row.bodies.size(); ++b) {
     const BodyRow& body = row.bodies[b];
     const std::string& name = config.bodies[b].name;
-    tell(body.put_back > 0, name, " put back",
-         formatted("%ld particles had passed a wall and were put back on it, at rest against it (column "
-                   "%s_put_back counts them); a smaller -time_courant keeps them from it",
-                   body.put_back, name.c_str()));
-    tell(body.strays > 0, name, " alone",
-         formatted(
-             "%ld particles are alone, with hardly any other soil in reach: they carry no stress and fly "
-             "freely until they land (column %s_strays; -stray_particles remove or stop does otherwise)",
-             body.strays, name.c_str()));
-    tell(
+    report(body.put_back > 0, name, " put back",
+           formatted("%ld particles had passed a wall and were put back on it, at rest against it (column "
+                     "%s_put_back counts them); a smaller -time_courant keeps them from it",
+                     body.put_back, name.c_str()));
+    report(body.strays > 0, name, " alone",
+           formatted(
+               "%ld particles are alone, with hardly any other soil in reach: they carry no stress and fly "
+               "freely until they land (column %s_strays; -stray_particles remove or stop does otherwise)",
+               body.strays, name.c_str()));
+    report(
         body.limited > 0, name, " limited",
         formatted("the volume of %ld particles has come to a bound, a fifth or twice that at the start, and "
                   "is kept there (column %s_limited); smaller cells or more particles a cell follow the soil "
                   "further",
                   body.limited, name.c_str()));
-    tell(body.lost_count > 0, name, " left",
-         formatted("%ld particles of %.6g kg have left the run (columns %s_lost_mass, %s_lost_momentum, "
-                   "%s_lost_energy)",
-                   body.lost_count, body.lost_mass, name.c_str(), name.c_str(), name.c_str()));
+    report(body.lost_count > 0, name, " left",
+           formatted("%ld particles of %.6g kg have left the run (columns %s_lost_mass, %s_lost_momentum, "
+                     "%s_lost_energy)",
+                     body.lost_count, body.lost_mass, name.c_str(), name.c_str(), name.c_str()));
     const double top = config.mesh.upper[up] - config.mesh.spacing / 2;
-    tell(body.mass > 0 && config.mesh.walls[up][1] != Wall::free && body.upper[up] > top && row.step > 0,
-         name, " lid",
-         "soil has come to the top of the mesh, which is a lid (" + lid +
-             " is a roller by default): a higher mesh, or " + lid + " free, lets it go on");
+    report(body.mass > 0 && config.mesh.walls[up][1] != Wall::free && body.upper[up] > top && row.step > 0,
+           name, " lid",
+           "soil has come to the top of the mesh, which is a lid (" + lid +
+               " is a roller by default): a higher mesh, or " + lid + " free, lets it go on");
   }
   return lines;
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/snapshot.hpp"
 #include "mpm/config.hpp"
-#include "output/snapshot.hpp"
 
 namespace mpm {
 

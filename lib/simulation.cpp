@@ -5,9 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "common/collectives.hpp"
+#include "common/text.hpp"
 #include "output/files.hpp"
 #include "output/performance_json.hpp"
-#include "parallel/together.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {
@@ -114,7 +115,7 @@ PetscErrorCode Simulation::Body::rebuild(const Batch& batch) {
   const double before = seconds_now();
   PetscCall(stepper->rebuild(&failure));
   stepping += seconds_now() - before;
-  if (const std::string news = stepper->take_news(); !news.empty())
+  if (const std::string news = stepper->drain_log(); !news.empty())
     PetscCall(log.print("step %ld: %s", step, news.c_str()));
   if (!failure.what.empty()) PetscCall(fail(failure.what));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -5,8 +5,9 @@
 
 #include "checkpoint/changes.hpp"
 #include "checkpoint/folder.hpp"
+#include "common/collectives.hpp"
+#include "common/text.hpp"
 #include "output/files.hpp"
-#include "parallel/together.hpp"
 #include "signals.hpp"
 #include "simulation_body.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/collectives.hpp"
 #include "memory_need.hpp"
 #include "output/frame_fields.hpp"
-#include "parallel/together.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "input/text.hpp"
+#include "common/collectives.hpp"
+#include "common/text.hpp"
 #include "output/own_files.hpp"
-#include "parallel/together.hpp"
 #include "simulation_body.hpp"
 
 namespace mpm {
@@ -26,7 +26,8 @@ std::vector<Input> inputs_of(const Config& config, const InputReport& report) {
 }
 
 bool same_file(const std::string& one, const std::string& other) {
-  struct stat a {}, b {};
+  struct stat a {
+  }, b{};
   return ::stat(one.c_str(), &a) == 0 && ::stat(other.c_str(), &b) == 0 && a.st_dev == b.st_dev &&
          a.st_ino == b.st_ino;
 }
@@ -48,9 +49,9 @@ void Simulation::Body::check_files() {
     for (const auto& [option, file] : inputs) {
       if (!same_file(path, file)) continue;
       input = true;
-      report.errors.push_back("mpm: " + option + ": given \"" + file +
-                              "\", takes a file that this run does not remove; give another -output_dir than " +
-                              folder);
+      report.errors.push_back(
+          "mpm: " + option + ": given \"" + file +
+          "\", takes a file that this run does not remove; give another -output_dir than " + folder);
     }
     if (foreign.empty() && !input && !is_own_file(path)) foreign = path;
   }
@@ -72,8 +73,8 @@ PetscErrorCode Simulation::Body::lock_folder() {
   PetscCall(agree(comm, due ? lock.take(folder, &other) : PETSC_SUCCESS));
   PetscCall(share_text(comm, &other));
   if (!other.empty())
-    report.errors = {"mpm: -output_dir: given \"" + folder + "\", takes a folder that no other run has; this one has " +
-                     other};
+    report.errors = {"mpm: -output_dir: given \"" + folder +
+                     "\", takes a folder that no other run has; this one has " + other};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/text.hpp"
 #include "input/groups.hpp"
 #include "simulation_body.hpp"
 

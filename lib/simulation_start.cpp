@@ -3,22 +3,22 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/collectives.hpp"
+#include "common/hdf5_handle.hpp"
+#include "common/text.hpp"
 #include "gpu.hpp"
 #include "input/courant.hpp"
 #include "input/overlap.hpp"
-#include "input/text.hpp"
-#include "input/warnings.hpp"
+#include "input/run_options.hpp"
 #include "memory_need.hpp"
 #include "mesh/background.hpp"
 #include "output/files.hpp"
-#include "output/hdf5_handle.hpp"
+#include "output/measurement_cache.hpp"
 #include "output/performance_json.hpp"
-#include "output/remembered.hpp"
-#include "output/run_options.hpp"
 #include "parallel/distribute.hpp"
-#include "parallel/together.hpp"
 #include "signals.hpp"
 #include "simulation_body.hpp"
+#include "warnings.hpp"
 
 namespace mpm {
 Simulation::Simulation() : body_(std::make_unique<Body>()) {}
@@ -182,7 +182,8 @@ PetscErrorCode Simulation::Body::start() {
   const std::string processor = backend == Backend::cuda ? "" : processor_name();
   const std::string device =
       formatted("%s, %s %s", word_of(backend), device_name(backend).c_str(), processor.c_str());
-  if (first) bandwidth = remembered("copy_bandwidth", device, [&] { return copy_bandwidth(backend); });
+  if (first)
+    bandwidth = cached_measurement("copy_bandwidth", device, [&] { return copy_bandwidth(backend); });
   Model model;
   Failure failure;
   PetscCall(load(&model));
@@ -209,6 +210,12 @@ PetscErrorCode Simulation::Body::start() {
     PetscCall(log.print("time step %.9g s, Courant number %.4f, of at most %.4f; %ld steps to %g s", dt,
                         dt / critical_time_step(config), largest_courant(config), schedule.last_step(),
                         schedule.time_of(schedule.last_step())));
+  if (const StepLimits limits{critical_time_step(config), viscous_time_step(config)};
+      std::isfinite(limits.viscous)) {
+    const auto [waves, viscosity] = largest_steps(limits, config);
+    PetscCall(log.print("stable time step: %.6g s by waves alone, %.6g s by viscosity alone: %s governs",
+                        waves, viscosity, waves < viscosity ? "the speed of waves" : "the viscosity"));
+  }
   if (restart) {
     PetscCall(resume());
     wall_start = seconds_now();

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/text.hpp"
 #include "input/courant.hpp"
 #include "simulation_body.hpp"
 
@@ -20,10 +21,10 @@ constexpr double k_told = 0.2;    // least change of the step that the log tells
 /// The step from the Courant number (Eq. 14), or the user's where it is stable.
 PetscErrorCode Simulation::Body::choose_time_step() {
   PetscFunctionBeginUser;
-  const double critical = critical_time_step(config);
+  const StepLimits limits{critical_time_step(config), viscous_time_step(config)};
   follows = stiffness_changes(config);
-  dt = config.time.step.value_or(config.time.courant * critical);
-  const double largest = largest_courant(config) * critical;
+  dt = config.time.step.value_or(step_of(limits, config.time.courant, config));
+  const double largest = step_of(limits, largest_courant(config), config);
   if (dt > largest * (1 + k_round_off)) {
     char line[200];
     std::snprintf(
@@ -57,7 +58,8 @@ PetscErrorCode Simulation::Body::follow_stiffness() {
   double speed = 0;
   PetscCall(stepper->fastest_wave(&speed));
   if (!(speed > 0)) PetscFunctionReturn(PETSC_SUCCESS);  // no soil is left
-  const double critical = config.mesh.spacing / speed, largest = largest_courant(config) * critical;
+  const StepLimits limits{config.mesh.spacing / speed, viscous_time_step(config)};
+  const double largest = step_of(limits, largest_courant(config), config);
   if (config.time.step) {
     if (dt > largest * (1 + k_round_off))
       PetscCall(
@@ -66,7 +68,7 @@ PetscErrorCode Simulation::Body::follow_stiffness() {
                          *config.time.step, largest, speed)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  const double wanted = config.time.courant * critical;
+  const double wanted = step_of(limits, config.time.courant, config);
   dt = step > 0 ? std::min(wanted, k_growth * dt) : wanted;
   schedule = Schedule(config.time, config.output, dt, {step, schedule.time_of(step)});
   if (told_dt > 0 && std::fabs(dt - told_dt) <= k_told * told_dt) PetscFunctionReturn(PETSC_SUCCESS);

@@ -6,10 +6,10 @@ namespace mpm {
 namespace {
 
 /// The least of all rounds of all [s]; 0 of none.
-double fastest_of(const std::vector<TrialTimes>& trials) {
+double fastest_of(const std::vector<AutotuneTimes>& candidates) {
   double fastest = 0;
-  for (const TrialTimes& trial : trials)
-    if (const double least = least_of(trial.seconds); least > 0 && (fastest == 0 || least < fastest))
+  for (const AutotuneTimes& candidate : candidates)
+    if (const double least = least_of(candidate.seconds); least > 0 && (fastest == 0 || least < fastest))
       fastest = least;
   return fastest;
 }
@@ -27,19 +27,19 @@ double median_of(std::vector<double> seconds) {
   return *middle;
 }
 
-bool is_beaten(const TrialTimes& trial, const std::vector<TrialTimes>& trials) {
-  return least_of(trial.seconds) > k_beaten * fastest_of(trials);
+bool is_beaten(const AutotuneTimes& candidate, const std::vector<AutotuneTimes>& candidates) {
+  return least_of(candidate.seconds) > k_beaten * fastest_of(candidates);
 }
 
-StrategyChoice choose_by_times(const std::vector<TrialTimes>& trials, double load) {
-  const double fastest = fastest_of(trials);
-  const auto chosen = std::find_if(trials.begin(), trials.end(), [&](const TrialTimes& trial) {
-    return !trial.seconds.empty() && least_of(trial.seconds) <= (1 + k_tie) * fastest;
+StrategyChoice choose_by_times(const std::vector<AutotuneTimes>& candidates, double load) {
+  const double fastest = fastest_of(candidates);
+  const auto chosen = std::find_if(candidates.begin(), candidates.end(), [&](const AutotuneTimes& candidate) {
+    return !candidate.seconds.empty() && least_of(candidate.seconds) <= (1 + k_tie) * fastest;
   });
-  if (chosen == trials.end()) return {};
+  if (chosen == candidates.end()) return {};
   StrategyChoice choice{chosen->strategy, load <= k_busy};
   const double typical = median_of(chosen->seconds);
-  for (auto other = trials.begin(); other != trials.end(); ++other) {
+  for (auto other = candidates.begin(); other != candidates.end(); ++other) {
     const double least = least_of(other->seconds);
     if (other == chosen || least == 0) continue;
     const bool before = other < chosen;  // such a one is taken unless it is slower by more than the tie

@@ -8,7 +8,7 @@
 namespace mpm {
 
 /// Seconds a step that rounds of trials found of one strategy. Empty where it could make no step.
-struct TrialTimes {
+struct AutotuneTimes {
   P2G strategy;
   std::vector<double> seconds;  // s, one a round
 };
@@ -29,10 +29,10 @@ constexpr double k_busy = 1.25;
 /// time, so that a strategy's figure is its fastest round. The choice is clear where the typical round (the
 /// median) of the one taken decides alike, and the machine's load [runnable processes per core] is not above
 /// `k_busy`.
-StrategyChoice choose_by_times(const std::vector<TrialTimes>& trials, double load);
+StrategyChoice choose_by_times(const std::vector<AutotuneTimes>& candidates, double load);
 
 /// Is a strategy so much slower than the fastest that more rounds of it would not change the choice?
-bool is_beaten(const TrialTimes& trial, const std::vector<TrialTimes>& trials);
+bool is_beaten(const AutotuneTimes& candidate, const std::vector<AutotuneTimes>& candidates);
 
 /// The fastest of some rounds [s] and their median; 0 of none.
 double least_of(const std::vector<double>& seconds);

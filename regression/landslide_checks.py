@@ -4,11 +4,11 @@ import numpy as np
 
 from results import read_frame
 from row import Row
-from runout import NORMALS, advance, at_time, grid_velocity, reference_runout
+from runout import NORMALS, run_out, at_time, grid_velocity, reference_runout
 
 PUBLISHED = "Dong, Wang & Randolph (2015): run-out 20 to 25 m, and the independent solver"
 SOLVER = "independent sequential solver"
-TOES = ((4, 11.5, 0.7), (8, 20.5, 1.5), (15, 23.5, 2.0))  # time (s), way of the front (m), tolerance (m)
+TOES = ((4, 11.5, 0.7), (8, 20.5, 1.5), (15, 23.5, 2.0))  # time (s), run-out of the toe (m), tolerance (m)
 LAST = 2.0  # s, end of the run over which what comes to rest is averaged
 
 # Speed of a shear wave as strong as the clay: su / (rho c_s) = 0.16 m/s.
@@ -64,11 +64,11 @@ def back_way(run, begin, end, length=10.0):
 
 
 def rows(run):
-    way = advance(run, "slide")
+    way = run_out(run, "slide")
     for time, expected, tolerance in TOES:
-        yield Row(f"way of the front at {time} s (m)", at_time(run, way, time), expected, tolerance, PUBLISHED)
-    behind = advance(run, "slide", "xq999") / np.maximum(way, 1)
-    yield Row("99.9 % quantile over the front at 4 s", at_time(run, behind, 4), 1, 0.02, SOLVER)
+        yield Row(f"run-out of the toe at {time} s (m)", at_time(run, way, time), expected, tolerance, PUBLISHED)
+    behind = run_out(run, "slide", "xq999") / np.maximum(way, 1)
+    yield Row("99.9th percentile over the toe at 4 s", at_time(run, behind, 4), 1, 0.02, SOLVER)
     yield from velocity_rows(run)
     yield Row("impulse of base and momentum over the weight's", momentum_kept(run), 1, 1e-4, "momentum balance")
     yield from rest_rows(run)
@@ -85,7 +85,7 @@ def velocity_rows(run):
     yield Row("front at 4 s: above 1.5 m over below 0.75 m", above / below, 1.03, 0.07, SOLVER)
     yield Row("back 10 m at 4 s: largest grid speed over the front's", back(run, 4) / velocity.mean(), 0, 0.02, SOLVER,
               shortfall=BACK, bound=0.05)
-    way = advance(run, "slide")
+    way = run_out(run, "slide")
     yield Row("back 10 m from 3.5 to 4.5 s: largest way over the front's",
               back_way(run, 3.5, 4.5) / (at_time(run, way, 4.5) - at_time(run, way, 3.5)), 0, 0.02,
               "the soil there has not failed yet")
@@ -100,11 +100,11 @@ def rest_rows(run):
 
 
 def draw_curve(axes, run):
-    """Way of the front against time, beside the stored curves."""
-    axes.plot(run.history["time"], advance(run, "slide"), lw=2, label="mpm, furthest particle")
-    axes.plot(run.history["time"], advance(run, "slide", "xq999"), ":", lw=2, label="mpm, 99.9 % quantile")
+    """Run-out of the toe against time, with the stored curves."""
+    axes.plot(run.history["time"], run_out(run, "slide"), lw=2, label="mpm, furthest particle")
+    axes.plot(run.history["time"], run_out(run, "slide", "xq999"), ":", lw=2, label="mpm, 99.9th percentile")
     for (normal, curve), marker in zip(reference_runout(run).items(), "ox"):
         every = max(len(curve["time"]) // 15, 1)
         axes.plot(curve["time"][::every], curve["toe"][::every], "k" + marker, ms=4, label=f"independent solver, {NORMALS[normal]}")
-    axes.set(xlabel="time (s)", ylabel="way of the front (m)", ylim=(0, None))
+    axes.set(xlabel="time (s)", ylabel="run-out of the toe (m)", ylim=(0, None))
     axes.legend()

@@ -9,7 +9,7 @@ import numpy as np
 from benchmark_runs import commit, run, speed_of
 from benchmark_tables import MOSAIC_SPEEDUP, PAPER, Measured
 from results import Run, bearing_curve, reference_curve, window_means
-from runout import advance, reference_runout
+from runout import reference_runout, run_out
 
 EXACT = 2 + np.pi
 COLOURS = {"auto": "#0072b2", "gather": "#d55e00", "mosaic": "#009e73"}
@@ -27,7 +27,7 @@ def curves(program, backend, folder):
             x, y = window_means(*bearing_curve(done, "plate"))
             reference = reference_curve(done.number("mesh_spacing"), False)
         else:
-            x, y = done.history["time"], advance(done, "slide")
+            x, y = done.history["time"], run_out(done, "slide")
             stored = reference_runout(done).get("flat")
             reference = (stored["time"], stored["toe"]) if stored else None
         found[problem] = {"x": rounded(x), "y": rounded(y), "particles": speed["count"], "backend": backend, "commit": commit(),

@@ -7,7 +7,7 @@ import numpy as np
 
 from factor import factor, has_reference
 from results import MEAN_FROM, MEAN_TO, WINDOW, mean_over, reference_curve, window_means
-from runout import NORMALS, advance, reference_runout, slides
+from runout import NORMALS, run_out, reference_runout, slides
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -160,7 +160,7 @@ def draw_reference_runout(axes, run):
 
 
 def draw_runout(run, others, time=None):
-    """runout.png: way of the front of each sliding body against time. Returns its path, or None if none slides."""
+    """runout.png: run-out of the toe of each sliding body against time. Returns its path, or None if none slides."""
     if not slides(run):
         return None
     figure, axes = plt.subplots(figsize=(8.2, 5.4), layout="constrained")
@@ -168,13 +168,13 @@ def draw_runout(run, others, time=None):
     for each in [run] + others:
         for body in slides(each):
             colour, label = next(colours), f"{body}, {run_label(each, others)}"
-            axes.plot(each.history["time"], advance(each, body), color=colour, lw=2.2, label=f"{label}: furthest particle")
+            axes.plot(each.history["time"], run_out(each, body), color=colour, lw=2.2, label=f"{label}: furthest particle")
             if f"{body}_xq999" in each.history:
-                axes.plot(each.history["time"], advance(each, body, "xq999"), ":", color=colour, lw=2.2,
-                          label=f"{label}: 99.9 % quantile")
+                axes.plot(each.history["time"], run_out(each, body, "xq999"), ":", color=colour, lw=2.2,
+                          label=f"{label}: 99.9th percentile")
     draw_reference_runout(axes, run)
     mark_time(axes, run, time, run.history["time"])
-    axes.set(xlabel="time (s)", ylabel="run-out (m)", title="run-out: way of the front since the start", ylim=(0, None))
+    axes.set(xlabel="time (s)", ylabel="run-out (m)", title="run-out of the toe since the start", ylim=(0, None))
     axes.set_xlim(left=0)
     axes.grid(alpha=0.25)
     axes.legend(fontsize=9, loc="lower right")

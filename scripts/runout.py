@@ -16,11 +16,11 @@ def slides(run):
     return [body for body in run.words("bodies") if f"{body}_xmax" in run.history]
 
 
-def advance(run, body, column="xmax"):
-    """Way of a body's front since the start [m] at each row of the history: that of its furthest particle, or with
-    column="xq999" of the place that 99.9 % of its particles do not pass."""
-    front = run.history[f"{body}_{column}"]
-    return front - front[0]
+def run_out(run, body, column="xmax"):
+    """Run-out of a body's toe since the start [m] at each row of the history: of the furthest particle, or with
+    column="xq999" of the 99.9th percentile of the particles' x."""
+    toe = run.history[f"{body}_{column}"]
+    return toe - toe[0]
 
 
 def at_time(run, values, time):

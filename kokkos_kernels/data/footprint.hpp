@@ -18,15 +18,15 @@ struct Footprint {
            grown * (sizeof(int) + sizeof(Vector<T, Dim>));
   }
   static constexpr double node =
-      grown *
-      (sizeof(T) * (SoilShare<Dim>::size + NodeMotion<Dim>::size + BoundaryShare<Dim>::size) + sizeof(int));
+      grown * (sizeof(T) * (SoilTerms<Dim>::size + NodeKinematics<Dim>::size + BoundaryTerms<Dim>::size) +
+               sizeof(int));
   /// Of a rigid, with what sorts it.
   static constexpr double rigid_point =
       2 * sizeof(Vector<T, Dim>) + sizeof(Vector<double, Dim>) + 3 * sizeof(int) + sizeof(long);
   /// Of the patch table, for every patch of the mesh and of the ring round it.
   static constexpr double patch = 2 * sizeof(int);
   static constexpr double window =
-      grown * double(sizeof(T) * SoilShare<Dim>::size * Patch<Dim>::window) / Patch<Dim>::cells;
+      grown * double(sizeof(T) * SoilTerms<Dim>::size * Patch<Dim>::window) / Patch<Dim>::cells;
 };
 
 }  // namespace mpm

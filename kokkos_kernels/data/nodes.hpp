@@ -7,7 +7,7 @@
 #include "base/spaces.hpp"
 #include "base/types.hpp"
 #include "data/patches.hpp"
-#include "physics/surface.hpp"
+#include "data/surface.hpp"
 
 namespace mpm {
 
@@ -17,52 +17,52 @@ using NodeField = Kokkos::View<T* [N], Kokkos::LayoutRight, typename Space::memo
 
 /// Values that soil gives a node: mass [kg], momentum [kg m/s], internal force [N].
 template <int Dim>
-struct SoilShare {
+struct SoilTerms {
   static constexpr int mass = 0, momentum = 1, force = 1 + Dim, size = 1 + 2 * Dim;
 };
-/// What soil near a rigid gives a node beside: its boundary as a vector out of it [m2] and its volume [m3].
+/// What soil near a rigid also gives a node: its boundary as a vector out of it [m2] and its volume [m3].
 template <int Dim>
-struct BoundaryShare {
+struct BoundaryTerms {
   static constexpr int area = 0, volume = Dim, size = Dim + 1;
 };
 /// What soil near a rigid gives a node where the shear limit is a share of its strength: strength times
 /// volume [Pa m3], and volume [m3], so that their ratio is the mean strength there, whatever becomes of other
 /// sums.
-struct StrengthShare {
+struct StrengthTerms {
   static constexpr int strength = 0, volume = 1, size = 2;
 };
 /// Values that a rigid gives a node: mass [kg], mass gradient times the cell's edge [kg] (Eq. 3).
 template <int Dim>
-struct RigidShare {
+struct RigidTerms {
   static constexpr int mass = 0, normal = 1, size = 1 + Dim;
 };
 /// Values that a node gives the soil: velocity at the end of the step [m/s], acceleration [m/s2].
 template <int Dim>
-struct NodeMotion {
+struct NodeKinematics {
   static constexpr int velocity = 0, acceleration = Dim, size = 2 * Dim;
 };
 
-/// NodeMotion of one node, read and written at once.
+/// NodeKinematics of one node, read and written at once.
 template <class T, int Dim>
-struct alignas(group_alignment<T, NodeMotion<Dim>::size>) MotionValues {
-  T c[NodeMotion<Dim>::size];
+struct alignas(group_alignment<T, NodeKinematics<Dim>::size>) KinematicValues {
+  T c[NodeKinematics<Dim>::size];
   KOKKOS_INLINE_FUNCTION const T& operator[](int k) const { return c[k]; }
 };
 
 /// What particles and rigids give the nodes.
 template <class Space, class T, int Dim>
 struct NodeSums {
-  NodeField<Space, T, SoilShare<Dim>::size> soil;
-  NodeField<Space, T, BoundaryShare<Dim>::size> boundary;  // of the soil; allocated with rigids
-  Kokkos::View<T* * [RigidShare<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space>
+  NodeField<Space, T, SoilTerms<Dim>::size> soil;
+  NodeField<Space, T, BoundaryTerms<Dim>::size> boundary;  // of the soil; allocated with rigids
+  Kokkos::View<T* * [RigidTerms<Dim>::size], Kokkos::LayoutRight, typename Space::memory_space>
       rigid;  // [rigid][node]; allocated where a normal comes from the mass gradient
 };
 
 template <class Space, class T, int Dim>
 struct Nodes : NodeSums<Space, T, Dim> {
-  NodeField<Space, T, NodeMotion<Dim>::size> motion;
-  NodeField<Space, T, StrengthShare::size> strength;  // allocated where a contact asks for it
-  NodeField<Space, T, Dim> rest;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
+  NodeField<Space, T, NodeKinematics<Dim>::size> kinematics;
+  NodeField<Space, T, StrengthTerms::size> strength;  // allocated where a contact asks for it
+  NodeField<Space, T, Dim> residual;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
       impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step
 };
@@ -90,7 +90,7 @@ struct Rigid {
 };
 
 /// Why a run cannot go on.
-enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone };
+enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone, law };
 
 /// The first fault that a kernel met.
 struct Fault {
@@ -103,28 +103,29 @@ struct Fault {
 namespace Pause {
 inline constexpr int due = 1,  // the bound passed the margin, a rebuild is due, or a fault
     last = 2,                  // within a launch of several steps: the one at hand is its last
-    apart = 4;                 // the teams of such a launch were not on the device together
+    not_co_resident = 4;       // the device did not hold all teams of such a launch at once
 }  // namespace Pause
 
-/// What steers the steps between two looks of the host. A step does nothing while `paused`.
+/// What controls the steps until the host reads it again. A step does nothing while `paused`.
 struct Control {
   double bound;      // cells that any point can have moved since the last rebuild
   double increment;  // of the last step
-  int ended;         // steps that whole_steps has ended
-  int paused;        // Pause; beside `ended`, to be read with it
+  int ended;         // steps that run_persistent_steps has ended
+  int paused;        // Pause; next to `ended`, to be read with it
   int due_in;        // steps to a rebuild that is due; 0: none is
-  int steps;         // steps done since the host last looked
+  int steps;         // steps done since the host last read this
   int lost;          // particles that the last locate() found to leave the run
   int fault_count;
   Fault fault;
 };
 
-/// How many teams of a launch have begun, and how many are done with their part of the step.
-struct Roll {
+/// The barrier of a launch: how many of its teams have begun, and how many are done with their part of the
+/// step.
+struct LaunchBarrier {
   int begun, arrived;
 };
 
-/// What teams of one launch that wait for each other look at.
+/// What teams of one launch that wait for each other read.
 struct Signal {
   int ended, paused;
 };
@@ -147,7 +148,8 @@ using ControlView = Kokkos::View<Control, typename Space::memory_space>;
 template <class Space>
 struct Movements {
   static constexpr int places = is_device<Space> ? 256 : 16;
-  // Of numbers that are not negative the bits have the same order, and integers a GPU compares in its memory.
+  // Non-negative floating-point numbers order like their bit patterns, and GPUs have an atomic maximum for
+  // integers.
   Kokkos::View<std::uint64_t[places], typename Space::memory_space> bits;
 
   KOKKOS_INLINE_FUNCTION void note(int slot, double moved) const {

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
+#include "base/half_length.hpp"
 #include "base/types.hpp"
 #include "data/patches.hpp"
 #include "physics/materials/any.hpp"
-#include "physics/shape_gimp.hpp"
 
 namespace mpm {
 
@@ -60,11 +60,11 @@ struct Soil : Points<Space, T, Dim> {
   KOKKOS_INLINE_FUNCTION T mass_of(int p, const BodyProperties<T>& of) const {
     return has_own_mass ? mass(p) : of.mass;
   }
-  /// The values of the state variables of particle p, whose law this is.
+  /// The values of the state variables of particle p, whose law this is; 0 where it does not carry one.
   template <class Law>
-  KOKKOS_INLINE_FUNCTION LawState<T, state_size<Law>> state_of(const Law&, int p) const {
+  KOKKOS_INLINE_FUNCTION LawState<T, state_size<Law>> state_of(const Law& law, int p) const {
     LawState<T, state_size<Law>> state;
-    for (int k = 0; k < state_size<Law>; ++k) state[k] = history.column[k](p);
+    for (int k = 0; k < state_size<Law>; ++k) state[k] = carries(law, k) ? history.column[k](p) : T(0);
     return state;
   }
   /// What its body gives particle p, with its own mass.
@@ -80,10 +80,11 @@ struct Soil : Points<Space, T, Dim> {
 template <class Space, class T, int Dim>
 struct RigidPoints : Points<Space, T, Dim> {
   using Memory = typename Space::memory_space;
-  Kokkos::View<Vector<double, Dim>*, Memory> home;  // cells from the mesh's lower corner, at the start
-  T mass = 0;                                       // kg, of one particle
-  HalfLength<T> half_length{};                      // cells
-  bool surface_normal = false;                      // contact does not ask for their mass at the nodes
+  Kokkos::View<Vector<double, Dim>*, Memory>
+      reference_position;       // cells from the mesh's lower corner, at the start
+  T mass = 0;                   // kg, of one particle
+  HalfLength<T> half_length{};  // cells
+  bool surface_normal = false;  // contact does not ask for their mass at the nodes
 };
 
 /// What the update of the particles (function 5) does with a field.
@@ -107,9 +108,9 @@ void for_each_field_of(F&& f, Soil_& s, Others&... others) {
   if (s.has_own_mass) f("mass", Use::reads, s.mass, others.mass...);
 }
 template <class F, class RigidPoints_>
-requires requires(RigidPoints_& s) { s.home; }
+requires requires(RigidPoints_& s) { s.reference_position; }
 void for_each_field_of(F&& f, RigidPoints_& s) {
-  f("coordinate", Use::none, s.coordinate), f("home", Use::none, s.home);
+  f("coordinate", Use::none, s.coordinate), f("home", Use::none, s.reference_position);
 }
 /// The fields alone.
 template <class Points_, class F>
@@ -135,12 +136,12 @@ bool has_windows(const Space& space) {
 template <class Space>
 struct Bins {
   using Memory = typename Space::memory_space;
-  Kokkos::View<int*, Memory> begin;      // first point of a cell [cells + 1]
-  int first_slot = 0, last_slot = 0;     // slots that may hold points: [first_slot, last_slot)
-  Kokkos::View<int*, Memory> by_colour;  // slots that hold points, ordered by colour; on a processor all are
-                                         // of one, so that they rise
-  int colour_begin[8 + 1] = {};          // ranges of by_colour
-  int border = 0;  // of by_colour, on several ranks: slots in front that share nodes with other ranks, all
+  Kokkos::View<int*, Memory> begin;         // first point of a cell [cells + 1]
+  int first_slot = 0, last_slot = 0;        // slots that may hold points: [first_slot, last_slot)
+  Kokkos::View<int*, Memory> active_slots;  // slots that hold points, ordered by colour; on a processor all
+                                            // are of one, so that they rise
+  int colour_begin[8 + 1] = {};  // ranges of active_slots
+  int border = 0;  // of active_slots, on several ranks: slots in front that share nodes with other ranks, all
                    // colours of them; but with OpenMP, where slots rise
   Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]
   Kokkos::View<int*, Memory> list;        // gather: points that may reach the node, in order
@@ -149,8 +150,8 @@ struct Bins {
   Windows<Space> windows;                 // tile, many threads of a processor
 };
 
-/// Some of the slots that hold points, [first, last) of Bins::by_colour, and the queue that works on them.
-/// Several parts: on a device, and with one thread.
+/// Some of the slots that hold points, [first, last) of Bins::active_slots, and the stream that works on
+/// them. Several parts: on a device, and with one thread.
 template <class Space>
 struct Part {
   Space space;
@@ -168,7 +169,7 @@ Bins<Space> bins_of(const Bins<Space>& all, const Part<Space>& part) {
 
 /// A set of points with what orders it.
 template <class Space, class Points_>
-struct Sorted {
+struct ParticleSet {
   Points_ points;
   Bins<Space> bins;
   Kokkos::View<long*, typename Space::memory_space>

@@ -13,11 +13,11 @@ namespace mpm {
 template <int Dim>
 struct Patch {
   static constexpr int log_edge = Dim == 2 ? 3 : 2;
-  static constexpr int edge = 1 << log_edge;      // cells
-  static constexpr int cells = power(edge, Dim);  // 64 in both
-  static constexpr int around = power(3, Dim);    // patches round one, itself included
-  static constexpr int colours = power(2, Dim);   // patches of one colour do not touch
-  static constexpr int window_edge = edge + 3;    // nodes that its particles reach: -1 ... edge + 1
+  static constexpr int edge = 1 << log_edge;        // cells
+  static constexpr int cells = power(edge, Dim);    // 64 in both
+  static constexpr int neighbours = power(3, Dim);  // patches round one, itself included
+  static constexpr int colours = power(2, Dim);     // patches of one colour do not touch
+  static constexpr int window_edge = edge + 3;      // nodes that its particles reach: -1 ... edge + 1
   static constexpr int window = power(window_edge, Dim);
 };
 
@@ -99,8 +99,8 @@ struct Patches {
   Kokkos::View<int*, Memory> slot_of;        // by Grid::patch_of; -1 where not active
   Kokkos::View<int*, Memory> number;         // of the patch of a slot, Grid::patch_of
   Kokkos::View<Coord<Dim>*, Memory> origin;  // lower cell of a slot
-  Kokkos::View<int * [Patch<Dim>::around], Kokkos::LayoutRight, Memory>
-      around;  // slots round a slot, of its field; -1 none
+  Kokkos::View<int * [Patch<Dim>::neighbours], Kokkos::LayoutRight, Memory>
+      neighbours;  // slots round a slot, of its field; -1 none
 
   int node_count() const { return slots * Patch<Dim>::cells; }
 };
@@ -113,11 +113,11 @@ KOKKOS_INLINE_FUNCTION long address_of_node(const Numbers& number, int i) {
 }
 
 /// Number of the node (or cell) at place c of a slot, where c may reach into the patches around it.
-template <class Around, int Dim>
-KOKKOS_INLINE_FUNCTION int number_at(const Around& around, int slot, const Coord<Dim>& c) {
+template <class Neighbours, int Dim>
+KOKKOS_INLINE_FUNCTION int number_at(const Neighbours& neighbours, int slot, const Coord<Dim>& c) {
   int which = 0;
   for (int d = Dim - 1; d >= 0; --d) which = which * 3 + (c[d] >> Patch<Dim>::log_edge) + 1;
-  const int s = around(slot, which);
+  const int s = neighbours(slot, which);
   return s < 0 ? -1 : s * Patch<Dim>::cells + place_of<Dim>(c);
 }
 

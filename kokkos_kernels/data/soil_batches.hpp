@@ -23,11 +23,11 @@ inline constexpr int k_turns = 3;
 /// A range of patches whose particles are on the device together.
 template <class Space, class T, int Dim>
 struct SoilBatch {
-  int first = 0, last = 0;                 // particles [first, last)
-  int place = 0;                           // on the device
-  bool stays = false;                      // no other batch has this place
-  Sorted<Space, Soil<Space, T, Dim>> set;  // the place, by the particles' own numbers; its patches
-  Kokkos::View<char*, typename Space::memory_space> spare;  // dilatations, by these numbers too
+  int first = 0, last = 0;                      // particles [first, last)
+  int place = 0;                                // on the device
+  bool stays = false;                           // no other batch has this place
+  ParticleSet<Space, Soil<Space, T, Dim>> set;  // the place, by the particles' own numbers; its patches
+  Kokkos::View<char*, typename Space::memory_space> scratch;  // dilatations, by these numbers too
 };
 
 /// Calls f(home, there, use) for the fields that the update of the particles looks at.
@@ -57,7 +57,7 @@ struct Batches {
   double least = 0;  // bytes, the lowest limit that the soil as it is would take
   Kokkos::View<char*, HostMemory<Space>> store;  // all of the soil, and what sorts it
   Kokkos::View<char*, Memory> room;              // the places, one after the other
-  Kokkos::View<int*, Memory> slots;              // Bins::by_colour of the batches, one after the other
+  Kokkos::View<int*, Memory> slots;              // Bins::active_slots of the batches, one after the other
   int places = 0;
   std::vector<SoilBatch<Space, T, Dim>> all;  // in the order of the patches
   std::vector<Space> streams;                 // of the places that batches share

@@ -31,11 +31,11 @@ struct State {
   P2GPlan p2g;
   Grid<T, Dim> grid;
   Patches<Space, Dim> patches;
-  Sorted<Space, Soil<Space, T, Dim>> soil;
+  ParticleSet<Space, Soil<Space, T, Dim>> soil;
   int law = -1;  // index in Materials of the law of all bodies; -1: they differ
   Strays<Space> strays;
   Batches<Space, T, Dim> batches;  // of the soil, where the device's memory does not hold it all
-  std::vector<Sorted<Space, RigidPoints<Space, T, Dim>>> rigid_points;
+  std::vector<ParticleSet<Space, RigidPoints<Space, T, Dim>>> rigid_points;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   Kokkos::View<Vertex*, Memory> vertices;  // of the rigids' polygons
   Kokkos::View<int*, Memory> near_slots;   // where a rigid may touch a node that the slot's particles reach
@@ -45,33 +45,34 @@ struct State {
   Kokkos::View<double*, Memory>
       slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
   Nodes<Space, T, Dim> nodes;
-  NodeSums<Space, T, Dim> next_sums, last_sums;  // of whole_steps, which sets last_sums to zero
+  NodeSums<Space, T, Dim> next_sums, last_sums;  // of run_persistent_steps, which sets last_sums to zero
   bool next_zero = false;                        // `next_sums` fits and is zero
-  bool together = true;  // as far as is known the device holds all teams of whole_steps at once
+  bool co_resident = true;  // as far as is known the device holds all teams of run_persistent_steps at once
   Kokkos::View<std::uint64_t*, Memory>
-      counted;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
+      owned_nodes;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
   ControlView<Space> control;
   Movements<Space> movements;
-  Kokkos::View<Roll, Memory> roll;
-  Kokkos::View<double*, Memory> sums;  // N, force of the soil on each rigid in this step
+  Kokkos::View<LaunchBarrier, Memory> launch_barrier;
+  Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step
   Kokkos::View<char*, Memory>
-      spare;  // scratch of a rebuild: one field in its new order; of a step: dilatations, XPIC
+      scratch;  // scratch of a rebuild: one field in its new order; of a step: dilatations, XPIC
   Kokkos::View<int*, Memory> marks;  // scratch of a rebuild: which patches hold points
 
   double time = 0;                // s, before the steps that Control::steps counts
   double spacing = 0;             // m, edge of a cell, whatever T is
   Vector<double, Dim> gravity{};  // m/s2
   double damping = 0;             // -
-  double flip_share = 1;          // -, what is not FLIP is PIC, or XPIC
+  double flip_fraction = 1;       // -, what is not FLIP is PIC, or XPIC
   int xpic_order = 0;             // m of XPIC(m), 0 without it
-  bool affine = false;            // APIC: Soil::affine is in use; flip_share is then 0
-  double f_bar_share = 0;         // -
+  bool affine = false;            // APIC: Soil::affine is in use; flip_fraction is then 0
+  double f_bar_fraction = 0;      // -
   bool keeps_stress = false;      // sorting brings no pressures together: at a start from another run
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them
   StepPlan plan;                  // of the steps until the next rebuild
   Summed summed;                  // what the step before has summed already
-  bool forces_summed = false;  // `sums` holds the forces of this step, of all ranks if a rigid moves by them
+  bool forces_summed =
+      false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them
   bool rigid_moves = false;    // some rigid is not fixed
   bool rigid_dynamic = false;  // some rigid moves by the forces on it
   bool mass_normals = false;   // some rigid's normals are those of its mass gradient

@@ -1,5 +1,6 @@
 #pragma once
-// The bandwidth that a plain copy reaches where the kernels run: what their own traffic is held against.
+// The bandwidth that a plain copy reaches where the kernels run: the measure for the bytes that they move
+// themselves.
 
 #include "base/spaces.hpp"
 

@@ -1,5 +1,6 @@
 #pragma once
-// The lanes of a warp of a GPU. On the host what follows only compiles.
+// What kernels ask of a GPU itself: the lanes of a warp, what other teams wrote, its cache. On the host most
+// of it only compiles.
 
 #include <Kokkos_Core.hpp>
 
@@ -32,7 +33,19 @@ KOKKOS_INLINE_FUNCTION T load_of_others(const T* value) {
   KOKKOS_IF_ON_HOST((return Kokkos::atomic_load(value);))
 }
 
+/// Makes what this thread wrote, or read from teams that it waited for, visible to teams that wait for its
+/// next write.
+KOKKOS_INLINE_FUNCTION void fence_of_teams() {
+  KOKKOS_IF_ON_DEVICE((asm volatile("fence.acq_rel.gpu;" ::: "memory");))  // Kokkos' fence orders more
+  KOKKOS_IF_ON_HOST((Kokkos::memory_fence();))
+}
+
 /// What the lanes wrote to scratch memory is there for all of them.
 KOKKOS_INLINE_FUNCTION void sync_warp() { KOKKOS_IF_ON_DEVICE((__syncwarp();)) }
+
+/// Asks a GPU to fetch what p points at into its second cache.
+KOKKOS_INLINE_FUNCTION void prefetch([[maybe_unused]] const void* p) {
+  KOKKOS_IF_ON_DEVICE((asm volatile("prefetch.global.L2 [%0];" ::"l"(p));))
+}
 
 }  // namespace mpm

@@ -1,7 +1,6 @@
 #include "functions/find_strays.hpp"
 
 #include "loops/particle_to_node.hpp"
-#include "rebuild/rebuild.hpp"
 
 namespace mpm {
 namespace {
@@ -25,7 +24,7 @@ template <class Space, class T, int Dim>
 struct MassInReach {
   Soil<Space, T, Dim> soil;
   NodePlaces<Space, T, Dim> places;
-  NodeField<Space, T, SoilShare<Dim>::size> nodes;
+  NodeField<Space, T, SoilTerms<Dim>::size> nodes;
 
   KOKKOS_INLINE_FUNCTION T operator()(int p) const {
     T sum = 0;
@@ -38,7 +37,7 @@ struct MassInReach {
                        const bool beyond = stencil.normal[d][k[d]] < 0;
                        own = own && a[d].w[k[d]] > T(k_reached) && !beyond;
                      }
-                     if (own) sum += nodes(stencil.node(places.around, k), SoilShare<Dim>::mass);
+                     if (own) sum += nodes(stencil.node(places.neighbours, k), SoilTerms<Dim>::mass);
                    });
                  });
     return sum;
@@ -48,7 +47,7 @@ struct MassInReach {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void mark_strays(State<Space, T, Dim>& s, const Space& queue) {
+void mark_strays(State<Space, T, Dim>& s, const Space& stream) {
   constexpr int cells = Patch<Dim>::cells;
   const auto alone = s.strays.alone;
   const auto soil = s.soil.points;
@@ -59,7 +58,7 @@ void mark_strays(State<Space, T, Dim>& s, const Space& queue) {
   const bool stops = s.strays.rule == StrayRule::stop;
   const MassInReach<Space, T, Dim> mass_in_reach{soil, {s.grid, s.patches}, s.nodes.soil};
   Kokkos::parallel_for(
-      "mpm::mark_strays", Kokkos::RangePolicy<Space>(queue, 0, s.patches.node_count()),
+      "mpm::mark_strays", Kokkos::RangePolicy<Space>(stream, 0, s.patches.node_count()),
       KOKKOS_LAMBDA(int cell) {
         const int first = begin(cell), last = begin(cell + 1);
         for (int p = first; p < last; ++p) {

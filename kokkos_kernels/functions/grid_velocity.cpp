@@ -13,19 +13,19 @@ namespace {
 template <class Space, class T, int Dim>
 struct GridVelocity {
   Soil<Space, T, Dim> points;
-  NodeField<Space, T, SoilShare<Dim>::size> nodes;
+  NodeField<Space, T, SoilTerms<Dim>::size> nodes;
   NodePlaces<Space, T, Dim> places;
 
   explicit GridVelocity(const State<Space, T, Dim>& s)
       : points(s.soil.points), nodes(s.nodes.soil), places(s.grid, s.patches) {}
 
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> operator()(int p) const {
-    using S = SoilShare<Dim>;
+    using S = SoilTerms<Dim>;
     Vector<double, Dim> v = filled<double, Dim>(0);
     for_each_node<Kind::motion>(points, points.bodies(points.body(p)).half_length, places, p,
                                 [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
                                   const double m_i = nodes(i, S::mass);
-                                  if (!(m_i > 0)) return;  // a share too small for T
+                                  if (!(m_i > 0)) return;  // a mass too small for T
                                   for (int d = 0; d < Dim; ++d)
                                     v[d] += w * sign(d) * (nodes(i, S::momentum + d) / m_i);
                                 });

@@ -20,11 +20,11 @@ void pack_nodes(const Space& space, const HaloLists<Space>& lists, const HaloFie
 }
 
 template <class Space, class T>
-void sum_shares(const Space& space, const HaloLists<Space>& lists, const HaloField<T>& field, int width,
+void sum_ghosts(const Space& space, const HaloLists<Space>& lists, const HaloField<T>& field, int width,
                 const T* in) {
   const auto node = lists.shared_node, begin = lists.begin, source = lists.source;
   Kokkos::parallel_for(
-      "mpm::sum_shares", light(Kokkos::RangePolicy<Space>(space, 0, lists.shared * field.size)),
+      "mpm::sum_ghosts", light(Kokkos::RangePolicy<Space>(space, 0, lists.shared * field.size)),
       KOKKOS_LAMBDA(int m) {
         const int n = m / field.size, k = m % field.size;
         T& value = field.values[std::size_t(node(n)) * field.size + k];
@@ -40,7 +40,7 @@ void sum_shares(const Space& space, const HaloLists<Space>& lists, const HaloFie
 // Once for both dimensions.
 #define MPM_HALO_2(Space, T)                                                                     \
   template void pack_nodes(const Space&, const HaloLists<Space>&, const HaloField<T>&, int, T*); \
-  template void sum_shares(const Space&, const HaloLists<Space>&, const HaloField<T>&, int, const T*);
+  template void sum_ghosts(const Space&, const HaloLists<Space>&, const HaloField<T>&, int, const T*);
 #define MPM_HALO_3(Space, T)
 #define MPM_INSTANTIATE(Space, T, Dim) MPM_HALO_##Dim(Space, T)
 MPM_FOR_EACH(MPM_INSTANTIATE)

@@ -1,5 +1,6 @@
 #pragma once
-// Nodes that several ranks reach: their shares go out in one buffer, and what comes in is summed.
+// Nodes that several ranks reach: each rank sends its own sums in one buffer, and adds the ghost sums that
+// come in.
 
 #include "base/spaces.hpp"
 #include "data/state.hpp"
@@ -15,7 +16,7 @@ struct HaloLists {
   Kokkos::View<int*, Memory> node;         // of each entry that goes out, neighbour by neighbour [sent]
   Kokkos::View<int*, Memory> shared_node;  // each shared node once [shared]
   Kokkos::View<int*, Memory> begin;        // first source of a shared node [shared + 1]
-  Kokkos::View<int*, Memory> source;  // in the order of ranks: an entry that came in, -1 for the own share
+  Kokkos::View<int*, Memory> source;       // in the order of ranks: an entry that came in, -1 for the own sum
 };
 
 /// A nodal field as rows of `size` values, and where a row begins in an entry of the buffer.
@@ -31,11 +32,11 @@ template <class Space, class T>
 void pack_nodes(const Space& space, const HaloLists<Space>& lists, const HaloField<T>& field, int width,
                 T* out);
 
-/// Replaces each shared node's own share by the sum over the ranks that reach it, in the order of ranks: the
-/// same bits on each of them. Where nobody here reads it the share becomes 0: no kernel does that there, and
-/// the next share must not add to it.
+/// Replaces the own sum of each shared node by the sum over the ranks that reach it, in the order of ranks:
+/// the same bits on each of them. Where nobody here reads the sum it becomes 0: no kernel does that there,
+/// and the next step must not add to it.
 template <class Space, class T>
-void sum_shares(const Space& space, const HaloLists<Space>& lists, const HaloField<T>& field, int width,
+void sum_ghosts(const Space& space, const HaloLists<Space>& lists, const HaloField<T>& field, int width,
                 const T* in);
 
 }  // namespace mpm

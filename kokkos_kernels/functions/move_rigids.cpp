@@ -8,7 +8,7 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void move_rigid_points(State<Space, T, Dim>& s, const Space& queue) {
+void move_rigid_points(State<Space, T, Dim>& s, const Space& stream) {
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto points = s.rigid_points[r].points;
     if (points.surface_normal) continue;  // only a rebuild asks for them, and finds them itself
@@ -19,7 +19,7 @@ void move_rigid_points(State<Space, T, Dim>& s, const Space& queue) {
       continue;
     }
     Kokkos::parallel_for(  // also while the steps are paused: it gives the same again
-        "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(queue, 0, points.count)),
+        "mpm::move_rigid_points", light(Kokkos::RangePolicy<Space>(stream, 0, points.count)),
         KOKKOS_LAMBDA(int p) { source.move(p); });
   }
 }
@@ -27,7 +27,8 @@ void move_rigid_points(State<Space, T, Dim>& s, const Space& queue) {
 namespace {
 
 template <class Space, class T, int Dim, class Work>
-void launch_end_by_teams(const EndStep<Space, T, Dim>& end, const Space& queue, int teams, const Work& work) {
+void launch_end_by_teams(const EndStep<Space, T, Dim>& end, const Space& stream, int teams,
+                         const Work& work) {
   constexpr int threads = 1024;
   using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<threads, 1>>;
   const int room = end.room(threads);
@@ -35,7 +36,7 @@ void launch_end_by_teams(const EndStep<Space, T, Dim>& end, const Space& queue, 
   const int level = bytes > 32 * 1024 ? 1 : 0;
   Kokkos::parallel_for(
       "mpm::end_step",
-      light(Team(queue, teams, threads).set_scratch_size(level, Kokkos::PerTeam(bytes + k_scratch_slack))),
+      light(Team(stream, teams, threads).set_scratch_size(level, Kokkos::PerTeam(bytes + k_scratch_slack))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (!end.control().paused) work(end, team, scratch<double>(team, room, level));
       });
@@ -44,13 +45,13 @@ void launch_end_by_teams(const EndStep<Space, T, Dim>& end, const Space& queue, 
 /// Teams of a thousand threads, which sum the forces of thousands of slots: `work` does what one of them
 /// does. On a processor one thread does it all, before the others would have come together.
 template <class Space, class T, int Dim, class Work>
-void launch_end(const EndStep<Space, T, Dim>& end, const Space& queue, int teams, const Work& work) {
+void launch_end(const EndStep<Space, T, Dim>& end, const Space& stream, int teams, const Work& work) {
   if constexpr (is_device<Space>) {
-    launch_end_by_teams(end, queue, teams, work);
+    launch_end_by_teams(end, stream, teams, work);
   } else {
     Kokkos::parallel_for("mpm::end_step", Kokkos::RangePolicy<Kokkos::Serial>(0, teams), [&](int team) {
       std::vector<double> part(end.room(1));
-      if (!end.control().paused) work(end, LoneThread{team}, part.data());
+      if (!end.control().paused) work(end, SerialTeam{team}, part.data());
     });
   }
 }
@@ -71,25 +72,25 @@ struct Move {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void sum_forces(State<Space, T, Dim>& s, const Space& queue) {
+void sum_forces(State<Space, T, Dim>& s, const Space& stream) {
   const int values = Dim * static_cast<int>(s.rigid_points.size());
-  if (values > 0) launch_end(EndStep<Space, T, Dim>(s, 0), queue, values, Sum{});
+  if (values > 0) launch_end(EndStep<Space, T, Dim>(s, 0), stream, values, Sum{});
   s.forces_summed = true;
 }
 
 template <class Space, class T, int Dim>
-void move_rigids(State<Space, T, Dim>& s, double dt, const Space& queue) {
-  launch_end(EndStep<Space, T, Dim>(s, dt), queue, 1, Move{});
+void move_rigids(State<Space, T, Dim>& s, double dt, const Space& stream) {
+  launch_end(EndStep<Space, T, Dim>(s, dt), stream, 1, Move{});
   s.forces_summed = false;
-  if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, queue);
+  if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, stream);
 }
 
 template <class Space, class T, int Dim>
-Control look(const State<Space, T, Dim>& s) {
+Control read_control(const State<Space, T, Dim>& s) {
   Control c;
   Kokkos::View<Control, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(&c);
   Kokkos::deep_copy(s.space, host, s.control);
-  s.space.fence("mpm::look");
+  s.space.fence("mpm::read_control");
   return c;
 }
 
@@ -105,7 +106,7 @@ void restart_count(State<Space, T, Dim>& s) {
   template void sum_forces(State<Space, T, Dim>&, const Space&);          \
   template void move_rigids(State<Space, T, Dim>&, double, const Space&); \
   template void move_rigid_points(State<Space, T, Dim>&, const Space&);   \
-  template Control look(const State<Space, T, Dim>&);                     \
+  template Control read_control(const State<Space, T, Dim>&);             \
   template void restart_count(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

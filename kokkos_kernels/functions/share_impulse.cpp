@@ -25,16 +25,16 @@ template <class Space, class T, int Dim>
 NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s) {
   using Range = Kokkos::RangePolicy<Space>;
   const int rigids = static_cast<int>(s.rigid_points.size());
-  const int nodes = s.counted.extent(0) > 0 ? s.patches.node_count() : 0;
+  const int nodes = s.owned_nodes.extent(0) > 0 ? s.patches.node_count() : 0;
   const auto impulse = s.nodes.impulse;
-  const auto counted = s.counted;
+  const auto owned_nodes = s.owned_nodes;
   const auto number = s.patches.number;
   const Kokkos::View<int*, typename Space::memory_space> which("mpm::nodes_with_impulse", nodes);
   int found = 0;
   Kokkos::parallel_scan(
       "mpm::find_impulses", Range(s.space, 0, nodes),
       KOKKOS_LAMBDA(int i, int& n, bool last) {
-        if ((counted(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0) return;
+        if ((owned_nodes(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0) return;
         bool any = false;
         for (int r = 0; r < rigids; ++r) any = any || impulse(r, i) != 0;
         if (!any) return;

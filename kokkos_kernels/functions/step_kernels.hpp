@@ -1,5 +1,5 @@
 #pragma once
-// The functions of a time step beside the interpolation to nodes; each is one function of the paper.
+// The functions of a time step, except the interpolation to nodes; each is one function of the paper.
 
 #include "base/spaces.hpp"
 #include "data/state.hpp"
@@ -17,10 +17,10 @@ void reset_nodes(State<Space, T, Dim>& s);
 
 /// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
 /// contact forces in s.slot_forces. Where the plan has sums_ahead and not writes_sums, it leaves the nodal
-/// sums at zero, which is function 1 of the next step. dt [s]. queue: that of the nodes near rigids, if the
+/// sums at zero, which is function 1 of the next step. dt [s]. stream: that of the nodes near rigids, if the
 /// plan has nodes_apart; the others are on s.space.
 template <class Space, class T, int Dim>
-void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue);
+void update_nodes(State<Space, T, Dim>& s, double dt, const Space& stream);
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt) {
   update_nodes(s, dt, s.space);
@@ -35,19 +35,19 @@ bool ends_in_launch(const State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void update_and_end(State<Space, T, Dim>& s, double dt);
 
-/// Whether one launch is to do whole steps: functions 4 to 6, and 1 to 3 of the next step. It can where the
-/// sums of this step are there, no contact has friction, and no rigid moves by the force on it while the
-/// mass gradient tells its normals, and it pays where patches are few.
+/// Whether the next steps are to be persistent, many in one launch: functions 4 to 6, and 1 to 3 of the next
+/// step. They can be where the sums of this step are there, no contact has friction, and no rigid moves by
+/// the force on it while the mass gradient tells its normals, and that pays where patches are few.
 template <class Space, class T, int Dim>
-bool is_whole_step(const State<Space, T, Dim>& s);
-/// As many of the next `most` steps as one launch may do; returns how many it will, if the steps are not
-/// paused before.
+bool can_persist(const State<Space, T, Dim>& s);
+/// Launches as many of the next `most` steps as one launch may do; returns how many it will do, if the steps
+/// are not paused before.
 template <class Space, class T, int Dim>
-int whole_steps(State<Space, T, Dim>& s, double dt, long most);
-/// Where steps are paused since the device does not hold all teams of a launch at once: they go on, one a
-/// launch.
+int run_persistent_steps(State<Space, T, Dim>& s, double dt, long most);
+/// Ends the pause of steps whose teams were not co-resident on the device. From then on a launch does one
+/// step.
 template <class Space, class T, int Dim>
-void go_on_apart(State<Space, T, Dim>& s);
+void resume_single_steps(State<Space, T, Dim>& s);
 
 /// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves
 /// the furthest movement of a particle in s.control. Where sums_ahead, adds the soil as it then is to the
@@ -58,14 +58,15 @@ void update_particles(State<Space, T, Dim>& s, double dt);
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part);
 
-/// Forces of the soil on the rigids in this step, from s.slot_forces to s.sums [N]; else move_rigids does it.
+/// Forces of the soil on the rigids in this step, from s.slot_forces to s.rigid_force [N]; else move_rigids
+/// does it.
 template <class Space, class T, int Dim>
-void sum_forces(State<Space, T, Dim>& s, const Space& queue);
+void sum_forces(State<Space, T, Dim>& s, const Space& stream);
 
 /// 6. Moves the rigid bodies (Eq. 7), counts the step, and adds what any point can have moved to the bound.
 /// dt [s].
 template <class Space, class T, int Dim>
-void move_rigids(State<Space, T, Dim>& s, double dt, const Space& queue);
+void move_rigids(State<Space, T, Dim>& s, double dt, const Space& stream);
 template <class Space, class T, int Dim>
 void move_rigids(State<Space, T, Dim>& s, double dt) {
   move_rigids(s, dt, s.space);
@@ -73,13 +74,13 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
 
 /// Coordinates of the rigids' points, where their mass gives a normal, from where the rigids are.
 template <class Space, class T, int Dim>
-void move_rigid_points(State<Space, T, Dim>& s, const Space& queue);
+void move_rigid_points(State<Space, T, Dim>& s, const Space& stream);
 
 /// Copy of the control block on the host. Waits for the steps before it.
 template <class Space, class T, int Dim>
-Control look(const State<Space, T, Dim>& s);
+Control read_control(const State<Space, T, Dim>& s);
 
-/// Sets the count of steps since the last look to zero.
+/// Sets the count of steps since the last read_control to zero.
 template <class Space, class T, int Dim>
 void restart_count(State<Space, T, Dim>& s);
 

@@ -25,7 +25,7 @@ template <class Space, int Dim>
 using NodeTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, 12>>;
 
 template <class Space, class T, int Dim>
-void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& queue) {
+void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stream) {
   using Team = NodeTeam<Space, Dim>;
   using Member = typename Team::member_type;
   using Update = UpdateNodes<Space, T, Dim>;
@@ -59,7 +59,7 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& queu
       });
   if (s.plan.nodes_apart)
     Kokkos::parallel_for(
-        "mpm::update_nodes_near_rigids", some_near(queue, s.near_count), KOKKOS_LAMBDA(const Member& team) {
+        "mpm::update_nodes_near_rigids", some_near(stream, s.near_count), KOKKOS_LAMBDA(const Member& team) {
           const int n = team.league_rank();
           if (!control().paused)
             update.update_near(team, update.nodes, near_slots(n), n, scratch<double>(team, room, level));
@@ -69,9 +69,9 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& queu
 }  // namespace
 
 template <class Space, class T, int Dim>
-void update_nodes(State<Space, T, Dim>& s, double dt, const Space& queue) {
+void update_nodes(State<Space, T, Dim>& s, double dt, const Space& stream) {
   if constexpr (is_device<Space>)
-    update_nodes_by_teams(s, dt, queue);
+    update_nodes_by_teams(s, dt, stream);
   else
     update_nodes_on_host(s, dt);
 }

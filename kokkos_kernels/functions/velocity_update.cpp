@@ -6,23 +6,23 @@ namespace mpm {
 
 template <class Space, class T, int Dim>
 void xpic_pass(State<Space, T, Dim>& s, int pass) {
-  using S = SoilShare<Dim>;
+  using S = SoilTerms<Dim>;
   const auto soil = s.soil.points;
   const NodePlaces places(s.grid, s.patches);
   const auto sums = s.nodes.soil;
-  const auto again = s.nodes.rest;
-  const auto rest = rest_of(s);
+  const auto again = s.nodes.residual;
+  const auto residual = residual_of(s);
   const auto control = s.control;
   const bool first = pass == 0, last = pass == s.xpic_order - 1;
-  const T xpic = T(1 - s.flip_share);
+  const T xpic = T(1 - s.flip_fraction);
   Kokkos::parallel_for(
       "mpm::xpic_pass", light(Kokkos::RangePolicy<Space>(s.space, 0, soil.count)), KOKKOS_LAMBDA(int p) {
         if (control().paused) return;
-        Vector<T, Dim> r = first ? soil.velocity(p) : rest(p);
+        Vector<T, Dim> r = first ? soil.velocity(p) : residual(p);
         for_each_node<Kind::motion>(soil, soil.bodies(soil.body(p)).half_length, places, p,
                                     [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
                                       const T m_i = sums(i, S::mass);
-                                      if (!(m_i > 0)) return;  // a share too small for T
+                                      if (!(m_i > 0)) return;  // a mass too small for T
                                       for (int d = 0; d < Dim; ++d)
                                         r[d] -= w * sign(d) *
                                                 ((first ? sums(i, S::momentum + d) : again(i, d)) / m_i);
@@ -30,7 +30,7 @@ void xpic_pass(State<Space, T, Dim>& s, int pass) {
         if (last) {
           for (int d = 0; d < Dim; ++d) soil.velocity(p)[d] -= xpic * r[d];
         } else {
-          rest(p) = r;
+          residual(p) = r;
         }
       });
 }
@@ -39,7 +39,7 @@ template <class Space, class T, int Dim>
 void take_affine(State<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
   const NodePlaces places(s.grid, s.patches);
-  const auto motion = s.nodes.motion;
+  const auto kinematics = s.nodes.kinematics;
   const auto control = s.control;
   Kokkos::parallel_for(
       "mpm::take_affine", light(Kokkos::RangePolicy<Space>(s.space, 0, soil.count)), KOKKOS_LAMBDA(int p) {
@@ -51,7 +51,7 @@ void take_affine(State<Space, T, Dim>& s) {
                                       const Vector<T, Dim> r = offset();
                                       Vector<T, Dim> v;
                                       for (int d = 0; d < Dim; ++d)
-                                        v[d] = sign(d) * motion(i, NodeMotion<Dim>::velocity + d);
+                                        v[d] = sign(d) * kinematics(i, NodeKinematics<Dim>::velocity + d);
                                       for (int e = 0; e < Dim; ++e) {
                                         spread[e] += w * r[e] * r[e];
                                         for (int d = 0; d < Dim; ++d) c(d, e) += w * v[d] * r[e];

@@ -1,22 +1,22 @@
 #pragma once
-// What XPIC and APIC do beside update_particles, before it and with the nodes of the same step. FLIP and PIC
-// need neither.
+// What XPIC and APIC do in addition to update_particles, before it and with the nodes of the same step. FLIP
+// and PIC need neither.
 
 #include "base/spaces.hpp"
 #include "data/state.hpp"
 
 namespace mpm {
 
-/// What XPIC has left of the particles' velocities [m/s, by particle]; in s.spare.
+/// What XPIC has left of the particles' velocities [m/s, by particle]; in s.scratch.
 template <class Space, class T, int Dim>
-auto rest_of(const State<Space, T, Dim>& s) {
+auto residual_of(const State<Space, T, Dim>& s) {
   return Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged>(
-      reinterpret_cast<Vector<T, Dim>*>(s.spare.data()), s.soil.points.count);
+      reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()), s.soil.points.count);
 }
 
 /// Pass number `pass` of XPIC(m) (Hammerquist & Nairn 2017): r_p <- r_p - sum_i S_ip r_i, from r_p = v_p,
 /// where r_i is the rest as the nodes see it: of the first pass v_i of Eq. (6), then s.nodes.rest over the
-/// mass. The last pass takes the rest, (I - S S+)^m v_p, out of v_p, but for the share of FLIP.
+/// mass. The last pass takes the residual, (I - S S+)^m v_p, out of v_p, except the fraction of FLIP.
 template <class Space, class T, int Dim>
 void xpic_pass(State<Space, T, Dim>& s, int pass);
 

@@ -71,24 +71,24 @@ struct PressOnWalls {
   }
 
  private:
-  struct Share {
+  struct Terms {
     T value[Source::size];
   };
-  KOKKOS_INLINE_FUNCTION static Share share_of(const typename Source::Point& q, T w,
+  KOKKOS_INLINE_FUNCTION static Terms share_of(const typename Source::Point& q, T w,
                                                const Vector<T, Dim>& grad) {
-    Share share{};
+    Terms terms{};
     give<Source>(
-        q, w, grad, [] { return 0; }, [&](int value, T v) { share.value[value] += v; });
-    return share;
+        q, w, grad, [] { return 0; }, [&](int value, T v) { terms.value[value] += v; });
+    return terms;
   }
-  KOKKOS_INLINE_FUNCTION void add_node(const Coord<Dim>& node, const Share& share, ForceSum<Dim>& sum) const {
+  KOKKOS_INLINE_FUNCTION void add_node(const Coord<Dim>& node, const Terms& terms, ForceSum<Dim>& sum) const {
     for (int k = 0; k < Dim; ++k)
       for (int d = 0; d < Dim; ++d) {
         const int at = node[d], side = holding_side(d, at, k);
         if (side < 0) continue;
         const bool beyond = image_along(places.grid, d, at) != at;
-        const double f = share.value[SoilShare<Dim>::force + k];
-        sum.of[d][side][k] += beyond ? 2 * f : f + share.value[SoilShare<Dim>::mass] * g[k];
+        const double f = terms.value[SoilTerms<Dim>::force + k];
+        sum.of[d][side][k] += beyond ? 2 * f : f + terms.value[SoilTerms<Dim>::mass] * g[k];
         break;  // where two sides hold it, the first one
       }
   }

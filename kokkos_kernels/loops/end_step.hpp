@@ -2,7 +2,7 @@
 // The end of a step: the rigid bodies move, the step is counted, and what any point can have moved is added
 // to the bound. A team does it.
 
-#include "base/lone_thread.hpp"
+#include "base/serial_team.hpp"
 #include "data/state.hpp"
 #include "device/warp.hpp"
 
@@ -86,7 +86,7 @@ struct EndStep {
   EndStep(const State<Space, T, Dim>& s, double step)
       : control(s.control),
         movements(s.movements),
-        sums(s.sums),
+        sums(s.rigid_force),
         forces(s.slot_forces),
         rigids(s.rigids),
         dt(step),

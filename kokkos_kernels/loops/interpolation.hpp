@@ -1,20 +1,20 @@
 #pragma once
 // What the step asks of an interpolation.
 
-#include "functions/step_kernels.hpp"
+#include "data/state.hpp"
 #include "loops/particle_to_node.hpp"
 
 namespace mpm {
 
-/// The points of `source`, which `bins` orders, to the nodes' sums `out`, on a queue.
+/// The points of `source`, which `bins` orders, to the nodes' sums `out`, on a stream.
 template <class Source, class Space, class T, int Dim>
 Interpolation<Source> interpolation_of(const State<Space, T, Dim>& s, const Bins<Space>& bins,
                                        const Source& source, const NodeField<Space, T, Source::size>& out,
-                                       const Space& queue) {
+                                       const Space& stream) {
   constexpr bool boundary = std::is_same_v<Source, BoundarySource<Space, T, Dim>>;
   constexpr bool strength = std::is_same_v<Source, StrengthSource<Space, T, Dim>>;
   constexpr bool rigid = std::is_same_v<Source, RigidSource<Space, T, Dim>>;
-  Interpolation<Source> it{queue, s.grid, s.patches, bins, source, out, s.control, s.p2g.mosaic_cells};
+  Interpolation<Source> it{stream, s.grid, s.patches, bins, source, out, s.control, s.p2g.mosaic_cells};
   it.windows = boundary ? s.boundary_windows : strength ? s.strength_windows : bins.windows;
   it.adds = !s.plan.writes_sums;
   if (rigid) it.near_slots = s.near_slots, it.near_count = s.near_count;

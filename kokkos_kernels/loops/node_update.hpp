@@ -2,12 +2,13 @@
 // What becomes of a node in a step (function 4): its velocity and acceleration, the walls, and contact.
 
 #include "base/lanes.hpp"
-#include "base/lone_thread.hpp"
+#include "base/serial_team.hpp"
+#include "data/state.hpp"
 #include "device/warp.hpp"
-#include "functions/step_kernels.hpp"
 #include "loops/particle_to_node.hpp"
 #include "loops/window.hpp"
 #include "physics/contact.hpp"
+#include "physics/surface.hpp"
 
 namespace mpm {
 
@@ -21,15 +22,15 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
                                        bool boundary, int rigids) {
   constexpr int cells = Patch<Dim>::cells;
   const auto clear = [&](T* values, int count) { for_team(team, count, [&](int n) { values[n] = 0; }); };
-  clear(&nodes.soil(slot * cells, 0), cells * SoilShare<Dim>::size);
-  if (boundary) clear(&nodes.boundary(slot * cells, 0), cells * BoundaryShare<Dim>::size);
-  for (int r = 0; r < rigids; ++r) clear(&nodes.rigid(r, slot * cells, 0), cells * RigidShare<Dim>::size);
+  clear(&nodes.soil(slot * cells, 0), cells * SoilTerms<Dim>::size);
+  if (boundary) clear(&nodes.boundary(slot * cells, 0), cells * BoundaryTerms<Dim>::size);
+  for (int r = 0; r < rigids; ++r) clear(&nodes.rigid(r, slot * cells, 0), cells * RigidTerms<Dim>::size);
 }
 
 /// The node's part of the step.
 template <class Space, class T, int Dim>
 struct UpdateNodes {
-  using S = SoilShare<Dim>;
+  using S = SoilTerms<Dim>;
   static constexpr int cells = Patch<Dim>::cells;
   int value_count;
   NodePlaces<Space, T, Dim> places;
@@ -37,7 +38,7 @@ struct UpdateNodes {
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   Kokkos::View<Vertex*, typename Space::memory_space> vertices;
   Kokkos::View<double*, typename Space::memory_space> forces;
-  Kokkos::View<std::uint64_t*, typename Space::memory_space> counted;
+  Kokkos::View<std::uint64_t*, typename Space::memory_space> owned_nodes;
   Vector<T, Dim> g;
   T dt, inv_dt, damping, mass_cut;
   double spacing;
@@ -51,7 +52,7 @@ struct UpdateNodes {
     for_team(team, cells, [&](int k) {
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
       update(sums, slot * cells + k, true, force + k);
-      if (counted.extent(0) == 0 || (counted(slot) >> k & 1) != 0) return;
+      if (owned_nodes.extent(0) == 0 || (owned_nodes(slot) >> k & 1) != 0) return;
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank tells it
     });
     team.team_barrier();
@@ -76,7 +77,7 @@ struct UpdateNodes {
     Coord<Dim> at = coord_of<Dim>(i);
     const Coord<Dim> from = places.origin(i / cells);
     for (int d = 0; d < Dim; ++d) at[d] += from[d];
-    keep(i, motion(sums, rigids.data(), i, at, near, force));
+    keep(i, kinematics(sums, rigids.data(), i, at, near, force));
   }
   /// Mass [kg] below which a node is at rest: so little that 1 / m_i might overflow.
   KOKKOS_INLINE_FUNCTION T at_rest() const { return T(1e-12) * mass_cut; }
@@ -95,8 +96,8 @@ struct UpdateNodes {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void keep(int i, const MotionValues<T, Dim>& motion) const {
-    *reinterpret_cast<MotionValues<T, Dim>*>(&nodes.motion(i, 0)) = motion;
+  KOKKOS_INLINE_FUNCTION void keep(int i, const KinematicValues<T, Dim>& kinematics) const {
+    *reinterpret_cast<KinematicValues<T, Dim>*>(&nodes.kinematics(i, 0)) = kinematics;
   }
 
   /// A node and what it was given.
@@ -104,19 +105,20 @@ struct UpdateNodes {
     int i;
     Coord<Dim> at;
     unsigned sides;
-    T soil[S::size], boundary[BoundaryShare<Dim>::size];
+    T soil[S::size], boundary[BoundaryTerms<Dim>::size];
     T inv_m;
   };
 
   /// What becomes of node i, which is `at`, under its sums; bodies: the rigids; near: one of them may touch
   /// the node. Adds component d of the force on rigid r to force[(r Dim + d) cells], unless it is null.
   template <class Sums>
-  KOKKOS_INLINE_FUNCTION MotionValues<T, Dim> motion(const Sums& sums, const Rigid<Dim>* bodies, int i,
-                                                     const Coord<Dim>& at, bool near, double* force) const {
+  KOKKOS_INLINE_FUNCTION KinematicValues<T, Dim> kinematics(const Sums& sums, const Rigid<Dim>* bodies, int i,
+                                                            const Coord<Dim>& at, bool near,
+                                                            double* force) const {
     Node node{i, at, 0, {}, {}, 0};
     for (int n = 0; n < S::size; ++n) node.soil[n] = sums.soil(i, n);  // all asked for at once
     if (near && has_boundary)
-      for (int n = 0; n < BoundaryShare<Dim>::size; ++n) node.boundary[n] = sums.boundary(i, n);
+      for (int n = 0; n < BoundaryTerms<Dim>::size; ++n) node.boundary[n] = sums.boundary(i, n);
     const T m_i = node.soil[S::mass];
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
     MPM_ROLLED
@@ -133,12 +135,13 @@ struct UpdateNodes {
         touch(sums, node, bodies[r], r, v, force == nullptr ? force : force + r * Dim * cells);
       apply_walls(places.grid, node.sides, v);
     }
-    MotionValues<T, Dim> motion;
+    KinematicValues<T, Dim> kinematics;
     for (int d = 0; d < Dim; ++d) {
-      motion.c[NodeMotion<Dim>::velocity + d] = v[d];
-      motion.c[NodeMotion<Dim>::acceleration + d] = (v[d] - v_old[d]) * inv_dt;  // feels contact and walls
+      kinematics.c[NodeKinematics<Dim>::velocity + d] = v[d];
+      kinematics.c[NodeKinematics<Dim>::acceleration + d] =
+          (v[d] - v_old[d]) * inv_dt;  // feels contact and walls
     }
-    return motion;
+    return kinematics;
   }
 
   /// The nodes of a slot far from every rigid.
@@ -158,13 +161,13 @@ struct UpdateNodes {
       Vector<Row, Dim> v_old, v;
       const auto moves = soil[S::mass] > at_rest();
       accelerate(soil, select(moves, T(1) / soil[S::mass], T(0)), v_old, v);
-      Row motion[NodeMotion<Dim>::size];
+      Row kinematics[NodeKinematics<Dim>::size];
       for (int d = 0; d < Dim; ++d) {
         v[d] = select(moves, v[d], T(0));
-        motion[NodeMotion<Dim>::velocity + d] = v[d];
-        motion[NodeMotion<Dim>::acceleration + d] = (v[d] - v_old[d]) * inv_dt;
+        kinematics[NodeKinematics<Dim>::velocity + d] = v[d];
+        kinematics[NodeKinematics<Dim>::acceleration + d] = (v[d] - v_old[d]) * inv_dt;
       }
-      store_groups(motion, &nodes.motion((slot * sums.rows + k) * Row::k_count, 0));
+      store_groups(kinematics, &nodes.kinematics((slot * sums.rows + k) * Row::k_count, 0));
     }
     if (clears) clear_sums(team, nodes, slot, false, 0);
   }
@@ -174,13 +177,13 @@ struct UpdateNodes {
   template <class Sums>
   KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, const Node& node, const Rigid<Dim>& rigid, int r,
                                     Vector<T, Dim>& v, double* force) const {
-    T given[RigidShare<Dim>::size] = {};  // asked for before the rigid tells whether it matters
-    for (int n = 0; n < RigidShare<Dim>::size && has_mass_normals; ++n) given[n] = sums.rigid(r, node.i, n);
+    T given[RigidTerms<Dim>::size] = {};  // asked for before the rigid tells whether it matters
+    for (int n = 0; n < RigidTerms<Dim>::size && has_mass_normals; ++n) given[n] = sums.rigid(r, node.i, n);
     const T m_i = node.soil[S::mass];
     Vector<T, Dim> n, v_r, boundary;
     for (int d = 0; d < Dim; ++d) {
       v_r[d] = static_cast<T>(rigid.velocity[d]);
-      boundary[d] = node.boundary[BoundaryShare<Dim>::area + d];
+      boundary[d] = node.boundary[BoundaryTerms<Dim>::area + d];
     }
     double distance = 0;
     Vector<double, Dim> out{};
@@ -203,7 +206,7 @@ struct UpdateNodes {
     // well, the body would act thicker than it is.
     interface.within_soil = rigid.surface_normal && distance > spacing / 2;
     if (rigid.reach > 0) {
-      const T depth = surface_depth(node.boundary[BoundaryShare<Dim>::volume] / places.grid.spacing, area);
+      const T depth = surface_depth(node.boundary[BoundaryTerms<Dim>::volume] / places.grid.spacing, area);
       const T gap = static_cast<T>(distance) + depth * places.grid.spacing;
       interface.penalty = penalty(gap, T(rigid.reach), T(rigid.exponent));
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
@@ -221,9 +224,9 @@ struct UpdateNodes {
   /// Largest shear stress of the interface at node i [Pa], infinite where only the friction limits.
   KOKKOS_INLINE_FUNCTION T shear_limit(const Rigid<Dim>& rigid, int i) const {
     if (rigid.shear_share < 0) return static_cast<T>(rigid.shear_limit);
-    const T volume = nodes.strength(i, StrengthShare::volume);
+    const T volume = nodes.strength(i, StrengthTerms::volume);
     if (!(volume > 0)) return 0;
-    return static_cast<T>(rigid.shear_share) * (nodes.strength(i, StrengthShare::strength) / volume);
+    return static_cast<T>(rigid.shear_share) * (nodes.strength(i, StrengthTerms::strength) / volume);
   }
 
   /// Place of a node in the frame of a rigid's surface [m]. Bodies go on beyond the mesh.
@@ -237,11 +240,11 @@ struct UpdateNodes {
   /// Area of a cell's face [m^2; m in 2D].
   KOKKOS_INLINE_FUNCTION T face() const { return power(places.grid.spacing, Dim - 1); }
 
-  /// Inward unit normal from the rigid's mass gradient; false where it is out of touch. given: RigidShare.
+  /// Inward unit normal from the rigid's mass gradient; false where it is out of touch. given: RigidTerms.
   KOKKOS_INLINE_FUNCTION bool mass_normal(const Rigid<Dim>& rigid, const T* given, unsigned sides,
                                           Vector<T, Dim>& n) const {
-    const T m_r = given[RigidShare<Dim>::mass];
-    for (int d = 0; d < Dim; ++d) n[d] = given[RigidShare<Dim>::normal + d];
+    const T m_r = given[RigidTerms<Dim>::mass];
+    for (int d = 0; d < Dim; ++d) n[d] = given[RigidTerms<Dim>::normal + d];
     return m_r > rigid.mass_cut && inward_normal(places.grid, sides, m_r, n);
   }
 
@@ -293,7 +296,7 @@ UpdateNodes<Space, T, Dim> node_update_of(const State<Space, T, Dim>& s, double 
                                     .rigids = s.rigids,
                                     .vertices = s.vertices,
                                     .forces = s.slot_forces,
-                                    .counted = s.counted,
+                                    .owned_nodes = s.owned_nodes,
                                     .g = {},
                                     .dt = T(dt),
                                     .inv_dt = T(1 / dt),

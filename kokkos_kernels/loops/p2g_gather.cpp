@@ -11,7 +11,7 @@ KOKKOS_INLINE_FUNCTION auto half_length_of(const Points_& points, int p) {
     return points.half_length;
 }
 
-/// Sums the shares of the particles in the list of a node, and in those of its images beyond walls.
+/// Sums the terms of the particles in the list of a node, and in those of its images beyond walls.
 template <class Source>
 struct GatherByNode {
   using T = typename Source::real;
@@ -38,7 +38,8 @@ struct GatherByNode {
       if (!is) continue;
       Coord<Dim> place;
       for (int d = 0; d < Dim; ++d) place[d] = at[d] - from[d];
-      const int node = number_at<decltype(places.around), Dim>(places.around, i / Patch<Dim>::cells, place);
+      const int node =
+          number_at<decltype(places.neighbours), Dim>(places.neighbours, i / Patch<Dim>::cells, place);
       if (node >= 0) some |= add_list(node, at, sum);
     }
     if (!some) return;
@@ -66,7 +67,7 @@ struct GatherByNode {
     }
     const int first = list_begin(node), last = list_begin(node + 1);
     for (int n = first; n < last; ++n)
-      add_point(list(n), at, [&](int v, T share) { sum[v] += sign[v] * share; });
+      add_point(list(n), at, [&](int v, T term) { sum[v] += sign[v] * term; });
     return last > first;
   }
 

@@ -11,9 +11,9 @@ void sum_on_device(const Interpolation<Source>& it) {
   using Team = PatchTeam<Space, typename Source::real, Dim>;
   using Tile_ = Tile<Source>;
   const auto source = it.source;
-  const auto around = it.patches.around;
+  const auto neighbours = it.patches.neighbours;
   const auto begin = it.bins.begin;
-  const auto by_colour = it.bins.by_colour;
+  const auto active_slots = it.bins.active_slots;
   const auto grid = it.grid;
   const auto origin = it.patches.origin;
   const auto out = it.out;
@@ -27,11 +27,13 @@ void sum_on_device(const Interpolation<Source>& it) {
                 .set_scratch_size(0, Kokkos::PerTeam(Tile_::bytes() + k_scratch_slack))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (control().paused) return;
-        const int slot = by_colour(first + team.league_rank());
+        const int slot = active_slots(first + team.league_rank());
         if (source.skips(slot)) return;
         sum_patch(
             team, Scratch(team, Tile_::bytes()), source,
-            [&](int n) { return number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n)); },
+            [&](int n) {
+              return number_at<decltype(neighbours), Dim>(neighbours, slot, window_coord<Dim>(n));
+            },
             [&](int c) { return begin(slot * cells + c); }, grid, origin(slot), out);
       });
 }

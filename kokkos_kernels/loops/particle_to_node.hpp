@@ -3,7 +3,7 @@
 
 #include "base/choices.hpp"
 #include "base/spaces.hpp"
-#include "physics/share.hpp"
+#include "physics/p2g_terms.hpp"
 
 namespace mpm {
 
@@ -95,10 +95,10 @@ struct NodePlaces {
   using Memory = typename Space::memory_space;
   Grid<T, Dim> grid;
   Kokkos::View<Coord<Dim>*, Memory> origin;
-  decltype(Patches<Space, Dim>::around) around;
+  decltype(Patches<Space, Dim>::neighbours) neighbours;
 
   NodePlaces(const Grid<T, Dim>& mesh, const Patches<Space, Dim>& patches)
-      : grid(mesh), origin(patches.origin), around(patches.around) {}
+      : grid(mesh), origin(patches.origin), neighbours(patches.neighbours) {}
 };
 
 /// The nodes that a particle reaches from the cell where it was binned; of those beyond a wall their images,
@@ -107,8 +107,8 @@ template <Kind kind, class T, int Dim>
 struct Stencil {
   static constexpr bool k_turns_all = kind == Kind::motion;  // at a fixed side every component
   int slot;
-  int which[Dim][3];                       // share of each axis in the number of the patch around
-  int place[Dim][3];                       // share of each axis in the place in that patch
+  int which[Dim][3];                       // part of each axis in the number of the patch around
+  int place[Dim][3];                       // part of each axis in the place in that patch
   T normal[Dim][3];                        // factor of the component along the axis, as image_sign
   T tangential[k_turns_all ? Dim : 1][3];  // factor of the others, where it may be another than 1
 
@@ -126,11 +126,11 @@ struct Stencil {
         if constexpr (k_turns_all) tangential[d][k] = image_sign<kind, T>(places.grid, d, at, (d + 1) % Dim);
       }
   }
-  template <class Around>
-  KOKKOS_INLINE_FUNCTION int node(const Around& around, const Vector<int, Dim>& k) const {
+  template <class Neighbours>
+  KOKKOS_INLINE_FUNCTION int node(const Neighbours& neighbours, const Vector<int, Dim>& k) const {
     int w = which[0][k[0]], p = place[0][k[0]];
     for (int d = 1; d < Dim; ++d) w += which[d][k[d]], p += place[d][k[d]];
-    return around(slot, w) * Patch<Dim>::cells + p;
+    return neighbours(slot, w) * Patch<Dim>::cells + p;
   }
   /// What the node k steps from the first has of a component of a vector, or of a scalar (-1), of node().
   KOKKOS_INLINE_FUNCTION T sign(const Vector<int, Dim>& k, int component) const {
@@ -158,13 +158,13 @@ KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, const HalfLengt
     for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
       if (!(w > 0)) return;
       f(
-          stencil.node(places.around, k), w, grad, [&] { return offset_to(x, a, k); },
+          stencil.node(places.neighbours, k), w, grad, [&] { return offset_to(x, a, k); },
           [&](int component) { return stencil.sign(k, component); });
     });
   });
 }
 
-/// Gives the share of particle p to its nodes by add(node, value index, value).
+/// Gives the terms of particle p to its nodes by add(node, value index, value).
 template <class Source, class Space, class T, int Dim, class Add>
 KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const NodePlaces<Space, T, Dim>& places,
                                           int p, Add&& add) {

@@ -15,11 +15,6 @@ inline constexpr int teams_at_once = sizeof(T) == sizeof(float) ? (Dim == 2 ? 9 
 template <class Space, class T, int Dim>
 using PatchTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, teams_at_once<T, Dim>>>;
 
-/// Asks a GPU to fetch what p points at into its second cache.
-KOKKOS_INLINE_FUNCTION void prefetch([[maybe_unused]] const void* p) {
-  KOKKOS_IF_ON_DEVICE((asm volatile("prefetch.global.L2 [%0];" ::"l"(p));))
-}
-
 /// Place in the window of the node k steps from the first one that a particle reaches.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION int window_place(const Coord<Dim>& cell, const AxisWeights<T> (&a)[Dim],
@@ -30,10 +25,12 @@ KOKKOS_INLINE_FUNCTION int window_place(const Coord<Dim>& cell, const AxisWeight
 }
 
 /// Calls f(place in the window, number) for every node of a slot's window.
-template <int Dim, class Team, class Around, class F>
-KOKKOS_INLINE_FUNCTION void for_each_of_window(const Team& team, const Around& around, int slot, F&& f) {
-  Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Dim>::window),
-                       [&](int n) { f(n, number_at<Around, Dim>(around, slot, window_coord<Dim>(n))); });
+template <int Dim, class Team, class Neighbours, class F>
+KOKKOS_INLINE_FUNCTION void for_each_of_window(const Team& team, const Neighbours& neighbours, int slot,
+                                               F&& f) {
+  Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Dim>::window), [&](int n) {
+    f(n, number_at<Neighbours, Dim>(neighbours, slot, window_coord<Dim>(n)));
+  });
 }
 
 /// The weights along every axis of a particle that is near the cell where it was binned.

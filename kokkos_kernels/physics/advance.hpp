@@ -8,11 +8,11 @@
 
 namespace mpm {
 
-/// What a particle takes from the nodes.
+/// What a particle samples of the nodes.
 template <class T, int Dim>
-struct Taken {
-  T motion[NodeMotion<Dim>::size];  // m/s, m/s2
-  T gradient[Dim][Dim];             // 1/s, L_ij = dv_i/dx_j
+struct GridSample {
+  T kinematics[NodeKinematics<Dim>::size];  // m/s, m/s2
+  T gradient[Dim][Dim];                     // 1/s, L_ij = dv_i/dx_j
 };
 
 /// Strain increment (symmetric part of L dt, tensor shear strains) and spin increment (skew part) of a
@@ -74,15 +74,17 @@ struct ParticleLaw {
       law.update(stress, state, by);
       for (int k = 0; k < state.size; ++k)
         if (Law::state()[k].changes && state[k] != was[k]) soil.history.column[k](p) = state[k];
+      if constexpr (can_fail<Law>())
+        if (law.failed(state)) stress[0] = Kokkos::Experimental::quiet_NaN_v<T>;  // fault_of() finds it
     });
   }
 };
 
-/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The share f_bar of its
-/// dilatation is that of its cell, `mean_dilatation` [1/s]. law(stress, increment) changes the stress.
+/// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The fraction f_bar of
+/// its dilatation is that of its cell, `mean_dilatation` [1/s]. law(stress, increment) changes the stress.
 /// Returns the largest component of the particle's movement [cells].
 template <class R, class T, int Dim, class Law>
-KOKKOS_INLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law, const Taken<R, Dim>& t,
+KOKKOS_INLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law, const GridSample<R, Dim>& t,
                                  R mean_dilatation, const UpdateScalars<T>& by) {
   Increment<R, T, Dim> increment = increment_of(t.gradient, by.dt, by.clock);
   R trace = 0;
@@ -97,7 +99,8 @@ KOKKOS_INLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law, const Take
   q.volume = Kokkos::fmin(by.most_volume, Kokkos::fmax(by.least_volume, q.volume));
   R moved = 0;
   for (int d = 0; d < Dim; ++d) {
-    const R v_i = t.motion[NodeMotion<Dim>::velocity + d], a_i = t.motion[NodeMotion<Dim>::acceleration + d];
+    const R v_i = t.kinematics[NodeKinematics<Dim>::velocity + d],
+            a_i = t.kinematics[NodeKinematics<Dim>::acceleration + d];
     q.v[d] = by.flip * (q.v[d] + by.dt * a_i) + by.pic * v_i;
     const R movement = by.dt * v_i * by.inv_spacing;
     q.x[d] += movement;
@@ -119,6 +122,17 @@ KOKKOS_INLINE_FUNCTION auto is_finite(const Particle<R, Dim>& q) {
 template <class R, class T, int Dim>
 KOKKOS_INLINE_FUNCTION auto is_volume_limited(const Particle<R, Dim>& q, const UpdateScalars<T>& by) {
   return !((q.volume > by.least_volume) & (q.volume < by.most_volume));
+}
+
+/// Whether the law of particle p calls the particle's state a failure. Its stress is then not finite, so that
+/// only particles whose stress is not finite need be asked.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool has_failed(const Soil<Space, T, Dim>& soil, int p) {
+  bool failed = false;
+  soil.materials(soil.bodies(soil.body(p)).material).visit([&](const auto& law) {
+    if constexpr (can_fail<std::decay_t<decltype(law)>>()) failed = law.failed(soil.state_of(law, p));
+  });
+  return failed;
 }
 
 /// What is wrong with a particle that moved by `moved` [cells] in the step: not finite, a volume that the run

@@ -18,8 +18,8 @@ KOKKOS_INLINE_FUNCTION bool inward_normal(const Grid<T, Dim>& grid, unsigned sid
   const T length = Kokkos::sqrt(dot(n, n));
   constexpr T k_interior = T(0.05);  // of the mass a cell's edge
   if (!(length > k_interior * mass)) return false;
-  const T share = -1 / length;
-  for (int d = 0; d < Dim; ++d) n[d] *= share;
+  const T factor = -1 / length;
+  for (int d = 0; d < Dim; ++d) n[d] *= factor;
   return true;
 }
 
@@ -54,7 +54,7 @@ struct Interface {
   T friction;      // -, negative: none
   T pressing = 0;  // m/s: what the soil's own force and weight press towards the rigid x dt / nodal mass
   T stock = 0;     // m/s: normal impulse not yet used by friction / nodal mass; updated
-  T penalty = 1;   // -, share of the normal correction
+  T penalty = 1;   // -, fraction of the normal correction
   bool separates = true;
   bool within_soil =
       false;  // more than half a cell from the surface: it is not stopped, and nothing presses it
@@ -84,9 +84,9 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
     interface.stock += Kokkos::fmax(T(0), stop);
     largest = Kokkos::fmin(interface.shear_speed, interface.friction * interface.stock);
   }
-  const T share = largest >= speed ? T(1) : largest / speed;
-  if (interface.friction > 0) interface.stock -= share * speed / interface.friction;
-  for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - share * slip[d];
+  const T factor = largest >= speed ? T(1) : largest / speed;
+  if (interface.friction > 0) interface.stock -= factor * speed / interface.friction;
+  for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - factor * slip[d];
   return change;
 }
 

@@ -3,21 +3,10 @@
 
 #include <type_traits>
 
+#include "base/half_length.hpp"
 #include "base/types.hpp"
 
 namespace mpm {
-
-/// Half length l [cells] of a particle, 0 < l <= 1/2, with 1/(2 l), for which each weight would divide.
-template <class T>
-struct HalfLength {
-  T l, inverse;
-  HalfLength() = default;
-  KOKKOS_INLINE_FUNCTION HalfLength(T length) : l(length), inverse(T(0.5) / length) {}
-  KOKKOS_INLINE_FUNCTION operator T() const { return l; }
-};
-/// As an argument that takes a plain T too.
-template <class T>
-using HalfLengthOf = const HalfLength<std::type_identity_t<T>>&;
 
 /// Weights of the three nodes that a particle reaches along one axis.
 ///   x [cells] particle's coordinate, in the frame of some cell;  half [cells] its half length

@@ -1,31 +1,10 @@
 #pragma once
-// A rigid body's own surface: signed distance and outward normal at any point.
+// Signed distance to the surface of a rigid body, and its outward normal, at any point.
 
 #include "base/types.hpp"
+#include "data/surface.hpp"
 
 namespace mpm {
-
-enum class SurfaceKind : int { box, polygon, disc, half_plane, revolved };
-
-/// A vertex of a polygon in the plane of x and the vertical axis [m from the mesh's lower corner], and
-/// whether the edge that begins there lies on the mesh's boundary, where no soil can be behind it. Of what is
-/// revolved: of its section, distance from the axis and height above the centre.
-struct Vertex {
-  double x, z;
-  bool outside;
-};
-
-/// The surface of a body at the start. Lengths in m from the mesh's lower corner.
-template <int Dim>
-struct Surface {
-  SurfaceKind kind;
-  Vector<double, Dim> centre;  // box, disc; half_plane: a point on it; revolved: of the vertices' heights
-  Vector<double, Dim> half;    // box: half its edges; polygon in 3D: half[1] is half the prism's width
-  Vector<double, Dim> normal;  // half_plane: outward, of length 1
-  double radius;               // disc; box, revolved: of its corners
-  double cosine, sine;         // box: of the angle that turns x to the vertical axis
-  int first, count;            // polygon; revolved: vertices of its section, made smaller by the radius
-};
 
 /// Signed distance [m], positive outside, and the outward unit normal there.
 template <int Dim>

@@ -177,7 +177,7 @@ KOKKOS_INLINE_FUNCTION void for_each_image(const Grid<T, Dim>& grid, const Coord
   }
 }
 
-/// The nodes of a window beyond walls take the motion (NodeMotion) of their images. motion_of(n): that of
+/// The nodes of a window beyond walls take the motion (NodeKinematics) of their images. motion_of(n): that of
 /// node n.
 template <class T, int Dim, class Motion>
 KOKKOS_INLINE_FUNCTION void mirror_images(const Grid<T, Dim>& grid, const Coord<Dim>& origin,
@@ -187,7 +187,7 @@ KOKKOS_INLINE_FUNCTION void mirror_images(const Grid<T, Dim>& grid, const Coord<
       if (place == image) return;
       const T* const from = motion_of(image);
       T* const to = motion_of(place);
-      for (int k = 0; k < NodeMotion<Dim>::size; ++k)
+      for (int k = 0; k < NodeKinematics<Dim>::size; ++k)
         to[k] = image_sign<Kind::motion, T>(grid, d, at, k % Dim) * from[k];
     });
 }

@@ -48,7 +48,7 @@ void sum_batch(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void update_by_batches(State<Space, T, Dim>& s, double dt) {
   auto& b = s.batches;
-  if (look(s).paused) return;  // this also waits for the nodes
+  if (read_control(s).paused) return;  // this also waits for the nodes
   BatchCost& cost = b.cost;
   const bool apart = cost.steps++ % k_apart_every == k_first_apart;
   const auto timed = [&](const Space& space, double& seconds, auto&& work) {
@@ -65,7 +65,7 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
     s.space.fence("mpm::before the sums of batches");
   }
   const auto whole = s.soil;
-  const auto spare = s.spare;
+  const auto scratch = s.scratch;
   const Space space = s.space;
   for (const auto& batch : b.all) {
     const Space& stream = batch.stays ? space : b.streams[batch.place % k_turns];
@@ -73,10 +73,10 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
       if (!batch.stays || !b.loaded) cost.copied_in += copy_in(stream, s, batch);
     });
     timed(stream, cost.kernel_seconds, [&] {
-      s.soil = batch.set, s.spare = batch.spare, s.space = stream;
+      s.soil = batch.set, s.scratch = batch.scratch, s.space = stream;
       update_particles(s, dt);
       if (sums) sum_batch(s);
-      s.soil = whole, s.spare = spare, s.space = space;
+      s.soil = whole, s.scratch = scratch, s.space = space;
     });
     timed(stream, cost.out_seconds, [&] {
       if (!batch.stays) cost.copied_out += copy_out(stream, s, batch);

@@ -6,10 +6,10 @@
 
 namespace mpm {
 
-/// Gives the soil, of `count` particles, its fields in memory of the host. spare_bytes: the least that
-/// sorting the rigids needs of s.spare.
+/// Gives the soil, of `count` particles, its fields in memory of the host. needed_scratch: the least that
+/// sorting the rigids needs of s.scratch.
 template <class Space, class T, int Dim>
-void store_soil(State<Space, T, Dim>& s, int count, std::size_t spare_bytes);
+void store_soil(State<Space, T, Dim>& s, int count, std::size_t needed_scratch);
 
 /// Cuts the soil into batches that fit beside all else under the limit. To be called after a rebuild. Where
 /// even the lowest limit is higher, there are none: s.batches.least tells it.

@@ -31,8 +31,8 @@ using Unmanaged = Kokkos::View<Value*, typename Space::memory_space, Kokkos::Mem
 /// for memory and give it back takes longer than all else that is done here.
 template <class Value, class Space, class T, int Dim>
 Unmanaged<Value, Space> scratch_of(State<Space, T, Dim>& s, std::size_t n, std::size_t more = 0) {
-  ensure(s.spare, n * sizeof(Value) + more);
-  return Unmanaged<Value, Space>(reinterpret_cast<Value*>(s.spare.data()), n);
+  ensure(s.scratch, n * sizeof(Value) + more);
+  return Unmanaged<Value, Space>(reinterpret_cast<Value*>(s.scratch.data()), n);
 }
 
 template <class Space, class View>

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "data/memory_of.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
-#include "transfer/download.hpp"
 
 namespace mpm {
 namespace {
@@ -37,9 +37,9 @@ std::size_t lay_out(const State<Space, T, Dim>& s, char* from, SoilBatch<Space, 
   for_each_of_step(s.soil.points, batch.set.points,
                    [&](const auto&, auto& there, Use) { cutter.cut(there, batch.first, batch.last); });
   Kokkos::View<T*, typename Space::memory_space> dilatation;
-  if (s.f_bar_share > 0) cutter.cut(dilatation, batch.first, batch.last);
-  batch.spare =
-      decltype(batch.spare)(reinterpret_cast<char*>(dilatation.data()), dilatation.extent(0) * sizeof(T));
+  if (s.f_bar_fraction > 0) cutter.cut(dilatation, batch.first, batch.last);
+  batch.scratch =
+      decltype(batch.scratch)(reinterpret_cast<char*>(dilatation.data()), dilatation.extent(0) * sizeof(T));
   return cutter.end;
 }
 template <class Space, class T, int Dim>
@@ -86,7 +86,7 @@ void cut_into_batches(State<Space, T, Dim>& s, const First& first, int most) {
   }
 }
 
-/// Bins::by_colour of every batch.
+/// Bins::active_slots of every batch.
 template <class Space, class T, int Dim>
 void list_slots(State<Space, T, Dim>& s) {
   constexpr int colours = Patch<Dim>::colours;
@@ -94,12 +94,12 @@ void list_slots(State<Space, T, Dim>& s) {
   auto& b = s.batches;
   const int count = whole.colour_begin[colours];
   ensure(b.slots, count);
-  const auto by_colour = on_host(whole.by_colour, count);
+  const auto active_slots = on_host(whole.active_slots, count);
   std::vector<std::array<std::vector<int>, colours>> lists(b.all.size());
   for (int colour = 0, n = 0; colour < colours; ++colour)
     for (std::size_t batch = 0; n < whole.colour_begin[colour + 1]; ++n) {  // slots rise within a colour
-      while (by_colour(n) >= b.all[batch].set.bins.last_slot) ++batch;
-      lists[batch][colour].push_back(by_colour(n));
+      while (active_slots(n) >= b.all[batch].set.bins.last_slot) ++batch;
+      lists[batch][colour].push_back(active_slots(n));
     }
   const auto slots = Kokkos::create_mirror_view(b.slots);
   int end = 0;
@@ -111,7 +111,7 @@ void list_slots(State<Space, T, Dim>& s) {
       for (const int slot : lists[n][colour]) slots(end++) = slot;
       bins.colour_begin[colour + 1] = end - begin;
     }
-    bins.by_colour = Kokkos::subview(b.slots, Kokkos::make_pair(begin, end));
+    bins.active_slots = Kokkos::subview(b.slots, Kokkos::make_pair(begin, end));
   }
   Kokkos::deep_copy(b.slots, slots);
 }
@@ -142,15 +142,15 @@ std::vector<Space> streams_beside(const Space& space) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void store_soil(State<Space, T, Dim>& s, int count, std::size_t spare_bytes) {
+void store_soil(State<Space, T, Dim>& s, int count, std::size_t needed_scratch) {
   auto& soil = s.soil.points;
-  spare_bytes = std::max(spare_bytes, count * spare_of_point(soil));
+  needed_scratch = std::max(needed_scratch, count * scratch_of_point(soil));
   Cutter cutter;
   const auto cut = [&] {
     const auto field = [&](auto& view) { cutter.cut(view, 0, count); };
     field(soil.cell), field(soil.id), field(s.soil.address), field(s.soil.order);
     for_each_field(soil, field);
-    cutter.cut(s.spare, 0, spare_bytes);
+    cutter.cut(s.scratch, 0, needed_scratch);
   };
   cut();
   s.batches.store =

@@ -8,10 +8,11 @@
 
 namespace mpm {
 
-/// Finds the cell of every point (Sorted::address) from where it is now, and brings the soil's coordinates
-/// back to [0, 1). Soil outside the mesh: beyond a free side it leaves the run and gets no address, as do
-/// strays that are to be removed; Control::lost is their number. Beyond a wall it is put back on it, and what
-/// it had of velocity against the wall is gone. A rigid's point outside the mesh is a fault in s.control.
+/// Finds the cell of every point (ParticleSet::address) from where it is now, and brings the soil's
+/// coordinates back to [0, 1). Soil outside the mesh: beyond a free side it leaves the run and gets no
+/// address, as do strays that are to be removed; Control::lost is their number. Beyond a wall it is put back
+/// on it, and what it had of velocity against the wall is gone. A rigid's point outside the mesh is a fault
+/// in s.control.
 template <class Space, class T, int Dim>
 void locate(State<Space, T, Dim>& s);
 
@@ -77,7 +78,7 @@ using PartOf = typename SortedPart<Value>::type;
 
 /// Bytes of scratch memory that sorting takes a point.
 template <class Points_>
-std::size_t spare_of_point(Points_& points) {
+std::size_t scratch_of_point(Points_& points) {
   std::size_t widest = sizeof(int);
   for_each_field(points, [&](const auto& field) {
     widest = std::max(widest, sizeof(PartOf<typename std::decay_t<decltype(field)>::value_type>));

@@ -22,7 +22,7 @@ KOKKOS_INLINE_FUNCTION void for_each_near(const Source& source, const Patches_& 
   for (int k = 0; k < power(4, Dim); ++k) {
     Coord<Dim> c = at, from{};  // cells node - 2 ... node + 1 can hold them, as half length + margin <= 1
     for (int d = 0, rest = k; d < Dim; ++d, rest /= 4) c[d] += from[d] = rest % 4 - 2;
-    const int cell = number_at<decltype(patches.around), Dim>(patches.around, slot, c);
+    const int cell = number_at<decltype(patches.neighbours), Dim>(patches.neighbours, slot, c);
     if (cell < 0) continue;
     for (int p = begin(cell); p < begin(cell + 1); ++p) {
       const T reach = 1 + source.load(p).half_length + margin;
@@ -114,11 +114,11 @@ void build_windows(const Space& space, const Patches<Space, Dim>& patches, Bins<
   const int held = bins.colour_begin[Patch<Dim>::colours];
   ensure(bins.windows.place, patches.slots);
   ensure(bins.windows.sums, window_bytes<Source> * held);
-  const auto place = bins.windows.place, by_colour = bins.by_colour;
+  const auto place = bins.windows.place, active_slots = bins.active_slots;
   Kokkos::deep_copy(space, place, 0);
   Kokkos::parallel_for(
       "mpm::place_windows", Kokkos::RangePolicy<Space>(space, 0, held),
-      KOKKOS_LAMBDA(int n) { place(by_colour(n)) = n + 1; });
+      KOKKOS_LAMBDA(int n) { place(active_slots(n)) = n + 1; });
 }
 
 template <class Source, class T, int Dim, class Space>

@@ -68,7 +68,7 @@ void mark_soil(const State<Space, T, Dim>& s, const Marks& marks) {
 /// other point of it reaches a node that soil reaches before the next rebuild. Contact in the other fields
 /// asks the rigid's surface alone.
 template <class Space, class T, int Dim, class Points_, class Marks>
-void mark_rigid(const State<Space, T, Dim>& s, const Sorted<Space, Points_>& set, const Marks& marks) {
+void mark_rigid(const State<Space, T, Dim>& s, const ParticleSet<Space, Points_>& set, const Marks& marks) {
   const auto address = set.address;
   const auto grid = s.grid;
   Kokkos::parallel_for(
@@ -76,7 +76,7 @@ void mark_rigid(const State<Space, T, Dim>& s, const Sorted<Space, Points_>& set
         const long own = patch_if_first<Dim>(address, p);
         if (own < 0 || Kokkos::atomic_load(&marks(own)) != 0) return;
         const Coord<Dim> at = grid.origin_of(own);
-        for (int k = 0; k < Patch<Dim>::around; ++k) {
+        for (int k = 0; k < Patch<Dim>::neighbours; ++k) {
           const long other = patch_around(grid, at, 0, k);
           if (other < 0 || Kokkos::atomic_load(&marks(other)) != k_soil) continue;
           Kokkos::atomic_store(&marks(own), k_rigid);
@@ -94,7 +94,7 @@ void locate_rigids(State<Space, T, Dim>& s) {
   const double spacing = s.spacing;
   for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
     const auto& points = s.rigid_points[r].points;
-    const auto home = points.home;
+    const auto reference_position = points.reference_position;
     const auto x_p = points.coordinate;
     const auto id = points.id;
     const auto address = s.rigid_points[r].address;
@@ -105,7 +105,7 @@ void locate_rigids(State<Space, T, Dim>& s) {
           double position[3] = {};
           if (p == 0) rigids(r).binned = rigids(r).displacement;
           for (int d = 0; d < Dim; ++d) {
-            const double x = home(p)[d] + rigids(r).displacement[d] / spacing;
+            const double x = reference_position(p)[d] + rigids(r).displacement[d] / spacing;
             c[d] = static_cast<int>(Kokkos::floor(x));
             x_p(p)[d] = static_cast<T>(x - Kokkos::floor(x));
             position[d] = x * spacing;
@@ -174,7 +174,7 @@ void activate_patches(State<Space, T, Dim>& s) {
         const int field = grid.field_of(n);
         const Coord<Dim> at = origin_in_turn(grid, turn, n - field * grid.patches_of_field());
         bool active = false;
-        for (int k = 0; k < Patch<Dim>::around && !active; ++k) {
+        for (int k = 0; k < Patch<Dim>::neighbours && !active; ++k) {
           const long other = patch_around(grid, at, field, k);
           active = other >= 0 && marks(other) != 0;
         }
@@ -185,10 +185,10 @@ void activate_patches(State<Space, T, Dim>& s) {
 
   ensure(patches.number, patches.slots);
   ensure(patches.origin, patches.slots);
-  ensure(patches.around, patches.slots);
+  ensure(patches.neighbours, patches.slots);
   const auto number = patches.number;
   const auto origin = patches.origin;
-  const auto around = patches.around;
+  const auto neighbours = patches.neighbours;
   Kokkos::parallel_for(
       "mpm::link_patches", Range(s.space, 0, patch_count), KOKKOS_LAMBDA(int n) {
         const int slot = slot_of(n);
@@ -196,9 +196,9 @@ void activate_patches(State<Space, T, Dim>& s) {
         const Coord<Dim> at = grid.origin_of(n);
         number(slot) = n;
         origin(slot) = at;
-        for (int k = 0; k < Patch<Dim>::around; ++k) {
+        for (int k = 0; k < Patch<Dim>::neighbours; ++k) {
           const long other = patch_around(grid, at, grid.field_of(n), k);
-          around(slot, k) = other < 0 ? -1 : slot_of(other);
+          neighbours(slot, k) = other < 0 ? -1 : slot_of(other);
         }
       });
 }

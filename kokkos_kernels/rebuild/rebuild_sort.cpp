@@ -2,7 +2,8 @@
 // points are put in order of id, so that the result does not depend on how threads ran.
 
 #include "functions/step_kernels.hpp"
-#include "physics/share.hpp"
+#include "physics/p2g_terms.hpp"
+#include "physics/surface.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
 
@@ -33,8 +34,8 @@ void begin_of_bins(const Space& space, const Begin& begin, int bins, int togethe
 /// Cells of the points under the new patch table, counted and summed to ranges. Points of patches without a
 /// mark have none: they go behind the others.
 template <class Space, class Points_, class Slots>
-void count_by_cell(const Space& space, Sorted<Space, Points_>& set, const Slots& slot_of, const Slots& marks,
-                   int cells, int cells_per_patch) {
+void count_by_cell(const Space& space, ParticleSet<Space, Points_>& set, const Slots& slot_of,
+                   const Slots& marks, int cells, int cells_per_patch) {
   using Range = Kokkos::RangePolicy<Space>;
   const int bins = cells + k_rest_bins;
   ensure(set.bins.begin, bins + 1);
@@ -57,15 +58,16 @@ void count_by_cell(const Space& space, Sorted<Space, Points_>& set, const Slots&
 }
 
 /// set.order becomes the former place of each point of the new order, and the points' cells are in it.
-/// `spare` is scratch.
-template <class Space, class Points_, class Spare>
-void order_points(const Space& space, Sorted<Space, Points_>& set, const Spare& spare, int cells) {
+/// `scratch` is scratch.
+template <class Space, class Points_, class ScratchView>
+void order_points(const Space& space, ParticleSet<Space, Points_>& set, const ScratchView& scratch,
+                  int cells) {
   using Range = Kokkos::RangePolicy<Space>;
   const int count = set.points.all;
   const auto begin = set.bins.begin, order = set.order;
   const auto cell = set.points.cell, id = set.points.id;
   Kokkos::View<int*, typename Space::memory_space, Kokkos::MemoryUnmanaged> former(
-      reinterpret_cast<int*>(spare.data()), count);
+      reinterpret_cast<int*>(scratch.data()), count);
   Kokkos::parallel_for(
       "mpm::place_points", Range(space, 0, count),
       KOKKOS_LAMBDA(int p) { former(begin(cell(p)) + order(p)) = p; });
@@ -84,13 +86,14 @@ void order_points(const Space& space, Sorted<Space, Points_>& set, const Spare& 
 }
 
 /// Puts one field into the new order, piece by piece of its values.
-template <class Space, class Field, class Order, class Spare>
-void permute(const Space& space, const Field& field, const Order& order, int count, const Spare& spare) {
+template <class Space, class Field, class Order, class ScratchView>
+void permute(const Space& space, const Field& field, const Order& order, int count,
+             const ScratchView& scratch) {
   using Range = Kokkos::RangePolicy<Space>;
   using Value = typename Field::value_type;
   using Part = PartOf<Value>;
   constexpr int parts = sizeof(Value) / sizeof(Part);
-  Part* const sorted = reinterpret_cast<Part*>(spare.data());
+  Part* const sorted = reinterpret_cast<Part*>(scratch.data());
   Part* const whole = reinterpret_cast<Part*>(field.data());
   for (int k = 0; k < parts; ++k) {
     Kokkos::parallel_for(
@@ -112,9 +115,9 @@ bool is_uniform(const RigidPoints<Space, T, Dim>&, const void*) {
   return false;
 }
 
-template <class Space, class Points_, class Order, class Spare>
-void permute_fields(const Space& space, Points_& points, const Order& order, const Spare& spare) {
-  const auto field = [&](const auto& view) { permute(space, view, order, points.all, spare); };
+template <class Space, class Points_, class Order, class ScratchView>
+void permute_fields(const Space& space, Points_& points, const Order& order, const ScratchView& scratch) {
+  const auto field = [&](const auto& view) { permute(space, view, order, points.all, scratch); };
   field(points.id);
   for_each_field(points, [&](const auto& view) {
     if (!is_uniform(points, view.data())) field(view);
@@ -122,8 +125,8 @@ void permute_fields(const Space& space, Points_& points, const Order& order, con
 }
 /// Points that live in memory of the host are moved there by its own threads: a device would read and write
 /// it in pieces.
-template <class Space, class Points_, class Spare>
-void permute_fields(const Space& space, Sorted<Space, Points_>& set, const Spare& spare) {
+template <class Space, class Points_, class ScratchView>
+void permute_fields(const Space& space, ParticleSet<Space, Points_>& set, const ScratchView& scratch) {
   if constexpr (is_device<Space>) {
     const bool at_host = set.order.use_count() == 0;  // memory of Batches::store
     if (at_host) {
@@ -131,11 +134,11 @@ void permute_fields(const Space& space, Sorted<Space, Points_>& set, const Spare
       const Kokkos::View<int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> order(set.order.data(),
                                                                                  set.order.extent(0));
       space.fence("mpm::before the host's threads");
-      permute_fields(threads, set.points, order, spare);
+      permute_fields(threads, set.points, order, scratch);
       return threads.fence("mpm::permute_fields");
     }
   }
-  permute_fields(space, set.points, set.order, spare);
+  permute_fields(space, set.points, set.order, scratch);
 }
 
 /// Numbers of slots of each colour that hold points, and of the points.
@@ -165,11 +168,11 @@ struct ColourOfSlot {
 
 /// What holds points: how many of them have a slot, and these slots, ordered by the colour of their patch.
 template <class Space, class Points_, int Dim>
-void list_held(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches) {
+void list_held(const Space& space, ParticleSet<Space, Points_>& set, const Patches<Space, Dim>& patches) {
   using Range = Kokkos::RangePolicy<Space>;
   const int slots = patches.slots;
-  ensure(set.bins.by_colour, slots);
-  const auto by_colour = set.bins.by_colour, begin = set.bins.begin;
+  ensure(set.bins.active_slots, slots);
+  const auto active_slots = set.bins.active_slots, begin = set.bins.begin;
   const ColourOfSlot<Space, Dim> colour_of{begin, patches.origin};
   Held<Dim> held, first;
   Kokkos::parallel_reduce(
@@ -191,19 +194,19 @@ void list_held(const Space& space, Sorted<Space, Points_>& set, const Patches<Sp
       "mpm::slots_by_colour", Range(space, 0, slots), KOKKOS_LAMBDA(int slot, Held<Dim>& n, bool last) {
         const int colour = colour_of(slot);
         if (colour < 0) return;
-        if (last) by_colour(first.slots[colour] + n.slots[colour]) = slot;
+        if (last) active_slots(first.slots[colour] + n.slots[colour]) = slot;
         ++n.slots[colour];
       });
 }
 
-template <class Space, class Points_, int Dim, class Spare>
-void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Space, Dim>& patches,
-              const Kokkos::View<int*, typename Space::memory_space>& marks, Spare& spare) {
+template <class Space, class Points_, int Dim, class ScratchView>
+void sort_set(const Space& space, ParticleSet<Space, Points_>& set, const Patches<Space, Dim>& patches,
+              const Kokkos::View<int*, typename Space::memory_space>& marks, ScratchView& scratch) {
   const int cells = patches.node_count();
-  ensure(spare, spare_of_point(set.points) * set.points.all);
+  ensure(scratch, scratch_of_point(set.points) * set.points.all);
   count_by_cell(space, set, patches.slot_of, marks, cells, Patch<Dim>::cells);
-  order_points(space, set, spare, cells);
-  permute_fields(space, set, spare);
+  order_points(space, set, scratch, cells);
+  permute_fields(space, set, scratch);
   list_held(space, set, patches);
 }
 
@@ -211,9 +214,9 @@ void sort_set(const Space& space, Sorted<Space, Points_>& set, const Patches<Spa
 
 template <class Space, class T, int Dim>
 void sort_points(State<Space, T, Dim>& s) {
-  sort_set(s.space, s.soil, s.patches, s.marks, s.spare);
+  sort_set(s.space, s.soil, s.patches, s.marks, s.scratch);
   s.soil.points.all = s.soil.points.count;  // what is left belongs to other ranks now
-  for (auto& set : s.rigid_points) sort_set(s.space, set, s.patches, s.marks, s.spare);
+  for (auto& set : s.rigid_points) sort_set(s.space, set, s.patches, s.marks, s.scratch);
 }
 
 /// Distance [cells] of a surface from the middle of a patch, beyond which it touches no node that particles
@@ -229,7 +232,7 @@ template <class Space, class T, int Dim>
 void mark_near_rigids(State<Space, T, Dim>& s) {
   ensure(s.near_rigid, s.patches.slots);
   const auto near = s.near_rigid;
-  const auto around = s.patches.around;
+  const auto neighbours = s.patches.neighbours;
   const auto origin = s.patches.origin;
   const auto number = s.patches.number;
   const auto rigids = s.rigids;
@@ -243,8 +246,8 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
     Kokkos::parallel_for(
         "mpm::mark_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
           bool holds = grid.field_of(number(slot)) > 0;  // where no rigid has points
-          for (int k = 0; k < Patch<Dim>::around; ++k) {
-            const int other = around(slot, k);
+          for (int k = 0; k < Patch<Dim>::neighbours; ++k) {
+            const int other = neighbours(slot, k);
             holds |= other >= 0 && begin(other * Patch<Dim>::cells) < begin((other + 1) * Patch<Dim>::cells);
           }
           if (!holds) return;
@@ -283,7 +286,7 @@ template <class Space, class T, int Dim>
 void average_pressure(State<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
   const auto begin = s.soil.bins.begin;
-  const T share = static_cast<T>(s.f_bar_share);
+  const T fraction = static_cast<T>(s.f_bar_fraction);
   Kokkos::parallel_for(
       "mpm::average_pressure", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
       KOKKOS_LAMBDA(int cell) {
@@ -293,7 +296,7 @@ void average_pressure(State<Space, T, Dim>& s) {
           sum += soil.volume(p) * mean_of(soil.stress(p));
         }
         for (int p = begin(cell); p < begin(cell + 1); ++p) {
-          const T change = share * (sum / volume - mean_of(soil.stress(p)));
+          const T change = fraction * (sum / volume - mean_of(soil.stress(p)));
           for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
         }
       });
@@ -307,7 +310,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   sort_points(s);
   build_lists(s);
   if (!s.rigid_points.empty()) mark_near_rigids(s);
-  if (s.f_bar_share > 0 && !s.keeps_stress) average_pressure(s);
+  if (s.f_bar_fraction > 0 && !s.keeps_stress) average_pressure(s);
 
   s.plan = plan_step(s);
   s.summed = {};
@@ -316,8 +319,8 @@ void sort_and_list(State<Space, T, Dim>& s) {
   Kokkos::deep_copy(s.space, s.strays.alone, 0);
   const int nodes = s.patches.node_count();
   ensure(s.nodes.soil, nodes);
-  ensure(s.nodes.motion, nodes);
-  if (s.xpic_order > 0) ensure(s.nodes.rest, nodes);
+  ensure(s.nodes.kinematics, nodes);
+  if (s.xpic_order > 0) ensure(s.nodes.residual, nodes);
   if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
   if (s.shear_share) ensure(s.nodes.strength, nodes);
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)

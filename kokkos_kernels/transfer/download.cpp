@@ -55,13 +55,15 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int rigid) {
   const auto& points = s.rigid_points[rigid].points;
-  const auto home = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.home);
+  const auto reference_position =
+      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.reference_position);
   const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
   std::vector<double> position(std::size_t(points.all) * Dim);
   for (int p = 0; p < points.all; ++p)
     for (int d = 0; d < Dim; ++d)
-      position[std::size_t(id(p)) * Dim + d] = home(p)[d] * s.spacing + rigids(rigid).displacement[d];
+      position[std::size_t(id(p)) * Dim + d] =
+          reference_position(p)[d] * s.spacing + rigids(rigid).displacement[d];
   return position;
 }
 
@@ -76,38 +78,10 @@ std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s) {
   return rigids;
 }
 
-template <class Space, class T, int Dim>
-std::size_t memory_of(const State<Space, T, Dim>& s) {
-  std::size_t bytes = 0;
-  const auto add = [&](const auto& view) {
-    const bool at_host = view.use_count() == 0;  // memory of Batches::store
-    if (!at_host) bytes += view.span() * sizeof(*view.data());
-  };
-  const auto add_set = [&](const auto& set) {
-    add(set.points.cell), add(set.points.id), add(set.address), add(set.order);
-    add(set.bins.begin), add(set.bins.by_colour), add(set.bins.list_begin), add(set.bins.list),
-        add(set.bins.blocks), add(set.bins.windows.place), add(set.bins.windows.sums);
-    auto points = set.points;
-    for_each_field(points, add);
-  };
-  add_set(s.soil);
-  for (const auto& set : s.rigid_points) add_set(set);
-  add(s.patches.slot_of), add(s.patches.number), add(s.patches.origin), add(s.patches.around), add(s.marks),
-      add(s.spare);
-  add(s.nodes.soil), add(s.nodes.motion), add(s.nodes.rest), add(s.nodes.boundary), add(s.nodes.impulse);
-  add(s.nodes.strength), add(s.nodes.rigid), add(s.near_rigid), add(s.vertices), add(s.strays.alone);
-  add(s.boundary_windows.sums), add(s.strength_windows.sums);
-  for (const auto* more : {&s.next_sums, &s.last_sums})
-    add(more->soil), add(more->boundary), add(more->rigid);
-  add(s.batches.room), add(s.batches.slots);
-  return bytes;
-}
-
 #define MPM_INSTANTIATE(Space, T, Dim)                                                     \
   template SoilFields download_soil(const State<Space, T, Dim>&);                          \
   template std::vector<double> download_rigid_positions(const State<Space, T, Dim>&, int); \
-  template std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>&);                     \
-  template std::size_t memory_of(const State<Space, T, Dim>&);
+  template std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -28,8 +28,4 @@ std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int 
 template <class Space, class T, int Dim>
 std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s);
 
-/// Bytes of device memory that the state holds.
-template <class Space, class T, int Dim>
-std::size_t memory_of(const State<Space, T, Dim>& s);
-
 }  // namespace mpm

@@ -20,7 +20,7 @@ long number_of(const Grid<T, Dim>& grid, const Coord<Dim>& at) {
 
 template <class Space, class T, int Dim>
 NodeFields download_nodes(const State<Space, T, Dim>& s) {
-  using S = SoilShare<Dim>;
+  using S = SoilTerms<Dim>;
   const auto soil = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.soil);
   const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
   const auto place = [&](int i) {

@@ -66,10 +66,10 @@ SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
   const auto number = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.number);
   const auto impulse = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
   // Of several ranks one answers for a node: what the others have there may be long out of date.
-  const auto counted = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.counted);
+  const auto owned_nodes = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.owned_nodes);
   const int rigids = static_cast<int>(s.rigid_points.size());
   const auto holds_some = [&](int i) {
-    if (counted.extent(0) > 0 && (counted(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0)
+    if (owned_nodes.extent(0) > 0 && (owned_nodes(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0)
       return false;
     for (int r = 0; r < rigids; ++r)
       if (impulse(r, i) != 0 || std::signbit(impulse(r, i))) return true;
@@ -160,7 +160,7 @@ void restore_whole(View& view, const std::vector<long>& values) {
 
 /// Points with their addresses, not sorted yet. The name of a field that does not fit, or nothing.
 template <class Space, class Points_>
-std::string restore_points(Sorted<Space, Points_>& set, const SavedPoints& saved) {
+std::string restore_points(ParticleSet<Space, Points_>& set, const SavedPoints& saved) {
   auto& points = set.points;
   points.count = points.all = static_cast<int>(saved.id.size());
   std::string missing;

@@ -25,7 +25,7 @@ void fill_view(View& view, const std::string& label, int count, Get&& get) {
 /// fault. field_of(p): velocity field of point p.
 template <class Space, class T, int Dim, class Points_, class Field>
 void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<double>& position,
-                  const Field& field_of, Sorted<Space, Points_>& set, Fault& fault) {
+                  const Field& field_of, ParticleSet<Space, Points_>& set, Fault& fault) {
   const int count = set.points.all = set.points.count;
   std::vector<long> address(count);
   std::vector<Vector<T, Dim>> coordinate(count);
@@ -57,15 +57,15 @@ double common_mass(const BodyInput& body) {
 
 /// Bytes of scratch memory that sorting the rigid with the most points takes.
 template <class Space, class T, int Dim>
-std::size_t spare_of_rigids(const std::vector<RigidInput>& rigids) {
+std::size_t scratch_of_rigids(const std::vector<RigidInput>& rigids) {
   RigidPoints<Space, T, Dim> points;
   std::size_t most = 0;
   for (const RigidInput& rigid : rigids) most = std::max(most, rigid.position.size() / Dim);
-  return most * spare_of_point(points);
+  return most * scratch_of_point(points);
 }
 
-/// As many columns as the laws of the bodies need, and their names: those of the variables where the laws
-/// agree.
+/// As many columns as the materials of the bodies need, and their names: those of the variables where the
+/// laws agree.
 template <class Space, class T>
 void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& materials,
                   const std::vector<BodyInput>& bodies) {
@@ -76,7 +76,8 @@ void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& 
   }();
   history.columns = 0;
   for (const BodyInput& body : bodies) {
-    const auto variables = state_variables(materials[body.material].model);
+    const MaterialInput& material = materials[body.material];
+    const auto variables = state_variables(material.model, material.parameters);
     for (int k = 0; k < static_cast<int>(variables.size()); ++k) {
       const bool first = k >= history.columns;
       const std::string name = variables[k].name;
@@ -102,7 +103,7 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
   soil.has_own_mass =
       std::any_of(bodies.begin(), bodies.end(), [](const BodyInput& body) { return body.least_mass > 0; });
   name_columns(soil.history, materials, bodies);
-  if (s.batches.in_use()) store_soil(s, soil.count, spare_of_rigids<Space, T, Dim>(rigids));
+  if (s.batches.in_use()) store_soil(s, soil.count, scratch_of_rigids<Space, T, Dim>(rigids));
   s.grid.fields = 1;
   for (const BodyInput& body : bodies) s.grid.fields = std::max(s.grid.fields, body.velocity_field + 1);
   const auto field_of = [&](int p) { return bodies[body_of[p]].velocity_field; };
@@ -196,7 +197,7 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
     const auto first_field = [](int) { return 0; };
     place_points(s.grid, spacing, rigids[r].position, first_field, s.rigid_points[r], fault);
     if (sound && fault.kind != FaultKind::none) fault.particle = -1 - static_cast<int>(r);
-    fill_view(points.home, "mpm::home", points.count, [&](int p) {
+    fill_view(points.reference_position, "mpm::reference_position", points.count, [&](int p) {
       Vector<double, Dim> x;
       for (int d = 0; d < Dim; ++d) x[d] = rigids[r].position[std::size_t(p) * Dim + d] / spacing;
       return x;
@@ -251,25 +252,6 @@ Surface<Dim> surface_of(const SurfaceInput& in) {
 template Surface<2> surface_of(const SurfaceInput&);
 template Surface<3> surface_of(const SurfaceInput&);
 
-template <class Space>
-bool device_agrees(const Space& space) {
-  using Memory = typename Space::memory_space;
-  constexpr int count = 37;
-  const Kokkos::View<int* [3], Kokkos::LayoutRight, Memory> first("mpm::first", count);
-  const Kokkos::View<double*, Memory> second("mpm::second", count);
-  Kokkos::parallel_for(
-      "mpm::device_agrees", Kokkos::RangePolicy<Space>(space, 0, count), KOKKOS_LAMBDA(int n) {
-        for (int k = 0; k < static_cast<int>(first.extent(1)); ++k) first(n, k) = n + k;
-        second(n) = static_cast<double>(second.extent(0)) + n;
-      });
-  const auto a = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), first);
-  const auto b = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), second);
-  bool agrees = true;
-  for (int n = 0; n < count; ++n)
-    for (int k = 0; k < 3; ++k) agrees = agrees && a(n, k) == n + k && b(n) == count + n;
-  return agrees;
-}
-
 template <class Space, class T, int Dim>
 Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
              const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids) {
@@ -308,23 +290,15 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
     s.soil_boundary = s.soil_boundary || rigid.shear_share > 0;
   }
   s.control = ControlView<Space>("mpm::control");
-  s.roll = decltype(s.roll)("mpm::roll");
+  s.launch_barrier = decltype(s.launch_barrier)("mpm::launch_barrier");
   s.movements.bits = decltype(s.movements.bits)("mpm::movements");
-  s.sums = decltype(s.sums)("mpm::sums", Dim * rigids.size());
+  s.rigid_force = decltype(s.rigid_force)("mpm::rigid_force", Dim * rigids.size());
   upload_soil(s, materials, bodies, rigids, fault);
   if (s.affine) upload_affine(s, bodies);
   upload_rigids(s, rigids, k_rigid_cut, fault);
   if (fault.kind == FaultKind::none) sort_and_list(s);
   return fault;
 }
-
-template bool device_agrees(const Kokkos::Serial&);
-#ifdef KOKKOS_ENABLE_OPENMP
-template bool device_agrees(const Kokkos::OpenMP&);
-#endif
-#ifdef KOKKOS_ENABLE_CUDA
-template bool device_agrees(const Kokkos::Cuda&);
-#endif
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                              \
   template Fault upload(State<Space, T, Dim>&, const GridInput&, const std::vector<MaterialInput>&, \

@@ -8,11 +8,6 @@
 
 namespace mpm {
 
-/// Whether a kernel reads from views what the host wrote there: false where the host compiler and the device
-/// compiler lay out Kokkos' views differently.
-template <class Space>
-bool device_agrees(const Space& space);
-
 /// The background mesh for kernels.
 struct GridInput {
   double spacing = 1;  // m

@@ -5,9 +5,8 @@
 #include <iterator>
 #include <map>
 
-#include "checksum.hpp"
-#include "input/text.hpp"
-#include "output/log.hpp"
+#include "common/checksum.hpp"
+#include "common/text.hpp"
 
 namespace mpm {
 namespace {

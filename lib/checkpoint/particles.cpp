@@ -5,8 +5,8 @@
 
 #include "checkpoint/checkpoint.hpp"
 #include "checkpoint/sealed_file.hpp"
-#include "input/material_table.hpp"
-#include "input/text.hpp"
+#include "common/material_table.hpp"
+#include "common/text.hpp"
 #include "mesh/background.hpp"
 
 namespace mpm {

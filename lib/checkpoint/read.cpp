@@ -4,8 +4,8 @@
 #include "checkpoint/archive.hpp"
 #include "checkpoint/id_blocks.hpp"
 #include "checkpoint/sealed_file.hpp"
-#include "input/text.hpp"
-#include "output/hdf5_handle.hpp"
+#include "common/hdf5_handle.hpp"
+#include "common/text.hpp"
 
 namespace mpm {
 namespace {

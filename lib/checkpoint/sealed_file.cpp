@@ -10,11 +10,11 @@
 #include <cstring>
 #include <vector>
 
-#include "checksum.hpp"
+#include "common/checksum.hpp"
+#include "common/collectives.hpp"
+#include "common/regular_file.hpp"
+#include "common/text.hpp"
 #include "output/files.hpp"
-#include "output/log.hpp"
-#include "parallel/together.hpp"
-#include "regular_file.hpp"
 
 namespace mpm {
 namespace {

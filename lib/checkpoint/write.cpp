@@ -7,10 +7,10 @@
 #include "checkpoint/archive.hpp"
 #include "checkpoint/id_blocks.hpp"
 #include "checkpoint/sealed_file.hpp"
+#include "common/collectives.hpp"
+#include "common/hdf5_handle.hpp"
 #include "output/files.hpp"
-#include "output/hdf5_handle.hpp"
 #include "output/shared_file.hpp"
-#include "parallel/together.hpp"
 
 namespace mpm {
 namespace {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <map>
 
+#include "common/text.hpp"
 #include "input/deck.hpp"
 #include "input/options.hpp"
-#include "input/text.hpp"
 
 namespace mpm {
 namespace {

@@ -16,4 +16,19 @@ double largest_courant(const Config& config);
 /// The Courant number of a run whose user gives none: 0.5, or 95 % of the largest one if that is less.
 double standard_courant(const Config& config);
 
+/// What bounds the time step: the step at a Courant number of 1, by waves, and the largest one by an explicit
+/// viscosity away from the rim of a body (viscous_time_step); infinite where there is none.
+struct StepLimits {
+  double wave, viscous;  // s
+};
+
+/// The largest stable step [s] of waves alone, and of the viscosity alone at the rim of a body too.
+StepLimits largest_steps(const StepLimits& limits, const Config& config);
+
+/// Time step [s] of a Courant number. Where soil has an explicit viscosity too, a mode of frequency omega
+/// that the viscosity damps at the rate c, dv/dt = -c v, is stable while (omega dt / 2)^2 + c dt / 2 <= 1:
+/// the waves take the square of their share of dt, the viscosity its share, and their sum is (courant /
+/// largest_courant)^2, as with waves alone.
+double step_of(const StepLimits& limits, double courant, const Config& config);
+
 }  // namespace mpm

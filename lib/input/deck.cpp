@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "input/text.hpp"
+#include "common/text.hpp"
 
 namespace mpm {
 namespace {

@@ -18,6 +18,27 @@ void read_material(OptionReader& in, const std::string& name, MaterialConfig& ma
 /// A parameter of a material by its key; NaN where its model has none of that name.
 double parameter_of(const MaterialConfig& material, const std::string& key);
 
+/// What the law of a material says of its parameters for the log.
+std::vector<std::string> warnings_of_law(const MaterialConfig& material);
+
+/// Sets the parameters of a sound material that depend on the mesh's spacing [m] and the largest initial mean
+/// stress in compression of its soil [Pa]; 0 where it is not known yet.
+void prepare_material(MaterialConfig& material, double spacing, double largest_pressure);
+
+/// The same for all materials, each with the largest pressure of its bodies.
+void prepare_for_pressure(double spacing, Config& config);
+
+/// Whether a particle of a sound material may start at a height [m] with a stress [Pa]; reports why it may
+/// not.
+bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
+                 const Sym6& stress);
+
+/// Checks the starts of the particles of a body of a sound material, by the lowest and highest point of its
+/// shape or by the file that lists them, and notes their largest pressure. Particles whose state a file gives
+/// go on as they are.
+void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config, const ParticleTable& listed,
+                  BodyConfig& body);
+
 /// Whether soil of a material has a strength, somewhere.
 bool has_strength(const MaterialConfig& material);
 

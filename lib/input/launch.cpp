@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "input/text.hpp"
+#include "common/text.hpp"
 
 namespace mpm {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/material_table.hpp"
+#include "common/text.hpp"
 #include "input/groups.hpp"
-#include "input/material_table.hpp"
-#include "input/text.hpp"
 #include "output/own_files.hpp"
 
 namespace mpm {
@@ -58,7 +58,7 @@ ParticleSource source_of(const BodyConfig& body, const Config& config) {
   ParticleSource source = source_of(body);
   if (body.material >= static_cast<int>(config.materials.size())) return source;  // reported
   for (const StateVariable& variable : state_variables(config.materials[body.material].model))
-    if (variable.changes) source.state.push_back(variable.name);
+    if (variable.changes && variable.output) source.state.push_back(variable.name);
   return source;
 }
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
+#include "common/material_table.hpp"
+#include "common/text.hpp"
 #include "input/groups.hpp"
-#include "input/text.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/materials/list.hpp"
 
@@ -15,14 +17,15 @@ namespace {
 /// A model's table without the types of its members.
 struct Model {
   std::string name;
-  std::vector<Option> options;          // names without the material's
-  std::vector<double> standard;         // NaN: required
-  std::vector<std::string> instead_of;  // the key of another parameter, or empty
+  std::vector<Option> options;                    // names without the material's
+  std::vector<double> standard;                   // NaN: required
+  std::vector<std::string> instead_of;            // the key of another parameter, or empty
+  std::vector<std::vector<ParameterWord>> words;  // beside the numbers of the range, or alone
 };
 
 template <class M>
 Model table_of() {
-  Model model{M::k_name, {}, {}, {}};
+  Model model{M::k_name, {}, {}, {}, {}};
   for (const auto& p : M::parameters()) {
     model.options.push_back({.name = p.key,
                              .meaning = p.meaning,
@@ -31,6 +34,9 @@ Model table_of() {
                              .required = std::isnan(p.standard)});
     model.standard.push_back(p.standard);
     model.instead_of.push_back(p.instead_of != nullptr ? p.instead_of : "");
+    auto& words = model.words.emplace_back();
+    for (const ParameterWord& word : p.words)
+      if (word.word != nullptr) words.push_back(word);
   }
   return model;
 }
@@ -47,6 +53,25 @@ std::string stand_in_for(const Model& model, const std::string& key) {
   return "";
 }
 
+/// Reads a parameter that takes words, and numbers too where its range holds any.
+void read_with_words(OptionReader& in, Option option, const std::vector<ParameterWord>& words,
+                     double& value) {
+  std::vector<std::string> names;
+  int chosen = 0;
+  for (const ParameterWord& word : words) {
+    if (word.value == value) chosen = static_cast<int>(names.size()), option.standard = word.word;
+    names.push_back(word.word);
+  }
+  const bool takes_numbers = option.range.lowest <= option.range.highest;
+  const std::string given = in.given_text(option.name);
+  if (!takes_numbers || std::find(names.begin(), names.end(), given) != names.end()) {
+    if (in.word(option, names, chosen)) value = words[chosen].value;
+  } else {
+    option.aside = ", or " + one_of(names) + option.aside;
+    in.number(option, value);
+  }
+}
+
 void read_parameters(OptionReader& in, const std::string& name, const Model& model,
                      std::vector<double>& parameters) {
   for (std::size_t k = 0; k < model.options.size(); ++k) {
@@ -59,6 +84,8 @@ void read_parameters(OptionReader& in, const std::string& name, const Model& mod
     if (!stand_in.empty() && in.given(name + "_" + stand_in)) {
       in.not_taken(option.name, "-" + name + "_" + stand_in + " is in its place");
       value = 0;
+    } else if (!model.words[k].empty()) {
+      read_with_words(in, option, model.words[k], value);
     } else {
       in.number(option, value);
     }
@@ -66,29 +93,30 @@ void read_parameters(OptionReader& in, const std::string& name, const Model& mod
   }
 }
 
-/// Rejects the parameters that only other models have.
+/// Rejects the parameters that only other models have, each once.
 void reject_others(OptionReader& in, const std::string& name, const Model& model,
                    const std::vector<Model>& models) {
-  const auto has = [](const Model& m, const std::string& key) {
-    for (const auto& option : m.options)
-      if (option.name == key) return true;
-    return false;
-  };
+  std::set<std::string> known;
+  for (const auto& option : model.options) known.insert(option.name);
   for (const Model& other : models)
     for (const auto& option : other.options)
-      if (!has(model, option.name))
+      if (known.insert(option.name).second)
         in.not_taken(name + "_" + option.name, "the model " + model.name + " has no such parameter");
+}
+
+/// A law's text with the material's own prefix in the place of -NAME_.
+std::string with_prefix(std::string text, const std::string& name) {
+  const std::string prefix = "-NAME_";
+  for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix, at))
+    text.replace(at, prefix.size(), "-" + name + "_");
+  return text;
 }
 
 /// What the law itself says of its parameters.
 void check_together(OptionReader& in, const std::string& name, int model,
                     const std::vector<double>& parameters) {
-  ParameterFault fault = parameter_fault(make_material<double>(model, parameters));
-  if (fault.key.empty()) return;
-  const std::string prefix = "-NAME_";
-  for (auto at = fault.takes.find(prefix); at != std::string::npos; at = fault.takes.find(prefix, at))
-    fault.takes.replace(at, prefix.size(), "-" + name + "_");
-  in.reject(name + "_" + fault.key, fault.takes);
+  const ParameterFault fault = parameter_fault(make_material<double>(model, parameters));
+  if (!fault.key.empty()) in.reject(name + "_" + fault.key, with_prefix(fault.takes, name));
 }
 
 }  // namespace
@@ -133,12 +161,32 @@ void read_material(OptionReader& in, const std::string& name, MaterialConfig& ma
   }
 }
 
+std::vector<std::string> warnings_of_law(const MaterialConfig& material) {
+  const int model = model_index(material.model);
+  if (model < 0) return {};
+  const std::string text = warning_of(make_material<double>(model, material.parameters));
+  return text.empty() ? std::vector<std::string>{} : split(with_prefix(text, material.name), '\n');
+}
+
+void prepare_material(MaterialConfig& material, double spacing, double largest_pressure) {
+  material.parameters =
+      parameters_for(model_index(material.model), material.parameters, {spacing, largest_pressure});
+}
+
+bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
+                 const Sym6& stress) {
+  const auto law = make_material<double>(model_index(material.model), material.parameters);
+  const ParameterFault fault = start_fault(law, {.position = {}, .height = height, .stress = stress});
+  if (fault.key.empty()) return true;
+  const bool of_body = fault.key == "stress";
+  in.reject((of_body ? body : material.name) + "_" + fault.key, with_prefix(fault.takes, material.name));
+  return false;
+}
+
 bool has_strength(const MaterialConfig& material) {
   constexpr double k_far = 1e9;  // m
-  const auto models = material_models();
-  const auto found = std::find(models.begin(), models.end(), material.model);
-  if (found == models.end()) return false;  // reported
-  const int model = static_cast<int>(found - models.begin());
+  const int model = model_index(material.model);
+  if (model < 0) return false;  // reported
   const AnyMaterial<double> law = make_material<double>(model, material.parameters);
   return strength_at(law, -k_far) > 0 || strength_at(law, k_far) > 0;
 }

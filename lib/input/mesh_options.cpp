@@ -1,7 +1,7 @@
 #include <cmath>
 
+#include "common/text.hpp"
 #include "input/groups.hpp"
-#include "input/text.hpp"
 
 namespace mpm {
 namespace {

@@ -4,9 +4,9 @@
 #include <cctype>
 #include <set>
 
+#include "common/text.hpp"
 #include "input/groups.hpp"
 #include "input/petsc_names.hpp"
-#include "input/text.hpp"
 
 namespace mpm {
 namespace {
@@ -113,8 +113,10 @@ void read_cut_out(OptionReader& in, const Listed& listed, BodyConfig& body) {
   }
 }
 
+/// sound_materials: no mistake was found in them.
 void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, const Listed& names,
-               BodyConfig& body) {
+               bool sound_materials, BodyConfig& body) {
+  const auto errors = in.errors();
   in.section("Each body or rigid NAME: its shape and particles");
   const bool sound = read_shape(in, body.name, config.dim, /*listed*/ true, body.shape);
   const bool from_file = body.shape.kind == ShapeKind::particles;
@@ -133,10 +135,13 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
             materials, body.material);
   read_start(in, config.dim, body);
   read_cut_out(in, names, body);
-  if (!sound || !mesh || !from_file) return;
+  if (!sound || !mesh) return;
   ParticleTable listed;
-  check_particles(in, body, config, *mesh, listed);
-  check_density(in, body, config, listed);
+  if (from_file) {
+    check_particles(in, body, config, *mesh, listed);
+    check_density(in, body, config, listed);
+  }
+  if (sound_materials && in.errors() == errors) check_starts(in, *mesh, config, listed, body);
 }
 
 /// What moves a rigid: each motion takes its own options.
@@ -274,16 +279,21 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
     for (const char* list : {"materials", "bodies", "rigids"}) leave_out(in, list, names);
     forgive_unlisted(in, names);
   }
+  auto errors = in.errors();
   for (const auto& name : materials) read_material(in, name, config.materials.emplace_back());
-  const auto errors = in.errors();
+  const bool sound_materials = mesh && in.errors() == errors && !in.listing();
+  if (sound_materials)
+    for (MaterialConfig& material : config.materials) prepare_material(material, mesh->spacing, 0);
+  errors = in.errors();
   for (const auto& name : bodies) {
     config.bodies.emplace_back().name = name;
-    read_body(in, mesh, config, {bodies, rigids}, config.bodies.back());
+    read_body(in, mesh, config, {bodies, rigids}, sound_materials, config.bodies.back());
   }
   for (const auto& name : rigids) {
     config.rigids.emplace_back().name = name;
     read_rigid(in, mesh, config, config.rigids.back());
   }
+  if (sound_materials) prepare_for_pressure(mesh->spacing, config);
   if (mesh && in.errors() == errors)
     for (const auto& body : config.bodies) check_cut_out(in, *mesh, config, body);
 }

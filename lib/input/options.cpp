@@ -5,12 +5,11 @@
 #include <filesystem>
 
 #include "checkpoint/changes.hpp"
+#include "common/text.hpp"
 #include "input/courant.hpp"
 #include "input/groups.hpp"
 #include "input/reader.hpp"
-#include "input/text.hpp"
 #include "output/frame_fields.hpp"
-#include "output/log.hpp"
 
 namespace mpm {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <memory>
 
+#include "common/collectives.hpp"
+#include "common/text.hpp"
 #include "input/filled.hpp"
 #include "input/groups.hpp"
-#include "input/text.hpp"
-#include "parallel/together.hpp"
 
 namespace mpm {
 namespace {

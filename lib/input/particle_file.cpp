@@ -5,11 +5,10 @@
 #include <numeric>
 
 #include "checkpoint/particles.hpp"
-#include "input/text.hpp"
-#include "memory_need.hpp"
-#include "output/hdf5_handle.hpp"
-#include "output/log.hpp"
-#include "regular_file.hpp"
+#include "common/hdf5_handle.hpp"
+#include "common/host_memory.hpp"
+#include "common/regular_file.hpp"
+#include "common/text.hpp"
 
 namespace mpm {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "common/snapshot.hpp"
 #include "mpm/config.hpp"
-#include "output/snapshot.hpp"
 
 namespace mpm {
 

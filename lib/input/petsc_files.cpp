@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "common/text.hpp"
 #include "input/groups.hpp"
-#include "input/text.hpp"
 
 namespace mpm {
 namespace {

@@ -38,8 +38,8 @@ double disc_area(double r, const Window& in) {
 }
 
 /// Integral from a to b of what is smooth but for its ends (Takahasi & Mori 1974).
-template <class Function>
-double integral(double a, double b, Function&& f) {
+template <class StepPhase>
+double integral(double a, double b, StepPhase&& f) {
   constexpr double k_step = 0.08;
   constexpr int k_points = 40;
   double sum = 0;

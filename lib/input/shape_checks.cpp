@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/text.hpp"
 #include "input/groups.hpp"
 #include "input/shapes.hpp"
-#include "input/text.hpp"
 
 namespace mpm {
 namespace {

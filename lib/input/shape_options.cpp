@@ -3,9 +3,9 @@
 #include <numbers>
 #include <set>
 
+#include "common/text.hpp"
 #include "input/groups.hpp"
 #include "input/polygon.hpp"
-#include "input/text.hpp"
 
 namespace mpm {
 namespace {

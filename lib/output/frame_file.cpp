@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "output/hdf5_handle.hpp"
+#include "common/hdf5_handle.hpp"
 #include "output/shared_file.hpp"
 
 namespace mpm {

@@ -1,8 +1,8 @@
 #include "output/frame_index.hpp"
 
-#include "numbers.hpp"
+#include "common/hdf5_handle.hpp"
+#include "common/numbers.hpp"
 #include "output/frame_fields.hpp"
-#include "output/hdf5_handle.hpp"
 
 namespace mpm {
 namespace {

@@ -1,6 +1,6 @@
 #include "output/frame_queue.hpp"
 
-#include "parallel/together.hpp"
+#include "common/collectives.hpp"
 
 namespace mpm {
 namespace {

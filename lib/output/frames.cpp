@@ -2,9 +2,9 @@
 
 #include <cstdio>
 
+#include "common/collectives.hpp"
 #include "output/files.hpp"
 #include "output/frame_file.hpp"
-#include "parallel/together.hpp"
 
 namespace mpm {
 namespace {

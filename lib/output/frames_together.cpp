@@ -9,11 +9,11 @@
 #include <map>
 #include <span>
 
+#include "common/collectives.hpp"
 #include "output/files.hpp"
 #include "output/frame_file.hpp"
 #include "output/frames.hpp"
 #include "output/shared_file.hpp"
-#include "parallel/together.hpp"
 
 namespace mpm {
 namespace {

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <fstream>
 
-#include "checksum.hpp"
-#include "numbers.hpp"
+#include "common/checksum.hpp"
+#include "common/numbers.hpp"
 #include "output/files.hpp"
 
 namespace mpm {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
+#include "common/snapshot.hpp"
 #include "mpm/config.hpp"
-#include "output/snapshot.hpp"
 
 namespace mpm {
 

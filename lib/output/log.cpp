@@ -14,6 +14,7 @@
 #include <ctime>
 #include <fstream>
 
+#include "common/text.hpp"
 #include "output/files.hpp"
 
 namespace mpm {
@@ -33,15 +34,6 @@ double share_done(const ProgressState& s) {
 }
 
 }  // namespace
-
-std::string formatted(const char* format, ...) {
-  char buffer[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 std::string processor_name() {
   std::ifstream file("/proc/cpuinfo");

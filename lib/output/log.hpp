@@ -19,9 +19,6 @@ struct ProgressState {
   double particle_updates = 0;          // particles times steps since the first step
 };
 
-/// As sprintf, to a string of up to 511 characters.
-__attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...);
-
 std::string processor_name();                 // of this machine
 int usable_cores();                           // that this process may use
 std::string format_duration(double seconds);  // "42 s", "3 min 05 s", "2 h 07 min"

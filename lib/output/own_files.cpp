@@ -8,8 +8,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "input/text.hpp"
-#include "output/hdf5_handle.hpp"
+#include "common/hdf5_handle.hpp"
+#include "common/text.hpp"
 
 namespace mpm {
 namespace fs = std::filesystem;

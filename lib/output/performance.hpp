@@ -26,9 +26,9 @@ struct RankFigures {
   int ranks = 0;
   Spread particles, neighbours, halo_nodes;
   Spread sent;                 // bytes a step
-  Spread compute, halo, wait;  // s: kernels; packing and summing shares of nodes; waiting for other ranks
+  Spread compute, halo, wait;  // s: kernels; packing and summing ghost sums of nodes; waiting for other ranks
   std::optional<Spread> held;  // s that devices waited for the halo; none where nothing else runs beside it
-  std::string halo_path;       // how shares travel, in words
+  std::string halo_path;       // how ghost sums travel, in words
 };
 
 /// What a run came to. After a restart the figures are of the steps since then, but for rebuilds.
@@ -66,7 +66,7 @@ double moved_per_second(const Performance& p);
 double updates_per_second(const Performance& p);
 
 /// The report, in lines: a table of the functions with calls, seconds, share of the wall time, bytes moved,
-/// bytes per second and their share of the copy bandwidth; then looks of the host, rebuilds, memory,
+/// bytes per second and their share of the copy bandwidth; then reads of the host, rebuilds, memory,
 /// bandwidth and particle updates per second.
 std::string format_performance(const Performance& p);
 

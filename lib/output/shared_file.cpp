@@ -12,8 +12,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "common/collectives.hpp"
 #include "output/files.hpp"
-#include "parallel/together.hpp"
 
 namespace mpm {
 namespace fs = std::filesystem;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/collectives.hpp"
 #include "input/shapes.hpp"
 #include "parallel/partition.hpp"
-#include "parallel/together.hpp"
 #include "transfer/velocity_gradients.hpp"
 
 namespace mpm {

@@ -1,9 +1,9 @@
 #pragma once
 // The particles of a model, each on the rank that owns its patch.
 
+#include "common/model.hpp"
 #include "mesh/background.hpp"
 #include "mpm/config.hpp"
-#include "step/stepper.hpp"
 
 namespace mpm {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "parallel/together.hpp"
+#include "common/collectives.hpp"
 
 namespace mpm {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <petscsys.h>
 
-#include "output/snapshot.hpp"
+#include "common/snapshot.hpp"
 
 namespace mpm {
 

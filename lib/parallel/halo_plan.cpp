@@ -46,7 +46,7 @@ class Planner {
   void add(int slot, long n) {
     std::uint64_t mine = 0;
     if (inside(n) && reach_alone(n, &mine)) {
-      plan_.counted.push_back(mine);
+      plan_.owned_nodes.push_back(mine);
       plan_.border.push_back(0);
     } else {
       add(slot, reach_of(n));
@@ -113,7 +113,7 @@ class Planner {
       (rank == own_ ? mine : others) |= mask;
       if (rank < own_) below |= mask;
     }
-    plan_.counted.push_back(mine & ~below);
+    plan_.owned_nodes.push_back(mine & ~below);
     plan_.border.push_back(others != 0);
     for (std::uint64_t left = mine & others; left != 0; left &= left - 1) {
       const int place = std::countr_zero(left);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "parallel/together.hpp"
+#include "common/collectives.hpp"
 
 namespace mpm {
 namespace {

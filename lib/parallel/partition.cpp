@@ -7,8 +7,8 @@
 #include <numeric>
 #include <queue>
 
+#include "common/collectives.hpp"
 #include "mesh/background.hpp"
-#include "parallel/together.hpp"
 
 namespace mpm {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <petscsys.h>
 
+#include "mesh/patch_grid.hpp"
 #include "mpm/config.hpp"
-#include "parallel/patch_grid.hpp"
 
 namespace mpm {
 

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "base/spaces.hpp"
-#include "parallel/together.hpp"
+#include "common/collectives.hpp"
 
 namespace mpm {
 namespace {
@@ -149,7 +149,7 @@ PetscErrorCode PeerMemory::of(int rank, char** memory) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void PeerMemory::tell(int rank, long number) {
+void PeerMemory::notify(int rank, long number) {
   told_[rank][rank_].number.store(number, std::memory_order_release);
 }
 

@@ -26,7 +26,7 @@ class PeerMemory {
   PetscErrorCode of(int rank, char** memory);
 
   /// Tells `rank` that what it gets from here is there up to message `number`.
-  void tell(int rank, long number);
+  void notify(int rank, long number);
   /// Waits until `rank` has told so.
   void wait_for(int rank, long number) const;
 

@@ -135,7 +135,7 @@ template <class Space, class T>
 PetscErrorCode Transport<Space, T>::start(int width) {
   PetscFunctionBeginUser;
   if (path_ == HaloPath::peer)
-    for (const int rank : neighbours_) peers_.tell(rank, number_);
+    for (const int rank : neighbours_) peers_.notify(rank, number_);
   else if (path_ == HaloPath::device)
     PetscCall(exchange_.start_messages(mpi_type<T>(), width, out_.data(), in_.data()));
   else

@@ -5,9 +5,9 @@
 #include "functions/step_kernels.hpp"
 #include "functions/velocity_update.hpp"
 #include "loops/interpolation.hpp"
-#include "parallel/ranks.hpp"
+#include "parallel/decomposition.hpp"
 #include "rebuild/batches.hpp"
-#include "step/beside.hpp"
+#include "step/overlap_stream.hpp"
 #include "step/timers.hpp"
 
 namespace mpm {
@@ -27,16 +27,16 @@ void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>&
 /// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not tell them.
 /// They may be there already.
 template <class Space, class T, int Dim>
-void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& queue) {
+void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& stream) {
   if (s.summed.rigids) return;
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& set = s.rigid_points[r];
     if (set.points.surface_normal) continue;
-    const NodeField<Space, T, RigidShare<Dim>::size> out =
+    const NodeField<Space, T, RigidTerms<Dim>::size> out =
         Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL);
     interpolate<RigidSource<Space, T, Dim>>(s, strategy_of_rigids<Space>(s.p2g.strategy), set.bins,
                                             {set.points, s.rigids, r, s.patches.origin, s.spacing}, out,
-                                            queue);
+                                            stream);
   }
 }
 
@@ -56,8 +56,8 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& poi
                                                s.nodes.boundary, space);
 }
 template <class Space, class T, int Dim>
-void soil_to_nodes(const State<Space, T, Dim>& s, const Space& queue) {
-  for_all_soil(s, [&](const auto& set) { soil_to_nodes(s, set.points, set.bins, queue); });
+void soil_to_nodes(const State<Space, T, Dim>& s, const Space& stream) {
+  for_all_soil(s, [&](const auto& set) { soil_to_nodes(s, set.points, set.bins, stream); });
 }
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
@@ -66,7 +66,7 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
 
 /// The soil's strength at the nodes near rigids, where a contact asks for it.
 template <class Space, class T, int Dim>
-PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks) {
+PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
   PetscFunctionBeginUser;
   if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.strength, T(0));
   for_all_soil(s, [&](const auto& set) {
@@ -89,14 +89,14 @@ void sum_present_soil(State<Space, T, Dim>& s) {
 
 /// The velocities of the soil's particles, where XPIC or APIC is chosen: a part of function 5.
 template <class Space, class T, int Dim>
-PetscErrorCode update_velocities(State<Space, T, Dim>& s, Ranks<Space, T, Dim>* ranks) {
+PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
   PetscFunctionBeginUser;
   for (int pass = 0; pass < s.xpic_order; ++pass) {
     if (pass > 0) {
-      Kokkos::deep_copy(s.space, s.nodes.rest, T(0));
-      interpolate<RestSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, {s.soil.points, rest_of(s)},
-                                             s.nodes.rest);
-      if (ranks) PetscCall(ranks->add_rest(s));
+      Kokkos::deep_copy(s.space, s.nodes.residual, T(0));
+      interpolate<ResidualSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins,
+                                                 {s.soil.points, residual_of(s)}, s.nodes.residual);
+      if (ranks) PetscCall(ranks->add_residual(s));
     }
     xpic_pass(s, pass);
   }
@@ -109,45 +109,46 @@ template <class Space, class T, int Dim>
 struct Step {
   State<Space, T, Dim>& s;
   Timers& timers;
-  double dt;                    // s
-  Ranks<Space, T, Dim>* ranks;  // null on one rank
-  Beside<Space>* beside;        // a second stream of the device; null where there is none
+  double dt;                            // s
+  Decomposition<Space, T, Dim>* ranks;  // null on one rank
+  OverlapStream<Space>* overlap;        // null where there is none
 
   /// The paper's step. Function 7, the rebuild, is the caller's, when the movement bound says so. Out of core
   /// functions 3 and 5 take the soil batch by batch, and what function 5 does may be functions 1 and 3 of the
   /// next step.
   PetscErrorCode separate() const {
     PetscFunctionBeginUser;
-    PetscCall(run(Function::reset, [&] { reset(); }));  // 1 initialise nodal variables
+    PetscCall(run(StepPhase::reset, [&] { reset(); }));  // 1 initialise nodal variables
     PetscCall(
-        run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, s.space); }));  // 2 rigid bodies to nodes
-    PetscCall(run(Function::soil_to_nodes, [&] { sum_soil(s.space); }));       // 3 soil to nodes
-    if (ranks) PetscCall(ranks->add_soil(s));                                  //   the sum over ranks
-    PetscCall(complete_nodes(s.space));                             //   strength, particles that are alone
-    PetscCall(run(Function::nodes, [&] { update_nodes(s, dt); }));  // 4 velocities, walls, contact
-    PetscCall(run(Function::particles, [&] { return update_soil(); }));      // 5 stress, movement
-    PetscCall(run(Function::rigids, [&] { return update_rigids(false); }));  // 6 move the rigid bodies
+        run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, s.space); }));  // 2 rigid bodies to nodes
+    PetscCall(run(StepPhase::soil_to_nodes, [&] { sum_soil(s.space); }));       // 3 soil to nodes
+    if (ranks) PetscCall(ranks->add_soil(s));                                   //   the sum over ranks
+    PetscCall(complete_nodes(s.space));                              //   strength, particles that are alone
+    PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt); }));  // 4 velocities, walls, contact
+    PetscCall(run(StepPhase::particles, [&] { return update_soil(); }));      // 5 stress, movement
+    PetscCall(run(StepPhase::rigids, [&] { return update_rigids(false); }));  // 6 move the rigid bodies
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
   /// Function 5 goes on to functions 1 and 3 of the next step, so that these are here behind a rebuild alone.
-  /// What contact waits for, from the movement of the rigids on, runs on the second stream, beside the nodes
-  /// far from rigids: these learn of a pause a step late, and do then what the rebuild throws away.
+  /// The overlap stream moves the rigids and updates the nodes near them, while the main stream updates the
+  /// other nodes. The main stream learns of a pause one step late; the rebuild discards what it computed
+  /// then.
   PetscErrorCode fused() const {
     PetscFunctionBeginUser;
     const bool ends = s.plan.form == StepForm::persistent && !timers.sampling();
     const bool parts = has_stream(), parted = parts && s.summed.soil;
-    const Space& stream = parted ? beside->fork(s.space) : joined();
-    PetscCall(run(Function::reset, [&] { reset(); }));
-    PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
-    PetscCall(run(Function::soil_to_nodes, [&] { sum_soil(stream); }));
+    const Space& stream = parted ? overlap->fork(s.space) : joined();
+    PetscCall(run(StepPhase::reset, [&] { reset(); }));
+    PetscCall(run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
+    PetscCall(run(StepPhase::soil_to_nodes, [&] { sum_soil(stream); }));
     if (ranks) PetscCall(ranks->add_soil(s, stream));
     PetscCall(complete_nodes(stream));
-    PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, stream); }));
-    if (parted) beside->join(s.space);
+    PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt, stream); }));
+    if (parted) overlap->join(s.space);
     if (parted && !ranks) sum_forces(s, stream);
-    PetscCall(run(Function::particles, [&] { ends ? update_and_end(s, dt) : update_particles(s, dt); }));
-    if (!ends) PetscCall(run(Function::rigids, [&] { return update_rigids(parts && !ranks); }));
+    PetscCall(run(StepPhase::particles, [&] { ends ? update_and_end(s, dt) : update_particles(s, dt); }));
+    if (!ends) PetscCall(run(StepPhase::rigids, [&] { return update_rigids(parts && !ranks); }));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
@@ -156,18 +157,18 @@ struct Step {
   PetscErrorCode overlapped() const {
     PetscFunctionBeginUser;
     const bool parts = has_stream(), parted = parts && s.summed.soil, moves = parts && s.plan.sums_ahead;
-    const Space& stream = parted ? beside->fork(s.space) : joined();
-    PetscCall(run(Function::reset, [&] { reset(); }));
-    PetscCall(run(Function::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
-    PetscCall(run(Function::soil_to_nodes, [&] { return send_soil(); }));
+    const Space& stream = parted ? overlap->fork(s.space) : joined();
+    PetscCall(run(StepPhase::reset, [&] { reset(); }));
+    PetscCall(run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
+    PetscCall(run(StepPhase::soil_to_nodes, [&] { return send_soil(); }));
     PetscCall(ranks->add_soil(s, stream));
     PetscCall(complete_nodes(stream));
-    PetscCall(run(Function::nodes, [&] { update_nodes(s, dt, stream); }));
-    if (parted) beside->join(s.space);
+    PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt, stream); }));
+    if (parted) overlap->join(s.space);
     if (parted && moves && !ranks->forces_shared()) sum_forces(s, stream);
     PetscCall(
-        run(Function::particles, [&] { return s.plan.sums_ahead ? update_and_send() : update_soil(); }));
-    PetscCall(run(Function::rigids, [&] { return update_rigids(moves); }));
+        run(StepPhase::particles, [&] { return s.plan.sums_ahead ? update_and_send() : update_soil(); }));
+    PetscCall(run(StepPhase::rigids, [&] { return update_rigids(moves); }));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
@@ -175,26 +176,26 @@ struct Step {
   /// `left` by the number of steps done.
   PetscErrorCode persistent(long* left) const {
     PetscFunctionBeginUser;
-    if (timers.sampling() || !is_whole_step(s)) {
+    if (timers.sampling() || !can_persist(s)) {
       --*left;
       PetscCall(fused());
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     const long most = *left;
     const auto steps = [&] {  // functions 4 to 6, and 1 to 3 of the next step
-      const long done = whole_steps(s, dt, most);
+      const long done = run_persistent_steps(s, dt, most);
       *left -= done;
       return done;
     };
     joined();
-    PetscCall(timers.run_many(Function::whole, most, steps, [&] { s.space.fence("mpm::step"); }));
+    PetscCall(timers.run_many(StepPhase::persistent, most, steps, [&] { s.space.fence("mpm::step"); }));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
  private:
   /// Runs one function of the paper and times it. work() returns an error code or nothing.
   template <class Work>
-  PetscErrorCode run(Function f, Work&& work) const {
+  PetscErrorCode run(StepPhase f, Work&& work) const {
     PetscFunctionBeginUser;
     PetscErrorCode failed = PETSC_SUCCESS;
     const auto all = [&] {
@@ -208,12 +209,12 @@ struct Step {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
-  /// Whether nodes near rigids may go to the second stream. Functions that are timed have the device for
+  /// Whether nodes near rigids may go to the overlap stream. Functions that are timed have the device for
   /// themselves.
-  bool has_stream() const { return beside && s.plan.nodes_apart && !s.shear_share && !timers.sampling(); }
-  /// The state's own stream, behind all that the second one has been given.
+  bool has_stream() const { return overlap && s.plan.nodes_apart && !s.shear_share && !timers.sampling(); }
+  /// The state's own stream, behind all work of the overlap stream.
   const Space& joined() const {
-    if (beside) beside->join(s.space);
+    if (overlap) overlap->join(s.space);
     return s.space;
   }
 
@@ -244,7 +245,7 @@ struct Step {
   PetscErrorCode update_rigids(bool on_stream) const {
     PetscFunctionBeginUser;
     if (ranks) PetscCall(ranks->add_forces(s));
-    move_rigids(s, dt, on_stream ? beside->fork(s.space) : s.space);
+    move_rigids(s, dt, on_stream ? overlap->fork(s.space) : s.space);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 3, the border first, unless its sums have been sent already.
@@ -273,10 +274,11 @@ struct Step {
 /// Advances one explicit step of dt [s], or up to `left` steps where one launch does them. Reduces `left` by
 /// the number of steps done. Does nothing while s.control is paused.
 template <class Space, class T, int Dim>
-PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Ranks<Space, T, Dim>* ranks = nullptr,
-                    Beside<Space>* beside = nullptr, long* left = nullptr) {
+PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt,
+                    Decomposition<Space, T, Dim>* ranks = nullptr, OverlapStream<Space>* overlap = nullptr,
+                    long* left = nullptr) {
   PetscFunctionBeginUser;
-  const Step<Space, T, Dim> step{s, timers, dt, ranks, beside};
+  const Step<Space, T, Dim> step{s, timers, dt, ranks, overlap};
   long one = 1;
   if (left == nullptr) left = &one;
   if (s.plan.form != StepForm::persistent) --*left;

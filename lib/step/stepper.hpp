@@ -9,40 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "common/model.hpp"
+#include "common/snapshot.hpp"
 #include "data/saved_state.hpp"
 #include "mpm/config.hpp"
 #include "output/performance.hpp"
-#include "output/snapshot.hpp"
-#include "parallel/patch_grid.hpp"
 
 namespace mpm {
-
-/// The particles of a body or rigid before the run.
-struct BodyParticles {
-  std::vector<double> position;              // m from the mesh's lower corner, dim components each
-  double spacing = 0;                        // m, between particles
-  double particle_volume = 0;                // m3
-  std::vector<double> velocity;              // m/s [dim N], or empty where the body's own holds for all
-  std::vector<double> stress;                // Pa [4 N in 2D, 6 N in 3D], likewise
-  std::vector<StateField> state;             // state variables that a file gives
-  std::vector<double> volume;                // m3 [N], or empty where particle_volume holds for all
-  std::vector<double> mass;                  // kg [N], or empty where particle_mass holds for all
-  double least_volume = 0, most_volume = 0;  // m3, of creation, of all ranks; 0: particle_volume
-  double particle_mass = 0;                  // kg; 0: density times particle_volume
-  double least_mass = 0;                     // kg, where the particles differ in mass, of all ranks; else 0
-  std::vector<double> reference_height;  // m, absolute, of creation [N]; or empty where they are just created
-  long total = 0;                        // of all ranks; 0: those above
-  std::vector<int> id;                   // on several ranks: of each particle here, among those of all bodies
-  std::vector<double> velocity_gradient;  // m/s a cell [dim^2 N], where the neighbours may be on other ranks
-};
-
-/// Everything that a stepper starts from.
-struct Model {
-  std::array<int, 3> patches{};  // with the ring outside the mesh
-  std::vector<BodyParticles> bodies, rigids;
-  Owners owners;          // on several ranks: of each patch
-  bool from_run = false;  // some particles are as another run left them: their stresses stay so at the start
-};
 
 /// Why the run cannot go on.
 struct Failure {
@@ -85,7 +58,7 @@ class Stepper {
   /// Rows of partition.csv, on rank 0: the patches that hold particles, with these and their rank.
   virtual PetscErrorCode ownership(std::vector<OwnedPatch>* patches) = 0;
   /// What the log should tell of the rebuilds since the last call.
-  virtual std::string take_news() = 0;
+  virtual std::string drain_log() = 0;
   /// None on one rank. Collective.
   virtual std::optional<RankFigures> rank_figures() const = 0;
   /// All that this rank's part of the state is, between two steps, with no rebuild due.
@@ -116,8 +89,12 @@ const char* word_of(Precision precision);
 double wave_speed(const Config& config, const BodyConfig& body);
 
 /// Largest stable step over the Courant number: spacing / fastest wave [s] (Eq. 14), of the soil as it is
-/// created, without stress.
+/// created.
 double critical_time_step(const Config& config);
+
+/// Largest stable step [s] of what laws add to the waves, as an explicit viscosity (largest_time_step of
+/// materials/any.hpp); infinite where no law adds anything.
+double viscous_time_step(const Config& config);
 
 /// Whether the stiffness of some body depends on stress or state: its waves change their speed in the run.
 bool stiffness_changes(const Config& config);

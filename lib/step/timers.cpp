@@ -2,15 +2,15 @@
 
 namespace mpm {
 
-const char* name_of(Function f) {
+const char* name_of(StepPhase f) {
   switch (f) {
-    case Function::reset: return "initialise nodal variables";
-    case Function::rigid_to_nodes: return "rigid bodies to nodes";
-    case Function::soil_to_nodes: return "soil particles to nodes";
-    case Function::nodes: return "nodal velocities, contact";
-    case Function::particles: return "stress update, movement";
-    case Function::rigids: return "move rigid bodies";
-    case Function::whole: return "whole steps";
+    case StepPhase::reset: return "initialise nodal variables";
+    case StepPhase::rigid_to_nodes: return "rigid bodies to nodes";
+    case StepPhase::soil_to_nodes: return "soil particles to nodes";
+    case StepPhase::nodes: return "nodal velocities, contact";
+    case StepPhase::particles: return "stress update, movement";
+    case StepPhase::rigids: return "move rigid bodies";
+    case StepPhase::persistent: return "persistent steps";
     default: return "rebuild bins and lists";
   }
 }
@@ -19,7 +19,7 @@ PetscErrorCode Timers::create() {
   PetscFunctionBeginUser;
   PetscClassId id = 0;  // registered once: PETSc has room for so many
   for (int n = 0; n < k_functions; ++n) {
-    const char* name = name_of(static_cast<Function>(n));
+    const char* name = name_of(static_cast<StepPhase>(n));
     PetscBool known = PETSC_FALSE;
     PetscCall(PetscLogEventGetId(name, &events_[n]));
     known = events_[n] >= 0 ? PETSC_TRUE : PETSC_FALSE;

@@ -10,12 +10,12 @@
 
 namespace mpm {
 
-/// The functions of a step, by the paper's names; and those of whole steps, which a small problem's launches
-/// do together.
-enum class Function { reset, rigid_to_nodes, soil_to_nodes, nodes, particles, rigids, whole, rebuild };
+/// The functions of a step, by the paper's names; and all functions of the persistent steps of a small
+/// problem together.
+enum class StepPhase { reset, rigid_to_nodes, soil_to_nodes, nodes, particles, rigids, persistent, rebuild };
 inline constexpr int k_functions = 8;
 
-const char* name_of(Function f);
+const char* name_of(StepPhase f);
 
 class Timers {
  public:
@@ -27,7 +27,7 @@ class Timers {
 
   /// Runs one function; `wait` makes sure that its work is done.
   template <class Work, class Wait>
-  PetscErrorCode run(Function f, Work&& work, Wait&& wait) {
+  PetscErrorCode run(StepPhase f, Work&& work, Wait&& wait) {
     PetscFunctionBeginUser;
     const int n = static_cast<int>(f);
     PetscCall(PetscLogEventBegin(events_[n], 0, 0, 0, 0));
@@ -46,7 +46,7 @@ class Timers {
   /// Runs a function as many times as `work` returns, at most `most`. Where these are many, so that it costs
   /// little to wait for what was before and for them, they are timed, ever again after a thousand.
   template <class Work, class Wait>
-  PetscErrorCode run_many(Function f, long most, Work&& work, Wait&& wait) {
+  PetscErrorCode run_many(StepPhase f, long most, Work&& work, Wait&& wait) {
     PetscFunctionBeginUser;
     constexpr long k_many = 20, k_apart = 1000;
     const int n = static_cast<int>(f);
@@ -66,9 +66,9 @@ class Timers {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
-  long calls(Function f) const { return calls_[static_cast<int>(f)]; }
+  long calls(StepPhase f) const { return calls_[static_cast<int>(f)]; }
   /// Seconds of all calls, from those that were timed.
-  double seconds(Function f) const {
+  double seconds(StepPhase f) const {
     const int n = static_cast<int>(f);
     return sampled_[n] == 0 ? 0 : seconds_[n] * (double(calls_[n]) / sampled_[n]);
   }

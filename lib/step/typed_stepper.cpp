@@ -1,9 +1,10 @@
 #include "step/typed_stepper.hpp"
+#include "device/device_agrees.hpp"
 #include "input/shapes.hpp"
+#include "step/bytes_moved.hpp"
 #include "step/surface_input.hpp"
-#include "step/traffic.hpp"
 
-#include "parallel/together.hpp"
+#include "common/collectives.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -28,7 +29,7 @@ void note_heights(const MeshConfig& mesh, BodyParticles& particles) {
 template <int Dim>
 std::vector<std::vector<double>> start_state(const Config& config, const AnyMaterial<double>& law,
                                              const BodyInput& in, BodyParticles& particles) {
-  const auto variables = state_variables(law.which);
+  const auto variables = state_variables(law);
   const std::size_t count = in.position.size() / Dim;
   std::vector<std::vector<double>> state(variables.size(), std::vector<double>(count));
   ParticleStart start;
@@ -127,20 +128,20 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   if (model.owners.empty() && !config_.p2g.rebuild_interval) state_.rebuild_late = GlobalBound::k_late;
   state_.batches.limit = config_.device_memory_limit.value_or(0) * k_gib;
   state_.damping = config_.damping;
-  state_.flip_share = config_.flip_share;
+  state_.flip_fraction = config_.flip_share;
   if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;
   state_.affine = config_.velocity_update == VelocityUpdate::apic;
   state_.strays.rule = config_.stray_particles;
   // On several ranks the pressure of a cell is averaged once all its particles are here.
-  state_.f_bar_share = model.owners.empty() ? config_.f_bar_share : 0;
+  state_.f_bar_fraction = model.owners.empty() ? config_.f_bar_share : 0;
   state_.keeps_stress = model.from_run;
   Fault fault{};
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
   *failure = fault.kind == FaultKind::none ? too_small() : describe(fault);
   PetscCall(share(failure));
   if (!model.owners.empty() && failure->what.empty()) {
-    state_.f_bar_share = config_.f_bar_share;
-    ranks_ = std::make_unique<Ranks<Space, T, Dim>>();
+    state_.f_bar_fraction = config_.f_bar_share;
+    ranks_ = std::make_unique<Decomposition<Space, T, Dim>>();
     PetscCallCXX(PetscCall(ranks_->start(comm_, config_.partition, model.owners, state_)));
   }
   state_.keeps_stress = false;
@@ -160,7 +161,7 @@ void TypedStepper<Space, T, Dim>::sample(bool on) {
   const bool due = on && steps_enqueued_ == next_sample_ - 1;
   if (due) {
     next_sample_ += std::min(next_sample_, k_samples_apart);
-    beside_.join(state_.space);
+    overlap_.join(state_.space);
     state_.space.fence("mpm::before a step that is timed");
   }
   timers_.sample(due);
@@ -181,14 +182,14 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double time, dou
     const long most = std::min(steps, until_sample());
     long left = most;
     PetscCall(
-        step<Space, T, Dim>(state_, timers_, dt, nullptr, is_device<Space> ? &beside_ : nullptr, &left));
+        step<Space, T, Dim>(state_, timers_, dt, nullptr, is_device<Space> ? &overlap_ : nullptr, &left));
     sample(false);
     steps -= most - left;
     steps_enqueued_ += most - left;
   }
-  beside_.join(state_.space);
-  const Control control = look(state_);
-  if ((control.paused & Pause::apart) != 0) go_on_apart(state_);
+  overlap_.join(state_.space);
+  const Control control = read_control(state_);
+  if ((control.paused & Pause::not_co_resident) != 0) resume_single_steps(state_);
   batch->steps = control.steps;
   batch->bound = control.bound;
   batch->failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
@@ -212,11 +213,11 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
   Control control{};
   const auto work = [&] {
     locate(state_);
-    control = look(state_);
+    control = read_control(state_);
     if (control.lost > 0) note_lost(state_);
     if (control.fault_count == 0) sort_and_list(state_);
   };
-  PetscCallCXX(PetscCall(timers_.run(Function::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
+  PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
   timers_.sample(sampling);
   *failure = control.fault_count > 0 ? describe(control.fault) : too_small();
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -272,8 +273,8 @@ template <class Space, class T, int Dim>
 std::vector<FunctionTime> TypedStepper<Space, T, Dim>::times() const {
   std::vector<FunctionTime> times;
   for (int n = 0; n < k_functions; ++n) {
-    const Function f = static_cast<Function>(n);
-    if (f == Function::whole && timers_.calls(f) == 0) continue;
+    const StepPhase f = static_cast<StepPhase>(n);
+    if (f == StepPhase::persistent && timers_.calls(f) == 0) continue;
     double figures[2] = {timers_.seconds(f), timers_.calls(f) * bytes_of(f, state_)};
     if (ranks_) MPI_Allreduce(MPI_IN_PLACE, figures, 2, MPI_DOUBLE, MPI_MAX, comm_);
     times.push_back({name_of(f), timers_.calls(f), figures[0], figures[1]});
@@ -296,12 +297,14 @@ template <class Space, class T, int Dim>
 Failure TypedStepper<Space, T, Dim>::describe(const Fault& fault) const {
   if (fault.kind == FaultKind::none) return {};
   std::string who;
+  const char* of_law = "";
   if (fault.particle < 0) {
     who = "rigid " + config_.rigids[-1 - fault.particle].name;
   } else {
     std::size_t b = first_.size() - 1;
     while (b > 0 && first_[b] > fault.particle) --b;
     who = "particle " + std::to_string(fault.particle - first_[b]) + " of body " + config_.bodies[b].name;
+    of_law = failure_of(model_index(config_.materials[config_.bodies[b].material].model));
   }
   char where[120];
   const double* x = fault.position;
@@ -316,6 +319,7 @@ Failure TypedStepper<Space, T, Dim>::describe(const Fault& fault) const {
       : fault.kind == FaultKind::not_finite ? "has a position, velocity, stress or volume that is not finite"
       : fault.kind == FaultKind::volume
           ? "has left 0.2 to 2 times its volume at the start (-stray_particles stop)"
+      : fault.kind == FaultKind::law   ? of_law
       : fault.kind == FaultKind::alone ? "is alone, with no other soil in reach (-stray_particles stop)"
                                        : "moved more than a cell in one step";
   return {who + where + what};

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "common/material_table.hpp"
 #include "functions/grid_velocity.hpp"
 #include "functions/wall_force.hpp"
-#include "input/material_table.hpp"
 #include "parallel/kept_by_id.hpp"
 #include "step/step.hpp"
 #include "step/stepper.hpp"
@@ -32,7 +32,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode fastest_wave(double* speed) override;
   PetscErrorCode snapshot(Snapshot* snapshot) override;
   PetscErrorCode ownership(std::vector<OwnedPatch>* patches) override;
-  std::string take_news() override { return ranks_ ? ranks_->take_news() : ""; }
+  std::string drain_log() override { return ranks_ ? ranks_->drain_log() : ""; }
   std::optional<RankFigures> rank_figures() const override;
   PetscErrorCode save(SavedState* saved) const override;
   PetscErrorCode restore(SavedState&& saved, long since_rebuild, bool* rebuilt) override;
@@ -66,8 +66,8 @@ class TypedStepper final : public Stepper {
   Config config_;
   MPI_Comm comm_;
   State<Space, T, Dim> state_;
-  std::unique_ptr<Ranks<Space, T, Dim>> ranks_;  // null on one rank
-  Beside<Space> beside_;
+  std::unique_ptr<Decomposition<Space, T, Dim>> ranks_;  // null on one rank
+  OverlapStream<Space> overlap_;
   Timers timers_;
   long steps_enqueued_ = 0, next_sample_ = 20;
   double stepping_ = 0;                                              // s of wall time in advance

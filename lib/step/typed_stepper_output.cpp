@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "output/log.hpp"
+#include "common/text.hpp"
+#include "data/memory_of.hpp"
 #include "parallel/gather.hpp"
 #include "step/typed_stepper.hpp"
 
@@ -72,7 +73,7 @@ std::vector<StateField> state_fields(const MaterialConfig& material, const SoilF
                                      std::size_t to) {
   std::vector<StateField> fields;
   bool has_plastic_strain = false;
-  const auto variables = state_variables(model_index(material.model));
+  const auto variables = state_variables(material);
   for (std::size_t k = 0; k < variables.size(); ++k) {
     if (!variables[k].output) continue;
     const auto& column = soil.history[k];

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "output/log.hpp"
-#include "parallel/together.hpp"
+#include "common/collectives.hpp"
+#include "common/text.hpp"
+#include "data/memory_of.hpp"
 #include "step/typed_stepper.hpp"
 
 namespace mpm {
@@ -50,7 +51,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
   bool due = false;
   for (; done < steps && !due; ++done) {
     sample(true);
-    PetscCall(step<Space, T, Dim>(state_, timers_, dt, ranks_.get(), is_device<Space> ? &beside_ : nullptr));
+    PetscCall(step<Space, T, Dim>(state_, timers_, dt, ranks_.get(), is_device<Space> ? &overlap_ : nullptr));
     sample(false);
     ++steps_enqueued_;
     BoundReport all;
@@ -60,8 +61,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
     due = ranks_->count_down() || passed || (known && all.stopped > 0);
     if (known && is_swift(all.increment)) steps = done + 1;
   }
-  beside_.join(state_.space);
-  const Control own = look(state_);
+  overlap_.join(state_.space);
+  const Control own = read_control(state_);
   ranks_->clock().pause();
   const bool missed = own.steps != done;
   BoundReport now{own.bound, own.increment, own.fault_count > 0 || missed ? 1.0 : 0.0};
@@ -105,13 +106,13 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure* failure) {
   PetscErrorCode failed = PETSC_SUCCESS;
   const auto work = [&] {
     locate(state_);
-    const Control control = look(state_);
+    const Control control = read_control(state_);
     *failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
     failed = share(failure);
     if (control.lost > 0) note_lost(state_);
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = ranks_->rebuild(state_);
   };
-  PetscCallCXX(PetscCall(timers_.run(Function::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
+  PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
   PetscCall(failed);
   timers_.sample(sampling);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -154,7 +155,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
   PetscCall(note_out_of_order(b, body));
   body->mass = m.mass, body->strays = m.alone, body->limited = m.limited;
   if (m.count == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  const long rank = m.count - m.count / 1000;  // of the 99.9 % quantile, the nearest one above
+  const long rank = m.count - m.count / 1000;  // of the 99.9th percentile, the nearest one above
   const Vec3& origin = config_.mesh.lower;
   for (int d = 0; d < Dim; ++d) {
     body->lower[d] = m.lower[d] + origin[d];

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "input/material_table.hpp"
+#include "common/material_table.hpp"
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
 #include "step/stepper.hpp"
@@ -15,7 +15,10 @@ double wave_speed(const Config& config, const BodyConfig& body) {
   const MaterialConfig& material = config.materials[body.material];
   const double lowest = bounds_of(body.shape, config.mesh, config.dim).lower[config.dim - 1];
   const auto law = make_material<double>(model_index(material.model), material.parameters);
-  return std::sqrt(wave_modulus(law, lowest) / material.density);
+  Sym6 stress = body.stress;
+  const bool of_file = body.shape.kind == ShapeKind::particles && !body.stress_given;
+  if (of_file) stress = {-body.largest_pressure, -body.largest_pressure, -body.largest_pressure};
+  return std::sqrt(wave_modulus(law, lowest, stress) / material.density);
 }
 
 bool stiffness_changes(const Config& config) {
@@ -28,6 +31,16 @@ double critical_time_step(const Config& config) {
   double step = std::numeric_limits<double>::infinity();
   for (const BodyConfig& body : config.bodies)
     step = std::min(step, config.mesh.spacing / wave_speed(config, body));
+  return step;
+}
+
+double viscous_time_step(const Config& config) {
+  double step = std::numeric_limits<double>::infinity();
+  for (const BodyConfig& body : config.bodies) {
+    const MaterialConfig& material = config.materials[body.material];
+    const auto law = make_material<double>(model_index(material.model), material.parameters);
+    step = std::min(step, largest_time_step(law, config.mesh.spacing, material.density, config.dim));
+  }
   return step;
 }
 

@@ -42,10 +42,10 @@ def copy_with_law(source, copy):
     materials = "kokkos_kernels/physics/materials"
     put(copy / materials / "path_dependent.hpp", (HERE / "path_dependent.hpp").read_text())
     before = (source / materials / "list.hpp").read_text()
-    last = '#include "physics/materials/von_mises.hpp"\n'
-    after = before.replace(last, '#include "physics/materials/path_dependent.hpp"\n' + last)
-    after = after.replace("VonMises>;", "VonMises, PathDependent>;")
-    assert len(after.splitlines()) == len(before.splitlines()) + 1 and "PathDependent>;" in after
+    after = before.replace('#include "physics/materials/von_mises.hpp"\n',
+                           '#include "physics/materials/path_dependent.hpp"\n#include "physics/materials/von_mises.hpp"\n')
+    after, lists = re.subn(r"(using Materials =\s+ModelList<[^>]+)>;", r"\1, PathDependent>;", after)
+    assert len(after.splitlines()) == len(before.splitlines()) + 1 and lists == 1
     put(copy / materials / "list.hpp", after)
 
 

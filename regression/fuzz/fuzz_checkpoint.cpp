@@ -8,7 +8,7 @@
 #include "checkpoint/changes.hpp"
 #include "checkpoint/checkpoint.hpp"
 #include "checkpoint/sealed_file.hpp"
-#include "checksum.hpp"
+#include "common/checksum.hpp"
 #include "session.hpp"
 
 namespace {

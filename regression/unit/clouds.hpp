@@ -73,7 +73,7 @@ struct Cloud {
   std::vector<RigidInput> rigids;
   P2GPlan p2g{P2G::sequential, 0.5, 3};
   std::array<double, 3> gravity{};
-  double flip_share = 1, damping = 0, f_bar_share = 0;
+  double flip_fraction = 1, damping = 0, f_bar_fraction = 0;
   int xpic_order = 0;
   bool affine = false;
   double memory_limit = 0;  // bytes, for batches of the soil
@@ -86,11 +86,11 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typenam
   s.p2g = cloud.p2g;
   s.p2g.strategy = how;
   for (int d = 0; d < B::dim; ++d) s.gravity[d] = cloud.gravity[d];
-  s.flip_share = cloud.flip_share;
+  s.flip_fraction = cloud.flip_fraction;
   s.xpic_order = cloud.xpic_order;
   s.affine = cloud.affine;
   s.damping = cloud.damping;
-  s.f_bar_share = cloud.f_bar_share;
+  s.f_bar_fraction = cloud.f_bar_fraction;
   s.batches.limit = cloud.memory_limit;
   if (upload(s, cloud.grid, cloud.materials, cloud.bodies, cloud.rigids).kind != FaultKind::none)
     throw std::runtime_error("a particle of the test lies outside the mesh");

@@ -17,7 +17,7 @@ auto on_host(const View& view) {
 
 /// The nodal field of one rigid.
 template <class Space, class T, int Dim>
-NodeField<Space, T, RigidShare<Dim>::size> rigid_field(const State<Space, T, Dim>& s, std::size_t r) {
+NodeField<Space, T, RigidTerms<Dim>::size> rigid_field(const State<Space, T, Dim>& s, std::size_t r) {
   return Kokkos::subview(s.nodes.rigid, static_cast<int>(r), Kokkos::ALL, Kokkos::ALL);
 }
 
@@ -44,7 +44,7 @@ int run_steps(State<Space, T, Dim>& s, double dt, int n) {
   int rebuilds = 0;
   for (; n > 0; --n) {
     one_step(s, dt);
-    const Control control = look(s);
+    const Control control = read_control(s);
     if (control.fault_count > 0) return rebuilds;
     if (control.paused) rebuild(s), ++rebuilds;
   }
@@ -198,12 +198,12 @@ void drift_within_margin(State<Space, T, Dim>& s) {
     // Their homes go with them: a strategy may bring a point to where its body is.
     const auto coordinate = on_host(points.coordinate);
     const auto cell = on_host(points.cell);
-    const auto home = on_host(points.home);
+    const auto home = on_host(points.reference_position);
     for (int p = 0; p < points.count; ++p)
       for (int d = 0; d < Dim; ++d)
         home(p)[d] = coordinate(p)[d] + origin(cell(p) / Patch<Dim>::cells)[d] + coord_of<Dim>(cell(p))[d] -
                      rigids(r).displacement[d] / s.spacing;
-    Kokkos::deep_copy(points.home, home);
+    Kokkos::deep_copy(points.reference_position, home);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "compare.hpp"
+#include "data/memory_of.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/download.hpp"
 #include "transfer/save_state.hpp"
@@ -33,7 +34,7 @@ Cloud busy_cloud(int seed) {
     for (std::size_t n = 0; n < strength_of(body).size() * sym_size<Dim>; ++n)
       body.stress.push_back(dice.uniform(-300, 300));
   }
-  cloud.f_bar_share = 0.9;
+  cloud.f_bar_fraction = 0.9;
   cloud.p2g.margin = 0.05;
   cloud.gravity = {0, -10, -5};
   return cloud;
@@ -103,12 +104,13 @@ TEST_CASE("what goes in batches covers each patch once, and leaves the rest of i
   for_each_build([&](auto build) {
     using B = decltype(build);
     const auto s = state_in_batches<B>(busy_cloud<B::dim>(7), 0.3);
-    const auto by_colour = on_host(s.soil.bins.by_colour);
+    const auto active_slots = on_host(s.soil.bins.active_slots);
     std::multiset<int> expected, got;
-    for (int n = 0; n < s.soil.bins.colour_begin[Patch<B::dim>::colours]; ++n) expected.insert(by_colour(n));
+    for (int n = 0; n < s.soil.bins.colour_begin[Patch<B::dim>::colours]; ++n)
+      expected.insert(active_slots(n));
     int particles = 0;
     for (const auto& batch : s.batches.all) {
-      const auto slots = on_host(batch.set.bins.by_colour);
+      const auto slots = on_host(batch.set.bins.active_slots);
       for (int n = 0; n < batch.set.bins.colour_begin[Patch<B::dim>::colours]; ++n) got.insert(slots(n));
       CHECK(batch.first == particles);
       particles = batch.last;

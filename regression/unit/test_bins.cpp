@@ -6,6 +6,7 @@
 
 #include "compare.hpp"
 #include "data/footprint.hpp"
+#include "data/memory_of.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -15,7 +16,7 @@ namespace {
 /// What is wrong with the bins of a set of points; empty if nothing is.
 template <class Space, class T, int Dim, class Set>
 std::string fault_of_bins(const State<Space, T, Dim>& s, const Set& set) {
-  const auto begin = on_host(set.bins.begin), by_colour = on_host(set.bins.by_colour);
+  const auto begin = on_host(set.bins.begin), active_slots = on_host(set.bins.active_slots);
   const auto cell = on_host(set.points.cell), id = on_host(set.points.id);
   const auto x = on_host(set.points.coordinate);
   const auto origin = on_host(s.patches.origin);
@@ -36,12 +37,12 @@ std::string fault_of_bins(const State<Space, T, Dim>& s, const Set& set) {
   std::set<int> slots;
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour)
     for (int n = set.bins.colour_begin[colour]; n < set.bins.colour_begin[colour + 1]; ++n) {
-      const int slot = by_colour(n);
+      const int slot = active_slots(n);
       int own = 0;
       for (int d = 0; d < Dim && is_device<Space>; ++d)
         own |= (origin(slot)[d] / Patch<Dim>::edge % 2 != 0) << d;
       if (own != colour) return "a slot is under the wrong colour";
-      if (n > set.bins.colour_begin[colour] && by_colour(n - 1) >= slot) return "slots do not rise";
+      if (n > set.bins.colour_begin[colour] && active_slots(n - 1) >= slot) return "slots do not rise";
       if (begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells))
         return "an empty slot is listed";
       slots.insert(slot);
@@ -56,7 +57,7 @@ template <class Space, class T, int Dim>
 std::string fault_of_patches(const State<Space, T, Dim>& s) {
   const auto slot_of = on_host(s.patches.slot_of);
   const auto origin = on_host(s.patches.origin);
-  const auto around = on_host(s.patches.around);
+  const auto neighbours = on_host(s.patches.neighbours);
   std::set<int> holding;
   const auto note = [&](const auto& set) {
     const auto cell = on_host(set.points.cell);
@@ -76,12 +77,12 @@ std::string fault_of_patches(const State<Space, T, Dim>& s) {
   const auto& patches = s.grid.patches;
   const int shortest = static_cast<int>(std::min_element(patches.c, patches.c + Dim) - patches.c);
   for (int slot = 0; slot < active; ++slot) {
-    const int next = around(slot, Patch<Dim>::around / 2 + power(3, shortest));
+    const int next = neighbours(slot, Patch<Dim>::neighbours / 2 + power(3, shortest));
     if (next >= 0 && next != slot + 1)
       return "slots do not count the direction with the fewest patches first";
     bool needed = false;
-    for (int k = 0; k < Patch<Dim>::around; ++k) {
-      const int other = around(slot, k);
+    for (int k = 0; k < Patch<Dim>::neighbours; ++k) {
+      const int other = neighbours(slot, k);
       if (other < 0) {
         if (holding.count(slot)) return "a patch that holds points lacks a patch of its ring";
         continue;
@@ -90,7 +91,8 @@ std::string fault_of_patches(const State<Space, T, Dim>& s) {
       for (int d = 0, rest = k; d < Dim; ++d, rest /= 3)
         if (origin(other)[d] - origin(slot)[d] != (rest % 3 - 1) * Patch<Dim>::edge)
           return "a patch around is elsewhere";
-      if (around(other, Patch<Dim>::around - 1 - k) != slot) return "a neighbour does not know its neighbour";
+      if (neighbours(other, Patch<Dim>::neighbours - 1 - k) != slot)
+        return "a neighbour does not know its neighbour";
     }
     if (!needed) return "a patch is active that no point can reach";
   }
@@ -156,7 +158,7 @@ TEST_CASE("every point is in its cell's range, in order, and every patch has its
       for (int n = 0; n < 3; ++n) {
         move_points(s);
         rebuild(s);
-        REQUIRE(look(s).fault_count == 0);
+        REQUIRE(read_control(s).fault_count == 0);
         CHECK(fault_of(s) == "");
       }
     }

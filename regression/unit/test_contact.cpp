@@ -36,7 +36,7 @@ Cloud pressed() {
 template <class Space, class T, int Dim>
 Vector<double, Dim> nodal_momentum(const State<Space, T, Dim>& s) {
   const auto soil = on_host(s.nodes.soil);
-  const auto motion = on_host(s.nodes.motion);
+  const auto motion = on_host(s.nodes.kinematics);
   auto sum = filled<double, Dim>(0);
   for (int i = 0; i < s.patches.node_count(); ++i)
     for (int d = 0; d < Dim; ++d) sum[d] += double(soil(i, 0)) * motion(i, d);
@@ -214,7 +214,7 @@ TEST_CASE("soil and a rigid that hits it keep their momentum", "[contact]") {
       run_steps(s, 2e-4, 50);
       const auto after = total_momentum(s);
       INFO(build.name() << " shear limit " << shear_limit);
-      CHECK(look(s).fault_count == 0);
+      CHECK(read_control(s).fault_count == 0);
       CHECK(on_host(s.rigids)(0).velocity[1] > rigid_before + 0.1);  // it was slowed down
       for (int d = 0; d < B::dim; ++d)
         CHECK(std::fabs(after[d] - before[d]) < B::of(1e-12, 1e-5) * std::fabs(before[1]));

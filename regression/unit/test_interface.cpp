@@ -19,7 +19,7 @@ Cloud rubbed_soil(double spacing, Strength&& strength) {
   BodyInput& body = cloud.bodies[0];
   for (std::size_t p = 0; p < strength_of(body).size(); ++p)
     strength_of(body)[p] = strength(body.position[p * Dim + Dim - 1] / spacing);
-  // Beside the lattice, where round-off would decide which nodes have a normal.
+  // OverlapStream the lattice, where round-off would decide which nodes have a normal.
   std::array<double, 3> low{5.07, 5.11, 5.16}, high{13.07, 13.11, 13.16};
   low[Dim - 1] = 11.8, high[Dim - 1] = 13;
   RigidInput plate = rigid_of<Dim>(lattice<Dim>(low, high, 4, spacing), 4, spacing);
@@ -83,7 +83,7 @@ TEST_CASE("a strength that grows with depth is that of the depth at each node ne
           Coord<Dim> node{x, z};
           if constexpr (Dim == 3) node = {x, 8, z};
           const double* value = &field.value[s.grid.address_of(node) * field.width];
-          const double got = value[StrengthShare::strength] / value[StrengthShare::volume];
+          const double got = value[StrengthTerms::strength] / value[StrengthTerms::volume];
           largest = std::max(largest, std::fabs(got / strength(z) - 1));
         }
       INFO(build.name() << ' ' << strategy_name(how));

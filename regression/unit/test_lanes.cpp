@@ -48,7 +48,7 @@ template <class B>
 std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
   using T = typename B::real;
   constexpr int Dim = B::dim;
-  using M = NodeMotion<Dim>;
+  using M = NodeKinematics<Dim>;
   auto soil = s.soil.points;
   for (int k = 0; k < soil.history.columns; ++k) {  // of its own
     const auto column = soil.history.column[k];
@@ -59,22 +59,22 @@ std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
   const T inv = s.grid.inv_spacing;
   const UpdateScalars<T> by{T(dt),
                             inv,
-                            T(s.flip_share),
-                            T(1 - s.flip_share),
-                            T(s.f_bar_share),
+                            T(s.flip_fraction),
+                            T(1 - s.flip_fraction),
+                            T(s.f_bar_fraction),
                             T(s.strays.least_volume),
                             T(s.strays.most_volume),
                             false};
-  std::vector<Taken<T, Dim>> taken(soil.count);
+  std::vector<GridSample<T, Dim>> taken(soil.count);
   std::vector<double> volume(s.patches.node_count()), sum = volume;
   for (int p = 0; p < soil.count; ++p) {
-    Taken<T, Dim>& t = taken[p] = {};
+    GridSample<T, Dim>& t = taken[p] = {};
     for_each_node<Kind::motion>(soil, soil.bodies(soil.body(p)).half_length, places, p,
                                 [&](int i, T w, const Vector<T, Dim>& grad, auto&&, auto&& sign) {
                                   T v[M::size];
                                   for (int k = 0; k < M::size; ++k)
-                                    v[k] = sign(k % Dim) * s.nodes.motion(i, k);
-                                  for (int k = 0; k < M::size; ++k) t.motion[k] += w * v[k];
+                                    v[k] = sign(k % Dim) * s.nodes.kinematics(i, k);
+                                  for (int k = 0; k < M::size; ++k) t.kinematics[k] += w * v[k];
                                   for (int d = 0; d < Dim; ++d)
                                     for (int e = 0; e < Dim; ++e)
                                       t.gradient[d][e] += v[M::velocity + d] * grad[e] * inv;
@@ -217,8 +217,8 @@ TEST_CASE("particles that move many at once move as one by one", "[lanes]") {
     if constexpr (!is_device<typename B::Space>) {
       for (int seed : {1, 2, 3, 4}) {
         Cloud cloud = seed < 3 ? random_cloud<B::dim>(seed) : crowded_cloud<B::dim>(seed);
-        cloud.f_bar_share = seed % 2 ? 0.9 : 0;
-        cloud.flip_share = seed == 2 ? 0.9 : 1;
+        cloud.f_bar_fraction = seed % 2 ? 0.9 : 0;
+        cloud.flip_fraction = seed == 2 ? 0.9 : 1;
         auto s = state_of<B>(cloud);
         drift_within_margin(s);
         interpolate(s);
@@ -228,7 +228,7 @@ TEST_CASE("particles that move many at once move as one by one", "[lanes]") {
         update_particles(s, dt);
         const auto moved = moved_fields<B>(s);
         INFO(build.name() << " seed " << seed);
-        CHECK(look(s).fault_count == 0);
+        CHECK(read_control(s).fault_count == 0);
         double furthest = 0;
         for (int n = 0; n < s.movements.places; ++n) furthest = std::max(furthest, s.movements.noted(n));
         Kokkos::deep_copy(s.movements.bits, 0);
@@ -273,9 +273,9 @@ TEST_CASE("a particle among many is named when it is wrong", "[lanes]") {
     cloud.bodies[0].stress[wrong * sym_size<Dim>] = std::numeric_limits<double>::infinity();
     auto s = state_of<B>(cloud);
     reset_nodes(s);
-    Kokkos::deep_copy(s.nodes.motion, 0);
+    Kokkos::deep_copy(s.nodes.kinematics, 0);
     update_particles(s, 1e-5);
-    const Control control = look(s);
+    const Control control = read_control(s);
     INFO(build.name());
     CHECK(control.fault_count == 1);
     CHECK(control.fault.kind == FaultKind::not_finite);

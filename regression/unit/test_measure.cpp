@@ -95,7 +95,7 @@ TEST_CASE("the grid velocity at a particle is the one that a PIC step gives it",
     using B = decltype(build);
     constexpr int Dim = B::dim;
     Cloud cloud = free_cloud<Dim>(6);
-    cloud.flip_share = 0;
+    cloud.flip_fraction = 0;
     for (P2G how : k_strategies)
       for (bool rebuilt : {false, true}) {
         auto s = state_of<B>(cloud, how);
@@ -104,7 +104,7 @@ TEST_CASE("the grid velocity at a particle is the one that a PIC step gives it",
         if (rebuilt) rebuild(s);
         const Table seen = grid_velocity_table(s, Dim);
         one_step(s, 1e-9);
-        REQUIRE(look(s).fault_count == 0);
+        REQUIRE(read_control(s).fault_count == 0);
         CHECK(largest_difference(seen, {Dim, download_soil(s).velocity}) < B::of(1e-12, 1e-5));
       }
   });
@@ -164,7 +164,7 @@ TEST_CASE("measuring between steps leaves every bit of the run", "[measure]") {
         grid_velocity_table(s, Dim);
         largest_grid_speed(s, 0);
       }
-      REQUIRE(look(s).fault_count == 0);
+      REQUIRE(read_control(s).fault_count == 0);
       return soil_fields(s);
     };
     for (P2G how : {P2G::gather, P2G::mosaic}) {

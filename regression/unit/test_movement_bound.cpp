@@ -31,7 +31,7 @@ std::vector<Table> everything(const State<Space, T, Dim>& s) {
   all.push_back(by_id(s.soil.points, s.soil.points.coordinate));
   for (const auto& set : s.rigid_points) all.push_back(by_id(set.points, set.points.coordinate));
   for (auto& field : nodal_fields(s)) all.push_back(field);
-  all.push_back(nodes_of(s, s.nodes.motion));
+  all.push_back(nodes_of(s, s.nodes.kinematics));
   const auto rigids = on_host(s.rigids);
   for (std::size_t r = 0; r < rigids.extent(0); ++r)
     all.push_back({1,
@@ -48,7 +48,7 @@ template <class B>
 Control control_after(const Cloud& cloud, double dt, int n) {
   auto s = state_of<B>(cloud, P2G::automatic);
   run_steps(s, dt, n);
-  return look(s);
+  return read_control(s);
 }
 
 }  // namespace
@@ -66,14 +66,14 @@ TEST_CASE("steps go on until the bound has passed the margin, and not one step l
         const int last =
             static_cast<int>(margin / cells) + 1;  // the first step after which they have moved further
         for (int n = 1; n <= last; ++n) {
-          REQUIRE(look(s).paused == 0);
+          REQUIRE(read_control(s).paused == 0);
           one_step(s, time_to_move(cells, 2));
-          CHECK(std::fabs(look(s).bound - n * cells) < B::of(1e-11, 1e-5));
-          CHECK(look(s).bound >= n * cells * (1 - 1e-15));
+          CHECK(std::fabs(read_control(s).bound - n * cells) < B::of(1e-11, 1e-5));
+          CHECK(read_control(s).bound >= n * cells * (1 - 1e-15));
         }
-        CHECK(look(s).paused == 1);
-        CHECK(look(s).steps == last);
-        CHECK(look(s).fault_count == 0);
+        CHECK(read_control(s).paused == 1);
+        CHECK(read_control(s).steps == last);
+        CHECK(read_control(s).fault_count == 0);
       }
   });
 }
@@ -86,7 +86,7 @@ TEST_CASE("the bound counts the fastest of soil and rigids", "[movement_bound]")
     cloud.rigids[0].velocity = {0, -3, 0};
     auto s = state_of<B>(cloud);
     one_step(s, 0.004);
-    CHECK(std::fabs(look(s).bound - 0.12) < B::of(1e-14, 1e-6));
+    CHECK(std::fabs(read_control(s).bound - 0.12) < B::of(1e-14, 1e-6));
   });
 }
 
@@ -111,8 +111,8 @@ TEST_CASE("the bound is the sum of the furthest movements of each step, and no p
       }
       sum += step;
       before = now;
-      CHECK(look(s).bound >= far - B::of(1e-13, 0));
-      CHECK(std::fabs(look(s).bound - sum) < (n + 1) * B::of(1e-13, 3e-7));
+      CHECK(read_control(s).bound >= far - B::of(1e-13, 0));
+      CHECK(std::fabs(read_control(s).bound - sum) < (n + 1) * B::of(1e-13, 3e-7));
     }
   });
 }
@@ -128,19 +128,19 @@ TEST_CASE("no step after the bound has passed the margin changes a bit, and a re
       cloud.rigids[0].shear_limit = 100;
       auto s = state_of<B>(cloud, how);
       for (int n = 0; n < 3; ++n) one_step(s, time_to_move(0.2, 2));
-      REQUIRE(look(s).paused == 1);
+      REQUIRE(read_control(s).paused == 1);
       const auto before = everything(s);
-      const Control control = look(s);
+      const Control control = read_control(s);
       for (int n = 0; n < 3; ++n) one_step(s, time_to_move(0.2, 2));
       CHECK(everything(s) == before);
-      CHECK(look(s).steps == control.steps);
-      CHECK(look(s).bound == control.bound);
+      CHECK(read_control(s).steps == control.steps);
+      CHECK(read_control(s).bound == control.bound);
       rebuild(s);
-      CHECK(look(s).paused == 0);
-      CHECK(look(s).bound == 0);
-      CHECK(look(s).steps == 3);
+      CHECK(read_control(s).paused == 0);
+      CHECK(read_control(s).bound == 0);
+      CHECK(read_control(s).steps == 3);
       one_step(s, time_to_move(0.2, 2));
-      CHECK(look(s).steps == 4);
+      CHECK(read_control(s).steps == 4);
       CHECK(largest_difference(by_id(s.soil.points, s.soil.points.coordinate), before[6]) > 0.1);
     }
   });
@@ -193,13 +193,13 @@ TEST_CASE("a value that is not finite is reported with its particle, and nothing
         cloud.bodies.push_back(lone);
         auto s = state_of<B>(cloud);
         one_step(s, 1e-4);
-        const Control control = look(s);
+        const Control control = read_control(s);
         REQUIRE(control.fault_count == 1);
         CHECK(control.fault.kind == FaultKind::not_finite);
         CHECK(control.fault.particle == static_cast<int>(strength_of(cloud.bodies[0]).size()));
         CHECK(control.paused == 1);
         one_step(s, 1e-4);
-        CHECK(look(s).steps == 1);
+        CHECK(read_control(s).steps == 1);
       }
   });
 }

@@ -34,8 +34,8 @@ StateOf<B> nodes_that_move(const GridInput& grid) {
   auto s = state_of<B>(cloud);
   const auto soil = on_host(s.nodes.soil);
   for (int i = 0; i < s.patches.node_count(); ++i)
-    for (int k = 0; k < SoilShare<B::dim>::size; ++k)
-      soil(i, k) = k < SoilShare<B::dim>::force ? std::max(1, k) : 0;
+    for (int k = 0; k < SoilTerms<B::dim>::size; ++k)
+      soil(i, k) = k < SoilTerms<B::dim>::force ? std::max(1, k) : 0;
   Kokkos::deep_copy(s.nodes.soil, soil);
   return s;
 }
@@ -44,7 +44,7 @@ StateOf<B> nodes_that_move(const GridInput& grid) {
 /// it fails.
 template <class Space, class T, int Dim, class F>
 int wrong_nodes(const State<Space, T, Dim>& s, F&& right) {
-  const auto motion = on_host(s.nodes.motion);
+  const auto motion = on_host(s.nodes.kinematics);
   const auto origin = on_host(s.patches.origin);
   int wrong = 0;
   for (int i = 0; i < s.patches.node_count(); ++i) {
@@ -134,7 +134,7 @@ TEST_CASE(
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
-    using Share = SoilShare<Dim>;
+    using Share = SoilTerms<Dim>;
     INFO(build.name());
     auto s = nodes_that_move<B>(grid_of<Dim>({9, 11, 6}, 0.1, Wall::free));
     s.gravity[1] = -8;
@@ -150,7 +150,7 @@ TEST_CASE(
     Kokkos::deep_copy(s.nodes.soil, soil);
     update_nodes(s, 0.25);
     int n = 0;
-    const auto motion = on_host(s.nodes.motion);
+    const auto motion = on_host(s.nodes.kinematics);
     for (int i = 0; i < s.patches.node_count(); ++i) {
       const double force = i % 3 == 2 ? 4 : 0, gravity = i % 3 == 0 ? 0 : -8;
       const double v[2] = {i % 3 == 0 ? 0 : 1 + 0.25 * force, i % 3 == 0 ? 0 : 2 + 0.25 * gravity};
@@ -170,10 +170,10 @@ TEST_CASE("damping takes a share of the acceleration, against the velocity", "[n
     s.damping = 0.25;
     const auto soil = on_host(s.nodes.soil);
     for (int i = 0; i < s.patches.node_count(); ++i)
-      soil(i, SoilShare<Dim>::force) = 4, soil(i, SoilShare<Dim>::force + 1) = -4;
+      soil(i, SoilTerms<Dim>::force) = 4, soil(i, SoilTerms<Dim>::force + 1) = -4;
     Kokkos::deep_copy(s.nodes.soil, soil);
     update_nodes(s, 0.25);
-    const auto motion = on_host(s.nodes.motion);
+    const auto motion = on_host(s.nodes.kinematics);
     CHECK(motion(0, Dim) == 3);       // speeding up: 4 - 1
     CHECK(motion(0, Dim + 1) == -5);  // slowing down: -4 - 1
   });

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string>
 
+#include "common/text.hpp"
 #include "input/options.hpp"
-#include "input/text.hpp"
 #include "output/frames.hpp"
 
 using namespace mpm;

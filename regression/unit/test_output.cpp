@@ -17,18 +17,18 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/collectives.hpp"
+#include "input/run_options.hpp"
 #include "output/files.hpp"
 #include "output/folder_lock.hpp"
 #include "output/frames.hpp"
 #include "output/history.hpp"
 #include "output/json.hpp"
 #include "output/log.hpp"
+#include "output/measurement_cache.hpp"
 #include "output/own_files.hpp"
 #include "output/performance.hpp"
 #include "output/performance_json.hpp"
-#include "output/remembered.hpp"
-#include "output/run_options.hpp"
-#include "parallel/together.hpp"
 
 using namespace mpm;
 using Catch::Matchers::ContainsSubstring;
@@ -617,7 +617,7 @@ TEST_CASE("a figure is measured once a key, and every time where it cannot be ke
   const std::string kept = before != nullptr ? before : "";
   int measured = 0;
   const auto figure = [&](const std::string& key, double value) {
-    return remembered("figures", key, [&] { return ++measured, value; });
+    return cached_measurement("figures", key, [&] { return ++measured, value; });
   };
   setenv("XDG_CACHE_HOME", folder.path.c_str(), 1);
   CHECK(figure("serial, some processor", 1.0 / 3) == 1.0 / 3);

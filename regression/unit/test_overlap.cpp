@@ -11,8 +11,8 @@
 #include "input/overlap.hpp"
 #include "input/particle_file.hpp"
 #include "input/shapes.hpp"
-#include "input/warnings.hpp"
 #include "output/frames.hpp"
+#include "warnings.hpp"
 
 using namespace mpm;
 

@@ -25,7 +25,7 @@ Cloud cloud_with_masses(int seed, double spread) {
   cloud.grid = grid_of<Dim>({18, 12, 9}, k_spacing, Wall::roller);
   cloud.materials = clays();
   cloud.gravity = {0, -10, -5};
-  cloud.f_bar_share = 0.9;
+  cloud.f_bar_fraction = 0.9;
   for (const int n : {2, 3}) {
     const double from = n == 2 ? 2 : 8;
     cloud.bodies.push_back(
@@ -48,8 +48,8 @@ Cloud without_masses(Cloud cloud) {
 
 /// The velocity updates, which load particles each in their own way.
 void choose_update(Cloud& cloud, int kind) {
-  if (kind == 1) cloud.xpic_order = 3, cloud.flip_share = 0;
-  if (kind == 2) cloud.affine = true, cloud.flip_share = 0;
+  if (kind == 1) cloud.xpic_order = 3, cloud.flip_fraction = 0;
+  if (kind == 2) cloud.affine = true, cloud.flip_fraction = 0;
 }
 
 std::vector<double> all_masses(const Cloud& cloud) {

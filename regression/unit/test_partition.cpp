@@ -141,10 +141,10 @@ TEST_CASE("exactly one rank answers for a node that any reaches", "[partition]")
     std::map<long, int> answers;
     for (int r = 0; r < ranks; ++r) {
       const HaloPlan plan = plan_halo(scene.grid, scene.owners, scene.occupied, scene.slots, r);
-      REQUIRE(plan.counted.size() == scene.slots.size());
-      for (std::size_t slot = 0; slot < plan.counted.size(); ++slot)
+      REQUIRE(plan.owned_nodes.size() == scene.slots.size());
+      for (std::size_t slot = 0; slot < plan.owned_nodes.size(); ++slot)
         for (int k = 0; k < k_nodes; ++k)
-          if (plan.counted[slot] >> k & 1) ++answers[scene.slots[slot] * k_nodes + k];
+          if (plan.owned_nodes[slot] >> k & 1) ++answers[scene.slots[slot] * k_nodes + k];
     }
     CHECK(answers.size() == reached.size());
     for (const auto& [node, count] : answers) CHECK((count == 1 && reached.count(node) == 1));

@@ -78,7 +78,7 @@ class Slide(unittest.TestCase):
         run = results.Run(self.folder)
         self.assertEqual(runout.slides(run), ["slide"])
         for column in ("xmax", "xq999"):
-            way = runout.advance(run, "slide", column)
+            way = runout.run_out(run, "slide", column)
             self.assertAlmostEqual(runout.at_time(run, way, 3.03), 6.06)
             self.assertTrue(np.isnan(runout.at_time(run, way, 5.2)))
 

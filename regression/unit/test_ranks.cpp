@@ -9,9 +9,9 @@
 #include <limits>
 
 #include "clouds.hpp"
+#include "common/collectives.hpp"
+#include "parallel/decomposition.hpp"
 #include "parallel/kept_by_id.hpp"
-#include "parallel/ranks.hpp"
-#include "parallel/together.hpp"
 #include "step/step.hpp"
 #include "transfer/velocity_gradients.hpp"
 
@@ -70,15 +70,15 @@ void keep_inside(Cloud& cloud) {
 template <class B>
 struct Pair {
   StateOf<B> alone, here;
-  Ranks<typename B::Space, typename B::real, B::dim> ranks;
+  Decomposition<typename B::Space, typename B::real, B::dim> ranks;
 
   Pair(const Cloud& cloud, const PartitionConfig& config, int seed, P2G how = P2G::gather) {
     const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
     alone = state_of<B>(cloud, how);
     Cloud share = share_of_cloud<B::dim>(cloud, rank, size);
-    share.f_bar_share = 0;  // a cell's particles are still on several ranks
+    share.f_bar_fraction = 0;  // a cell's particles are still on several ranks
     here = state_of<B>(share, how);
-    here.f_bar_share = cloud.f_bar_share;
+    here.f_bar_fraction = cloud.f_bar_fraction;
     const Owners owners = random_owners(alone.grid.patches_of_field(), size, seed);
     REQUIRE(ranks.start(MPI_COMM_WORLD, config, owners, here) == PETSC_SUCCESS);
   }
@@ -154,7 +154,7 @@ TEST_CASE("nodal sums of several ranks are those of one, with the same bits wher
       const std::vector<char> reached = with_mass(s);
       REQUIRE(pair.ranks.add_soil(s) == PETSC_SUCCESS);
       REQUIRE(pair.ranks.drain() == PETSC_SUCCESS);
-      const int size = SoilShare<B::dim>::size;
+      const int size = SoilTerms<B::dim>::size;
       constexpr double far = std::numeric_limits<double>::max();
       std::vector<double> least = dense(s, s.nodes.soil, size, reached, far),
                           most = dense(s, s.nodes.soil, size, reached, -far);
@@ -208,9 +208,9 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
       Cloud cloud = random_cloud<B::dim>(3, Wall::roller);
       cloud.gravity = {0, -9.81, 0};
       keep_inside<B::dim>(cloud);
-      cloud.f_bar_share = 0.5;
-      if (kind == 1) cloud.xpic_order = 3, cloud.flip_share = 0;
-      if (kind == 2) cloud.affine = true, cloud.flip_share = 0;
+      cloud.f_bar_fraction = 0.5;
+      if (kind == 1) cloud.xpic_order = 3, cloud.flip_fraction = 0;
+      if (kind == 2) cloud.affine = true, cloud.flip_fraction = 0;
       if (kind == 3) give_own_masses(cloud, 3, 0.6);
       if (kind == 4)
         cloud.bodies[1].velocity_field = cloud.bodies[3].velocity_field = 1, cloud.rigids.clear();
@@ -231,7 +231,7 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
       const long total = pair.alone.soil.points.count;
       const auto a = particles_of(pair.here, total, MPI_COMM_WORLD);
       const auto b = particles_of(pair.alone, total, MPI_COMM_SELF);
-      CHECK((look(pair.here).fault_count == 0 && look(pair.alone).fault_count == 0));
+      CHECK((read_control(pair.here).fault_count == 0 && read_control(pair.alone).fault_count == 0));
       CHECK(apart(a, b) < 1e-11);
       const auto here = take_rigids(pair.here), alone = take_rigids(pair.alone);
       for (std::size_t r = 0; r < cloud.rigids.size(); ++r)

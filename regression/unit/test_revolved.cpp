@@ -5,6 +5,7 @@
 
 #include "compare.hpp"
 #include "input/revolved.hpp"
+#include "physics/surface.hpp"
 #include "step/surface_input.hpp"
 
 using namespace mpm;

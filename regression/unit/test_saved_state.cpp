@@ -64,7 +64,7 @@ Cloud moving_cloud(int seed) {
   Cloud cloud = random_cloud<Dim>(seed, Wall::roller);
   for (BodyInput& body : cloud.bodies)
     for (double& stress : body.stress) stress *= 0.01;
-  cloud.f_bar_share = 0.9;
+  cloud.f_bar_fraction = 0.9;
   cloud.p2g.margin = 0.1;
   cloud.gravity = {0, -10, -5};
   return cloud;
@@ -89,13 +89,13 @@ TEST_CASE("a run from a saved state has the bits of the run that was saved", "[s
       CHECK(same(save_state(again), save_state(whole)));
       if (!gives_same_bits<B>(how)) continue;
       run_steps(whole, dt, 120), run_steps(again, dt, 120);
-      if (look(whole).fault_count >
+      if (read_control(whole).fault_count >
           0) {  // the cloud has burst in the same step; which of its particles a thread met first is open
-        CHECK(look(again).fault_count == look(whole).fault_count);
-        CHECK(look(again).fault.kind == look(whole).fault.kind);
+        CHECK(read_control(again).fault_count == read_control(whole).fault_count);
+        CHECK(read_control(again).fault.kind == read_control(whole).fault.kind);
         if (std::is_same_v<typename B::Space, Kokkos::Serial>)
-          CHECK(look(again).fault.particle == look(whole).fault.particle);
-        CHECK(look(again).steps + 37 == look(whole).steps);
+          CHECK(read_control(again).fault.particle == read_control(whole).fault.particle);
+        CHECK(read_control(again).steps + 37 == read_control(whole).steps);
         continue;
       }
       CHECK(same(save_state(again), save_state(whole)));

@@ -16,7 +16,7 @@ template <class B>
 std::vector<Table> fields_after(const Cloud& cloud, P2G how, double dt, int n) {
   auto s = state_of<B>(cloud, how);
   run_steps(s, dt, n);
-  if (look(s).fault_count > 0) throw std::runtime_error("a step failed");
+  if (read_control(s).fault_count > 0) throw std::runtime_error("a step failed");
   return soil_fields(s);
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("a body in free flight moves by v t, across rebuilds", "[step]") {
       const int rebuilds = run_steps(s, dt, steps);
       INFO(build.name() << ' ' << strategy_name(how));
       CHECK(rebuilds >= 7);
-      CHECK(look(s).fault_count == 0);
+      CHECK(read_control(s).fault_count == 0);
       CHECK(largest_difference(soil_fields(s)[0], expected) < B::of(1e-12, 1e-5));
     }
   });
@@ -140,8 +140,8 @@ TEST_CASE("FLIP and PIC mix by their share, and PIC's velocity is the one that m
     using B = decltype(reference);
     const double dt = 1e-5;
     Cloud cloud = random_cloud<B::dim>(4);
-    const auto after_one = [&](double flip_share) {
-      cloud.flip_share = flip_share;
+    const auto after_one = [&](double flip_fraction) {
+      cloud.flip_fraction = flip_fraction;
       return fields_after<B>(cloud, P2G::sequential, dt, 1);
     };
     const auto start = fields_after<B>(cloud, P2G::sequential, dt, 0);
@@ -164,7 +164,7 @@ TEST_CASE("with F-bar the particles of a cell dilate alike, and their pressures 
   for_each_build([](auto build) {
     using B = decltype(build);
     Cloud cloud = random_cloud<B::dim>(2);
-    cloud.f_bar_share = 1;
+    cloud.f_bar_fraction = 1;
     auto s = state_of<B>(cloud);
     const auto cell = on_host(s.soil.points.cell);
     const auto start = on_host(s.soil.points.volume);
@@ -221,9 +221,9 @@ TEST_CASE("one step of a random cloud is the plain loop's in double on one threa
     for (int seed : {1, 2, 3}) {
       Cloud cloud = random_cloud<Dim>(seed, seed == 1 ? Wall::roller : Wall::fixed);
       cloud.gravity = {1, -9.81, 0.5};
-      cloud.flip_share = seed == 2 ? 0.9 : 1;
+      cloud.flip_fraction = seed == 2 ? 0.9 : 1;
       cloud.damping = seed == 3 ? 0.05 : 0;
-      cloud.f_bar_share = seed == 3 ? 0.9 : 0;
+      cloud.f_bar_fraction = seed == 3 ? 0.9 : 0;
       const auto expected = fields_after<Reference<Dim>>(cloud, P2G::sequential, 1e-5, 1);
       for_each_build([&](auto build) {
         using B = decltype(build);

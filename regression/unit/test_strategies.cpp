@@ -120,7 +120,7 @@ TEST_CASE("every strategy keeps the total mass and momentum, and internal forces
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
-    using S = SoilShare<Dim>;
+    using S = SoilTerms<Dim>;
     const Cloud cloud = random_cloud<Dim>(5);
     const double tolerance = B::of(1e-13, 1e-6);
     double mass = 0, momentum[3] = {}, size[3] = {};
@@ -176,11 +176,11 @@ TEST_CASE("on processors tile gives the bits of one thread whatever the number o
       for (const int seed : {3, 4}) {
         Cloud cloud = random_cloud<B::dim>(seed, Wall::roller);
         cloud.gravity = {0, -9.81, 0};
-        cloud.f_bar_share = seed % 2 ? 0.9 : 0;
+        cloud.f_bar_fraction = seed % 2 ? 0.9 : 0;
         auto expected = state_of<One>(cloud, P2G::tile);
         constexpr double k_dt = 1e-5;  // s
         const int steps = 30, rebuilds = run_steps(expected, k_dt, steps);
-        REQUIRE(look(expected).fault_count == 0);
+        REQUIRE(read_control(expected).fault_count == 0);
         sum_present_soil(expected);
         for (const Space& space : {Space(), with_other_threads<Space>()}) {
           INFO(build.name() << ", " << space.concurrency() << " threads, seed " << seed);

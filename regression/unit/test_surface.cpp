@@ -7,6 +7,7 @@
 #include "compare.hpp"
 #include "loops/window.hpp"
 #include "physics/contact.hpp"
+#include "physics/surface.hpp"
 #include "step/surface_input.hpp"
 
 using namespace mpm;
@@ -180,7 +181,7 @@ TEST_CASE("soil pressed into a thin plate is stopped by the face that it is at",
       auto s = state_of<B>(cloud);
       interpolate(s);
       update_nodes(s, 1e-6);
-      const Table motion = nodes_of(s, s.nodes.motion), soil = nodes_of(s, s.nodes.soil);
+      const Table motion = nodes_of(s, s.nodes.kinematics), soil = nodes_of(s, s.nodes.soil);
       double fastest = 0;
       int held = 0;
       for (int z : {10, 11}) {
@@ -228,7 +229,7 @@ TEST_CASE(
         auto s = state_of<B>(cloud, how);
         interpolate(s);
         update_nodes(s, 1e-6);
-        const Table motion = nodes_of(s, s.nodes.motion);
+        const Table motion = nodes_of(s, s.nodes.kinematics);
         double apart = 0, slowest = 1;
         for (int x = 5; x <= 15; ++x)
           for (int y = 5; y < 10; ++y)
@@ -264,14 +265,14 @@ TEST_CASE("a patch counts as near a rigid if its particles reach a node that the
       cloud.rigids = {plate_of<Dim>(from, to, spacing)};
       const auto s = state_of<B>(cloud);
       const auto near = on_host(s.near_rigid), soil_begin = on_host(s.soil.bins.begin);
-      const auto around = on_host(s.patches.around);
+      const auto neighbours = on_host(s.patches.neighbours);
       const auto rigid_begin = on_host(s.rigid_points[0].bins.begin);
       const auto origin = on_host(s.patches.origin);
       constexpr int cells = Patch<Dim>::cells;
       for (int slot = 0; slot < s.patches.slots; ++slot) {
         if (near(slot) != 0 || soil_begin(slot * cells) == soil_begin((slot + 1) * cells)) continue;
-        for (int k = 0; k < Patch<Dim>::around; ++k) {
-          const int other = around(slot, k);
+        for (int k = 0; k < Patch<Dim>::neighbours; ++k) {
+          const int other = neighbours(slot, k);
           left_out += other >= 0 && rigid_begin(other * cells) < rigid_begin((other + 1) * cells);
         }
         for (int n = 0; n < Patch<Dim>::window; ++n) {
@@ -327,7 +328,7 @@ TEST_CASE("contact begins where the gap is closed, and the mass of the body does
       auto s = state_of<B>(cloud);
       interpolate(s);
       update_nodes(s, 1e-6);
-      const Table motion = nodes_of(s, s.nodes.motion);
+      const Table motion = nodes_of(s, s.nodes.kinematics);
       const auto speed = [&](int z) {
         Coord<Dim> node{10, z};
         if constexpr (Dim == 3) node = {10, 10, z};

@@ -18,20 +18,20 @@ TEST_CASE("whole steps are timed where they are many, and again a thousand later
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       return steps;
     };
-    REQUIRE(timers.run_many(Function::whole, steps, work, [&] { ++waits; }) == PETSC_SUCCESS);
+    REQUIRE(timers.run_many(StepPhase::persistent, steps, work, [&] { ++waits; }) == PETSC_SUCCESS);
   };
   run(3);
   CHECK(waits == 0);
-  CHECK(timers.calls(Function::whole) == 3);
-  CHECK(timers.seconds(Function::whole) == 0);
+  CHECK(timers.calls(StepPhase::persistent) == 3);
+  CHECK(timers.seconds(StepPhase::persistent) == 0);
   run(500);
   CHECK(waits == 2);  // for what was before, and for the steps
-  const double first = timers.seconds(Function::whole);
+  const double first = timers.seconds(StepPhase::persistent);
   CHECK(first >= 0.002 * 503 / 500);
   run(500);
   CHECK(waits == 2);
-  CHECK(timers.calls(Function::whole) == 1003);
-  CHECK(timers.seconds(Function::whole) > 1.9 * first);
+  CHECK(timers.calls(StepPhase::persistent) == 1003);
+  CHECK(timers.seconds(StepPhase::persistent) > 1.9 * first);
   run(600), run(100);
   CHECK(waits == 4);  // of the second one alone
 }

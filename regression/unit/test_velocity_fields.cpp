@@ -52,7 +52,7 @@ std::vector<Table> after_steps(const Cloud& cloud, P2G how) {
     run_steps(s, 1e-4, 10);
     rebuild(s);
   }
-  REQUIRE(look(s).fault_count == 0);
+  REQUIRE(read_control(s).fault_count == 0);
   return soil_fields(s);
 }
 

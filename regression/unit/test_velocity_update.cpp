@@ -53,7 +53,7 @@ template <class B>
 std::vector<Table> velocities_after(const Cloud& cloud, P2G how, int n) {
   auto s = state_of<B>(cloud, how);
   run_steps(s, k_dt, n);
-  if (look(s).fault_count > 0) throw std::runtime_error("a step failed");
+  if (read_control(s).fault_count > 0) throw std::runtime_error("a step failed");
   std::vector<Table> fields{by_id(s.soil.points, s.soil.points.velocity)};
   if (s.affine) fields.push_back(by_id(s.soil.points, s.soil.points.affine));
   return fields;
@@ -128,7 +128,7 @@ TEST_CASE("XPIC(m) is v - (I - S S+)^m v, by full matrices", "[velocity_update]"
         for (std::size_t q = 0; q < count; ++q)
           for (int d = 0; d < B::dim; ++d) rest[p * B::dim + d] -= P[p * count + q] * before[q * B::dim + d];
       cloud.xpic_order = m;
-      cloud.flip_share = 0;
+      cloud.flip_fraction = 0;
       const Table got = velocities_after<B>(cloud, P2G::tile, 1)[0];
       double largest = 0;
       for (std::size_t n = 0; n < v.size(); ++n)
@@ -144,8 +144,8 @@ TEST_CASE("XPIC and FLIP mix by their share, and PIC is XPIC(1)", "[velocity_upd
     using B = decltype(reference);
     Cloud cloud = random_cloud<B::dim>(4, Wall::fixed);
     cloud.gravity = {1, -9.81, 0.5};
-    const auto after = [&](double flip_share, int order) {
-      cloud.flip_share = flip_share;
+    const auto after = [&](double flip_fraction, int order) {
+      cloud.flip_fraction = flip_fraction;
       cloud.xpic_order = order;
       return velocities_after<B>(cloud, P2G::sequential, 1)[0];
     };
@@ -177,7 +177,7 @@ TEST_CASE("XPIC takes out what no node sees, and lets a smooth field be the more
     /// Largest change of the velocity far from the surface in a step by XPIC(m), and largest velocity after
     /// it.
     const auto change = [&](int m) {
-      cloud.flip_share = 0;
+      cloud.flip_fraction = 0;
       cloud.xpic_order = m;
       const Table got = velocities_after<B>(cloud, P2G::tile, 1)[0];
       std::array<double, 2> largest{};
@@ -238,7 +238,7 @@ TEST_CASE("APIC keeps a linear field of velocity at free surfaces, from the firs
         return largest;
       };
       cloud.affine = true;
-      cloud.flip_share = 0;
+      cloud.flip_fraction = 0;
       CHECK(error(A, 1) < B::of(1e-13, 1e-5));
       // In steady shear no particle changes its velocity, however far it goes; in others x + v dt bends the
       // field.
@@ -260,7 +260,7 @@ TEST_CASE("XPIC and APIC keep momentum, and APIC angular momentum", "[velocity_u
     Dice dice{std::mt19937_64(31)};
     for (std::size_t n = 0; n < strength_of(body).size() * sym_size<Dim>; ++n)
       body.stress.push_back(dice.uniform(-3000, 3000));
-    cloud.flip_share = 0;
+    cloud.flip_fraction = 0;
     for (int order : {0, 2, 5}) {
       cloud.xpic_order = order;
       cloud.affine = order == 0;
@@ -293,7 +293,7 @@ TEST_CASE("a spinning elastic block keeps its spin with APIC", "[velocity_update
     cloud.bodies = {body_of<B::dim>(lattice<B::dim>({4, 4, 3}, {8, 8, 5}, 2, k_spacing), 2, k_spacing, 0)};
     set_linear<B::dim>(cloud.bodies[0], turn, {6 * omega * k_spacing, -6 * omega * k_spacing, 0});
     cloud.affine = true;
-    cloud.flip_share = 0;
+    cloud.flip_fraction = 0;
     auto s = state_of<B>(cloud, P2G::tile);
     const auto spin = [&] { return angular_momentum<B>(s, soil_fields(s)[0].value)[0]; };
     const double before = spin(), dt = 2e-4;
@@ -303,7 +303,7 @@ TEST_CASE("a spinning elastic block keeps its spin with APIC", "[velocity_update
     for (int p = 0; p < s.soil.points.count; ++p)
       mean += (C.value[(p * B::dim + 1) * B::dim] - C.value[p * B::dim * B::dim + 1]) / 2 / k_spacing;
     INFO(B::name());
-    CHECK(look(s).fault_count == 0);
+    CHECK(read_control(s).fault_count == 0);
     CHECK(std::fabs(spin() / before - 1) < 0.01);
     CHECK(std::fabs(mean / s.soil.points.count / omega - 1) < 0.02);
   });
@@ -316,7 +316,7 @@ TEST_CASE("a step with XPIC or APIC is the plain loop's in double on one thread"
     cloud.gravity = {1, -9.81, 0.5};
     for (int order : {0, 2, 4}) {
       cloud.xpic_order = order;
-      cloud.flip_share = order == 4 ? 0.9 : 0;
+      cloud.flip_fraction = order == 4 ? 0.9 : 0;
       cloud.affine = order == 0;
       const auto expected = velocities_after<Reference<Dim>>(cloud, P2G::sequential, 1);
       for_each_build([&](auto build) {

@@ -71,9 +71,9 @@ std::vector<double> places_after(const Cloud& cloud, P2G how, int steps, std::si
 /// The velocity updates.
 void for_each_update(Cloud cloud, const std::function<void(const Cloud&, const char*)>& f) {
   f(cloud, "flip");
-  cloud.f_bar_share = 0.98;
+  cloud.f_bar_fraction = 0.98;
   f(cloud, "flip with F-bar");
-  cloud.flip_share = 0, cloud.affine = true;
+  cloud.flip_fraction = 0, cloud.affine = true;
   f(cloud, "apic");
   cloud.affine = false, cloud.xpic_order = 3;
   f(cloud, "xpic");
@@ -98,7 +98,7 @@ TEST_CASE("half a slump at a roller is half of the whole one, with every strateg
     using B = decltype(build);
     for_each_update(slump<B::dim>(3, false, Wall::roller), [&](const Cloud& half, const char* update) {
       Cloud whole = slump<B::dim>(3, true, Wall::roller);
-      whole.f_bar_share = half.f_bar_share, whole.flip_share = half.flip_share;
+      whole.f_bar_fraction = half.f_bar_fraction, whole.flip_fraction = half.flip_fraction;
       whole.affine = half.affine, whole.xpic_order = half.xpic_order;
       const std::size_t count = strength_of(half.bodies[0]).size();
       for (const P2G how : k_strategies) {
@@ -139,9 +139,9 @@ TEST_CASE("the nodes beyond a wall hold nothing, and those at it move as it allo
             beyond = beyond || at[d] < 0 || at[d] > s.grid.cells[d];
           }
           total += soil(i, 0);
-          for (int k = 0; k < SoilShare<Dim>::size && beyond; ++k) wrong += soil(i, k) != 0;
+          for (int k = 0; k < SoilTerms<Dim>::size && beyond; ++k) wrong += soil(i, k) != 0;
           for (int d = 0; d < Dim && !beyond; ++d)
-            if (at[d] == 0 || at[d] == s.grid.cells[d]) wrong += soil(i, SoilShare<Dim>::momentum + d) != 0;
+            if (at[d] == 0 || at[d] == s.grid.cells[d]) wrong += soil(i, SoilTerms<Dim>::momentum + d) != 0;
         }
         CHECK(wrong == 0);
         double mass = 0;
@@ -161,13 +161,13 @@ TEST_CASE("soil that leaves through a free side is taken out, with all that it h
     const double mass = k_density * std::pow(k_edge / 2, B::dim);
     for (int n = 0; n < 40; ++n) {
       one_step(s, 1e-3);
-      if (look(s).paused == 0) continue;
+      if (read_control(s).paused == 0) continue;
       locate(s);
-      if (look(s).lost > 0) note_lost(s);
+      if (read_control(s).lost > 0) note_lost(s);
       sort_and_list(s);
     }
     CHECK(s.soil.points.count == 0);
-    CHECK(look(s).fault_count == 0);
+    CHECK(read_control(s).fault_count == 0);
     const Lost& lost = s.strays.lost[0];
     CHECK(lost.count == 1);
     CHECK(std::fabs(lost.mass - mass) < B::of(1e-12, 1e-5) * mass);
@@ -255,7 +255,7 @@ TEST_CASE("a volume beyond its bounds is limited, or a fault where strays stop t
         CHECK(measure(s, 0).limited == 1);
         CHECK(std::fabs(download_soil(s).volume[swollen] / (k_most_volume * body.particle_volume) - 1) <
               1e-6);
-        const Control control = look(s);
+        const Control control = read_control(s);
         CHECK((control.fault_count > 0) == (rule == StrayRule::stop));
         if (rule != StrayRule::stop) continue;
         CHECK(control.fault.kind == FaultKind::volume);

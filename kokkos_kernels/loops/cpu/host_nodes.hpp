@@ -35,11 +35,11 @@ struct HostNodes {
     if (near > 0) {
       thread_local std::vector<double> force;  // so that a step allocates nothing
       force.resize(update.value_count * cells);
-      update.update_near(LoneThread{}, sums, slot, near - 1, force.data());
+      update.update_near(SerialTeam{}, sums, slot, near - 1, force.data());
     } else if (inside(slot) && !update.has_friction) {
-      update.update_rows(LoneThread{}, sums, slot);
+      update.update_rows(SerialTeam{}, sums, slot);
     } else {
-      update.update_far(LoneThread{}, sums, slot);
+      update.update_far(SerialTeam{}, sums, slot);
     }
   }
 

@@ -82,7 +82,8 @@ struct LawLanes {
       using Law = std::decay_t<decltype(law)>;
       LawState<R, state_size<Law>> was, state;
       for (int k = 0; k < state.size; ++k) {
-        load_field(soil.history.column[k], p, count, was[k]);
+        was[k] = 0;
+        if (carries(law, k)) load_field(soil.history.column[k], p, count, was[k]);
         state[k] = was[k];
       }
       update_lanes(law, stress, state, by);
@@ -91,7 +92,19 @@ struct LawLanes {
         state[k] = kept(state[k], was[k]);
         if (any_of(state[k] != was[k])) store_field(state[k], soil.history.column[k], p, count);
       }
+      if constexpr (can_fail<Law>()) mark_failed(law, state, stress);
     });
+  }
+
+  /// The stress of a particle that its law calls failed is made not finite: fault_of() finds it.
+  template <class Law>
+  KOKKOS_INLINE_FUNCTION void mark_failed(const Law& law, const LawState<R, state_size<Law>>& state,
+                                          SymTensor<R, Dim>& stress) const {
+    for (int l = 0; l < count; ++l) {
+      LawState<T, state_size<Law>> own;
+      for (int k = 0; k < own.size; ++k) own[k] = state[k][l];
+      if (law.failed(own)) stress[0].set(l, Kokkos::Experimental::quiet_NaN_v<T>);
+    }
   }
 };
 
@@ -100,15 +113,15 @@ template <class Space, class T, int Dim>
 struct HostParticles {
   static constexpr int W = native_lanes<T>, cells = Patch<Dim>::cells, window = Patch<Dim>::window;
   using R = Lanes<T, W>;
-  static constexpr int k_motion = NodeMotion<Dim>::size;
+  static constexpr int k_motion = NodeKinematics<Dim>::size;
   static constexpr int k_node = k_motion <= 4 ? 4 : 8;  // values of a node, with a gap in 3D
   using Node = Lanes<T, k_node>;
   static constexpr int k_room = 2048 / sizeof(T);  // particles on the stage, which the cache holds
   static constexpr int k_pitch = k_room + W;       // not a power of two: values would drive each other out
   /// What the particles of some cells take from the nodes, in their order, each value apart.
   struct alignas(R) Stage {
-    T motion[k_motion][k_pitch], gradient[Dim * Dim][k_pitch];  // m/s, m/s2; 1/s
-    T mean[k_pitch];    // 1/s, dilatation rate of the particle's cell; first its share of it
+    T kinematics[k_motion][k_pitch], gradient[Dim * Dim][k_pitch];  // m/s, m/s2; 1/s
+    T mean[k_pitch];    // 1/s, dilatation rate of the particle's cell; first the particle's term of it
     int base[k_pitch];  // window_base of its cell
     bool one_body;      // all particles of the patch
     bool at_wall;       // the patch
@@ -116,9 +129,9 @@ struct HostParticles {
 
   Soil<Space, T, Dim> soil;
   decltype(Bins<Space>::begin) begin;
-  decltype(Patches<Space, Dim>::around) around;
+  decltype(Patches<Space, Dim>::neighbours) neighbours;
   decltype(Patches<Space, Dim>::origin) origin;
-  decltype(Nodes<Space, T, Dim>::motion) motion;
+  decltype(Nodes<Space, T, Dim>::kinematics) kinematics;
   ControlView<Space> control;
   Grid<T, Dim> grid;
   decltype(Strays<Space>::alone) alone;
@@ -128,15 +141,15 @@ struct HostParticles {
 
   /// Asks for what the next slot takes from the nodes.
   void fetch_nodes(int slot) const {
-    const int last = last_around<Dim>(around, slot);
-    if (last >= 0) fetch(&motion(last * cells, 0), cells * k_motion * sizeof(T));
+    const int last = last_around<Dim>(neighbours, slot);
+    if (last >= 0) fetch(&kinematics(last * cells, 0), cells * k_motion * sizeof(T));
   }
   /// The particles of a slot. Returns the largest component of their movements [cells].
   T operator()(int slot) const {
     alignas(Node) T nodes[window][k_node];
-    for_each_run<Dim>(around, slot, [&](int place, int node, auto count) {
+    for_each_run<Dim>(neighbours, slot, [&](int place, int node, auto count) {
       for (int n = 0; n < count; ++n)
-        for (int k = 0; k < k_motion; ++k) nodes[place + n][k] = motion(node + n, k);
+        for (int k = 0; k < k_motion; ++k) nodes[place + n][k] = kinematics(node + n, k);
     });
     for (int n = 0; n < window; ++n)
       for (int k = k_motion; k < k_node; ++k) nodes[n][k] = 0;
@@ -240,7 +253,7 @@ struct HostParticles {
           return node;
         },
         value, gradient);
-    for (int k = 0; k < k_motion; ++k) stage.motion[k][n] = value[0][k];
+    for (int k = 0; k < k_motion; ++k) stage.kinematics[k][n] = value[0][k];
     for (int i = 0; i < Dim; ++i)
       for (int d = 0; d < Dim; ++d) stage.gradient[i * Dim + d][n] = gradient[0][d][i] * by.inv_spacing;
   }
@@ -271,8 +284,8 @@ struct HostParticles {
     load_field(soil.velocity, p, count, q.v.c);
     load_field(soil.stress, p, count, q.stress.c);
     load_field(soil.volume, p, count, q.volume);
-    Taken<R, Dim> t;
-    for (int k = 0; k < k_motion; ++k) t.motion[k] = R::load(stage.motion[k] + n);
+    GridSample<R, Dim> t;
+    for (int k = 0; k < k_motion; ++k) t.kinematics[k] = R::load(stage.kinematics[k] + n);
     for (int k = 0; k < Dim * Dim; ++k) t.gradient[k / Dim][k % Dim] = R::load(stage.gradient[k] + n);
     LawLanes<R, Space, T, Dim> law{.soil = soil, .p = p, .count = count, .one_law = stage.one_body};
     for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
@@ -320,8 +333,9 @@ struct HostParticles {
       for (int d = 0; d < Dim; ++d) q.x[d] = block.x[d][l], q.v[d] = block.v[d][l];
       q.volume = block.volume[l];
       for (int k = 0; k < sym_size<Dim>; ++k) q.stress[k] = block.stress[k][l];
-      const FaultKind fault = fault_of(q, moved[l], by);
+      FaultKind fault = fault_of(q, moved[l], by);
       if (fault == FaultKind::none) continue;
+      if (fault == FaultKind::not_finite && has_failed(soil, p + l)) fault = FaultKind::law;
       const Coord<Dim> cell = coord_of<Dim>(soil.cell(p + l));
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;

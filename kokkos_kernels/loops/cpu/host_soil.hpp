@@ -1,5 +1,5 @@
 #pragma once
-// What the soil gives the nodes on a processor where many threads are at work: its shares in each patch's
+// What the soil gives the nodes on a processor where many threads are at work: its terms in each patch's
 // window, and its boundary near a rigid.
 
 #include "loops/cpu/host_sums.hpp"
@@ -12,7 +12,7 @@ template <class Space, class T, int Dim>
 struct SlotSums {
   static constexpr int edge = Patch<Dim>::edge, rows = Patch<Dim>::cells / edge;
   using Row = Lanes<T, edge>;
-  Row of_soil[rows][SoilShare<Dim>::size], of_boundary[rows][BoundaryShare<Dim>::size];
+  Row of_soil[rows][SoilTerms<Dim>::size], of_boundary[rows][BoundaryTerms<Dim>::size];
   const decltype(NodeSums<Space, T, Dim>::rigid)* of_rigids;  // a view copied would be counted by all threads
 
   KOKKOS_INLINE_FUNCTION T soil(int i, int n) const { return of_soil[i / edge % rows][n][i % edge]; }

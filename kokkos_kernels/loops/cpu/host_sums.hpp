@@ -8,11 +8,11 @@
 
 namespace mpm {
 
-/// The places in Patches::around as the slots there rise.
+/// The places in Patches::neighbours as the slots there rise.
 template <int Dim>
-std::array<int, Patch<Dim>::around> places_around_in_order(const Coord<Dim>& turn) {
-  std::array<int, Patch<Dim>::around> places{};
-  for (int n = 0; n < Patch<Dim>::around; ++n)
+std::array<int, Patch<Dim>::neighbours> places_around_in_order(const Coord<Dim>& turn) {
+  std::array<int, Patch<Dim>::neighbours> places{};
+  for (int n = 0; n < Patch<Dim>::neighbours; ++n)
     for (int k = 0, rest = n; k < Dim; ++k, rest /= 3) places[n] += rest % 3 * power(3, turn[k]);
   return places;
 }
@@ -35,7 +35,7 @@ struct NodesOfWindows {
   Patches<Space, Dim> patches;
   NodeField<Space, T, size> out;
   bool adds;  // to what is there
-  std::array<int, Patch<Dim>::around> in_order = places_around_in_order(patches.turn);
+  std::array<int, Patch<Dim>::neighbours> in_order = places_around_in_order(patches.turn);
 
   /// The window of a slot; null if it has none, or no points to sum.
   Window* window_of(int slot) const {
@@ -47,7 +47,7 @@ struct NodesOfWindows {
 
   /// Asks for what a slot takes from the windows.
   void fetch_windows(int slot) const {
-    const int last = last_around<Dim>(patches.around, slot);
+    const int last = last_around<Dim>(patches.neighbours, slot);
     if (const Window* const from = last < 0 ? nullptr : window_of(last)) fetch(from, sizeof *from);
   }
   /// What the nodes of a slot have.
@@ -69,7 +69,7 @@ struct NodesOfWindows {
         for (Row& sum : row) sum = T(0);
     bool some = false;
     for (const int place : in_order) {
-      const int other = patches.around(slot, place);
+      const int other = patches.neighbours(slot, place);
       const Window* const window = other < 0 ? nullptr : window_of(other);
       if (!window) continue;
       some = true;
@@ -121,7 +121,7 @@ struct HostSums {
   bool apart;
 
   explicit HostSums(const Interpolation<Source>& it)
-      : tile{it.source, it.bins.begin, it.patches.around, it.patches.origin, it.grid, it.out},
+      : tile{it.source, it.bins.begin, it.patches.neighbours, it.patches.origin, it.grid, it.out},
         nodes{it.bins, it.windows, it.patches, it.out, it.adds},
         apart(has_windows(it.space)) {}
 
@@ -149,7 +149,7 @@ void sum_on_host(const Interpolation<Source>& it) {
   for_each_shared("mpm::reduce_by_tile", it.space, phases, [&](int phase, int n) {
     if (it.control().paused) return;
     if (phase == 0)
-      sums.sum(it.bins.by_colour(n));
+      sums.sum(it.bins.active_slots(n));
     else
       sums.give_nodes(near ? it.near_slots(n) : n);
   });

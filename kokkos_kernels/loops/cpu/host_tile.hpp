@@ -1,5 +1,5 @@
 #pragma once
-// The strategy `tile` on a processor: a thread sums the shares of the particles of a patch, cell by cell,
+// The strategy `tile` on a processor: a thread sums the terms of the particles of a patch, cell by cell,
 // four nodes of a row at once. The sums of a cell stay in registers, those of the patch in the cache.
 
 #include "loops/cpu/host_window.hpp"
@@ -38,7 +38,7 @@ struct HostTile {
 
   Source source;
   decltype(Bins<Space>::begin) begin;
-  decltype(Patches<Space, Dim>::around) around;
+  decltype(Patches<Space, Dim>::neighbours) neighbours;
   decltype(Patches<Space, Dim>::origin) origin;
   Grid<T, Dim> grid;
   NodeField<Space, T, size> out;
@@ -50,7 +50,7 @@ struct HostTile {
     if (source.skips(slot)) return;
     alignas(R) T sums[size][window] = {};
     sum(slot, sums);
-    for_each_run<Dim>(around, slot,
+    for_each_run<Dim>(neighbours, slot,
                       [&](int place, int node, auto count) { give_run<count>(sums, place, node); });
   }
 
@@ -160,7 +160,7 @@ struct HostTile {
     }
   }
 
-  /// Adds particle e of the stage to the nodes of layer k: its share, with lanes for the weights.
+  /// Adds particle e of the stage to the nodes of layer k: its terms, with lanes for the weights.
   KOKKOS_FORCEINLINE_FUNCTION void add_particle(const Stage& stage, int e, int k,
                                                 Rows (&own)[k_row / k_rows][size]) const {
     const Rows w_x = repeated<Rows::k_count>(Row::load(stage.weight[0][0][e])),
@@ -177,7 +177,7 @@ struct HostTile {
       grad[0] = w * g_x, grad[1] = g_y * w_x;
       give<Source>(
           q, w * w_x, grad, [&] { return offset(stage.x[e], j, k); },
-          [&](int n, Rows share) { own[part][n] += share; });
+          [&](int n, Rows term) { own[part][n] += term; });
     });
   }
 

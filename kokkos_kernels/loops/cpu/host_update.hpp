@@ -13,17 +13,17 @@ template <class Space, class T, int Dim>
 void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by, bool sums) {
   const auto& bins = s.soil.bins;
   const HostParticles<Space, T, Dim> particles{
-      s.soil.points,     bins.begin, s.patches.around, s.patches.origin,
-      s.nodes.motion,    s.control,  s.grid,           s.strays.alone,
-      s.strays.put_back, by,         s.spacing};
+      s.soil.points, bins.begin, s.patches.neighbours, s.patches.origin,  s.nodes.kinematics,
+      s.control,     s.grid,     s.strays.alone,       s.strays.put_back, by,
+      s.spacing};
   const HostSoil<Space, T, Dim> soil(s);
   const bool gives = sums && !s.summed.in_windows;
   const Shared phases[] = {slots_held<Dim>(bins), gives ? slots_about<Dim>(bins, s.patches.slots) : Shared{}};
   for_each_shared("mpm::update_particles", s.space, phases, [&](int phase, int n) {
     if (s.control().paused) return;
     if (phase == 0) {
-      const int slot = bins.by_colour(n);
-      if (n + 1 < phases[0].last) particles.fetch_nodes(bins.by_colour(n + 1));
+      const int slot = bins.active_slots(n);
+      if (n + 1 < phases[0].last) particles.fetch_nodes(bins.active_slots(n + 1));
       const T moved = particles(slot);
       s.movements.note(slot, moved);
       if (sums) soil.sum(slot);

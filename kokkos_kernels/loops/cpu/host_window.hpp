@@ -14,8 +14,8 @@ namespace mpm {
 
 /// Calls f(place, node, count) for every run of nodes that is contiguous in the window of a slot and in the
 /// nodal fields: `count` nodes from `place` in the window and from number `node` of the fields on.
-template <int Dim, class Around, class F>
-void for_each_run(const Around& around, int slot, F&& f) {
+template <int Dim, class Neighbours, class F>
+void for_each_run(const Neighbours& neighbours, int slot, F&& f) {
   constexpr int edge = Patch<Dim>::edge, across = Patch<Dim>::window_edge, log_edge = Patch<Dim>::log_edge;
   for (int row = 0; row < Patch<Dim>::window; row += across) {
     const Coord<Dim> c = window_coord<Dim>(row);
@@ -24,7 +24,7 @@ void for_each_run(const Around& around, int slot, F&& f) {
       which = (which + (c[d] >> log_edge) + 1) * 3;
       place = (place + (c[d] & (edge - 1))) << log_edge;
     }
-    const auto node = [&](int x) { return around(slot, which + x) * Patch<Dim>::cells + place; };
+    const auto node = [&](int x) { return neighbours(slot, which + x) * Patch<Dim>::cells + place; };
     f(row, node(0) + edge - 1, std::integral_constant<int, 1>{});
     f(row + 1, node(1), std::integral_constant<int, edge>{});
     f(row + 1 + edge, node(2), std::integral_constant<int, 2>{});
@@ -86,9 +86,9 @@ inline void fetch(const void* from, std::size_t bytes) {
     __builtin_prefetch(static_cast<const char*>(from) + at, 0, 2);
 }
 /// The last slot in memory among those round a slot; the slots before it have not prefetched that slot.
-template <int Dim, class Around>
-int last_around(const Around& around, int slot) {
-  return around(slot, Patch<Dim>::around - 1);
+template <int Dim, class Neighbours>
+int last_around(const Neighbours& neighbours, int slot) {
+  return neighbours(slot, Patch<Dim>::neighbours - 1);
 }
 
 /// A number that many threads change, on a cache line of its own.
@@ -105,9 +105,11 @@ struct Shared {
   int some_count = 0;
 
   int part_begin(int part, int parts) const {
-    const auto share = [&](int count) { return static_cast<int>(static_cast<long>(count) * part / parts); };
-    if (some_count == 0) return first + share(last - first);
-    return part == 0 ? first : part == parts ? last : some[share(some_count)];
+    const auto begin_of_range = [&](int count) {
+      return static_cast<int>(static_cast<long>(count) * part / parts);
+    };
+    if (some_count == 0) return first + begin_of_range(last - first);
+    return part == 0 ? first : part == parts ? last : some[begin_of_range(some_count)];
   }
 };
 
@@ -152,7 +154,7 @@ void for_each_shared(const char* label, const Space& space, const Shared (&all)[
   }
 }
 
-/// The slots that hold points, as places in Bins::by_colour.
+/// The slots that hold points, as places in Bins::active_slots.
 template <int Dim, class Space>
 Shared slots_held(const Bins<Space>& bins) {
   return {bins.colour_begin[0], bins.colour_begin[Patch<Dim>::colours], 1};
@@ -161,7 +163,7 @@ Shared slots_held(const Bins<Space>& bins) {
 template <int Dim, class Space>
 Shared slots_about(const Bins<Space>& bins, int slots) {
   const Shared held = slots_held<Dim>(bins);
-  return {0, slots, 2, bins.by_colour.data() + held.first, held.last - held.first};
+  return {0, slots, 2, bins.active_slots.data() + held.first, held.last - held.first};
 }
 
 /// Whether the points [from, to) are all of one body.

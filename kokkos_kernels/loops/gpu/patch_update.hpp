@@ -1,19 +1,21 @@
 #pragma once
 // What a team of a device does to the particles of a patch (function 5), and to the nodes of the next step.
 
-#include "functions/step_kernels.hpp"
+#include "data/state.hpp"
+#include "device/warp.hpp"
 #include "loops/gpu/tile.hpp"
 #include "physics/advance.hpp"
 
 namespace mpm {
 
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const MotionValues<T, Dim>* window,
-                                                     const Coord<Dim>& cell, const AxisWeights<T> (&a)[Dim],
-                                                     T inv_spacing) {
-  Taken<T, Dim> t{};
+KOKKOS_INLINE_FUNCTION GridSample<T, Dim> sample_nodes(const KinematicValues<T, Dim>* window,
+                                                       const Coord<Dim>& cell, const AxisWeights<T> (&a)[Dim],
+                                                       T inv_spacing) {
+  GridSample<T, Dim> t{};
   interpolate_by_lines(
-      a, [&](const Vector<int, Dim>& k) { return window[window_place(cell, a, k)]; }, t.motion, t.gradient);
+      a, [&](const Vector<int, Dim>& k) { return window[window_place(cell, a, k)]; }, t.kinematics,
+      t.gradient);
   for (int d = 0; d < Dim; ++d)
     for (int e = 0; e < Dim; ++e) t.gradient[d][e] *= inv_spacing;
   return t;
@@ -21,12 +23,12 @@ KOKKOS_INLINE_FUNCTION Taken<T, Dim> take_from_nodes(const MotionValues<T, Dim>*
 
 /// The dilatation rate alone, sum v_i . grad S_ip [1/s].
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const MotionValues<T, Dim>* window, const Coord<Dim>& cell,
+KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const KinematicValues<T, Dim>* window, const Coord<Dim>& cell,
                                                const AxisWeights<T> (&a)[Dim], T inv_spacing) {
   T sum = 0;
   for_each_weight(a, [&](const Vector<int, Dim>& k, T, const Vector<T, Dim>& grad) {
-    const MotionValues<T, Dim> node = window[window_place(cell, a, k)];
-    for (int d = 0; d < Dim; ++d) sum += node[NodeMotion<Dim>::velocity + d] * grad[d];
+    const KinematicValues<T, Dim> node = window[window_place(cell, a, k)];
+    for (int d = 0; d < Dim; ++d) sum += node[NodeKinematics<Dim>::velocity + d] * grad[d];
   });
   return sum * inv_spacing;
 }
@@ -53,9 +55,9 @@ struct UpdateParticles {
 
   Source source;
   Kokkos::View<int*, Memory> begin, slots;
-  decltype(Patches<Space, Dim>::around) around;
+  decltype(Patches<Space, Dim>::neighbours) neighbours;
   Kokkos::View<Coord<Dim>*, Memory> origin;
-  NodeField<Space, T, NodeMotion<Dim>::size> motion;
+  NodeField<Space, T, NodeKinematics<Dim>::size> kinematics;
   NodeSums<Space, T, Dim> sums;  // of the next step
   Kokkos::View<int*, Memory> near_rigid;
   ControlView<Space> control;
@@ -74,7 +76,7 @@ struct UpdateParticles {
 
   static constexpr std::size_t bytes() {
     const std::size_t own =
-        scratch_bytes<MotionValues<T, Dim>>(window) + scratch_bytes<T>(cells) + TileOrNothing::bytes();
+        scratch_bytes<KinematicValues<T, Dim>>(window) + scratch_bytes<T>(cells) + TileOrNothing::bytes();
     return Sums && Tile<Boundary>::bytes() > own ? Tile<Boundary>::bytes() : own;
   }
 
@@ -86,10 +88,10 @@ struct UpdateParticles {
   KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot) const {
     prefetch_particles(team, slot);
     const auto number_of = [&](int n) {
-      return number_at<decltype(around), Dim>(around, slot, window_coord<Dim>(n));
+      return number_at<decltype(neighbours), Dim>(neighbours, slot, window_coord<Dim>(n));
     };
     update(team, all, slot, sums, number_of, [&](int, int number) {
-      return *reinterpret_cast<const MotionValues<T, Dim>*>(&motion(number, 0));
+      return *reinterpret_cast<const KinematicValues<T, Dim>*>(&kinematics(number, 0));
     });
   }
 
@@ -102,7 +104,7 @@ struct UpdateParticles {
     const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
     const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
     Scratch scratch = all;
-    MotionValues<T, Dim>* const nodes = scratch.take<MotionValues<T, Dim>>(window);
+    KinematicValues<T, Dim>* const nodes = scratch.take<KinematicValues<T, Dim>>(window);
     T* const mean = scratch.take<T>(cells);
     const TileOrNothing tile(scratch);
     const Coord<Dim> from = origin(slot);  // asked for before the nodes are waited for
@@ -145,13 +147,13 @@ struct UpdateParticles {
 
   /// The nodes beyond walls take the motion of their images.
   KOKKOS_INLINE_FUNCTION void mirror(const Member& team, const Coord<Dim>& from,
-                                     MotionValues<T, Dim>* nodes) const {
+                                     KinematicValues<T, Dim>* nodes) const {
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
       const int image = image_in_window(grid, from, n);
       if (image == n) return;
       const ImageSigns<Kind::motion, T, Dim> sign(grid, from, n);
-      for (int k = 0; k < NodeMotion<Dim>::size; ++k) nodes[n].c[k] = sign(k % Dim) * nodes[image].c[k];
+      for (int k = 0; k < NodeKinematics<Dim>::size; ++k) nodes[n].c[k] = sign(k % Dim) * nodes[image].c[k];
     });
   }
 
@@ -175,7 +177,7 @@ struct UpdateParticles {
   /// Mean dilatation rate of each cell [1/s], weighted by volume.
   template <class Begin>
   KOKKOS_INLINE_FUNCTION void average_dilatation(const Member& team, const Begin& cell_begin,
-                                                 const MotionValues<T, Dim>* nodes, T* mean) const {
+                                                 const KinematicValues<T, Dim>* nodes, T* mean) const {
     const auto& soil = source.points;
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), [&](int p) {
       with_weights_near(soil.coordinate(p), soil.bodies(one_body ? 0 : soil.body(p)).half_length,
@@ -199,8 +201,9 @@ struct UpdateParticles {
   /// Moves particle p; `moved` [cells] becomes the largest movement so far. Uncommon: its patch is at a wall
   /// or holds particles that are alone. Returns what the particle then gives.
   template <bool Uncommon>
-  KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const MotionValues<T, Dim>* nodes, const T* mean,
-                                                             int slot, int p, const BodyProperties<T>& common,
+  KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const KinematicValues<T, Dim>* nodes,
+                                                             const T* mean, int slot, int p,
+                                                             const BodyProperties<T>& common,
                                                              T& moved) const {
     const auto& soil = source.points;
     BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
@@ -211,7 +214,7 @@ struct UpdateParticles {
     T own = 0;
     with_weights_near(q.x, body.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
       own = advance(q, ParticleLaw<Space, T, Dim>{soil, p, body.material, law, flies},
-                    take_from_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean[place] : T(0), by);
+                    sample_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean[place] : T(0), by);
     });
     if (flies) q.volume = soil.volume(p);
     soil.coordinate(p) = q.x;
@@ -228,8 +231,9 @@ struct UpdateParticles {
     }
     soil.volume(p) = q.volume;
     soil.stress(p) = q.stress;
-    const FaultKind fault = fault_of(q, own, by);
+    FaultKind fault = fault_of(q, own, by);
     if (fault != FaultKind::none) {
+      if (fault == FaultKind::not_finite && has_failed(soil, p)) fault = FaultKind::law;
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
       report(control, fault, soil.id(p), position, Dim);
@@ -246,12 +250,12 @@ inline constexpr bool sums_fit = scratch_fits<Space, T, Dim>(UpdateParticles<Spa
 
 template <class Space, class T, int Dim>
 UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
-  const double flip = s.xpic_order > 0 ? 1 : s.flip_share;  // XPIC has changed the velocities already
+  const double flip = s.xpic_order > 0 ? 1 : s.flip_fraction;  // XPIC has changed the velocities already
   return {.dt = T(dt),
           .inv_spacing = s.grid.inv_spacing,
           .flip = T(flip),
           .pic = T(1 - flip),
-          .f_bar = T(s.f_bar_share),
+          .f_bar = T(s.f_bar_fraction),
           .least_volume = T(s.strays.least_volume),
           .most_volume = T(s.strays.most_volume),
           .volume_is_fault = s.strays.rule == StrayRule::stop,
@@ -262,13 +266,13 @@ template <class Update, class Space, class T, int Dim>
 Update update_of(const State<Space, T, Dim>& s, double dt, int first) {
   const auto& set = s.soil;
   const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
-      reinterpret_cast<T*>(s.spare.data()), set.points.count);
+      reinterpret_cast<T*>(s.scratch.data()), set.points.count);
   return {.source = {set.points, s.grid.inv_spacing},
           .begin = set.bins.begin,
-          .slots = set.bins.by_colour,
-          .around = s.patches.around,
+          .slots = set.bins.active_slots,
+          .neighbours = s.patches.neighbours,
           .origin = s.patches.origin,
-          .motion = s.nodes.motion,
+          .kinematics = s.nodes.kinematics,
           .sums = s.nodes,
           .near_rigid = s.near_rigid,
           .control = s.control,

@@ -1,5 +1,5 @@
 #pragma once
-// The strategy `tile` on a device: a team sums the shares of its patch's particles in scratch memory, then
+// The strategy `tile` on a device: a team sums the terms of its patch's particles in scratch memory, then
 // adds the window to the nodes. The particles pass over a stage, and a thread sums four nodes of a row in
 // registers. host_tile.hpp is the loop shape of a processor.
 

@@ -1,6 +1,7 @@
 #include "physics/materials/any.hpp"
 
 #include <cmath>
+#include <limits>
 #include <new>
 
 namespace mpm {
@@ -43,11 +44,22 @@ std::vector<bool> changing(ModelList<Models...>) {
   return {stiffness_changes<Models<double>>()...};
 }
 
-/// The state of a particle that is created at a height [m] without stress.
 template <class Law>
-auto start_of(const Law& law, double height) {
+constexpr const char* failure_of_law() {
+  if constexpr (can_fail<Law>()) return Law::k_failure;
+  return "";
+}
+
+template <template <class> class... Models>
+std::vector<const char*> failures(ModelList<Models...>) {
+  return {failure_of_law<Models<double>>()...};
+}
+
+/// The state of a particle that is created at a height [m] with a stress [Pa].
+template <class Law>
+auto start_of(const Law& law, double height, const std::array<double, 6>& stress = {}) {
   LawState<double, state_size<Law>> state{};
-  const auto start = law.initial_state({.height = height});
+  const auto start = law.initial_state({.height = height, .stress = stress});
   for (std::size_t k = 0; k < start.size(); ++k) state[static_cast<int>(k)] = start[k];
   return state;
 }
@@ -73,19 +85,74 @@ ParameterFault parameter_fault(const AnyMaterial<double>& material) {
   return fault;
 }
 
-std::vector<double> initial_state(const AnyMaterial<double>& material, const ParticleStart& at) {
-  std::vector<double> values;
+ParameterFault start_fault(const AnyMaterial<double>& material, const ParticleStart& at) {
+  ParameterFault fault;
   material.visit([&](const auto& law) {
-    const auto state = law.initial_state(at);
-    values.assign(state.begin(), state.end());
+    if constexpr (requires { law.start_fault(at); }) fault = law.start_fault(at);
+  });
+  return fault;
+}
+
+std::vector<double> parameters_for(int which, const std::vector<double>& parameters, const RunFigures& run) {
+  std::vector<double> values = parameters;
+  make_material<double>(which, parameters).visit([&](auto law) {
+    if constexpr (requires { law.prepare_for(run); }) {
+      law.prepare_for(run);
+      values.clear();
+      for (const auto& parameter : law.parameters()) values.push_back(law.*parameter.member);
+    }
   });
   return values;
 }
 
-double wave_modulus(const AnyMaterial<double>& material, double height) {
+const char* failure_of(int which) { return failures(Materials{})[which]; }
+
+std::vector<StateVariable> state_variables(const AnyMaterial<double>& material) {
+  std::vector<StateVariable> carried;
+  material.visit([&](const auto& law) {
+    const auto table = law.state();
+    for (std::size_t k = 0; k < table.size(); ++k)
+      if (carries(law, static_cast<int>(k))) carried.push_back(table[k]);
+  });
+  return carried;
+}
+
+std::vector<StateVariable> state_variables(int which, const std::vector<double>& parameters) {
+  return state_variables(make_material<double>(which, parameters));
+}
+
+double largest_time_step(const AnyMaterial<double>& material, double spacing, double density, int dim) {
+  double step = std::numeric_limits<double>::infinity();
+  material.visit([&](const auto& law) {
+    if constexpr (requires { law.largest_time_step(spacing, density, dim); })
+      step = law.largest_time_step(spacing, density, dim);
+  });
+  return step;
+}
+
+std::string warning_of(const AnyMaterial<double>& material) {
+  std::string lines;
+  material.visit([&](const auto& law) {
+    if constexpr (requires { law.warning(); }) lines = law.warning();
+  });
+  return lines;
+}
+
+std::vector<double> initial_state(const AnyMaterial<double>& material, const ParticleStart& at) {
+  std::vector<double> values;
+  material.visit([&](const auto& law) {
+    const auto state = law.initial_state(at);
+    for (std::size_t k = 0; k < state.size(); ++k)
+      if (carries(law, static_cast<int>(k))) values.push_back(state[k]);
+  });
+  return values;
+}
+
+double wave_modulus(const AnyMaterial<double>& material, double height, const std::array<double, 6>& stress) {
   double modulus = 0;
-  material.visit(
-      [&](const auto& law) { modulus = law.wave_modulus(SymTensor<double, 3>{}, start_of(law, height)); });
+  SymTensor<double, 3> start;
+  for (int k = 0; k < sym_size<3>; ++k) start[k] = stress[k];
+  material.visit([&](const auto& law) { modulus = law.wave_modulus(start, start_of(law, height, stress)); });
   return modulus;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 // One material of any model, for device tables: which model, and its parameters.
 
+#include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "physics/materials/list.hpp"
@@ -48,11 +50,32 @@ inline constexpr int k_most_state = most_state(Materials{});
 /// What is wrong with the parameters of a material together.
 ParameterFault parameter_fault(const AnyMaterial<double>& material);
 
-/// Values of the state variables of a particle that is created now.
+/// What is wrong with a particle that is created so (the optional member start_fault of a law). The key
+/// "stress" is an option of the particle's body, all others are options of the material.
+ParameterFault start_fault(const AnyMaterial<double>& material, const ParticleStart& at);
+
+/// The parameters of a material for one run (the optional member prepare_for of a law). To do it again
+/// changes nothing.
+std::vector<double> parameters_for(int which, const std::vector<double>& parameters, const RunFigures& run);
+
+/// The state variables that the particles of a material carry.
+std::vector<StateVariable> state_variables(const AnyMaterial<double>& material);
+
+/// Largest time step [s] that is stable for what the law of a material adds to the waves (its optional member
+/// largest_time_step), as an explicit viscosity, with cells of an edge `spacing` [m] and a density [kg/m3];
+/// infinite where the waves alone count.
+double largest_time_step(const AnyMaterial<double>& material, double spacing, double density, int dim);
+
+/// What the log says of the parameters of a material (the optional member `warning` of a law): lines, in
+/// which -NAME_ stands for the prefix of the material's options; empty where there is nothing to say.
+std::string warning_of(const AnyMaterial<double>& material);
+
+/// Values of the state variables that a particle carries which is created now.
 std::vector<double> initial_state(const AnyMaterial<double>& material, const ParticleStart& at);
 
-/// lambda + 2 G [Pa] of a material that is created at a height [m] without stress.
-double wave_modulus(const AnyMaterial<double>& material, double height = 0);
+/// lambda + 2 G [Pa] of a material that is created at a height [m] with a stress [Pa].
+double wave_modulus(const AnyMaterial<double>& material, double height = 0,
+                    const std::array<double, 6>& stress = {});
 
 /// Undrained shear strength [Pa] of a material that is created at a height [m] without stress.
 double strength_at(const AnyMaterial<double>& material, double height);

@@ -11,6 +11,12 @@
 
 namespace mpm {
 
+/// A word that an option takes, and the value that a parameter then has.
+struct ParameterWord {
+  const char* word = nullptr;
+  double value = 0;
+};
+
 /// One row of a model's table of parameters: everything that the option reader, -help and the checks need.
 template <class Model>
 struct Parameter {
@@ -18,9 +24,10 @@ struct Parameter {
   typename Model::real Model::*member;
   const char* unit;
   const char* meaning;
-  double lowest, highest;            // accepted range, inclusive
-  double standard;                   // default; NaN where the parameter is required
-  const char* instead_of = nullptr;  // key of the parameter whose place it takes where it is given
+  double lowest, highest;                   // accepted range of numbers, inclusive; 0, -1: words alone
+  double standard;                          // default; NaN where the parameter is required
+  const char* instead_of = nullptr;         // key of the parameter whose place it takes where it is given
+  std::array<ParameterWord, 3> words = {};  // words, beside or in lieu of numbers; a list may be shorter
 };
 
 /// How a particle is when it is created: a law's initial_state() follows from it.
@@ -28,6 +35,12 @@ struct ParticleStart {
   std::array<double, 3> position{};  // m; along the vertical, the last axis of the mesh, in `height`
   double height = 0;                 // m, reference height
   std::array<double, 6> stress{};    // Pa: xx yy zz xy yz zx, tension positive
+};
+
+/// What a law may know of the run that it is for (its optional member prepare_for).
+struct RunFigures {
+  double spacing = 0;           // m, edge of the mesh's cells
+  double largest_pressure = 0;  // Pa, largest initial mean stress in compression of its soil; 0: not known
 };
 
 /// What is wrong with the parameters of a law together.
@@ -68,6 +81,14 @@ struct Increment {
 template <class Law>
 inline constexpr int state_size = static_cast<int>(Law::state().size());
 
+/// Whether the particles of a law carry its state variable k: all do, unless the law has a member `carries`
+/// that tells it by the parameters. Only the last variables of a table may be missing.
+template <class Law>
+KOKKOS_INLINE_FUNCTION bool carries(const Law& law, int k) {
+  if constexpr (requires { law.carries(k); }) return law.carries(k);
+  return true;
+}
+
 /// Whether a law's update is written for one particle (k_scalar_update), as one with many branches is, and
 /// not for lanes too.
 template <class Law>
@@ -81,6 +102,14 @@ template <class Law>
 constexpr bool stiffness_changes() {
   if constexpr (requires { Law::k_stiffness_changes; }) return Law::k_stiffness_changes;
   return false;
+}
+
+/// Whether a law has states that end the run (failed).
+template <class Law>
+constexpr bool can_fail() {
+  return requires(const Law& law, const LawState<typename Law::real, state_size<Law>>& state) {
+    law.failed(state);
+  };
 }
 
 /// Stress turned with the material by the spin times dt: Q s Q^T with Q = (I - w/2)^-1 (I + w/2), which is a
@@ -119,10 +148,30 @@ KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const S
   return r;
 }
 
+/// Adds to a sum with what is left of it: `rest` keeps what the sum has rounded off (Kahan 1965), so that a
+/// sum of many small increments does not stand still in single precision.
+template <class T>
+KOKKOS_INLINE_FUNCTION void add_with_rest(T& sum, T& rest, T increment) {
+  const T whole = increment + rest, next = sum + whole;
+  rest = whole - (next - sum);
+  sum = next;
+}
+
 /// Mean stress (s_xx + s_yy + s_zz) / 3.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION T mean_of(const SymTensor<T, Dim>& s) {
   return (s[0] + s[1] + s[2]) * T(1.0 / 3);
+}
+
+/// J2 = s : s / 2 [Pa2] of the deviator s of a stress with this mean.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T second_invariant(const SymTensor<T, Dim>& s, T mean) {
+  T j2 = 0;
+  for (int k = 0; k < sym_size<Dim>; ++k) {
+    const T deviator = k < 3 ? s[k] - mean : s[k];
+    j2 += k < 3 ? deviator * deviator / 2 : deviator * deviator;
+  }
+  return j2;
 }
 
 /// Adds the isotropic elastic stress increment lambda tr(e) I + 2 G e to s. Shear strains are tensor
@@ -138,12 +187,7 @@ KOKKOS_INLINE_FUNCTION void add_elastic(SymTensor<R, Dim>& s, const SymTensor<R,
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION T elastic_energy(const SymTensor<T, Dim>& s, T lambda, T shear_modulus) {
   const T mean = mean_of(s), bulk_modulus = lambda + shear_modulus * T(2.0 / 3);
-  T j2 = 0;
-  for (int k = 0; k < sym_size<Dim>; ++k) {
-    const T deviator = k < 3 ? s[k] - mean : s[k];
-    j2 += k < 3 ? deviator * deviator / 2 : deviator * deviator;
-  }
-  return mean * mean / (2 * bulk_modulus) + j2 / (2 * shear_modulus);
+  return mean * mean / (2 * bulk_modulus) + second_invariant(s, mean) / (2 * shear_modulus);
 }
 
 /// Elastic constants of Young's modulus and Poisson's ratio.

@@ -20,7 +20,14 @@ std::vector<const char*> material_models();
 /// Whether the stiffness of the model of this index in Materials depends on stress or state.
 bool stiffness_changes(int which);
 
-/// State variables of the model of this index in Materials.
+/// What a particle is said to have that the model of this index in Materials calls failed; empty where no
+/// state is a failure.
+const char* failure_of(int which);
+
+/// All state variables of the model of this index in Materials; a material may do without some.
 std::vector<StateVariable> state_variables(int which);
+
+/// The state variables that the particles of a material of this model and these parameters carry.
+std::vector<StateVariable> state_variables(int which, const std::vector<double>& parameters);
 
 }  // namespace mpm

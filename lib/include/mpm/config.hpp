@@ -66,6 +66,8 @@ struct BodyConfig {
   Sym6 stress{};                // Pa, initial, tension positive
   bool velocity_given = false;  // by the options: a file's do not count then
   bool stress_given = false;
+  /// Pa, largest mean stress in compression of its particles at the start.
+  double largest_pressure = 0;
   std::vector<int> cut_out;         // indices into Config::rigids: particles in their shapes are left out
   std::vector<int> cut_out_bodies;  // the same of Config::bodies
 };

@@ -1,0 +1,36 @@
+#include "data/memory_of.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+std::size_t memory_of(const State<Space, T, Dim>& s) {
+  std::size_t bytes = 0;
+  const auto add = [&](const auto& view) {
+    const bool at_host = view.use_count() == 0;  // memory of Batches::store
+    if (!at_host) bytes += view.span() * sizeof(*view.data());
+  };
+  const auto add_set = [&](const auto& set) {
+    add(set.points.cell), add(set.points.id), add(set.address), add(set.order);
+    add(set.bins.begin), add(set.bins.active_slots), add(set.bins.list_begin), add(set.bins.list),
+        add(set.bins.blocks), add(set.bins.windows.place), add(set.bins.windows.sums);
+    auto points = set.points;
+    for_each_field(points, add);
+  };
+  add_set(s.soil);
+  for (const auto& set : s.rigid_points) add_set(set);
+  add(s.patches.slot_of), add(s.patches.number), add(s.patches.origin), add(s.patches.neighbours),
+      add(s.marks), add(s.scratch);
+  add(s.nodes.soil), add(s.nodes.kinematics), add(s.nodes.residual), add(s.nodes.boundary),
+      add(s.nodes.impulse);
+  add(s.nodes.strength), add(s.nodes.rigid), add(s.near_rigid), add(s.vertices), add(s.strays.alone);
+  add(s.boundary_windows.sums), add(s.strength_windows.sums);
+  for (const auto* more : {&s.next_sums, &s.last_sums})
+    add(more->soil), add(more->boundary), add(more->rigid);
+  add(s.batches.room), add(s.batches.slots);
+  return bytes;
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim) template std::size_t memory_of(const State<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

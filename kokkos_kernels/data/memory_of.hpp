@@ -1,0 +1,15 @@
+#pragma once
+// What a State holds of the memory of the device.
+
+#include <cstddef>
+
+#include "base/spaces.hpp"
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// Bytes of device memory that the state holds.
+template <class Space, class T, int Dim>
+std::size_t memory_of(const State<Space, T, Dim>& s);
+
+}  // namespace mpm

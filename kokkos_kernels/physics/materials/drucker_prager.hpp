@@ -1,0 +1,110 @@
+#pragma once
+#include "physics/materials/friction.hpp"
+
+namespace mpm {
+
+/// Elastic, perfectly plastic soil with Drucker and Prager's cone, sqrt(J2) + eta p = xi c (p the mean
+/// stress, tension positive), flow by the angle of dilation, and a cap of the mean stress. `match` chooses
+/// where the cone meets Mohr and Coulomb's pyramid.
+template <class T>
+struct DruckerPrager : FrictionalSoil<T> {
+  using Soil = FrictionalSoil<T>;
+  static constexpr const char* k_name = "drucker_prager";
+  using Soil::cohesion_of_particle;
+  using Soil::plastic_strain;
+  enum : int { compression, extension, plane_strain };
+  T match;
+  T slope, flow_slope;                           // eta, of friction and of dilation
+  T strength_over_cohesion, apex_over_cohesion;  // xi, and xi / eta; the latter without friction is 0
+  T bulk_modulus;                                // Pa
+
+  static constexpr auto parameters() {
+    std::array<Parameter<DruckerPrager>, 9> rows{};
+    const auto shared = Soil::template friction_parameters<DruckerPrager>(
+        "largest mean stress, tension positive; none: that of the apex");
+    for (std::size_t k = 0; k < shared.size(); ++k) rows[k] = shared[k];
+    rows.back() = {
+        "match",
+        &DruckerPrager::match,
+        "",
+        "where the strength is that of mohr_coulomb",
+        0,
+        -1,
+        std::numeric_limits<double>::quiet_NaN(),
+        nullptr,
+        {{{"compression", compression}, {"extension", extension}, {"plane_strain", plane_strain}}}};
+    return rows;
+  }
+  /// Called once the parameters are set. Constants of the three cones: de Souza Neto, Peric & Owen 2008, 6.4;
+  /// plane strain at failure with any angle of dilation.
+  void prepare() {
+    Soil::prepare_elasticity();
+    bulk_modulus = static_cast<T>(double(this->young) / (3 * (1 - 2 * double(this->poisson))));
+    const double phi = Soil::radians(this->friction_deg), psi = Soil::radians(this->dilation_deg);
+    const double s = std::sin(phi), s_flow = std::sin(psi);
+    double eta, eta_flow, xi;
+    if (match == T(plane_strain)) {
+      eta_flow = s_flow / std::sqrt(1 + s_flow * s_flow / 3);
+      const double across = std::sqrt(1 - eta_flow * eta_flow / 3), divisor = across + s * eta_flow / 3;
+      eta = s / divisor;
+      xi = std::cos(phi) / divisor;
+    } else {
+      const double sign = match == T(compression) ? -1 : 1;
+      eta = 6 * s / (std::sqrt(3.) * (3 + sign * s));
+      eta_flow = 6 * s_flow / (std::sqrt(3.) * (3 + sign * s_flow));
+      xi = 6 * std::cos(phi) / (std::sqrt(3.) * (3 + sign * s));
+    }
+    slope = static_cast<T>(eta);
+    flow_slope = static_cast<T>(eta_flow);
+    strength_over_cohesion = static_cast<T>(xi);
+    apex_over_cohesion = static_cast<T>(phi > 0 ? 1 / std::tan(phi) : 0);
+  }
+  /// Lines for the log.
+  std::string warning() const {
+    constexpr double k_none = std::numeric_limits<double>::infinity();
+    const bool rubs = this->friction_deg > 0;
+    std::string lines = Soil::friction_warning(rubs ? double(this->cohesion) * apex_over_cohesion : k_none);
+    if (match != T(compression) || !rubs) return lines;
+    const double s = std::sin(Soil::radians(this->friction_deg)), extra = 100 * (2 * s / (3 - s));
+    char line[256];
+    std::snprintf(
+        line, sizeof line,
+        "-NAME_match: the cone of compression is %.0f %% stronger in triaxial extension than "
+        "mohr_coulomb%s",
+        extra,
+        s >= 0.6 ? ", and soil with this angle of friction does not fail by a rising cell pressure" : "");
+    if (!lines.empty()) lines += '\n';
+    return lines += line;
+  }
+
+  template <class R, int Dim>
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 2>& state,
+                              const Increment<R, T, Dim>& by) const {
+    const T shear_modulus = this->shear_modulus;
+    const bool has_apex = apex_over_cohesion > 0, has_tension = this->tension >= 0;
+    const R c = state[cohesion_of_particle], strength = strength_over_cohesion * c;
+    const R apex = has_apex ? apex_over_cohesion * c : R(this->tension);
+    const R cap = has_tension ? Kokkos::fmin(this->tension, apex) : apex;
+    s = rotated(s, by.spin);
+    add_elastic(s, by.strain, this->lambda, shear_modulus);
+
+    const R p = mean_of(s), r = Kokkos::sqrt(second_invariant(s, p)), f = r + slope * p - strength;
+    const R beyond = has_apex || has_tension ? p - cap : R(-1);
+    const auto yields = Kokkos::fmax(f, beyond) > 0;
+    if (!any_of(yields)) return;
+    const R l = Kokkos::fmax(f, R(0)) / (shear_modulus + bulk_modulus * slope * flow_slope);
+    R p_new = p - bulk_modulus * flow_slope * l, r_new = Kokkos::fmax(r - shear_modulus * l, R(0));
+    if (has_apex || has_tension) {
+      const auto below = (p_new <= cap) & (r - shear_modulus * l >= 0);
+      p_new = select(below, p_new, cap);
+      const R on_cone = Kokkos::fmax(strength - slope * cap, R(0));
+      r_new = select(below, r_new, select(r < on_cone, r, on_cone));
+    }
+    const R share = r_new / select(r > 0, r, R(1));
+    for (int k = 0; k < sym_size<Dim>; ++k)
+      s[k] = select(yields, k < 3 ? p_new + share * (s[k] - p) : share * s[k], s[k]);
+    state[plastic_strain] += select(yields, (r - r_new) / shear_modulus, R(0));
+  }
+};
+
+}  // namespace mpm

@@ -1,0 +1,61 @@
+#pragma once
+#include "physics/materials/friction.hpp"
+#include "physics/materials/mohr_coulomb_return.hpp"
+
+namespace mpm {
+
+/// Elastic, perfectly plastic soil with Mohr and Coulomb's yield surface, k s1 - s3 = 2 c cos / (1 - sin),
+/// flow by the angle of dilation, and a cut-off of the largest principal stress.
+template <class T>
+struct MohrCoulomb : FrictionalSoil<T> {
+  using Soil = FrictionalSoil<T>;
+  static constexpr const char* k_name = "mohr_coulomb";
+  static constexpr bool k_scalar_update = true;
+  using Soil::cohesion_of_particle;
+  using Soil::plastic_strain;
+  PyramidShape<T> shape;
+  T sc_over_cohesion, apex_over_cohesion;  // -; the latter without friction is 0
+
+  static constexpr auto parameters() {
+    return Soil::template friction_parameters<MohrCoulomb>(
+        "largest principal stress, tension positive; none: that of the apex, cohesion * cot(friction)");
+  }
+  /// Called once the parameters are set.
+  void prepare() {
+    Soil::prepare_elasticity();
+    const double phi = Soil::radians(this->friction_deg), psi = Soil::radians(this->dilation_deg);
+    shape = PyramidShape<T>::of(std::sin(phi), std::sin(psi), this->poisson);
+    sc_over_cohesion = static_cast<T>(2 * std::cos(phi) / (1 - std::sin(phi)));
+    apex_over_cohesion = static_cast<T>(phi > 0 ? 1 / std::tan(phi) : 0);
+  }
+  /// Lines for the log.
+  std::string warning() const {
+    constexpr double k_none = std::numeric_limits<double>::infinity();
+    return Soil::friction_warning(this->friction_deg > 0 ? double(this->cohesion) * apex_over_cohesion
+                                                         : k_none);
+  }
+
+  /// The yield surface of a particle with this cohesion [Pa].
+  KOKKOS_FUNCTION PyramidSize<T> size_of(T c) const {
+    const bool has_apex = apex_over_cohesion > 0, has_tension = this->tension >= 0;
+    const T sc = sc_over_cohesion * c, apex = apex_over_cohesion * c;
+    const bool at_apex = has_apex && !(has_tension && this->tension < apex);
+    const T cut_off = at_apex ? apex : this->tension;
+    return {.sc = sc,
+            .cut_off = cut_off,
+            .low = at_apex ? apex : shape.k * cut_off - sc,
+            .cuts = has_apex || has_tension,
+            .apex = at_apex};
+  }
+
+  template <int Dim>
+  KOKKOS_FUNCTION void update(SymTensor<T, Dim>& s, LawState<T, 2>& state,
+                              const Increment<T, T, Dim>& by) const {
+    s = rotated(s, by.spin);
+    add_elastic(s, by.strain, this->lambda, this->shear_modulus);
+    state[plastic_strain] +=
+        return_stress(shape, size_of(state[cohesion_of_particle]), this->shear_modulus, s);
+  }
+};
+
+}  // namespace mpm

@@ -1,0 +1,211 @@
+#pragma once
+#include "physics/materials/clay.hpp"
+#include "physics/materials/deviator.hpp"
+#include "physics/materials/friction.hpp"
+#include "physics/materials/mohr_coulomb_return.hpp"
+
+namespace mpm {
+
+/// Clay in undrained loading whose strength falls with the plastic shear strain xi and grows with the rate of
+/// shear strain g (Einav & Randolph 2005): su = su0 S(xi) R(g), S = d + (1-d) exp(-3 xi/xi95), R = 1 + mu
+/// log10(max(g, g_ref)/g_ref). Yield at sqrt(J2) = su, or Tresca's hexagon. Jaumann rate of the Cauchy
+/// stress.
+template <class T>
+struct SofteningClay : Clay<T> {
+  static constexpr const char* k_name = "softening_clay";
+  static constexpr bool k_scalar_update = true;
+  static constexpr double k_most_decades = 9;  // that R takes of the rate: beyond is the noise of waves
+  enum Surface : int { von_mises, tresca };
+  T remoulded_ratio, xi95, xi95_cell, rate_factor, rate_reference, rate_time, surface;
+  PyramidShape<T> hexagon;
+
+  static constexpr auto parameters() {
+    constexpr double required = std::numeric_limits<double>::quiet_NaN();
+    const auto shared = Clay<T>::template clay_parameters<SofteningClay>();
+    const auto own = std::to_array<Parameter<SofteningClay>>(
+        {{"remoulded_ratio", &SofteningClay::remoulded_ratio, "-", "remoulded over intact strength", 1e-6, 1,
+          required},
+         {"xi95",
+          &SofteningClay::xi95,
+          "-",
+          "plastic shear strain at which 95 % of the strength that can be lost is lost; needed where "
+          "remoulded_ratio "
+          "is less than 1",
+          1e-6,
+          1e6,
+          0,
+          nullptr,
+          {{{"none", 0}}}},
+         {"xi95_cell",
+          &SofteningClay::xi95_cell,
+          "m",
+          "edge of the cells to which xi95 refers: xi95 is multiplied by it over the mesh's own",
+          1e-9,
+          1e9,
+          0,
+          nullptr,
+          {{{"none", 0}}}},
+         {"rate_factor", &SofteningClay::rate_factor, "-",
+          "growth of the strength with each decade of the rate", 0, 10, 0},
+         {"rate_reference",
+          &SofteningClay::rate_reference,
+          "1/s",
+          "rate of shear strain up to which the strength is su; needed where rate_factor is greater than 0",
+          1e-12,
+          1e6,
+          0,
+          nullptr,
+          {{{"none", 0}}}},
+         {"rate_time", &SofteningClay::rate_time, "s", "time over which the rate is smoothed", 0, 1e6, 0},
+         {"surface",
+          &SofteningClay::surface,
+          "",
+          "yield surface",
+          0,
+          -1,
+          von_mises,
+          nullptr,
+          {{{"von_mises", von_mises}, {"tresca", tresca}}}}});
+    std::array<Parameter<SofteningClay>, shared.size() + own.size()> rows{};
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      rows[k] = k < shared.size() ? shared[k] : own[k - shared.size()];
+    return rows;
+  }
+  /// Called once the parameters are set.
+  void prepare() {
+    Clay<T>::prepare();
+    hexagon = PyramidShape<T>::of(0, 0, this->poisson);
+  }
+  /// Softening localises in bands as wide as a cell, so xi95 follows the cells where xi95_cell is given.
+  void prepare_for(const RunFigures& run) {
+    if (!(xi95_cell > 0)) return;
+    xi95 *= static_cast<T>(xi95_cell / run.spacing);
+    xi95_cell = static_cast<T>(run.spacing);
+  }
+
+  enum : int { plastic_strain, strength, plastic_strain_rest, shear_rate };
+  using State = LawState<T, 4>;
+  static constexpr std::array<StateVariable, 4> state() {
+    return {{{"plastic_strain", "-"},  // xi, accumulated engineering plastic shear strain
+             {.name = "strength", .unit = "Pa", .changes = false, .output = false},  // su0
+             {.name = "plastic_strain_rest", .unit = "-", .output = false},          // see add_with_rest
+             {.name = "shear_rate", .unit = "1/s"}}};                                // smoothed
+  }
+  KOKKOS_FUNCTION bool carries(int k) const { return k != shear_rate || rate_time > 0; }
+
+  ParameterFault check() const {
+    if (this->su == 0 && this->su_gradient == 0)
+      return {"su", "a strength in Pa greater than 0 where -NAME_su_gradient is 0"};
+    if (remoulded_ratio < 1 && !(xi95 > 0))
+      return {"xi95", "a plastic shear strain greater than 0 where -NAME_remoulded_ratio is less than 1"};
+    if (rate_factor > 0 && !(rate_reference > 0))
+      return {"rate_reference", "a rate in 1/s greater than 0 where -NAME_rate_factor is greater than 0"};
+    if (const ParameterFault fault = Clay<T>::check(); !fault.key.empty()) return fault;
+    return xi95_cell > 0 ? ParameterFault{} : brittleness_fault(this->su);
+  }
+  std::string warning() const {
+    if (!(xi95_cell > 0)) return "";
+    return "-NAME_xi95_cell: xi95 is " + std::to_string(xi95) + " for the mesh's cells of " +
+           std::to_string(xi95_cell) + " m";
+  }
+  ParameterFault start_fault(const ParticleStart& at) const {
+    return brittleness_fault(Clay<T>::initial_state(at)[strength]);
+  }
+  std::array<double, 4> initial_state(const ParticleStart& at) const {
+    return {0, Clay<T>::initial_state(at)[strength], 0, 0};
+  }
+
+  /// lambda + 2 G [Pa], which gives the speed of the fastest wave (Eq. 14).
+  template <int Dim>
+  KOKKOS_FUNCTION T wave_modulus(const SymTensor<T, Dim>& stress, const State& state) const {
+    return Clay<T>::wave_modulus(stress, of_clay(state));
+  }
+  /// Undrained shear strength [Pa] as softened, at a rate up to the reference.
+  KOKKOS_FUNCTION T shear_strength(const State& state) const {
+    return state[strength] * (remoulded_ratio + what_is_left(state[plastic_strain]));
+  }
+  /// Energy that the soil can give back [J/m3].
+  template <int Dim>
+  KOKKOS_FUNCTION T stored_energy(const SymTensor<T, Dim>& stress, const State& state) const {
+    return Clay<T>::stored_energy(stress, of_clay(state));
+  }
+
+  template <int Dim>
+  KOKKOS_FUNCTION void update(SymTensor<T, Dim>& s, State& state, const Increment<T, T, Dim>& by) const {
+    const auto& e = this->stiffness;
+    const T su_p = state[strength], shear_modulus = e.shear_modulus + e.shear_modulus_over_su * su_p;  // Pa
+    const T rapid = su_p * rate_effect(state, by);
+    s = rotated(s, by.spin);
+    add_elastic(s, by.strain, e.lambda + e.lambda_over_su * su_p, shear_modulus);
+    const T more = surface == T(tresca) ? return_to_hexagon(s, state, shear_modulus, rapid)
+                                        : return_to_circle(s, state, shear_modulus, rapid);
+    if (more > 0) add_with_rest(state[plastic_strain], state[plastic_strain_rest], more);
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION static LawState<T, 2> of_clay(const State& state) {
+    return {{state[plastic_strain], state[strength]}};
+  }
+  /// S(xi) - d.
+  KOKKOS_INLINE_FUNCTION T what_is_left(T xi) const {
+    return remoulded_ratio < 1 ? (1 - remoulded_ratio) * Kokkos::exp(-3 * xi / xi95) : T(0);
+  }
+
+  /// Soil of strength su0 [Pa] must not soften faster than it unloads: 3 su0 R (1-d)/xi95 < G.
+  ParameterFault brittleness_fault(double su0) const {
+    const double ratio = rigidity_of_shear(su0), largest = 1 + k_most_decades * rate_factor;
+    const double least = 3 * largest * (1 - remoulded_ratio) / ratio;
+    if (!(su0 > 0) || remoulded_ratio == 1 || xi95 > least) return {};
+    return {"xi95", "more than " + std::to_string(least) +
+                        " for the cells of the mesh, or the soil softens faster than it unloads"};
+  }
+  /// G over su0.
+  double rigidity_of_shear(double su0) const {
+    return shear_modulus_of<double>(this->young, this->poisson) / su0 +
+           shear_modulus_of<double>(this->rigidity, this->poisson);
+  }
+
+  /// R of the step's rate of shear strain, sqrt(2 e' : e')/dt, which is smoothed where rate_time is given.
+  template <int Dim>
+  KOKKOS_INLINE_FUNCTION T rate_effect(State& state, const Increment<T, T, Dim>& by) const {
+    if (!(rate_factor > 0)) return 1;
+    T rate = 2 * Kokkos::sqrt(second_invariant(by.strain, mean_of(by.strain))) / by.dt;
+    if (rate_time > 0)
+      rate = state[shear_rate] -= Kokkos::expm1(-by.dt / rate_time) * (rate - state[shear_rate]);
+    const T decades = Kokkos::log10(Kokkos::fmax(rate, rate_reference) / rate_reference);
+    return 1 + rate_factor * Kokkos::fmin(T(k_most_decades), decades);
+  }
+
+  /// Returns a trial stress to sqrt(J2) = rapid S(xi + g), with the plastic shear strain g of the step: r - G
+  /// g = rapid S(xi + g). Newton's method from g = 0 is monotone, since the soil softens less than it
+  /// unloads.
+  template <int Dim>
+  KOKKOS_INLINE_FUNCTION T return_to_circle(SymTensor<T, Dim>& s, const State& state, T shear_modulus,
+                                            T rapid) const {
+    constexpr int k_iterations = sizeof(T) == sizeof(double) ? 4 : 3;
+    const T mean = mean_of(s), r = shear_stress_of(s, mean), xi = state[plastic_strain];
+    const T fall = remoulded_ratio < 1 ? 3 / xi95 : T(0);
+    if (r <= rapid * (remoulded_ratio + what_is_left(xi))) return 0;
+    T g = 0;
+    for (int k = 0; k < k_iterations; ++k) {
+      const T left = rapid * what_is_left(xi + g);
+      g += (r - shear_modulus * g - rapid * remoulded_ratio - left) / (shear_modulus - fall * left);
+    }
+    const T share = Kokkos::fmin(T(1), shear_modulus * g / r);
+    for (int k = 0; k < sym_size<Dim>; ++k) s[k] -= share * (k < 3 ? s[k] - mean : s[k]);
+    return g;
+  }
+
+  /// Returns a trial stress to Tresca's hexagon with the strength at the start of the step, an error of the
+  /// order of the step.
+  template <int Dim>
+  KOKKOS_INLINE_FUNCTION T return_to_hexagon(SymTensor<T, Dim>& s, const State& state, T shear_modulus,
+                                             T rapid) const {
+    const T su_now = rapid * (remoulded_ratio + what_is_left(state[plastic_strain]));
+    const PyramidSize<T> size{
+        .sc = 2 * su_now, .cut_off = k_no_tension, .low = 0, .cuts = false, .apex = false};
+    return return_stress(hexagon, size, shear_modulus, s);
+  }
+};
+
+}  // namespace mpm

@@ -1,0 +1,59 @@
+#pragma once
+#include "physics/materials/clay.hpp"
+#include "physics/materials/friction.hpp"
+#include "physics/materials/mohr_coulomb_return.hpp"
+
+namespace mpm {
+
+/// Elastic, perfectly plastic clay in undrained loading: yield at s1 - s3 = 2 su, so that the strength is su
+/// in every mode of shear; von Mises' circle of the same su carries up to 1.155 times that off plane strain.
+/// An optional cut-off of the largest principal stress. Jaumann rate of the Cauchy stress.
+template <class T>
+struct Tresca : Clay<T> {
+  static constexpr const char* k_name = "tresca";
+  static constexpr bool k_scalar_update = true;
+  using Clay<T>::plastic_strain;
+  using Clay<T>::strength;
+  T tension;  // Pa, or k_no_tension
+  PyramidShape<T> shape;
+
+  static constexpr auto parameters() {
+    std::array<Parameter<Tresca>, 7> rows{};
+    const auto shared = Clay<T>::template clay_parameters<Tresca>();
+    for (std::size_t k = 0; k < shared.size(); ++k) rows[k] = shared[k];
+    rows.back() = {"tension",
+                   &Tresca::tension,
+                   "Pa",
+                   "largest principal stress, tension positive",
+                   0,
+                   1e12,
+                   k_no_tension,
+                   nullptr,
+                   {{{"none", k_no_tension}}}};
+    return rows;
+  }
+  /// Called once the parameters are set.
+  void prepare() {
+    Clay<T>::prepare();
+    shape = PyramidShape<T>::of(0, 0, this->poisson);
+  }
+  ParameterFault check() const {
+    if (this->su == 0 && this->su_gradient == 0)
+      return {"su", "a strength in Pa greater than 0 where -NAME_su_gradient is 0"};
+    return Clay<T>::check();
+  }
+
+  template <int Dim>
+  KOKKOS_FUNCTION void update(SymTensor<T, Dim>& s, LawState<T, 2>& state,
+                              const Increment<T, T, Dim>& by) const {
+    const auto& e = this->stiffness;
+    const T su_p = state[strength], shear_modulus = e.shear_modulus + e.shear_modulus_over_su * su_p;  // Pa
+    s = rotated(s, by.spin);
+    add_elastic(s, by.strain, e.lambda + e.lambda_over_su * su_p, shear_modulus);
+    const PyramidSize<T> size{
+        .sc = 2 * su_p, .cut_off = tension, .low = tension - 2 * su_p, .cuts = tension >= 0, .apex = false};
+    state[plastic_strain] += return_stress(shape, size, shear_modulus, s);
+  }
+};
+
+}  // namespace mpm

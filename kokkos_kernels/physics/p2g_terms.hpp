@@ -1,0 +1,278 @@
+#pragma once
+// What one particle gives one node. Physics is written here once; the strategies are loop shapes around it.
+
+#include "data/nodes.hpp"
+#include "data/particles.hpp"
+#include "physics/shape_gimp.hpp"
+#include "physics/walls.hpp"
+
+namespace mpm {
+
+// A Point holds what a particle gives, as plain T, so that a strategy may keep it value by value. Each value
+// of a node's term goes with the weight, or with components of its gradient, which takes(value, d) tells:
+//   S factor(q, value)   or   sum over d of dS/dx_d slope(q, value, d)
+// component(value) is the direction of a value that is a component of a vector, -1 of a scalar; with `kind`
+// it tells the sign of its image in a wall.
+
+/// Soil to nodes, Eqs (1), (2), (4): m_i = sum S m_p, p_i = sum S m_p v_p, f_i = - sum V_p sigma_p grad S.
+/// The weight, Eq. (5), is m_i g and is added at the node.
+template <class Space_, class T, int Dim>
+struct SoilSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = SoilTerms<Dim>::size;
+  static constexpr Kind kind = Kind::motion;
+  template <class R>
+  struct PointOf {
+    HalfLength<R> half_length;
+    R mass, momentum[Dim];
+    R stress_volume[Dim * (Dim + 1) / 2];  // - V_p sigma_p / d, components along the axes of the mesh
+  };
+  using Point = PointOf<T>;
+  /// Place of component (i, j) in stress_volume: that of SymTensor, without zz in plane strain.
+  KOKKOS_INLINE_FUNCTION static constexpr int place(int i, int j) {
+    return Dim == 2 && i != j ? 2 : sym_index<Dim>(i, j);
+  }
+  Soil<Space, T, Dim> points;
+  T inv_spacing;
+
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    return point(points.properties(p), points.velocity(p), points.stress(p), points.volume(p));
+  }
+  /// R: T, or lanes of it.
+  template <class R>
+  KOKKOS_INLINE_FUNCTION PointOf<R> point(const BodyProperties<R>& body, const Vector<R, Dim>& v_p,
+                                          const SymTensor<R, Dim>& stress, R volume) const {
+    PointOf<R> q{body.half_length, body.mass, {}, {}};
+    const R scale = -volume * inv_spacing;
+    for (int d = 0; d < Dim; ++d) q.momentum[d] = q.mass * v_p[d];
+    for (int k = 0; k < Dim * (Dim + 1) / 2; ++k)
+      q.stress_volume[k] = scale * stress[k < Dim ? k : k + 3 - Dim];
+    return q;
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
+    return value == SoilTerms<Dim>::mass ? -1 : (value - SoilTerms<Dim>::momentum) % Dim;
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int) {
+    return value >= SoilTerms<Dim>::force;
+  }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
+    return value == SoilTerms<Dim>::mass ? q.mass : q.momentum[value - SoilTerms<Dim>::momentum];
+  }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int value, int d) {
+    return q.stress_volume[place(value - SoilTerms<Dim>::force, d)];
+  }
+};
+
+/// Soil to nodes by APIC (Jiang et al. 2015): as SoilSource, but p_i = sum S m_p (v_p + C_p (x_i - x_p)).
+template <class Space_, class T, int Dim>
+struct AffineSource : SoilSource<Space_, T, Dim> {
+  using Base = SoilSource<Space_, T, Dim>;
+  static constexpr bool takes_offset = true;
+  struct Point : Base::Point {
+    T affine[Dim * Dim];  // m_p C_p by rows, kg m/s a cell
+  };
+
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    Point q{Base::load(p), {}};
+    for (int k = 0; k < Dim * Dim; ++k) q.affine[k] = q.mass * this->points.affine(p)[k];
+    return q;
+  }
+  /// What comes to the term of a node with weight w, `offset` [cells] from the particle.
+  template <class W, class Add>
+  KOKKOS_INLINE_FUNCTION static void give_more(const Point& q, W w, const Vector<W, Dim>& offset, Add&& add) {
+    for (int d = 0; d < Dim; ++d) {
+      W more = q.affine[d * Dim] * offset[0];
+      for (int e = 1; e < Dim; ++e) more += q.affine[d * Dim + e] * offset[e];
+      add(SoilTerms<Dim>::momentum + d, w * more);
+    }
+  }
+};
+
+/// Any velocity of the particles to nodes, as momentum: sum S m_p r_p. XPIC sends what is left of theirs.
+template <class Space_, class T, int Dim>
+struct ResidualSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = Dim;
+  static constexpr Kind kind = Kind::motion;
+  struct Point {
+    HalfLength<T> half_length;
+    T momentum[Dim];
+  };
+  Soil<Space, T, Dim> points;
+  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> residual;  // m/s
+
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const BodyProperties<T> body = points.properties(p);
+    Point q{body.half_length, {}};
+    for (int d = 0; d < Dim; ++d) q.momentum[d] = body.mass * residual(p)[d];
+    return q;
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value; }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.momentum[value]; }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
+};
+
+/// The soil's boundary at a node, sum grad S V_p: by Gauss' theorem the integral of S_i n over it, n out of
+/// the soil. Summed over the nodes along a face it is the face's area, however the face cuts the cells. And
+/// its volume there, sum S V_p.
+template <class Space_, class T, int Dim>
+struct BoundarySource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = BoundaryTerms<Dim>::size;
+  static constexpr Kind kind = Kind::geometry;
+  struct Point {
+    HalfLength<T> half_length;
+    T area, volume;  // V_p / d, V_p
+  };
+  Soil<Space, T, Dim> points;
+  T inv_spacing;
+  Kokkos::View<int*, typename Space::memory_space> near_rigid;  // by slot
+
+  /// Far from every rigid the boundary matters to nobody.
+  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return near_rigid(slot) == 0; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const T volume = points.volume(p);
+    return {points.bodies(points.body(p)).half_length, volume * inv_spacing, volume};
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
+    return value < BoundaryTerms<Dim>::volume ? value : -1;
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
+    return value == BoundaryTerms<Dim>::area + d;
+  }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.volume; }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.area; }
+};
+
+/// The soil's strength at a node, sum S V_p s_p, and its volume, sum S V_p.
+template <class Space_, class T, int Dim>
+struct StrengthSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = StrengthTerms::size;
+  static constexpr Kind kind = Kind::geometry;
+  struct Point {
+    HalfLength<T> half_length;
+    T strength, volume;  // V_p s_p, V_p
+  };
+  Soil<Space, T, Dim> points;
+  Kokkos::View<int*, typename Space::memory_space> near_rigid;  // by slot
+
+  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return near_rigid(slot) == 0; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const T volume = points.volume(p);
+    const BodyProperties<T>& body = points.bodies(points.body(p));
+    T strength = 0;
+    points.materials(body.material).visit([&](const auto& law) {
+      strength = law.shear_strength(points.state_of(law, p));
+    });
+    return {body.half_length, volume * strength, volume};
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
+    return value == StrengthTerms::strength ? q.strength : q.volume;
+  }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
+};
+
+/// Rigid body to nodes: m_i^R = sum S m_p and the mass gradient n_i^R = sum grad S m_p (Eq. 3; it points out
+/// of the body). A strategy may move() a point before it gives.
+template <class Space_, class T, int Dim>
+struct RigidSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = RigidTerms<Dim>::size;
+  static constexpr Kind kind = Kind::geometry;
+  struct Point {
+    HalfLength<T> half_length;
+    T mass;
+  };
+  RigidPoints<Space, T, Dim> points;
+  Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
+  int rigid;  // whose points they are
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  double spacing;
+
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
+  KOKKOS_INLINE_FUNCTION Point load(int) const { return {points.half_length, points.mass}; }
+  /// Brings point p to where its body is now, or where it has another displacement [m].
+  KOKKOS_INLINE_FUNCTION void move(int p) const { move(p, rigids(rigid).displacement); }
+  KOKKOS_INLINE_FUNCTION void move(int p, const Vector<double, Dim>& displacement) const {
+    const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(points.cell(p));
+    for (int d = 0; d < Dim; ++d)
+      points.coordinate(p)[d] =
+          static_cast<T>(points.reference_position(p)[d] + displacement[d] / spacing - from[d] - cell[d]);
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
+    return value - RigidTerms<Dim>::normal;  // -1 of the mass
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
+    return value == RigidTerms<Dim>::normal + d;
+  }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.mass; }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.mass; }
+};
+
+/// The first component of the gradient, from d on, that goes into a value of the term; Source::dim if none.
+template <class Source>
+KOKKOS_INLINE_FUNCTION constexpr int first_taken(int value, int d = 0) {
+  while (d < Source::dim && !Source::takes(value, d)) ++d;
+  return d;
+}
+
+/// The term of a node with weight w and its gradient `grad` [1/cell], by add(value, term). offset() [cells]
+/// from the particle to the node is asked for where the source takes one.
+template <class Source, class W, int Dim, class Offset, class Add>
+KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, W w, const Vector<W, Dim>& grad,
+                                 [[maybe_unused]] Offset&& offset, Add&& add) {
+  unrolled<Source::size>([&](auto value) {
+    constexpr int first = first_taken<Source>(value);
+    if constexpr (first == Dim) {
+      add(value, w * Source::factor(q, value));
+    } else {
+      W term = grad[first] * Source::slope(q, value, first);
+      unrolled<Dim>([&](auto d) {
+        if constexpr (d > first && Source::takes(value, d)) term += grad[d] * Source::slope(q, value, d);
+      });
+      add(value, term);
+    }
+  });
+  if constexpr (requires { Source::takes_offset; }) Source::give_more(q, w, offset(), add);
+}
+
+/// Gives what the nodes beyond walls have in a window's sums to their images; at a wall, what soil and image
+/// have together stays. sum(n, value): that of node n.
+template <class Source, class T, int Dim, class Sum>
+KOKKOS_INLINE_FUNCTION void fold_images(const Grid<T, Dim>& grid, const Coord<Dim>& origin, const Sum& sum) {
+  for (int d = 0; d < Dim; ++d)
+    for_each_image(grid, origin, d, [&](int place, int image, int at) {
+      for (int v = 0; v < Source::size; ++v) {
+        const T given = image_sign<Source::kind, T>(grid, d, at, Source::component(v)) * sum(place, v);
+        sum(place, v) = 0;
+        sum(image, v) += given;
+      }
+    });
+}
+
+/// Bytes of the sums of one window.
+template <class Source>
+inline constexpr std::size_t window_bytes =
+    sizeof(typename Source::real) * Source::size* Patch<Source::dim>::window;
+
+/// Applies X(Source) to every source of a space, real type and dimension.
+#define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
+  X(SoilSource, Space, T, Dim)                \
+  X(AffineSource, Space, T, Dim)              \
+  X(ResidualSource, Space, T, Dim)            \
+  X(BoundarySource, Space, T, Dim)            \
+  X(StrengthSource, Space, T, Dim)            \
+  X(RigidSource, Space, T, Dim)
+
+}  // namespace mpm

@@ -1,0 +1,22 @@
+#include "common/material_table.hpp"
+
+namespace mpm {
+
+int model_index(const std::string& name) {
+  const auto models = material_models();
+  for (std::size_t k = 0; k < models.size(); ++k)
+    if (name == models[k]) return static_cast<int>(k);
+  return -1;
+}
+
+std::vector<StateVariable> state_variables(const std::string& model) {
+  const int index = model_index(model);
+  return index < 0 ? std::vector<StateVariable>{} : state_variables(index);
+}
+
+std::vector<StateVariable> state_variables(const MaterialConfig& material) {
+  const int index = model_index(material.model);
+  return index < 0 ? std::vector<StateVariable>{} : state_variables(index, material.parameters);
+}
+
+}  // namespace mpm

@@ -1,0 +1,82 @@
+#pragma once
+// What the run hands to its outputs, on the host, whatever the backend, precision and dimension.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "mpm/config.hpp"
+
+namespace mpm {
+
+/// A state variable of the law of a body, of each of its particles.
+struct StateField {
+  std::string name;
+  std::vector<double> values;  // [N], in the unit of the law's table
+};
+
+/// The particles of one body or rigid at one time, in the order of their creation. Vectors are padded to
+/// three components, symmetric tensors to six (xx, yy, zz, xy, yz, zx). All but position and velocity are
+/// empty for rigids.
+struct ParticleSnapshot {
+  std::string name;
+  std::vector<int> id;  // of the particles of this rank, in the body; empty where they follow one another
+  long first = 0;       // on several ranks: number in the body of the first particle here,
+  long total = -1;      // and of all of them; negative where all are here
+  std::vector<double> position;          // m     [3 N]
+  std::vector<double> velocity;          // m/s   [3 N]
+  std::vector<double> grid_velocity;     // m/s   [3 N], of the nodes, interpolated to the particles
+  std::vector<double> stress;            // Pa    [6 N], Cauchy, tension positive
+  std::vector<double> volume;            // m3    [N]
+  std::vector<StateField> state;         // the state variables that frames have
+  std::vector<double> mass;              // kg    [N], of particles and nodes
+  std::vector<double> reference_height;  // m   [N], where the particle was created
+  std::vector<double> number;            // -     [N], of nodes: in the whole mesh, x fastest
+};
+
+/// The name of the group of nodes.
+inline constexpr const char* k_nodes = "nodes";
+
+/// One frame: bodies first, then rigids, in the order of the options, then nodes that hold soil, if they are
+/// asked for (position, velocity, mass and number).
+struct Snapshot {
+  double time = 0;  // s
+  long step = 0;
+  std::vector<ParticleSnapshot> bodies, rigids, nodes{};
+  int dim = 0;  // 0: not told
+};
+
+/// One row of the history for one body.
+struct BodyRow {
+  Vec3 lower{}, upper{};              // m, extent of its particles
+  double kinetic_energy = 0;          // J
+  Vec3 momentum{};                    // kg m/s
+  Vec3 quantile{};                    // m, 99.9th percentile of the coordinates of its particles
+  Vec3 centre{};                      // m, of mass
+  double grid_velocity = 0;           // m/s, the largest at which the nodes move a particle of it
+  double stored_energy = 0;           // J, elastic
+  double mass = 0;                    // kg, in the mesh
+  double lost_mass = 0;               // kg, left through free sides or removed
+  double lost_energy = 0;             // J, kinetic, that it had
+  Vec3 lost_momentum{};               // kg m/s
+  long strays = 0, limited = 0;       // particles that are alone; whose volume is at a bound
+  long put_back = 0, lost_count = 0;  // particles put back at walls, and lost, since the start
+};
+
+/// One row of the history for one rigid.
+struct RigidRow {
+  Vec3 displacement{};  // m, since the start
+  Vec3 velocity{};      // m/s
+  Vec3 force{};         // N, of the soil on it, mean over the interval since the last row
+};
+
+/// One row of history.csv.
+struct HistoryRow {
+  long step = 0;
+  double time = 0, dt = 0, wall_time = 0;  // s
+  std::vector<BodyRow> bodies;
+  std::vector<RigidRow> rigids;
+  std::array<std::array<Vec3, 2>, 3> walls{};  // N, of the soil on each side of the mesh, now
+};
+
+}  // namespace mpm

@@ -1,0 +1,117 @@
+#include "parallel/decomposition.hpp"
+
+#include <algorithm>
+
+#include "common/collectives.hpp"
+#include "functions/step_kernels.hpp"
+#include "rebuild/rebuild.hpp"
+
+namespace mpm {
+namespace {
+
+/// The first n entries of a view.
+template <class View>
+auto head(const View& view, std::size_t n) {
+  return Kokkos::subview(view, Kokkos::make_pair(std::size_t(0), n));
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm comm, const PartitionConfig& config,
+                                                   const Owners& owners, State_& s) {
+  PetscFunctionBeginUser;
+  comm_ = comm;
+  rank_ = rank_of(comm);
+  size_ = size_of(comm);
+  config_ = config;
+  owners_ = owners;
+  clock_ = WorkClock(is_device<Space>);
+  grid_.dim = Dim;
+  for (int d = 0; d < Dim; ++d) grid_.patches[d] = s.grid.patches[d];
+  grid_.fields = s.grid.fields;
+  seen_ = decltype(seen_)("mpm::seen");
+  PetscCall(transport_.start(comm, config.halo_path));
+  if (overlaps(s)) side_.open(s.space);
+  const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  for (std::size_t r = 0; r < rigids.extent(0); ++r) forces_shared_ = forces_shared_ || rigids(r).dynamic;
+  reserve_particles(s, k_least_room);
+  send_owners_to_device();
+  locate(s);
+  clock_.go_on();
+  long moved = 0;
+  PetscCall(migrate(s, &moved));
+  sort_and_list(s);
+  PetscCall(make_lists(s));
+  note_bound(s, s.space);
+  s.space.fence("mpm::note_bound");
+  clock_.stop();
+  clock_ = WorkClock(is_device<Space>);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+void Decomposition<Space, T, Dim>::send_owners_to_device() {
+  ensure(owner_, owners_.size());
+  const Kokkos::View<const int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(owners_.data(),
+                                                                                  owners_.size());
+  Kokkos::deep_copy(head(owner_, owners_.size()), host);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode Decomposition<Space, T, Dim>::add_forces(State_& s) {
+  PetscFunctionBeginUser;
+  if (!forces_shared_) PetscFunctionReturn(PETSC_SUCCESS);
+  // The forces are there since the nodes are: where ghost sums have been sent ahead nobody waits for inner
+  // patches.
+  const Space& space = sent_ahead() ? side_.space() : s.space;
+  sum_forces(s, space);
+  const auto sums = Kokkos::create_mirror_view(s.rigid_force);
+  Kokkos::deep_copy(space, sums, s.rigid_force);
+  space.fence("mpm::add_forces");
+  clock_.pause();
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.extent(0)), MPI_DOUBLE, MPI_SUM, comm_));
+  clock_.go_on();
+  Kokkos::deep_copy(s.space, s.rigid_force, sums);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+RankReport Decomposition<Space, T, Dim>::report(const State_& s) const {
+  RankReport report;
+  report.work = clock_.work();
+  report.wait = clock_.wait();
+  report.halo = halo_;
+  report.held = held_;
+  report.particles = s.soil.points.count;
+  report.neighbours = neighbours_;
+  report.shared_nodes = lists_.shared;
+  const int width = SoilTerms<Dim>::size + (s.soil_boundary ? BoundaryTerms<Dim>::size : 0);
+  report.sent = double(lists_.sent) * width * sizeof(T);
+  return report;
+}
+
+template <class Space, class T, int Dim>
+std::string Decomposition<Space, T, Dim>::halo_words(const State_& s) const {
+  return std::string(transport_.words()) + (overlaps(s) ? ", while inner patches are computed" : "");
+}
+
+template <class Space, class T, int Dim>
+std::size_t Decomposition<Space, T, Dim>::memory() const {
+  const auto bytes = [](const auto& view) { return view.span() * sizeof(*view.data()); };
+  return transport_.memory() + bytes(owner_) + bytes(lists_.node) + bytes(lists_.shared_node) +
+         bytes(lists_.begin) + bytes(lists_.source);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                                               \
+  template PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm, const PartitionConfig&,      \
+                                                              const Owners&, State<Space, T, Dim>&); \
+  template void Decomposition<Space, T, Dim>::send_owners_to_device();                               \
+  template PetscErrorCode Decomposition<Space, T, Dim>::add_forces(State<Space, T, Dim>&);           \
+  template RankReport Decomposition<Space, T, Dim>::report(const State<Space, T, Dim>&) const;       \
+  template std::string Decomposition<Space, T, Dim>::halo_words(const State<Space, T, Dim>&) const;  \
+  template std::size_t Decomposition<Space, T, Dim>::memory() const;
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm
