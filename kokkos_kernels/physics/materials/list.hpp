@@ -11,6 +11,7 @@
 #include "physics/materials/power_elastic.hpp"
 #include "physics/materials/softening_clay.hpp"
 #include "physics/materials/tresca.hpp"
+#include "physics/materials/umat.hpp"
 #include "physics/materials/von_mises.hpp"
 #include "physics/materials/yield_stress_fluid.hpp"
 
@@ -22,6 +23,6 @@ struct ModelList {
 };
 
 using Materials = ModelList<LinearElastic, VonMises, Tresca, MohrCoulomb, DruckerPrager, MuI, Newtonian,
-                            YieldStressFluid, PowerElastic, J2Hardening, CamClay, SofteningClay>;
+                            YieldStressFluid, PowerElastic, J2Hardening, CamClay, SofteningClay, Umat>;
 
 }  // namespace mpm
