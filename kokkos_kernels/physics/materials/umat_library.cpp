@@ -90,6 +90,8 @@ void UmatLibrary::call(UmatCall& c, double* states, int count, bool on_threads) 
   const int ndi = 3, nshr = dim == 2 ? 1 : 3, ntens = ndi + nshr, nprops = static_cast<int>(properties.size()),
             noel = c.id + 1, one = 1, jstep[4] = {1, 0, 0, 0}, kinc = number_of_step(c.time, c.dt);
   constexpr double k_large = 1e10;  // PNEWDT before the call
+  constexpr double k_short = 1e-6;  // s, where there is no step: laws divide by it
+  const double dt = c.dt > 0 ? c.dt : k_short;
   double ddsdde[36] = {}, ddsddt[6] = {}, drplde[6] = {}, rpl = 0, drpldt = 0, pnewdt = k_large, none = 0,
          time[2] = {c.time, c.time}, drot[9], before[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, after[9];
   by_columns(c.rotation, drot), by_columns(c.gradient, after);
@@ -98,7 +100,7 @@ void UmatLibrary::call(UmatCall& c, double* states, int count, bool on_threads) 
   try {
     reinterpret_cast<UmatFunction*>(umat)(
         c.stress, count > 0 ? states : &none, ddsdde, &c.energy[0], &c.energy[1], &c.energy[2], &rpl, ddsddt,
-        drplde, &drpldt, c.strain, c.strain_increment, time, &c.dt, &none, &none, &none, &none,
+        drplde, &drpldt, c.strain, c.strain_increment, time, &dt, &none, &none, &none, &none,
         material.c_str(), &ndi, &nshr, &ntens, &count, nprops > 0 ? properties.data() : &none, &nprops,
         c.position, drot, &pnewdt, &spacing, before, after, &noel, &one, &one, &one, jstep, &kinc,
         k_name_length);
