@@ -103,11 +103,12 @@ class Tests:
 
     def test_language(self, language):
         own, umat = self.laws(language)
+        step = {"c": 5e-4, "fortran": 2e-4}[language]
         deck = ["-mesh_lower", "0,0", "-mesh_upper", "2,2.5", "-mesh_spacing", "0.125", "-mesh_ymax", "free", "-mesh_ymin",
                 "fixed", "-materials", "clay", "-clay_density", "1800", "-bodies", "soil", "-soil_material", "clay",
                 "-soil_shape", "box", "-soil_lower", "0,0", "-soil_upper", "2,2", "-rigids", "plate", "-plate_shape", "box",
                 "-plate_lower", "0,2", "-plate_upper", "0.5,2.25", "-plate_motion", "prescribed", "-plate_velocity", "0,-1",
-                "-f_bar_share", "0", "-history_interval", "0.002", "-soil_stress", "-2e4,-2e4,-2e4,0"]
+                "-f_bar_share", "0", "-time_step", repr(step), "-history_interval", "0.002", "-soil_stress", "-2e4,-2e4,-2e4,0"]
         end = ["-time_end", "0.02", "-output_interval", "0.01"]
         wanted, _ = self.run("own", *deck, *own, *end)
         first, _ = self.run("umat", *deck, *umat, *end, "-checkpoint_interval", "0.01")
@@ -314,7 +315,7 @@ def main():
     parser.add_argument("tests", nargs="*", default=["c", "fortran", "probe", "gives_up", "refused"])
     parser.add_argument("--decks", type=int, default=60)
     parser.add_argument("--dims", default="2,3")
-    args = parser.parse_args()
+    args = parser.parse_intermixed_args()
     compilers = {"fortran": os.environ.get("FC", "gfortran")}
     asked = [name for name in args.tests if shutil.which(compilers.get(name, os.environ.get("CC", "cc")))]
     for name in set(args.tests) - set(asked):
