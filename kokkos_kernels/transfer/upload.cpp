@@ -152,10 +152,9 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       const BodyInput& body = bodies[body_of[p]];
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
-  fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()),
-            [&](int m) {
-              return make_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get());
-            });
+  fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
+    return make_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get());
+  });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
   for (const BodyInput& body : bodies)
     if (materials[body.material].model != s.law) s.law = -1;

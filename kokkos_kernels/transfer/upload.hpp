@@ -18,8 +18,8 @@ struct GridInput {
 };
 
 struct MaterialInput {
-  int model = 0;                   // index into Materials
-  std::vector<double> parameters;  // in the order of the model's table
+  int model = 0;                         // index into Materials
+  std::vector<double> parameters;        // in the order of the model's table
   std::shared_ptr<const void> object{};  // of make_object, where the model has one
 };
 

@@ -220,7 +220,8 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
 std::vector<std::string> warnings_of_law(const MaterialConfig& material) {
   const int model = model_index(material.model);
   if (model < 0) return {};
-  const std::string text = warning_of(make_material<double>(model, material.parameters, material.object.get()));
+  const std::string text =
+      warning_of(make_material<double>(model, material.parameters, material.object.get()));
   return text.empty() ? std::vector<std::string>{} : split(with_prefix(text, material.name), '\n');
 }
 
@@ -231,7 +232,8 @@ void prepare_material(MaterialConfig& material, double spacing, double largest_p
 
 bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
                  const Sym6& stress) {
-  const auto law = make_material<double>(model_index(material.model), material.parameters, material.object.get());
+  const auto law =
+      make_material<double>(model_index(material.model), material.parameters, material.object.get());
   const ParameterFault fault = start_fault(law, {.position = {}, .height = height, .stress = stress});
   if (fault.key.empty()) return true;
   const bool of_body = fault.key == "stress";

@@ -50,7 +50,8 @@ std::vector<std::vector<double>> start_state(const Config& config, const AnyMate
 template <int Dim>
 BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles&& particles) {
   const MaterialConfig& material = config.materials[body.material];
-  const AnyMaterial<double> law = make_material<double>(model_index(material.model), material.parameters, material.object.get());
+  const AnyMaterial<double> law =
+      make_material<double>(model_index(material.model), material.parameters, material.object.get());
   BodyInput in;
   in.position = std::move(particles.position);
   in.particle_volume = particles.particle_volume;

@@ -60,7 +60,8 @@ TEST_CASE("SINV, SPRINC and SPRIND give invariants, principal values and directi
       CHECK(values[k] == same[k]);
       for (int l = 0; l < 3; ++l) {
         double product = 0, residual = -values[k] * axes[l][k];
-        for (int i = 0; i < 3; ++i) product += axes[i][k] * axes[i][l], residual += matrix(s, l, i) * axes[i][k];
+        for (int i = 0; i < 3; ++i)
+          product += axes[i][k] * axes[i][l], residual += matrix(s, l, i) * axes[i][k];
         worst = std::max({worst, std::fabs(product - (k == l)), std::fabs(residual)});
       }
     }

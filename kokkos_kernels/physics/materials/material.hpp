@@ -35,9 +35,9 @@ struct Parameter {
 struct TextOption {
   const char* key;  // option key: -NAME_key
   const char* meaning;
-  const char* takes;              // "takes ..." of the option
-  bool required = false;          // else it may be left out, and is empty
-  bool list_of_numbers = false;   // numbers with commas between them, which the option reader checks
+  const char* takes;             // "takes ..." of the option
+  bool required = false;         // else it may be left out, and is empty
+  bool list_of_numbers = false;  // numbers with commas between them, which the option reader checks
 };
 
 /// What an object of a law is made from (the optional members Object and make_object of a law): what does not

@@ -35,8 +35,8 @@ struct Umat {
                         k_takes_place = true;
   /// What a failed particle is said to have; see failed().
   static constexpr const char* k_failure =
-      "was given up by its UMAT, which set PNEWDT below 1 or called XIT (a smaller -time_courant takes smaller "
-      "steps)";
+      "was given up by its UMAT, which set PNEWDT below 1 or called XIT (a smaller -time_courant "
+      "takes smaller steps)";
   static constexpr int k_most_states = 64;
 
   T states, wave_modulus_given, thread_safe;
@@ -49,8 +49,8 @@ struct Umat {
          {"wave_modulus",
           &Umat::wave_modulus_given,
           "Pa",
-          "lambda + 2 G for the time step; auto: the largest normal stiffness in the DDSDDE that the UMAT has "
-          "returned for the particle",
+          "lambda + 2 G for the time step; auto: the largest normal stiffness in the DDSDDE "
+          "that the UMAT has returned for the particle",
           1e-3,
           1e15,
           0,
@@ -88,7 +88,8 @@ struct Umat {
   void prepare() {}
   ParameterFault check() const {
     if (states != std::floor(states)) return {"states", "a whole number from 0 to 64"};
-    if (object != nullptr && !object->state_start.empty() && object->state_start.size() != std::size_t(states))
+    if (object != nullptr && !object->state_start.empty() &&
+        object->state_start.size() != std::size_t(states))
       return {"state_start", "as many numbers as -NAME_states, which is " + std::to_string(int(states))};
     return {};
   }
@@ -100,12 +101,17 @@ struct Umat {
   using State = LawState<T, k_size>;
   static constexpr StateNames<k_most_states> k_state_names{};
   static constexpr std::array<StateVariable, k_size> state() {
-    std::array<StateVariable, k_size> table{
-        {{"wave_modulus", "Pa"}, {"strain_xx", "-"}, {"strain_yy", "-"}, {"strain_zz", "-"},
-         {"strain_xy", "-"}, {"strain_yz", "-"}, {"strain_zx", "-"}, {"elastic_energy", "J/m3"},
-         {"plastic_energy", "J/m3"}, {"creep_energy", "J/m3"}}};
-    for (int k = 0; k < k_most_states; ++k)
-      table[own + k] = {.name = k_state_names.text[k], .unit = "-"};
+    std::array<StateVariable, k_size> table{{{"wave_modulus", "Pa"},
+                                             {"strain_xx", "-"},
+                                             {"strain_yy", "-"},
+                                             {"strain_zz", "-"},
+                                             {"strain_xy", "-"},
+                                             {"strain_yz", "-"},
+                                             {"strain_zx", "-"},
+                                             {"elastic_energy", "J/m3"},
+                                             {"plastic_energy", "J/m3"},
+                                             {"creep_energy", "J/m3"}}};
+    for (int k = 0; k < k_most_states; ++k) table[own + k] = {.name = k_state_names.text[k], .unit = "-"};
     return table;
   }
   KOKKOS_FUNCTION bool carries(int k) const { return k < own + static_cast<int>(states); }
@@ -186,7 +192,9 @@ struct Umat {
   static constexpr int place_of(int k) {
     return k < 4 ? k : 9 - k;
   }
-  T modulus_of(const UmatCall& call) const { return wave_modulus_given > 0 ? wave_modulus_given : call.modulus; }
+  T modulus_of(const UmatCall& call) const {
+    return wave_modulus_given > 0 ? wave_modulus_given : call.modulus;
+  }
 
   /// DROT and the gradient of the step's displacement.
   template <int Dim>

@@ -19,15 +19,15 @@ constexpr int k_name_length = 80;  // of CMNAME
 
 // Fortran passes all arguments by reference and the length of a text by value behind them; C does not read
 // the length.
-using UmatFunction = void(double* stress, double* statev, double* ddsdde, double* sse, double* spd, double* scd,
-                          double* rpl, double* ddsddt, double* drplde, double* drpldt, const double* stran,
-                          const double* dstran, const double* time, const double* dtime, const double* temp,
-                          const double* dtemp, const double* predef, const double* dpred, const char* cmname,
-                          const int* ndi, const int* nshr, const int* ntens, const int* nstatv,
-                          const double* props, const int* nprops, const double* coords, const double* drot,
-                          double* pnewdt, const double* celent, const double* dfgrd0, const double* dfgrd1,
-                          const int* noel, const int* npt, const int* layer, const int* kspt, const int* jstep,
-                          const int* kinc, std::size_t cmname_length);
+using UmatFunction = void(double* stress, double* statev, double* ddsdde, double* sse, double* spd,
+                          double* scd, double* rpl, double* ddsddt, double* drplde, double* drpldt,
+                          const double* stran, const double* dstran, const double* time, const double* dtime,
+                          const double* temp, const double* dtemp, const double* predef, const double* dpred,
+                          const char* cmname, const int* ndi, const int* nshr, const int* ntens,
+                          const int* nstatv, const double* props, const int* nprops, const double* coords,
+                          const double* drot, double* pnewdt, const double* celent, const double* dfgrd0,
+                          const double* dfgrd1, const int* noel, const int* npt, const int* layer,
+                          const int* kspt, const int* jstep, const int* kinc, std::size_t cmname_length);
 using SdviniFunction = void(double* statev, const double* coords, const int* nstatv, const int* ncrds,
                             const int* noel, const int* npt, const int* layer, const int* kspt);
 
@@ -87,8 +87,9 @@ std::string reason() {
 }  // namespace
 
 void UmatLibrary::call(UmatCall& c, double* states, int count, bool on_threads) const {
-  const int ndi = 3, nshr = dim == 2 ? 1 : 3, ntens = ndi + nshr, nprops = static_cast<int>(properties.size()),
-            noel = c.id + 1, one = 1, jstep[4] = {1, 0, 0, 0}, kinc = number_of_step(c.time, c.dt);
+  const int ndi = 3, nshr = dim == 2 ? 1 : 3, ntens = ndi + nshr,
+            nprops = static_cast<int>(properties.size()), noel = c.id + 1, one = 1, jstep[4] = {1, 0, 0, 0},
+            kinc = number_of_step(c.time, c.dt);
   constexpr double k_large = 1e10;  // PNEWDT before the call
   constexpr double k_short = 1e-6;  // s, where there is no step: laws divide by it
   const double dt = c.dt > 0 ? c.dt : k_short;

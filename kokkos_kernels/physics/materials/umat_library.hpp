@@ -11,17 +11,17 @@ namespace mpm {
 /// What one call of a UMAT is given and gives back. Abaqus' order 11 22 33 12 13 23, engineering shear
 /// strains, tension positive; in 2D the first four.
 struct UmatCall {
-  double stress[6] = {};                       // Pa, turned with the material already
-  double strain[6] = {};                       // -, total strain before the step, turned likewise
-  double strain_increment[6] = {};             // -
-  double energy[3] = {};                       // J/m3, SSE SPD SCD
+  double stress[6] = {};            // Pa, turned with the material already
+  double strain[6] = {};            // -, total strain before the step, turned likewise
+  double strain_increment[6] = {};  // -
+  double energy[3] = {};            // J/m3, SSE SPD SCD
   double rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // DROT
-  double gradient[3][3] = {};                  // -, of the step's displacement
-  double time = 0, dt = 0;                     // s, at the start of the step
-  double position[3] = {};                     // m
-  int id = 0;                                  // of the particle, from 0
-  double modulus = 0;                          // Pa, result: largest normal stiffness of DDSDDE
-  bool gave_up = false;                        // result: PNEWDT below 1, or XIT
+  double gradient[3][3] = {};                                 // -, of the step's displacement
+  double time = 0, dt = 0;                                    // s, at the start of the step
+  double position[3] = {};                                    // m
+  int id = 0;                                                 // of the particle, from 0
+  double modulus = 0;    // Pa, result: largest normal stiffness of DDSDDE
+  bool gave_up = false;  // result: PNEWDT below 1, or XIT
 };
 
 /// An open library. Threads may share it.
