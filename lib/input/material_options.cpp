@@ -99,8 +99,9 @@ void read_parameters(OptionReader& in, const std::string& name, const Model& mod
 /// A law's text with the material's own prefix in the place of -NAME_.
 std::string with_prefix(std::string text, const std::string& name) {
   const std::string prefix = "-NAME_";
-  for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix, at))
-    text.replace(at, prefix.size(), "-" + name + "_");
+  const std::string own = "-" + name + "_";
+  for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix, at + own.size()))
+    text.replace(at, prefix.size(), own);
   return text;
 }
 
