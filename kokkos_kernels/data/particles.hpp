@@ -34,9 +34,9 @@ struct BodyProperties {
 /// is. As many columns are in use as the law with the most variables has; the others take no memory.
 template <class Space, class T>
 struct History {
-  Kokkos::Array<Kokkos::View<T*, typename Space::memory_space>, k_most_state> column;
-  Kokkos::Array<const char*, k_most_state> name{};  // of each column in use
-  Kokkos::Array<bool, k_most_state> changes{};      // some law changes it
+  Kokkos::Array<Kokkos::View<T*, typename Space::memory_space>, k_most_state<Space>> column;
+  Kokkos::Array<const char*, k_most_state<Space>> name{};  // of each column in use
+  Kokkos::Array<bool, k_most_state<Space>> changes{};      // some law changes it
   int columns = 0;                                  // in use
 };
 

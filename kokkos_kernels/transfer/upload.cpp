@@ -69,9 +69,9 @@ std::size_t scratch_of_rigids(const std::vector<RigidInput>& rigids) {
 template <class Space, class T>
 void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& materials,
                   const std::vector<BodyInput>& bodies) {
-  static const std::array<std::string, k_most_state> shared = [] {
-    std::array<std::string, k_most_state> names;
-    for (int k = 0; k < k_most_state; ++k) names[k] = "state_" + std::to_string(k);
+  static const auto shared = [] {
+    std::array<std::string, k_most_state<Space>> names;
+    for (std::size_t k = 0; k < names.size(); ++k) names[k] = "column_" + std::to_string(k);
     return names;
   }();
   history.columns = 0;
@@ -152,8 +152,9 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       const BodyInput& body = bodies[body_of[p]];
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
-  fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()),
-            [&](int m) { return make_material<T>(materials[m].model, materials[m].parameters); });
+  fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
+    return make_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get());
+  });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
   s.light_laws = true;
   for (const BodyInput& body : bodies) {

@@ -2,6 +2,7 @@
 // From a description on the host to a State on the device.
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "rebuild/rebuild.hpp"
@@ -17,8 +18,9 @@ struct GridInput {
 };
 
 struct MaterialInput {
-  int model = 0;                   // index into Materials
-  std::vector<double> parameters;  // in the order of the model's table
+  int model = 0;                         // index into Materials
+  std::vector<double> parameters;        // in the order of the model's table
+  std::shared_ptr<const void> object{};  // of make_object, where the model has one
 };
 
 /// Particles of one deformable body. Positions are from the mesh's lower corner, Dim components each.

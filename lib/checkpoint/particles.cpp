@@ -107,7 +107,7 @@ std::string column_of(const Checkpoint& c, const std::string& body, const std::s
   const auto variables = state_variables(value_of(c, "-" + value_of(c, "-" + body + "_material") + "_model"));
   for (std::size_t k = 0; k < variables.size(); ++k) {
     if (name != variables[k].name) continue;
-    return rows.has(name.c_str(), 1) ? name : "state_" + std::to_string(k);
+    return rows.has(name.c_str(), 1) ? name : "column_" + std::to_string(k);
   }
   return "";
 }

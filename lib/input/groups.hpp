@@ -12,8 +12,10 @@ namespace mpm {
 /// -mesh_*. Whether the mesh is sound, so that shapes can be checked against it.
 bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh);
 
-/// The options of one material: its density, its model and the model's own table of parameters.
-void read_material(OptionReader& in, const std::string& name, MaterialConfig& material);
+/// The options of one material of a run: its density, its model and the model's own tables of parameters and
+/// texts. A null mesh is unsound.
+void read_material(OptionReader& in, const std::string& name, const MeshConfig* mesh, const Config& config,
+                   MaterialConfig& material);
 
 /// A parameter of a material by its key; NaN where its model has none of that name.
 double parameter_of(const MaterialConfig& material, const std::string& key);

@@ -57,7 +57,7 @@ ParticleSource source_of(const BodyConfig& body) {
 ParticleSource source_of(const BodyConfig& body, const Config& config) {
   ParticleSource source = source_of(body);
   if (body.material >= static_cast<int>(config.materials.size())) return source;  // reported
-  for (const StateVariable& variable : state_variables(config.materials[body.material].model))
+  for (const StateVariable& variable : state_variables(config.materials[body.material]))
     if (variable.changes && variable.output) source.state.push_back(variable.name);
   return source;
 }

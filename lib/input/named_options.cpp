@@ -280,7 +280,7 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
     forgive_unlisted(in, names);
   }
   auto errors = in.errors();
-  for (const auto& name : materials) read_material(in, name, config.materials.emplace_back());
+  for (const auto& name : materials) read_material(in, name, mesh, config, config.materials.emplace_back());
   const bool sound_materials = mesh && in.errors() == errors && !in.listing();
   if (sound_materials)
     for (MaterialConfig& material : config.materials) prepare_material(material, mesh->spacing, 0);

@@ -214,7 +214,7 @@ void read_frames(OptionReader& in, OutputConfig& output) {
       .name = "output_fields",
       .meaning = "fields of the frames beside the position; those of bodies are left out of rigids",
       .standard = "all"};
-  const std::string takes = "names of fields: " + join(known, ", ");
+  const std::string takes = "names of fields: " + frame_field_list();
   std::vector<std::string> names;
   if (in.list_of(fields, takes, names)) {
     output.fields = names;

@@ -159,9 +159,13 @@ std::string read_group(hid_t file, const ParticleSource& source, int dim, Partic
   table.volume = in.read("volume", 1, 1);
   if (source.velocity) in.read_if_there("velocity", 3, dim, frame, table.velocity);
   if (source.stress) in.read_if_there("stress", 6, dim == 2 ? 4 : 6, frame, table.stress);
+  // A run of another law has none of this law's variables, but for the plastic strain, which all frames have.
+  const bool same_law = std::any_of(source.state.begin(), source.state.end(), [&](const std::string& name) {
+    return name != "plastic_strain" && in.has(name.c_str());
+  });
   for (const std::string& name : source.state) {
     StateField field{name, {}};
-    in.read_if_there(name.c_str(), 1, 1, frame, field.values);
+    in.read_if_there(name.c_str(), 1, 1, frame && (same_law || name == "plastic_strain"), field.values);
     if (!field.values.empty()) table.state.push_back(std::move(field));
   }
   in.read_if_there("mass", 1, 1, frame, table.mass);

@@ -50,7 +50,8 @@ std::vector<std::vector<double>> start_state(const Config& config, const AnyMate
 template <int Dim>
 BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles&& particles) {
   const MaterialConfig& material = config.materials[body.material];
-  const AnyMaterial<double> law = make_material<double>(model_index(material.model), material.parameters);
+  const AnyMaterial<double> law =
+      make_material<double>(model_index(material.model), material.parameters, material.object.get());
   BodyInput in;
   in.position = std::move(particles.position);
   in.particle_volume = particles.particle_volume;
@@ -109,7 +110,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   timers_.sample(!is_device<Space>);
   GridInput grid{config_.mesh.spacing, config_.mesh.cells, model.patches, config_.mesh.walls};
   std::vector<MaterialInput> materials;
-  for (const auto& m : config_.materials) materials.push_back({model_index(m.model), m.parameters});
+  for (const auto& m : config_.materials) materials.push_back({model_index(m.model), m.parameters, m.object});
   for (BodyParticles& particles : model.bodies) {
     first_.push_back(total_);
     total_ += std::max(particles.total, static_cast<long>(particles.position.size()) / Dim);

@@ -9,16 +9,19 @@
 
 namespace mpm {
 
-/// The update of a law for all lanes.
-template <class Law, class R, class T, int Dim, int N>
+/// The update of a law. One that takes a single particle is called for the lanes that are active(lane), and
+/// where it asks for the particle's place, with place(lane).
+template <class Law, class R, class T, int Dim, int N, class Active, class Place>
 KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stress, LawState<R, N>& state,
-                                         const Increment<R, T, Dim>& by) {
+                                         const Increment<R, T, Dim>& by, const Active& active,
+                                         [[maybe_unused]] const Place& place) {
   if constexpr (!has_scalar_update<Law>()) {
     law.update(stress, state, by);
   } else {
     for (int l = 0; l < R::k_count; ++l) {
+      if (!active(l)) continue;
       SymTensor<T, Dim> own_stress;
-      LawState<T, N> own_state;
+      LawState<T, N> own_state{};  // 0 where a particle does not carry a variable
       Increment<T, T, Dim> own_by;
       own_by.dt = by.dt, own_by.clock = by.clock;
       for (int k = 0; k < sym_size<Dim>; ++k)
@@ -26,10 +29,13 @@ KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stre
       for (int k = 0; k < (Dim == 2 ? 1 : 3); ++k) own_by.spin.c[k] = by.spin.c[k][l];
       for (int k = 0; k < Dim * Dim; ++k)
         own_by.gradient[k / Dim][k % Dim] = by.gradient[k / Dim][k % Dim][l];
-      for (int k = 0; k < N; ++k) own_state[k] = state[k][l];
-      law.update(own_stress, own_state, own_by);
+      for (int k = 0; k < N && carries(law, k); ++k) own_state[k] = state[k][l];
+      if constexpr (takes_place<Law>())
+        law.update(own_stress, own_state, own_by, place(l));
+      else
+        law.update(own_stress, own_state, own_by);
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k].set(l, own_stress[k]);
-      for (int k = 0; k < N; ++k) state[k].set(l, own_state[k]);
+      for (int k = 0; k < N && carries(law, k); ++k) state[k].set(l, own_state[k]);
     }
   }
 }
@@ -44,11 +50,15 @@ struct LawLanes {
   bool some_fly = false;
   R flies = 0;  // 1 where a particle does
   int material[R::k_count] = {};
+  Coord<Dim> corner{};  // cells, of the patch
+  double spacing = 1;   // m
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(SymTensor<R, Dim>& stress,
                                               const Increment<R, T, Dim>& by) const {
     if (one_law && !some_fly)
-      update(material[0], stress, by, [](const R& now, const R&) { return now; });
+      update(
+          material[0], stress, by, [&](int l) { return l < count; },
+          [](const R& now, const R&) { return now; });
     else
       update_some(stress, by);
   }
@@ -67,17 +77,30 @@ struct LawLanes {
       const auto mine = own > 0;
       SymTensor<R, Dim> now = old;
       const auto moves = (own > 0) & (flies < 1);
-      update(material_of(l), now, by,
-             [&](const R& after, const R& was) { return select(moves, after, was); });
+      const int own_material = material_of(l);
+      update(
+          own_material, now, by,
+          [&](int k) { return k < count && material_of(k) == own_material && flies[k] < 1; },
+          [&](const R& after, const R& was) { return select(moves, after, was); });
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(mine, now[k], stress[k]);
     }
     for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(flies > 0, R(0), stress[k]);
   }
 
-  /// kept(after, before): what becomes of a state variable.
-  template <class Kept>
+  /// The place of a lane's particle before the step.
+  KOKKOS_INLINE_FUNCTION ParticlePlace place_of(int l) const {
+    ParticlePlace place{.id = soil.id(p + l)};
+    const Coord<Dim> cell = coord_of<Dim>(soil.cell(p + l));
+    const Vector<T, Dim> x = soil.coordinate(p + l);
+    for (int d = 0; d < Dim; ++d) place.position[d] = (double(corner[d]) + cell[d] + x[d]) * spacing;
+    return place;
+  }
+
+  /// active(lane): whether the lane's particle is of this material. kept(after, before): what becomes of a
+  /// state variable.
+  template <class Active, class Kept>
   KOKKOS_FORCEINLINE_FUNCTION void update(int m, SymTensor<R, Dim>& stress, const Increment<R, T, Dim>& by,
-                                          const Kept& kept) const {
+                                          const Active& active, const Kept& kept) const {
     soil.materials.data()[m].visit([&](const auto& law) {
       using Law = std::decay_t<decltype(law)>;
       LawState<R, state_size<Law>> was, state;
@@ -86,9 +109,9 @@ struct LawLanes {
         if (carries(law, k)) load_field(soil.history.column[k], p, count, was[k]);
         state[k] = was[k];
       }
-      update_lanes(law, stress, state, by);
-      for (int k = 0; k < state.size; ++k) {
-        if (!Law::state()[k].changes) continue;
+      update_lanes(law, stress, state, by, active, [&](int l) { return place_of(l); });
+      for (int k = 0; k < state.size && carries(law, k); ++k) {
+        if (!changes_all<Law>() && !Law::state()[k].changes) continue;
         state[k] = kept(state[k], was[k]);
         if (any_of(state[k] != was[k])) store_field(state[k], soil.history.column[k], p, count);
       }
@@ -288,6 +311,7 @@ struct HostParticles {
     for (int k = 0; k < k_motion; ++k) t.kinematics[k] = R::load(stage.kinematics[k] + n);
     for (int k = 0; k < Dim * Dim; ++k) t.gradient[k / Dim][k % Dim] = R::load(stage.gradient[k] + n);
     LawLanes<R, Space, T, Dim> law{.soil = soil, .p = p, .count = count, .one_law = stage.one_body};
+    law.corner = origin(slot), law.spacing = spacing;
     for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
       law.material[l] = soil.bodies(soil.body(p + Kokkos::min(l, count - 1))).material;
     if (alone(slot) != 0) find_alone(law);

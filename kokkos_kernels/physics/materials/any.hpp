@@ -3,9 +3,12 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "base/spaces.hpp"
 #include "physics/materials/list.hpp"
 
 namespace mpm {
@@ -27,9 +30,20 @@ struct OneOf<T, ModelList<Models...>> {
   /// The same where the caller knows which model it is, and that it is of some list.
   template <template <class> class... Some, class F>
   KOKKOS_INLINE_FUNCTION void visit_as(ModelList<Some...>, int known, F&& f) const {
-    (void)((known == model_index_in<Some>(Materials{}) ? (f(*reinterpret_cast<const Some<T>*>(bytes)), true)
-                                                       : false) ||
+    (void)((known == model_index_in<Some>(Materials{})
+                ? (call(f, *reinterpret_cast<const Some<T>*>(bytes)), true)
+                : false) ||
            ...);
+  }
+
+ private:
+  /// Calls f(law), where code for the law is built at all.
+  template <class F, class Law>
+  static KOKKOS_INLINE_FUNCTION void call([[maybe_unused]] F&& f, [[maybe_unused]] const Law& law) {
+    if constexpr (!on_host_in_double<Law>())
+      f(law);
+    else if constexpr (std::is_same_v<T, double>)
+      KOKKOS_IF_ON_HOST((f(law);))
   }
 };
 
@@ -37,16 +51,20 @@ template <class T>
 using AnyMaterial = OneOf<T, Materials>;
 
 /// A material by its model's index in Materials and its parameters in the order of the model's table. The
-/// last ones may be left out where they have defaults.
+/// last ones may be left out where they have defaults. object: what make_object made, which must stay.
 template <class T>
-AnyMaterial<T> make_material(int which, const std::vector<double>& parameters);
+AnyMaterial<T> make_material(int which, const std::vector<double>& parameters, const void* object = nullptr);
 
-/// The most state variables of any law.
+/// The object of a material, where its law has one, else null. Where it cannot be made, fault tells why.
+std::shared_ptr<const void> make_object(int which, const LawSetup& setup, ParameterFault& fault);
+
+/// The most state variables of any law; on a device those that run on processors alone do not count.
 template <template <class> class... Models>
-constexpr int most_state(ModelList<Models...>) {
-  return Kokkos::max({1, state_size<Models<double>>...});
+constexpr int most_state(ModelList<Models...>, bool device) {
+  return Kokkos::max({1, device && on_host_in_double<Models<double>>() ? 0 : state_size<Models<double>>...});
 }
-inline constexpr int k_most_state = most_state(Materials{});
+template <class Space>
+inline constexpr int k_most_state = most_state(Materials{}, is_device<Space>);
 
 /// What is wrong with the parameters of a material together.
 ParameterFault parameter_fault(const AnyMaterial<double>& material);

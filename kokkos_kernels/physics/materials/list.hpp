@@ -13,6 +13,7 @@
 #include "physics/materials/power_elastic.hpp"
 #include "physics/materials/softening_clay.hpp"
 #include "physics/materials/tresca.hpp"
+#include "physics/materials/umat.hpp"
 #include "physics/materials/von_mises.hpp"
 #include "physics/materials/yield_stress_fluid.hpp"
 
@@ -24,7 +25,7 @@ struct ModelList {
 };
 
 using Materials = ModelList<LinearElastic, VonMises, Tresca, MohrCoulomb, DruckerPrager, MuI, Newtonian,
-                            YieldStressFluid, PowerElastic, J2Hardening, CamClay, SofteningClay>;
+                            YieldStressFluid, PowerElastic, J2Hardening, CamClay, SofteningClay, Umat>;
 
 /// Laws whose update takes few registers and instructions. A GPU has kernels for them alone, so that the
 /// others cost them nothing (docs/development/gpu_laws.md).

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "base/types.hpp"
 #include "device/warp.hpp"
@@ -28,6 +29,31 @@ struct Parameter {
   double standard;                          // default; NaN where the parameter is required
   const char* instead_of = nullptr;         // key of the parameter whose place it takes where it is given
   std::array<ParameterWord, 3> words = {};  // words, beside or in lieu of numbers; a list may be shorter
+};
+
+/// One row of a model's table of options that are texts (its optional member `texts`).
+struct TextOption {
+  const char* key;  // option key: -NAME_key
+  const char* meaning;
+  const char* takes;             // "takes ..." of the option
+  bool required = false;         // else it may be left out, and is empty
+  bool list_of_numbers = false;  // numbers with commas between them, which the option reader checks
+};
+
+/// What an object of a law is made from (the optional members Object and make_object of a law): what does not
+/// fit into the law itself, which kernels copy.
+struct LawSetup {
+  std::string material;            // name
+  std::vector<std::string> texts;  // values of the options of texts(), in its order
+  int dim = 2;
+  std::array<double, 3> lower{};  // m, lower corner of the mesh
+  double spacing = 1;             // m, edge of the mesh's cells
+};
+
+/// Which particle a law updates, for laws that ask (k_takes_place).
+struct ParticlePlace {
+  int id = 0;                        // order of creation
+  std::array<double, 3> position{};  // m, from the lower corner of the mesh
 };
 
 /// How a particle is when it is created: a law's initial_state() follows from it.
@@ -111,6 +137,29 @@ constexpr bool stiffness_changes() {
   return false;
 }
 
+/// Whether a law runs on processors in double precision alone (k_host_double): no kernel of a GPU and none in
+/// single precision holds its code.
+template <class Law>
+constexpr bool on_host_in_double() {
+  if constexpr (requires { Law::k_host_double; }) return Law::k_host_double;
+  return false;
+}
+
+/// Whether the update of a law takes the particle's place too (k_takes_place).
+template <class Law>
+constexpr bool takes_place() {
+  if constexpr (requires { Law::k_takes_place; }) return Law::k_takes_place;
+  return false;
+}
+
+/// Whether the update of a law changes all of its state variables.
+template <class Law>
+constexpr bool changes_all() {
+  for (const StateVariable& variable : Law::state())
+    if (!variable.changes) return false;
+  return true;
+}
+
 /// Whether a law has states that end the run (failed).
 template <class Law>
 constexpr bool can_fail() {
@@ -145,19 +194,25 @@ KOKKOS_INLINE_FUNCTION SymTensor<T, 2> rotated(const SymTensor<T, 2>& s, const S
   return {mean + half_new, mean - half_new, s[2], cos_2a * s[3] - sin_2a * half};
 }
 
+/// The rotation Q itself: Cayley transform of the skew tensor W with axial vector a,
+/// Q = I + (2/(1+|a|^2/4)) (W/2 + W^2/4).
 template <class T>
-KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const Spin<T, 3>& w) {
-  // Cayley transform of the skew tensor W with axial vector a: Q = I + (2/(1+|a|^2/4)) (W/2 + W^2/4)
+KOKKOS_INLINE_FUNCTION void rotation_of(const Spin<T, 3>& w, T (&q)[3][3]) {
   const T half[3][3] = {
       {0, w.c[0] / 2, -w.c[2] / 2}, {-w.c[0] / 2, 0, w.c[1] / 2}, {w.c[2] / 2, -w.c[1] / 2, 0}};
   const T scale = 2 / (1 + (w.c[0] * w.c[0] + w.c[1] * w.c[1] + w.c[2] * w.c[2]) / 4);
-  T q[3][3];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       T square = 0;
       for (int k = 0; k < 3; ++k) square += half[i][k] * half[k][j];
       q[i][j] = (i == j) + scale * (half[i][j] + square);
     }
+}
+
+template <class T>
+KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const Spin<T, 3>& w) {
+  T q[3][3];
+  rotation_of(w, q);
   SymTensor<T, 3> r;
   for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j) {

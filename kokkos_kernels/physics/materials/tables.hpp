@@ -20,6 +20,9 @@ std::vector<const char*> material_models();
 /// Whether the stiffness of the model of this index in Materials depends on stress or state.
 bool stiffness_changes(int which);
 
+/// Whether the model of this index in Materials runs on processors in double precision alone.
+bool on_host_in_double(int which);
+
 /// What a particle is said to have that the model of this index in Materials calls failed; empty where no
 /// state is a failure.
 const char* failure_of(int which);

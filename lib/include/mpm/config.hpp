@@ -3,6 +3,7 @@
 // per metre of width and the third component of a vector is zero and unused.
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,8 +54,9 @@ struct Shape {
 /// A material: its model's name, density, and the model's parameters in the order of the model's own table.
 struct MaterialConfig {
   std::string name, model;
-  double density = 0;              // kg/m3
-  std::vector<double> parameters;  // as Model::parameters() lists them
+  double density = 0;                    // kg/m3
+  std::vector<double> parameters;        // as Model::parameters() lists them
+  std::shared_ptr<const void> object{};  // what the model made of its options that are texts; most need none
 };
 
 /// A deformable body.
