@@ -56,6 +56,13 @@ void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& confi
 /// Checks that a rigid does not move across a plane of symmetry that cuts it.
 void check_cut_motion(OptionReader& in, const MeshConfig& mesh, int dim, const RigidConfig& rigid);
 
+/// -water_*. Gravity and -device_memory_limit must have been read.
+void read_water(OptionReader& in, Config& config);
+
+/// Checks that a rigid that moves by forces is wholly below the water's level or above it: its buoyancy is
+/// constant.
+void check_in_water(OptionReader& in, const MeshConfig& mesh, const Config& config, const RigidConfig& rigid);
+
 /// The initial velocity and stress of a body, which take the place of those of its file.
 void read_start(OptionReader& in, int dim, BodyConfig& body);
 
