@@ -7,6 +7,7 @@
 
 #include "rebuild/batches.hpp"
 #include "transfer/velocity_gradients.hpp"
+#include "physics/pore_water.hpp"
 
 namespace mpm {
 namespace {
