@@ -33,8 +33,7 @@ struct Water {
   }
 };
 
-/// Mass of the water that particles displace at a node, sum S_ip rho_w V_p below the level [kg]; what it
-/// weighs carries the soil.
+/// Mass of the water that particles displace at a node [kg]; what it weighs carries the soil.
 struct DisplacedTerms {
   static constexpr int mass = 0, size = 1;
 };

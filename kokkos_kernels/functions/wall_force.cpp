@@ -106,7 +106,7 @@ template <class Space, class T, int Dim>
 WallForces wall_forces(const State<Space, T, Dim>& s) {
   PressOnWalls<Space, T, Dim> press{{s.soil.points, s.grid.inv_spacing},
                                     {s.grid, s.patches},
-                                    {s.soil.points, s.water, s.patches.origin, s.spacing},
+                                    {s.soil.points, s.water, s.density, s.patches.origin, s.spacing},
                                     {}};
   for (int d = 0; d < Dim; ++d) press.g[d] = s.gravity[d];
   ForceSum<Dim> sum;

@@ -183,7 +183,9 @@ struct StrengthSource {
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
-/// The mass of the water that the soil displaces, sum S rho_w V_p below the level [kg].
+/// The mass of the water that the soil displaces, sum S rho_w m_p / rho below the level [kg]. rho is the density
+/// that the soil began with: when its pores change their volume, water comes and goes, and the weight of the
+/// grains under water stays.
 template <class Space_, class T, int Dim>
 struct DisplacedSource {
   using Space = Space_;
@@ -196,19 +198,21 @@ struct DisplacedSource {
   };
   Soil<Space, T, Dim> points;
   Water<Dim> water;
+  Kokkos::View<double*, typename Space::memory_space> density;  // kg/m3, by body
   Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
   double spacing;  // m
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    const HalfLength<T> half_length = points.bodies(points.body(p)).half_length;
+    const BodyProperties<T> body = points.properties(p);
     const int cell = points.cell(p);
     const Coord<Dim> from = origin(cell / Patch<Dim>::cells), in = coord_of<Dim>(cell);
     Vector<double, Dim> x;
     for (int d = 0; d < Dim; ++d)
       x[d] = (double(from[d]) + in[d] + double(points.coordinate(p)[d])) * spacing;
-    const double share = water.submerged_share(x, double(half_length.l) * spacing);
-    return {half_length, static_cast<T>(water.density * share * double(points.volume(p)))};
+    const double share = water.submerged_share(x, double(body.half_length.l) * spacing);
+    return {body.half_length,
+            static_cast<T>(water.density * share * (double(body.mass) / density(points.body(p))))};
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }

@@ -92,7 +92,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   const auto alone = s.strays.alone;
   const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
   const auto water = s.water;
-  const DisplacedSource<Space, T, Dim> displaced{soil, water, s.patches.origin, s.spacing};
+  const DisplacedSource<Space, T, Dim> displaced{soil, water, s.density, s.patches.origin, s.spacing};
   Sum<Dim> total;
   Kokkos::parallel_reduce(
       "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, (count + together - 1) / together),

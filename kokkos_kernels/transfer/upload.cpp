@@ -158,6 +158,8 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
     return BodyProperties<T>{static_cast<T>(common_mass(bodies[b])), static_cast<T>(bodies[b].half_length),
                              bodies[b].material};
   });
+  fill_view(s.density, "mpm::density", static_cast<int>(bodies.size()),
+            [&](int b) { return bodies[b].density; });
   if (soil.has_own_mass)
     fill_view(soil.mass, "mpm::mass", soil.count, [&](int p) {
       const BodyInput& body = bodies[body_of[p]];

@@ -72,7 +72,8 @@ void buoyancy_to_nodes(State<Space, T, Dim>& s) {
   if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.displaced, T(0));
   for_all_soil(s, [&](const auto& set) {
     interpolate<DisplacedSource<Space, T, Dim>>(
-        s, s.p2g.strategy, set.bins, {set.points, s.water, s.patches.origin, s.spacing}, s.nodes.displaced);
+        s, s.p2g.strategy, set.bins, {set.points, s.water, s.density, s.patches.origin, s.spacing},
+        s.nodes.displaced);
   });
   add_buoyancy(s);
 }

@@ -42,7 +42,7 @@ def prepare(run, path, options):
     stress[:, 1] = -weight(run) * depth * np.cos(BETA)
     stress[:, 0] = (2 / np.cos(BETA) ** 2 - 1) * stress[:, 1]
     stress[:, 2] = (stress[:, 0] + stress[:, 1]) / 2
-    stress[:, 3] = -weight(run) * depth * np.sin(BETA)
+    stress[:, 3] = weight(run) * depth * np.sin(BETA)
     particles.write(path, "slab", place, SPACING, stress=stress)
 
 
