@@ -1,6 +1,7 @@
 // -water_*: water at rest.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "input/groups.hpp"
@@ -27,20 +28,26 @@ void read_water(OptionReader& in, Config& config) {
     in.not_taken("water_density", "there is no -water_level");
 }
 
-void check_in_water(OptionReader& in, const MeshConfig& mesh, const Config& config, const RigidConfig& rigid) {
-  if (!config.water.level || rigid.motion != Motion::dynamic || rigid.shape.kind == ShapeKind::half_plane) return;
-  const Bounds bounds = bounds_of(rigid.shape, mesh, config.dim);
+std::array<double, 2> heights_of(const Shape& shape, const Config& config) {
+  const Bounds bounds = bounds_of(shape, config.mesh, config.dim);
   const double size = std::hypot(config.gravity[0], config.gravity[1], config.gravity[2]);
-  double lowest = 0, highest = 0;  // m, heights against gravity
-  for (int d = 0; d < config.dim; ++d) {
+  std::array<double, 2> heights{};
+  for (int d = 0; d < config.dim && size > 0; ++d) {
     const double up = -config.gravity[d] / size;
-    lowest += std::min(up * bounds.lower[d], up * bounds.upper[d]);
-    highest += std::max(up * bounds.lower[d], up * bounds.upper[d]);
+    heights[0] += std::min(up * bounds.lower[d], up * bounds.upper[d]);
+    heights[1] += std::max(up * bounds.lower[d], up * bounds.upper[d]);
   }
-  const double slack = 1e-9 * mesh.spacing;
-  if (lowest < *config.water.level - slack && highest > *config.water.level + slack)
+  return heights;
+}
+
+void check_in_water(OptionReader& in, const Config& config, const RigidConfig& rigid) {
+  if (!config.water.level || rigid.motion != Motion::dynamic) return;
+  const auto [lowest, highest] = heights_of(rigid.shape, config);
+  const double slack = 1e-9 * config.mesh.spacing, level = *config.water.level;
+  if (lowest < level - slack && highest > level + slack)
     in.reject(rigid.name + "_motion",
-              "fixed or prescribed where -water_level crosses the body: a dynamic one is wholly below it or above it");
+              "fixed or prescribed where -water_level crosses the body: a dynamic one is wholly below it or "
+              "above it");
 }
 
 }  // namespace mpm
