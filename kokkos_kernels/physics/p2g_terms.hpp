@@ -183,9 +183,9 @@ struct StrengthSource {
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
-/// The mass of the water that the soil displaces, sum S rho_w m_p / rho below the level [kg]. rho is the density
-/// that the soil began with: when its pores change their volume, water comes and goes, and the weight of the
-/// grains under water stays.
+/// The mass of the water that the soil displaces, sum S rho_w m_p / rho below the level [kg]. rho is the
+/// density that the soil began with: when its pores change their volume, water comes and goes, and the weight
+/// of the grains under water stays.
 template <class Space_, class T, int Dim>
 struct DisplacedSource {
   using Space = Space_;

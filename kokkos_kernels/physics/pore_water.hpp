@@ -1,7 +1,7 @@
 #pragma once
-// Water that does not flow. The pore pressure is u = u_h + u_e: hydrostatic by the depth below a level, and in
-// excess of that what undrained loading adds, du_e = -K d(volume strain) with the stiffness K of the water in
-// the pores (Naylor 1974). Compression is positive for u.
+// Water that does not flow. The pore pressure is u = u_h + u_e: hydrostatic by the depth below a level, and
+// in excess of that what undrained loading adds, du_e = -K d(volume strain) with the stiffness K of the water
+// in the pores (Naylor 1974). Compression is positive for u.
 //
 // The stress of a particle is s = sigma + u_h I = sigma' - u_e I, total stress in excess of hydrostatic. The
 // gradient of u_h balances the weight of the water that the soil displaces, so that rho a = div s +

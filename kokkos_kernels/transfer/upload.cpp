@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "physics/pore_water.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/velocity_gradients.hpp"
-#include "physics/pore_water.hpp"
 
 namespace mpm {
 namespace {
@@ -165,12 +165,11 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       const BodyInput& body = bodies[body_of[p]];
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
-  fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()),
-            [&](int m) {
-              AnyMaterial<T> material = make_material<T>(materials[m].model, materials[m].parameters);
-              material.pore_stiffness = static_cast<T>(materials[m].pore_stiffness);
-              return material;
-            });
+  fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
+    AnyMaterial<T> material = make_material<T>(materials[m].model, materials[m].parameters);
+    material.pore_stiffness = static_cast<T>(materials[m].pore_stiffness);
+    return material;
+  });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
   for (const BodyInput& body : bodies)
     if (materials[body.material].model != s.law) s.law = -1;

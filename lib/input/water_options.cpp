@@ -11,8 +11,9 @@ namespace mpm {
 
 void read_water(OptionReader& in, Config& config) {
   const Option level{.name = "water_level",
-                     .meaning = "level of water at rest that fills the pores and covers the ground below it: "
-                                "height along the last axis, or against gravity where that is inclined",
+                     .meaning =
+                         "level of water at rest that fills the pores and covers the ground below it: "
+                         "height along the last axis, or against gravity where that is inclined",
                      .unit = "m",
                      .range = k_coordinate};
   in.number(level, config.water.level);

@@ -126,7 +126,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   timers_.sample(!is_device<Space>);
   GridInput grid{config_.mesh.spacing, config_.mesh.cells, model.patches, config_.mesh.walls};
   std::vector<MaterialInput> materials;
-  for (const auto& m : config_.materials) materials.push_back({model_index(m.model), m.parameters, m.pore_stiffness});
+  for (const auto& m : config_.materials)
+    materials.push_back({model_index(m.model), m.parameters, m.pore_stiffness});
   for (BodyParticles& particles : model.bodies) {
     first_.push_back(total_);
     total_ += std::max(particles.total, static_cast<long>(particles.position.size()) / Dim);

@@ -5,7 +5,7 @@
 
 The random decks of collapses.py, with a level of water anywhere from below the mesh to above it, laws of total and of
 effective stress, drained and undrained. What must hold is what collapses.py
-demands of a run; energy is that of gravity alone, since water takes energy from soil that is heavier and falls.
+demands of a run; water gives no more energy than it carries of soil that rises.
 """
 import random
 import sys
@@ -57,6 +57,7 @@ def submerged_deck(seed, k):
         lower, upper = deck.mesh()
         share = dice.uniform(-0.1, 1.3)
         place = [a + share * (b - a) for a, b in zip(lower, upper)]
+        deck.lift = 1000 / o["clay_density"]
         o["water_level"] = (-sum(x * g for x, g in zip(place, gravity)) / size,)
         where = f"water to {share:.2f}"
     deck.name = f"{deck.name}, {o['clay_model']}, {'undrained' if undrained else 'drained'}, {where}"

@@ -131,16 +131,18 @@ TEST_CASE("nodes get the water that the particles displace, by every strategy", 
   });
 }
 
-TEST_CASE("submerged ground whose effective stress carries its buoyant weight stays at rest", "[pore_water]") {
+TEST_CASE("submerged ground whose effective stress carries its buoyant weight stays at rest",
+          "[pore_water]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
     for (const double level : {2.0, 0.65, 0.5}) {
       Cloud cloud;
-      cloud.grid = grid_of<Dim>(Dim == 2 ? std::array<int, 3>{4, 14, 0} : std::array<int, 3>{3, 3, 14}, k_spacing,
-                                Wall::roller);
+      cloud.grid = grid_of<Dim>(Dim == 2 ? std::array<int, 3>{4, 14, 0} : std::array<int, 3>{3, 3, 14},
+                                k_spacing, Wall::roller);
       cloud.materials = {{0, {1e6, 0.3}}};
-      const std::array<double, 3> high = Dim == 2 ? std::array<double, 3>{4, 12, 0} : std::array<double, 3>{3, 3, 12};
+      const std::array<double, 3> high =
+          Dim == 2 ? std::array<double, 3>{4, 12, 0} : std::array<double, 3>{3, 3, 12};
       cloud.bodies = {body_of<Dim>(lattice<Dim>({0, 0, 0}, high, 2, k_spacing), 2, k_spacing, 0)};
       cloud.bodies[0].state.clear(), cloud.bodies[0].density = 1900;
       cloud.gravity[Dim - 1] = -k_g;
@@ -173,7 +175,8 @@ TEST_CASE("undrained, a law sees the effective stress that it would see drained"
       auto alone = state_of<B>(block<Dim>(material)), lanes = state_of<B>(block<Dim>(material));
       REQUIRE(alone.soil.points.history.pore >= 0);
       REQUIRE(drained.soil.points.history.pore == -1);
-      const auto &of_drained = drained.soil.points, &of_alone = alone.soil.points, &of_lanes = lanes.soil.points;
+      const auto &of_drained = drained.soil.points, &of_alone = alone.soil.points,
+                 &of_lanes = lanes.soil.points;
       SymTensor<double, Dim> effective = of_drained.stress(0), stress = of_alone.stress(0);
       SymTensor<R, Dim> many{};
       for (int k = 0; k < sym_size<Dim>; ++k) many[k] = stress[k];
@@ -188,7 +191,8 @@ TEST_CASE("undrained, a law sees the effective stress that it would see drained"
         all.dt = by.dt;
         for (int k = 0; k < sym_size<Dim>; ++k) all.strain[k] = by.strain[k];
         for (std::size_t k = 0; k < std::size(by.spin.c); ++k) all.spin.c[k] = by.spin.c[k];
-        LawLanes<R, Space, double, Dim>{.soil = of_lanes, .p = 0, .count = R::k_count, .one_law = true}(many, all);
+        LawLanes<R, Space, double, Dim>{.soil = of_lanes, .p = 0, .count = R::k_count, .one_law = true}(many,
+                                                                                                        all);
         excess = of_alone.history.column[of_alone.history.pore](0);
         for (int k = 0; k < sym_size<Dim>; ++k) {
           const double pore = k < 3 ? excess : 0;
@@ -239,7 +243,8 @@ TEST_CASE("pore water stiffens the waves and stores energy", "[pore_water]") {
     const double modulus = wave_modulus(make_material<double>(0, material.parameters)) + k_pore;
     INFO(build.name());
     CHECK(std::fabs(fastest_wave(s) / std::sqrt(modulus / k_density) - 1) < B::of(1e-12, 1e-5));
-    const double bulk = 1e7 / (3 * (1 - 2 * 0.3)), volume = body.particle_volume * (body.position.size() / Dim);
+    const double bulk = 1e7 / (3 * (1 - 2 * 0.3)),
+                 volume = body.particle_volume * (body.position.size() / Dim);
     const double energy = volume * (1e10 / (2 * bulk) + 4e10 / (2 * k_pore));
     CHECK(std::fabs(measure(s, 0).stored_energy / energy - 1) < B::of(1e-12, 1e-4));
   });
