@@ -35,7 +35,8 @@ void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
   const auto add = [&](double work) { available_ += work, passed_ += std::fabs(work); };
   for (std::size_t b = 0; b < row.bodies.size(); ++b)
     for (int d = 0; d < config.dim; ++d)
-      add(row.bodies[b].mass * config.gravity[d] * (row.bodies[b].centre[d] - last_.bodies[b].centre[d]));
+      add((row.bodies[b].mass - row.bodies[b].displaced_mass) * config.gravity[d] *
+          (row.bodies[b].centre[d] - last_.bodies[b].centre[d]));
   for (std::size_t r = 0; r < row.rigids.size(); ++r)
     for (int d = 0; d < config.dim; ++d)
       add(std::fabs(row.rigids[r].force[d] *

@@ -8,6 +8,7 @@
 #include "base/types.hpp"
 #include "data/patches.hpp"
 #include "data/surface.hpp"
+#include "data/water.hpp"
 
 namespace mpm {
 
@@ -62,6 +63,7 @@ template <class Space, class T, int Dim>
 struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, NodeKinematics<Dim>::size> kinematics;
   NodeField<Space, T, StrengthTerms::size> strength;  // allocated where a contact asks for it
+  NodeField<Space, T, DisplacedTerms::size> displaced;  // kg, of water; allocated with it
   NodeField<Space, T, Dim> residual;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
       impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step

@@ -31,13 +31,16 @@ struct BodyProperties {
 };
 
 /// State variables [variable][particle]: column k holds variable k of the particle's law, whichever law that
-/// is. As many columns are in use as the law with the most variables has; the others take no memory.
+/// is. As many columns are in use as the law with the most variables has, and one more for the excess pore
+/// pressure where some material has a pore stiffness; the others take no memory.
 template <class Space, class T>
 struct History {
-  Kokkos::Array<Kokkos::View<T*, typename Space::memory_space>, k_most_state<Space>> column;
-  Kokkos::Array<const char*, k_most_state<Space>> name{};  // of each column in use
-  Kokkos::Array<bool, k_most_state<Space>> changes{};      // some law changes it
-  int columns = 0;                                  // in use
+  static constexpr int most = k_most_state<Space> + 1;
+  Kokkos::Array<Kokkos::View<T*, typename Space::memory_space>, most> column;
+  Kokkos::Array<const char*, most> name{};  // of each column in use
+  Kokkos::Array<bool, most> changes{};      // some law changes it
+  int columns = 0;                          // in use
+  int pore = -1;                            // column of the excess pore pressure [Pa]; -1: there is none
 };
 
 /// The soil: the particles of all deformable bodies.
@@ -66,6 +69,11 @@ struct Soil : Points<Space, T, Dim> {
     LawState<T, state_size<Law>> state;
     for (int k = 0; k < state_size<Law>; ++k) state[k] = carries(law, k) ? history.column[k](p) : T(0);
     return state;
+  }
+  /// Excess pore pressure [Pa] of particle p, which is of this material: its stress is the effective stress
+  /// less this pressure.
+  KOKKOS_INLINE_FUNCTION T excess_pore_pressure(const AnyMaterial<T>& of, int p) const {
+    return history.pore >= 0 && of.pore_stiffness > 0 ? history.column[history.pore](p) : T(0);
   }
   /// What its body gives particle p, with its own mass.
   KOKKOS_INLINE_FUNCTION BodyProperties<T> properties(int p) const {

@@ -64,6 +64,8 @@ struct State {
   double time = 0;                // s, before the steps that Control::steps counts
   double spacing = 0;             // m, edge of a cell, whatever T is
   Vector<double, Dim> gravity{};  // m/s2
+  Water<Dim> water{};             // hydrostatic, in which the soil is submerged
+  Kokkos::View<double*, Memory> density;  // kg/m3, that the soil of each body begins with
   double damping = 0;             // -
   double flip_fraction = 1;       // -, what is not FLIP is PIC, or XPIC
   int xpic_order = 0;             // m of XPIC(m), 0 without it

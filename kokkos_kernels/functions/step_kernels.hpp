@@ -15,6 +15,11 @@ StepPlan plan_step(const State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s);
 
+/// Part of 3, of submerged soil: adds to the force at each node what the water weighs that the soil displaces
+/// there (s.nodes.displaced), against gravity.
+template <class Space, class T, int Dim>
+void add_buoyancy(State<Space, T, Dim>& s);
+
 /// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
 /// contact forces in s.slot_forces. Where the plan has sums_ahead and not writes_sums, it leaves the nodal
 /// sums at zero, which is function 1 of the next step. dt [s]. stream: that of the nodes near rigids, if the

@@ -5,6 +5,7 @@
 #include "base/lanes.hpp"
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
+#include "physics/pore_water.hpp"
 
 namespace mpm {
 
@@ -52,7 +53,7 @@ struct Particle {
 };
 
 /// The law of particle p, which is one of the list Laws, with its state in memory. A particle that flies
-/// freely, being alone, carries no stress and keeps its state.
+/// freely, being alone, carries no stress, nor an excess pore pressure, and keeps its state.
 template <class Space, class T, int Dim, class Laws>
 struct ParticleLaw {
   const Soil<Space, T, Dim>& soil;
@@ -62,11 +63,18 @@ struct ParticleLaw {
   bool flies;
 
   KOKKOS_INLINE_FUNCTION void operator()(SymTensor<T, Dim>& stress, const Increment<T, T, Dim>& by) const {
+    const AnyMaterial<T>& of = soil.materials(material);
+    const bool undrained = soil.history.pore >= 0 && of.pore_stiffness > 0;
     if (flies) {
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = 0;
+      if (undrained) soil.history.column[soil.history.pore](p) = 0;
       return;
     }
-    const AnyMaterial<T>& of = soil.materials(material);
+    T excess = 0;
+    if (undrained) {
+      excess = soil.history.column[soil.history.pore](p);
+      add_isotropic(stress, excess);  // effective: the law's own
+    }
     of.visit_as(Laws{}, which >= 0 ? which : of.which, [&](const auto& law) {
       using Law = std::decay_t<decltype(law)>;
       const auto was = soil.state_of(law, p);
@@ -82,6 +90,11 @@ struct ParticleLaw {
       if constexpr (can_fail<Law>())
         if (law.failed(state)) stress[0] = Kokkos::Experimental::quiet_NaN_v<T>;  // fault_of() finds it
     });
+    if (undrained) {
+      excess = undrained_pressure(excess, of.pore_stiffness, by.strain);
+      soil.history.column[soil.history.pore](p) = excess;
+      add_isotropic(stress, -excess);
+    }
   }
 };
 

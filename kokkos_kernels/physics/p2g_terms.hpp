@@ -3,6 +3,7 @@
 
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
+#include "physics/pore_water.hpp"
 #include "physics/shape_gimp.hpp"
 #include "physics/walls.hpp"
 
@@ -182,6 +183,43 @@ struct StrengthSource {
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
+/// The mass of the water that the soil displaces, sum S rho_w m_p / rho below the level [kg]. rho is the
+/// density that the soil began with: when its pores change their volume, water comes and goes, and the weight
+/// of the grains under water stays.
+template <class Space_, class T, int Dim>
+struct DisplacedSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = DisplacedTerms::size;
+  static constexpr Kind kind = Kind::motion;
+  struct Point {
+    HalfLength<T> half_length;
+    T mass;
+  };
+  Soil<Space, T, Dim> points;
+  Water<Dim> water;
+  Kokkos::View<double*, typename Space::memory_space> density;  // kg/m3, by body
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  double spacing;  // m
+
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const BodyProperties<T> body = points.properties(p);
+    const int cell = points.cell(p);
+    const Coord<Dim> from = origin(cell / Patch<Dim>::cells), in = coord_of<Dim>(cell);
+    Vector<double, Dim> x;
+    for (int d = 0; d < Dim; ++d)
+      x[d] = (double(from[d]) + in[d] + double(points.coordinate(p)[d])) * spacing;
+    const double share = water.submerged_share(x, double(body.half_length.l) * spacing);
+    return {body.half_length,
+            static_cast<T>(water.density * share * (double(body.mass) / density(points.body(p))))};
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.mass; }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
+};
+
 /// Rigid body to nodes: m_i^R = sum S m_p and the mass gradient n_i^R = sum grad S m_p (Eq. 3; it points out
 /// of the body). A strategy may move() a point before it gives.
 template <class Space_, class T, int Dim>
@@ -273,6 +311,7 @@ inline constexpr std::size_t window_bytes =
   X(ResidualSource, Space, T, Dim)            \
   X(BoundarySource, Space, T, Dim)            \
   X(StrengthSource, Space, T, Dim)            \
+  X(DisplacedSource, Space, T, Dim)           \
   X(RigidSource, Space, T, Dim)
 
 }  // namespace mpm

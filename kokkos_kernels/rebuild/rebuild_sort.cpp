@@ -282,6 +282,28 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
   ensure(s.slot_forces, std::size_t(s.near_count) * Dim * s.rigid_points.size());
 }
 
+/// The same for the excess pore pressure, of the particles that have one: with the stress and it, effective
+/// stress is averaged too.
+template <class Space, class T, int Dim>
+void average_pore_pressure(State<Space, T, Dim>& s) {
+  const auto soil = s.soil.points;
+  const auto begin = s.soil.bins.begin;
+  const auto excess = soil.history.column[soil.history.pore];
+  const T fraction = static_cast<T>(s.f_bar_fraction);
+  Kokkos::parallel_for(
+      "mpm::average_pore_pressure", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
+      KOKKOS_LAMBDA(int cell) {
+        const auto has = [&](int p) {
+          return soil.materials(soil.bodies(soil.body(p)).material).pore_stiffness > 0;
+        };
+        T volume = 0, sum = 0;
+        for (int p = begin(cell); p < begin(cell + 1); ++p)
+          if (has(p)) volume += soil.volume(p), sum += soil.volume(p) * excess(p);
+        for (int p = begin(cell); p < begin(cell + 1); ++p)
+          if (has(p)) excess(p) += fraction * (sum / volume - excess(p));
+      });
+}
+
 template <class Space, class T, int Dim>
 void average_pressure(State<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
@@ -300,6 +322,7 @@ void average_pressure(State<Space, T, Dim>& s) {
           for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
         }
       });
+  if (soil.history.pore >= 0) average_pore_pressure(s);
 }
 
 template <class Space, class T, int Dim>
@@ -324,6 +347,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   if (s.xpic_order > 0) ensure(s.nodes.residual, nodes);
   if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
   if (s.shear_share) ensure(s.nodes.strength, nodes);
+  if (s.water.is_there()) ensure(s.nodes.displaced, nodes);
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid = decltype(s.nodes.rigid)(
         Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),

@@ -1,5 +1,7 @@
 #include "transfer/measure.hpp"
 
+#include "physics/p2g_terms.hpp"
+
 namespace mpm {
 namespace {
 
@@ -22,7 +24,7 @@ struct Sum {
     }
     m.kinetic_energy += other.m.kinetic_energy;
     m.stored_energy += other.m.stored_energy;
-    m.mass += other.m.mass, m.weight += other.m.weight;
+    m.mass += other.m.mass, m.weight += other.m.weight, m.displaced += other.m.displaced;
     m.count += other.m.count, m.alone += other.m.alone, m.limited += other.m.limited;
     return *this;
   }
@@ -41,6 +43,18 @@ struct Positions {
            spacing;
   }
 };
+
+/// Energy [J/m3] that particle p can give back, its pore water's among it.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION double stored_energy(const Soil<Space, T, Dim>& soil, int material, int p) {
+  const AnyMaterial<T>& of = soil.materials(material);
+  const double excess = soil.excess_pore_pressure(of, p);
+  SymTensor<T, Dim> stress = soil.stress(p);
+  add_isotropic(stress, static_cast<T>(excess));
+  double energy = excess == 0 ? 0 : excess * excess / (2 * double(of.pore_stiffness));
+  of.visit([&](const auto& law) { energy += law.stored_energy(stress, soil.state_of(law, p)); });
+  return energy;
+}
 
 /// A coordinate as a whole number of steps from the lower end of an extent. It never falls where x grows, so
 /// that an order by it is an order by x.
@@ -77,6 +91,8 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   const int count = soil.count;
   const auto alone = s.strays.alone;
   const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
+  const auto water = s.water;
+  const DisplacedSource<Space, T, Dim> displaced{soil, water, s.density, s.patches.origin, s.spacing};
   Sum<Dim> total;
   Kokkos::parallel_reduce(
       "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, (count + together - 1) / together),
@@ -96,10 +112,8 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
             own.m.kinetic_energy += mass * v * v / 2;
           }
           own.m.mass += mass, own.m.weight += weight;
-          soil.materials(common.material).visit([&](const auto& law) {
-            own.m.stored_energy +=
-                double(soil.volume(p)) * law.stored_energy(soil.stress(p), soil.state_of(law, p));
-          });
+          own.m.stored_energy += double(soil.volume(p)) * stored_energy(soil, common.material, p);
+          if (water.is_there()) own.m.displaced += displaced.load(p).mass;
           own.m.alone += is_alone(alone, soil.cell(p));
           own.m.limited += soil.volume(p) <= least || soil.volume(p) >= most;
           ++own.m.count;
@@ -119,8 +133,12 @@ double fastest_wave(const State<Space, T, Dim>& s) {
       "mpm::fastest_wave", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
       KOKKOS_LAMBDA(int p, double& largest) {
         const auto of = soil.properties(p);
-        soil.materials(of.material).visit([&](const auto& law) {
-          const double modulus = law.wave_modulus(soil.stress(p), soil.state_of(law, p));
+        const AnyMaterial<T>& material = soil.materials(of.material);
+        SymTensor<T, Dim> stress = soil.stress(p);
+        add_isotropic(stress, soil.excess_pore_pressure(material, p));
+        material.visit([&](const auto& law) {
+          const double modulus =
+              law.wave_modulus(stress, soil.state_of(law, p)) + double(material.pore_stiffness);
           largest = Kokkos::fmax(largest, modulus * soil.volume(p) / of.mass);
         });
       },

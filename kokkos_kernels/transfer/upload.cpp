@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "physics/pore_water.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/velocity_gradients.hpp"
 
@@ -86,6 +87,11 @@ void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& 
     }
     history.columns = std::max(history.columns, static_cast<int>(variables.size()));
   }
+  const bool undrained = std::any_of(bodies.begin(), bodies.end(), [&](const BodyInput& body) {
+    return materials[body.material].pore_stiffness > 0;
+  });
+  history.pore = undrained ? history.columns++ : -1;
+  if (undrained) history.name[history.pore] = k_excess_pore_pressure, history.changes[history.pore] = true;
 }
 
 template <class Space, class T, int Dim>
@@ -129,8 +135,10 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
   fill_view(soil.stress, "mpm::stress", soil.count, [&](int p) {
     const BodyInput& body = bodies[body_of[p]];
     SymTensor<T, Dim> stress{};
+    const double excess = body.excess_pore_pressure.empty() ? 0 : body.excess_pore_pressure[in_body(p)];
     for (int k = 0; k < sym_size<Dim> && !body.stress.empty(); ++k)
       stress[k] = static_cast<T>(body.stress[in_body(p) * sym_size<Dim> + k]);
+    if (excess != 0) add_isotropic(stress, static_cast<T>(-excess));
     return stress;
   });
   fill_view(soil.volume, "mpm::volume", soil.count, [&](int p) {
@@ -139,21 +147,29 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
   });
   for (int k = 0; k < soil.history.columns; ++k)
     fill_view(soil.history.column[k], "mpm::history", soil.count, [&](int p) {
-      const auto& state = bodies[body_of[p]].state;
-      const bool given = k < static_cast<int>(state.size()) && !state[k].empty();
-      return static_cast<T>(given ? state[k][in_body(p)] : 0);
+      const BodyInput& body = bodies[body_of[p]];
+      const bool has = k < static_cast<int>(body.state.size());
+      const std::vector<double> none, &values = k == soil.history.pore ? body.excess_pore_pressure
+                                                : has                  ? body.state[k]
+                                                                       : none;
+      return static_cast<T>(values.empty() ? 0 : values[in_body(p)]);
     });
   fill_view(soil.bodies, "mpm::bodies", static_cast<int>(bodies.size()), [&](int b) {
     return BodyProperties<T>{static_cast<T>(common_mass(bodies[b])), static_cast<T>(bodies[b].half_length),
                              bodies[b].material};
   });
+  fill_view(s.density, "mpm::density", static_cast<int>(bodies.size()),
+            [&](int b) { return bodies[b].density; });
   if (soil.has_own_mass)
     fill_view(soil.mass, "mpm::mass", soil.count, [&](int p) {
       const BodyInput& body = bodies[body_of[p]];
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
-    return make_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get());
+    AnyMaterial<T> material =
+        make_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get());
+    material.pore_stiffness = static_cast<T>(materials[m].pore_stiffness);
+    return material;
   });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
   s.light_laws = true;

@@ -21,12 +21,14 @@ struct MaterialInput {
   int model = 0;                         // index into Materials
   std::vector<double> parameters;        // in the order of the model's table
   std::shared_ptr<const void> object{};  // of make_object, where the model has one
+  double pore_stiffness = 0;             // Pa, of the water in its pores; 0: the pores drain
 };
 
 /// Particles of one deformable body. Positions are from the mesh's lower corner, Dim components each.
 struct BodyInput {
   std::vector<double> position;            // m [Dim N]
-  std::vector<double> stress;              // Pa [sym_size N], or empty for none
+  std::vector<double> stress;              // Pa, effective [sym_size N], or empty for none
+  std::vector<double> excess_pore_pressure;  // Pa [N], or empty for none
   std::vector<double> particle_velocity;   // m/s [Dim N], or empty where `velocity` holds for all
   std::vector<std::vector<double>> state;  // of each state variable of the law [N], or empty for zero
   std::vector<double> volume;              // m3 [N], or empty where particle_volume holds for all

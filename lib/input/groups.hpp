@@ -1,6 +1,7 @@
 #pragma once
 // The groups of options, each read at one place. All report their mistakes to the reader.
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,16 @@ void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& confi
 
 /// Checks that a rigid does not move across a plane of symmetry that cuts it.
 void check_cut_motion(OptionReader& in, const MeshConfig& mesh, int dim, const RigidConfig& rigid);
+
+/// -water_*. Gravity and -device_memory_limit must have been read.
+void read_water(OptionReader& in, Config& config);
+
+/// Lowest and highest height of a shape against gravity [m], where there is gravity. The mesh must be sound.
+std::array<double, 2> heights_of(const Shape& shape, const Config& config);
+
+/// Checks that a rigid that moves by forces is wholly below the water's level or above it: its buoyancy is
+/// constant. The mesh must be sound.
+void check_in_water(OptionReader& in, const Config& config, const RigidConfig& rigid);
 
 /// The initial velocity and stress of a body, which take the place of those of its file.
 void read_start(OptionReader& in, int dim, BodyConfig& body);

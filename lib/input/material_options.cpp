@@ -198,6 +198,12 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
              .range = k_density,
              .required = true},
             material.density);
+  in.number({.name = name + "_pore_stiffness",
+             .meaning = "undrained loading: stiffness of the pore water, its bulk modulus over the porosity, "
+                        "which gives an excess pore pressure; 0: drained",
+             .unit = "Pa",
+             .range = {.lowest = 0, .highest = 1e12}},
+            material.pore_stiffness);
   if (in.listing()) {
     for (const Model& model : models) {
       in.section("Material NAME of model " + model.name);

@@ -242,6 +242,7 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
   in.section("Each rigid NAME");
   read_motion(in, dim, rigid);
   if (sound && mesh) check_cut_motion(in, *mesh, dim, rigid);
+  if (sound && mesh) check_in_water(in, config, rigid);
   rigid.has_shear_limit = in.number({.name = rigid.name + "_shear_limit",
                                      .meaning = "largest shear stress of the interface; 0 is smooth",
                                      .unit = "Pa",

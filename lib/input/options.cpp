@@ -186,6 +186,7 @@ void read_physics(OptionReader& in, Config& config) {
   in.section("Physics");
   in.vector({.name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2", .range = k_speed},
             config.dim, config.gravity);
+  read_water(in, config);
   in.number({.name = "damping",
              .meaning = "local (non-viscous) damping factor",
              .unit = "-",

@@ -25,7 +25,9 @@ const std::vector<Field>& frame_fields() {
       for (const StateVariable& variable : state_variables(model))
         if (variable.output && is_new(variable.name))
           all.push_back({variable.name, variable.unit, 1, Of::bodies, nullptr});
-    const Field last[] = {{"mass", "kg", 1, Of::bodies_and_nodes, &ParticleSnapshot::mass},
+    const Field last[] = {{"pore_pressure", "Pa", 1, Of::bodies, nullptr},
+                          {k_excess_pore_pressure, "Pa", 1, Of::bodies, nullptr},
+                          {"mass", "kg", 1, Of::bodies_and_nodes, &ParticleSnapshot::mass},
                           {"reference_height", "m", 1, Of::bodies, &ParticleSnapshot::reference_height},
                           {"number", "-", 1, Of::nodes, &ParticleSnapshot::number}};
     all.insert(all.end(), std::begin(last), std::end(last));

@@ -65,6 +65,20 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
   soil_to_nodes(s, s.soil.points, bins_of(s.soil.bins, part), part.space);
 }
 
+/// The weight of the water that the soil displaces, to the forces at the nodes. Of this rank's soil: the sum
+/// over ranks is that of the forces.
+template <class Space, class T, int Dim>
+void buoyancy_to_nodes(State<Space, T, Dim>& s) {
+  if (!s.water.is_there()) return;
+  if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.displaced, T(0));
+  for_all_soil(s, [&](const auto& set) {
+    interpolate<DisplacedSource<Space, T, Dim>>(s, s.p2g.strategy, set.bins,
+                                                {set.points, s.water, s.density, s.patches.origin, s.spacing},
+                                                s.nodes.displaced);
+  });
+  add_buoyancy(s);
+}
+
 /// The soil's strength at the nodes near rigids, where a contact asks for it.
 template <class Space, class T, int Dim>
 PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
@@ -122,8 +136,11 @@ struct Step {
     PetscCall(run(StepPhase::reset, [&] { reset(); }));  // 1 initialise nodal variables
     PetscCall(
         run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, s.space); }));  // 2 rigid bodies to nodes
-    PetscCall(run(StepPhase::soil_to_nodes, [&] { sum_soil(s.space); }));       // 3 soil to nodes
-    if (ranks) PetscCall(ranks->add_soil(s));                                   //   the sum over ranks
+    PetscCall(run(StepPhase::soil_to_nodes, [&] {
+      sum_soil(s.space);     // 3 soil to nodes
+      buoyancy_to_nodes(s);  //   and what water carries of it
+    }));
+    if (ranks) PetscCall(ranks->add_soil(s));                        //   the sum over ranks
     PetscCall(complete_nodes(s.space));                              //   strength, particles that are alone
     PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt); }));  // 4 velocities, walls, contact
     PetscCall(run(StepPhase::particles, [&] { return update_soil(); }));      // 5 stress, movement

@@ -3,6 +3,7 @@
 #include "input/shapes.hpp"
 #include "step/bytes_moved.hpp"
 #include "step/surface_input.hpp"
+#include "step/water.hpp"
 
 #include "common/collectives.hpp"
 
@@ -67,10 +68,25 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
     for (std::size_t p = 0; p < in.position.size() / Dim; ++p)
       in.stress.insert(in.stress.end(), body.stress.begin(), body.stress.begin() + sym_size<Dim>);
   in.material = body.material;
+  for (StateField& given : particles.state)
+    if (given.name == k_excess_pore_pressure) in.excess_pore_pressure = std::move(given.values);
   in.state = start_state<Dim>(config, law, in, particles);
   in.id = std::move(particles.id);
   in.velocity_gradient = std::move(particles.velocity_gradient);
   return in;
+}
+
+/// Mass of the water that a rigid displaces where it begins [kg].
+template <int Dim>
+double displaced_mass(const Config& config, const RigidInput& rigid) {
+  const Water<Dim> water = water_of<Dim>(config);
+  double volume = 0;
+  for (std::size_t p = 0; p < rigid.position.size() / Dim && water.is_there(); ++p) {
+    Vector<double, Dim> x;
+    for (int d = 0; d < Dim; ++d) x[d] = rigid.position[p * Dim + d];
+    volume += rigid.particle_volume * water.submerged_share(x, rigid.half_length * config.mesh.spacing);
+  }
+  return water.density * volume;
 }
 
 RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParticles&& particles) {
@@ -82,7 +98,8 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
   if (in.dynamic) in.density = rigid.density;
   if (rigid.motion != Motion::fixed) in.velocity = rigid.velocity;
   const double mass = in.density * in.particle_volume * (in.position.size() / config.dim);
-  for (int d = 0; d < 3; ++d) in.force[d] = rigid.force[d] + mass * config.gravity[d];
+  const double carried = config.dim == 2 ? displaced_mass<2>(config, in) : displaced_mass<3>(config, in);
+  for (int d = 0; d < 3; ++d) in.force[d] = rigid.force[d] + (mass - carried) * config.gravity[d];
   const bool only_friction = rigid.friction && !rigid.has_shear_limit && !rigid.shear_share;
   in.shear_limit = only_friction ? std::numeric_limits<double>::infinity() : rigid.shear_limit;
   in.shear_share = rigid.shear_share.value_or(-1);
@@ -110,7 +127,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   timers_.sample(!is_device<Space>);
   GridInput grid{config_.mesh.spacing, config_.mesh.cells, model.patches, config_.mesh.walls};
   std::vector<MaterialInput> materials;
-  for (const auto& m : config_.materials) materials.push_back({model_index(m.model), m.parameters, m.object});
+  for (const auto& m : config_.materials)
+    materials.push_back({model_index(m.model), m.parameters, m.object, m.pore_stiffness});
   for (BodyParticles& particles : model.bodies) {
     first_.push_back(total_);
     total_ += std::max(particles.total, static_cast<long>(particles.position.size()) / Dim);
@@ -126,6 +144,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
 
   state_.p2g = {config_.p2g.strategy, config_.p2g.margin, config_.p2g.mosaic_cells};
   for (int d = 0; d < Dim; ++d) state_.gravity[d] = config_.gravity[d];
+  state_.water = water_of<Dim>(config_);
   if (model.owners.empty() && !config_.p2g.rebuild_interval) state_.rebuild_late = GlobalBound::k_late;
   state_.batches.limit = config_.device_memory_limit.value_or(0) * k_gib;
   state_.damping = config_.damping;

@@ -6,6 +6,7 @@
 #include "data/memory_of.hpp"
 #include "parallel/gather.hpp"
 #include "step/typed_stepper.hpp"
+#include "step/water.hpp"
 
 namespace mpm {
 namespace {
@@ -85,6 +86,25 @@ std::vector<StateField> state_fields(const MaterialConfig& material, const SoilF
   return fields;
 }
 
+/// Where frames tell pore pressures: adds those of the particles [from, to) to a body's fields, and makes its
+/// stress total. `pore`: column of the excess pressure, -1 where there is none.
+template <int Dim>
+void add_pore_pressures(const Config& config, const SoilFields& soil, int pore, std::size_t from,
+                        std::size_t to, ParticleSnapshot* body) {
+  const Water<Dim> water = water_of<Dim>(config);
+  std::vector<double> excess(to - from), total(to - from);
+  for (std::size_t p = from; p < to; ++p) {
+    Vector<double, Dim> x;
+    for (int d = 0; d < Dim; ++d) x[d] = soil.position[p * Dim + d];
+    const double hydrostatic = water.is_there() ? water.pressure(x) : 0.0;
+    if (pore >= 0) excess[p - from] = soil.history[pore][p];
+    total[p - from] = hydrostatic + excess[p - from];
+    for (int k = 0; k < 3; ++k) body->stress[6 * (p - from) + k] -= hydrostatic;
+  }
+  body->state.push_back({"pore_pressure", std::move(total)});
+  if (pore >= 0) body->state.push_back({k_excess_pore_pressure, std::move(excess)});
+}
+
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
   PetscFunctionBeginUser;
@@ -120,6 +140,11 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     }
     body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
     body.state = state_fields(config_.materials[config_.bodies[b].material], soil, from, to);
+    if (has_pore_pressure(config_)) {
+      const bool undrained = config_.materials[config_.bodies[b].material].pore_stiffness > 0;
+      const int pore = state_.soil.points.history.pore;
+      add_pore_pressures<Dim>(config_, soil, undrained ? pore : -1, from, to, &body);
+    }
     body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
     body.reference_height.assign(height.begin() + from, height.begin() + to);
     if (ranks_)

@@ -37,6 +37,7 @@ class Deck:
     origin: tuple = (0, 0, 0)  # m, the mesh's lower corner
     ranks: int = 1
     threads: int = 1
+    lift: float = 0.0  # share of the weight that water carries
 
     @property
     def dim(self):

@@ -41,7 +41,7 @@ KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stre
 }
 
 /// The laws of the particles [p, p + count), as many as R has lanes at most, with their state in memory.
-/// Those that fly freely, being alone, carry no stress and keep their state.
+/// Those that fly freely, being alone, carry no stress, nor an excess pore pressure, and keep their state.
 template <class R, class Space, class T, int Dim>
 struct LawLanes {
   const Soil<Space, T, Dim>& soil;
@@ -55,12 +55,13 @@ struct LawLanes {
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(SymTensor<R, Dim>& stress,
                                               const Increment<R, T, Dim>& by) const {
-    if (one_law && !some_fly)
+    if (one_law && !some_fly) {
+      const auto now = [](const R& after, const R&) { return after; };
       update(
-          material[0], stress, by, [&](int l) { return l < count; },
-          [](const R& now, const R&) { return now; });
-    else
+          material[0], stress, by, [&](int l) { return l < count; }, now, now);
+    } else {
       update_some(stress, by);
+    }
   }
 
   /// Each law takes all lanes; those that are not of its material keep what they have.
@@ -78,10 +79,13 @@ struct LawLanes {
       SymTensor<R, Dim> now = old;
       const auto moves = (own > 0) & (flies < 1);
       const int own_material = material_of(l);
+      const auto kept = [&](const R& after, const R& was) { return select(moves, after, was); };
       update(
           own_material, now, by,
-          [&](int k) { return k < count && material_of(k) == own_material && flies[k] < 1; },
-          [&](const R& after, const R& was) { return select(moves, after, was); });
+          [&](int k) { return k < count && material_of(k) == own_material && flies[k] < 1; }, kept,
+          [&](const R& after, const R& was) {
+            return select((own > 0) & (flies > 0), R(0), kept(after, was));
+          });
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(mine, now[k], stress[k]);
     }
     for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(flies > 0, R(0), stress[k]);
@@ -97,11 +101,30 @@ struct LawLanes {
   }
 
   /// active(lane): whether the lane's particle is of this material. kept(after, before): what becomes of a
-  /// state variable.
-  template <class Active, class Kept>
+  /// state variable; kept_pressure: of the excess pore pressure.
+  template <class Active, class Kept, class KeptPressure>
   KOKKOS_FORCEINLINE_FUNCTION void update(int m, SymTensor<R, Dim>& stress, const Increment<R, T, Dim>& by,
-                                          const Active& active, const Kept& kept) const {
-    soil.materials.data()[m].visit([&](const auto& law) {
+                                          const Active& active, const Kept& kept,
+                                          const KeptPressure& kept_pressure) const {
+    const AnyMaterial<T>& of = soil.materials.data()[m];
+    const bool undrained = soil.history.pore >= 0 && of.pore_stiffness > 0;
+    R excess = 0;
+    if (undrained) {
+      load_field(soil.history.column[soil.history.pore], p, count, excess);
+      add_isotropic(stress, excess);  // effective: the law's own
+    }
+    update_law(of, stress, by, active, kept);
+    if (!undrained) return;
+    const R pressure = undrained_pressure(excess, of.pore_stiffness, by.strain);
+    add_isotropic(stress, R(-pressure));
+    store_field(kept_pressure(pressure, excess), soil.history.column[soil.history.pore], p, count);
+  }
+
+  template <class Active, class Kept>
+  KOKKOS_FORCEINLINE_FUNCTION void update_law(const AnyMaterial<T>& of, SymTensor<R, Dim>& stress,
+                                              const Increment<R, T, Dim>& by, const Active& active,
+                                              const Kept& kept) const {
+    of.visit([&](const auto& law) {
       using Law = std::decay_t<decltype(law)>;
       LawState<R, state_size<Law>> was, state;
       for (int k = 0; k < state.size; ++k) {

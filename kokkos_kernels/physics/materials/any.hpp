@@ -21,6 +21,7 @@ template <class T, template <class> class... Models>
 struct OneOf<T, ModelList<Models...>> {
   static constexpr std::size_t k_bytes = Kokkos::max({sizeof(Models<T>)...});
   int which = -1;
+  T pore_stiffness = 0;  // Pa, of the water in the pores (physics/pore_water.hpp); 0: the pores drain
   alignas(16) unsigned char bytes[k_bytes];
 
   template <class F>

@@ -14,6 +14,10 @@ struct StateVariable {
   bool output = true;   // frames have it
 };
 
+/// Name of the excess pore pressure [Pa] in frames, checkpoints and files of particles. Particles of a
+/// material with a pore stiffness carry it beside the state of their law.
+inline constexpr const char* k_excess_pore_pressure = "excess_pore_pressure";
+
 /// Name of each model in the list, in its order.
 std::vector<const char*> material_models();
 

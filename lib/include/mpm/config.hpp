@@ -57,6 +57,7 @@ struct MaterialConfig {
   double density = 0;                    // kg/m3
   std::vector<double> parameters;        // as Model::parameters() lists them
   std::shared_ptr<const void> object{};  // what the model made of its options that are texts; most need none
+  double pore_stiffness = 0;             // Pa, of the water in its pores, which does not flow; 0: they drain
 };
 
 /// A deformable body.
@@ -149,6 +150,12 @@ struct OutputConfig {
   std::vector<std::string> restart_change;  // names of options, without dash, that may differ from its own
 };
 
+/// Water at rest, in which the soil is submerged.
+struct WaterConfig {
+  std::optional<double> level;  // m, of its surface: height against gravity; none: there is no water
+  double density = 1000;        // kg/m3
+};
+
 inline constexpr double k_gib = 1024.0 * 1024 * 1024;  // bytes
 
 /// Everything that a run needs to know.
@@ -161,6 +168,7 @@ struct Config {
   PartitionConfig partition;
   MeshConfig mesh;
   Vec3 gravity{};  // m/s2
+  WaterConfig water;
   TimeConfig time;
   double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
   VelocityUpdate velocity_update = VelocityUpdate::flip;
