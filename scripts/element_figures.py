@@ -3,12 +3,11 @@
 import csv
 
 import matplotlib
+import matplotlib.ticker
 import numpy as np
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-
-from element_tests import ABSCISSA, MEASURED
 
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
 # name: (label, unit, factor from SI)
@@ -45,21 +44,30 @@ def has_void_ratio(results):
     return all(np.isfinite(found["void_ratio"]).all() for _, found, _ in results)
 
 
+def with_pressure(test, found, measured):
+    """What was measured in a triaxial test, with the mean effective stress that follows from it: the lateral stress at the
+    start, a third of q, less the excess pore pressure."""
+    if measured is None or test.kind != "triaxial" or "q" not in measured or "p" in measured:
+        return measured
+    if not test.drained and "pore_pressure" not in measured:
+        return measured
+    lost = 0 if test.drained else measured["pore_pressure"]
+    return dict(measured, p=found["lateral_stress"][0] + measured["q"] / 3 - lost)
+
+
 def draw_panel(axes, pair, results, logarithmic):
     x, y = pair
     for k, (test, found, measured) in enumerate(results):
-        colour = COLOURS[k % len(COLOURS)]
+        colour, measured = COLOURS[k % len(COLOURS)], with_pressure(test, found, measured)
         axes.plot(drawn(found[x], x), drawn(found[y], y), color=colour, lw=1.8, label=test.name)
         if measured is not None and x in measured and y in measured:
             axes.plot(drawn(measured[x], x), drawn(measured[y], y), "o", color=colour, ms=3.5, mfc="none", mew=0.9,
                       label=f"{test.name}, measured")
     if logarithmic:
         axes.set_xscale("log")
+        axes.xaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
         axes.xaxis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
-        low, high = axes.get_xlim()
-        if high < 10 * low:
-            axes.xaxis.set_minor_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
-            axes.tick_params(axis="x", which="minor", labelsize=7)
+        axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     if y in ("volume_strain",) or y == "axial_strain":
         axes.invert_yaxis()  # compression downward, as laboratories draw it
     axes.set(xlabel=label_of(x) + (", logarithmic scale" if logarithmic else ""), ylabel=label_of(y))
@@ -74,7 +82,7 @@ def draw_report(results, path, title):
         if y == "void_ratio" and not has_void_ratio(results):
             y = "volume_strain"
         draw_panel(axes, (x, y), results, n == 3 and all((found[x] > 0).all() for _, found, _ in results))
-    all_axes.flat[0].legend(fontsize=8)
+    all_axes.flat[0].legend(fontsize=8, loc="best")
     figure.suptitle(title)
     figure.savefig(path, dpi=130)
     plt.close(figure)

@@ -89,12 +89,14 @@ void read_element(OptionReader& in, Config& config) {
   const auto errors = in.errors();
   read_only_material(in, config);
   ElementConfig& path = config.element;
-  if (in.errors() == errors) {
+  if (in.errors() == errors && !path.file.empty()) {
     const std::string fault = read_path(path.file, state_variables(config.materials[0]), path);
     if (!fault.empty()) in.reject("element_path", fault);
   }
-  if (in.errors() == errors) choose_dim(in, config);
-  if (in.errors() == errors) check_start_of_path(in, config);
+  if (in.errors() == errors && !path.file.empty()) {
+    choose_dim(in, config);
+    check_start_of_path(in, config);
+  }
   pass_over_mesh(in);
 }
 

@@ -13,9 +13,8 @@ import pathlib
 import random
 import subprocess
 import sys
-import tempfile
 
-from point import deck_of, read_table, run_point, write_path
+from point import deck_of, read_table, run_point, scratch_folder, write_path
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "element"
 SAND = dict(young=2e7, poisson=0.3, cohesion=5000, friction_deg=30, dilation_deg=10)
@@ -296,7 +295,7 @@ def main():
     arguments = parser.parse_args()
     os.environ.setdefault("MPLBACKEND", "Agg")
     faults, done = [], 0
-    with tempfile.TemporaryDirectory() as folder:
+    with scratch_folder() as folder:
         for precision in arguments.precisions.split(","):
             lab = Laboratory(pathlib.Path(arguments.binary).resolve(), folder, precision)
             for check in CHECKS:

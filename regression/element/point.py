@@ -3,10 +3,17 @@ import csv
 import os
 import pathlib
 import subprocess
+import tempfile
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
 STRESS = ["s" + c for c in COMPONENTS]
 STRAIN = ["e" + c for c in COMPONENTS]
+
+
+def scratch_folder():
+    """A temporary folder, in memory where the system has such: each run waits for the disk several times."""
+    memory = "/dev/shm"
+    return tempfile.TemporaryDirectory(dir=memory if os.access(memory, os.W_OK) else None)
 
 
 def deck_of(model, **parameters):

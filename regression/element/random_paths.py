@@ -8,9 +8,8 @@ import argparse
 import pathlib
 import random
 import sys
-import tempfile
 
-from point import COMPONENTS, STRAIN, STRESS, deck_of, run_point, write_path
+from point import COMPONENTS, STRAIN, STRESS, deck_of, run_point, scratch_folder, write_path
 
 
 def frictional(dice):
@@ -148,7 +147,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     binary, faults = pathlib.Path(arguments.binary).resolve(), []
-    with tempfile.TemporaryDirectory() as folder:
+    with scratch_folder() as folder:
         folder = pathlib.Path(folder)
 
         def run(deck, columns, precision, dim):

@@ -10,9 +10,8 @@ over the file's largest. Both have a tolerance, and one for the first state vari
 import argparse
 import pathlib
 import sys
-import tempfile
 
-from point import STRESS, deck_of, read_table, run_point
+from point import STRESS, deck_of, read_table, run_point, scratch_folder
 
 HERE = pathlib.Path(__file__).resolve().parent
 MEAN, DEVIATOR, STATE = 1e-3, 3e-3, 3e-3
@@ -108,7 +107,7 @@ def main():
              or arguments.folder == HERE.parent / "unit" / "replays"}
     faults = [f"no deck for the replay {name}" for name in files if name not in DECKS]
     faults += [f"the replay {name} is missing" for name in DECKS if name not in files]
-    with tempfile.TemporaryDirectory() as folder:
+    with scratch_folder() as folder:
         for name, file in files.items():
             if name in DECKS:
                 for precision in ("double", "single"):
