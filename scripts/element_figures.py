@@ -82,7 +82,7 @@ def draw_report(results, path, title):
         if y == "void_ratio" and not has_void_ratio(results):
             y = "volume_strain"
         draw_panel(axes, (x, y), results, n == 3 and all((found[x] > 0).all() for _, found, _ in results))
-    all_axes.flat[0].legend(fontsize=8, loc="best")
+    all_axes.flat[2].legend(fontsize=8)  # beside the stress paths there is room
     figure.suptitle(title)
     figure.savefig(path, dpi=130)
     plt.close(figure)
