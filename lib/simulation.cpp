@@ -23,6 +23,10 @@ const char* word_of(Outcome outcome) {
 PetscErrorCode Simulation::run() {
   PetscFunctionBeginUser;
   Body& b = *body_;
+  if (b.is_element()) {
+    PetscCall(b.run_element());
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (b.config.dry_run) {
     PetscCall(b.dry_run());
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -192,6 +192,10 @@ void warn_of_walls(const Config& config, const RigidConfig& rigid, const Bounds&
 
 std::vector<std::string> warnings_of(const Config& config, int ranks) {
   Lines lines;
+  if (!config.element.file.empty()) {  // a single point, of one material and no body
+    for (const std::string& line : warnings_of_law(config.materials[0])) lines.push_back("warning: " + line);
+    return lines;
+  }
   if (ranks == 1 && config.partition.halo_path != HaloPath::automatic)
     lines.push_back("warning: -halo_path: not used on one rank, which has no halo");
   warn_of_gravity(config, lines);

@@ -88,6 +88,23 @@ void check_density(OptionReader& in, const BodyConfig& body, const Config& confi
 /// Checks the values of PETSc's options that PETSc would find wrong only at the end of the run.
 void check_petsc_options(OptionReader& in);
 
+/// -element_path and what goes with it. Whether it is given.
+bool read_element_file(OptionReader& in, ElementConfig& element);
+
+/// What a single material point needs beside: the one material, the file of its path, and that its law can
+/// start there. Options of a run of a mesh are passed over.
+void read_element(OptionReader& in, Config& config);
+
+/// -materials with one name, and that material.
+void read_only_material(OptionReader& in, Config& config);
+
+/// Whether a point of a sound material may start a path at a height [m] with a stress [Pa]; reports why it
+/// may not.
+bool check_element_start(OptionReader& in, const MaterialConfig& material, double height, const Sym6& stress);
+
+/// Lists every option with the reader, which lists.
+void list_all(OptionReader& in);
+
 /// -materials, -bodies, -rigids and the options of each that they name. The fixed options must have been read
 /// before, since no name may begin as they do. A null mesh (unsound) leaves the shapes unchecked against it.
 void read_named(OptionReader& in, const MeshConfig* mesh, Config& config);

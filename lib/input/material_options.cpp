@@ -248,6 +248,19 @@ bool check_start(OptionReader& in, const std::string& body, const MaterialConfig
   return false;
 }
 
+bool check_element_start(OptionReader& in, const MaterialConfig& material, double height,
+                         const Sym6& stress) {
+  const auto law = make_material<double>(model_index(material.model), material.parameters);
+  const ParameterFault fault = start_fault(law, {.position = {}, .height = height, .stress = stress});
+  if (fault.key.empty()) return true;
+  const std::string takes = with_prefix(fault.takes, material.name);
+  if (fault.key == "stress")
+    in.reject("element_path", "a start (row 0) with " + takes);
+  else
+    in.reject(material.name + "_" + fault.key, takes);
+  return false;
+}
+
 bool has_strength(const MaterialConfig& material) {
   constexpr double k_far = 1e9;  // m
   const int model = model_index(material.model);

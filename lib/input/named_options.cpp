@@ -268,6 +268,21 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
 
 }  // namespace
 
+void read_only_material(OptionReader& in, Config& config) {
+  Names names(in);
+  const auto materials =
+      read_names(in, {.name = "materials", .meaning = "names of the materials", .required = true}, names);
+  leave_out(in, "materials", names);
+  if (materials.size() > 1) {
+    in.reject(
+        "materials",
+        "the name of one material with -element_path; give the one to drive, as -materials " + materials[0]);
+    for (const auto& name : materials) in.ignore(name + "_");
+  } else if (!materials.empty()) {
+    read_material(in, materials[0], config.materials.emplace_back());
+  }
+}
+
 void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
   Names names(in);
   in.section("Names");

@@ -235,17 +235,22 @@ void read_frames(OptionReader& in, OutputConfig& output) {
     if (in.given(name)) in.warn(name, "is not used, for -output_frames is off");
 }
 
-void read_output(OptionReader& in, const std::string& options_file, double time_end, OutputConfig& output) {
-  in.section("Output");
+/// -output_dir, whose default has the stem of the options file.
+void read_directory(OptionReader& in, const std::string& options_file, OutputConfig& output) {
   const std::string stem = std::filesystem::path(options_file).stem().string();
   output.directory = "out/" + (stem.empty() ? "mpm" : stem);
+  in.text({.name = "output_dir",
+           .meaning = "folder of the results",
+           .standard = in.listing() ? "out/ and the stem of the options file" : ""},
+          output.directory);
+}
+
+void read_output(OptionReader& in, const std::string& options_file, double time_end, OutputConfig& output) {
+  in.section("Output");
   output.interval = time_end / 50;
   output.history_interval = time_end / 500;
   const bool listing = in.listing();
-  in.text({.name = "output_dir",
-           .meaning = "folder of the results",
-           .standard = listing ? "out/ and the stem of the options file" : ""},
-          output.directory);
+  read_directory(in, options_file, output);
   in.word(
       {.name = "output_frames",
        .meaning = "off: no frames of the particles, as for measuring speed or where the disk is too small"},
@@ -302,6 +307,14 @@ void check_restart_change(OptionReader& in, const Config& config) {
                            name + " is none");
 }
 
+/// All that a single material point needs. Its law is computed on the processor whatever the backend.
+void read_element_run(OptionReader& in, const std::vector<Backend>& backends, const std::string& options_file,
+                      Config& config) {
+  config.backend = backends.front();
+  read_directory(in, options_file, config.output);
+  read_element(in, config);
+}
+
 void read_all(OptionReader& in, const std::vector<Backend>& backends, const std::string& options_file,
               Config& config) {
   const auto errors = in.errors();
@@ -311,6 +324,11 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
       config.dim);
   if (in.errors() != errors) return;  // it decides what all others take
   read_run(in, backends, config);
+  if (read_element_file(in, config.element)) {
+    read_element_run(in, backends, options_file, config);
+    in.report_unknown();
+    return;
+  }
   read_p2g(in, config.p2g);
   read_partition(in, config.partition);
   const bool sound = read_mesh(in, config.dim, config.mesh);
@@ -340,6 +358,11 @@ PetscErrorCode print_lines(MPI_Comm comm, FILE* file, const std::string& text) {
 }
 
 }  // namespace
+
+void list_all(OptionReader& in) {
+  Config config;
+  read_all(in, {Backend::serial}, "", config);
+}
 
 PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& backends, Config& config,
                             InputReport& report) {

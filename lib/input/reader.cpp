@@ -107,6 +107,23 @@ int OptionReader::count_of(const std::string& beginning) const {
   }));
 }
 
+int OptionReader::pass_over(const std::vector<std::string>& names,
+                            const std::vector<std::string>& beginnings) {
+  int count = 0;
+  for (const std::string& name : names) {
+    const std::string key = lower_case(name);
+    const auto found = given_.find(key);
+    if (found == given_.end() || read_.count(key)) continue;
+    read_.insert(key);
+    ++count;
+  }
+  for (const std::string& beginning : beginnings) {
+    count += count_of(beginning);
+    ignore(beginning);
+  }
+  return count;
+}
+
 /// One line for each list that another one replaced.
 void OptionReader::warn_of_left_out() {
   for (const auto& [list, names] : left_out_) {
@@ -123,6 +140,7 @@ void OptionReader::section(const std::string& title) {
 
 const std::string* OptionReader::find(const Option& option, const std::string& takes,
                                       const std::string& standard) {
+  known_.push_back(option.name);
   if (listing_) {
     const std::string otherwise = !option.standard.empty() ? option.standard
                                   : standard.empty()       ? "none"
@@ -132,7 +150,6 @@ const std::string* OptionReader::find(const Option& option, const std::string& t
     return nullptr;
   }
   read_.insert(lower_case(option.name));
-  known_.push_back(option.name);
   const auto found = given_.find(lower_case(option.name));
   if (found != given_.end()) return &found->second.value;
   if (option.required)

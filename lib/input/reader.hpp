@@ -98,6 +98,9 @@ class OptionReader {
   bool is_left_out(const std::string& name) const;
   /// Every NAME for which -NAME_key is given, in lower case.
   std::vector<std::string> owners_of(const std::string& key) const;
+  /// Options that this run does not use, by their names and by what they begin with: they are no mistakes.
+  /// How many of them are given and have not been read.
+  int pass_over(const std::vector<std::string>& names, const std::vector<std::string>& beginnings);
   /// How many options that begin so are given and have not been read.
   int count_of(const std::string& beginning) const;
   /// Reports every option that nobody asked for and that is not PETSc's.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "choices.hpp"
@@ -156,6 +157,30 @@ struct WaterConfig {
   double density = 1000;        // kg/m3
 };
 
+/// What drives a component over a row of a path: an increment of strain, the strain since the start that it
+/// ends with, or an increment of stress.
+enum class Drive { strain, total_strain, stress };
+
+/// A row of the path of a single material point.
+struct ElementRow {
+  long line = 0;  // of the file
+  double dt = 1;  // s
+  std::array<Drive, 6> drive{};
+  Sym6 value{};  // -, tensor shear strains; Pa
+};
+
+/// A single material point that is driven along a path, in lieu of a mesh.
+struct ElementConfig {
+  std::string file;                           // CSV; empty: an ordinary run
+  int parts = 40;                             // equal parts in which each row is done
+  double height = 0;                          // m, of the point, for parameters that grow with depth
+  double time = 0;                            // s, at the start
+  bool timed = false;                         // the file has times; otherwise each row takes 1 s
+  Sym6 stress{};                              // Pa, at the start
+  std::vector<std::pair<int, double>> state;  // state variables of the law that the file gives for the start
+  std::vector<ElementRow> rows;
+};
+
 inline constexpr double k_gib = 1024.0 * 1024 * 1024;  // bytes
 
 /// Everything that a run needs to know.
@@ -180,6 +205,7 @@ struct Config {
   std::vector<BodyConfig> bodies;
   std::vector<RigidConfig> rigids;
   OutputConfig output;
+  ElementConfig element;
   bool dry_run = false;  // tell what the run would take, and do not run
 };
 
