@@ -130,7 +130,7 @@ struct UpdateParticles {
       nodes[n] = motion;
     });
     T moved = 0;
-    const auto particle = [&](int p) { return step_particle(nodes, mean, slot, lone, p, body, moved); };
+    const auto particle = [&](int p) { return step_particle(nodes, mean, images, slot, lone, p, body, moved); };
     if constexpr (Sums) {
       tile.clear(team, cell_begin);
       team.team_barrier();
@@ -196,8 +196,9 @@ struct UpdateParticles {
   /// Moves particle p; `moved` [cells] becomes the largest movement so far. lone: Strays::alone of the slot.
   /// Returns what the particle then gives.
   KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const KinematicValues<T, Dim>* nodes,
-                                                             const T* mean, int slot, std::uint64_t lone,
-                                                             int p, const BodyProperties<T>& common,
+                                                             const T* mean, const Images& images, int slot,
+                                                             std::uint64_t lone, int p,
+                                                             const BodyProperties<T>& common,
                                                              T& moved) const {
     const auto& soil = source.points;
     BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
@@ -213,7 +214,7 @@ struct UpdateParticles {
     if (flies) q.volume = soil.volume(p);
     soil.coordinate(p) = q.x;
     soil.velocity(p) = q.v;
-    if constexpr (kind != PatchKind::common) put_back_particle(slot, place, p, q);
+    if constexpr (kind != PatchKind::common) put_back_particle(images, place, p, q);
     soil.volume(p) = q.volume;
     soil.stress(p) = q.stress;
     FaultKind fault = fault_of(q, own, by);
@@ -229,14 +230,13 @@ struct UpdateParticles {
   }
 
   /// Brings particle p, which may have passed a wall, back to it. In memory, where that takes few registers.
-  KOKKOS_INLINE_FUNCTION void put_back_particle(int slot, int place, int p, Particle<T, Dim>& q) const {
+  KOKKOS_INLINE_FUNCTION void put_back_particle(const Images& images, int place, int p,
+                                                Particle<T, Dim>& q) const {
     const auto& soil = source.points;
-    bool leaves_cell = false;
-    for (int d = 0; d < Dim; ++d) leaves_cell |= !(q.x[d] >= 0 && q.x[d] < 1);
-    if (!leaves_cell) return;
     const auto cell_along = [&](int d) {
-      return origin(slot)[d] + (place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1));
+      return images.origin[d] + (place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1));
     };
+    if (!images.at_wall || !is_beyond_walls(grid, cell_along, q.x)) return;
     if (put_on_walls(grid, cell_along, soil.coordinate(p), soil.velocity(p)))
       Kokkos::atomic_inc(&put_back(soil.body(p)));
     q.x = soil.coordinate(p), q.v = soil.velocity(p);

@@ -50,7 +50,7 @@ struct PersistentStep {
   Kokkos::View<LaunchBarrier, typename Space::memory_space> launch_barrier;
 
   static constexpr std::size_t bytes(int values) {
-    return (WithNodes ? scratch_bytes<int>(Update::window) + scratch_bytes<Rigid<Dim>>(values / Dim) +
+    return (WithNodes ? 2 * scratch_bytes<int>(Update::window) + scratch_bytes<Rigid<Dim>>(values / Dim) +
                             scratch_bytes<double>(values * cells)
                       : 0) +
            Update::bytes();
@@ -62,6 +62,7 @@ struct PersistentStep {
     Coord<Dim> from;
     bool empty;
     int* numbers;  // of the images of the window's nodes
+    int* images;   // WindowImages::entry of these nodes
   };
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
@@ -93,10 +94,15 @@ struct PersistentStep {
 
   KOKKOS_INLINE_FUNCTION Slot slot_of(const Member& team, Scratch& scratch, int number) const {
     const bool empty = update.begin(number * cells) == update.begin((number + 1) * cells);
-    const Slot slot{number, nodes.value_count > 0 ? update.near_rigid(number) : 0, update.origin(number),
-                    empty, scratch.take<int>(Update::window)};
+    const Slot slot{number,
+                    nodes.value_count > 0 ? update.near_rigid(number) : 0,
+                    update.origin(number),
+                    empty,
+                    scratch.take<int>(Update::window),
+                    scratch.take<int>(Update::window)};
     const auto images = update.images_at(number);
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Update::window), [&](int n) {
+      slot.images[n] = images.entry(n);
       slot.numbers[n] = number_at<decltype(update.neighbours), Dim>(update.neighbours, number,
                                                                     window_coord<Dim>(images(n)));
     });
@@ -180,7 +186,8 @@ struct PersistentStep {
     Rigid<Dim>* const bodies = scratch.take<Rigid<Dim>>(rigid_bodies);
     double* const force = scratch.take<double>(nodes.value_count * cells);
     if (slot.near > 0) copy_rigids(team, bodies, rigid_bodies);
-    const typename Update::Images images(update.grid, update.reach, slot.from);
+    typename Update::Images images(update.grid, update.reach, slot.from);
+    images.table = slot.images;
     const auto motion_of = [&](int n, int number) {
       const int image = images(n);
       const Coord<Dim> place = window_coord<Dim>(n), at = in_mesh(slot.from, window_coord<Dim>(image));

@@ -105,10 +105,13 @@ class Tile {
   /// Adds the window to the nodes; other teams do so too. images: NoImages, or WindowImages.
   template <class Team, class Field, class Images>
   KOKKOS_INLINE_FUNCTION void give_window(const Team& team, const Field& out, const Images& images) const {
+    if constexpr (!std::is_same_v<Images, NoImages>)
+      if (images.at_wall) {
+        turn_sums<Source>(team, images, sums_);
+        team.team_barrier();
+      }
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int m) {
-      T own = sums_[m];  // neighbours in memory by neighbouring threads
-      if constexpr (!std::is_same_v<Images, NoImages>)
-        own *= sign_of<Source::kind, T>(images, m / size, Source::component(m % size));
+      const T own = sums_[m];  // neighbours in memory by neighbouring threads
       if (own != 0) Kokkos::atomic_add(out.data() + (m + size * static_cast<long>(to_[m / size])), own);
     });
   }
