@@ -80,7 +80,7 @@ def tolerance(phi):
 def curve(run):
     """Settlement w/B and load q [Pa] in the middles of the intervals of the history, without a last one that is too short."""
     w = -run.history["plate_y"]
-    full = np.diff(w) > 0.5 * w[1]
+    full = np.diff(w) > 0.5 * np.median(np.diff(w))
     return ((w[1:] + w[:-1]) / 2)[full], run.history["plate_force_y"][1:][full] / 0.5
 
 
