@@ -105,4 +105,4 @@ def draw_curves(axes, curves, exact, name):
         axes.axhline(value, color="k", lw=0.6)
     axes.set(xlabel="settlement $1000\\, w/B$", ylabel=f"{name} (black: exact)",
              ylim=(0, None), xlim=(0, None))
-    axes.legend(ncols=2, fontsize=8)
+    axes.legend(ncols=2, fontsize=8, loc="lower right")

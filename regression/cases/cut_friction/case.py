@@ -42,7 +42,7 @@ def rows(runs, angles, cells, **shortfall):
                   "log spiral, Chen (1975)", **shortfall)
         yield Row(f"speed of the bank at {STANDS} of the bound, phi = {phi} (m/s)", speed(runs[f"{phi}_{STANDS}"]), 0, 1e-3,
                   "below the limit it stands")
-        yield Row(f"speed of the bank at {SLIDE[-1]} of the bound, phi = {phi} (m/s)", speed(runs[f"{phi}_{SLIDE[-1]}"]), 5e-3, 0,
+        yield Row(f"speed of the bank at {SLIDE[-1]} of the bound, phi = {phi} (m/s)", speed(runs[f"{phi}_{SLIDE[-1]}"]), 1e-3, 0,
                   "above the limit it slides", at_least=True)
 
 

@@ -38,7 +38,7 @@ def check(runs):
                   fine + (fine - coarse) * COARSE / (CELLS - COARSE), exact, 0.02, source, relative=True)
         yield Row(f"Nc, {base}, phi = 30, d = B/{COARSE}, four particles a cell", factor(runs[f"{base}_four"]), exact, 0.04, source,
                   relative=True, shortfall=LOCKS, bound=0.1)
-    rise = max((footing.drift(run) for run in runs.values()), key=abs)
+    rise = max((footing.drift(run) for name, run in runs.items() if not name.endswith("_four")), key=abs)
     yield Row("largest change of a load from the third to the last quarter", rise, 0, 0.03, "a limit load stays")
 
 

@@ -106,6 +106,6 @@ def draw(axes, runs):
         for where, style in (("below", ":"), ("above", "--"), ("far", "-")):
             t, v = speeds(runs[f"{name}_{where}"])
             axes.plot(t, 1e3 * v, "o" + style, color=colour, ms=3, label=f"{name}, F = {SHARES[where]:g} $F_s$")
-            axes.plot(t, 1e3 * max(0, exact(name, SHARES[where])) * t, "k-", lw=0.6)
-    axes.set(xlabel="time (s)", ylabel="speed of the middle third (mm/s; black: exact)")
+            axes.plot(t, 1e3 * max(0, exact(name, SHARES[where])) * t, color=colour, lw=0.6)
+    axes.set(xlabel="time (s)", ylabel="speed of the middle third (mm/s; thin: exact)")
     axes.legend(fontsize=8)

@@ -44,4 +44,6 @@ def draw(axes, runs):
         axes.plot(abs(run.history["wall_x"][1:]) / HEIGHT, -run.history["wall_force_x"][1:] / FORCE, color=colour, lw=1, label=name)
         axes.axhline(EXACT[name][0], color="k", lw=0.6)
     axes.set(xlabel="movement of the wall over its height", ylabel="$P / (\\gamma H^2 / 2)$ (black: exact)", yscale="log")
+    axes.set_yticks([1 / KP, 1, KP], ["1/3", "1", "3"])
+    axes.minorticks_off()
     axes.legend()
