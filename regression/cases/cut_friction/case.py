@@ -1,9 +1,10 @@
 """Vertical cut in soil with cohesion and friction
 
-A vertical cut in soil with $c$, $\\phi$ and $\\psi = \\phi$ stands up to $N = \\gamma H / c$. The log spiral through the toe gives an upper bound
-(Chen 1975), 3.8314 for $\\phi$ = 0, where the exact number is 1.4 % less; it is therefore taken as 0 to 1.5 % below the bound. The answer is
-found as in the case `cut`: the number at which the bank's mean speed from 0.3 s to 0.6 s is zero, on the line through the runs that slide. The soil takes
-tension up to the apex. A cell has one particle, because four lock in dilatant flow (`footing_cohesion`).
+A vertical cut in soil with $c$, $\\phi$ and $\\psi = \\phi$ stands up to $N = \\gamma H / c$. The log spiral through
+the toe gives an upper bound (Chen 1975), 3.8314 for $\\phi$ = 0, where the exact number is 1.4 % less; it is therefore
+taken as 0 to 1.5 % below the bound. The answer is found as in the case `cut`: the number at which the bank's mean speed
+from 0.3 s to 0.6 s is zero, on the line through the runs that slide. The soil takes tension up to the apex. A cell has
+one particle, because four lock in dilatant flow (`footing_cohesion`).
 """
 
 import numpy as np

@@ -1,10 +1,10 @@
 """Strip footing on clay whose strength grows with depth
 
-$s_u = s_{u0} + k z$. The limit load per width $q$ depends on $k B / s_{u0}$ and on the base, which is smooth or rough (shear
-limit $s_{u0}$, the strength of the clay that touches it). The exact values are those of the problem of Davis & Booker (1973),
-from slip lines that were converged to four digits. The clay is stiff (E = 5000 $s_{u0}$), and the penetration 0.01 $B$, over
-which $q$ is a straight line: its value at zero penetration, by least squares over 0.004-0.010 $B$, is compared. `tresca` has the strength of
-`von_mises` in plane strain, and must give the same.
+$s_u = s_{u0} + k z$. The limit load per width $q$ depends on $k B / s_{u0}$ and on the base, which is smooth or rough
+(shear limit $s_{u0}$, the strength of the clay that touches it). The exact values are those of the problem of Davis &
+Booker (1973), from slip lines that were converged to four digits. The clay is stiff (E = 5000 $s_{u0}$), and the
+penetration 0.01 $B$, over which $q$ is a straight line: its value at zero penetration, by least squares over
+0.004-0.010 $B$, is compared. `tresca` has the strength of `von_mises` in plane strain, and must give the same.
 """
 
 import numpy as np
