@@ -117,9 +117,9 @@ def is_half_model(run, name):
 
 
 def strength_below(run, name):
-    """Undrained strength [Pa] of the first von_mises material, at the level of the rigid's underside; 0 if none."""
+    """Undrained strength [Pa] of the first von_mises or tresca material, at the level of the rigid's underside; 0 if none."""
     for material in run.words("materials"):
-        if run.text(f"{material}_model") == "von_mises":
+        if run.text(f"{material}_model") in ("von_mises", "tresca"):
             level = run.numbers(f"{name}_lower", [0, 0])[1]
             depth = max(run.number(f"{material}_su_datum") - level, 0)
             return run.number(f"{material}_su") + depth * run.number(f"{material}_su_gradient")

@@ -1,12 +1,13 @@
 """Strip footing on soil with cohesion and friction: Nc
 
-Weightless soil with $c$, $\\phi$ and $\\psi = \\phi$ carries $q = N_c c$, $N_c = (N_q - 1) \\cot\\phi$, whether the base is
-smooth or rough (Prandtl 1921). The footing sinks by 0.0016 $B$; the mean load over the second half is compared. The footing's
-edge lies midway between two nodes. The ground ends beyond the mechanism, 3 to 10 $B$ beside the footing.
+Weightless soil with $c$, $\\phi$ and $\\psi = \\phi$ carries $q = N_c c$, $N_c = (N_q - 1) \\cot\\phi$, whether the
+base is smooth or rough (Prandtl 1921). The footing sinks by 0.0016 $B$; the mean load over the second half is compared.
+The footing's edge lies midway between two nodes. The ground ends beyond the mechanism, 3 to 10 $B$ beside the footing.
 
-One particle a cell, so that the soil does not lock: a dilatant flow fixes the ratio of volume change and shear, and four
-particles a cell impose more constraints than the nodes have degrees of freedom. `-f_bar_share` has then no effect. Two rows
-have four particles without F-bar. With four particles and `-f_bar_share` 0.98 the run ends: see [soils.md](soils.md#mohr_coulomb).
+One particle a cell, so that the soil does not lock: a dilatant flow fixes the ratio of volume change and shear, and
+four particles a cell impose more constraints than the nodes have degrees of freedom. `-f_bar_share` has then no effect.
+Two rows have four particles without F-bar. With four particles and `-f_bar_share` 0.98 the run ends: see
+[soils.md](soils.md#mohr_coulomb).
 """
 
 import footing_limits as footing
@@ -38,7 +39,7 @@ def check(runs):
                   fine + (fine - coarse) * COARSE / (CELLS - COARSE), exact, 0.02, source, relative=True)
         yield Row(f"Nc, {base}, phi = 30, d = B/{COARSE}, four particles a cell", factor(runs[f"{base}_four"]), exact, 0.04, source,
                   relative=True, shortfall=LOCKS, bound=0.1)
-    rise = max((footing.drift(run) for run in runs.values()), key=abs)
+    rise = max((footing.drift(run) for name, run in runs.items() if not name.endswith("_four")), key=abs)
     yield Row("largest change of a load from the third to the last quarter", rise, 0, 0.03, "a limit load stays")
 
 

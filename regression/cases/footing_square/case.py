@@ -1,9 +1,10 @@
 """Circular and square footing on clay
 
-Weightless clay of strength $s_u$ (Tresca) carries a circular footing up to $q / s_u$ = 5.689 with a smooth base (Shield 1955) and 6.048 with a rough
-one (Eason & Shield 1960). A square has no exact answer; limit analysis with finite elements bounds it by 5.52 and 6.22 with a rough base (Salgado
-et al. 2004). The clay is stiff, and the mean over the second half of a settlement of 0.006 $B$ is compared. Sides and bottom are 1.25 $B$ from the
-footing. With `von_mises` ($\\sqrt{J_2} = s_u$) the clay is weaker outside of plane strain, down to 0.866 of the Tresca strength, so by the limit
+Weightless clay of strength $s_u$ (Tresca) carries a circular footing up to $q / s_u$ = 5.689 with a smooth base (Shield
+1955) and 6.048 with a rough one (Eason & Shield 1960). A square has no exact answer; limit analysis with finite
+elements bounds it by 5.52 and 6.22 with a rough base (Salgado et al. 2004). The clay is stiff, and the mean over the
+second half of a settlement of 0.006 $B$ is compared. Sides and bottom are 1.25 $B$ from the footing. With `von_mises`
+($\\sqrt{J_2} = s_u$) the clay is weaker outside of plane strain, down to 0.866 of the Tresca strength, so by the limit
 theorems the load is between 0.866 and 1 times as large.
 """
 

@@ -1,10 +1,10 @@
 """Strip footing on sand under a surcharge: Nq
 
 Weightless sand without cohesion, with $\\psi = \\phi$, under the surcharge $p$ carries $q = N_q p$,
-$N_q = e^{\\pi \\tan\\phi} \\tan^2(45° + \\phi/2)$, whether the base is smooth or rough (Prandtl 1921, Reissner 1924). The
-surcharge is the pressure of a soft elastic cover between the ground and the top of the mesh, a roller. Sand and cover start
-at this pressure, in equilibrium. The cover's modulus is twice the pressure; the heave, below 0.005 $B$, changes the pressure
-in its 1 $B$ of thickness by 1 % at most. Set-up and reading are those of `footing_cohesion`.
+$N_q = e^{\\pi \\tan\\phi} \\tan^2(45° + \\phi/2)$, whether the base is smooth or rough (Prandtl 1921, Reissner 1924). The surcharge is
+the pressure of a soft elastic cover between the ground and the top of the mesh, a roller. Sand and cover start at this
+pressure, in equilibrium. The cover's modulus is twice the pressure; the heave, below 0.005 $B$, changes the pressure in
+its 1 $B$ of thickness by 1 % at most. Set-up and reading are those of `footing_cohesion`.
 """
 
 import numpy as np

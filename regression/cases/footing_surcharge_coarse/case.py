@@ -16,6 +16,6 @@ BACKENDS, PRECISIONS = ("openmp", "cuda"), ("double",)
 
 def check(runs):
     for base, run in runs.items():
-        yield Row(f"Nq, {base}, phi = {PHI}, d = B/{CELLS}", fine.factor(run), footing.surcharge_factor(PHI), footing.tolerance(PHI),
-                  "Prandtl (1921), Reissner (1924)", relative=True, shortfall=footing.COARSE, bound=0.1)
+        yield Row(f"Nq, {base}, phi = {PHI}, d = B/{CELLS}", fine.factor(run), footing.surcharge_factor(PHI),
+                  footing.tolerance(PHI), "Prandtl (1921), Reissner (1924)", relative=True, shortfall=footing.COARSE, bound=0.1)
         yield Row(f"surcharge at the end over that at the start, {base}", fine.pressure(run), 1, 0.02, "set-up")

@@ -1,9 +1,9 @@
 """Strip footing on sand with weight: N gamma
 
-Sand of unit weight $\\gamma$ without surcharge, $\\psi = \\phi$, carries $q = \\frac{1}{2} \\gamma B N_\\gamma$. The exact values are
-those of slip lines, as in Martin (2005). The sand starts with the stress of its weight and $K_0 = 1 - \\sin\\phi$. A cohesion of
-$10^{-4} \\gamma B$ keeps the surface together and adds 0.1 % to the load; the mean settlement of 0.0012 $B$ adds about 0.5 %. Set-up and reading
-are those of `footing_cohesion`, and the footing sinks half as fast.
+Sand of unit weight $\\gamma$ without surcharge, $\\psi = \\phi$, carries $q = \\frac{1}{2} \\gamma B N_\\gamma$. The
+exact values are those of slip lines, as in Martin (2005). The sand starts with the stress of its weight and
+$K_0 = 1 - \\sin\\phi$. A cohesion of $10^{-4} \\gamma B$ keeps the surface together and adds 0.1 % to the load; the settlement of
+0.0004 $B$ at most adds little. Set-up and reading are those of `footing_cohesion`, and the footing sinks half as fast.
 """
 
 import numpy as np

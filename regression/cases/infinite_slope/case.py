@@ -1,17 +1,18 @@
 """Infinite slope
 
 A slab of thickness $z$ (vertical) on a base that slopes by $\\beta$ slides if the strength is divided by more than
-$F_s = c / (\\gamma z \\sin\\beta \\cos\\beta) + \\tan\\phi / \\tan\\beta$. Runs divide $c$ and $\\tan\\phi$ by $F$. The slab starts at rest
-in equilibrium, with the stress along it for which the plane of the slope is the weakest: $\\sigma_x = \\sigma_n + 2 \\tau^2 / \\sigma_n$, with
-$c \\cot\\phi$ added to the compressive stresses. For $F$ 3 % below $F_s$ it stays at rest. For $F$ 3 % above it slides on the base with
+$F_s = c / (\\gamma z \\sin\\beta \\cos\\beta) + \\tan\\phi / \\tan\\beta$. Runs divide $c$ and $\\tan\\phi$ by $F$. The slab
+starts at rest in equilibrium, with the stress along it for which the plane of the slope is the weakest:
+$\\sigma_x = \\sigma_n + 2 \\tau^2 / \\sigma_n$, with $c \\cot\\phi$ added to the compressive stresses. For $F$ 3 % below $F_s$ it
+stays at rest. For $F$ 3 % above it slides on the base with
 
 ```math
 a = \\frac{g \\sin\\beta - (c / \\rho h + g \\cos\\beta \\tan\\phi) / F}{1 + \\tan^2\\phi / F^2}, \\qquad h = z \\cos\\beta ,
 ```
 
-where the denominator is due to the dilation, which lifts the slab and adds to the normal stress ($\\psi = \\phi$). The safety factor
-is the $F$ without acceleration, on the line through 3 % and 6 %; $a$ itself is a small difference, which an error of $F_s$ of 1 %
-changes by a third.
+where the denominator is due to the dilation, which lifts the slab and adds to the normal stress ($\\psi = \\phi$). The
+safety factor is the $F$ without acceleration, on the line through 3 % and 6 %; $a$ itself is a small difference, which
+an error of $F_s$ of 1 % changes by a third.
 """
 
 import numpy as np
@@ -95,7 +96,8 @@ def check(runs):
         f = np.array([SHARES["above"], SHARES["far"]]) * safety(c, phi, beta)
         drive = np.array([near, far]) * (1 + (np.tan(np.radians(phi)) / f) ** 2)
         slope, value = np.polyfit(1 / f, drive, 1)
-        yield Row(f"safety factor, {what}", -slope / value, safety(c, phi, beta), 0.01, "limit equilibrium, exact here", relative=True)
+        yield Row(f"safety factor, {what}", -slope / value, safety(c, phi, beta), 0.01,
+                  "limit equilibrium, exact here", relative=True)
         yield Row(f"{what}: acceleration for F 3 % above (m/s2)", near, exact(name, SHARES["above"]) / 2, 0,
                   "half of Newton's second law: it slides", at_least=True)
         yield Row(f"{what}: speed for F 3 % below (m/s)", speeds(runs[f"{name}_below"])[1][-1], 0, 1e-4, "it stays")
@@ -106,6 +108,6 @@ def draw(axes, runs):
         for where, style in (("below", ":"), ("above", "--"), ("far", "-")):
             t, v = speeds(runs[f"{name}_{where}"])
             axes.plot(t, 1e3 * v, "o" + style, color=colour, ms=3, label=f"{name}, F = {SHARES[where]:g} $F_s$")
-            axes.plot(t, 1e3 * max(0, exact(name, SHARES[where])) * t, "k-", lw=0.6)
-    axes.set(xlabel="time (s)", ylabel="speed of the middle third (mm/s; black: exact)")
+            axes.plot(t, 1e3 * max(0, exact(name, SHARES[where])) * t, color=colour, lw=0.6)
+    axes.set(xlabel="time (s)", ylabel="speed of the middle third (mm/s; thin: exact)")
     axes.legend(fontsize=8)

@@ -1,11 +1,11 @@
 """Smooth retaining wall
 
-A smooth wall of height $H$ holds dry sand, $\\phi = \\psi$ = 30°, with a level surface. Pushed into the sand, it carries
-$P = K_p \\gamma H^2 / 2 + 2 c \\sqrt{K_p} H$; moved away, $P = K_a \\gamma H^2 / 2 - 2 c \\sqrt{K_a} H$, with $K_p = 3 = 1 / K_a$
-(Rankine 1857). The sand starts with $K_0$ = 0.5 and the stress of its weight. A cohesion of $c = 10^{-3} \\gamma H$ keeps the surface together. The
-wall moves by 0.004 $H$ away or by 0.01 $H$ into the sand, and the mean over the second half is compared. The base is smooth.
-On a rough base the wedge must leave the wall above the first row of nodes, which cannot move, and the answers depend on the
-cells: with 20 over the height 3.13 and 0.25.
+A smooth wall of height $H$ holds dry sand, $\\phi = \\psi$ = 30°, with a level surface. Pushed into the sand, it
+carries $P = K_p \\gamma H^2 / 2 + 2 c \\sqrt{K_p} H$; moved away, $P = K_a \\gamma H^2 / 2 - 2 c \\sqrt{K_a} H$, with
+$K_p = 3 = 1 / K_a$ (Rankine 1857). The sand starts with $K_0$ = 0.5 and the stress of its weight. A cohesion of
+$c = 10^{-3} \\gamma H$ keeps the surface together. The wall moves by 0.004 $H$ away or by 0.01 $H$ into the sand, and the
+mean over the second half is compared. The base is smooth. On a rough base the wedge must leave the wall above the first
+row of nodes, which cannot move, and the answers depend on the cells: with 20 over the height 3.13 and 0.25.
 """
 
 import ground
@@ -44,4 +44,6 @@ def draw(axes, runs):
         axes.plot(abs(run.history["wall_x"][1:]) / HEIGHT, -run.history["wall_force_x"][1:] / FORCE, color=colour, lw=1, label=name)
         axes.axhline(EXACT[name][0], color="k", lw=0.6)
     axes.set(xlabel="movement of the wall over its height", ylabel="$P / (\\gamma H^2 / 2)$ (black: exact)", yscale="log")
+    axes.set_yticks([1 / KP, 1, KP], ["1/3", "1", "3"])
+    axes.minorticks_off()
     axes.legend()
