@@ -147,8 +147,8 @@ struct Umat {
   /// 0: only the UMAT knows it.
   KOKKOS_FUNCTION T shear_strength(const State&) const { return 0; }
   /// Energy that the soil can give back [J/m3], at most: SSE, which few UMATs compute, or that of an elastic
-  /// material of this wave modulus whose Poisson's ratio is 0.495, if that is more. A run whose kinetic energy
-  /// grows beyond it ends (EnergyWatch), so it must not be too small.
+  /// material of this wave modulus whose Poisson's ratio is 0.495, if that is more. A run whose kinetic
+  /// energy grows beyond it ends (EnergyWatch), so it must not be too small.
   template <int Dim>
   KOKKOS_FUNCTION T stored_energy(const SymTensor<T, Dim>& stress, const State& state) const {
     constexpr double k_poisson = 0.495, k_lame = k_poisson / (1 - k_poisson),
