@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <catch2/catch_test_macros.hpp>
@@ -9,6 +12,7 @@
 #include "element.hpp"
 #include "physics/materials/principal.hpp"
 #include "physics/materials/umat.hpp"
+#include "physics/materials/von_mises.hpp"
 
 extern "C" {
 void sinv_(const double*, double*, double*, const int*, const int*);
@@ -42,7 +46,105 @@ SymTensor<double, 3> random_tensor(Dice& dice, int shears) {
   return s;
 }
 
+/// A UMAT that the build has compiled: mpm_umat is inputs/umat/von_mises.c, mpm_umat_probe umat/probe.c. The
+/// environment's MPM_UMATS names the folder where the program no longer lies by it (scripts/bundle_launch).
+std::shared_ptr<const UmatLibrary> library_of(const std::string& name, const std::string& properties, int dim,
+                                              const std::array<double, 3>& lower = {}) {
+  const char* elsewhere = std::getenv("MPM_UMATS");
+  const std::string path = std::string(elsewhere != nullptr ? elsewhere : MPM_UMATS) + "/lib" + name + ".so";
+  std::string key, takes;
+  const auto library = open_umat("clay", {path, properties, ""}, dim, lower, 0.25, key, takes);
+  if (library == nullptr) throw std::runtime_error(key + " takes " + takes);
+  return library;
+}
+
+/// Largest difference of stress and plastic strain, each over its largest, of a path of random increments of
+/// strain and spin from a random stress; `grown` adds the plastic strain.
+template <int Dim>
+double largest_misfit(const VonMises<double>& law, const Umat<double>& umat, Dice& dice, double& grown) {
+  constexpr double k_size = 2000, k_strain_size = 2e-3;  // Pa, -
+  const Sym start = random_sym(dice, k_size, Dim == 2);
+  Point<VonMises<double>, Dim> own(law, start);
+  Point<Umat<double>, Dim> user(umat, start);
+  double worst = 0;
+  for (int n = 0; n < 20; ++n) {
+    Increment<double, double, Dim> by{};
+    const Sym strain = random_sym(dice, k_strain_size, Dim == 2);
+    for (int k = 0; k < sym_size<Dim>; ++k) by.strain[k] = strain[k];
+    for (double& w : by.spin.c) w = dice.uniform(-0.1, 0.1);
+    by.dt = 1e-3;
+    int none = 0;
+    by.clock = {0, by.dt, &none};
+    own.law.update(own.stress, own.state, by);
+    user.law.update(user.stress, user.state, by);
+    for (int k = 0; k < sym_size<Dim>; ++k)
+      worst = std::max(worst, std::fabs(own.stress[k] - user.stress[k]) / k_size);
+    const double plastic = own.state[VonMises<double>::plastic_strain];
+    worst = std::max(worst, std::fabs(plastic - user.state[Umat<double>::own]) / k_strain_size);
+  }
+  grown += own.state[VonMises<double>::plastic_strain];
+  return worst;
+}
+
 }  // namespace
+
+TEST_CASE("a UMAT of von Mises' clay follows random paths as the law does", "[umat]") {
+  const auto law = law_of<VonMises<double>>({{"young", 1e6}, {"poisson", 0.4}, {"su", 1000}});
+  Dice dice{std::mt19937_64(23)};
+  double worst = 0, grown = 0;
+  auto umat = law_of<Umat<double>>({{"states", 1}});
+  const auto plane = library_of("mpm_umat", "1e6,0.4,1000", 2),
+             space = library_of("mpm_umat", "1e6,0.4,1000", 3);
+  for (int n = 0; n < 500; ++n) {
+    umat.object = plane.get();
+    worst = std::max(worst, largest_misfit<2>(law, umat, dice, grown));
+    umat.object = space.get();
+    worst = std::max(worst, largest_misfit<3>(law, umat, dice, grown));
+  }
+  CHECK(worst < 1e-12);
+  CHECK(grown > 1);
+}
+
+TEST_CASE("a UMAT is given strains, rotation and place of a particle in Abaqus' conventions", "[umat]") {
+  Dice dice{std::mt19937_64(24)};
+  const auto library = library_of("mpm_umat_probe", "1e6,0.3", 3, {10, 20, 30});
+  auto umat = law_of<Umat<double>>({{"states", 38}});
+  umat.object = library.get();
+  for (int n = 0; n < 200; ++n) {
+    Point<Umat<double>, 3> point(umat, random_sym(dice, 1000, false));
+    Increment<double, double, 3> by{};
+    int none = 0;
+    by.dt = 0.5, by.clock = {3, by.dt, &none};
+    for (auto& row : by.gradient)
+      for (double& g : row) g = dice.uniform(-0.1, 0.1);
+    for (int k = 0; k < 6; ++k) by.strain[k] = dice.uniform(-1e-2, 1e-2);
+    for (double& w : by.spin.c) w = dice.uniform(-0.5, 0.5);
+    const auto before = point.stress;
+    umat.update(point.stress, point.state, by, {.id = 6, .position = {1, 2, 3}});
+    const auto given = [&](int k) { return point.state[Umat<double>::own + k]; };
+    double q[3][3], worst = 0;
+    rotation_of(by.spin, q);
+    const auto strain = in_abaqus_order(by.strain, k_strain);
+    for (int k = 0; k < 6; ++k) worst = std::max(worst, std::fabs(given(15 + k) - strain[k]));
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        worst = std::max(worst, std::fabs(given(6 + i + 3 * j) - q[i][j]));
+        worst = std::max(worst, std::fabs(given(26 + i + 3 * j) - (i == j) - by.dt * by.gradient[i][j]));
+      }
+    CHECK(worst < 1e-15);
+    auto wanted = rotated(before, by.spin);
+    add_elastic(wanted, by.strain, lame_of(1e6, 0.3), shear_modulus_of(1e6, 0.3));
+    for (int k = 0; k < 6; ++k) CHECK(std::fabs(point.stress[k] - wanted[k]) < 1e-9);
+    const double numbers[] = {7, 3, 0.5, 11, 22, 33};
+    for (int k = 0; k < 6; ++k) CHECK(given(k) == numbers[k]);
+    CHECK(given(21) == 6);
+    CHECK(given(22) == 0.25);
+    CHECK(given(23) == 7);  // KINC
+    CHECK(given(24) == 'C');
+    const double modulus = lame_of(1e6, 0.3) + 2 * shear_modulus_of(1e6, 0.3);
+    CHECK(std::fabs(umat.wave_modulus(point.stress, point.state) / modulus - 1) < 1e-15);
+  }
+}
 
 TEST_CASE("SINV, SPRINC and SPRIND give invariants, principal values and directions", "[umat]") {
   Dice dice{std::mt19937_64(21)};

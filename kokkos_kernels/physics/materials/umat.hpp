@@ -146,13 +146,15 @@ struct Umat {
   }
   /// 0: only the UMAT knows it.
   KOKKOS_FUNCTION T shear_strength(const State&) const { return 0; }
-  /// Energy that the soil can give back [J/m3]: SSE, where the UMAT computes it; else that of an elastic
-  /// material of this wave modulus and a Poisson's ratio of 0.3.
+  /// Energy that the soil can give back [J/m3], at most: SSE, which few UMATs compute, or that of an elastic
+  /// material of this wave modulus whose Poisson's ratio is 0.495, if that is more. A run whose kinetic
+  /// energy grows beyond it ends (EnergyWatch), so it must not be too small.
   template <int Dim>
   KOKKOS_FUNCTION T stored_energy(const SymTensor<T, Dim>& stress, const State& state) const {
-    constexpr double k_lame = 3.0 / 7, k_shear = 2.0 / 7;  // over lambda + 2 G, where nu = 0.3
-    if (state[energy] > 0) return state[energy];
-    return elastic_energy(stress, k_lame * state[modulus], k_shear * state[modulus]);
+    constexpr double k_poisson = 0.495, k_lame = k_poisson / (1 - k_poisson),
+                     k_shear = (1 - k_lame) / 2;  // over lambda + 2 G
+    return Kokkos::fmax(state[energy],
+                        elastic_energy(stress, k_lame * state[modulus], k_shear * state[modulus]));
   }
   /// Whether the UMAT has given up a particle; the run then ends.
   KOKKOS_FUNCTION bool failed(const State& state) const { return state[modulus] < 0; }
