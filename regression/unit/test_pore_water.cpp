@@ -107,7 +107,7 @@ TEST_CASE("nodes get the water that the particles displace, by every strategy", 
       for (P2G how : k_strategies) {
         auto s = state_of<B>(cloud, how);
         s.water = water_at<Dim>(0.437);
-        sort_and_list(s);
+        rebuild(s);
         Kokkos::deep_copy(s.nodes.soil, 0), Kokkos::deep_copy(s.nodes.displaced, 0);
         for (int d = 0; d < Dim; ++d) s.gravity[d] = d == Dim - 1 ? -k_g : 0;
         buoyancy_to_nodes(s);
@@ -151,7 +151,7 @@ TEST_CASE("submerged ground whose effective stress carries its buoyant weight st
       for (P2G how : k_strategies) {
         auto s = state_of<B>(cloud, how);
         s.water = water;
-        sort_and_list(s);
+        rebuild(s);
         run_steps(s, 1e-3, 20);
         double fastest = 0;
         for (const double v : by_id(s.soil.points, s.soil.points.velocity).value)
