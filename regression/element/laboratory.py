@@ -79,11 +79,13 @@ def clays(lab):
 
 def sand_triaxial(lab):
     k, m = slope(30), slope(10)
-    found, point = lab.test("compression", "mohr_coulomb", SAND, "triaxial,cell=100e3,strain=0.05")
+    # few parts: in single precision the strain rate of a part is known to the round-off of the stress, 0.03 Pa, over the
+    # stress that the part's strain could change
+    found, point = lab.test("compression", "mohr_coulomb", SAND, "triaxial,cell=100e3,strain=0.05", "--parts", "4")
     lab.near("Mohr-Coulomb: drained triaxial compression", found["q"][-1], (k - 1) * 1e5 + 1e4 * math.sqrt(k), 1e-6)
     lab.near("Mohr-Coulomb: the same in figures", found["q"][-1], 217320.5, 1e-6)
-    volume = [sum(point[e][n] for e in ("exx", "eyy", "ezz")) for n in (-20, -1)]
-    lab.near("Mohr-Coulomb: volume over axial strain", (volume[1] - volume[0]) / (point["eyy"][-1] - point["eyy"][-20]), 1 - m,
+    volume = [sum(point[e][n] for e in ("exx", "eyy", "ezz")) for n in (-60, -1)]
+    lab.near("Mohr-Coulomb: volume over axial strain", (volume[1] - volume[0]) / (point["eyy"][-1] - point["eyy"][-60]), 1 - m,
              1e-6)
     found, _ = lab.test("extension", "mohr_coulomb", SAND, "triaxial,cell=100e3,strain=0.05,direction=extension")
     lab.near("Mohr-Coulomb: triaxial extension, axial stress", found["vertical_stress"][-1], 27559.8, 2e-6)
@@ -282,9 +284,18 @@ def refusals(lab):
             lab.faults.append(f"{' '.join(words)}: status {result.returncode}, {result.stderr!r}, expected {fragment}")
 
 
+def pipe(lab):
+    """A path in a named pipe is refused, and nobody waits for it."""
+    fifo = lab.folder / "pipe.csv"
+    os.mkfifo(fifo)
+    lines = run_point(lab.binary, lab.folder / "piped", deck_of("mohr_coulomb", **SAND), fifo, status=2)
+    if len(lines) != 1 or "takes a regular file; this is a pipe" not in lines[0]:
+        lab.faults.append(f"a named pipe: {lines}")
+
+
 CHECKS = [clays, sand_triaxial, sand_k0_start, sand_shear, sand_oedometer, cone_biaxial, cam_clay_undrained, cam_clay_drained,
-          cam_clay_k0, clay_isotropic, rates, cycles, fit_sand, fit_clay, refusals]
-ONCE = {fit_sand, fit_clay, refusals}  # in double precision alone
+          cam_clay_k0, clay_isotropic, rates, cycles, fit_sand, fit_clay, refusals, pipe]
+ONCE = {fit_sand, fit_clay, refusals, pipe}  # in double precision alone
 
 
 def main():
