@@ -18,6 +18,8 @@ RUNS = {"mud": "-heap_file {start}", "syrup": SYRUP.format(0.0025)}
 BOX = {"mud": (2.5, 0.2, 1500.0), "syrup": (0.2, 0.05, 1000.0)}  # length, height, m, density
 STRENGTH, VISCOSITY = 50.0, 0.01
 LONG = True
+THIN = ("The front comes to rest where the layer is one or two cells thick, instead of thinning out: cells of 40 mm fall 17 % short, of "
+        "20 mm 13 %.")
 
 
 def prepare(run, path, options):
@@ -52,7 +54,8 @@ def heights(run, width):
 
 def check(runs):
     x, height = heights(runs["mud"], 0.2)
-    yield Row("length of the mud at rest (m)", runs["mud"].history["heap_xmax"][-1], mud_end(), 0.1, "Liu & Mei 1989", relative=True)
+    yield Row("length of the mud at rest (m)", runs["mud"].history["heap_xmax"][-1], mud_end(), 0.1, "Liu & Mei 1989", relative=True,
+              shortfall=THIN, bound=0.15)
     exact = np.sqrt(2 * STRENGTH * mud_end() / (BOX["mud"][2] * G))
     yield Row("height of the mud in the middle (m)", height[0], exact, 0.1, "Liu & Mei 1989", relative=True)
     t, end = runs["syrup"].history["time"], runs["syrup"].history["heap_xmax"]
@@ -74,4 +77,7 @@ def draw(axes, runs):
     t, end = runs["syrup"].history["time"][1:], runs["syrup"].history["heap_xmax"][1:]
     inset.loglog(t, end, label="viscous")
     inset.loglog(t, syrup_end(t), "k--", lw=0.8)
-    inset.set(xlabel="time (s)", ylabel="length (m)", title="viscous (dashed: Huppert)")
+    inset.set(xlabel="time (s)", ylabel="length (m)")
+    inset.minorticks_off()
+    inset.set(yticks=[0.2, 0.3, 0.4], yticklabels=["0.2", "0.3", "0.4"])
+    inset.text(0.04, 0.86, "viscous (dashed: Huppert)", transform=inset.transAxes, fontsize=8)
