@@ -1,9 +1,10 @@
 """Spreading of a Bingham fluid and of a viscous one
 
-*Bingham.* Fluid of the yield stress $\\tau_y$ = 50 Pa and the volume $V$ = 0.5 m2 (of one half) spreads slowly over a level rough floor until the
-pressure gradient nowhere exceeds the yield stress: $h^2 = 2\\tau_y (x_f - x) / \\rho g$ and $x_f = (9 V^2 \\rho g / 8 \\tau_y)^{1/3}$ = 4.358 m (Liu & Mei 1989).
-*Viscous.* A Newtonian fluid with $\\nu$ = 0.01 m2/s and $V$ = 0.01 m2 spreads as $x_f = 1.4112\\, (g V^3 / 3\\nu)^{1/5} t^{1/5}$ (Huppert 1982), whatever its
-shape at the start, here a box of 0.2 m x 0.05 m. Both solutions hold for layers that are thin against their length.
+*Bingham.* Fluid of the yield stress $\\tau_y$ = 50 Pa and the volume $V$ = 0.5 m2 (of one half) spreads slowly over a level
+rough floor until the pressure gradient nowhere exceeds the yield stress: $h^2 = 2\\tau_y (x_f - x) / \\rho g$ and $x_f = (9
+V^2 \\rho g / 8 \\tau_y)^{1/3}$ = 4.358 m (Liu & Mei 1989). *Viscous.* A Newtonian fluid with $\\nu$ = 0.01 m2/s and $V$ =
+0.01 m2 spreads as $x_f = 1.4112\\, (g V^3 / 3\\nu)^{1/5} t^{1/5}$ (Huppert 1982), whatever its shape at the start, here a
+box of 0.2 m x 0.05 m. Both solutions hold for layers that are thin against their length.
 """
 
 import numpy as np
