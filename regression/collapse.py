@@ -19,7 +19,12 @@ def lube(a):
 
 def lajeunesse(a):
     """Run-out over L0 of glass beads in a channel (Lajeunesse et al. 2005), as cited by Lagrée et al. (2011)."""
-    return max(1.8 * a, 2.3 * a ** (2 / 3)) if a < 3.5 else 2.3 * a ** (2 / 3)
+    return 1.8 * a if a <= 3 else 2.3 * a ** (2 / 3)
+
+
+def lagree(a):
+    """Run-out over L0 of mu(I) as a continuum (Lagrée, Staron & Popinet 2011)."""
+    return 2.2 * a if a < 7 else 3.9 * a**0.7
 
 
 def options(a, spacing, material, run_out):

@@ -192,10 +192,24 @@ class Scene:
     def values(self, name):
         return np.concatenate([self.field(name).of(self.groups[body]) for body in self.bodies])
 
+    def limits(self, name):
+        """Where the colours of a field begin and end. Plastic strain ends where softening clay has lost 95 % of what it can
+        lose: more changes nothing, and would leave one colour to all that is not a shear band."""
+        least, most = limits_of(self.field(name), self.values(name))
+        lost = [self.softening_strain(self.run.text(f"{body}_material")) for body in self.bodies]
+        return (least, min(most, max(lost))) if name == "plastic_strain" and all(lost) else (least, most)
+
+    def softening_strain(self, material):
+        """The strain at which a material has lost 95 % of what it can lose, on this mesh; 0 where it does not soften."""
+        if self.run.text(f"{material}_model") != "softening_clay":
+            return 0.0
+        cell = self.run.number("mesh_spacing", 1.0)
+        return self.run.number(f"{material}_xi95") * self.run.number(f"{material}_xi95_cell", cell) / cell
+
     def draw(self, axes, name, limits=None, box=None):
         """Draws a field in colour and the rigids in grey: [(collection, particle's size [m])], the size yet to be set."""
         field, values = self.field(name), self.values(name)
-        least, most = limits or limits_of(field, values)
+        least, most = limits or self.limits(name)
         drawn = []
         for body in self.bodies:
             points = self.groups[body]["position"][:, self.plane]

@@ -1,9 +1,10 @@
 """Collapse of a column of sand, coarse
 
-A column of sand as high as it is long ($a = H_0/L_0 = 1$) falls over a rough floor, in plane strain: half of a symmetric one. In channels
-sand runs out by $1.2\\,a\\,L_0$ (Lube et al. 2005), glass beads by $1.8\\,a\\,L_0$ (Lajeunesse et al. 2005); from 0.85 of the former to 1.1 of the
-latter is accepted. The laws are `mohr_coulomb`, with 31° and no dilation, and `mu_i` with glass beads. A column of 59° must not reach the
-band. Ten cells over the height; `collapse_fine` has more, and more heights.
+A column of sand as high as it is long ($a = H_0/L_0 = 1$) falls over a rough floor, in plane strain: half of a symmetric
+one. In channels sand runs out by $1.2\\,a\\,L_0$ (Lube et al. 2005), glass beads by $1.8\\,a\\,L_0$ (Lajeunesse et al.
+2005); from 0.85 of the former to 1.1 of the latter is accepted. The laws are `mohr_coulomb`, with 31° and no dilation, and
+`mu_i` with glass beads. A column of 59° must not reach the band. Ten cells over the height; `collapse_fine` has more, and
+more heights.
 """
 
 import collapse

@@ -1,9 +1,10 @@
 """Dam break
 
-Water of the depth $h$ = 1 m stands behind a dam that disappears. By the shallow-water equations (Ritter 1892) the depth where the dam
-was is $4h/9$ from then on, and the front moves at $2\\sqrt{g h}$ over a smooth dry bed. These equations neglect the vertical acceleration,
-which matters in the first $2 \\sqrt{h/g}$; the depth is the mean from then to $3 \\sqrt{h/g}$, when the wave from the back wall is still on
-its way. The front must not be faster than Ritter's, and its speed must approach it.
+Water of the depth $h$ = 1 m stands behind a dam that disappears. By the shallow-water equations (Ritter 1892) the depth
+where the dam was is $4h/9$ from then on, and the front moves at $2\\sqrt{g h}$ over a smooth dry bed. These equations
+neglect the vertical acceleration, which matters in the first $2 \\sqrt{h/g}$; the depth is the mean from then to $3
+\\sqrt{h/g}$, when the wave from the back wall is still on its way. The front must not be faster than Ritter's, and its speed
+must approach it.
 """
 
 import numpy as np

@@ -1,10 +1,11 @@
 """Films on a slope, finer, and grains
 
-The films of the case `film`, with 16 cells over the height, and two more laws. Herschel-Bulkley: as the Bingham film, with $k$ = 800 Pa s$^{1/2}$
-and $n$ = 1/2, and the velocity $\\frac{n}{n+1} (\\rho g \\sin\\theta / k)^{1/n} (H - h_p)^{1 + 1/n}$ at the surface. Grains (`mu_i`, glass beads of 0.5 mm at a
-volume fraction of 0.6, 20 mm on 24°) have the same inertial number $I = I_0 (\\tan\\theta - \\mu_s) / (\\mu_2 - \\tan\\theta)$ everywhere, and the
-velocity $\\tfrac23 (I/d_g) \\sqrt{0.6\\, g \\cos\\theta}\\, H^{3/2}$ at the surface. Grains need a film as long as 300 heights, because they take long to come to their
-steady flow, so theirs has eight cells over the height.
+The films of the case `film`, with 16 cells over the height, and two more laws. Herschel-Bulkley: as the Bingham film, with
+$k$ = 800 Pa s$^{1/2}$ and $n$ = 1/2, and the velocity $\\frac{n}{n+1} (\\rho g \\sin\\theta / k)^{1/n} (H - h_p)^{1 + 1/n}$
+at the surface. Grains (`mu_i`, glass beads of 0.5 mm at a volume fraction of 0.6, 20 mm on 24°) have the same inertial
+number $I = I_0 (\\tan\\theta - \\mu_s) / (\\mu_2 - \\tan\\theta)$ everywhere, and the velocity $\\tfrac23 (I/d_g)
+\\sqrt{0.6\\, g \\cos\\theta}\\, H^{3/2}$ at the surface. Grains need a film as long as 300 heights, because they take long
+to come to their steady flow, so theirs has eight cells over the height.
 """
 
 import film

@@ -1,10 +1,12 @@
 """Shear band in softening clay, on three meshes
 
-A slab is pulled over a weak layer of softening clay, in which a band forms that is as wide as a few cells. The work that is dissipated, that of the pull
-less the kinetic energy, is measured per metre of the band, until the slab has slipped by 0.15 m. It must not depend on the cells. With a constant $\\xi_{95}$
-it does: a band of half the cell takes half of the slip to soften. With `xi95_cell` the slip over which the band softens, $\\xi_{95}$ times the
-cell, is the same on every mesh. The check takes the work beyond that of remoulded clay, $\\delta s_u$ times the slip. In a band as wide as one
-cell that slips by $s$ it is $\\tfrac13 (1 - \\delta) s_u w (1 - e^{-3 s / w})$ with the slip $w = \\xi_{95} d$ = 0.1 m of cells of 50 mm: 264 J/m2.
+A slab is pulled over a weak layer of softening clay, in which a band forms that is as wide as a few cells. The work that is
+dissipated, that of the pull less the kinetic energy, is measured per metre of the band, until the slab has slipped by 0.15
+m. It must not depend on the cells. With a constant $\\xi_{95}$ it does: a band of half the cell takes half of the slip to
+soften. With `xi95_cell` the slip over which the band softens, $\\xi_{95}$ times the cell, is the same on every mesh. The
+check takes the work beyond that of remoulded clay, $\\delta s_u$ times the slip. In a band as wide as one cell that slips by
+$s$ it is $\\tfrac13 (1 - \\delta) s_u w (1 - e^{-3 s / w})$ with the slip $w = \\xi_{95} d$ = 0.1 m of cells of 50 mm: 264
+J/m2.
 """
 
 import numpy as np

@@ -1,9 +1,9 @@
 """Sloshing
 
-Water of the depth $h$ = 0.5 m in a basin of the length $L$ = 1 m sloshes in its first mode, with the wave number $k = \\pi/L$. The period of
-small waves is $T = 2\\pi / \\sqrt{g k \\tanh k h}$ = 1.182 s. The water starts with a level surface and the velocity of the mode,
-$(\\sin k x \\cosh k y, -\\cos k x \\sinh k y)$ times an amplitude for which the surface rises by 10 mm. The period is that between the
-zeros of the momentum.
+Water of the depth $h$ = 0.5 m in a basin of the length $L$ = 1 m sloshes in its first mode, with the wave number $k =
+\\pi/L$. The period of small waves is $T = 2\\pi / \\sqrt{g k \\tanh k h}$ = 1.182 s. The water starts with a level surface
+and the velocity of the mode, $(\\sin k x \\cosh k y, -\\cos k x \\sinh k y)$ times an amplitude for which the surface rises
+by 10 mm. The period is that between the zeros of the momentum.
 """
 
 import numpy as np

@@ -1,9 +1,10 @@
 """Spreading of a Bingham fluid and of a viscous one
 
-*Bingham.* Fluid of the yield stress $\\tau_y$ = 50 Pa and the volume $V$ = 0.5 m2 (of one half) spreads slowly over a level rough floor until the
-pressure gradient nowhere exceeds the yield stress: $h^2 = 2\\tau_y (x_f - x) / \\rho g$ and $x_f = (9 V^2 \\rho g / 8 \\tau_y)^{1/3}$ = 4.358 m (Liu & Mei 1989).
-*Viscous.* A Newtonian fluid with $\\nu$ = 0.01 m2/s and $V$ = 0.01 m2 spreads as $x_f = 1.4112\\, (g V^3 / 3\\nu)^{1/5} t^{1/5}$ (Huppert 1982), whatever its
-shape at the start, here a box of 0.2 m x 0.05 m. Both solutions hold for layers that are thin against their length.
+*Bingham.* Fluid of the yield stress $\\tau_y$ = 50 Pa and the volume $V$ = 0.5 m2 (of one half) spreads slowly over a level
+rough floor until the pressure gradient nowhere exceeds the yield stress: $h^2 = 2\\tau_y (x_f - x) / \\rho g$ and $x_f = (9
+V^2 \\rho g / 8 \\tau_y)^{1/3}$ = 4.358 m (Liu & Mei 1989). *Viscous.* A Newtonian fluid with $\\nu$ = 0.01 m2/s and $V$ =
+0.01 m2 spreads as $x_f = 1.4112\\, (g V^3 / 3\\nu)^{1/5} t^{1/5}$ (Huppert 1982), whatever its shape at the start, here a
+box of 0.2 m x 0.05 m. Both solutions hold for layers that are thin against their length.
 """
 
 import numpy as np
@@ -18,6 +19,8 @@ RUNS = {"mud": "-heap_file {start}", "syrup": SYRUP.format(0.0025)}
 BOX = {"mud": (2.5, 0.2, 1500.0), "syrup": (0.2, 0.05, 1000.0)}  # length, height, m, density
 STRENGTH, VISCOSITY = 50.0, 0.01
 LONG = True
+THIN = ("The front comes to rest where the layer is one or two cells thick, instead of thinning out: cells of 40 mm fall 17 % short, of "
+        "20 mm 13 %.")
 
 
 def prepare(run, path, options):
@@ -52,7 +55,8 @@ def heights(run, width):
 
 def check(runs):
     x, height = heights(runs["mud"], 0.2)
-    yield Row("length of the mud at rest (m)", runs["mud"].history["heap_xmax"][-1], mud_end(), 0.1, "Liu & Mei 1989", relative=True)
+    yield Row("length of the mud at rest (m)", runs["mud"].history["heap_xmax"][-1], mud_end(), 0.1, "Liu & Mei 1989", relative=True,
+              shortfall=THIN, bound=0.15)
     exact = np.sqrt(2 * STRENGTH * mud_end() / (BOX["mud"][2] * G))
     yield Row("height of the mud in the middle (m)", height[0], exact, 0.1, "Liu & Mei 1989", relative=True)
     t, end = runs["syrup"].history["time"], runs["syrup"].history["heap_xmax"]
@@ -74,4 +78,7 @@ def draw(axes, runs):
     t, end = runs["syrup"].history["time"][1:], runs["syrup"].history["heap_xmax"][1:]
     inset.loglog(t, end, label="viscous")
     inset.loglog(t, syrup_end(t), "k--", lw=0.8)
-    inset.set(xlabel="time (s)", ylabel="length (m)", title="viscous (dashed: Huppert)")
+    inset.set(xlabel="time (s)", ylabel="length (m)")
+    inset.minorticks_off()
+    inset.set(yticks=[0.2, 0.3, 0.4], yticklabels=["0.2", "0.3", "0.4"])
+    inset.text(0.04, 0.86, "viscous (dashed: Huppert)", transform=inset.transAxes, fontsize=8)
