@@ -105,7 +105,7 @@ struct Simulation::Body {
   // simulation_time_step.cpp
   PetscErrorCode choose_time_step();
   PetscErrorCode follow_stiffness();
-  long next_look_at_waves() const;  // the step at which follow_stiffness has something to do
+  long next_stiffness_check() const;  // the step at which follow_stiffness has something to do
 
   // simulation_dry_run.cpp
   PetscErrorCode dry_run();

@@ -110,7 +110,7 @@ void for_each_field_of(F&& f, Soil_& s, Others&... others) {
 template <class F, class RigidPoints_>
 requires requires(RigidPoints_& s) { s.reference_position; }
 void for_each_field_of(F&& f, RigidPoints_& s) {
-  f("coordinate", Use::none, s.coordinate), f("home", Use::none, s.reference_position);
+  f("coordinate", Use::none, s.coordinate), f("reference_position", Use::none, s.reference_position);
 }
 /// The fields alone.
 template <class Points_, class F>
@@ -140,7 +140,7 @@ struct Bins {
   int first_slot = 0, last_slot = 0;        // slots that may hold points: [first_slot, last_slot)
   Kokkos::View<int*, Memory> active_slots;  // slots that hold points, ordered by colour; on a processor all
                                             // are of one, so that they rise
-  int colour_begin[8 + 1] = {};  // ranges of active_slots
+  int colour_begin[8 + 1] = {};             // ranges of active_slots
   int border = 0;  // of active_slots, on several ranks: slots in front that share nodes with other ranks, all
                    // colours of them; but with OpenMP, where slots rise
   Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]

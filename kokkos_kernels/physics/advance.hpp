@@ -80,6 +80,17 @@ struct ParticleLaw {
   }
 };
 
+/// Mean over the particles of a cell, weighted by volume.
+template <class T>
+struct CellMean {
+  T volume = 0, sum = 0;  // m3; m3 times the unit of what is averaged
+
+  /// weighted: the particle's volume times its value.
+  KOKKOS_INLINE_FUNCTION void add(T of_particle, T weighted) { volume += of_particle, sum += weighted; }
+  /// 0 in an empty cell.
+  KOKKOS_INLINE_FUNCTION T value() const { return volume > 0 ? sum / volume : T(0); }
+};
+
 /// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The fraction f_bar of
 /// its dilatation is that of its cell, `mean_dilatation` [1/s]. law(stress, increment) changes the stress.
 /// Returns the largest component of the particle's movement [cells].
@@ -142,6 +153,22 @@ KOKKOS_INLINE_FUNCTION FaultKind fault_of(const Particle<T, Dim>& q, T moved, co
   if (!is_finite(q)) return FaultKind::not_finite;
   if (by.volume_is_fault && is_volume_limited(q, by)) return FaultKind::volume;
   return moved <= 1 ? FaultKind::none : FaultKind::too_fast;
+}
+
+/// Reports what is wrong with particle p after a step, if anything is. q: the particle, which moved by
+/// `moved` [cells]; origin: lower corner of its patch [cells].
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void report_fault(const ControlView<Space>& control, const Soil<Space, T, Dim>& soil,
+                                         int p, const Particle<T, Dim>& q, T moved,
+                                         const UpdateScalars<T>& by, const Coord<Dim>& origin,
+                                         double spacing) {
+  FaultKind fault = fault_of(q, moved, by);
+  if (fault == FaultKind::none) return;
+  if (fault == FaultKind::not_finite && has_failed(soil, p)) fault = FaultKind::law;
+  const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
+  double position[3] = {};
+  for (int d = 0; d < Dim; ++d) position[d] = (double(origin[d]) + cell[d] + q.x[d]) * spacing;
+  report(control, fault, soil.id(p), position, Dim);
 }
 
 }  // namespace mpm

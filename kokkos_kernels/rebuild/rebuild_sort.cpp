@@ -252,12 +252,10 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
           }
           if (!holds) return;
           const Rigid<Dim>& rigid = rigids(r);
-          Vector<double, Dim> middle;  // bodies go on beyond the mesh
-          for (int d = 0; d < Dim; ++d) {
-            const int at = origin(slot)[d] + Patch<Dim>::edge / 2;
-            middle[d] = Kokkos::max(0, Kokkos::min(at, grid.cells[d])) * spacing - rigid.displacement[d];
-          }
-          if (rigid.surface_normal && distance_to(rigid.surface, vertices, middle).value > far) return;
+          Coord<Dim> middle = origin(slot);
+          for (int d = 0; d < Dim; ++d) middle[d] += Patch<Dim>::edge / 2;
+          const auto place = rigid.pose.to_body(grid.place_within(middle, spacing));
+          if (rigid.surface_normal && distance_to(rigid.surface, vertices, place).value > far) return;
           near(slot) = 1;
         });
   }
@@ -275,7 +273,7 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
     s.boundary_windows.place = near;
     ensure(s.boundary_windows.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.near_count);
   }
-  if (s.shear_share && has_windows(s.space)) {
+  if (s.shear_fraction && has_windows(s.space)) {
     s.strength_windows.place = near;
     ensure(s.strength_windows.sums, window_bytes<StrengthSource<Space, T, Dim>> * s.near_count);
   }
@@ -322,7 +320,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   ensure(s.nodes.kinematics, nodes);
   if (s.xpic_order > 0) ensure(s.nodes.residual, nodes);
   if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
-  if (s.shear_share) ensure(s.nodes.strength, nodes);
+  if (s.shear_fraction) ensure(s.nodes.strength, nodes);
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid = decltype(s.nodes.rigid)(
         Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),

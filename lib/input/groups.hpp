@@ -75,8 +75,9 @@ void check_density(OptionReader& in, const BodyConfig& body, const Config& confi
 /// Checks the values of PETSc's options that PETSc would find wrong only at the end of the run.
 void check_petsc_options(OptionReader& in);
 
-/// -materials, -bodies, -rigids and the options of each that they name. The fixed options must have been read
-/// before, since no name may begin as they do. A null mesh (unsound) leaves the shapes unchecked against it.
+/// -materials, -bodies, -rigid_bodies and the options of each that they name. The fixed options must have
+/// been read before, since no name may begin as they do. A null mesh (unsound) leaves the shapes unchecked
+/// against it.
 void read_named(OptionReader& in, const MeshConfig* mesh, Config& config);
 
 }  // namespace mpm

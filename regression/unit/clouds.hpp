@@ -60,10 +60,6 @@ Space with_other_threads() {
 }
 
 inline constexpr P2G k_strategies[] = {P2G::sequential, P2G::atomic, P2G::mosaic, P2G::gather, P2G::tile};
-inline const char* strategy_name(P2G how) {
-  const char* const words[] = {"sequential", "atomic", "mosaic", "gather", "tile", "auto"};
-  return words[static_cast<int>(how)];
-}
 
 /// Everything that a State is made of, on the host.
 struct Cloud {

@@ -88,9 +88,9 @@ TEST_CASE("the largest Courant number is that of the rim of the body with the mo
       const double expected = std::min(0.6, body);
       CHECK(largest_courant(config) == Catch::Approx(expected));
       CHECK(standard_courant(config) == Catch::Approx(std::min(0.5, 0.95 * expected)));
-      config.f_bar_share = 0;
+      config.f_bar_fraction = 0;
       CHECK(largest_courant(config) == Catch::Approx(std::min(0.6, 0.94 * body)));
-      config.f_bar_share = 0.98, config.damping = 0.44;
+      config.f_bar_fraction = 0.98, config.damping = 0.44;
       CHECK(largest_courant(config) == Catch::Approx(std::min(0.6, body / 1.2)));
     }
 }
