@@ -7,7 +7,7 @@
 #include "base/half_length.hpp"
 #include "base/types.hpp"
 #include "data/patches.hpp"
-#include "physics/materials/any.hpp"
+#include "physics/materials/stored.hpp"
 
 namespace mpm {
 
@@ -53,7 +53,7 @@ struct Soil : Points<Space, T, Dim> {
   Kokkos::View<T*, Memory> mass;                    // kg, in use where has_own_mass
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
-  Kokkos::View<AnyMaterial<T>*, Memory> materials;
+  Kokkos::View<StoredMaterial<T>*, Memory> materials;
   bool has_own_mass = false;  // the particles of some body differ in mass; the same on all ranks
 
   /// Mass [kg] of particle p, which is of this body.

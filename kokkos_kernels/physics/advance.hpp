@@ -5,6 +5,7 @@
 #include "base/lanes.hpp"
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
+#include "physics/materials/any.hpp"
 
 namespace mpm {
 
@@ -66,7 +67,7 @@ struct ParticleLaw {
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = 0;
       return;
     }
-    const AnyMaterial<T>& of = soil.materials(material);
+    const AnyMaterial<T>& of = material_in(soil.materials(material));
     of.visit_as(which >= 0 ? which : of.which, [&](const auto& law) {
       using Law = std::decay_t<decltype(law)>;
       const auto was = soil.state_of(law, p);
@@ -140,7 +141,7 @@ KOKKOS_INLINE_FUNCTION auto is_volume_limited(const Particle<R, Dim>& q, const U
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool has_failed(const Soil<Space, T, Dim>& soil, int p) {
   bool failed = false;
-  soil.materials(soil.bodies(soil.body(p)).material).visit([&](const auto& law) {
+  material_in(soil.materials(soil.bodies(soil.body(p)).material)).visit([&](const auto& law) {
     if constexpr (can_fail<std::decay_t<decltype(law)>>()) failed = law.failed(soil.state_of(law, p));
   });
   return failed;

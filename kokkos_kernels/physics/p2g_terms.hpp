@@ -185,7 +185,8 @@ struct StrengthSource {
     const T volume = points.volume(p);
     const BodyProperties<T>& body = points.bodies(points.body(p));
     T strength = 0;
-    points.materials(body.material).visit([&](const auto& law) {
+    // Who interpolates strengths includes physics/materials/any.hpp; all others see no law.
+    material_in(points.materials(body.material)).visit([&](const auto& law) {
       strength = law.shear_strength(points.state_of(law, p));
     });
     return {body.half_length, volume * strength, volume};

@@ -1,5 +1,7 @@
 #include "transfer/measure.hpp"
 
+#include "physics/materials/any.hpp"
+
 namespace mpm {
 namespace {
 
@@ -96,7 +98,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
             own.m.kinetic_energy += mass * v * v / 2;
           }
           own.m.mass += mass, own.m.weight += weight;
-          soil.materials(common.material).visit([&](const auto& law) {
+          material_in(soil.materials(common.material)).visit([&](const auto& law) {
             own.m.stored_energy +=
                 double(soil.volume(p)) * law.stored_energy(soil.stress(p), soil.state_of(law, p));
           });
@@ -119,7 +121,7 @@ double fastest_wave(const State<Space, T, Dim>& s) {
       "mpm::fastest_wave", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
       KOKKOS_LAMBDA(int p, double& largest) {
         const auto of = soil.properties(p);
-        soil.materials(of.material).visit([&](const auto& law) {
+        material_in(soil.materials(of.material)).visit([&](const auto& law) {
           const double modulus = law.wave_modulus(soil.stress(p), soil.state_of(law, p));
           largest = Kokkos::fmax(largest, modulus * soil.volume(p) / of.mass);
         });

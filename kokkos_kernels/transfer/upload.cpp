@@ -153,7 +153,7 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()),
-            [&](int m) { return make_material<T>(materials[m].model, materials[m].parameters); });
+            [&](int m) { return store_material<T>(materials[m].model, materials[m].parameters); });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
   for (const BodyInput& body : bodies)
     if (materials[body.material].model != s.law) s.law = -1;

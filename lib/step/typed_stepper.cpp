@@ -1,6 +1,7 @@
 #include "step/typed_stepper.hpp"
 #include "device/device_agrees.hpp"
 #include "input/shapes.hpp"
+#include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
 #include "step/surface_input.hpp"
 

@@ -78,7 +78,7 @@ struct LawLanes {
   template <class Kept>
   KOKKOS_FORCEINLINE_FUNCTION void update(int m, SymTensor<R, Dim>& stress, const Increment<R, T, Dim>& by,
                                           const Kept& kept) const {
-    soil.materials.data()[m].visit([&](const auto& law) {
+    material_in(soil.materials.data()[m]).visit([&](const auto& law) {
       using Law = std::decay_t<decltype(law)>;
       LawState<R, state_size<Law>> was, state;
       for (int k = 0; k < state.size; ++k) {

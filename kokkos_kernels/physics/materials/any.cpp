@@ -73,6 +73,15 @@ AnyMaterial<T> make_material(int which, const std::vector<double>& parameters) {
 template AnyMaterial<float> make_material<float>(int, const std::vector<double>&);
 template AnyMaterial<double> make_material<double>(int, const std::vector<double>&);
 
+template <class T>
+StoredMaterial<T> store_material(int which, const std::vector<double>& parameters) {
+  StoredMaterial<T> stored{};
+  new (stored.bytes) AnyMaterial<T>(make_material<T>(which, parameters));
+  return stored;
+}
+template StoredMaterial<float> store_material<float>(int, const std::vector<double>&);
+template StoredMaterial<double> store_material<double>(int, const std::vector<double>&);
+
 std::vector<const char*> material_models() { return names(Materials{}); }
 
 std::vector<StateVariable> state_variables(int which) { return tables(Materials{})[which]; }

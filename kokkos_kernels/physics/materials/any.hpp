@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "physics/materials/list.hpp"
+#include "physics/materials/stored.hpp"
 
 namespace mpm {
 
@@ -35,6 +37,16 @@ struct OneOf<T, ModelList<Models...>> {
 template <class T>
 using AnyMaterial = OneOf<T, Materials>;
 
+/// The material that a table of a device holds.
+template <class T>
+KOKKOS_INLINE_FUNCTION const AnyMaterial<T>& material_in(const StoredMaterial<T>& stored) {
+  static_assert(sizeof(AnyMaterial<T>) <= sizeof(StoredMaterial<T>) &&
+                    alignof(AnyMaterial<T>) <= alignof(StoredMaterial<T>) &&
+                    std::is_trivially_copyable_v<AnyMaterial<T>>,
+                "a law has more parameters than StoredMaterial has room for");
+  return *reinterpret_cast<const AnyMaterial<T>*>(stored.bytes);
+}
+
 /// A material by its model's index in Materials and its parameters in the order of the model's table. The
 /// last ones may be left out where they have defaults.
 template <class T>
@@ -45,7 +57,7 @@ template <template <class> class... Models>
 constexpr int most_state(ModelList<Models...>) {
   return Kokkos::max({1, state_size<Models<double>>...});
 }
-inline constexpr int k_most_state = most_state(Materials{});
+static_assert(most_state(Materials{}) <= k_most_state, "a law has more state variables than k_most_state");
 
 /// What is wrong with the parameters of a material together.
 ParameterFault parameter_fault(const AnyMaterial<double>& material);
