@@ -14,7 +14,7 @@ inline constexpr int k_most_state = 4;
 /// Room for an AnyMaterial of any law; material_in() of any.hpp gives the material.
 template <class T>
 struct StoredMaterial {
-  static constexpr std::size_t k_room = 16 + 32 * sizeof(T);  // bytes
+  static constexpr std::size_t k_room = 16 + 64 * sizeof(T);  // bytes
   alignas(16) unsigned char bytes[k_room];
 };
 
