@@ -165,7 +165,9 @@ std::string OptionReader::given_text(const std::string& name) const {
 
 void OptionReader::reject(const std::string& name, const std::string& takes) {
   const std::string what = given(name) ? "given " + quoted(given_text(name)) : "not given";
-  report_->errors.push_back("mpm: " + dashed(name) + ": " + what + ", takes " + takes);
+  const std::string line = "mpm: " + dashed(name) + ": " + what + ", takes " + takes;
+  auto& errors = report_->errors;  // several bodies may find the same mistake of their material
+  if (std::find(errors.begin(), errors.end(), line) == errors.end()) errors.push_back(line);
 }
 
 void OptionReader::warn(const std::string& name, const std::string& what) {

@@ -23,6 +23,7 @@ Sym6 stress_of(const BodyConfig& body, const ParticleTable& listed, std::size_t 
 
 void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config, const ParticleTable& listed,
                   BodyConfig& body) {
+  if (body.material < 0 || body.material >= static_cast<int>(config.materials.size())) return;  // reported
   const MaterialConfig& material = config.materials[body.material];
   const int up = config.dim - 1;
   body.largest_pressure = std::max(0.0, pressure_of(body.stress));
@@ -45,7 +46,7 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
 void prepare_for_pressure(double spacing, Config& config) {
   std::vector<double> largest(config.materials.size());
   for (const BodyConfig& body : config.bodies)
-    if (body.material < static_cast<int>(largest.size()))
+    if (body.material >= 0 && body.material < static_cast<int>(largest.size()))
       largest[body.material] = std::max(largest[body.material], body.largest_pressure);
   for (std::size_t m = 0; m < largest.size(); ++m) prepare_material(config.materials[m], spacing, largest[m]);
 }

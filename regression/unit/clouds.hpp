@@ -10,6 +10,7 @@
 #include <string>
 
 #include "functions/step_kernels.hpp"
+#include "physics/materials/any.hpp"
 #include "transfer/download.hpp"
 #include "transfer/upload.hpp"
 

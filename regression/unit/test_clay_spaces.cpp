@@ -6,8 +6,8 @@
 
 #include "compare.hpp"
 #include "element.hpp"
-#include "materials/cam_clay.hpp"
-#include "materials/softening_clay.hpp"
+#include "physics/materials/cam_clay.hpp"
+#include "physics/materials/softening_clay.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -108,7 +108,7 @@ Control control_with(double specific_volume) {
   auto s = state_of<B>(cloud);
   one_step(s, 1e-6);
   one_step(s, 1e-6);
-  return look(s);
+  return read_control(s);
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
                                   T v[M::size];
                                   for (int k = 0; k < M::size; ++k)
                                     v[k] = sign(k % Dim) * s.nodes.kinematics(i, k);
-                                  for (int k = 0; k < M::size; ++k) t.motion[k] += w * v[k];
+                                  for (int k = 0; k < M::size; ++k) t.kinematics[k] += w * v[k];
                                   for (int d = 0; d < Dim; ++d)
                                     for (int e = 0; e < Dim; ++e)
                                       t.gradient[d][e] += v[M::velocity + d] * grad[e] * inv;

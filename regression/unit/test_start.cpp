@@ -11,6 +11,7 @@
 
 #include "checkpoint/checkpoint.hpp"
 #include "input/particle_file.hpp"
+#include "mesh/background.hpp"
 #include "output/frame_fields.hpp"
 #include "output/frames.hpp"
 #include "step/stepper.hpp"
