@@ -53,12 +53,10 @@ struct Grid {
   int fields = 1;          // velocity fields
   Wall wall[Dim][2];       // lower and upper side of each direction
 
-  /// Place of a node [m from the mesh's lower corner], of one beyond the mesh that of the nearest within:
-  /// bodies go on beyond the mesh. exact: the spacing in double precision [m].
-  KOKKOS_INLINE_FUNCTION Vector<double, Dim> place_within(const Coord<Dim>& node, double exact) const {
-    Vector<double, Dim> x;
-    for (int d = 0; d < Dim; ++d) x[d] = Kokkos::max(0, Kokkos::min(node[d], cells[d])) * exact;
-    return x;
+  /// Coordinate d of a node [m from the mesh's lower corner], of one beyond the mesh that of the nearest
+  /// within: bodies go on beyond the mesh. exact: the spacing in double precision [m].
+  KOKKOS_INLINE_FUNCTION double coordinate_within(int d, int node, double exact) const {
+    return Kokkos::max(0, Kokkos::min(node, cells[d])) * exact;
   }
   KOKKOS_INLINE_FUNCTION bool holds(const Coord<Dim>& cell) const {
     for (int d = 0; d < Dim; ++d)

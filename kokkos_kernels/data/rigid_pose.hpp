@@ -17,10 +17,12 @@ struct RigidPose {
     for (int d = 0; d < Dim; ++d) place[d] = x[d] + displacement[d];
     return place;
   }
-  /// Which point of the body, as it was placed at the start, is at x now; both are in m.
-  KOKKOS_INLINE_FUNCTION Vector<double, Dim> to_body(const Vector<double, Dim>& x) const {
+  /// Which point of the body, as it was placed at the start, is at a place now. x(d): component d of the
+  /// place; both are in m. Where x(d) is a product, the compiler may round it and the difference once.
+  template <class Component>
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> to_body(const Component& x) const {
     Vector<double, Dim> point;
-    for (int d = 0; d < Dim; ++d) point[d] = x[d] - displacement[d];
+    for (int d = 0; d < Dim; ++d) point[d] = x(d) - displacement[d];
     return point;
   }
   /// The same pose for lengths in cells; spacing is in m.

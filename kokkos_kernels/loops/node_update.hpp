@@ -231,7 +231,7 @@ struct UpdateNodes {
 
   /// Place of a node in the frame of a rigid's surface [m].
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> place(const Rigid<Dim>& rigid, const Coord<Dim>& at) const {
-    return rigid.pose.to_body(places.grid.place_within(at, spacing));
+    return rigid.pose.to_body([&](int d) { return places.grid.coordinate_within(d, at[d], spacing); });
   }
 
   /// Area of a cell's face [m^2; m in 2D].

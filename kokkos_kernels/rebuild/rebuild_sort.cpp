@@ -252,9 +252,9 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
           }
           if (!holds) return;
           const Rigid<Dim>& rigid = rigids(r);
-          Coord<Dim> middle = origin(slot);
-          for (int d = 0; d < Dim; ++d) middle[d] += Patch<Dim>::edge / 2;
-          const auto place = rigid.pose.to_body(grid.place_within(middle, spacing));
+          const auto place = rigid.pose.to_body([&](int d) {
+            return grid.coordinate_within(d, origin(slot)[d] + Patch<Dim>::edge / 2, spacing);
+          });
           if (rigid.surface_normal && distance_to(rigid.surface, vertices, place).value > far) return;
           near(slot) = 1;
         });
