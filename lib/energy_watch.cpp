@@ -43,7 +43,7 @@ void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
                     (row.rigids[r].displacement[d] - last_.rigids[r].displacement[d])));
 }
 
-std::string EnergyWatch::look(const HistoryRow& row, const Config& config) {
+std::string EnergyWatch::check(const HistoryRow& row, const Config& config) {
   constexpr double k_slack = 0.5;  // of what has passed: forces are means over the rows
   const double now = kinetic_energy_of(row);
   if (lost_of(row) != lost_of(last_)) {  // the centre tells no work where soil has left

@@ -17,7 +17,7 @@ class EnergyWatch {
   /// fastest wave; less than 1e-10 of it is round-off.
   void begin(const HistoryRow& row, double wave_energy);
   /// What is wrong; empty if nothing.
-  std::string look(const HistoryRow& row, const Config& config);
+  std::string check(const HistoryRow& row, const Config& config);
 
  private:
   void add_work(const HistoryRow& row, const Config& config);

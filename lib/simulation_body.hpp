@@ -106,7 +106,7 @@ struct Simulation::Body {
   // simulation_time_step.cpp
   PetscErrorCode choose_time_step();
   PetscErrorCode follow_stiffness();
-  long next_look_at_waves() const;  // the step at which follow_stiffness has something to do
+  long next_stiffness_check() const;  // the step at which follow_stiffness has something to do
 
   // simulation_element.cpp
   bool is_element() const { return !config.element.file.empty(); }

@@ -46,7 +46,7 @@ class Run:
         return min(self.frames, key=lambda path: abs(time_of(path) - time), default=None)
 
     def moving_rigids(self):
-        return [name for name in self.words("rigids") if self.text(f"{name}_motion", "fixed") != "fixed"]
+        return [name for name in self.words("rigid_bodies") if self.text(f"{name}_motion", "fixed") != "fixed"]
 
 
 def read_options(folder):
@@ -54,7 +54,9 @@ def read_options(folder):
     if not path.exists():
         print(f"plot: {path} is missing: nothing is known of bodies and rigids", file=sys.stderr)
         return {}
-    return {name: text for name, text in json.loads(path.read_text())["options"].items() if text != "none"}
+    options = json.loads(path.read_text())["options"]
+    options.setdefault("rigid_bodies", options.pop("rigids", "none"))  # the word of older runs
+    return {name: text for name, text in options.items() if text != "none"}
 
 
 def read_history(path):

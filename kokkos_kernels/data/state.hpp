@@ -78,12 +78,12 @@ struct State {
   Summed summed;                  // what the step before has summed already
   bool forces_summed =
       false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them
-  bool rigid_moves = false;    // some rigid is not fixed
-  bool rigid_dynamic = false;  // some rigid moves by the forces on it
-  bool mass_normals = false;   // some rigid's normals are those of its mass gradient
-  bool soil_boundary = false;  // some contact needs the soil's boundary at the nodes
-  bool shear_share = false;    // some contact needs the soil's strength at the nodes
-  bool has_friction = false;   // some contact has Coulomb friction
+  bool rigid_moves = false;     // some rigid is not fixed
+  bool rigid_dynamic = false;   // some rigid moves by the forces on it
+  bool mass_normals = false;    // some rigid's normals are those of its mass gradient
+  bool soil_boundary = false;   // some contact needs the soil's boundary at the nodes
+  bool shear_fraction = false;  // some contact needs the soil's strength at the nodes
+  bool has_friction = false;    // some contact has Coulomb friction
 };
 
 }  // namespace mpm

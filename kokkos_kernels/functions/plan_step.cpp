@@ -22,11 +22,11 @@ StepPlan plan_step(const State<Space, T, Dim>& s) {
   plan.nodes_apart = is_device<Space> && !few && !s.rigid_points.empty() && s.near_count > 0;
   if (batches)
     plan.form = StepForm::out_of_core;
-  else if (is_device<Space> && plan.sums_ahead && few && one_rank && s.soil.points.count > 0 &&
-           ends_in_launch(s))
-    plan.form = StepForm::persistent;
   else if (plan.sums_ahead)
     plan.form = StepForm::fused;
+  if constexpr (is_device<Space>)
+    if (plan.form == StepForm::fused && few && one_rank && s.soil.points.count > 0 && ends_in_launch(s))
+      plan.form = StepForm::persistent;
   return plan;
 }
 

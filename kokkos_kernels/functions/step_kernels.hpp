@@ -33,6 +33,7 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
 /// Brings to the nodes the sums that update_particles has left in windows for update_nodes.
 template <class Space, class T, int Dim>
 void finish_sums(State<Space, T, Dim>& s);
+/// Persistent steps, which the program has for GPUs alone (persistent_launch.hpp).
 /// Whether one launch has room for function 5 with function 3 of the next step, function 6, and function 2 of
 /// the next step.
 template <class Space, class T, int Dim>

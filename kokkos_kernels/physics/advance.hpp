@@ -5,6 +5,7 @@
 #include "base/lanes.hpp"
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
+#include "physics/materials/any.hpp"
 #include "physics/pore_water.hpp"
 
 namespace mpm {
@@ -63,7 +64,7 @@ struct ParticleLaw {
   bool flies;
 
   KOKKOS_INLINE_FUNCTION void operator()(SymTensor<T, Dim>& stress, const Increment<T, T, Dim>& by) const {
-    const AnyMaterial<T>& of = soil.materials(material);
+    const AnyMaterial<T>& of = material_in(soil.materials(material));
     const bool undrained = soil.history.pore >= 0 && of.pore_stiffness > 0;
     if (flies) {
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = 0;
@@ -96,6 +97,17 @@ struct ParticleLaw {
       add_isotropic(stress, -excess);
     }
   }
+};
+
+/// Mean over the particles of a cell, weighted by volume.
+template <class T>
+struct CellMean {
+  T volume = 0, sum = 0;  // m3; m3 times the unit of what is averaged
+
+  /// weighted: the particle's volume times its value.
+  KOKKOS_INLINE_FUNCTION void add(T of_particle, T weighted) { volume += of_particle, sum += weighted; }
+  /// 0 in an empty cell.
+  KOKKOS_INLINE_FUNCTION T value() const { return volume > 0 ? sum / volume : T(0); }
 };
 
 /// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The fraction f_bar of
@@ -147,7 +159,7 @@ KOKKOS_INLINE_FUNCTION auto is_volume_limited(const Particle<R, Dim>& q, const U
 template <class Laws = Materials, class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool has_failed(const Soil<Space, T, Dim>& soil, int p) {
   bool failed = false;
-  const AnyMaterial<T>& of = soil.materials(soil.bodies(soil.body(p)).material);
+  const AnyMaterial<T>& of = material_in(soil.materials(soil.bodies(soil.body(p)).material));
   of.visit_as(Laws{}, of.which, [&](const auto& law) {
     if constexpr (can_fail<std::decay_t<decltype(law)>>()) failed = law.failed(soil.state_of(law, p));
   });
@@ -161,6 +173,22 @@ KOKKOS_INLINE_FUNCTION FaultKind fault_of(const Particle<T, Dim>& q, T moved, co
   if (!is_finite(q)) return FaultKind::not_finite;
   if (by.volume_is_fault && is_volume_limited(q, by)) return FaultKind::volume;
   return moved <= 1 ? FaultKind::none : FaultKind::too_fast;
+}
+
+/// Reports what is wrong with particle p after a step, if anything is. q: the particle, which moved by
+/// `moved` [cells]; origin: lower corner of its patch [cells].
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void report_fault(const ControlView<Space>& control, const Soil<Space, T, Dim>& soil,
+                                         int p, const Particle<T, Dim>& q, T moved,
+                                         const UpdateScalars<T>& by, const Coord<Dim>& origin,
+                                         double spacing) {
+  FaultKind fault = fault_of(q, moved, by);
+  if (fault == FaultKind::none) return;
+  if (fault == FaultKind::not_finite && has_failed(soil, p)) fault = FaultKind::law;
+  const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
+  double position[3] = {};
+  for (int d = 0; d < Dim; ++d) position[d] = (double(origin[d]) + cell[d] + q.x[d]) * spacing;
+  report(control, fault, soil.id(p), position, Dim);
 }
 
 }  // namespace mpm

@@ -98,14 +98,13 @@ KOKKOS_INLINE_FUNCTION Coord<Dim> in_mesh(const Coord<Dim>& origin, const Coord<
 
 /// Whether a particle is where put_on_walls() moves it: beyond a wall, or on the upper one, which belongs to no
 /// cell.
-template <class T, int Dim, class Cell>
-KOKKOS_INLINE_FUNCTION bool is_beyond_walls(const Grid<T, Dim>& grid, const Cell& cell,
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool is_beyond_walls(const Grid<T, Dim>& grid, const Coord<Dim>& cell,
                                             const Vector<T, Dim>& x) {
   bool beyond = false;
   for (int d = 0; d < Dim; ++d) {
-    const int c = cell(d);
-    beyond |= grid.wall[d][0] != Wall::free && static_cast<T>(-c) > x[d];
-    beyond |= grid.wall[d][1] != Wall::free && x[d] >= static_cast<T>(grid.cells[d] - c);
+    beyond |= grid.wall[d][0] != Wall::free && static_cast<T>(-cell[d]) > x[d];
+    beyond |= grid.wall[d][1] != Wall::free && x[d] >= static_cast<T>(grid.cells[d] - cell[d]);
   }
   return beyond;
 }

@@ -5,6 +5,7 @@
 #include "physics/p2g_terms.hpp"
 #include "physics/surface.hpp"
 #include "rebuild/batches.hpp"
+#include "physics/materials/any.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
@@ -252,12 +253,10 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
           }
           if (!holds) return;
           const Rigid<Dim>& rigid = rigids(r);
-          Vector<double, Dim> middle;  // bodies go on beyond the mesh
-          for (int d = 0; d < Dim; ++d) {
-            const int at = origin(slot)[d] + Patch<Dim>::edge / 2;
-            middle[d] = Kokkos::max(0, Kokkos::min(at, grid.cells[d])) * spacing - rigid.displacement[d];
-          }
-          if (rigid.surface_normal && distance_to(rigid.surface, vertices, middle).value > far) return;
+          const auto place = rigid.pose.to_body([&](int d) {
+            return grid.coordinate_within(d, origin(slot)[d] + Patch<Dim>::edge / 2, spacing);
+          });
+          if (rigid.surface_normal && distance_to(rigid.surface, vertices, place).value > far) return;
           near(slot) = 1;
         });
   }
@@ -275,7 +274,7 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
     s.boundary_windows.place = near;
     ensure(s.boundary_windows.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.near_count);
   }
-  if (s.shear_share && has_windows(s.space)) {
+  if (s.shear_fraction && has_windows(s.space)) {
     s.strength_windows.place = near;
     ensure(s.strength_windows.sums, window_bytes<StrengthSource<Space, T, Dim>> * s.near_count);
   }
@@ -294,7 +293,7 @@ void average_pore_pressure(State<Space, T, Dim>& s) {
       "mpm::average_pore_pressure", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
       KOKKOS_LAMBDA(int cell) {
         const auto has = [&](int p) {
-          return soil.materials(soil.bodies(soil.body(p)).material).pore_stiffness > 0;
+          return material_in(soil.materials(soil.bodies(soil.body(p)).material)).pore_stiffness > 0;
         };
         T volume = 0, sum = 0;
         for (int p = begin(cell); p < begin(cell + 1); ++p)
@@ -346,7 +345,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   ensure(s.nodes.kinematics, nodes);
   if (s.xpic_order > 0) ensure(s.nodes.residual, nodes);
   if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
-  if (s.shear_share) ensure(s.nodes.strength, nodes);
+  if (s.shear_fraction) ensure(s.nodes.strength, nodes);
   if (s.water.is_there()) ensure(s.nodes.displaced, nodes);
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid = decltype(s.nodes.rigid)(

@@ -1,5 +1,6 @@
 #include "transfer/measure.hpp"
 
+#include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
 
 namespace mpm {
@@ -47,7 +48,7 @@ struct Positions {
 /// Energy [J/m3] that particle p can give back, its pore water's among it.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION double stored_energy(const Soil<Space, T, Dim>& soil, int material, int p) {
-  const AnyMaterial<T>& of = soil.materials(material);
+  const AnyMaterial<T>& of = material_in(soil.materials(material));
   const double excess = soil.excess_pore_pressure(of, p);
   SymTensor<T, Dim> stress = soil.stress(p);
   add_isotropic(stress, static_cast<T>(excess));
@@ -133,7 +134,7 @@ double fastest_wave(const State<Space, T, Dim>& s) {
       "mpm::fastest_wave", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
       KOKKOS_LAMBDA(int p, double& largest) {
         const auto of = soil.properties(p);
-        const AnyMaterial<T>& material = soil.materials(of.material);
+        const AnyMaterial<T>& material = material_in(soil.materials(of.material));
         SymTensor<T, Dim> stress = soil.stress(p);
         add_isotropic(stress, soil.excess_pore_pressure(material, p));
         material.visit([&](const auto& law) {

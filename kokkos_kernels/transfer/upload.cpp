@@ -166,10 +166,8 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
-    AnyMaterial<T> material =
-        make_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get());
-    material.pore_stiffness = static_cast<T>(materials[m].pore_stiffness);
-    return material;
+    return store_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get(),
+                             materials[m].pore_stiffness);
   });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
   s.light_laws = true;
@@ -243,7 +241,7 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
     rigid.mass = particle_mass * (rigids[r].position.size() / Dim);
     rigid.dynamic = rigids[r].dynamic;
     rigid.shear_limit = rigids[r].shear_limit;
-    rigid.shear_share = rigids[r].shear_share > 0 ? rigids[r].shear_share : -1;
+    rigid.shear_fraction = rigids[r].shear_fraction > 0 ? rigids[r].shear_fraction : -1;
     rigid.friction = rigids[r].friction;
     rigid.surface_normal = rigids[r].surface_normal;
     rigid.separates = rigids[r].separates;
@@ -300,15 +298,16 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.strays.least_volume = k_least_volume * smallest, s.strays.most_volume = k_most_volume * largest;
   s.strays.lost.assign(bodies.size(), {});
   s.strays.put_back = decltype(s.strays.put_back)("mpm::put_back", bodies.size());
-  s.rigid_moves = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.shear_share = s.has_friction = false;
+  s.rigid_moves = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.shear_fraction = s.has_friction =
+      false;
   for (const RigidInput& rigid : rigids) {
     s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.velocity != std::array<double, 3>{};
     s.rigid_dynamic = s.rigid_dynamic || rigid.dynamic;
     s.has_friction = s.has_friction || rigid.friction > 0;
     s.mass_normals = s.mass_normals || !rigid.surface_normal;
     s.soil_boundary = s.soil_boundary || rigid.surface_normal || rigid.shear_limit > 0 || rigid.reach > 0;
-    s.shear_share = s.shear_share || rigid.shear_share > 0;
-    s.soil_boundary = s.soil_boundary || rigid.shear_share > 0;
+    s.shear_fraction = s.shear_fraction || rigid.shear_fraction > 0;
+    s.soil_boundary = s.soil_boundary || rigid.shear_fraction > 0;
   }
   s.control = ControlView<Space>("mpm::control");
   s.launch_barrier = decltype(s.launch_barrier)("mpm::launch_barrier");

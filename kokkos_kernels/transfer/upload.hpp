@@ -69,7 +69,7 @@ struct RigidInput {
   bool dynamic = false;
   std::array<bool, 3> held{};  // a plane of symmetry cuts it, across which it does not move
   double shear_limit = 0;      // Pa, infinite where only the friction limits
-  double shear_share = -1;     // -, of the soil's strength instead of the limit; negative: none
+  double shear_fraction = -1;  // -, of the soil's strength instead of the limit; negative: none
   double friction = -1;        // -, negative: none
   SurfaceInput surface;
   bool surface_normal = false;  // contact normals from the surface, not from the mass gradient

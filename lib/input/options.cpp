@@ -43,12 +43,10 @@ void read_run(OptionReader& in, const std::vector<Backend>& backends, Config& co
 }
 
 void read_p2g(OptionReader& in, P2GConfig& p2g) {
-  static const Words<P2G> words = {
-      {"sequential", P2G::sequential}, {"atomic", P2G::atomic}, {"mosaic", P2G::mosaic},
-      {"gather", P2G::gather},         {"tile", P2G::tile},     {"auto", P2G::automatic}};
+  static const Words<P2G> words(std::begin(k_p2g_words), std::end(k_p2g_words));
   in.section("Particle-to-node interpolation");
   in.word({.name = "p2g", .meaning = "strategy; auto is the fastest for the backend"}, words, p2g.strategy);
-  in.number({.name = "p2g_margin",
+  in.number({.name = "rebuild_margin",
              .meaning = "how far a particle may move before lists and bins are rebuilt",
              .unit = "cells",
              .range = {.lowest = 0, .highest = 0.5, .open_lowest = true}},
@@ -162,16 +160,16 @@ void read_velocity_update(OptionReader& in, Config& config) {
           update);
   const std::string chosen = "-velocity_update is " + std::string(in.given_text("velocity_update"));
   const bool xpic = update == VelocityUpdate::xpic;
-  if (update != VelocityUpdate::flip) config.flip_share = 0;
+  if (update != VelocityUpdate::flip) config.flip_fraction = 0;
   if (update == VelocityUpdate::flip || xpic)
-    in.number({.name = "flip_share",
-               .meaning = "share of FLIP in the velocity update, the rest PIC, or XPIC with xpic",
+    in.number({.name = "flip_fraction",
+               .meaning = "fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic",
                .unit = "-",
                .range = {.lowest = 0, .highest = 1},
                .standard = in.listing() ? "1 with flip, 0 with xpic" : ""},
-              config.flip_share);
+              config.flip_fraction);
   else
-    in.not_taken("flip_share", chosen);
+    in.not_taken("flip_fraction", chosen);
   if (xpic || in.listing())
     in.integer({.name = "xpic_order",
                 .meaning = "order m of XPIC(m): the higher, the less it damps",
@@ -201,11 +199,11 @@ void read_physics(OptionReader& in, Config& config) {
            "leave the run; stop: the run ends with exit status 3"},
       Words<StrayRule>{{"keep", StrayRule::keep}, {"remove", StrayRule::remove}, {"stop", StrayRule::stop}},
       config.stray_particles);
-  in.number({.name = "f_bar_share",
-             .meaning = "share of the cell's mean in a particle's dilatation (F-bar), against locking",
+  in.number({.name = "f_bar_fraction",
+             .meaning = "fraction of the cell's mean in a particle's dilatation (F-bar), against locking",
              .unit = "-",
              .range = {.lowest = 0, .highest = 1}},
-            config.f_bar_share);
+            config.f_bar_fraction);
 }
 
 /// What frames hold.

@@ -165,7 +165,7 @@ struct Step {
     PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt, stream); }));
     if (parted) overlap->join(s.space);
     if (parted && !ranks) sum_forces(s, stream);
-    PetscCall(run(StepPhase::particles, [&] { ends ? update_and_end(s, dt) : update_patches(); }));
+    PetscCall(run(StepPhase::particles, [&] { update_patches_and(ends); }));
     if (!ends) PetscCall(run(StepPhase::rigids, [&] { return update_rigids(parts && !ranks); }));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -194,19 +194,21 @@ struct Step {
   /// `left` by the number of steps done.
   PetscErrorCode persistent(long* left) const {
     PetscFunctionBeginUser;
-    if (timers.sampling() || !can_persist(s)) {
-      --*left;
-      PetscCall(fused());
-      PetscFunctionReturn(PETSC_SUCCESS);
+    if constexpr (is_device<Space>) {
+      if (!timers.sampling() && can_persist(s)) {
+        const long most = *left;
+        const auto steps = [&] {  // functions 4 to 6, and 1 to 3 of the next step
+          const long done = run_persistent_steps(s, dt, most);
+          *left -= done;
+          return done;
+        };
+        joined();
+        PetscCall(timers.run_many(StepPhase::persistent, most, steps, [&] { s.space.fence("mpm::step"); }));
+        PetscFunctionReturn(PETSC_SUCCESS);
+      }
     }
-    const long most = *left;
-    const auto steps = [&] {  // functions 4 to 6, and 1 to 3 of the next step
-      const long done = run_persistent_steps(s, dt, most);
-      *left -= done;
-      return done;
-    };
-    joined();
-    PetscCall(timers.run_many(StepPhase::persistent, most, steps, [&] { s.space.fence("mpm::step"); }));
+    --*left;
+    PetscCall(fused());
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
@@ -229,7 +231,7 @@ struct Step {
 
   /// Whether nodes near rigids may go to the overlap stream. Functions that are timed have the device for
   /// themselves.
-  bool has_stream() const { return overlap && s.plan.nodes_apart && !s.shear_share && !timers.sampling(); }
+  bool has_stream() const { return overlap && s.plan.nodes_apart && !s.shear_fraction && !timers.sampling(); }
   /// The state's own stream, behind all work of the overlap stream.
   const Space& joined() const {
     if (overlap) overlap->join(s.space);
@@ -246,7 +248,7 @@ struct Step {
   /// What only some runs ask of the nodes: the soil's strength, and which particles are alone till a rebuild.
   PetscErrorCode complete_nodes(const Space& stream) const {
     PetscFunctionBeginUser;
-    if (s.shear_share) PetscCall(strength_to_nodes(s, ranks));
+    if (s.shear_fraction) PetscCall(strength_to_nodes(s, ranks));
     if (!s.strays.known) mark_strays(s, stream);
     if (wants_split(s) && s.split.parts.empty()) split_patches(s, stream);
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -258,6 +260,12 @@ struct Step {
     const bool aside = overlap && s.split.has_others() && !timers.sampling();
     update_particles(s, dt, part..., aside ? overlap->fork(s.space) : s.space);
     if (aside) overlap->join(s.space);
+  }
+  /// Function 5, and with the same launch the end of the step where `ends`.
+  void update_patches_and(bool ends) const {
+    if constexpr (is_device<Space>)
+      if (ends) return update_and_end(s, dt);
+    update_patches();
   }
   PetscErrorCode update_soil() const {
     PetscFunctionBeginUser;

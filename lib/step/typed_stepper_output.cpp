@@ -50,7 +50,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
     if (ranks_ && !ranks_->forces_shared())
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, impulse, Dim, MPI_DOUBLE, MPI_SUM, comm_));
     for (int d = 0; d < Dim; ++d) {
-      rigid.displacement[d] = r.displacement[d];
+      rigid.displacement[d] = r.pose.displacement[d];
       rigid.velocity[d] = r.velocity[d];
       rigid.force[d] = interval > 0 ? impulse[d] / interval : 0;
     }
@@ -230,12 +230,12 @@ std::string TypedStepper<Space, T, Dim>::batches_report() const {
       batches, most, stay, turns, b.places - stay, memory_of(state_) / k_gib, b.limit / k_gib,
       b.store.extent(0) / k_gib);
   const BatchCost& c = b.cost;
-  if (turns == 0 || c.apart == 0 || c.steps == c.apart || stepping_ <= 0) return text;
-  // Means of a step; what copies and kernels take alone is from the steps that were taken apart.
+  if (turns == 0 || c.sampled == 0 || c.steps == c.sampled || stepping_ <= 0) return text;
+  // Means of a step; what copies and kernels take alone is from the steps that were sampled.
   const double in = c.copied_in / c.steps, out = c.copied_out / c.steps;
-  const double in_alone = c.in_seconds / c.apart, out_alone = c.out_seconds / c.apart;
-  const double kernels = c.kernel_seconds / c.apart, update = c.seconds / (c.steps - c.apart);
-  const double beside = std::max(0.0, stepping_ - c.seconds - c.apart * (in_alone + kernels + out_alone));
+  const double in_alone = c.in_seconds / c.sampled, out_alone = c.out_seconds / c.sampled;
+  const double kernels = c.kernel_seconds / c.sampled, update = c.seconds / (c.steps - c.sampled);
+  const double beside = std::max(0.0, stepping_ - c.seconds - c.sampled * (in_alone + kernels + out_alone));
   const double step = update + beside / c.steps;
   text += formatted("\n  a step copies %.4g MB to the device and %.4g MB back, alone at %.1f and %.1f GB/s",
                     in / 1e6, out / 1e6, in / in_alone / 1e9, out / out_alone / 1e9);

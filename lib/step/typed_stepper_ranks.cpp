@@ -85,7 +85,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
       batch->failure.what = formatted(
           "a particle moved %.3g cells since the last rebuild, and the lists hold for %.3g: its speed grew "
           "more "
-          "than by half while the ranks exchanged their bounds; lower -time_courant or -p2g_margin",
+          "than by half while the ranks exchanged their bounds; lower -time_courant or -rebuild_margin",
           own.bound, margin);
     PetscCall(share(&batch->failure));
   }

@@ -24,7 +24,7 @@ import plot_fields  # noqa: E402
 import plot_film  # noqa: E402
 import results  # noqa: E402
 
-CUBE = {"dim": "3", "mesh_lower": "0,0,0", "mesh_upper": "4,4,2", "mesh_spacing": "0.5", "bodies": "soil", "rigids": "pile",
+CUBE = {"dim": "3", "mesh_lower": "0,0,0", "mesh_upper": "4,4,2", "mesh_spacing": "0.5", "bodies": "soil", "rigid_bodies": "pile",
         "pile_motion": "prescribed", "mesh_ymin": "roller"}
 
 

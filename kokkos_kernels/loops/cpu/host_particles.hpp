@@ -106,7 +106,7 @@ struct LawLanes {
   KOKKOS_FORCEINLINE_FUNCTION void update(int m, SymTensor<R, Dim>& stress, const Increment<R, T, Dim>& by,
                                           const Active& active, const Kept& kept,
                                           const KeptPressure& kept_pressure) const {
-    const AnyMaterial<T>& of = soil.materials.data()[m];
+    const AnyMaterial<T>& of = material_in(soil.materials.data()[m]);
     const bool undrained = soil.history.pore >= 0 && of.pore_stiffness > 0;
     R excess = 0;
     if (undrained) {
@@ -226,10 +226,10 @@ struct HostParticles {
     take(nodes, from, to, stage);
     if (by.f_bar > 0) weigh_dilatation(from, to, stage);
     for (int k = c; k < end; ++k) {
-      T volume = 0, sum = 0;
+      CellMean<T> dilatation;
       const int first = begin(slot * cells + k), last = begin(slot * cells + k + 1);
-      if (by.f_bar > 0) add_dilatation(first, last, stage, from, volume, sum);
-      const T mean = volume > 0 ? sum / volume : T(0);
+      if (by.f_bar > 0) add_dilatation(first, last, stage, from, dilatation);
+      const T mean = dilatation.value();
       for (int p = first; p < last; ++p) stage.mean[p - from] = mean;
     }
     for (int n = to - from; n % W != 0; ++n) stage.mean[n] = stage.mean[n - 1];
@@ -239,7 +239,7 @@ struct HostParticles {
   /// One cell with more particles than the stage holds: they take from the nodes twice.
   void move_crowd(Window nodes, int slot, int c, Stage& stage, R& moved) const {
     const int from = begin(slot * cells + c), to = begin(slot * cells + c + 1);
-    T volume = 0, sum = 0;
+    CellMean<T> dilatation;
     for (int pass = by.f_bar > 0 ? 0 : 1; pass < 2; ++pass)
       for (int first = from; first < to; first += k_room) {
         const int last = Kokkos::min(first + k_room, to);
@@ -247,10 +247,10 @@ struct HostParticles {
         take(nodes, first, last, stage);
         if (pass == 0) {
           weigh_dilatation(first, last, stage);
-          add_dilatation(first, last, stage, first, volume, sum);
+          add_dilatation(first, last, stage, first, dilatation);
           continue;
         }
-        for (int n = 0; n < k_room; ++n) stage.mean[n] = volume > 0 ? sum / volume : T(0);
+        for (int n = 0; n < k_room; ++n) stage.mean[n] = dilatation.value();
         for (int p = first; p < last; p += W)
           move_block(p, Kokkos::min(W, last - p), slot, stage, p - first, moved);
       }
@@ -313,13 +313,9 @@ struct HostParticles {
       (rate * volume).store(stage.mean + (p - from));
     }
   }
-  /// Adds the volumes [m3] of the particles [first, last), and with their dilatation rates [m3/s]. from: the
-  /// first particle of the stage.
-  void add_dilatation(int first, int last, const Stage& stage, int from, T& volume, T& sum) const {
-    for (int p = first; p < last; ++p) {
-      volume += soil.volume(p);
-      sum += stage.mean[p - from];
-    }
+  /// Adds the dilatation rates of the particles [first, last). from: the first particle of the stage.
+  void add_dilatation(int first, int last, const Stage& stage, int from, CellMean<T>& dilatation) const {
+    for (int p = first; p < last; ++p) dilatation.add(soil.volume(p), stage.mean[p - from]);
   }
 
   /// `count` particles from p on, of the stage from n on; `moved` by lane.
@@ -380,13 +376,7 @@ struct HostParticles {
       for (int d = 0; d < Dim; ++d) q.x[d] = block.x[d][l], q.v[d] = block.v[d][l];
       q.volume = block.volume[l];
       for (int k = 0; k < sym_size<Dim>; ++k) q.stress[k] = block.stress[k][l];
-      FaultKind fault = fault_of(q, moved[l], by);
-      if (fault == FaultKind::none) continue;
-      if (fault == FaultKind::not_finite && has_failed(soil, p + l)) fault = FaultKind::law;
-      const Coord<Dim> cell = coord_of<Dim>(soil.cell(p + l));
-      double position[3] = {};
-      for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
-      report(control, fault, soil.id(p + l), position, Dim);
+      report_fault(control, soil, p + l, q, moved[l], by, origin(slot), spacing);
     }
   }
 };

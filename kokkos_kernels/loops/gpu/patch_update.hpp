@@ -214,7 +214,7 @@ struct UpdateParticles {
     if (flies) q.volume = soil.volume(p);
     soil.coordinate(p) = q.x;
     soil.velocity(p) = q.v;
-    if constexpr (kind != PatchKind::common) put_back_particle(images, place, p, q);
+    if constexpr (kind != PatchKind::common) put_back_particle(images, slot, place, p, q);
     soil.volume(p) = q.volume;
     soil.stress(p) = q.stress;
     FaultKind fault = fault_of(q, own, by);
@@ -230,13 +230,16 @@ struct UpdateParticles {
   }
 
   /// Brings particle p, which may have passed a wall, back to it. In memory, where that takes few registers.
-  KOKKOS_INLINE_FUNCTION void put_back_particle(const Images& images, int place, int p,
+  KOKKOS_INLINE_FUNCTION void put_back_particle(const Images& images, int slot, int place, int p,
                                                 Particle<T, Dim>& q) const {
     const auto& soil = source.points;
-    const auto cell_along = [&](int d) {
-      return images.origin[d] + (place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1));
+    // The loops of put_on_walls read the patch's place from memory: indexed by a variable, `images` and with
+    // it the kernel's arguments would be copied to the memory of each thread.
+    const auto in_patch = [&](int d) {
+      return place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1);
     };
-    if (!images.at_wall || !is_beyond_walls(grid, cell_along, q.x)) return;
+    const auto cell_along = [&](int d) { return origin(slot)[d] + in_patch(d); };
+    if (!images.at_wall || !is_beyond_walls(grid, in_mesh(images.origin, coord_of<Dim>(place)), q.x)) return;
     if (put_on_walls(grid, cell_along, soil.coordinate(p), soil.velocity(p)))
       Kokkos::atomic_inc(&put_back(soil.body(p)));
     q.x = soil.coordinate(p), q.v = soil.velocity(p);

@@ -91,6 +91,17 @@ std::shared_ptr<const void> make_object(int which, const LawSetup& setup, Parame
   return object;
 }
 
+template <class T>
+StoredMaterial<T> store_material(int which, const std::vector<double>& parameters, const void* object,
+                                 double pore_stiffness) {
+  StoredMaterial<T> stored{};
+  auto* const material = new (stored.bytes) AnyMaterial<T>(make_material<T>(which, parameters, object));
+  material->pore_stiffness = static_cast<T>(pore_stiffness);
+  return stored;
+}
+template StoredMaterial<float> store_material<float>(int, const std::vector<double>&, const void*, double);
+template StoredMaterial<double> store_material<double>(int, const std::vector<double>&, const void*, double);
+
 std::vector<const char*> material_models() { return names(Materials{}); }
 
 std::vector<StateVariable> state_variables(int which) { return tables(Materials{})[which]; }

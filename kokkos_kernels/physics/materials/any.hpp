@@ -10,6 +10,7 @@
 
 #include "base/spaces.hpp"
 #include "physics/materials/list.hpp"
+#include "physics/materials/stored.hpp"
 
 namespace mpm {
 
@@ -51,6 +52,16 @@ struct OneOf<T, ModelList<Models...>> {
 template <class T>
 using AnyMaterial = OneOf<T, Materials>;
 
+/// The material that a table of a device holds.
+template <class T>
+KOKKOS_INLINE_FUNCTION const AnyMaterial<T>& material_in(const StoredMaterial<T>& stored) {
+  static_assert(sizeof(AnyMaterial<T>) <= sizeof(StoredMaterial<T>) &&
+                    alignof(AnyMaterial<T>) <= alignof(StoredMaterial<T>) &&
+                    std::is_trivially_copyable_v<AnyMaterial<T>>,
+                "a law has more parameters than StoredMaterial has room for");
+  return *reinterpret_cast<const AnyMaterial<T>*>(stored.bytes);
+}
+
 /// A material by its model's index in Materials and its parameters in the order of the model's table. The
 /// last ones may be left out where they have defaults. object: what make_object made, which must stay.
 template <class T>
@@ -64,8 +75,9 @@ template <template <class> class... Models>
 constexpr int most_state(ModelList<Models...>, bool device) {
   return Kokkos::max({1, device && on_host_in_double<Models<double>>() ? 0 : state_size<Models<double>>...});
 }
-template <class Space>
-inline constexpr int k_most_state = most_state(Materials{}, is_device<Space>);
+static_assert(most_state(Materials{}, true) <= k_most_state_on_device &&
+                  most_state(Materials{}, false) <= k_most_state_on_host,
+              "a law has more state variables than there is room for");
 
 /// What is wrong with the parameters of a material together.
 ParameterFault parameter_fault(const AnyMaterial<double>& material);

@@ -28,7 +28,7 @@ struct CamClay {
 
   T critical_state_ratio, lambda, kappa, poisson, shear_modulus, specific_volume_start, ocr,
       preconsolidation_start, pressure_min;
-  T shear_share;  // -, G over K where Poisson's ratio is constant, else 0
+  T shear_ratio;  // -, G over K where Poisson's ratio is constant, else 0
   T least;        // Pa, pressure_min or its default
 
   static constexpr auto parameters() {
@@ -63,7 +63,7 @@ struct CamClay {
   /// Called once the parameters are set.
   void prepare() {
     const double nu = poisson;
-    shear_share = shear_modulus > 0 ? T(0) : static_cast<T>(3 * (1 - 2 * nu) / (2 * (1 + nu)));
+    shear_ratio = shear_modulus > 0 ? T(0) : static_cast<T>(3 * (1 - 2 * nu) / (2 * (1 + nu)));
     least = pressure_min > 0 ? pressure_min : static_cast<T>(k_standard_least);
   }
   /// The default of pressure_min follows from the initial stress.
@@ -154,7 +154,7 @@ struct CamClay {
 
  private:
   KOKKOS_INLINE_FUNCTION T shear_modulus_of_step(T bulk_modulus) const {
-    return shear_share > 0 ? shear_share * bulk_modulus : shear_modulus;
+    return shear_ratio > 0 ? shear_ratio * bulk_modulus : shear_modulus;
   }
 
   /// One sub-increment of strain `e`.

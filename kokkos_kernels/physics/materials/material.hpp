@@ -94,7 +94,7 @@ struct Clock {
 /// What a step does to a particle, as its law sees it. R: the real type T, or lanes of it.
 template <class R, class T, int Dim>
 struct Increment {
-  SymTensor<R, Dim> strain;  // -, tensor shear strains, with the cell's share of dilatation (F-bar)
+  SymTensor<R, Dim> strain;  // -, tensor shear strains, with the cell's fraction of dilatation (F-bar)
   Spin<R, Dim> spin;         // -
   R gradient[Dim][Dim];      // 1/s, L_ij = dv_i/dx_j
   T dt;                      // s

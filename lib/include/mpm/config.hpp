@@ -90,13 +90,13 @@ struct RigidConfig {
   double density = 0;              // kg/m3 (dynamic)
   Vec3 force{};                    // N, external (dynamic), beside gravity
   double shear_limit = 0;          // Pa, largest shear stress of the interface; 0 is smooth
-  std::optional<double> shear_share;  // -, the limit as a share of the soil's strength, instead of it
+  std::optional<double> shear_fraction;  // -, the limit as a fraction of the soil's strength, instead of it
   std::optional<double> friction;     // -, Coulomb coefficient
   ContactNormal contact_normal = ContactNormal::surface;
   bool separates = true;         // the soil may part from it
-  bool penalty = true;           // the normal correction decreases with the gap (Geo-contact)
-  double penalty_reach = 0.15;   // cells, gap at which it ends
-  double penalty_exponent = 6;   // -
+  bool contact_gap_scaling = true;  // the normal correction decreases with the gap (Geo-contact)
+  double contact_gap_reach = 0.15;  // cells, gap at which it ends
+  double contact_gap_exponent = 6;  // -
   bool has_shear_limit = false;  // -NAME_shear_limit was given (it then bounds the friction too)
 };
 
@@ -121,7 +121,7 @@ struct P2GConfig {
 /// METIS cuts.
 enum class PartitionKind { box, metis };
 
-/// How the shares of nodes travel from rank to rank (-halo_path): through the host's memory, by MPI from
+/// How the ghost sums of nodes travel from rank to rank (-halo_path): through the host's memory, by MPI from
 /// where kernels run, or straight into the other rank's memory.
 enum class HaloPath { automatic, host, device, peer };
 
@@ -129,7 +129,7 @@ struct PartitionConfig {
   PartitionKind kind = PartitionKind::box;
   double rebalance_threshold = 1.1;  // -, largest over mean work of the ranks above which METIS cuts anew
   HaloPath halo_path = HaloPath::automatic;
-  bool halo_overlap = true;  // shares travel while other patches are computed
+  bool halo_overlap = true;  // ghost sums travel while other patches are computed
 };
 
 enum class Progress { automatic, on, off };
@@ -198,9 +198,9 @@ struct Config {
   double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
   VelocityUpdate velocity_update = VelocityUpdate::flip;
   int xpic_order = 2;         // -, m of XPIC(m), with xpic
-  double flip_share = 1;      // -, share of FLIP in the velocity update, the rest PIC, or XPIC with xpic
+  double flip_fraction = 1;   // -, fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic
   StrayRule stray_particles = StrayRule::keep;
-  double f_bar_share = 0.98;  // -, share of the cell's mean in a particle's dilatation (F-bar)
+  double f_bar_fraction = 0.98;  // -, fraction of the cell's mean in a particle's dilatation (F-bar)
   std::vector<MaterialConfig> materials;
   std::vector<BodyConfig> bodies;
   std::vector<RigidConfig> rigids;
