@@ -9,7 +9,7 @@
 namespace mpm {
 
 /// Looks at the rows of the history. Soil has the kinetic and elastic energy that it began with, and what
-/// gravity and the rigids do on it; more kinetic energy than that by half of what has ever passed is a fault
+/// gravity, water and the rigids do on it; more kinetic energy than that by half of what has ever passed is a fault
 /// of the computation.
 class EnergyWatch {
  public:

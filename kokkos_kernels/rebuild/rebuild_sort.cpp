@@ -2,10 +2,10 @@
 // points are put in order of id, so that the result does not depend on how threads ran.
 
 #include "functions/step_kernels.hpp"
+#include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
 #include "physics/surface.hpp"
 #include "rebuild/batches.hpp"
-#include "physics/materials/any.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {

@@ -2,6 +2,7 @@
 
 #include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
+#include "physics/pore_water.hpp"
 
 namespace mpm {
 namespace {
@@ -25,7 +26,7 @@ struct Sum {
     }
     m.kinetic_energy += other.m.kinetic_energy;
     m.stored_energy += other.m.stored_energy;
-    m.mass += other.m.mass, m.weight += other.m.weight, m.displaced += other.m.displaced;
+    m.mass += other.m.mass, m.weight += other.m.weight, m.water_energy += other.m.water_energy;
     m.count += other.m.count, m.alone += other.m.alone, m.limited += other.m.limited;
     return *this;
   }
@@ -55,6 +56,23 @@ KOKKOS_INLINE_FUNCTION double stored_energy(const Soil<Space, T, Dim>& soil, int
   double energy = excess == 0 ? 0 : excess * excess / (2 * double(of.pore_stiffness));
   of.visit([&](const auto& law) { energy += law.stored_energy(stress, soil.state_of(law, p)); });
   return energy;
+}
+
+/// Energy [J] of the water that particle p displaces, from nothing far above the level: its weight times the
+/// integral of the submerged share over the depth.
+template <class Space, class T, int Dim, class Density>
+KOKKOS_INLINE_FUNCTION double water_energy(const Soil<Space, T, Dim>& soil, const Water<Dim>& water,
+                                           const Density& density, const Positions<Space, T, Dim>& position,
+                                           int p) {
+  const BodyProperties<T> body = soil.properties(p);
+  Vector<double, Dim> x;
+  for (int d = 0; d < Dim; ++d) x[d] = position(p, d);
+  double reach = 0;
+  for (int d = 0; d < Dim; ++d)
+    reach += double(body.half_length.l) * position.spacing * Kokkos::fabs(water.down[d]);
+  const double depth = water.depth(x), in = Kokkos::fmax(0.0, Kokkos::fmin(2 * reach, depth + reach));
+  const double sunk = in * in / (4 * reach) + Kokkos::fmax(0.0, depth - reach);  // m
+  return water.density * water.gravity * sunk * double(body.mass) / density(soil.body(p));
 }
 
 /// A coordinate as a whole number of steps from the lower end of an extent. It never falls where x grows, so
@@ -93,7 +111,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   const auto alone = s.strays.alone;
   const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
   const auto water = s.water;
-  const DisplacedSource<Space, T, Dim> displaced{soil, water, s.density, s.patches.origin, s.spacing};
+  const auto density = s.density;
   Sum<Dim> total;
   Kokkos::parallel_reduce(
       "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, (count + together - 1) / together),
@@ -114,7 +132,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
           }
           own.m.mass += mass, own.m.weight += weight;
           own.m.stored_energy += double(soil.volume(p)) * stored_energy(soil, common.material, p);
-          if (water.is_there()) own.m.displaced += displaced.load(p).mass;
+          if (water.is_there()) own.m.water_energy += water_energy(soil, water, density, position, p);
           own.m.alone += is_alone(alone, soil.cell(p));
           own.m.limited += soil.volume(p) <= least || soil.volume(p) >= most;
           ++own.m.count;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "physics/materials/any.hpp"
 #include "physics/pore_water.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/velocity_gradients.hpp"

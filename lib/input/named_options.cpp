@@ -281,7 +281,7 @@ void read_only_material(OptionReader& in, Config& config) {
         "the name of one material with -element_path; give the one to drive, as -materials " + materials[0]);
     for (const auto& name : materials) in.ignore(name + "_");
   } else if (!materials.empty()) {
-    read_material(in, materials[0], config.materials.emplace_back());
+    read_material(in, materials[0], nullptr, config, config.materials.emplace_back());
   }
 }
 

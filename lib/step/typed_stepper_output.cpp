@@ -140,11 +140,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     }
     body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
     body.state = state_fields(config_.materials[config_.bodies[b].material], soil, from, to);
-    if (has_pore_pressure(config_)) {
-      const bool undrained = config_.materials[config_.bodies[b].material].pore_stiffness > 0;
-      const int pore = state_.soil.points.history.pore;
-      add_pore_pressures<Dim>(config_, soil, undrained ? pore : -1, from, to, &body);
-    }
+    if (has_pore_pressure(config_))  // of all bodies, so that pictures may show them
+      add_pore_pressures<Dim>(config_, soil, state_.soil.points.history.pore, from, to, &body);
     body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
     body.reference_height.assign(height.begin() + from, height.begin() + to);
     if (ranks_)

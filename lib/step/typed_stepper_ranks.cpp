@@ -145,7 +145,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
     reduce(m.momentum, 3, MPI_DOUBLE, MPI_SUM);
     reduce(m.centre, 3, MPI_DOUBLE, MPI_SUM);
     reduce(&m.mass, 1, MPI_DOUBLE, MPI_SUM);
-    reduce(&m.displaced, 1, MPI_DOUBLE, MPI_SUM);
+    reduce(&m.water_energy, 1, MPI_DOUBLE, MPI_SUM);
     reduce(&m.weight, 1, MPI_DOUBLE, MPI_SUM);
     for (long* count : {&m.count, &m.alone, &m.limited}) reduce(count, 1, MPI_LONG, MPI_SUM);
     reduce(&speed, 1, MPI_DOUBLE, MPI_MAX);
@@ -154,7 +154,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
     over.largest = [=](double* value) { reduce(value, 1, MPI_DOUBLE, MPI_MAX); };
   }
   PetscCall(note_out_of_order(b, body));
-  body->mass = m.mass, body->displaced_mass = m.displaced, body->strays = m.alone, body->limited = m.limited;
+  body->mass = m.mass, body->water_energy = m.water_energy, body->strays = m.alone, body->limited = m.limited;
   if (m.count == 0) PetscFunctionReturn(PETSC_SUCCESS);
   const long rank = m.count - m.count / 1000;  // of the 99.9th percentile, the nearest one above
   const Vec3& origin = config_.mesh.lower;

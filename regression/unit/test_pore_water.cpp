@@ -85,6 +85,17 @@ void put_at_rest(Cloud& cloud, const Water<Dim>& water, double top, int per_cell
   }
 }
 
+/// Mass of the water that all particles displace [kg].
+template <class Space, class T, int Dim>
+double displaced_by(const State<Space, T, Dim>& s) {
+  const DisplacedSource<Space, T, Dim> source{s.soil.points, s.water, s.density, s.patches.origin, s.spacing};
+  double total = 0;
+  Kokkos::parallel_reduce(
+      "test::displaced", Kokkos::RangePolicy<Space>(0, s.soil.points.count),
+      KOKKOS_LAMBDA(int p, double& sum) { sum += source.load(p).mass; }, total);
+  return total;
+}
+
 }  // namespace
 
 TEST_CASE("a particle is submerged by its share below the level", "[pore_water]") {
@@ -118,8 +129,7 @@ TEST_CASE("nodes get the water that the particles displace, by every strategy", 
           const double force = soil.value[i * soil.width + SoilTerms<Dim>::force + Dim - 1];
           wrong = std::max(wrong, std::fabs(force - k_g * displaced.value[i]));
         }
-        for (std::size_t b = 0; how == P2G::sequential && b < cloud.bodies.size(); ++b)
-          total += measure(s, static_cast<int>(b)).displaced;
+        if (how == P2G::sequential) total = displaced_by(s);
         if (how == P2G::sequential) first = displaced;
         INFO(build.name() << ' ' << strategy_name(how));
         CHECK(total > 0);
@@ -247,5 +257,31 @@ TEST_CASE("pore water stiffens the waves and stores energy", "[pore_water]") {
                  volume = body.particle_volume * (body.position.size() / Dim);
     const double energy = volume * (1e10 / (2 * bulk) + 4e10 / (2 * k_pore));
     CHECK(std::fabs(measure(s, 0).stored_energy / energy - 1) < B::of(1e-12, 1e-4));
+  });
+}
+
+TEST_CASE("what water carries of a body that sinks is its displaced weight times the way", "[pore_water]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    Cloud cloud = block<Dim>({0, {1e7, 0.3}});
+    auto s = state_of<B>(cloud);
+    const double mass = k_density * cloud.bodies[0].particle_volume * (cloud.bodies[0].position.size() / Dim);
+    const double weight = mass * 1000 / k_density * k_g, way = 0.01;
+    const auto energy_at = [&](double level) {
+      s.water = water_at<Dim>(level);
+      return measure(s, 0).water_energy;
+    };
+    INFO(build.name());
+    CHECK(energy_at(0.1) == 0);  // the block begins at 0.2 m
+    const double deep = energy_at(1 + way) - energy_at(1);
+    CHECK(std::fabs(deep / (weight * way) - 1) < B::of(1e-10, 1e-4));
+    double by_steps = 0;  // the level rises through the block
+    for (int n = 0; n < 4000; ++n) {
+      const double level = 0.15 + (n + 0.5) * 1e-4;
+      s.water = water_at<Dim>(level);
+      by_steps += displaced_by(s) * k_g * 1e-4;
+    }
+    CHECK(std::fabs((energy_at(0.55) - energy_at(0.15)) / by_steps - 1) < 1e-4);
   });
 }

@@ -84,7 +84,7 @@ template AnyMaterial<double> make_material<double>(int, const std::vector<double
 std::shared_ptr<const void> make_object(int which, const LawSetup& setup, ParameterFault& fault) {
   std::shared_ptr<const void> object;
   AnyMaterial<double> any;  // the law's type alone is asked for
-  any.visit_as(which, [&](const auto& law) {
+  any.visit_as(Materials{}, which, [&](const auto& law) {
     using Law = std::decay_t<decltype(law)>;
     if constexpr (requires { typename Law::Object; }) object = Law::make_object(setup, fault);
   });
