@@ -4,6 +4,7 @@
 #include <array>
 #include <catch2/catch_test_macros.hpp>
 
+#include "physics/materials/any.hpp"
 #include "compare.hpp"
 #include "loops/cpu/host_particles.hpp"
 #include "transfer/measure.hpp"
@@ -131,7 +132,7 @@ TEST_CASE("nodes get the water that the particles displace, by every strategy", 
         }
         if (how == P2G::sequential) total = displaced_by(s);
         if (how == P2G::sequential) first = displaced;
-        INFO(build.name() << ' ' << strategy_name(how));
+        INFO(build.name() << ' ' << word_of(how));
         CHECK(total > 0);
         CHECK(std::fabs(sum / total - 1) < B::of(1e-12, 1e-5));
         CHECK(wrong < B::of(1e-12, 1e-5) * k_g * total);
@@ -166,7 +167,7 @@ TEST_CASE("submerged ground whose effective stress carries its buoyant weight st
         double fastest = 0;
         for (const double v : by_id(s.soil.points, s.soil.points.velocity).value)
           fastest = std::max(fastest, std::fabs(v));
-        INFO(build.name() << ' ' << strategy_name(how) << " level " << level);
+        INFO(build.name() << ' ' << word_of(how) << " level " << level);
         CHECK(fastest < B::of(1e-13, 1e-5) * k_g);
       }
     }
@@ -195,8 +196,8 @@ TEST_CASE("undrained, a law sees the effective stress that it would see drained"
       for (int n = 0; n < 300; ++n) {
         const auto by = random_increment<Dim>(dice);
         for (int d = 0; d < 3; ++d) volume += by.strain[d];
-        ParticleLaw<Space, double, Dim>{of_drained, 0, 0, -1, false}(effective, by);
-        ParticleLaw<Space, double, Dim>{of_alone, 0, 0, -1, false}(stress, by);
+        ParticleLaw<Space, double, Dim, Materials>{of_drained, 0, 0, -1, false}(effective, by);
+        ParticleLaw<Space, double, Dim, Materials>{of_alone, 0, 0, -1, false}(stress, by);
         Increment<R, double, Dim> all{};
         all.dt = by.dt;
         for (int k = 0; k < sym_size<Dim>; ++k) all.strain[k] = by.strain[k];
@@ -233,7 +234,7 @@ TEST_CASE("a particle that flies alone has no excess pore pressure", "[pore_wate
     CHECK(std::fabs(stress[0] + 1.4e5) < 1e-6);  // -100 kPa of effective stress less the excess pressure
     Dice dice{std::mt19937_64(5)};
     const auto by = random_increment<Dim>(dice);
-    ParticleLaw<typename B::Space, double, Dim>{soil, 3, 0, -1, true}(stress, by);
+    ParticleLaw<typename B::Space, double, Dim, Materials>{soil, 3, 0, -1, true}(stress, by);
     CHECK(stress[0] == 0);
     CHECK(soil.history.column[soil.history.pore](3) == 0);
     CHECK(soil.history.column[soil.history.pore](2) == 4e4);

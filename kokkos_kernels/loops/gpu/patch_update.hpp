@@ -158,7 +158,7 @@ struct UpdateParticles {
     for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
       prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
       prefetch(&soil.volume(p));
-      for (int k = 0; k < most_state(Laws{}); ++k)
+      for (int k = 0; k < most_state(Laws{}, true); ++k)
         if (k < soil.history.columns) prefetch(&soil.history.column[k](p));
     }
   }

@@ -163,8 +163,8 @@ struct CamClay {
                                         const SymTensor<T, Dim>& e) const {
     const T mean = mean_of(s), p = Kokkos::fmax(T(0), -mean), pc = state[preconsolidation];
     const T dilatation = e[0] + e[1] + e[2], v = state[specific_volume],
-            v_middle = v * Kokkos::exp(dilatation / 2);
-    add_with_rest(state[specific_volume], state[specific_volume_rest], v * Kokkos::expm1(dilatation));
+            v_middle = v * (1 + growth_of(dilatation / 2));
+    add_with_rest(state[specific_volume], state[specific_volume_rest], v * growth_of(dilatation));
     const T a = v_middle / kappa, b = v_middle / (lambda - kappa);
     const ElasticPressure<T> elastic{least};
     const T rise = elastic.change(p, -a * dilatation), trial = p + rise;
@@ -187,7 +187,7 @@ struct CamClay {
     for (int k = 0; k < sym_size<Dim>; ++k)
       s[k] = free ? T(0) : s[k] + (k < 3 ? less - softer * share * (s[k] - from) : -softer * share * s[k]);
     add_with_rest(state[preconsolidation], state[preconsolidation_rest],
-                  pc * Kokkos::expm1(Kokkos::fmin(T(4), Kokkos::fmax(T(-4), b * x))));
+                  pc * growth_of(Kokkos::fmin(T(4), Kokkos::fmax(T(-4), b * x))));
     if (!(state[preconsolidation] > least)) state[preconsolidation] = least, state[preconsolidation_rest] = 0;
   }
 };
