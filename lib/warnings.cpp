@@ -210,6 +210,10 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
     if (told[body.material]) continue;
     told[body.material] = 1;
     for (const std::string& line : warnings_of_law(material)) lines.push_back("warning: " + line);
+    if (config.f_bar_fraction > 0 && parameter_of(material, "dilation_deg") > 0)
+      lines.push_back(formatted(
+          "warning: -f_bar_fraction: given \"%g\", creates energy in %s, which dilates as it yields; 0 does not",
+          config.f_bar_fraction, material.name.c_str()));
     warn_of_rigidity(material.name, soil, lines);
     warn_of_units(config, material, soil, bounds.upper[up] - bounds.lower[up], lines);
   }

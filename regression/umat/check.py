@@ -108,7 +108,7 @@ class Tests:
                 "fixed", "-materials", "clay", "-clay_density", "1800", "-bodies", "soil", "-soil_material", "clay",
                 "-soil_shape", "box", "-soil_lower", "0,0", "-soil_upper", "2,2", "-rigids", "plate", "-plate_shape", "box",
                 "-plate_lower", "0,2", "-plate_upper", "0.5,2.25", "-plate_motion", "prescribed", "-plate_velocity", "0,-1",
-                "-f_bar_share", "0", "-time_step", repr(step), "-history_interval", "0.002", "-soil_stress", "-2e4,-2e4,-2e4,0"]
+                "-f_bar_fraction", "0", "-time_step", repr(step), "-history_interval", "0.002", "-soil_stress", "-2e4,-2e4,-2e4,0"]
         end = ["-time_end", "0.02", "-output_interval", "0.01"]
         wanted, _ = self.run("own", *deck, *own, *end)
         first, _ = self.run("umat", *deck, *umat, *end, "-checkpoint_interval", "0.01")
@@ -207,7 +207,7 @@ class Tests:
         library = self.build(HERE / "probe.c", "probe.so")
         step = 1e-3
         for dim in self.dims:
-            deck, gradient = self.block(dim, "-time_step", step, "-f_bar_share", "0", "-output_interval", step, "-time_end", 4 * step)
+            deck, gradient = self.block(dim, "-time_step", step, "-f_bar_fraction", "0", "-output_interval", step, "-time_end", 4 * step)
             folder, _ = self.run("probe", *deck, *self.umat(library, [1e6, 0.3], 38))
             before, after = (particles_of(frame) for frame in frames(folder)[:2])
             last, previous = particles_of(frames(folder)[4]), particles_of(frames(folder)[3])

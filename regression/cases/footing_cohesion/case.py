@@ -5,8 +5,8 @@ base is smooth or rough (Prandtl 1921). The footing sinks by 0.0016 $B$; the mea
 The footing's edge lies midway between two nodes. The ground ends beyond the mechanism, 3 to 10 $B$ beside the footing.
 
 One particle a cell, so that the soil does not lock: a dilatant flow fixes the ratio of volume change and shear, and
-four particles a cell impose more constraints than the nodes have degrees of freedom. `-f_bar_share` has then no effect.
-Two rows have four particles without F-bar. With four particles and `-f_bar_share` 0.98 the run ends: see
+four particles a cell impose more constraints than the nodes have degrees of freedom. `-f_bar_fraction` has then no effect.
+Two rows have four particles without F-bar. With four particles and `-f_bar_fraction` 0.98 the run ends: see
 [soils.md](soils.md#mohr_coulomb).
 """
 

@@ -31,7 +31,7 @@ CC = (f" -soil_model cam_clay -soil_critical_state_ratio {M:g} -soil_lambda {LAM
       " -soil_specific_volume 2 -soil_ocr 1 -soil_poisson 0.25 -soil_pore_stiffness 1e9 -time_end 2.1 -output_interval 0.06")
 RUNS = {"oedometer": f"-mesh_upper {SIZE:g},3 -mesh_xmax roller -block_shape box -block_lower 0,0 -block_upper {SIZE:g},{SIZE:g}"
                      f" -plate_lower 0,{SIZE} -plate_upper {SIZE:g},{SIZE + 1} -plate_velocity 0,-{SPEED} -time_end 0.1"
-                     f" -f_bar_share 0 -soil_model linear_elastic{ELASTIC} -soil_pore_stiffness {PORE:g}",
+                     f" -f_bar_fraction 0 -soil_model linear_elastic{ELASTIC} -soil_pore_stiffness {PORE:g}",
         "mohr_coulomb": SAMPLE + MC, "total": SAMPLE + MC + " -gravity 0,-1e-3 -water_level 2e5",
         "cam_clay": SAMPLE + CC}
 
