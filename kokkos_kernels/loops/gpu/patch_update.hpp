@@ -158,8 +158,12 @@ struct UpdateParticles {
     for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
       prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
       prefetch(&soil.volume(p));
-      for (int k = 0; k < most_state(Laws{}, true); ++k)
-        if (k < soil.history.columns) prefetch(&soil.history.column[k](p));
+      if constexpr (Dim == 2) {  // the forms that spill least: scripts/law_registers
+        for (int k = 0; k < most_state(Laws{}, true); ++k)
+          if (k < soil.history.columns) prefetch(&soil.history.column[k](p));
+      } else {
+        for (int k = 0; k < soil.history.columns; ++k) prefetch(&soil.history.column[k](p));
+      }
     }
   }
 
