@@ -45,7 +45,9 @@ struct UpdateParticles {
   using Source = SoilSource<Space, T, Dim>;
   using Boundary = BoundarySource<Space, T, Dim>;
   using Tile_ = Tile<Source>;
-  using Team = PatchTeam<Space, T, Dim>;
+  // Patches that are not common are few: one team less on a multiprocessor leaves them the registers they need.
+  static constexpr int k_teams = teams_at_once<T, Dim> - (kind == PatchKind::common ? 0 : 1);
+  using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, k_teams>>;
   using Member = typename Team::member_type;
   using Memory = typename Space::memory_space;
   using Images = std::conditional_t<kind == PatchKind::common, NoImages, WindowImages<T, Dim>>;
