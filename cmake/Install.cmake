@@ -10,7 +10,9 @@ install(TARGETS mpm RUNTIME)
 install(TARGETS mpm_lib mpm_kernels EXPORT mpmTargets ARCHIVE)
 install(DIRECTORY lib/include/mpm TYPE INCLUDE FILES_MATCHING PATTERN "*.hpp")
 install(FILES kokkos_kernels/base/choices.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mpm)  # config.hpp includes it
-install(DIRECTORY inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN "*.opts")
+install(DIRECTORY inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN "*.opts"
+  PATTERN "umat/*.f" PATTERN "umat/*.c" PATTERN "umat/ABA_PARAM.INC")
+install(FILES kokkos_kernels/physics/materials/umat_symbols.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
 install(FILES README.md LICENSE TYPE DOC)
 
 # Prefixes of the dependencies, for find_package(mpm). HDF5 that pkg-config found needs none.

@@ -33,16 +33,18 @@ void EnergyWatch::begin(const HistoryRow& row, double wave_energy) {
 
 void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
   const auto add = [&](double work) { available_ += work, passed_ += std::fabs(work); };
-  for (std::size_t b = 0; b < row.bodies.size(); ++b)
+  for (std::size_t b = 0; b < row.bodies.size(); ++b) {
     for (int d = 0; d < config.dim; ++d)
       add(row.bodies[b].mass * config.gravity[d] * (row.bodies[b].centre[d] - last_.bodies[b].centre[d]));
+    add(last_.bodies[b].water_energy - row.bodies[b].water_energy);
+  }
   for (std::size_t r = 0; r < row.rigids.size(); ++r)
     for (int d = 0; d < config.dim; ++d)
       add(std::fabs(row.rigids[r].force[d] *
                     (row.rigids[r].displacement[d] - last_.rigids[r].displacement[d])));
 }
 
-std::string EnergyWatch::look(const HistoryRow& row, const Config& config) {
+std::string EnergyWatch::check(const HistoryRow& row, const Config& config) {
   constexpr double k_slack = 0.5;  // of what has passed: forces are means over the rows
   const double now = kinetic_energy_of(row);
   if (lost_of(row) != lost_of(last_)) {  // the centre tells no work where soil has left
@@ -56,7 +58,7 @@ std::string EnergyWatch::look(const HistoryRow& row, const Config& config) {
   if (!(now > available_ + k_slack * passed_ + least_)) return {};
   return formatted(
       "the kinetic energy has grown to %.4g J, and only %.4g J of it have a source (the energy at the start, "
-      "gravity, rigids): the time step is not stable for this soil; take a smaller -time_courant",
+      "gravity, water, rigids): the time step is not stable for this soil; take a smaller -time_courant",
       now, available_);
 }
 

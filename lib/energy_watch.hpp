@@ -9,7 +9,7 @@
 namespace mpm {
 
 /// Looks at the rows of the history. Soil has the kinetic and elastic energy that it began with, and what
-/// gravity and the rigids do on it; more kinetic energy than that by half of what has ever passed is a fault
+/// gravity, water and the rigids do on it; more kinetic energy than that by half of what has ever passed is a fault
 /// of the computation.
 class EnergyWatch {
  public:
@@ -17,7 +17,7 @@ class EnergyWatch {
   /// fastest wave; less than 1e-10 of it is round-off.
   void begin(const HistoryRow& row, double wave_energy);
   /// What is wrong; empty if nothing.
-  std::string look(const HistoryRow& row, const Config& config);
+  std::string check(const HistoryRow& row, const Config& config);
 
  private:
   void add_work(const HistoryRow& row, const Config& config);

@@ -28,8 +28,13 @@ template <class T, int Dim>
 void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   constexpr double k_ring = 1.1;  // the patches round the soil
   int columns = 0;
-  for (const BodyConfig& body : config.bodies)
-    columns = std::max(columns, static_cast<int>(state_variables(config.materials[body.material]).size()));
+  bool undrained = false;
+  for (const BodyConfig& body : config.bodies) {
+    const MaterialConfig& material = config.materials[body.material];
+    columns = std::max(columns, static_cast<int>(state_variables(material).size()));
+    undrained = undrained || material.pore_stiffness > 0;
+  }
+  columns += undrained;  // the excess pore pressure
   double a_particle = Footprint<T, Dim>::particle(columns);
   if (config.p2g.strategy == P2G::gather) {
     // a particle is in the lists of the nodes that it may reach before the margin is used up

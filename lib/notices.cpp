@@ -4,7 +4,7 @@
 
 namespace mpm {
 
-std::vector<std::string> Notices::look(const HistoryRow& row, const Config& config) {
+std::vector<std::string> Notices::report(const HistoryRow& row, const Config& config) {
   std::vector<std::string> lines;
   const auto report = [&](bool happened, const std::string& body, const char* what, const std::string& line) {
     if (happened && told_.insert(body + what).second)

@@ -14,7 +14,7 @@ namespace mpm {
 class Notices {
  public:
   /// A line for each thing that has happened since the last row and was not told before, with advice.
-  std::vector<std::string> look(const HistoryRow& row, const Config& config);
+  std::vector<std::string> report(const HistoryRow& row, const Config& config);
 
  private:
   std::set<std::string> told_;  // what happened, to which body

@@ -23,6 +23,10 @@ const char* word_of(Outcome outcome) {
 PetscErrorCode Simulation::run() {
   PetscFunctionBeginUser;
   Body& b = *body_;
+  if (b.is_element()) {
+    PetscCall(b.run_element());
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (b.config.dry_run) {
     PetscCall(b.dry_run());
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -33,7 +37,7 @@ PetscErrorCode Simulation::run() {
   while (b.outcome == Outcome::finished && b.step < b.schedule.last_step()) {
     PetscCall(b.follow_stiffness());
     if (b.outcome != Outcome::finished) break;
-    PetscCall(b.advance_to(std::min(b.schedule.next_stop(b.step), b.next_look_at_waves())));
+    PetscCall(b.advance_to(std::min(b.schedule.next_stop(b.step), b.next_stiffness_check())));
     if (b.outcome != Outcome::finished) break;
     if (b.schedule.row_in_turn(b.step)) PetscCall(b.write_row());
     if (b.outcome != Outcome::finished) break;
@@ -102,7 +106,7 @@ PetscErrorCode Simulation::Body::rebuild(const Batch& batch) {
     std::snprintf(what, sizeof what,
                   "-p2g_rebuild_interval %d is unsafe: after %ld steps a particle can have moved %.3g cells, "
                   "and the lists hold for "
-                  "%.3g (-p2g_margin)",
+                  "%.3g (-rebuild_margin)",
                   *forced, since_rebuild, batch.bound, config.p2g.margin);
     PetscCall(fail(what));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -138,7 +142,7 @@ PetscErrorCode Simulation::Body::write_row() {
 /// Tells once of what a user should know, and whether energy comes from nothing.
 PetscErrorCode Simulation::Body::watch(const HistoryRow& row) {
   PetscFunctionBeginUser;
-  for (const std::string& line : notices.look(row, config)) PetscCall(log.line(line));
+  for (const std::string& line : notices.report(row, config)) PetscCall(log.line(line));
   if (!watching) {
     double wave_energy = 0;
     for (std::size_t b = 0; b < row.bodies.size(); ++b) {
@@ -147,7 +151,7 @@ PetscErrorCode Simulation::Body::watch(const HistoryRow& row) {
     }
     energy.begin(row, wave_energy);
     watching = true;
-  } else if (const std::string fault = energy.look(row, config); !fault.empty()) {
+  } else if (const std::string fault = energy.check(row, config); !fault.empty()) {
     PetscCall(fail(fault));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -76,6 +76,7 @@ struct Simulation::Body {
   void check_files();
   PetscErrorCode lock_folder();
 
+  PetscErrorCode check_mesh_run();
   PetscErrorCode check_device();
   void check_build();
   void check_mesh();
@@ -105,7 +106,13 @@ struct Simulation::Body {
   // simulation_time_step.cpp
   PetscErrorCode choose_time_step();
   PetscErrorCode follow_stiffness();
-  long next_look_at_waves() const;  // the step at which follow_stiffness has something to do
+  long next_stiffness_check() const;  // the step at which follow_stiffness has something to do
+
+  // simulation_element.cpp
+  bool is_element() const { return !config.element.file.empty(); }
+  PetscErrorCode run_element();
+  PetscErrorCode open_element();
+  PetscErrorCode drive_element(std::string* failure);
 
   // simulation_dry_run.cpp
   PetscErrorCode dry_run();

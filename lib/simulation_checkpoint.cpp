@@ -15,12 +15,9 @@ namespace mpm {
 namespace {
 
 P2G strategy_of(const std::string& word) {
-  return word == "sequential" ? P2G::sequential
-         : word == "atomic"   ? P2G::atomic
-         : word == "mosaic"   ? P2G::mosaic
-         : word == "gather"   ? P2G::gather
-         : word == "tile"     ? P2G::tile
-                              : P2G::automatic;
+  for (const auto& [name, strategy] : k_p2g_words)
+    if (word == name) return strategy;
+  return P2G::automatic;
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ std::vector<Input> inputs_of(const Config& config, const InputReport& report) {
   for (const std::string& file : report.files) inputs.emplace_back("-options_file", file);
   for (const BodyConfig& body : config.bodies)
     if (!body.shape.file.empty()) inputs.emplace_back("-" + body.name + "_file", body.shape.file);
+  if (!config.element.file.empty()) inputs.emplace_back("-element_path", config.element.file);
   return inputs;
 }
 

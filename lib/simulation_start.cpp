@@ -38,16 +38,10 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
     PetscCall(print_help(comm, b.report));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (b.report.errors.empty()) PetscCall(b.check_device());
-  if (b.report.errors.empty()) b.check_build();
-  if (b.report.errors.empty()) b.check_mesh();
-  if (b.report.errors.empty()) PetscCall(b.choose_time_step());
-  if (b.report.errors.empty())
-    if (const std::string fault = memory_fault(b.config, comm); !fault.empty())
-      b.report.errors.push_back(fault);
+  if (!b.is_element()) PetscCall(b.check_mesh_run());
   if (b.report.errors.empty() && rank_of(comm) == 0) PetscCallCXX(b.check_files());
   PetscCall(b.share_errors());
-  PetscCall(b.check_places());
+  if (!b.is_element()) PetscCall(b.check_places());
   if (b.report.errors.empty())
     for (const std::string& warning : warnings_of(b.config, b.ranks())) b.report.warnings.push_back(warning);
   if (b.report.errors.empty() && !b.config.output.restart.empty()) {
@@ -61,6 +55,18 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   b.ready = true;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// What a run of a mesh needs of the machine and the program.
+PetscErrorCode Simulation::Body::check_mesh_run() {
+  PetscFunctionBeginUser;
+  if (report.errors.empty()) PetscCall(check_device());
+  if (report.errors.empty()) check_build();
+  if (report.errors.empty()) check_mesh();
+  if (report.errors.empty()) PetscCall(choose_time_step());
+  if (report.errors.empty())
+    if (const std::string fault = memory_fault(config, comm); !fault.empty()) report.errors.push_back(fault);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

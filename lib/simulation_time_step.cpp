@@ -45,7 +45,7 @@ PetscErrorCode Simulation::Body::choose_time_step() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-long Simulation::Body::next_look_at_waves() const {
+long Simulation::Body::next_stiffness_check() const {
   return follows ? (step / k_follow_every + 1) * k_follow_every : schedule.last_step();
 }
 

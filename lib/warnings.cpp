@@ -33,6 +33,25 @@ void warn_of_gravity(const Config& config, Lines& lines) {
                   text_of(down, config.dim) + "\"");
 }
 
+/// Water that reaches no soil, and soil that it lifts.
+void warn_of_water(const Config& config, Lines& lines) {
+  if (!config.water.level) return;
+  bool reaches_soil = false;
+  for (const BodyConfig& body : config.bodies) {
+    if (body.shape.kind == ShapeKind::particles) return;  // where they are is in their file
+    const MaterialConfig& material = config.materials[body.material];
+    const bool below = heights_of(body.shape, config)[0] < *config.water.level;
+    reaches_soil = reaches_soil || below;
+    if (below && material.density < config.water.density)
+      lines.push_back(formatted(
+          "warning: -%s_density: %g kg/m3 is less than that of the water, so that body %s rises; soil below "
+          "the water has the density of grains and pore water together",
+          material.name.c_str(), material.density, body.name.c_str()));
+  }
+  if (!reaches_soil)
+    lines.push_back(formatted("warning: -water_level: %g m is below all soil", *config.water.level));
+}
+
 void warn_of_tension(const BodyConfig& body, int dim, Lines& lines) {
   if (std::max({body.stress[0], body.stress[1], body.stress[2]}) > 0)
     lines.push_back("warning: -" + body.name + "_stress: given \"" +
@@ -173,9 +192,14 @@ void warn_of_walls(const Config& config, const RigidConfig& rigid, const Bounds&
 
 std::vector<std::string> warnings_of(const Config& config, int ranks) {
   Lines lines;
+  if (!config.element.file.empty()) {  // a single point, of one material and no body
+    for (const std::string& line : warnings_of_law(config.materials[0])) lines.push_back("warning: " + line);
+    return lines;
+  }
   if (ranks == 1 && config.partition.halo_path != HaloPath::automatic)
     lines.push_back("warning: -halo_path: not used on one rank, which has no halo");
   warn_of_gravity(config, lines);
+  warn_of_water(config, lines);
   std::vector<char> told(config.materials.size());
   for (const BodyConfig& body : config.bodies) {
     warn_of_tension(body, config.dim, lines);
@@ -186,6 +210,10 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
     if (told[body.material]) continue;
     told[body.material] = 1;
     for (const std::string& line : warnings_of_law(material)) lines.push_back("warning: " + line);
+    if (config.f_bar_fraction > 0 && parameter_of(material, "dilation_deg") > 0)
+      lines.push_back(formatted(
+          "warning: -f_bar_fraction: given \"%g\", creates energy in %s, which dilates as it yields; 0 does not",
+          config.f_bar_fraction, material.name.c_str()));
     warn_of_rigidity(material.name, soil, lines);
     warn_of_units(config, material, soil, bounds.upper[up] - bounds.lower[up], lines);
   }

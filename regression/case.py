@@ -46,15 +46,16 @@ def names():
 
 
 class Case:
-    def __init__(self, name):
-        path = CASES / name / "case.py"
+    def __init__(self, name, root=ROOT):
+        """root: of the source tree whose case it is."""
+        path = root / "regression" / "cases" / name / "case.py"
         if not path.exists():
             sys.exit(f"regression/run: no case {name}: {path} is missing")
         spec = importlib.util.spec_from_file_location(f"case_{name}", path)
         self.module = importlib.util.module_from_spec(spec)
         sys.path.insert(0, str(path.parent))
         spec.loader.exec_module(self.module)
-        self.name = name
+        self.name, self.root = name, root
         self.deck = getattr(self.module, "DECK", f"regression/cases/{name}/case.opts")
         self.runs = self.module.RUNS
 
@@ -88,7 +89,7 @@ def run_program(binary, case, run, variant, folder, more="", ranks=1):
     if ranks > 1:
         command = [launcher(), "-n", str(ranks), "--bind-to", "none", *command]
     begin = time.time()
-    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
+    done = subprocess.run(command, cwd=case.root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
     if done.returncode != 0:
         raise ProgramFailed(f"{shlex.join(command)}: exit status {done.returncode}\n{done.stdout[-2000:]}")
     return Run(folder / run), time.time() - begin

@@ -58,7 +58,7 @@ def decks(dim):
         "meeting at a cut": (mesh(6.4, 1.6, 0.2, dim) + "-bodies soil,other -soil_material soft -other_material soft "
                              + box("soil", (2.0, 0.4), (3.0, 1.2), dim, f"-soil_velocity {velocity(2, 0, dim)}")
                              + box("other", (3.4, 0.4), (4.4, 1.2), dim, f"-other_velocity {velocity(-2, 0, dim)}")
-                             + "-rigids lid,floor " + box("lid", (2.4, 1.2), (4.0, 1.4), dim, "-lid_motion dynamic -lid_density 500 -lid_friction 0.3")
+                             + "-rigid_bodies lid,floor " + box("lid", (2.4, 1.2), (4.0, 1.4), dim, "-lid_motion dynamic -lid_density 500 -lid_friction 0.3")
                              + box("floor", (1.0, 0.2), (5.4, 0.4), dim, "-floor_friction 0.3") + "-gravity 0,-9.81" + (",0" if dim == 3 else ""), 200),
     }
 

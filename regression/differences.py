@@ -45,7 +45,7 @@ class Scales:
 
     def of_field(self, name):
         return {"velocity": self.velocity, "grid_velocity": self.velocity, "stress": self.stress,
-                "plastic_strain": self.strain}.get(name, 0)
+                "pore_pressure": self.stress, "excess_pore_pressure": self.stress, "plastic_strain": self.strain}.get(name, 0)
 
     def of_column(self, name):
         if name.endswith("kinetic_energy"):

@@ -27,8 +27,8 @@ from results import Run  # noqa: E402
 
 # deck, options, steps. Stresses of the footing grow to what is compared only with time; margins of 0.02 cells make rebuilds.
 CHECKS = [("inputs/landslide_coarse.opts", "", 1), ("inputs/landslide_coarse.opts", "", 100),
-          ("inputs/footing_coarse.opts", "-f_bar_share 0", 100), ("regression/cases/rigid_body/case.opts", "", 100),
-          ("inputs/landslide_coarse.opts", "-p2g_margin 0.02 -history_interval 0.005", 400)]
+          ("inputs/footing_coarse.opts", "-f_bar_fraction 0", 100), ("regression/cases/rigid_body/case.opts", "", 100),
+          ("inputs/landslide_coarse.opts", "-rebuild_margin 0.02 -history_interval 0.005", 400)]
 
 
 def run(given, options, ranks, folder):

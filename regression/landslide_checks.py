@@ -56,18 +56,18 @@ def back(run, time, length=10.0):
     return np.linalg.norm(grid_velocity(fields)[inside], axis=1).max()
 
 
-def back_way(run, begin, end, length=10.0):
-    """Largest way from begin to end [s] of a particle in the first `length` [m] of where the slide lay, m."""
+def back_displacement(run, begin, end, length=10.0):
+    """Largest displacement from begin to end [s] of a particle in the first `length` [m] of where the slide lay, m."""
     first, last = (read_frame(run.frame_near(time))[1]["slide"]["position"] for time in (begin, end))
     inside = first[:, 0] < run.numbers("slide_polygon")[0] + length
     return np.linalg.norm((last - first)[inside], axis=1).max()
 
 
 def rows(run):
-    way = run_out(run, "slide")
+    reached = run_out(run, "slide")
     for time, expected, tolerance in TOES:
-        yield Row(f"run-out of the toe at {time} s (m)", at_time(run, way, time), expected, tolerance, PUBLISHED)
-    behind = run_out(run, "slide", "xq999") / np.maximum(way, 1)
+        yield Row(f"run-out of the toe at {time} s (m)", at_time(run, reached, time), expected, tolerance, PUBLISHED)
+    behind = run_out(run, "slide", "xq999") / np.maximum(reached, 1)
     yield Row("99.9th percentile over the toe at 4 s", at_time(run, behind, 4), 1, 0.02, SOLVER)
     yield from velocity_rows(run)
     yield Row("impulse of base and momentum over the weight's", momentum_kept(run), 1, 1e-4, "momentum balance")
@@ -85,9 +85,9 @@ def velocity_rows(run):
     yield Row("front at 4 s: above 1.5 m over below 0.75 m", above / below, 1.03, 0.07, SOLVER)
     yield Row("back 10 m at 4 s: largest grid speed over the front's", back(run, 4) / velocity.mean(), 0, 0.02, SOLVER,
               shortfall=BACK, bound=0.05)
-    way = run_out(run, "slide")
-    yield Row("back 10 m from 3.5 to 4.5 s: largest way over the front's",
-              back_way(run, 3.5, 4.5) / (at_time(run, way, 4.5) - at_time(run, way, 3.5)), 0, 0.02,
+    reached = run_out(run, "slide")
+    yield Row("back 10 m from 3.5 to 4.5 s: largest displacement over the front's",
+              back_displacement(run, 3.5, 4.5) / (at_time(run, reached, 4.5) - at_time(run, reached, 3.5)), 0, 0.02,
               "the soil there has not failed yet")
 
 

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Whether two programs give the same bits: for a change that must not change a result.
 
-    regression/same_bits.py BEFORE AFTER [--steps 100] [--precisions double,single] [--strategies tile,gather] [--long] [CASE ...]
+    regression/same_bits.py BEFORE AFTER [--steps 100] [--precisions double,single] [--strategies tile,gather] [--long]
+        [--dims 2,3] [--tree-before TREE] [CASE ...]
 
 Runs each case of the suite with both programs on the back end serial, and compares histories and frames bit by bit. --long
-takes the long cases too. The exit status is 1 where anything differs, which is listed.
+takes the long cases too. --tree-before: the source tree of BEFORE, whose decks BEFORE then reads; cases that it lacks are left
+out. The exit status is 1 where anything differs, which is listed.
 """
 import argparse
 import sys
@@ -27,15 +29,23 @@ def arguments():
     parser.add_argument("--precisions", default="double,single")
     parser.add_argument("--strategies", default="tile,gather")
     parser.add_argument("--long", action="store_true")
+    parser.add_argument("--dims", default="2,3", help="those that both programs have")
+    parser.add_argument("--tree-before", type=Path, default=cases.ROOT)
     parser.add_argument("cases", nargs="*")
     return parser.parse_intermixed_args()
 
 
-def compare(given, case, run, variant, strategy, base):
+def dim_of(case, run):
+    """2 or 3: -dim of the run's options, else of its deck."""
+    words = (case.root / case.deck).read_text().split() + case.runs[run].split()
+    return words[len(words) - words[::-1].index("-dim")] if "-dim" in words else "2"
+
+
+def compare(given, both, run, variant, strategy, base):
     """What differs between the two programs in one run."""
     more = f"-p2g {strategy} -time_max_steps {given.steps}"
     folders = []
-    for name, program in (("before", given.before), ("after", given.after)):
+    for name, program, case in (("before", given.before, both[0]), ("after", given.after, both[1])):
         folders.append(base / name)
         cases.run_program(program.resolve(), case, run, variant, base / name, more)
     return differences(*(folder / run for folder in folders))
@@ -45,14 +55,16 @@ def main():
     given = arguments()
     count = different = 0
     for name in given.cases or cases.names():
-        case = cases.Case(name)
+        if not (given.tree_before / "regression" / "cases" / name / "case.py").exists():
+            continue
+        former, case = cases.Case(name, given.tree_before.resolve()), cases.Case(name)
         if case.is_long() and not given.long:
             continue
         for variant in case.variants(["serial"], given.precisions.split(",")):
-            for run in case.runs:
+            for run in (run for run in case.runs if dim_of(case, run) in given.dims.split(",")):
                 for strategy in given.strategies.split(","):
                     with tempfile.TemporaryDirectory(prefix="mpm_bits_") as folder:
-                        found = compare(given, case, run, variant, strategy, Path(folder))
+                        found = compare(given, (former, case), run, variant, strategy, Path(folder))
                     count, different = count + 1, different + bool(found)
                     if found:
                         print(f"{name} {run} {variant[1]} {strategy}: {'; '.join(found[:5])}", flush=True)

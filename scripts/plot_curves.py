@@ -31,7 +31,7 @@ def force_unit(run):
 
 
 def rigids_with_force(run):
-    return [name for name in run.words("rigids") if any(f"{name}_force_{axis}" in run.history for axis in "xyz")]
+    return [name for name in run.words("rigid_bodies") if any(f"{name}_force_{axis}" in run.history for axis in "xyz")]
 
 
 def mark_time(axes, run, time, values):

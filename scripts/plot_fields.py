@@ -14,6 +14,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 STRESSES = ["xx", "yy", "zz", "xy", "yz", "zx"]
+PORE_PRESSURES = {"pore_pressure": "pore pressure (kPa)", "excess_pore_pressure": "excess pore pressure (kPa)"}
 DEFAULT_FIELDS = ["grid_velocity", "plastic_strain"]
 
 
@@ -42,6 +43,10 @@ def mises_of(fields):
     return np.sqrt(1.5 * ((deviator ** 2).sum(axis=1) + 2 * (shear ** 2).sum(axis=1))) / 1e3
 
 
+def effective_pressure_of(fields):
+    return (-fields["stress"][:, :3].mean(axis=1) - fields["pore_pressure"]) / 1e3
+
+
 def known_fields(datasets):
     """{name: Field} of all that the datasets {name: array [N] or [N, 3 or 6]} of a body tell."""
     known = {}
@@ -53,9 +58,14 @@ def known_fields(datasets):
             known[f"velocity_{axis}"] = Field(f"velocity in {axis} (m/s)", lambda f, k=k: grid_velocity(f)[:, k], True)
     if "stress" in datasets:
         known["pressure"] = Field("mean pressure (kPa)", lambda f: -f["stress"][:, :3].mean(axis=1) / 1e3, True)
+        if "pore_pressure" in datasets:
+            known["effective_pressure"] = Field("mean effective pressure (kPa)", effective_pressure_of, True)
         known["mises"] = Field("von Mises stress (kPa)", mises_of, False)
         for k, name in enumerate(STRESSES):
             known[f"stress_{name}"] = Field(f"stress {name} (kPa)", lambda f, k=k: f["stress"][:, k] / 1e3, True)
+    for name, title in PORE_PRESSURES.items():
+        if name in datasets:
+            known[name] = Field(title, lambda f, name=name: f[name] / 1e3, bool((datasets[name] < 0).any()))
     for name, values in datasets.items():
         if values.ndim == 1 and name not in known:
             title = "plastic shear strain (-)" if name == "plastic_strain" else name.replace("_", " ")
@@ -182,10 +192,24 @@ class Scene:
     def values(self, name):
         return np.concatenate([self.field(name).of(self.groups[body]) for body in self.bodies])
 
+    def limits(self, name):
+        """Where the colours of a field begin and end. Plastic strain ends where softening clay has lost 95 % of what it can
+        lose: more changes nothing, and would leave one colour to all that is not a shear band."""
+        least, most = limits_of(self.field(name), self.values(name))
+        lost = [self.softening_strain(self.run.text(f"{body}_material")) for body in self.bodies]
+        return (least, min(most, max(lost))) if name == "plastic_strain" and all(lost) else (least, most)
+
+    def softening_strain(self, material):
+        """The strain at which a material has lost 95 % of what it can lose, on this mesh; 0 where it does not soften."""
+        if self.run.text(f"{material}_model") != "softening_clay":
+            return 0.0
+        cell = self.run.number("mesh_spacing", 1.0)
+        return self.run.number(f"{material}_xi95") * self.run.number(f"{material}_xi95_cell", cell) / cell
+
     def draw(self, axes, name, limits=None, box=None):
         """Draws a field in colour and the rigids in grey: [(collection, particle's size [m])], the size yet to be set."""
         field, values = self.field(name), self.values(name)
-        least, most = limits or limits_of(field, values)
+        least, most = limits or self.limits(name)
         drawn = []
         for body in self.bodies:
             points = self.groups[body]["position"][:, self.plane]

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 from PIL import Image
 
-from plot_fields import NothingToDraw, Scene, colours_of, default_fields, limits_of, panels, size_markers
+from plot_fields import NothingToDraw, Scene, colours_of, default_fields, panels, size_markers
 from results import time_of
 
 SECONDS = 6.0          # that a film takes
@@ -39,7 +39,7 @@ def common_view(scenes, fields):
         for name in fields:
             values = scene.values(name)
             if values.any():
-                limits.setdefault(name, []).append(limits_of(scene.field(name), values))
+                limits.setdefault(name, []).append(scene.limits(name))
     if not boxes:
         return fields, None, None
     box = np.min([lower for lower, _ in boxes], axis=0), np.max([upper for _, upper in boxes], axis=0)

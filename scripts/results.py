@@ -46,7 +46,7 @@ class Run:
         return min(self.frames, key=lambda path: abs(time_of(path) - time), default=None)
 
     def moving_rigids(self):
-        return [name for name in self.words("rigids") if self.text(f"{name}_motion", "fixed") != "fixed"]
+        return [name for name in self.words("rigid_bodies") if self.text(f"{name}_motion", "fixed") != "fixed"]
 
 
 def read_options(folder):
@@ -54,7 +54,9 @@ def read_options(folder):
     if not path.exists():
         print(f"plot: {path} is missing: nothing is known of bodies and rigids", file=sys.stderr)
         return {}
-    return {name: text for name, text in json.loads(path.read_text())["options"].items() if text != "none"}
+    options = json.loads(path.read_text())["options"]
+    options.setdefault("rigid_bodies", options.pop("rigids", "none"))  # the word of older runs
+    return {name: text for name, text in options.items() if text != "none"}
 
 
 def read_history(path):
@@ -117,9 +119,9 @@ def is_half_model(run, name):
 
 
 def strength_below(run, name):
-    """Undrained strength [Pa] of the first von_mises material, at the level of the rigid's underside; 0 if none."""
+    """Undrained strength [Pa] of the first von_mises or tresca material, at the level of the rigid's underside; 0 if none."""
     for material in run.words("materials"):
-        if run.text(f"{material}_model") == "von_mises":
+        if run.text(f"{material}_model") in ("von_mises", "tresca"):
             level = run.numbers(f"{name}_lower", [0, 0])[1]
             depth = max(run.number(f"{material}_su_datum") - level, 0)
             return run.number(f"{material}_su") + depth * run.number(f"{material}_su_gradient")

@@ -11,7 +11,7 @@ NORMALS = {"gradient": "normals of the mass gradient", "flat": "the base's own n
 
 def slides(run):
     """Names of the bodies that run out over rigids of which none moves."""
-    if not run.words("rigids") or run.moving_rigids():
+    if not run.words("rigid_bodies") or run.moving_rigids():
         return []
     return [body for body in run.words("bodies") if f"{body}_xmax" in run.history]
 

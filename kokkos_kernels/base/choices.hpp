@@ -2,6 +2,8 @@
 // What a user chooses at run time and the kernels obey: plain enumerations, whose words are the options'
 // words.
 
+#include <utility>
+
 namespace mpm {
 
 /// Where the time step runs (-backend).
@@ -9,6 +11,16 @@ enum class Backend { serial, openmp, cuda };
 
 /// Particle-to-node strategy (-p2g). `automatic` is the word `auto`: the fastest known for the backend.
 enum class P2G { sequential, atomic, mosaic, gather, tile, automatic };
+
+/// The words of -p2g.
+inline constexpr std::pair<const char*, P2G> k_p2g_words[] = {
+    {"sequential", P2G::sequential}, {"atomic", P2G::atomic}, {"mosaic", P2G::mosaic},
+    {"gather", P2G::gather},         {"tile", P2G::tile},     {"auto", P2G::automatic}};
+constexpr const char* word_of(P2G how) {
+  for (const auto& [word, strategy] : k_p2g_words)
+    if (strategy == how) return word;
+  return "";
+}
 
 /// What holds at one side of the mesh (-mesh_xmin ...): roller, no velocity normal to the side; fixed, no
 /// velocity; free, nothing.

@@ -13,6 +13,15 @@
 #define MPM_ROLLED
 #endif
 
+/// In lieu of KOKKOS_FUNCTION: a function with a long body that few threads come to. A GPU calls it, so that
+/// the kernels around it need no registers for it. Arguments and results are few and are passed by value:
+/// what is passed by reference goes through memory.
+#ifdef __CUDA_ARCH__
+#define MPM_CALLED_FUNCTION __noinline__ __host__ __device__
+#else
+#define MPM_CALLED_FUNCTION KOKKOS_FUNCTION
+#endif
+
 namespace mpm {
 
 /// Alignment at which a group of n values is read at once: pairs, and fours up to 16 bytes.

@@ -7,7 +7,9 @@
 #include "base/spaces.hpp"
 #include "base/types.hpp"
 #include "data/patches.hpp"
+#include "data/rigid_pose.hpp"
 #include "data/surface.hpp"
+#include "data/water.hpp"
 
 namespace mpm {
 
@@ -25,7 +27,7 @@ template <int Dim>
 struct BoundaryTerms {
   static constexpr int area = 0, volume = Dim, size = Dim + 1;
 };
-/// What soil near a rigid gives a node where the shear limit is a share of its strength: strength times
+/// What soil near a rigid gives a node where the shear limit is a fraction of its strength: strength times
 /// volume [Pa m3], and volume [m3], so that their ratio is the mean strength there, whatever becomes of other
 /// sums.
 struct StrengthTerms {
@@ -62,6 +64,7 @@ template <class Space, class T, int Dim>
 struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, NodeKinematics<Dim>::size> kinematics;
   NodeField<Space, T, StrengthTerms::size> strength;  // allocated where a contact asks for it
+  NodeField<Space, T, DisplacedTerms::size> displaced;  // kg, of water; allocated with it
   NodeField<Space, T, Dim> residual;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
       impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step
@@ -70,23 +73,23 @@ struct Nodes : NodeSums<Space, T, Dim> {
 /// A rigid body on the device.
 template <int Dim>
 struct Rigid {
-  Vector<double, Dim> displacement;  // m, since the start
-  Vector<double, Dim> binned;        // m, displacement when its points were binned
-  Vector<double, Dim> velocity;      // m/s
-  Vector<double, Dim> impulse;       // N s, of the soil on it since the host last took it
-  Vector<double, Dim> force;         // N, external and weight
-  double mass;                       // kg
+  RigidPose<Dim> pose;           // where it is
+  RigidPose<Dim> binned;         // where it was when its points were binned
+  Vector<double, Dim> velocity;  // m/s
+  Vector<double, Dim> impulse;   // N s, of the soil on it since the host last took it
+  Vector<double, Dim> force;     // N, external and weight
+  double mass;                   // kg
   bool dynamic;
   bool held[Dim];  // a plane of symmetry cuts it, across which it does not move
   Surface<Dim> surface;
-  bool surface_normal;  // normals from the surface, not from the mass gradient
-  bool separates;       // the soil may part from it
-  double reach;         // m, gap at which the contact ends; 0: it does not depend on the gap
-  double exponent;      // -, of its decrease with the gap
-  double shear_limit;   // Pa, infinite where only the friction limits
-  double shear_share;   // -, of the soil's strength instead of the limit; negative: none
-  double friction;      // -, negative: none
-  double mass_cut;      // kg, nodes below it are not touched
+  bool surface_normal;    // normals from the surface, not from the mass gradient
+  bool separates;         // the soil may part from it
+  double reach;           // m, gap at which the contact ends; 0: it does not depend on the gap
+  double exponent;        // -, of its decrease with the gap
+  double shear_limit;     // Pa, infinite where only the friction limits
+  double shear_fraction;  // -, of the soil's strength instead of the limit; negative: none
+  double friction;        // -, negative: none
+  double mass_cut;        // kg, nodes below it are not touched
 };
 
 /// Why a run cannot go on.

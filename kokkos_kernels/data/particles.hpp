@@ -7,7 +7,7 @@
 #include "base/half_length.hpp"
 #include "base/types.hpp"
 #include "data/patches.hpp"
-#include "physics/materials/any.hpp"
+#include "physics/materials/stored.hpp"
 
 namespace mpm {
 
@@ -31,13 +31,16 @@ struct BodyProperties {
 };
 
 /// State variables [variable][particle]: column k holds variable k of the particle's law, whichever law that
-/// is. As many columns are in use as the law with the most variables has; the others take no memory.
+/// is. As many columns are in use as the law with the most variables has, and one more for the excess pore
+/// pressure where some material has a pore stiffness; the others take no memory.
 template <class Space, class T>
 struct History {
-  Kokkos::Array<Kokkos::View<T*, typename Space::memory_space>, k_most_state> column;
-  Kokkos::Array<const char*, k_most_state> name{};  // of each column in use
-  Kokkos::Array<bool, k_most_state> changes{};      // some law changes it
-  int columns = 0;                                  // in use
+  static constexpr int most = k_most_state<Space> + 1;
+  Kokkos::Array<Kokkos::View<T*, typename Space::memory_space>, most> column;
+  Kokkos::Array<const char*, most> name{};  // of each column in use
+  Kokkos::Array<bool, most> changes{};      // some law changes it
+  int columns = 0;                          // in use
+  int pore = -1;                            // column of the excess pore pressure [Pa]; -1: there is none
 };
 
 /// The soil: the particles of all deformable bodies.
@@ -53,7 +56,7 @@ struct Soil : Points<Space, T, Dim> {
   Kokkos::View<T*, Memory> mass;                    // kg, in use where has_own_mass
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
-  Kokkos::View<AnyMaterial<T>*, Memory> materials;
+  Kokkos::View<StoredMaterial<T>*, Memory> materials;
   bool has_own_mass = false;  // the particles of some body differ in mass; the same on all ranks
 
   /// Mass [kg] of particle p, which is of this body.
@@ -66,6 +69,12 @@ struct Soil : Points<Space, T, Dim> {
     LawState<T, state_size<Law>> state;
     for (int k = 0; k < state_size<Law>; ++k) state[k] = carries(law, k) ? history.column[k](p) : T(0);
     return state;
+  }
+  /// Excess pore pressure [Pa] of particle p, which is of this material: its stress is the effective stress
+  /// less this pressure.
+  template <class Material>
+  KOKKOS_INLINE_FUNCTION T excess_pore_pressure(const Material& of, int p) const {
+    return history.pore >= 0 && of.pore_stiffness > 0 ? history.column[history.pore](p) : T(0);
   }
   /// What its body gives particle p, with its own mass.
   KOKKOS_INLINE_FUNCTION BodyProperties<T> properties(int p) const {
@@ -110,7 +119,7 @@ void for_each_field_of(F&& f, Soil_& s, Others&... others) {
 template <class F, class RigidPoints_>
 requires requires(RigidPoints_& s) { s.reference_position; }
 void for_each_field_of(F&& f, RigidPoints_& s) {
-  f("coordinate", Use::none, s.coordinate), f("home", Use::none, s.reference_position);
+  f("coordinate", Use::none, s.coordinate), f("reference_position", Use::none, s.reference_position);
 }
 /// The fields alone.
 template <class Points_, class F>
@@ -140,7 +149,7 @@ struct Bins {
   int first_slot = 0, last_slot = 0;        // slots that may hold points: [first_slot, last_slot)
   Kokkos::View<int*, Memory> active_slots;  // slots that hold points, ordered by colour; on a processor all
                                             // are of one, so that they rise
-  int colour_begin[8 + 1] = {};  // ranges of active_slots
+  int colour_begin[8 + 1] = {};             // ranges of active_slots
   int border = 0;  // of active_slots, on several ranks: slots in front that share nodes with other ranks, all
                    // colours of them; but with OpenMP, where slots rise
   Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]

@@ -5,6 +5,7 @@
 // corner).
 
 #include "base/choices.hpp"
+#include "base/patch_edge.hpp"
 #include "base/types.hpp"
 
 namespace mpm {
@@ -12,13 +13,14 @@ namespace mpm {
 /// Size of a patch.
 template <int Dim>
 struct Patch {
+  static constexpr int edge = patch_edge(Dim);  // cells
   static constexpr int log_edge = Dim == 2 ? 3 : 2;
-  static constexpr int edge = 1 << log_edge;        // cells
   static constexpr int cells = power(edge, Dim);    // 64 in both
   static constexpr int neighbours = power(3, Dim);  // patches round one, itself included
   static constexpr int colours = power(2, Dim);     // patches of one colour do not touch
   static constexpr int window_edge = edge + 3;      // nodes that its particles reach: -1 ... edge + 1
   static constexpr int window = power(window_edge, Dim);
+  static_assert(edge == 1 << log_edge);
 };
 
 /// Grid coordinates of a cell or node, from the mesh's lower corner.
@@ -51,6 +53,11 @@ struct Grid {
   int fields = 1;          // velocity fields
   Wall wall[Dim][2];       // lower and upper side of each direction
 
+  /// Coordinate d of a node [m from the mesh's lower corner], of one beyond the mesh that of the nearest
+  /// within: bodies go on beyond the mesh. exact: the spacing in double precision [m].
+  KOKKOS_INLINE_FUNCTION double coordinate_within(int d, int node, double exact) const {
+    return Kokkos::max(0, Kokkos::min(node, cells[d])) * exact;
+  }
   KOKKOS_INLINE_FUNCTION bool holds(const Coord<Dim>& cell) const {
     for (int d = 0; d < Dim; ++d)
       if (cell[d] < 0 || cell[d] >= cells[d]) return false;

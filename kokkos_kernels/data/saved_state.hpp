@@ -42,8 +42,9 @@ struct SavedState {
   double bound = 0, increment = 0;  // cells, of Control; the largest of all ranks
   double margin = 0;                // cells, that the bound was held against
   int due_in = 0;                   // steps to a rebuild that is due, the same of all ranks; 0: none is
-  std::vector<double> bounds;  // of each of several ranks: what Ranks::save puts there; empty on one rank
-  std::vector<long> owners;    // rank of each patch of the grid; empty on one rank
+  std::vector<double>
+      bounds;  // of each of several ranks: what Decomposition::save puts there; empty on one rank
+  std::vector<long> owners;  // rank of each patch of the grid; empty on one rank
   SavedPoints soil;
   long particles = 0;        // at the start, of all ranks: rows of those that have left have no address (-1)
   std::vector<double> lost;  // k_lost numbers a body: those of Lost, and Strays::put_back

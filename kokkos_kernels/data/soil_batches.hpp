@@ -41,12 +41,12 @@ void for_each_of_step(Home& home, There& there, F&& f) {
   f(home.cell, there.cell, Use::reads);
 }
 
-/// What the batches cost, summed over the steps that were done. Those that were taken apart, each copy and
+/// What the batches cost, summed over the steps that were done. Those that were sampled, each copy and
 /// kernel waited for, tell what these take alone.
 struct BatchCost {
-  long steps = 0, apart = 0;
+  long steps = 0, sampled = 0;
   double copied_in = 0, copied_out = 0;                        // bytes, in all steps
-  double seconds = 0;                                          // of the updates that were not taken apart
+  double seconds = 0;                                          // of the updates that were not sampled
   double in_seconds = 0, kernel_seconds = 0, out_seconds = 0;  // of those that were
 };
 

@@ -6,6 +6,7 @@
 
 #include "data/nodes.hpp"
 #include "data/soil_batches.hpp"
+#include "data/split_patches.hpp"
 #include "data/step_plan.hpp"
 #include "data/strays.hpp"
 
@@ -32,8 +33,10 @@ struct State {
   Grid<T, Dim> grid;
   Patches<Space, Dim> patches;
   ParticleSet<Space, Soil<Space, T, Dim>> soil;
-  int law = -1;  // index in Materials of the law of all bodies; -1: they differ
+  int law = -1;             // index in Materials of the law of all bodies; -1: they differ
+  bool light_laws = false;  // all of them are of LightMaterials
   Strays<Space> strays;
+  SplitPatches<Space> split;
   Batches<Space, T, Dim> batches;  // of the soil, where the device's memory does not hold it all
   std::vector<ParticleSet<Space, RigidPoints<Space, T, Dim>>> rigid_points;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
@@ -61,6 +64,8 @@ struct State {
   double time = 0;                // s, before the steps that Control::steps counts
   double spacing = 0;             // m, edge of a cell, whatever T is
   Vector<double, Dim> gravity{};  // m/s2
+  Water<Dim> water{};             // hydrostatic, in which the soil is submerged
+  Kokkos::View<double*, Memory> density;  // kg/m3, that the soil of each body begins with
   double damping = 0;             // -
   double flip_fraction = 1;       // -, what is not FLIP is PIC, or XPIC
   int xpic_order = 0;             // m of XPIC(m), 0 without it
@@ -73,12 +78,12 @@ struct State {
   Summed summed;                  // what the step before has summed already
   bool forces_summed =
       false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them
-  bool rigid_moves = false;    // some rigid is not fixed
-  bool rigid_dynamic = false;  // some rigid moves by the forces on it
-  bool mass_normals = false;   // some rigid's normals are those of its mass gradient
-  bool soil_boundary = false;  // some contact needs the soil's boundary at the nodes
-  bool shear_share = false;    // some contact needs the soil's strength at the nodes
-  bool has_friction = false;   // some contact has Coulomb friction
+  bool rigid_moves = false;     // some rigid is not fixed
+  bool rigid_dynamic = false;   // some rigid moves by the forces on it
+  bool mass_normals = false;    // some rigid's normals are those of its mass gradient
+  bool soil_boundary = false;   // some contact needs the soil's boundary at the nodes
+  bool shear_fraction = false;  // some contact needs the soil's strength at the nodes
+  bool has_friction = false;    // some contact has Coulomb friction
 };
 
 }  // namespace mpm

@@ -14,18 +14,19 @@ StepPlan plan_step(const State<Space, T, Dim>& s) {
   // memory must hold the update and the sums.
   const bool fit = is_device<Space> ? sums_fit<Space, T, Dim> : has_windows(s.space);
   StepPlan plan;
-  plan.sums_ahead = fit && tile && s.xpic_order == 0 && !s.affine;  // these ask for the nodal sums again
+  // XPIC and APIC ask for the nodal sums again. Submerged soil also gives the nodes the water it displaces.
+  plan.sums_ahead = fit && tile && s.xpic_order == 0 && !s.affine && !s.water.is_there();
   plan.writes_sums = has_windows(s.space) && tile && !batches;
   // Patches far from rigids need few registers: where they are many, they go faster with a launch of their
   // own.
   plan.nodes_apart = is_device<Space> && !few && !s.rigid_points.empty() && s.near_count > 0;
   if (batches)
     plan.form = StepForm::out_of_core;
-  else if (is_device<Space> && plan.sums_ahead && few && one_rank && s.soil.points.count > 0 &&
-           ends_in_launch(s))
-    plan.form = StepForm::persistent;
   else if (plan.sums_ahead)
     plan.form = StepForm::fused;
+  if constexpr (is_device<Space>)
+    if (plan.form == StepForm::fused && few && one_rank && s.soil.points.count > 0 && ends_in_launch(s))
+      plan.form = StepForm::persistent;
   return plan;
 }
 

@@ -15,6 +15,11 @@ StepPlan plan_step(const State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void reset_nodes(State<Space, T, Dim>& s);
 
+/// Part of 3, of submerged soil: adds to the force at each node what the water weighs that the soil displaces
+/// there (s.nodes.displaced), against gravity.
+template <class Space, class T, int Dim>
+void add_buoyancy(State<Space, T, Dim>& s);
+
 /// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
 /// contact forces in s.slot_forces. Where the plan has sums_ahead and not writes_sums, it leaves the nodal
 /// sums at zero, which is function 1 of the next step. dt [s]. stream: that of the nodes near rigids, if the
@@ -28,6 +33,7 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
 /// Brings to the nodes the sums that update_particles has left in windows for update_nodes.
 template <class Space, class T, int Dim>
 void finish_sums(State<Space, T, Dim>& s);
+/// Persistent steps, which the program has for GPUs alone (persistent_launch.hpp).
 /// Whether one launch has room for function 5 with function 3 of the next step, function 6, and function 2 of
 /// the next step.
 template <class Space, class T, int Dim>
@@ -51,12 +57,16 @@ void resume_single_steps(State<Space, T, Dim>& s);
 
 /// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves
 /// the furthest movement of a particle in s.control. Where sums_ahead, adds the soil as it then is to the
-/// nodes. dt [s].
+/// nodes. dt [s]. aside: the stream of the patches that are not common, where State::split tells them.
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt);
+void update_particles(State<Space, T, Dim>& s, double dt, const Space& aside);
+template <class Space, class T, int Dim>
+void update_particles(State<Space, T, Dim>& s, double dt) {
+  update_particles(s, dt, s.space);
+}
 /// The same for some of the slots, where sums_ahead.
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part);
+void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside);
 
 /// Forces of the soil on the rigids in this step, from s.slot_forces to s.rigid_force [N]; else move_rigids
 /// does it.

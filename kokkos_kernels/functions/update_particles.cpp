@@ -4,40 +4,64 @@
 namespace mpm {
 namespace {
 
-template <bool Sums, class Space, class T, int Dim>
-void launch_update(State<Space, T, Dim>& s, double dt, const Part<Space>& part) {
-  using Update = UpdateParticles<Space, T, Dim, Sums>;
+template <class Space>
+using Slots = Kokkos::View<int*, typename Space::memory_space>;
+
+template <bool Sums, PatchKind kind, class Laws, class Space, class T, int Dim>
+void launch_for(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
+  using Update = UpdateParticles<Space, T, Dim, Sums, kind, Laws>;
   const int teams = part.last - part.first;
   if (teams == 0) return;
   Kokkos::parallel_for("mpm::update_particles",
                        light(typename Update::Team(part.space, teams, Update::threads)
                                  .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
-                       update_of<Update>(s, dt, part.first));
+                       update_of<Update>(s, dt, slots, part.first));
+}
+template <bool Sums, PatchKind kind, class Space, class T, int Dim>
+void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
+  if (s.light_laws)
+    launch_for<Sums, kind, LightMaterials>(s, dt, slots, part);
+  else
+    launch_for<Sums, kind, Materials>(s, dt, slots, part);
+}
+
+/// The patches that are not common are few and take longer each. They are launched first, on a stream of
+/// their own, so that common patches fill the device beside them.
+template <bool Sums, class Space, class T, int Dim>
+void update_on_device(State<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside) {
+  if (!s.split.holds(part))
+    return launch<Sums, PatchKind::any>(s, dt, Slots<Space>(s.soil.bins.active_slots), part);
+  for (const auto& of : s.split.parts) {
+    if (of.first < part.first || of.last > part.last) continue;
+    launch<Sums, PatchKind::any>(s, dt, s.split.slots, {aside, of.middle, of.last});
+    launch<Sums, PatchKind::common>(s, dt, s.split.slots, {part.space, of.first, of.middle});
+  }
 }
 
 }  // namespace
 
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const Part<Space>& part) {
+void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const Part<Space>& part,
+                      [[maybe_unused]] const Space& aside) {
   const bool sums = s.plan.sums_ahead;
   s.summed = {sums, sums && s.soil_boundary, false, sums && s.plan.writes_sums};
   if constexpr (is_device<Space>) {
     if constexpr (sums_fit<Space, T, Dim>)
-      if (sums) return launch_update<true>(s, dt, part);
-    launch_update<false>(s, dt, part);
+      if (sums) return update_on_device<true>(s, dt, part, aside);
+    update_on_device<false>(s, dt, part, aside);
   } else {
     move_on_host(s, update_scalars(s, dt), sums);
   }
 }
 
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt) {
-  update_particles(s, dt, Part<Space>{s.space, 0, s.soil.bins.colour_begin[Patch<Dim>::colours]});
+void update_particles(State<Space, T, Dim>& s, double dt, const Space& aside) {
+  update_particles(s, dt, Part<Space>{s.space, 0, s.soil.bins.colour_begin[Patch<Dim>::colours]}, aside);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                           \
-  template void update_particles(State<Space, T, Dim>&, double); \
-  template void update_particles(State<Space, T, Dim>&, double, const Part<Space>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                         \
+  template void update_particles(State<Space, T, Dim>&, double, const Space&); \
+  template void update_particles(State<Space, T, Dim>&, double, const Part<Space>&, const Space&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

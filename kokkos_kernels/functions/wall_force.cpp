@@ -39,7 +39,12 @@ struct PressOnWalls {
   using Source = SoilSource<Space, T, Dim>;
   Source source;
   NodePlaces<Space, T, Dim> places;
+  DisplacedSource<Space, T, Dim> displaced;  // in use where there is water
   Vector<double, Dim> g;
+
+  struct Terms {
+    T value[Source::size];
+  };
 
   /// Whether a particle reaches a node at a wall.
   KOKKOS_INLINE_FUNCTION bool is_near(int p) const {
@@ -59,21 +64,22 @@ struct PressOnWalls {
   KOKKOS_INLINE_FUNCTION void operator()(int p, ForceSum<Dim>& sum) const {
     if (!is_near(p)) return;
     const typename Source::Point q = source.load(p);
+    const T carried = displaced.water.is_there() ? displaced.load(p).mass : T(0);
     with_weights(source.points.coordinate(p), q.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
       const int cell = source.points.cell(p);
       const Coord<Dim> first = in_mesh(places.origin(cell / Patch<Dim>::cells), coord_of<Dim>(cell));
       for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const Vector<T, Dim>& grad) {
         Coord<Dim> node;
         for (int d = 0; d < Dim; ++d) node[d] = first[d] + a[d].first + step[d];
-        if (w > 0) add_node(node, share_of(q, w, grad), sum);
+        if (!(w > 0)) return;
+        Terms terms = share_of(q, w, grad);
+        terms.value[SoilTerms<Dim>::mass] -= w * carried;
+        add_node(node, terms, sum);
       });
     });
   }
 
  private:
-  struct Terms {
-    T value[Source::size];
-  };
   KOKKOS_INLINE_FUNCTION static Terms share_of(const typename Source::Point& q, T w,
                                                const Vector<T, Dim>& grad) {
     Terms terms{};
@@ -98,7 +104,10 @@ struct PressOnWalls {
 
 template <class Space, class T, int Dim>
 WallForces wall_forces(const State<Space, T, Dim>& s) {
-  PressOnWalls<Space, T, Dim> press{{s.soil.points, s.grid.inv_spacing}, {s.grid, s.patches}, {}};
+  PressOnWalls<Space, T, Dim> press{{s.soil.points, s.grid.inv_spacing},
+                                    {s.grid, s.patches},
+                                    {s.soil.points, s.water, s.density, s.patches.origin, s.spacing},
+                                    {}};
   for (int d = 0; d < Dim; ++d) press.g[d] = s.gravity[d];
   ForceSum<Dim> sum;
   Kokkos::parallel_reduce("mpm::wall_forces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),

@@ -11,13 +11,14 @@ namespace mpm {
 /// What a step changes of a rigid, and by what.
 template <int Dim>
 struct MovingRigid {
-  Vector<double, Dim> displacement, velocity, impulse, force;  // as Rigid has them
+  RigidPose<Dim> pose;
+  Vector<double, Dim> velocity, impulse, force;  // as Rigid has them
   double mass;
   bool dynamic, held[Dim];
 
   MovingRigid() = default;
   KOKKOS_INLINE_FUNCTION explicit MovingRigid(const Rigid<Dim>& r)
-      : displacement(r.displacement),
+      : pose(r.pose),
         velocity(r.velocity),
         impulse(r.impulse),
         force(r.force),
@@ -41,14 +42,14 @@ struct MovingRigid {
     for (int d = 0; d < Dim; ++d) {
       const double a = acceleration(d, contact[d]), step = movement(d, a, dt);
       furthest = Kokkos::fmax(furthest, Kokkos::fabs(step));
-      displacement[d] += step;
+      pose.displacement[d] += step;
       impulse[d] += dt * contact[d];
       velocity[d] += dt * a;
     }
     return furthest;
   }
   KOKKOS_INLINE_FUNCTION void keep_in(Rigid<Dim>& r) const {
-    r.displacement = displacement, r.velocity = velocity, r.impulse = impulse;
+    r.pose = pose, r.velocity = velocity, r.impulse = impulse;
   }
 };
 
@@ -148,7 +149,7 @@ struct EndStep {
   template <bool Dynamic, class Team>
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> next_displacement(const Team& team, int r, double* part) const {
     const MovingRigid<Dim> rigid(rigids(r));
-    Vector<double, Dim> a{}, to;
+    Vector<double, Dim> a{}, to = rigid.pose.displacement;
     if constexpr (Dynamic) {
       const int parts = warps(team.team_size());
       team.team_barrier();  // what was there before is done with
@@ -157,7 +158,7 @@ struct EndStep {
       for (int d = 0; d < Dim && rigid.dynamic; ++d)
         a[d] = rigid.acceleration(d, total(part + d * parts, parts));
     }
-    for (int d = 0; d < Dim; ++d) to[d] = rigid.displacement[d] + rigid.movement(d, a[d], dt);
+    for (int d = 0; d < Dim; ++d) to[d] += rigid.movement(d, a[d], dt);
     return to;
   }
 

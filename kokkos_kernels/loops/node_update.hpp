@@ -188,7 +188,7 @@ struct UpdateNodes {
     double distance = 0;
     Vector<double, Dim> out{};
     const bool reaches = rigid.surface_normal || rigid.reach > 0
-                             ? look_at_surface(rigid, node.at, boundary, distance, out)
+                             ? surface_contact(rigid, node.at, boundary, distance, out)
                              : true;
     if (rigid.surface_normal ? !(reaches && surface_normal(out, node.sides, n))
                              : !mass_normal(rigid, given, node.sides, n))
@@ -208,7 +208,7 @@ struct UpdateNodes {
     if (rigid.reach > 0) {
       const T depth = surface_depth(node.boundary[BoundaryTerms<Dim>::volume] / places.grid.spacing, area);
       const T gap = static_cast<T>(distance) + depth * places.grid.spacing;
-      interface.penalty = penalty(gap, T(rigid.reach), T(rigid.exponent));
+      interface.gap_scaling = gap_scaling(gap, T(rigid.reach), T(rigid.exponent));
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
       if (gap > Kokkos::fmax(T(rigid.reach), places.grid.spacing / 2)) return;
     }
@@ -223,18 +223,15 @@ struct UpdateNodes {
 
   /// Largest shear stress of the interface at node i [Pa], infinite where only the friction limits.
   KOKKOS_INLINE_FUNCTION T shear_limit(const Rigid<Dim>& rigid, int i) const {
-    if (rigid.shear_share < 0) return static_cast<T>(rigid.shear_limit);
+    if (rigid.shear_fraction < 0) return static_cast<T>(rigid.shear_limit);
     const T volume = nodes.strength(i, StrengthTerms::volume);
     if (!(volume > 0)) return 0;
-    return static_cast<T>(rigid.shear_share) * (nodes.strength(i, StrengthTerms::strength) / volume);
+    return static_cast<T>(rigid.shear_fraction) * (nodes.strength(i, StrengthTerms::strength) / volume);
   }
 
-  /// Place of a node in the frame of a rigid's surface [m]. Bodies go on beyond the mesh.
+  /// Place of a node in the frame of a rigid's surface [m].
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> place(const Rigid<Dim>& rigid, const Coord<Dim>& at) const {
-    Vector<double, Dim> x;
-    for (int d = 0; d < Dim; ++d)
-      x[d] = Kokkos::max(0, Kokkos::min(at[d], places.grid.cells[d])) * spacing - rigid.displacement[d];
-    return x;
+    return rigid.pose.to_body([&](int d) { return places.grid.coordinate_within(d, at[d], spacing); });
   }
 
   /// Area of a cell's face [m^2; m in 2D].
@@ -252,7 +249,7 @@ struct UpdateNodes {
   /// the soil's boundary says that the soil is at another face, as in a thin plate, the node looks a second
   /// time, from a cell's edge further towards the soil. False where the rigid does not reach into the node's
   /// cells.
-  KOKKOS_INLINE_FUNCTION bool look_at_surface(const Rigid<Dim>& rigid, const Coord<Dim>& at,
+  KOKKOS_INLINE_FUNCTION bool surface_contact(const Rigid<Dim>& rigid, const Coord<Dim>& at,
                                               const Vector<T, Dim>& boundary, double& distance,
                                               Vector<double, Dim>& out) const {
     constexpr double k_overlap = 1e-3;  // cells: less is no touch

@@ -1,4 +1,5 @@
 #include "loops/particle_to_node.hpp"
+#include "physics/materials/any.hpp"
 
 namespace mpm {
 

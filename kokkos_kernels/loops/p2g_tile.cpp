@@ -1,5 +1,6 @@
 #include "loops/cpu/host_sums.hpp"
 #include "loops/gpu/tile.hpp"
+#include "physics/materials/any.hpp"
 
 namespace mpm {
 
@@ -7,14 +8,16 @@ namespace mpm {
 template <class Source>
 void sum_on_device(const Interpolation<Source>& it) {
   using Space = typename Source::Space;
+  using T = typename Source::real;
   constexpr int Dim = Source::dim, cells = Patch<Dim>::cells;
-  using Team = PatchTeam<Space, typename Source::real, Dim>;
+  using Team = PatchTeam<Space, T, Dim>;
   using Tile_ = Tile<Source>;
   const auto source = it.source;
   const auto neighbours = it.patches.neighbours;
   const auto begin = it.bins.begin;
   const auto active_slots = it.bins.active_slots;
   const auto grid = it.grid;
+  const WallReach<Dim> reach(grid);
   const auto origin = it.patches.origin;
   const auto out = it.out;
   const auto control = it.control;
@@ -29,12 +32,13 @@ void sum_on_device(const Interpolation<Source>& it) {
         if (control().paused) return;
         const int slot = active_slots(first + team.league_rank());
         if (source.skips(slot)) return;
+        const WindowImages<T, Dim> images(grid, reach, origin(slot));
         sum_patch(
             team, Scratch(team, Tile_::bytes()), source,
             [&](int n) {
-              return number_at<decltype(neighbours), Dim>(neighbours, slot, window_coord<Dim>(n));
+              return number_at<decltype(neighbours), Dim>(neighbours, slot, window_coord<Dim>(images(n)));
             },
-            [&](int c) { return begin(slot * cells + c); }, grid, origin(slot), out);
+            [&](int c) { return begin(slot * cells + c); }, images, out);
       });
 }
 

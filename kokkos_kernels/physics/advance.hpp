@@ -5,6 +5,8 @@
 #include "base/lanes.hpp"
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
+#include "physics/materials/any.hpp"
+#include "physics/pore_water.hpp"
 
 namespace mpm {
 
@@ -51,9 +53,9 @@ struct Particle {
   T volume;                  // m3
 };
 
-/// The law of particle p, with its state in memory. A particle that flies freely, being alone, carries no
-/// stress and keeps its state.
-template <class Space, class T, int Dim>
+/// The law of particle p, which is one of the list Laws, with its state in memory. A particle that flies
+/// freely, being alone, carries no stress, nor an excess pore pressure, and keeps its state.
+template <class Space, class T, int Dim, class Laws>
 struct ParticleLaw {
   const Soil<Space, T, Dim>& soil;
   int p, material;
@@ -62,22 +64,50 @@ struct ParticleLaw {
   bool flies;
 
   KOKKOS_INLINE_FUNCTION void operator()(SymTensor<T, Dim>& stress, const Increment<T, T, Dim>& by) const {
+    const AnyMaterial<T>& of = material_in(soil.materials(material));
+    const bool undrained = soil.history.pore >= 0 && of.pore_stiffness > 0;
     if (flies) {
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = 0;
+      if (undrained) soil.history.column[soil.history.pore](p) = 0;
       return;
     }
-    const AnyMaterial<T>& of = soil.materials(material);
-    of.visit_as(which >= 0 ? which : of.which, [&](const auto& law) {
+    T excess = 0;
+    if (undrained) {
+      excess = soil.history.column[soil.history.pore](p);
+      add_isotropic(stress, excess);  // effective: the law's own
+    }
+    of.visit_as(Laws{}, which >= 0 ? which : of.which, [&](const auto& law) {
       using Law = std::decay_t<decltype(law)>;
       const auto was = soil.state_of(law, p);
       auto state = was;
-      law.update(stress, state, by);
+      if constexpr (has_called_update<Law>()) {
+        const auto after = called_update<Law, Dim>(law, {stress, state}, by);
+        stress = after.stress, state = after.state;
+      } else {
+        law.update(stress, state, by);
+      }
       for (int k = 0; k < state.size; ++k)
         if (Law::state()[k].changes && state[k] != was[k]) soil.history.column[k](p) = state[k];
       if constexpr (can_fail<Law>())
         if (law.failed(state)) stress[0] = Kokkos::Experimental::quiet_NaN_v<T>;  // fault_of() finds it
     });
+    if (undrained) {
+      excess = undrained_pressure(excess, of.pore_stiffness, by.strain);
+      soil.history.column[soil.history.pore](p) = excess;
+      add_isotropic(stress, -excess);
+    }
   }
+};
+
+/// Mean over the particles of a cell, weighted by volume.
+template <class T>
+struct CellMean {
+  T volume = 0, sum = 0;  // m3; m3 times the unit of what is averaged
+
+  /// weighted: the particle's volume times its value.
+  KOKKOS_INLINE_FUNCTION void add(T of_particle, T weighted) { volume += of_particle, sum += weighted; }
+  /// 0 in an empty cell.
+  KOKKOS_INLINE_FUNCTION T value() const { return volume > 0 ? sum / volume : T(0); }
 };
 
 /// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The fraction f_bar of
@@ -124,12 +154,13 @@ KOKKOS_INLINE_FUNCTION auto is_volume_limited(const Particle<R, Dim>& q, const U
   return !((q.volume > by.least_volume) & (q.volume < by.most_volume));
 }
 
-/// Whether the law of particle p calls the particle's state a failure. Its stress is then not finite, so that
-/// only particles whose stress is not finite need be asked.
-template <class Space, class T, int Dim>
+/// Whether the law of particle p, one of the list Laws, calls the particle's state a failure. Its stress is
+/// then not finite, so that only particles whose stress is not finite need be asked.
+template <class Laws = Materials, class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool has_failed(const Soil<Space, T, Dim>& soil, int p) {
   bool failed = false;
-  soil.materials(soil.bodies(soil.body(p)).material).visit([&](const auto& law) {
+  const AnyMaterial<T>& of = material_in(soil.materials(soil.bodies(soil.body(p)).material));
+  of.visit_as(Laws{}, of.which, [&](const auto& law) {
     if constexpr (can_fail<std::decay_t<decltype(law)>>()) failed = law.failed(soil.state_of(law, p));
   });
   return failed;
@@ -142,6 +173,22 @@ KOKKOS_INLINE_FUNCTION FaultKind fault_of(const Particle<T, Dim>& q, T moved, co
   if (!is_finite(q)) return FaultKind::not_finite;
   if (by.volume_is_fault && is_volume_limited(q, by)) return FaultKind::volume;
   return moved <= 1 ? FaultKind::none : FaultKind::too_fast;
+}
+
+/// Reports what is wrong with particle p after a step, if anything is. q: the particle, which moved by
+/// `moved` [cells]; origin: lower corner of its patch [cells].
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void report_fault(const ControlView<Space>& control, const Soil<Space, T, Dim>& soil,
+                                         int p, const Particle<T, Dim>& q, T moved,
+                                         const UpdateScalars<T>& by, const Coord<Dim>& origin,
+                                         double spacing) {
+  FaultKind fault = fault_of(q, moved, by);
+  if (fault == FaultKind::none) return;
+  if (fault == FaultKind::not_finite && has_failed(soil, p)) fault = FaultKind::law;
+  const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
+  double position[3] = {};
+  for (int d = 0; d < Dim; ++d) position[d] = (double(origin[d]) + cell[d] + q.x[d]) * spacing;
+  report(control, fault, soil.id(p), position, Dim);
 }
 
 }  // namespace mpm

@@ -35,10 +35,10 @@ KOKKOS_INLINE_FUNCTION T surface_depth(T volume, T area) {
   return 2 / (ratio + Kokkos::sqrt(ratio * ratio + 2)) - 1;
 }
 
-/// Share of the normal correction at a gap [m] between body and soil (the "Geo-contact" penalty of Ma, Wang
-/// and Randolph 2014, in the form 1 - (gap/reach)^k): 1 in touch, 0 from `reach` on.
+/// Fraction of the normal correction at a gap [m] between body and soil (the "Geo-contact" penalty of Ma,
+/// Wang and Randolph 2014, in the form 1 - (gap/reach)^k): 1 in touch, 0 from `reach` on.
 template <class T>
-KOKKOS_INLINE_FUNCTION T penalty(T gap, T reach, T exponent) {
+KOKKOS_INLINE_FUNCTION T gap_scaling(T gap, T reach, T exponent) {
   if (gap <= 0) return 1;
   return gap < reach ? 1 - Kokkos::pow(gap / reach, exponent) : T(0);
 }
@@ -54,14 +54,14 @@ struct Interface {
   T friction;      // -, negative: none
   T pressing = 0;  // m/s: what the soil's own force and weight press towards the rigid x dt / nodal mass
   T stock = 0;     // m/s: normal impulse not yet used by friction / nodal mass; updated
-  T penalty = 1;   // -, fraction of the normal correction
+  T gap_scaling = 1;  // -, fraction of the normal correction
   bool separates = true;
   bool within_soil =
       false;  // more than half a cell from the surface: it is not stopped, and nothing presses it
 };
 
 /// Correction dV of the soil's velocity v at a node; v_r velocity of the rigid, n inward unit normal. No soil
-/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a share of the normal
+/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a fraction of the normal
 /// impulse of this step and of what earlier ones left (`stock`): the impulse of a node rings with the soil's
 /// elastic waves, and a body that sticks on the whole must not slip in each trough. Where it slips the stock
 /// is used up, so that the friction is that of each step.
@@ -71,7 +71,7 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
   Vector<T, Dim> relative, change = filled<T, Dim>(0);
   for (int d = 0; d < Dim; ++d) relative[d] = v[d] - v_r[d];
   const T approach = dot(relative, n);
-  const T stop = (interface.within_soil ? T(0) : interface.penalty) *
+  const T stop = (interface.within_soil ? T(0) : interface.gap_scaling) *
                  (interface.separates ? Kokkos::fmax(T(0), approach) : approach);
   Vector<T, Dim> slip;
   for (int d = 0; d < Dim; ++d) slip[d] = relative[d] - approach * n[d];

@@ -1,8 +1,12 @@
 #pragma once
 // What one particle gives one node. Physics is written here once; the strategies are loop shapes around it.
 
+#include <cstddef>
+#include <type_traits>
+
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
+#include "physics/pore_water.hpp"
 #include "physics/shape_gimp.hpp"
 #include "physics/walls.hpp"
 
@@ -13,6 +17,19 @@ namespace mpm {
 //   S factor(q, value)   or   sum over d of dS/dx_d slope(q, value, d)
 // component(value) is the direction of a value that is a component of a vector, -1 of a scalar; with `kind`
 // it tells the sign of its image in a wall.
+
+/// Numbers of a point that lie behind its half length, which the weights alone need: how many they are, and
+/// the first of them. T: the type of the numbers.
+template <class T, class Point>
+inline constexpr int k_point_numbers = sizeof(Point) / sizeof(T) - sizeof(HalfLength<T>) / sizeof(T);
+template <class T, class Point>
+KOKKOS_INLINE_FUNCTION auto numbers_of(Point& q) {
+  using Plain = std::remove_const_t<Point>;
+  static_assert(std::is_trivially_copyable_v<Plain> && sizeof(Plain) % sizeof(T) == 0);
+  if constexpr (std::is_standard_layout_v<Plain>) static_assert(offsetof(Plain, half_length) == 0);
+  using Number = std::conditional_t<std::is_const_v<Point>, const T, T>;
+  return reinterpret_cast<Number*>(&q) + sizeof(HalfLength<T>) / sizeof(T);
+}
 
 /// Soil to nodes, Eqs (1), (2), (4): m_i = sum S m_p, p_i = sum S m_p v_p, f_i = - sum V_p sigma_p grad S.
 /// The weight, Eq. (5), is m_i g and is added at the node.
@@ -134,7 +151,7 @@ struct BoundarySource {
   T inv_spacing;
   Kokkos::View<int*, typename Space::memory_space> near_rigid;  // by slot
 
-  /// Far from every rigid the boundary matters to nobody.
+  /// Far from every rigid no contact needs the boundary.
   KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return near_rigid(slot) == 0; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     const T volume = points.volume(p);
@@ -169,7 +186,8 @@ struct StrengthSource {
     const T volume = points.volume(p);
     const BodyProperties<T>& body = points.bodies(points.body(p));
     T strength = 0;
-    points.materials(body.material).visit([&](const auto& law) {
+    // Who interpolates strengths includes physics/materials/any.hpp; all others see no law.
+    material_in(points.materials(body.material)).visit([&](const auto& law) {
       strength = law.shear_strength(points.state_of(law, p));
     });
     return {body.half_length, volume * strength, volume};
@@ -179,6 +197,43 @@ struct StrengthSource {
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
     return value == StrengthTerms::strength ? q.strength : q.volume;
   }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
+};
+
+/// The mass of the water that the soil displaces, sum S rho_w m_p / rho below the level [kg]. rho is the
+/// density that the soil began with: when its pores change their volume, water comes and goes, and the weight
+/// of the grains under water stays.
+template <class Space_, class T, int Dim>
+struct DisplacedSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr int dim = Dim, size = DisplacedTerms::size;
+  static constexpr Kind kind = Kind::motion;
+  struct Point {
+    HalfLength<T> half_length;
+    T mass;
+  };
+  Soil<Space, T, Dim> points;
+  Water<Dim> water;
+  Kokkos::View<double*, typename Space::memory_space> density;  // kg/m3, by body
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  double spacing;  // m
+
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const BodyProperties<T> body = points.properties(p);
+    const int cell = points.cell(p);
+    const Coord<Dim> from = origin(cell / Patch<Dim>::cells), in = coord_of<Dim>(cell);
+    Vector<double, Dim> x;
+    for (int d = 0; d < Dim; ++d)
+      x[d] = (double(from[d]) + in[d] + double(points.coordinate(p)[d])) * spacing;
+    const double share = water.submerged_share(x, double(body.half_length.l) * spacing);
+    return {body.half_length,
+            static_cast<T>(water.density * share * (double(body.mass) / density(points.body(p))))};
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.mass; }
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
@@ -202,13 +257,16 @@ struct RigidSource {
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int) const { return {points.half_length, points.mass}; }
-  /// Brings point p to where its body is now, or where it has another displacement [m].
-  KOKKOS_INLINE_FUNCTION void move(int p) const { move(p, rigids(rigid).displacement); }
+  /// Brings point p to where its body is now, or to where the body is in another pose, or where it has
+  /// another displacement [m].
+  KOKKOS_INLINE_FUNCTION void move(int p) const { move(p, rigids(rigid).pose); }
   KOKKOS_INLINE_FUNCTION void move(int p, const Vector<double, Dim>& displacement) const {
+    move(p, RigidPose<Dim>{displacement});
+  }
+  KOKKOS_INLINE_FUNCTION void move(int p, const RigidPose<Dim>& pose) const {
     const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(points.cell(p));
-    for (int d = 0; d < Dim; ++d)
-      points.coordinate(p)[d] =
-          static_cast<T>(points.reference_position(p)[d] + displacement[d] / spacing - from[d] - cell[d]);
+    const Vector<double, Dim> x = pose.in_cells(spacing).to_world(points.reference_position(p));
+    for (int d = 0; d < Dim; ++d) points.coordinate(p)[d] = static_cast<T>(x[d] - from[d] - cell[d]);
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
     return value - RigidTerms<Dim>::normal;  // -1 of the mass
@@ -273,6 +331,7 @@ inline constexpr std::size_t window_bytes =
   X(ResidualSource, Space, T, Dim)            \
   X(BoundarySource, Space, T, Dim)            \
   X(StrengthSource, Space, T, Dim)            \
+  X(DisplacedSource, Space, T, Dim)           \
   X(RigidSource, Space, T, Dim)
 
 }  // namespace mpm

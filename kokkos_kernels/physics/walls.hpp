@@ -6,6 +6,7 @@
 
 #include <type_traits>
 
+#include "base/lanes.hpp"
 #include "data/nodes.hpp"
 
 namespace mpm {
@@ -95,6 +96,19 @@ KOKKOS_INLINE_FUNCTION Coord<Dim> in_mesh(const Coord<Dim>& origin, const Coord<
   return c;
 }
 
+/// Whether a particle is where put_on_walls() moves it: beyond a wall, or on the upper one, which belongs to no
+/// cell.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool is_beyond_walls(const Grid<T, Dim>& grid, const Coord<Dim>& cell,
+                                            const Vector<T, Dim>& x) {
+  bool beyond = false;
+  for (int d = 0; d < Dim; ++d) {
+    beyond |= grid.wall[d][0] != Wall::free && static_cast<T>(-cell[d]) > x[d];
+    beyond |= grid.wall[d][1] != Wall::free && x[d] >= static_cast<T>(grid.cells[d] - cell[d]);
+  }
+  return beyond;
+}
+
 /// Brings a particle that has passed walls back to them, at rest against them; false if it has passed none.
 /// cell(d): the cell along direction d from whose lower corner x [cells] is measured; v [m/s]. One that lies
 /// on a wall may be beyond it by round-off, which changes no velocity. The loops stay loops: where x and v
@@ -143,20 +157,88 @@ KOKKOS_INLINE_FUNCTION int image_in_window(const Grid<T, Dim>& grid, const Coord
   return place;
 }
 
-/// What node n of a window has of component k of a vector, or of a scalar (k < 0), of its image_in_window().
-template <Kind kind, class T, int Dim>
-struct ImageSigns {
-  T of[Dim];  // by component
-
-  KOKKOS_INLINE_FUNCTION ImageSigns(const Grid<T, Dim>& grid, const Coord<Dim>& origin, int n) {
-    const Coord<Dim> c = window_coord<Dim>(n);
-    for (int k = 0; k < Dim; ++k) {
-      of[k] = 1;
-      for (int d = 0; d < Dim; ++d) of[k] *= image_sign<kind, T>(grid, d, origin[d] + c[d], k);
-    }
-  }
-  KOKKOS_INLINE_FUNCTION T operator()(int k) const { return k < 0 ? T(1) : of[k]; }
+/// Images of the nodes of a team's window. Where none of them lies at a wall or beyond it:
+struct NoImages {
+  /// Place in the window of the image of node n.
+  KOKKOS_INLINE_FUNCTION int operator()(int n) const { return n; }
 };
+/// And for a patch anywhere, at `origin`.
+template <class T, int Dim>
+struct WindowImages {
+  static constexpr int k_place_bits = 16;
+
+  const Grid<T, Dim>& grid;
+  Coord<Dim> origin;
+  bool at_wall;                // the window holds nodes at a wall or beyond it
+  const int* table = nullptr;  // entry() of each node, where a team has tabulated them
+
+  KOKKOS_INLINE_FUNCTION WindowImages(const Grid<T, Dim>& mesh, const WallReach<Dim>& reach,
+                                      const Coord<Dim>& from)
+      : grid(mesh), origin(from), at_wall(reach(from)) {}
+  KOKKOS_INLINE_FUNCTION int operator()(int n) const { return at_wall ? image_of(n) : n; }
+  /// Bit k: component k of a velocity at node n is opposite to that at its image.
+  KOKKOS_INLINE_FUNCTION int turned(int n) const {
+    return !at_wall ? 0 : table ? table[n] >> k_place_bits : turned_of(n);
+  }
+  /// Image and turned components of node n in one number.
+  KOKKOS_INLINE_FUNCTION int entry(int n) const {
+    return image_in_window(grid, origin, n) | turned_of(n) << k_place_bits;
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION int image_of(int n) const {
+    return table ? table[n] & ((1 << k_place_bits) - 1) : image_in_window(grid, origin, n);
+  }
+  KOKKOS_INLINE_FUNCTION int turned_of(int n) const {
+    if (image_in_window(grid, origin, n) == n) return 0;
+    const Coord<Dim> c = window_coord<Dim>(n);
+    int bits = 0;
+    for (int k = 0; k < Dim; ++k) {
+      T sign = 1;
+      for (int d = 0; d < Dim; ++d) sign *= image_sign<Kind::motion, T>(grid, d, origin[d] + c[d], k);
+      bits |= (sign < 0) << k;
+    }
+    return bits;
+  }
+};
+
+/// Turns the motion that node n of a window has taken from its image.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void turn_motion(const NoImages&, int, KinematicValues<T, Dim>&) {}
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void turn_motion(const WindowImages<T, Dim>& images, int n,
+                                        KinematicValues<T, Dim>& motion) {
+  const int turned = images.turned(n);
+  for (int k = 0; k < NodeKinematics<Dim>::size; ++k)
+    if (turned >> (k % Dim) & 1) motion.c[k] = -motion.c[k];
+}
+
+/// Turns the sums that a window has for nodes at walls and beyond them into what their images get of them;
+/// the team must wait before and after. Source: of what the sums are (physics/p2g_terms.hpp).
+template <class Source, class Team, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void turn_sums(const Team& team, const WindowImages<T, Dim>& images, T* sums) {
+  constexpr int size = Source::size;
+  constexpr Kind kind = Source::kind;
+  constexpr int across = Patch<Dim>::window_edge, plane = Patch<Dim>::window / across;
+  unrolled<Dim>([&](auto d) {  // the kernel's arguments are read at places that the compiler knows
+    constexpr int step = power(across, d);
+    if (d > 0) team.team_barrier();
+    unrolled<4>([&](auto row) {  // the nodes beyond and at the lower wall, at and beyond the upper one
+      const int at = row < 2 ? row - 1 : images.grid.cells[d] + row - 2, place = at - images.origin[d] + 1;
+      const Wall wall = images.grid.wall[d][row / 2];
+      if (wall == Wall::free || place < 0 || place >= across) return;
+      const T normal = row == 0 || row == 3 ? T(-1) : (kind == Kind::motion ? T(0) : T(1));
+      const T along = kind == Kind::motion && wall == Wall::fixed ? normal : T(1);
+      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, plane), [&](int n) {
+        T* const node = sums + (n / step * step * across + n % step + place * step) * size;
+        unrolled<size>([&](auto v) {
+          constexpr int k = Source::component(v);
+          if constexpr (k >= 0) node[v] *= k == d ? normal : along;
+        });
+      });
+    });
+  });
+}
 
 /// Calls f(place, image, at) for each node of a window that lies at a wall normal to direction d or beyond
 /// it: its place in the window, that of its image, and its coordinate along d. Directions follow one another:

@@ -6,7 +6,7 @@
 namespace mpm {
 namespace {
 
-constexpr long k_apart_every = 50, k_first_apart = 2;  // steps that are taken apart
+constexpr long k_sample_every = 50, k_first_sample = 2;  // steps that are sampled
 
 template <class Space, class View>
 void copy(const Space& space, const View& to, const View& from, int first, int last, double& bytes) {
@@ -50,11 +50,11 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
   auto& b = s.batches;
   if (read_control(s).paused) return;  // this also waits for the nodes
   BatchCost& cost = b.cost;
-  const bool apart = cost.steps++ % k_apart_every == k_first_apart;
+  const bool sampled = cost.steps++ % k_sample_every == k_first_sample;
   const auto timed = [&](const Space& space, double& seconds, auto&& work) {
     const Kokkos::Timer timer;
     work();
-    if (!apart) return;
+    if (!sampled) return;
     space.fence("mpm::part of a batch");
     seconds += timer.seconds();
   };
@@ -86,8 +86,8 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
   s.summed.soil = s.summed.soil || sums;
   for (const Space& stream : b.streams) stream.fence("mpm::update_by_batches");
   space.fence("mpm::update_by_batches");
-  cost.apart += apart;
-  if (!apart) cost.seconds += timer.seconds();
+  cost.sampled += sampled;
+  if (!sampled) cost.seconds += timer.seconds();
 }
 
 template <class Space, class T, int Dim>

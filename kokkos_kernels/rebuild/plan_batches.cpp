@@ -132,7 +132,7 @@ void give_places(State<Space, T, Dim>& s, std::size_t bytes_of_place) {
 }
 
 template <class Space>
-std::vector<Space> streams_beside(const Space& space) {
+std::vector<Space> overlap_streams(const Space& space) {
   if constexpr (is_device<Space>)
     return Kokkos::Experimental::partition_space(space, std::vector<int>(k_turns, 1));
   else
@@ -191,7 +191,7 @@ void plan_batches(State<Space, T, Dim>& s) {
   }
   list_slots(s);
   give_places(s, place);
-  if (b.streams.empty()) b.streams = streams_beside(s.space);
+  if (b.streams.empty()) b.streams = overlap_streams(s.space);
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                               \

@@ -54,8 +54,8 @@ void build_lists(State<Space, T, Dim>& s);
 /// Notes which slots have a rigid near: a node that soil and a rigid share is reached from no other slot.
 template <class Space, class T, int Dim>
 void mark_near_rigids(State<Space, T, Dim>& s);
-/// Brings the mean stress of each particle towards that of its cell by the share of F-bar: the particles of a
-/// cell dilate together until the next rebuild, so their pressures begin together.
+/// Brings the mean stress of each particle towards that of its cell by the fraction of F-bar: the particles
+/// of a cell dilate together until the next rebuild, so their pressures begin together.
 template <class Space, class T, int Dim>
 void average_pressure(State<Space, T, Dim>& s);
 

@@ -103,12 +103,12 @@ void locate_rigids(State<Space, T, Dim>& s) {
         "mpm::locate_rigid", Kokkos::RangePolicy<Space>(s.space, 0, points.all), KOKKOS_LAMBDA(int p) {
           Coord<Dim> c{};
           double position[3] = {};
-          if (p == 0) rigids(r).binned = rigids(r).displacement;
+          if (p == 0) rigids(r).binned = rigids(r).pose;
+          const auto x = rigids(r).pose.in_cells(spacing).to_world(reference_position(p));
           for (int d = 0; d < Dim; ++d) {
-            const double x = reference_position(p)[d] + rigids(r).displacement[d] / spacing;
-            c[d] = static_cast<int>(Kokkos::floor(x));
-            x_p(p)[d] = static_cast<T>(x - Kokkos::floor(x));
-            position[d] = x * spacing;
+            c[d] = static_cast<int>(Kokkos::floor(x[d]));
+            x_p(p)[d] = static_cast<T>(x[d] - Kokkos::floor(x[d]));
+            position[d] = x[d] * spacing;
           }
           if (!grid.holds(c))
             return report(control, FaultKind::outside, -1 - static_cast<int>(r), position, Dim);

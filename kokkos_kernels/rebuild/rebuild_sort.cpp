@@ -2,6 +2,7 @@
 // points are put in order of id, so that the result does not depend on how threads ran.
 
 #include "functions/step_kernels.hpp"
+#include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
 #include "physics/surface.hpp"
 #include "rebuild/batches.hpp"
@@ -252,12 +253,10 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
           }
           if (!holds) return;
           const Rigid<Dim>& rigid = rigids(r);
-          Vector<double, Dim> middle;  // bodies go on beyond the mesh
-          for (int d = 0; d < Dim; ++d) {
-            const int at = origin(slot)[d] + Patch<Dim>::edge / 2;
-            middle[d] = Kokkos::max(0, Kokkos::min(at, grid.cells[d])) * spacing - rigid.displacement[d];
-          }
-          if (rigid.surface_normal && distance_to(rigid.surface, vertices, middle).value > far) return;
+          const auto place = rigid.pose.to_body([&](int d) {
+            return grid.coordinate_within(d, origin(slot)[d] + Patch<Dim>::edge / 2, spacing);
+          });
+          if (rigid.surface_normal && distance_to(rigid.surface, vertices, place).value > far) return;
           near(slot) = 1;
         });
   }
@@ -275,11 +274,33 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
     s.boundary_windows.place = near;
     ensure(s.boundary_windows.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.near_count);
   }
-  if (s.shear_share && has_windows(s.space)) {
+  if (s.shear_fraction && has_windows(s.space)) {
     s.strength_windows.place = near;
     ensure(s.strength_windows.sums, window_bytes<StrengthSource<Space, T, Dim>> * s.near_count);
   }
   ensure(s.slot_forces, std::size_t(s.near_count) * Dim * s.rigid_points.size());
+}
+
+/// The same for the excess pore pressure, of the particles that have one: with the stress and it, effective
+/// stress is averaged too.
+template <class Space, class T, int Dim>
+void average_pore_pressure(State<Space, T, Dim>& s) {
+  const auto soil = s.soil.points;
+  const auto begin = s.soil.bins.begin;
+  const auto excess = soil.history.column[soil.history.pore];
+  const T fraction = static_cast<T>(s.f_bar_fraction);
+  Kokkos::parallel_for(
+      "mpm::average_pore_pressure", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
+      KOKKOS_LAMBDA(int cell) {
+        const auto has = [&](int p) {
+          return material_in(soil.materials(soil.bodies(soil.body(p)).material)).pore_stiffness > 0;
+        };
+        T volume = 0, sum = 0;
+        for (int p = begin(cell); p < begin(cell + 1); ++p)
+          if (has(p)) volume += soil.volume(p), sum += soil.volume(p) * excess(p);
+        for (int p = begin(cell); p < begin(cell + 1); ++p)
+          if (has(p)) excess(p) += fraction * (sum / volume - excess(p));
+      });
 }
 
 template <class Space, class T, int Dim>
@@ -300,6 +321,7 @@ void average_pressure(State<Space, T, Dim>& s) {
           for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
         }
       });
+  if (soil.history.pore >= 0) average_pore_pressure(s);
 }
 
 template <class Space, class T, int Dim>
@@ -315,6 +337,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   s.plan = plan_step(s);
   s.summed = {};
   s.strays.known = false;
+  s.split.parts.clear();
   ensure(s.strays.alone, s.patches.slots);
   Kokkos::deep_copy(s.space, s.strays.alone, 0);
   const int nodes = s.patches.node_count();
@@ -322,7 +345,8 @@ void sort_and_list(State<Space, T, Dim>& s) {
   ensure(s.nodes.kinematics, nodes);
   if (s.xpic_order > 0) ensure(s.nodes.residual, nodes);
   if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
-  if (s.shear_share) ensure(s.nodes.strength, nodes);
+  if (s.shear_fraction) ensure(s.nodes.strength, nodes);
+  if (s.water.is_there()) ensure(s.nodes.displaced, nodes);
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid = decltype(s.nodes.rigid)(
         Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),

@@ -60,10 +60,12 @@ std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int 
   const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
   std::vector<double> position(std::size_t(points.all) * Dim);
-  for (int p = 0; p < points.all; ++p)
-    for (int d = 0; d < Dim; ++d)
-      position[std::size_t(id(p)) * Dim + d] =
-          reference_position(p)[d] * s.spacing + rigids(rigid).displacement[d];
+  for (int p = 0; p < points.all; ++p) {
+    Vector<double, Dim> x = reference_position(p);
+    for (int d = 0; d < Dim; ++d) x[d] *= s.spacing;
+    x = rigids(rigid).pose.to_world(x);
+    for (int d = 0; d < Dim; ++d) position[std::size_t(id(p)) * Dim + d] = x[d];
+  }
   return position;
 }
 

@@ -1,5 +1,9 @@
 #include "transfer/measure.hpp"
 
+#include "physics/materials/any.hpp"
+#include "physics/p2g_terms.hpp"
+#include "physics/pore_water.hpp"
+
 namespace mpm {
 namespace {
 
@@ -22,7 +26,7 @@ struct Sum {
     }
     m.kinetic_energy += other.m.kinetic_energy;
     m.stored_energy += other.m.stored_energy;
-    m.mass += other.m.mass, m.weight += other.m.weight;
+    m.mass += other.m.mass, m.weight += other.m.weight, m.water_energy += other.m.water_energy;
     m.count += other.m.count, m.alone += other.m.alone, m.limited += other.m.limited;
     return *this;
   }
@@ -41,6 +45,35 @@ struct Positions {
            spacing;
   }
 };
+
+/// Energy [J/m3] that particle p can give back, its pore water's among it.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION double stored_energy(const Soil<Space, T, Dim>& soil, int material, int p) {
+  const AnyMaterial<T>& of = material_in(soil.materials(material));
+  const double excess = soil.excess_pore_pressure(of, p);
+  SymTensor<T, Dim> stress = soil.stress(p);
+  add_isotropic(stress, static_cast<T>(excess));
+  double energy = excess == 0 ? 0 : excess * excess / (2 * double(of.pore_stiffness));
+  of.visit([&](const auto& law) { energy += law.stored_energy(stress, soil.state_of(law, p)); });
+  return energy;
+}
+
+/// Energy [J] of the water that particle p displaces, from nothing far above the level: its weight times the
+/// integral of the submerged share over the depth.
+template <class Space, class T, int Dim, class Density>
+KOKKOS_INLINE_FUNCTION double water_energy(const Soil<Space, T, Dim>& soil, const Water<Dim>& water,
+                                           const Density& density, const Positions<Space, T, Dim>& position,
+                                           int p) {
+  const BodyProperties<T> body = soil.properties(p);
+  Vector<double, Dim> x;
+  for (int d = 0; d < Dim; ++d) x[d] = position(p, d);
+  double reach = 0;
+  for (int d = 0; d < Dim; ++d)
+    reach += double(body.half_length.l) * position.spacing * Kokkos::fabs(water.down[d]);
+  const double depth = water.depth(x), in = Kokkos::fmax(0.0, Kokkos::fmin(2 * reach, depth + reach));
+  const double sunk = in * in / (4 * reach) + Kokkos::fmax(0.0, depth - reach);  // m
+  return water.density * water.gravity * sunk * double(body.mass) / density(soil.body(p));
+}
 
 /// A coordinate as a whole number of steps from the lower end of an extent. It never falls where x grows, so
 /// that an order by it is an order by x.
@@ -77,6 +110,8 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   const int count = soil.count;
   const auto alone = s.strays.alone;
   const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
+  const auto water = s.water;
+  const auto density = s.density;
   Sum<Dim> total;
   Kokkos::parallel_reduce(
       "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, (count + together - 1) / together),
@@ -96,10 +131,8 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
             own.m.kinetic_energy += mass * v * v / 2;
           }
           own.m.mass += mass, own.m.weight += weight;
-          soil.materials(common.material).visit([&](const auto& law) {
-            own.m.stored_energy +=
-                double(soil.volume(p)) * law.stored_energy(soil.stress(p), soil.state_of(law, p));
-          });
+          own.m.stored_energy += double(soil.volume(p)) * stored_energy(soil, common.material, p);
+          if (water.is_there()) own.m.water_energy += water_energy(soil, water, density, position, p);
           own.m.alone += is_alone(alone, soil.cell(p));
           own.m.limited += soil.volume(p) <= least || soil.volume(p) >= most;
           ++own.m.count;
@@ -119,8 +152,12 @@ double fastest_wave(const State<Space, T, Dim>& s) {
       "mpm::fastest_wave", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
       KOKKOS_LAMBDA(int p, double& largest) {
         const auto of = soil.properties(p);
-        soil.materials(of.material).visit([&](const auto& law) {
-          const double modulus = law.wave_modulus(soil.stress(p), soil.state_of(law, p));
+        const AnyMaterial<T>& material = material_in(soil.materials(of.material));
+        SymTensor<T, Dim> stress = soil.stress(p);
+        add_isotropic(stress, soil.excess_pore_pressure(material, p));
+        material.visit([&](const auto& law) {
+          const double modulus =
+              law.wave_modulus(stress, soil.state_of(law, p)) + double(material.pore_stiffness);
           largest = Kokkos::fmax(largest, modulus * soil.volume(p) / of.mass);
         });
       },

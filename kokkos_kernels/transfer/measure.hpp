@@ -11,9 +11,11 @@ namespace mpm {
 /// Extent and centre of mass [m from the mesh's lower corner], kinetic and stored energy [J], momentum [kg
 /// m/s] and mass [kg] of one body, and the number of its particles, of those that are alone, and of those
 /// whose volume is at a bound. The centre is a mean by `weight`: the mass, or where all particles have one
-/// mass their number, which is exact.
+/// mass their number, which is exact. water_energy: of the water that the body displaces, by
+/// its depth below the level [J].
 struct BodyMeasure {
   double lower[3], upper[3], kinetic_energy, stored_energy, momentum[3], centre[3], mass, weight;
+  double water_energy;
   long count, alone, limited;
 };
 

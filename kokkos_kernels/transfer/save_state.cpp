@@ -181,8 +181,8 @@ void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved, bool binne
   for (std::size_t r = 0; r < saved.rigids.size(); ++r)
     for (int d = 0; d < Dim; ++d) {
       const SavedRigid& from = saved.rigids[r];
-      host(r).displacement[d] = binned ? from.binned[d] : from.displacement[d];
-      host(r).binned[d] = from.binned[d];
+      host(r).pose.displacement[d] = binned ? from.binned[d] : from.displacement[d];
+      host(r).binned.displacement[d] = from.binned[d];
       host(r).velocity[d] = from.velocity[d];
       host(r).impulse[d] = from.impulse[d];
     }
@@ -230,10 +230,10 @@ SavedState save_state(const State<Space, T, Dim>& s) {
   for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
     SavedRigid& rigid = saved.rigids.emplace_back();
     for (int d = 0; d < Dim; ++d) {
-      rigid.displacement[d] = rigids(r).displacement[d];
+      rigid.displacement[d] = rigids(r).pose.displacement[d];
       rigid.velocity[d] = rigids(r).velocity[d];
       rigid.impulse[d] = rigids(r).impulse[d];
-      rigid.binned[d] = rigids(r).binned[d];
+      rigid.binned[d] = rigids(r).binned.displacement[d];
     }
   }
   saved.impulse = save_impulse(s);

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "physics/materials/any.hpp"
+#include "physics/pore_water.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/velocity_gradients.hpp"
 
@@ -69,9 +71,9 @@ std::size_t scratch_of_rigids(const std::vector<RigidInput>& rigids) {
 template <class Space, class T>
 void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& materials,
                   const std::vector<BodyInput>& bodies) {
-  static const std::array<std::string, k_most_state> shared = [] {
-    std::array<std::string, k_most_state> names;
-    for (int k = 0; k < k_most_state; ++k) names[k] = "state_" + std::to_string(k);
+  static const auto shared = [] {
+    std::array<std::string, k_most_state<Space>> names;
+    for (std::size_t k = 0; k < names.size(); ++k) names[k] = "column_" + std::to_string(k);
     return names;
   }();
   history.columns = 0;
@@ -86,6 +88,11 @@ void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& 
     }
     history.columns = std::max(history.columns, static_cast<int>(variables.size()));
   }
+  const bool undrained = std::any_of(bodies.begin(), bodies.end(), [&](const BodyInput& body) {
+    return materials[body.material].pore_stiffness > 0;
+  });
+  history.pore = undrained ? history.columns++ : -1;
+  if (undrained) history.name[history.pore] = k_excess_pore_pressure, history.changes[history.pore] = true;
 }
 
 template <class Space, class T, int Dim>
@@ -129,8 +136,10 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
   fill_view(soil.stress, "mpm::stress", soil.count, [&](int p) {
     const BodyInput& body = bodies[body_of[p]];
     SymTensor<T, Dim> stress{};
+    const double excess = body.excess_pore_pressure.empty() ? 0 : body.excess_pore_pressure[in_body(p)];
     for (int k = 0; k < sym_size<Dim> && !body.stress.empty(); ++k)
       stress[k] = static_cast<T>(body.stress[in_body(p) * sym_size<Dim> + k]);
+    if (excess != 0) add_isotropic(stress, static_cast<T>(-excess));
     return stress;
   });
   fill_view(soil.volume, "mpm::volume", soil.count, [&](int p) {
@@ -139,24 +148,35 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
   });
   for (int k = 0; k < soil.history.columns; ++k)
     fill_view(soil.history.column[k], "mpm::history", soil.count, [&](int p) {
-      const auto& state = bodies[body_of[p]].state;
-      const bool given = k < static_cast<int>(state.size()) && !state[k].empty();
-      return static_cast<T>(given ? state[k][in_body(p)] : 0);
+      const BodyInput& body = bodies[body_of[p]];
+      const bool has = k < static_cast<int>(body.state.size());
+      const std::vector<double> none, &values = k == soil.history.pore ? body.excess_pore_pressure
+                                                : has                  ? body.state[k]
+                                                                       : none;
+      return static_cast<T>(values.empty() ? 0 : values[in_body(p)]);
     });
   fill_view(soil.bodies, "mpm::bodies", static_cast<int>(bodies.size()), [&](int b) {
     return BodyProperties<T>{static_cast<T>(common_mass(bodies[b])), static_cast<T>(bodies[b].half_length),
                              bodies[b].material};
   });
+  fill_view(s.density, "mpm::density", static_cast<int>(bodies.size()),
+            [&](int b) { return bodies[b].density; });
   if (soil.has_own_mass)
     fill_view(soil.mass, "mpm::mass", soil.count, [&](int p) {
       const BodyInput& body = bodies[body_of[p]];
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
-  fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()),
-            [&](int m) { return make_material<T>(materials[m].model, materials[m].parameters); });
+  fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
+    return store_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get(),
+                             materials[m].pore_stiffness);
+  });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
-  for (const BodyInput& body : bodies)
-    if (materials[body.material].model != s.law) s.law = -1;
+  s.light_laws = true;
+  for (const BodyInput& body : bodies) {
+    const int model = materials[body.material].model;
+    if (model != s.law) s.law = -1;
+    s.light_laws = s.light_laws && has_model(LightMaterials{}, model);
+  }
 }
 
 /// C_p of APIC at the start: the gradient of each body's velocities, so that a linear field is kept from the
@@ -222,7 +242,7 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
     rigid.mass = particle_mass * (rigids[r].position.size() / Dim);
     rigid.dynamic = rigids[r].dynamic;
     rigid.shear_limit = rigids[r].shear_limit;
-    rigid.shear_share = rigids[r].shear_share > 0 ? rigids[r].shear_share : -1;
+    rigid.shear_fraction = rigids[r].shear_fraction > 0 ? rigids[r].shear_fraction : -1;
     rigid.friction = rigids[r].friction;
     rigid.surface_normal = rigids[r].surface_normal;
     rigid.separates = rigids[r].separates;
@@ -279,15 +299,16 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.strays.least_volume = k_least_volume * smallest, s.strays.most_volume = k_most_volume * largest;
   s.strays.lost.assign(bodies.size(), {});
   s.strays.put_back = decltype(s.strays.put_back)("mpm::put_back", bodies.size());
-  s.rigid_moves = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.shear_share = s.has_friction = false;
+  s.rigid_moves = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.shear_fraction = s.has_friction =
+      false;
   for (const RigidInput& rigid : rigids) {
     s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.velocity != std::array<double, 3>{};
     s.rigid_dynamic = s.rigid_dynamic || rigid.dynamic;
     s.has_friction = s.has_friction || rigid.friction > 0;
     s.mass_normals = s.mass_normals || !rigid.surface_normal;
     s.soil_boundary = s.soil_boundary || rigid.surface_normal || rigid.shear_limit > 0 || rigid.reach > 0;
-    s.shear_share = s.shear_share || rigid.shear_share > 0;
-    s.soil_boundary = s.soil_boundary || rigid.shear_share > 0;
+    s.shear_fraction = s.shear_fraction || rigid.shear_fraction > 0;
+    s.soil_boundary = s.soil_boundary || rigid.shear_fraction > 0;
   }
   s.control = ControlView<Space>("mpm::control");
   s.launch_barrier = decltype(s.launch_barrier)("mpm::launch_barrier");

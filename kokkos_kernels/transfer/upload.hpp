@@ -2,6 +2,7 @@
 // From a description on the host to a State on the device.
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "rebuild/rebuild.hpp"
@@ -17,14 +18,17 @@ struct GridInput {
 };
 
 struct MaterialInput {
-  int model = 0;                   // index into Materials
-  std::vector<double> parameters;  // in the order of the model's table
+  int model = 0;                         // index into Materials
+  std::vector<double> parameters;        // in the order of the model's table
+  std::shared_ptr<const void> object{};  // of make_object, where the model has one
+  double pore_stiffness = 0;             // Pa, of the water in its pores; 0: the pores drain
 };
 
 /// Particles of one deformable body. Positions are from the mesh's lower corner, Dim components each.
 struct BodyInput {
   std::vector<double> position;            // m [Dim N]
-  std::vector<double> stress;              // Pa [sym_size N], or empty for none
+  std::vector<double> stress;              // Pa, effective [sym_size N], or empty for none
+  std::vector<double> excess_pore_pressure;  // Pa [N], or empty for none
   std::vector<double> particle_velocity;   // m/s [Dim N], or empty where `velocity` holds for all
   std::vector<std::vector<double>> state;  // of each state variable of the law [N], or empty for zero
   std::vector<double> volume;              // m3 [N], or empty where particle_volume holds for all
@@ -65,7 +69,7 @@ struct RigidInput {
   bool dynamic = false;
   std::array<bool, 3> held{};  // a plane of symmetry cuts it, across which it does not move
   double shear_limit = 0;      // Pa, infinite where only the friction limits
-  double shear_share = -1;     // -, of the soil's strength instead of the limit; negative: none
+  double shear_fraction = -1;  // -, of the soil's strength instead of the limit; negative: none
   double friction = -1;        // -, negative: none
   SurfaceInput surface;
   bool surface_normal = false;  // contact normals from the surface, not from the mass gradient

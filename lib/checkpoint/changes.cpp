@@ -17,7 +17,7 @@ bool may_change(const std::string& name) {
                                    "-precision",
                                    "-device_memory_limit",
                                    "-p2g",
-                                   "-p2g_margin",
+                                   "-rebuild_margin",
                                    "-p2g_mosaic_cells",
                                    "-p2g_rebuild_interval",
                                    "-partition",
@@ -138,7 +138,7 @@ std::string changed_machine(const Checkpoint& then, const Checkpoint& now) {
   compare("precision", then.precision, now.precision);
   compare("strategy", then.strategy, now.strategy);
   compare("ranks", std::to_string(then.ranks), std::to_string(now.ranks));
-  for (const char* name : {"-p2g_margin", "-p2g_mosaic_cells", "-p2g_rebuild_interval", "-partition"})
+  for (const char* name : {"-rebuild_margin", "-p2g_mosaic_cells", "-p2g_rebuild_interval", "-partition"})
     compare(name, value_of(name, then.options), value_of(name, now.options));
   return text;
 }

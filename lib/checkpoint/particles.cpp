@@ -104,10 +104,11 @@ std::string find_body(const Checkpoint& c, const std::string& name, BodyRows& bo
 /// bodies share columns, by its place in the table of the body's law. Empty where the body has no such one.
 std::string column_of(const Checkpoint& c, const std::string& body, const std::string& name,
                       const BodyRows& rows) {
+  if (name == k_excess_pore_pressure) return rows.has(k_excess_pore_pressure, 1) ? name : "";
   const auto variables = state_variables(value_of(c, "-" + value_of(c, "-" + body + "_material") + "_model"));
   for (std::size_t k = 0; k < variables.size(); ++k) {
     if (name != variables[k].name) continue;
-    return rows.has(name.c_str(), 1) ? name : "state_" + std::to_string(k);
+    return rows.has(name.c_str(), 1) ? name : "column_" + std::to_string(k);
   }
   return "";
 }
@@ -141,6 +142,8 @@ std::string read_checkpoint_particles(const ParticleSource& source, const MeshCo
   table.reference_height = body.read("reference_height", 1);
   if (source.velocity) table.velocity = body.read("velocity", dim);
   if (source.stress) table.stress = body.read("stress", dim == 2 ? 4 : 6);
+  if (source.stress && body.has(k_excess_pore_pressure, 1))
+    add_pressure(body.read(k_excess_pore_pressure, 1), dim, table.stress);
   if (source.velocity && body.has("affine", dim * dim)) {
     table.velocity_gradient = body.read("affine", dim * dim);
     for (double& g : table.velocity_gradient) g *= mesh.spacing / there.spacing;

@@ -6,6 +6,7 @@
 #include "checkpoint/sealed_file.hpp"
 #include "common/hdf5_handle.hpp"
 #include "common/text.hpp"
+#include "input/renamed.hpp"
 
 namespace mpm {
 namespace {
@@ -175,7 +176,7 @@ bool options_of_text(const std::string& text, std::vector<EffectiveOption>& opti
     if (line.empty()) continue;
     const auto words = split(line, '\t');
     if (words.size() != 4) return false;
-    options.push_back({words[0], words[1], words[2], words[3] == "default"});
+    options.push_back({present_name(words[0]), words[1], words[2], words[3] == "default"});
   }
   return true;
 }

@@ -56,6 +56,7 @@ struct BodyRow {
   double grid_velocity = 0;           // m/s, the largest at which the nodes move a particle of it
   double stored_energy = 0;           // J, elastic
   double mass = 0;                    // kg, in the mesh
+  double water_energy = 0;            // J, of the water that it displaces
   double lost_mass = 0;               // kg, left through free sides or removed
   double lost_energy = 0;             // J, kinetic, that it had
   Vec3 lost_momentum{};               // kg m/s

@@ -94,6 +94,7 @@ void read_all(const std::vector<std::string>& line, InputReport& report) {
   report.file_unread = reader.file_unread;
   report.errors = reader.errors;
   report.files = reader.files;
+  report.warnings = reader.notes;
   std::error_code error;  // a pipe gives the output no name
   if (std::filesystem::is_regular_file(reader.last_file, error)) report.options_file = reader.last_file;
   if (options.empty() && report.errors.empty() && !report.help) {
@@ -111,6 +112,11 @@ void read_all(const std::vector<std::string>& line, InputReport& report) {
     }
     former = &option;
   }
+  for (const auto& [name, option] : last)
+    if (!option->former.empty()) {
+      report.renamed.push_back(name.substr(1));
+      report.renamed.push_back(option->former.substr(1));
+    }
   if (report.file_unread) return;
   for (const GivenOption& option : options) {
     report.words.push_back(option.name);
@@ -126,7 +132,8 @@ void prepare_arguments(MPI_Comm comm, int* argc, char*** argv, InputReport& repo
   if (rank == 0) read_all({*argv + std::min(1, *argc), *argv + *argc}, report);
   std::vector<std::string> marks = {report.help ? "1" : "", report.file_unread ? "1" : "",
                                     report.options_file};
-  for (auto* texts : {&report.words, &report.errors, &report.replaced, &report.files, &marks})
+  for (auto* texts : {&report.words, &report.errors, &report.warnings, &report.replaced, &report.renamed,
+                      &report.files, &marks})
     share(comm, *texts);
   report.help = !marks[0].empty(), report.file_unread = !marks[1].empty();
   report.options_file = marks[2];

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "common/text.hpp"
+#include "input/renamed.hpp"
 
 namespace mpm {
 namespace {
@@ -117,8 +118,25 @@ void DeckReader::add(const std::string& name, const std::optional<std::string>& 
   } else {
     std::string whole = prefixes_.empty() ? name : "-" + prefixes_.back() + name.substr(1);
     if (const auto alias = aliases_.find(lower_case(whole)); alias != aliases_.end()) whole = alias->second;
-    options_.push_back({whole, value, source});
+    keep(whole, value, source, where);
   }
+}
+
+/// Keeps an option by its name of today. Both of its names in one file, or both in the words of one source,
+/// leave open which of the values is meant.
+void DeckReader::keep(const std::string& name, const std::optional<std::string>& value, Source source,
+                      const std::string& where) {
+  const std::string present = present_name(name);
+  const bool renamed = present != name;
+  const std::string place =
+      open_files_.empty() ? std::to_string(static_cast<int>(source)) : open_files_.back();
+  const std::string& before = names_.insert({place + '\n' + lower_case(present), name}).first->second;
+  if (lower_case(before) != lower_case(name))
+    errors.push_back("mpm: " + where + name + ": given \"" + printable(value.value_or("")) +
+                     "\", takes its place without " + before + ", which is another name of the same option");
+  const std::string note = "mpm: note: " + name + " is now " + present;
+  if (renamed && std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  options_.push_back({present, renamed ? name : "", value, source});
 }
 
 void DeckReader::read_words(const std::vector<std::string>& words, Source source, const std::string& where) {

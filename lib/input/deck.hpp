@@ -12,16 +12,18 @@ namespace mpm {
 /// Where an option comes from; a later source takes precedence.
 enum class Source { petscrc, environment, deck, command_line };
 
-/// An option as it was given. Its name has its dash.
+/// An option as it was given. Its names have their dash.
 struct GivenOption {
-  std::string name;
+  std::string name;    // that of today
+  std::string former;  // the name as it was given, where that is a former one
   std::optional<std::string> value;
   Source source = Source::command_line;
 };
 
 /// Reads options from words and files, with the files that these include (-options_file), prefixes
-/// (-prefix_push, -prefix_pop) and aliases, as PETSc would. Each mistake is a whole line in `errors`. Call it
-/// on one process: a pipe can be read only once.
+/// (-prefix_push, -prefix_pop) and aliases, as PETSc would. Former names of options become those of today, so
+/// that precedence does not depend on which of them a source uses. Each mistake is a whole line in `errors`.
+/// Call it on one process: a pipe can be read only once.
 class DeckReader {
  public:
   /// Options in words, as of a command line. `where` begins the lines of mistakes: empty, or "FILE:3: ".
@@ -34,6 +36,7 @@ class DeckReader {
   std::vector<GivenOption> take();
 
   std::vector<std::string> errors;
+  std::vector<std::string> notes;   // a whole line for each former name
   std::vector<std::string> strays;  // words that belong to no option
   std::string last_file;            // the last deck of the command line
   std::vector<std::string> files;   // all that were read
@@ -42,6 +45,8 @@ class DeckReader {
 
  private:
   void read_text(const std::string& text, const std::string& path, Source source);
+  void keep(const std::string& name, const std::optional<std::string>& value, Source source,
+            const std::string& where);
   bool read_line(const std::vector<std::string>& words, Source source, const std::string& where);
   void add(const std::string& name, const std::optional<std::string>& value, Source source,
            const std::string& where);
@@ -50,6 +55,7 @@ class DeckReader {
   std::vector<GivenOption> options_;
   std::vector<std::string> prefixes_, open_files_;
   std::map<std::string, std::string> aliases_;  // by lower-case name
+  std::map<std::string, std::string> names_;    // as given, by file or source and by lower-case name of today
   int files_ = 0;
 };
 

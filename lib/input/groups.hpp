@@ -1,6 +1,7 @@
 #pragma once
 // The groups of options, each read at one place. All report their mistakes to the reader.
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,10 @@ namespace mpm {
 /// -mesh_*. Whether the mesh is sound, so that shapes can be checked against it.
 bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh);
 
-/// The options of one material: its density, its model and the model's own table of parameters.
-void read_material(OptionReader& in, const std::string& name, MaterialConfig& material);
+/// The options of one material of a run: its density, its model and the model's own tables of parameters and
+/// texts. A null mesh is unsound.
+void read_material(OptionReader& in, const std::string& name, const MeshConfig* mesh, const Config& config,
+                   MaterialConfig& material);
 
 /// A parameter of a material by its key; NaN where its model has none of that name.
 double parameter_of(const MaterialConfig& material, const std::string& key);
@@ -56,6 +59,16 @@ void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& confi
 /// Checks that a rigid does not move across a plane of symmetry that cuts it.
 void check_cut_motion(OptionReader& in, const MeshConfig& mesh, int dim, const RigidConfig& rigid);
 
+/// -water_*. Gravity and -device_memory_limit must have been read.
+void read_water(OptionReader& in, Config& config);
+
+/// Lowest and highest height of a shape against gravity [m], where there is gravity. The mesh must be sound.
+std::array<double, 2> heights_of(const Shape& shape, const Config& config);
+
+/// Checks that a rigid that moves by forces is wholly below the water's level or above it: its buoyancy is
+/// constant. The mesh must be sound.
+void check_in_water(OptionReader& in, const Config& config, const RigidConfig& rigid);
+
 /// The initial velocity and stress of a body, which take the place of those of its file.
 void read_start(OptionReader& in, int dim, BodyConfig& body);
 
@@ -75,8 +88,26 @@ void check_density(OptionReader& in, const BodyConfig& body, const Config& confi
 /// Checks the values of PETSc's options that PETSc would find wrong only at the end of the run.
 void check_petsc_options(OptionReader& in);
 
-/// -materials, -bodies, -rigids and the options of each that they name. The fixed options must have been read
-/// before, since no name may begin as they do. A null mesh (unsound) leaves the shapes unchecked against it.
+/// -element_path and what goes with it. Whether it is given.
+bool read_element_file(OptionReader& in, ElementConfig& element);
+
+/// What a single material point needs beside: the one material, the file of its path, and that its law can
+/// start there. Options of a run of a mesh are passed over.
+void read_element(OptionReader& in, Config& config);
+
+/// -materials with one name, and that material.
+void read_only_material(OptionReader& in, Config& config);
+
+/// Whether a point of a sound material may start a path at a height [m] with a stress [Pa]; reports why it
+/// may not.
+bool check_element_start(OptionReader& in, const MaterialConfig& material, double height, const Sym6& stress);
+
+/// Lists every option with the reader, which lists.
+void list_all(OptionReader& in);
+
+/// -materials, -bodies, -rigid_bodies and the options of each that they name. The fixed options must have
+/// been read before, since no name may begin as they do. A null mesh (unsound) leaves the shapes unchecked
+/// against it.
 void read_named(OptionReader& in, const MeshConfig* mesh, Config& config);
 
 }  // namespace mpm

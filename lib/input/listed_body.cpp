@@ -57,8 +57,9 @@ ParticleSource source_of(const BodyConfig& body) {
 ParticleSource source_of(const BodyConfig& body, const Config& config) {
   ParticleSource source = source_of(body);
   if (body.material >= static_cast<int>(config.materials.size())) return source;  // reported
-  for (const StateVariable& variable : state_variables(config.materials[body.material].model))
+  for (const StateVariable& variable : state_variables(config.materials[body.material]))
     if (variable.changes && variable.output) source.state.push_back(variable.name);
+  if (config.materials[body.material].pore_stiffness > 0) source.state.push_back(k_excess_pore_pressure);
   return source;
 }
 
@@ -97,7 +98,7 @@ void read_start(OptionReader& in, int dim, BodyConfig& body) {
                                    .range = k_speed},
                                   dim, body.velocity);
   body.stress_given = in.tensor({.name = body.name + "_stress",
-                                 .meaning = "initial stress, tension positive" + from_file,
+                                 .meaning = "initial effective stress, tension positive" + from_file,
                                  .unit = "Pa",
                                  .range = k_stress},
                                 dim, body.stress);

@@ -21,11 +21,12 @@ struct Model {
   std::vector<double> standard;                   // NaN: required
   std::vector<std::string> instead_of;            // the key of another parameter, or empty
   std::vector<std::vector<ParameterWord>> words;  // beside the numbers of the range, or alone
+  std::vector<TextOption> texts;                  // options that are not numbers
 };
 
 template <class M>
 Model table_of() {
-  Model model{M::k_name, {}, {}, {}, {}};
+  Model model{M::k_name, {}, {}, {}, {}, {}};
   for (const auto& p : M::parameters()) {
     model.options.push_back({.name = p.key,
                              .meaning = p.meaning,
@@ -38,6 +39,8 @@ Model table_of() {
     for (const ParameterWord& word : p.words)
       if (word.word != nullptr) words.push_back(word);
   }
+  if constexpr (requires { M::texts(); })
+    for (const TextOption& text : M::texts()) model.texts.push_back(text);
   return model;
 }
 
@@ -93,30 +96,79 @@ void read_parameters(OptionReader& in, const std::string& name, const Model& mod
   }
 }
 
+/// A law's text with the material's own prefix in the place of -NAME_.
+std::string with_prefix(std::string text, const std::string& name) {
+  const std::string prefix = "-NAME_";
+  const std::string own = "-" + name + "_";
+  for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix, at + own.size()))
+    text.replace(at, prefix.size(), own);
+  return text;
+}
+
+/// The options of a model that are texts, in the order of its table.
+std::vector<std::string> read_texts(OptionReader& in, const std::string& name, const Model& model) {
+  std::vector<std::string> texts;
+  for (const TextOption& text : model.texts) {
+    std::string& value = texts.emplace_back();
+    const Option option{.name = name + "_" + text.key,
+                        .meaning = text.meaning,
+                        .required = text.required,
+                        .standard = text.required ? "" : "none"};
+    if (!text.list_of_numbers) {
+      in.text(option, value);
+      continue;
+    }
+    std::vector<std::string> pieces;
+    if (!in.list_of(option, with_prefix(text.takes, name), pieces)) continue;
+    if (!std::all_of(pieces.begin(), pieces.end(), [](const auto& piece) { return parse_number(piece); }))
+      in.reject(option.name, with_prefix(text.takes, name));
+    value = join(pieces);
+  }
+  return texts;
+}
+
 /// Rejects the parameters that only other models have, each once.
 void reject_others(OptionReader& in, const std::string& name, const Model& model,
                    const std::vector<Model>& models) {
   std::set<std::string> known;
   for (const auto& option : model.options) known.insert(option.name);
-  for (const Model& other : models)
-    for (const auto& option : other.options)
-      if (known.insert(option.name).second)
-        in.not_taken(name + "_" + option.name, "the model " + model.name + " has no such parameter");
-}
-
-/// A law's text with the material's own prefix in the place of -NAME_.
-std::string with_prefix(std::string text, const std::string& name) {
-  const std::string prefix = "-NAME_";
-  for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix, at))
-    text.replace(at, prefix.size(), "-" + name + "_");
-  return text;
+  for (const TextOption& text : model.texts) known.insert(text.key);
+  const auto reject = [&](const std::string& key) {
+    if (known.insert(key).second)
+      in.not_taken(name + "_" + key, "the model " + model.name + " has no such parameter");
+  };
+  for (const Model& other : models) {
+    for (const auto& option : other.options) reject(option.name);
+    for (const TextOption& text : other.texts) reject(text.key);
+  }
 }
 
 /// What the law itself says of its parameters.
-void check_together(OptionReader& in, const std::string& name, int model,
-                    const std::vector<double>& parameters) {
-  const ParameterFault fault = parameter_fault(make_material<double>(model, parameters));
-  if (!fault.key.empty()) in.reject(name + "_" + fault.key, with_prefix(fault.takes, name));
+void check_together(OptionReader& in, int model, const MaterialConfig& material) {
+  const ParameterFault fault =
+      parameter_fault(make_material<double>(model, material.parameters, material.object.get()));
+  if (!fault.key.empty()) in.reject(material.name + "_" + fault.key, with_prefix(fault.takes, material.name));
+}
+
+/// Whether the model runs where the run's options say.
+bool check_run(OptionReader& in, int model, const Config& config, const MaterialConfig& material) {
+  if (!on_host_in_double(model)) return true;
+  const bool cuda = config.backend == Backend::cuda, single = config.precision == Precision::single;
+  if (cuda)
+    in.reject(material.name + "_model", "another model on a GPU: " + material.model +
+                                            " runs on processors, with -backend serial or openmp");
+  if (single)
+    in.reject(material.name + "_model",
+              "another model with -precision single: " + material.model + " takes -precision double");
+  return !cuda && !single;
+}
+
+/// The object that a model makes from its texts.
+void read_object(OptionReader& in, int model, const std::vector<std::string>& texts, const MeshConfig& mesh,
+                 int dim, MaterialConfig& material) {
+  ParameterFault fault;
+  material.object = make_object(model, {material.name, texts, dim, mesh.lower, mesh.spacing}, fault);
+  if (!fault.key.empty()) in.reject(material.name + "_" + fault.key, with_prefix(fault.takes, material.name));
 }
 
 }  // namespace
@@ -129,7 +181,8 @@ double parameter_of(const MaterialConfig& material, const std::string& key) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-void read_material(OptionReader& in, const std::string& name, MaterialConfig& material) {
+void read_material(OptionReader& in, const std::string& name, const MeshConfig* mesh, const Config& config,
+                   MaterialConfig& material) {
   const auto models = tables_of(Materials{});
   std::vector<std::string> words;
   for (const Model& model : models) words.push_back(model.name);
@@ -145,16 +198,26 @@ void read_material(OptionReader& in, const std::string& name, MaterialConfig& ma
              .range = k_density,
              .required = true},
             material.density);
+  in.number({.name = name + "_pore_stiffness",
+             .meaning = "undrained loading: stiffness of the pore water, its bulk modulus over the porosity, "
+                        "which gives an excess pore pressure; 0: drained",
+             .unit = "Pa",
+             .range = {.lowest = 0, .highest = 1e12}},
+            material.pore_stiffness);
   if (in.listing()) {
     for (const Model& model : models) {
       in.section("Material NAME of model " + model.name);
       read_parameters(in, name, model, material.parameters);
+      read_texts(in, name, model);
     }
   } else if (known) {
     const auto errors = in.errors();
     material.model = words[chosen];
     read_parameters(in, name, models[chosen], material.parameters);
-    if (in.errors() == errors) check_together(in, name, chosen, material.parameters);
+    const auto texts = read_texts(in, name, models[chosen]);
+    const bool sound = check_run(in, chosen, config, material) && in.errors() == errors;
+    if (sound) read_object(in, chosen, texts, mesh ? *mesh : MeshConfig{}, config.dim, material);
+    if (sound && in.errors() == errors) check_together(in, chosen, material);
     reject_others(in, name, models[chosen], models);
   } else {
     in.ignore(name + "_");
@@ -164,7 +227,8 @@ void read_material(OptionReader& in, const std::string& name, MaterialConfig& ma
 std::vector<std::string> warnings_of_law(const MaterialConfig& material) {
   const int model = model_index(material.model);
   if (model < 0) return {};
-  const std::string text = warning_of(make_material<double>(model, material.parameters));
+  const std::string text =
+      warning_of(make_material<double>(model, material.parameters, material.object.get()));
   return text.empty() ? std::vector<std::string>{} : split(with_prefix(text, material.name), '\n');
 }
 
@@ -175,7 +239,8 @@ void prepare_material(MaterialConfig& material, double spacing, double largest_p
 
 bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
                  const Sym6& stress) {
-  const auto law = make_material<double>(model_index(material.model), material.parameters);
+  const auto law =
+      make_material<double>(model_index(material.model), material.parameters, material.object.get());
   const ParameterFault fault = start_fault(law, {.position = {}, .height = height, .stress = stress});
   if (fault.key.empty()) return true;
   const bool of_body = fault.key == "stress";
@@ -183,11 +248,24 @@ bool check_start(OptionReader& in, const std::string& body, const MaterialConfig
   return false;
 }
 
+bool check_element_start(OptionReader& in, const MaterialConfig& material, double height,
+                         const Sym6& stress) {
+  const auto law = make_material<double>(model_index(material.model), material.parameters);
+  const ParameterFault fault = start_fault(law, {.position = {}, .height = height, .stress = stress});
+  if (fault.key.empty()) return true;
+  const std::string takes = with_prefix(fault.takes, material.name);
+  if (fault.key == "stress")
+    in.reject("element_path", "a start (row 0) with " + takes);
+  else
+    in.reject(material.name + "_" + fault.key, takes);
+  return false;
+}
+
 bool has_strength(const MaterialConfig& material) {
   constexpr double k_far = 1e9;  // m
   const int model = model_index(material.model);
   if (model < 0) return false;  // reported
-  const AnyMaterial<double> law = make_material<double>(model, material.parameters);
+  const AnyMaterial<double> law = make_material<double>(model, material.parameters, material.object.get());
   return strength_at(law, -k_far) > 0 || strength_at(law, k_far) > 0;
 }
 

@@ -1,4 +1,4 @@
-// -materials, -bodies, -rigids, and what each named thing owns.
+// -materials, -bodies, -rigid_bodies, and what each named thing owns.
 
 #include <algorithm>
 #include <cctype>
@@ -23,7 +23,8 @@ struct Names {
 
   explicit Names(const OptionReader& in) {
     for (const auto& option : in.known()) reserved.insert(split(option, '_')[0]);
-    reserved.erase("wall");  // of -wall_time_limit, which no rigid of that good name has
+    // of -wall_time_limit, -rigid_bodies and -rebuild_margin, which none of these good names can have
+    for (const char* free : {"wall", "rigid", "rebuild"}) reserved.erase(free);
     for (const auto& option : petsc_names()) reserved.insert(split(option, '_')[0]);
   }
   /// What is wrong with a name; empty where nothing is.
@@ -76,11 +77,11 @@ void forgive_unlisted(OptionReader& in, const Names& names) {
   };
   if (!in.given("materials")) pass("model"), pass("density");
   if (!in.given("bodies")) pass("material"), pass("shape");
-  if (in.given("rigids") || !in.given("bodies")) return;
+  if (in.given("rigid_bodies") || !in.given("bodies")) return;
   for (const auto& owner : in.owners_of("shape")) {
     constexpr int k_few = 2;  // a misspelt name begins fewer options
     if (in.count_of(owner + "_") <= k_few || names.used.count(owner) || in.is_left_out(owner)) continue;
-    in.reject("rigids", "names, as plate,pipe; " + owner + " has a shape, and no list has it");
+    in.reject("rigid_bodies", "names, as plate,pipe; " + owner + " has a shape, and no list has it");
     in.ignore(owner + "_");
   }
 }
@@ -94,9 +95,9 @@ void read_cut_out(OptionReader& in, const Listed& listed, BodyConfig& body) {
   std::vector<std::string> others = listed.rigids, names;
   for (const auto& name : listed.bodies)
     if (name != body.name) others.push_back(name);
-  const std::string takes = in.listing()     ? "names of -rigids and -bodies, as pipe,plate"
-                            : others.empty() ? "names of -rigids and -bodies, which list no other"
-                                             : "names of -rigids and -bodies: " + join(others, ", ");
+  const std::string takes = in.listing()     ? "names of -rigid_bodies and -bodies, as pipe,plate"
+                            : others.empty() ? "names of -rigid_bodies and -bodies, which list no other"
+                                             : "names of -rigid_bodies and -bodies: " + join(others, ", ");
   if (!in.list_of(option, takes, names)) return;
   const auto place_in = [](const std::vector<std::string>& list, const std::string& name) {
     const auto found = std::find(list.begin(), list.end(), name);
@@ -186,45 +187,45 @@ void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
 }
 
 /// The gap counts by default where it is known and may open.
-void read_penalty(OptionReader& in, RigidConfig& rigid) {
-  const std::string name = rigid.name + "_contact_penalty";
-  rigid.penalty = rigid.separates && rigid.contact_normal == ContactNormal::surface;
+void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
+  const std::string name = rigid.name + "_contact_gap_scaling";
+  rigid.contact_gap_scaling = rigid.separates && rigid.contact_normal == ContactNormal::surface;
   if (rigid.separates || in.listing())
     in.word(
         {.name = name,
          .meaning = "geo: the normal correction decreases with the gap g as 1 - (g/reach)^exponent; none is "
                     "the default with normals of the mass gradient"},
-        std::vector<std::pair<std::string, bool>>{{"none", false}, {"geo", true}}, rigid.penalty);
+        std::vector<std::pair<std::string, bool>>{{"none", false}, {"geo", true}}, rigid.contact_gap_scaling);
   else
     in.not_taken(name, rigid.name + "_separation is none");
-  const Option reach{.name = rigid.name + "_penalty_reach",
+  const Option reach{.name = rigid.name + "_contact_gap_reach",
                      .meaning = "geo: the gap at which contact ends, in cells",
                      .unit = "-",
                      .range = {.lowest = 0, .highest = 2, .open_lowest = true}},
-      exponent{.name = rigid.name + "_penalty_exponent",
+      exponent{.name = rigid.name + "_contact_gap_exponent",
                .meaning = "geo: exponent of the decrease",
                .unit = "-",
                .range = {.lowest = 0.1, .highest = 100}};
-  if (rigid.penalty || in.listing()) {
-    in.number(reach, rigid.penalty_reach);
-    in.number(exponent, rigid.penalty_exponent);
+  if (rigid.contact_gap_scaling || in.listing()) {
+    in.number(reach, rigid.contact_gap_reach);
+    in.number(exponent, rigid.contact_gap_exponent);
   } else {
-    in.not_taken(reach.name, rigid.name + "_contact_penalty is none");
-    in.not_taken(exponent.name, rigid.name + "_contact_penalty is none");
+    in.not_taken(reach.name, rigid.name + "_contact_gap_scaling is none");
+    in.not_taken(exponent.name, rigid.name + "_contact_gap_scaling is none");
   }
 }
 
-/// The shear limit as a share of the strength of the soil at it, instead of one for all of the interface.
-void read_shear_share(OptionReader& in, const Config& config, RigidConfig& rigid) {
-  const std::string name = rigid.name + "_shear_share";
+/// The shear limit as a fraction of the strength of the soil at it, instead of one for all of the interface.
+void read_shear_fraction(OptionReader& in, const Config& config, RigidConfig& rigid) {
+  const std::string name = rigid.name + "_shear_fraction";
   if (rigid.has_shear_limit && !in.listing()) return in.not_taken(name, rigid.name + "_shear_limit is given");
   const bool found =
       in.number({.name = name,
-                 .meaning = "shear limit as a share of the soil's strength there (su), instead "
+                 .meaning = "shear limit as a fraction of the soil's strength there (su), instead "
                             "of the shear limit",
                  .unit = "-",
                  .range = {.lowest = 0, .highest = 1}},
-                rigid.shear_share);
+                rigid.shear_fraction);
   const auto strong = [&](const BodyConfig& body) {
     return body.material < static_cast<int>(config.materials.size()) &&
            has_strength(config.materials[body.material]);
@@ -242,18 +243,20 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
   in.section("Each rigid NAME");
   read_motion(in, dim, rigid);
   if (sound && mesh) check_cut_motion(in, *mesh, dim, rigid);
+  if (sound && mesh) check_in_water(in, config, rigid);
   rigid.has_shear_limit = in.number({.name = rigid.name + "_shear_limit",
                                      .meaning = "largest shear stress of the interface; 0 is smooth",
                                      .unit = "Pa",
                                      .range = {.lowest = 0, .highest = 1e15}},
                                     rigid.shear_limit);
-  read_shear_share(in, config, rigid);
-  in.number({.name = rigid.name + "_friction",
-             .meaning = "Coulomb coefficient of the interface; the shear limit or share, where given, bounds "
-                        "the shear too",
-             .unit = "-",
-             .range = {.lowest = 0, .highest = 10}},
-            rigid.friction);
+  read_shear_fraction(in, config, rigid);
+  in.number(
+      {.name = rigid.name + "_friction",
+       .meaning = "Coulomb coefficient of the interface; the shear limit or fraction, where given, bounds "
+                  "the shear too",
+       .unit = "-",
+       .range = {.lowest = 0, .highest = 10}},
+      rigid.friction);
   in.word({.name = rigid.name + "_contact_normal",
            .meaning = "contact normals: of the body's own surface, or of its nodal mass gradient (Eq. 3)"},
           std::vector<std::pair<std::string, ContactNormal>>{{"surface", ContactNormal::surface},
@@ -262,10 +265,25 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
   in.word({.name = rigid.name + "_separation",
            .meaning = "whether the soil may part from it; none: contact pulls as well (suction)"},
           std::vector<std::pair<std::string, bool>>{{"free", true}, {"none", false}}, rigid.separates);
-  read_penalty(in, rigid);
+  read_gap_scaling(in, rigid);
 }
 
 }  // namespace
+
+void read_only_material(OptionReader& in, Config& config) {
+  Names names(in);
+  const auto materials =
+      read_names(in, {.name = "materials", .meaning = "names of the materials", .required = true}, names);
+  leave_out(in, "materials", names);
+  if (materials.size() > 1) {
+    in.reject(
+        "materials",
+        "the name of one material with -element_path; give the one to drive, as -materials " + materials[0]);
+    for (const auto& name : materials) in.ignore(name + "_");
+  } else if (!materials.empty()) {
+    read_material(in, materials[0], nullptr, config, config.materials.emplace_back());
+  }
+}
 
 void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
   Names names(in);
@@ -274,13 +292,13 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
       read_names(in, {.name = "materials", .meaning = "names of the materials", .required = true}, names);
   const auto bodies = read_names(
       in, {.name = "bodies", .meaning = "names of the deformable bodies", .required = true}, names);
-  const auto rigids = read_names(in, {.name = "rigids", .meaning = "names of the rigid bodies"}, names);
+  const auto rigids = read_names(in, {.name = "rigid_bodies", .meaning = "names of the rigid bodies"}, names);
   if (!in.listing()) {
-    for (const char* list : {"materials", "bodies", "rigids"}) leave_out(in, list, names);
+    for (const char* list : {"materials", "bodies", "rigid_bodies"}) leave_out(in, list, names);
     forgive_unlisted(in, names);
   }
   auto errors = in.errors();
-  for (const auto& name : materials) read_material(in, name, config.materials.emplace_back());
+  for (const auto& name : materials) read_material(in, name, mesh, config, config.materials.emplace_back());
   const bool sound_materials = mesh && in.errors() == errors && !in.listing();
   if (sound_materials)
     for (MaterialConfig& material : config.materials) prepare_material(material, mesh->spacing, 0);

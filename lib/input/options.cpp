@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 
 #include "checkpoint/changes.hpp"
@@ -43,12 +44,10 @@ void read_run(OptionReader& in, const std::vector<Backend>& backends, Config& co
 }
 
 void read_p2g(OptionReader& in, P2GConfig& p2g) {
-  static const Words<P2G> words = {
-      {"sequential", P2G::sequential}, {"atomic", P2G::atomic}, {"mosaic", P2G::mosaic},
-      {"gather", P2G::gather},         {"tile", P2G::tile},     {"auto", P2G::automatic}};
+  static const Words<P2G> words(std::begin(k_p2g_words), std::end(k_p2g_words));
   in.section("Particle-to-node interpolation");
   in.word({.name = "p2g", .meaning = "strategy; auto is the fastest for the backend"}, words, p2g.strategy);
-  in.number({.name = "p2g_margin",
+  in.number({.name = "rebuild_margin",
              .meaning = "how far a particle may move before lists and bins are rebuilt",
              .unit = "cells",
              .range = {.lowest = 0, .highest = 0.5, .open_lowest = true}},
@@ -162,16 +161,16 @@ void read_velocity_update(OptionReader& in, Config& config) {
           update);
   const std::string chosen = "-velocity_update is " + std::string(in.given_text("velocity_update"));
   const bool xpic = update == VelocityUpdate::xpic;
-  if (update != VelocityUpdate::flip) config.flip_share = 0;
+  if (update != VelocityUpdate::flip) config.flip_fraction = 0;
   if (update == VelocityUpdate::flip || xpic)
-    in.number({.name = "flip_share",
-               .meaning = "share of FLIP in the velocity update, the rest PIC, or XPIC with xpic",
+    in.number({.name = "flip_fraction",
+               .meaning = "fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic",
                .unit = "-",
                .range = {.lowest = 0, .highest = 1},
                .standard = in.listing() ? "1 with flip, 0 with xpic" : ""},
-              config.flip_share);
+              config.flip_fraction);
   else
-    in.not_taken("flip_share", chosen);
+    in.not_taken("flip_fraction", chosen);
   if (xpic || in.listing())
     in.integer({.name = "xpic_order",
                 .meaning = "order m of XPIC(m): the higher, the less it damps",
@@ -182,10 +181,19 @@ void read_velocity_update(OptionReader& in, Config& config) {
     in.not_taken("xpic_order", "-velocity_update is not xpic");
 }
 
+/// Whether some soil dilates as it yields: F-bar creates energy there (docs/soils.md).
+bool has_dilation(const OptionReader& in) {
+  const auto owners = in.owners_of("dilation_deg");
+  return std::any_of(owners.begin(), owners.end(), [&](const std::string& name) {
+    return std::strtod(in.given_text(name + "_dilation_deg").c_str(), nullptr) > 0;
+  });
+}
+
 void read_physics(OptionReader& in, Config& config) {
   in.section("Physics");
   in.vector({.name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2", .range = k_speed},
             config.dim, config.gravity);
+  read_water(in, config);
   in.number({.name = "damping",
              .meaning = "local (non-viscous) damping factor",
              .unit = "-",
@@ -200,11 +208,13 @@ void read_physics(OptionReader& in, Config& config) {
            "leave the run; stop: the run ends with exit status 3"},
       Words<StrayRule>{{"keep", StrayRule::keep}, {"remove", StrayRule::remove}, {"stop", StrayRule::stop}},
       config.stray_particles);
-  in.number({.name = "f_bar_share",
-             .meaning = "share of the cell's mean in a particle's dilatation (F-bar), against locking",
+  if (has_dilation(in)) config.f_bar_fraction = 0;
+  in.number({.name = "f_bar_fraction",
+             .meaning = "fraction of the cell's mean in a particle's dilatation (F-bar), against locking; where "
+                        "a material has a -NAME_dilation_deg above 0 the default is 0",
              .unit = "-",
              .range = {.lowest = 0, .highest = 1}},
-            config.f_bar_share);
+            config.f_bar_fraction);
 }
 
 /// What frames hold.
@@ -214,7 +224,7 @@ void read_frames(OptionReader& in, OutputConfig& output) {
       .name = "output_fields",
       .meaning = "fields of the frames beside the position; those of bodies are left out of rigids",
       .standard = "all"};
-  const std::string takes = "names of fields: " + join(known, ", ");
+  const std::string takes = "names of fields: " + frame_field_list();
   std::vector<std::string> names;
   if (in.list_of(fields, takes, names)) {
     output.fields = names;
@@ -234,17 +244,22 @@ void read_frames(OptionReader& in, OutputConfig& output) {
     if (in.given(name)) in.warn(name, "is not used, for -output_frames is off");
 }
 
-void read_output(OptionReader& in, const std::string& options_file, double time_end, OutputConfig& output) {
-  in.section("Output");
+/// -output_dir, whose default has the stem of the options file.
+void read_directory(OptionReader& in, const std::string& options_file, OutputConfig& output) {
   const std::string stem = std::filesystem::path(options_file).stem().string();
   output.directory = "out/" + (stem.empty() ? "mpm" : stem);
+  in.text({.name = "output_dir",
+           .meaning = "folder of the results",
+           .standard = in.listing() ? "out/ and the stem of the options file" : ""},
+          output.directory);
+}
+
+void read_output(OptionReader& in, const std::string& options_file, double time_end, OutputConfig& output) {
+  in.section("Output");
   output.interval = time_end / 50;
   output.history_interval = time_end / 500;
   const bool listing = in.listing();
-  in.text({.name = "output_dir",
-           .meaning = "folder of the results",
-           .standard = listing ? "out/ and the stem of the options file" : ""},
-          output.directory);
+  read_directory(in, options_file, output);
   in.word(
       {.name = "output_frames",
        .meaning = "off: no frames of the particles, as for measuring speed or where the disk is too small"},
@@ -301,6 +316,14 @@ void check_restart_change(OptionReader& in, const Config& config) {
                            name + " is none");
 }
 
+/// All that a single material point needs. Its law is computed on the processor whatever the backend.
+void read_element_run(OptionReader& in, const std::vector<Backend>& backends, const std::string& options_file,
+                      Config& config) {
+  config.backend = backends.front();
+  read_directory(in, options_file, config.output);
+  read_element(in, config);
+}
+
 void read_all(OptionReader& in, const std::vector<Backend>& backends, const std::string& options_file,
               Config& config) {
   const auto errors = in.errors();
@@ -310,6 +333,11 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
       config.dim);
   if (in.errors() != errors) return;  // it decides what all others take
   read_run(in, backends, config);
+  if (read_element_file(in, config.element)) {
+    read_element_run(in, backends, options_file, config);
+    in.report_unknown();
+    return;
+  }
   read_p2g(in, config.p2g);
   read_partition(in, config.partition);
   const bool sound = read_mesh(in, config.dim, config.mesh);
@@ -339,6 +367,11 @@ PetscErrorCode print_lines(MPI_Comm comm, FILE* file, const std::string& text) {
 }
 
 }  // namespace
+
+void list_all(OptionReader& in) {
+  Config config;
+  read_all(in, {Backend::serial}, "", config);
+}
 
 PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& backends, Config& config,
                             InputReport& report) {

@@ -30,7 +30,7 @@ struct EffectiveOption {
 /// What reading the input found.
 struct InputReport {
   std::vector<std::string> errors;    // each a whole line without its end: mpm: -NAME: given "...", takes ...
-  std::vector<std::string> warnings;  // each a whole line without its end: warning: ...
+  std::vector<std::string> warnings;  // each a whole line without its end: warning: ..., mpm: note: ...
   std::vector<EffectiveOption> options;  // in the order of reading; for the log
   std::string help_text;           // every option, its unit, default and meaning (only where help was asked)
   std::string options_file;        // the last -options_file, empty where there was none or it was a pipe
@@ -38,9 +38,10 @@ struct InputReport {
   bool help = false;               // -help was given
   bool file_unread = false;        // an options file was left out for its mistakes
   std::vector<std::string>
-      replaced;                    // in pairs: an option without its dash, a value that a later one replaced
-  std::vector<std::string> words;  // PETSc's command line
-  std::vector<char*> arguments;    // that as argv; not of use in a copy
+      replaced;  // in pairs: an option without its dash, a value that a later one replaced
+  std::vector<std::string> renamed;  // in pairs: an option without its dash, the former name that was given
+  std::vector<std::string> words;    // PETSc's command line
+  std::vector<char*> arguments;      // that as argv; not of use in a copy
 };
 
 /// Reads the command line, the options files (a pipe too), PETSc's own files and PETSC_OPTIONS on the first

@@ -9,6 +9,7 @@
 #include "common/host_memory.hpp"
 #include "common/regular_file.hpp"
 #include "common/text.hpp"
+#include "physics/materials/tables.hpp"
 
 namespace mpm {
 namespace {
@@ -159,9 +160,18 @@ std::string read_group(hid_t file, const ParticleSource& source, int dim, Partic
   table.volume = in.read("volume", 1, 1);
   if (source.velocity) in.read_if_there("velocity", 3, dim, frame, table.velocity);
   if (source.stress) in.read_if_there("stress", 6, dim == 2 ? 4 : 6, frame, table.stress);
+  std::vector<double> pore_pressure;
+  if (!table.stress.empty()) in.read_if_there("pore_pressure", 1, 1, false, pore_pressure);
+  add_pressure(pore_pressure, dim, table.stress);  // total stress becomes effective
+  // A run of another law has none of this law's variables, but for the plastic strain, which all frames have.
+  const bool same_law = std::any_of(source.state.begin(), source.state.end(), [&](const std::string& name) {
+    return name != "plastic_strain" && name != k_excess_pore_pressure && in.has(name.c_str());
+  });
   for (const std::string& name : source.state) {
     StateField field{name, {}};
-    in.read_if_there(name.c_str(), 1, 1, frame, field.values);
+    const bool needed = frame && name != k_excess_pore_pressure &&  // the run of the frame may have been drained
+                        (same_law || name == "plastic_strain");
+    in.read_if_there(name.c_str(), 1, 1, needed, field.values);
     if (!field.values.empty()) table.state.push_back(std::move(field));
   }
   in.read_if_there("mass", 1, 1, frame, table.mass);
@@ -190,6 +200,13 @@ std::string read_particles(const ParticleSource& source, const MeshConfig& mesh,
   if (fault.empty()) fault = not_positive(table.volume, "volume");
   if (fault.empty()) fault = not_positive(table.mass, "mass");
   return fault.empty() ? outside(table.position, mesh, dim) : fault;
+}
+
+void add_pressure(const std::vector<double>& pressure, int dim, std::vector<double>& stress) {
+  const std::size_t components = dim == 2 ? 4 : 6;
+  if (stress.size() != components * pressure.size()) return;
+  for (std::size_t p = 0; p < pressure.size(); ++p)
+    for (std::size_t k = 0; k < 3; ++k) stress[components * p + k] += pressure[p];
 }
 
 double mean_density(const ParticleTable& table, double of_material) {

@@ -14,7 +14,7 @@ namespace mpm {
 struct ParticleTable {
   std::vector<double> position;           // m [dim N]
   std::vector<double> velocity;           // m/s [dim N]
-  std::vector<double> stress;             // Pa, tension positive [4 N or 6 N]
+  std::vector<double> stress;             // Pa, effective, tension positive [4 N or 6 N]
   std::vector<StateField> state;          // state variables that the source asked for and the file has
   std::vector<double> volume;             // m3 (m2 in 2D), present [N]
   std::vector<double> mass;               // kg [N]; empty: the material's density times the volume
@@ -33,13 +33,16 @@ struct ParticleSource {
 
 /// Reads the particles of a body from an HDF5 file: a checkpoint, a frame, or a file laid out as one, with a
 /// group that holds `position` (N x 3) and `volume` (N), and where they are there `velocity` (N x 3),
-/// `stress` (N x 6), the state variables, `mass` and `reference_height` (N). A frame must hold all of them,
+/// `stress` (N x 6; total where there is a `pore_pressure` (N), else effective), the state variables, `mass` and `reference_height` (N). A frame must hold all of them,
 /// for otherwise its -output_fields left them out; one of an earlier version (without the attribute `dim`)
 /// counts as a file of the user's. In 2D the components that are not in the plane are passed over. Every
 /// number must be finite, every particle in the mesh, volumes and masses greater than 0. Returns what the
 /// file should have been, as the end of "takes ..."; empty where all is well.
 std::string read_particles(const ParticleSource& source, const MeshConfig& mesh, int dim,
                            ParticleTable& table);
+
+/// Adds the pressures [Pa] of particles to the normal stresses; nothing where there are none.
+void add_pressure(const std::vector<double>& pressure, int dim, std::vector<double>& stress);
 
 /// The mean density of the particles of a table [kg/m3]; that of the material where it has no masses.
 double mean_density(const ParticleTable& table, double of_material);

@@ -64,7 +64,14 @@ PetscErrorCode OptionReader::load(const char* prefix, InputReport& report) {
   for (std::size_t k = 0; k + 1 < report.replaced.size(); k += 2)
     if (report.replaced[k].starts_with(lower_case(prefix_)))
       replaced_.insert({report.replaced[k].substr(prefix_.size()), report.replaced[k + 1]});
+  for (std::size_t k = 0; k + 1 < report.renamed.size(); k += 2)
+    former_[report.renamed[k]] = report.renamed[k + 1];
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+std::string OptionReader::dashed(const std::string& name) const {
+  const auto former = former_.find(lower_case(prefix_ + name));
+  return "-" + (former == former_.end() ? prefix_ + name : former->second);
 }
 
 void OptionReader::list(InputReport& report) {
@@ -107,6 +114,23 @@ int OptionReader::count_of(const std::string& beginning) const {
   }));
 }
 
+int OptionReader::pass_over(const std::vector<std::string>& names,
+                            const std::vector<std::string>& beginnings) {
+  int count = 0;
+  for (const std::string& name : names) {
+    const std::string key = lower_case(name);
+    const auto found = given_.find(key);
+    if (found == given_.end() || read_.count(key)) continue;
+    read_.insert(key);
+    ++count;
+  }
+  for (const std::string& beginning : beginnings) {
+    count += count_of(beginning);
+    ignore(beginning);
+  }
+  return count;
+}
+
 /// One line for each list that another one replaced.
 void OptionReader::warn_of_left_out() {
   for (const auto& [list, names] : left_out_) {
@@ -123,6 +147,7 @@ void OptionReader::section(const std::string& title) {
 
 const std::string* OptionReader::find(const Option& option, const std::string& takes,
                                       const std::string& standard) {
+  known_.push_back(option.name);
   if (listing_) {
     const std::string otherwise = !option.standard.empty() ? option.standard
                                   : standard.empty()       ? "none"
@@ -132,7 +157,6 @@ const std::string* OptionReader::find(const Option& option, const std::string& t
     return nullptr;
   }
   read_.insert(lower_case(option.name));
-  known_.push_back(option.name);
   const auto found = given_.find(lower_case(option.name));
   if (found != given_.end()) return &found->second.value;
   if (option.required)
@@ -158,13 +182,13 @@ std::string OptionReader::given_text(const std::string& name) const {
 
 void OptionReader::reject(const std::string& name, const std::string& takes) {
   const std::string what = given(name) ? "given " + quoted(given_text(name)) : "not given";
-  const std::string line = "mpm: -" + prefix_ + name + ": " + what + ", takes " + takes;
+  const std::string line = "mpm: " + dashed(name) + ": " + what + ", takes " + takes;
   auto& errors = report_->errors;  // several bodies may find the same mistake of their material
   if (std::find(errors.begin(), errors.end(), line) == errors.end()) errors.push_back(line);
 }
 
 void OptionReader::warn(const std::string& name, const std::string& what) {
-  report_->warnings.push_back("warning: -" + prefix_ + name + ": given " + quoted(given_text(name)) + ", " +
+  report_->warnings.push_back("warning: " + dashed(name) + ": given " + quoted(given_text(name)) + ", " +
                               what);
 }
 
@@ -312,8 +336,8 @@ void OptionReader::report_unknown() {
     if (!option.unused || read_.count(name) || is_petsc_name(name)) continue;
     if (std::any_of(ignored_.begin(), ignored_.end(), begins_name)) continue;
     const auto meant = nearest(name, known);
-    report_->errors.push_back("mpm: -" + option.name + ": given " + quoted(option.value) +
-                              ", takes nothing: no such option" +
+    report_->errors.push_back("mpm: " + dashed(option.name.substr(prefix_.size())) + ": given " +
+                              quoted(option.value) + ", takes nothing: no such option" +
                               (meant ? ", the nearest is -" + prefix_ + *meant : "; -help lists all"));
   }
 }

@@ -98,6 +98,9 @@ class OptionReader {
   bool is_left_out(const std::string& name) const;
   /// Every NAME for which -NAME_key is given, in lower case.
   std::vector<std::string> owners_of(const std::string& key) const;
+  /// Options that this run does not use, by their names and by what they begin with: they are no mistakes.
+  /// How many of them are given and have not been read.
+  int pass_over(const std::vector<std::string>& names, const std::vector<std::string>& beginnings);
   /// How many options that begin so are given and have not been read.
   int count_of(const std::string& beginning) const;
   /// Reports every option that nobody asked for and that is not PETSc's.
@@ -117,6 +120,8 @@ class OptionReader {
   /// The text given, if any. Reports a required option that is missing, and writes the help.
   const std::string* find(const Option& option, const std::string& takes, const std::string& standard);
   bool fail(const Option& option, const std::string& takes);
+  /// "-NAME", by the name that the user gave.
+  std::string dashed(const std::string& name) const;
   void keep(const Option& option, const std::string& value, bool standard);
   void warn_of_left_out();
   template <class Value>
@@ -129,6 +134,7 @@ class OptionReader {
   std::set<std::string> read_;
   std::vector<std::string> known_, ignored_;
   std::multimap<std::string, std::string> replaced_;          // by lower-case name without prefix
+  std::map<std::string, std::string> former_;                 // names as given, by lower-case name
   std::map<std::string, std::vector<std::string>> left_out_;  // names by their list
 };
 

@@ -4,6 +4,7 @@
 
 #include "input/groups.hpp"
 #include "input/shapes.hpp"
+#include "physics/materials/tables.hpp"
 
 namespace mpm {
 namespace {
@@ -33,7 +34,8 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
       check_start(in, body.name, material, bounds.upper[up], body.stress);
     return;
   }
-  bool looks = listed.state.empty();
+  bool looks = std::all_of(listed.state.begin(), listed.state.end(),
+                           [](const StateField& field) { return field.name == k_excess_pore_pressure; });
   for (std::size_t p = 0; p < listed.volume.size(); ++p) {
     const bool is_new = listed.reference_height.empty();
     const double height = is_new ? listed.position[p * config.dim + up] : listed.reference_height[p];

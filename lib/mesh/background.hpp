@@ -4,13 +4,11 @@
 
 #include <petscdmda.h>
 
+#include "base/patch_edge.hpp"
 #include "mesh/patch_grid.hpp"
 #include "mpm/config.hpp"
 
 namespace mpm {
-
-/// Cells along the edge of a patch.
-constexpr int patch_edge(int dim) { return dim == 2 ? 8 : 4; }
 
 /// Patches that a mesh has, with the ring outside it.
 double patch_count(const MeshConfig& mesh, int dim);

@@ -45,14 +45,15 @@ PetscErrorCode make_folder(const std::string& folder) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode prepare_output_folder(const std::string& folder, int* removed) {
+PetscErrorCode prepare_output_folder(const std::string& folder, int* removed, bool with_frames) {
   PetscFunctionBeginUser;
   const fs::path frames = fs::path(folder) / "frames";
   int count = 0;
   PetscCall(make_folder(folder));
-  PetscCall(make_folder(frames.string()));
+  if (with_frames) PetscCall(make_folder(frames.string()));
   PetscCall(remove_ours(folder, &count));
-  PetscCall(remove_ours(frames, &count));
+  if (std::error_code error; with_frames || fs::is_directory(frames, error))
+    PetscCall(remove_ours(frames, &count));
   if (removed) *removed = count;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

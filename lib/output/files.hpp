@@ -15,8 +15,8 @@ PetscErrorCode make_folder(const std::string& folder);
 
 /// Makes the output folder and its `frames`, and removes what an earlier run left there (own_files.hpp),
 /// nothing else. Call it once the input is known to be valid. `removed` [number of files] is for the log; it
-/// may be null.
-PetscErrorCode prepare_output_folder(const std::string& folder, int* removed);
+/// may be null. Without `frames` that folder is not made.
+PetscErrorCode prepare_output_folder(const std::string& folder, int* removed, bool with_frames = true);
 
 /// Writes `contents` under a temporary name, brings it to the disk and renames it to `path`. If any of this
 /// fails the temporary file is removed and a former `path` stays as it was.

@@ -1,5 +1,9 @@
 #include "output/frame_fields.hpp"
 
+#include <algorithm>
+#include <cctype>
+
+#include "common/text.hpp"
 #include "physics/materials/tables.hpp"
 
 namespace mpm {
@@ -21,13 +25,30 @@ const std::vector<Field>& frame_fields() {
       for (const StateVariable& variable : state_variables(model))
         if (variable.output && is_new(variable.name))
           all.push_back({variable.name, variable.unit, 1, Of::bodies, nullptr});
-    const Field last[] = {{"mass", "kg", 1, Of::bodies_and_nodes, &ParticleSnapshot::mass},
+    const Field last[] = {{"pore_pressure", "Pa", 1, Of::bodies, nullptr},
+                          {k_excess_pore_pressure, "Pa", 1, Of::bodies, nullptr},
+                          {"mass", "kg", 1, Of::bodies_and_nodes, &ParticleSnapshot::mass},
                           {"reference_height", "m", 1, Of::bodies, &ParticleSnapshot::reference_height},
                           {"number", "-", 1, Of::nodes, &ParticleSnapshot::number}};
     all.insert(all.end(), std::begin(last), std::end(last));
     return all;
   }();
   return fields;
+}
+
+std::string frame_field_list() {
+  const auto names = frame_field_names();
+  const auto is_numbered = [&](std::size_t k) {
+    return k < names.size() && std::isdigit(static_cast<unsigned char>(names[k].back())) != 0;
+  };
+  std::vector<std::string> pieces;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    pieces.push_back(names[k]);
+    if (!is_numbered(k)) continue;
+    while (is_numbered(k + 1)) ++k;
+    if (names[k] != pieces.back()) pieces.back() += " to " + names[k];
+  }
+  return join(pieces, ", ");
 }
 
 const std::vector<double>* values_of(const ParticleSnapshot& particles, const Field& field) {

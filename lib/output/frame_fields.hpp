@@ -71,5 +71,7 @@ inline std::vector<std::string> frame_field_names() {
     if (!is_position(field) && field.of != Of::nodes) names.push_back(field.name);
   return names;
 }
+/// The same for a message, in which numbered names are told by the first and the last: "state_1 to state_9".
+std::string frame_field_list();
 
 }  // namespace mpm

@@ -17,14 +17,14 @@ constexpr std::launch k_launch = std::launch::async;
 void FrameQueue::open(const std::string& folder, Precision precision, const FrameStyle& style,
                       MPI_Comm comm) {
   frames_.open(folder, precision, style, comm);
-  beside_ = size_of(comm) == 1;
+  in_background_ = size_of(comm) == 1;
   count_ = 0;
 }
 
 PetscErrorCode FrameQueue::resume(const Config& config, long count, MPI_Comm comm) {
   PetscFunctionBeginUser;
   PetscCall(frames_.resume(config, count, comm));
-  beside_ = size_of(comm) == 1;
+  in_background_ = size_of(comm) == 1;
   count_ = frames_.count();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -42,10 +42,10 @@ PetscErrorCode FrameQueue::write(Snapshot&& snapshot) {
   PetscFunctionBeginUser;
   PetscCall(wait());
   snapshot_ = std::move(snapshot);
-  PetscCallCXX(result_ = std::async(beside_ ? k_launch : std::launch::deferred,
+  PetscCallCXX(result_ = std::async(in_background_ ? k_launch : std::launch::deferred,
                                     [this] { return frames_.write(snapshot_); }));
   ++count_;
-  if (!beside_) PetscCall(wait());
+  if (!in_background_) PetscCall(wait());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -26,8 +26,8 @@ class FrameQueue {
 
  private:
   Frames frames_;
-  bool beside_ = true;  // the run
-  Snapshot snapshot_;   // on its way
+  bool in_background_ = true;  // frames are written while the run goes on
+  Snapshot snapshot_;          // on its way
   long count_ = 0;
   std::future<PetscErrorCode> result_;  // last: it waits for its thread before the others go
 };

@@ -10,7 +10,7 @@
 #include "data/saved_state.hpp"
 #include "device/stream_event.hpp"
 #include "functions/halo.hpp"
-#include "functions/share_impulse.hpp"
+#include "functions/node_impulses.hpp"
 #include "mpm/config.hpp"
 #include "parallel/global_bound.hpp"
 #include "parallel/halo_plan.hpp"
@@ -135,7 +135,7 @@ class Decomposition {
   PetscErrorCode choose_owners(State_& s, const std::vector<double>& figures, double imbalance, bool timed);
   PetscErrorCode migrate(State_& s, long* moved);
   PetscErrorCode make_lists(State_& s);
-  PetscErrorCode share_impulses(State_& s, const NodeImpulses<T>& own);
+  PetscErrorCode exchange_impulses(State_& s, const NodeImpulses<T>& own);
   void send_owners_to_device();
 
   MPI_Comm comm_ = MPI_COMM_NULL;

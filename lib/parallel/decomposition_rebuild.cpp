@@ -51,7 +51,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::rebuild(State_& s) {
   PetscCall(migrate(s, &moved));
   sort_and_list(s);
   PetscCall(make_lists(s));
-  if (s.has_friction) PetscCall(share_impulses(s, impulses));
+  if (s.has_friction) PetscCall(exchange_impulses(s, impulses));
   present_added_ = false;
   note_bound(s, s.space);
   s.space.fence("mpm::note_bound");
@@ -185,7 +185,7 @@ void Decomposition<Space, T, Dim>::put_border_first(State_& s, std::vector<int> 
 
 /// Sends the impulses of the nodes that this rank answered for to all ranks that reach them now.
 template <class Space, class T, int Dim>
-PetscErrorCode Decomposition<Space, T, Dim>::share_impulses(State_& s, const NodeImpulses<T>& own) {
+PetscErrorCode Decomposition<Space, T, Dim>::exchange_impulses(State_& s, const NodeImpulses<T>& own) {
   PetscFunctionBeginUser;
   const std::size_t rigids = s.rigid_points.size(), size = sizeof(long) + rigids * sizeof(T);
   std::vector<std::vector<char>> out(size_);

@@ -2,6 +2,7 @@
 // One time step, in the paper's words.
 
 #include "functions/find_strays.hpp"
+#include "functions/split_patches.hpp"
 #include "functions/step_kernels.hpp"
 #include "functions/velocity_update.hpp"
 #include "loops/interpolation.hpp"
@@ -64,6 +65,20 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
   soil_to_nodes(s, s.soil.points, bins_of(s.soil.bins, part), part.space);
 }
 
+/// The weight of the water that the soil displaces, to the forces at the nodes. Of this rank's soil: the sum
+/// over ranks is that of the forces.
+template <class Space, class T, int Dim>
+void buoyancy_to_nodes(State<Space, T, Dim>& s) {
+  if (!s.water.is_there()) return;
+  if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.displaced, T(0));
+  for_all_soil(s, [&](const auto& set) {
+    interpolate<DisplacedSource<Space, T, Dim>>(s, s.p2g.strategy, set.bins,
+                                                {set.points, s.water, s.density, s.patches.origin, s.spacing},
+                                                s.nodes.displaced);
+  });
+  add_buoyancy(s);
+}
+
 /// The soil's strength at the nodes near rigids, where a contact asks for it.
 template <class Space, class T, int Dim>
 PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
@@ -121,8 +136,11 @@ struct Step {
     PetscCall(run(StepPhase::reset, [&] { reset(); }));  // 1 initialise nodal variables
     PetscCall(
         run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, s.space); }));  // 2 rigid bodies to nodes
-    PetscCall(run(StepPhase::soil_to_nodes, [&] { sum_soil(s.space); }));       // 3 soil to nodes
-    if (ranks) PetscCall(ranks->add_soil(s));                                   //   the sum over ranks
+    PetscCall(run(StepPhase::soil_to_nodes, [&] {
+      sum_soil(s.space);     // 3 soil to nodes
+      buoyancy_to_nodes(s);  //   and what water carries of it
+    }));
+    if (ranks) PetscCall(ranks->add_soil(s));                        //   the sum over ranks
     PetscCall(complete_nodes(s.space));                              //   strength, particles that are alone
     PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt); }));  // 4 velocities, walls, contact
     PetscCall(run(StepPhase::particles, [&] { return update_soil(); }));      // 5 stress, movement
@@ -147,7 +165,7 @@ struct Step {
     PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt, stream); }));
     if (parted) overlap->join(s.space);
     if (parted && !ranks) sum_forces(s, stream);
-    PetscCall(run(StepPhase::particles, [&] { ends ? update_and_end(s, dt) : update_particles(s, dt); }));
+    PetscCall(run(StepPhase::particles, [&] { update_patches_and(ends); }));
     if (!ends) PetscCall(run(StepPhase::rigids, [&] { return update_rigids(parts && !ranks); }));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -176,19 +194,21 @@ struct Step {
   /// `left` by the number of steps done.
   PetscErrorCode persistent(long* left) const {
     PetscFunctionBeginUser;
-    if (timers.sampling() || !can_persist(s)) {
-      --*left;
-      PetscCall(fused());
-      PetscFunctionReturn(PETSC_SUCCESS);
+    if constexpr (is_device<Space>) {
+      if (!timers.sampling() && can_persist(s)) {
+        const long most = *left;
+        const auto steps = [&] {  // functions 4 to 6, and 1 to 3 of the next step
+          const long done = run_persistent_steps(s, dt, most);
+          *left -= done;
+          return done;
+        };
+        joined();
+        PetscCall(timers.run_many(StepPhase::persistent, most, steps, [&] { s.space.fence("mpm::step"); }));
+        PetscFunctionReturn(PETSC_SUCCESS);
+      }
     }
-    const long most = *left;
-    const auto steps = [&] {  // functions 4 to 6, and 1 to 3 of the next step
-      const long done = run_persistent_steps(s, dt, most);
-      *left -= done;
-      return done;
-    };
-    joined();
-    PetscCall(timers.run_many(StepPhase::persistent, most, steps, [&] { s.space.fence("mpm::step"); }));
+    --*left;
+    PetscCall(fused());
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
@@ -211,7 +231,7 @@ struct Step {
 
   /// Whether nodes near rigids may go to the overlap stream. Functions that are timed have the device for
   /// themselves.
-  bool has_stream() const { return overlap && s.plan.nodes_apart && !s.shear_share && !timers.sampling(); }
+  bool has_stream() const { return overlap && s.plan.nodes_apart && !s.shear_fraction && !timers.sampling(); }
   /// The state's own stream, behind all work of the overlap stream.
   const Space& joined() const {
     if (overlap) overlap->join(s.space);
@@ -228,9 +248,24 @@ struct Step {
   /// What only some runs ask of the nodes: the soil's strength, and which particles are alone till a rebuild.
   PetscErrorCode complete_nodes(const Space& stream) const {
     PetscFunctionBeginUser;
-    if (s.shear_share) PetscCall(strength_to_nodes(s, ranks));
+    if (s.shear_fraction) PetscCall(strength_to_nodes(s, ranks));
     if (!s.strays.known) mark_strays(s, stream);
+    if (wants_split(s) && s.split.parts.empty()) split_patches(s, stream);
     PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Function 5 of a part of the soil, or of all of it. The overlap stream takes the patches that are not
+  /// common.
+  template <class... Some>
+  void update_patches(const Some&... part) const {
+    const bool aside = overlap && s.split.has_others() && !timers.sampling();
+    update_particles(s, dt, part..., aside ? overlap->fork(s.space) : s.space);
+    if (aside) overlap->join(s.space);
+  }
+  /// Function 5, and with the same launch the end of the step where `ends`.
+  void update_patches_and(bool ends) const {
+    if constexpr (is_device<Space>)
+      if (ends) return update_and_end(s, dt);
+    update_patches();
   }
   PetscErrorCode update_soil() const {
     PetscFunctionBeginUser;
@@ -238,7 +273,7 @@ struct Step {
     if (s.batches.in_use())
       update_by_batches(s, dt);
     else
-      update_particles(s, dt);
+      update_patches();
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Under the forces of all ranks.
@@ -263,9 +298,9 @@ struct Step {
   PetscErrorCode update_and_send() const {
     PetscFunctionBeginUser;
     const Part<Space> border = ranks->border(s);
-    update_particles(s, dt, border);
+    update_particles(s, dt, border, border.space);
     PetscCall(ranks->send_ahead(s));
-    update_particles(s, dt, ranks->inner(s));
+    update_patches(ranks->inner(s));
     ranks->join(s);
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -1,8 +1,10 @@
 #include "step/typed_stepper.hpp"
 #include "device/device_agrees.hpp"
 #include "input/shapes.hpp"
+#include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
 #include "step/surface_input.hpp"
+#include "step/water.hpp"
 
 #include "common/collectives.hpp"
 
@@ -50,7 +52,8 @@ std::vector<std::vector<double>> start_state(const Config& config, const AnyMate
 template <int Dim>
 BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles&& particles) {
   const MaterialConfig& material = config.materials[body.material];
-  const AnyMaterial<double> law = make_material<double>(model_index(material.model), material.parameters);
+  const AnyMaterial<double> law =
+      make_material<double>(model_index(material.model), material.parameters, material.object.get());
   BodyInput in;
   in.position = std::move(particles.position);
   in.particle_volume = particles.particle_volume;
@@ -66,10 +69,25 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
     for (std::size_t p = 0; p < in.position.size() / Dim; ++p)
       in.stress.insert(in.stress.end(), body.stress.begin(), body.stress.begin() + sym_size<Dim>);
   in.material = body.material;
+  for (StateField& given : particles.state)
+    if (given.name == k_excess_pore_pressure) in.excess_pore_pressure = std::move(given.values);
   in.state = start_state<Dim>(config, law, in, particles);
   in.id = std::move(particles.id);
   in.velocity_gradient = std::move(particles.velocity_gradient);
   return in;
+}
+
+/// Mass of the water that a rigid displaces where it begins [kg].
+template <int Dim>
+double displaced_mass(const Config& config, const RigidInput& rigid) {
+  const Water<Dim> water = water_of<Dim>(config);
+  double volume = 0;
+  for (std::size_t p = 0; p < rigid.position.size() / Dim && water.is_there(); ++p) {
+    Vector<double, Dim> x;
+    for (int d = 0; d < Dim; ++d) x[d] = rigid.position[p * Dim + d];
+    volume += rigid.particle_volume * water.submerged_share(x, rigid.half_length * config.mesh.spacing);
+  }
+  return water.density * volume;
 }
 
 RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParticles&& particles) {
@@ -81,18 +99,19 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
   if (in.dynamic) in.density = rigid.density;
   if (rigid.motion != Motion::fixed) in.velocity = rigid.velocity;
   const double mass = in.density * in.particle_volume * (in.position.size() / config.dim);
-  for (int d = 0; d < 3; ++d) in.force[d] = rigid.force[d] + mass * config.gravity[d];
-  const bool only_friction = rigid.friction && !rigid.has_shear_limit && !rigid.shear_share;
+  const double carried = config.dim == 2 ? displaced_mass<2>(config, in) : displaced_mass<3>(config, in);
+  for (int d = 0; d < 3; ++d) in.force[d] = rigid.force[d] + (mass - carried) * config.gravity[d];
+  const bool only_friction = rigid.friction && !rigid.has_shear_limit && !rigid.shear_fraction;
   in.shear_limit = only_friction ? std::numeric_limits<double>::infinity() : rigid.shear_limit;
-  in.shear_share = rigid.shear_share.value_or(-1);
+  in.shear_fraction = rigid.shear_fraction.value_or(-1);
   in.friction = rigid.friction.value_or(-1);
   const Cuts cuts = cuts_of(rigid.shape, config.mesh, config.dim);
   for (int d = 0; d < config.dim; ++d) in.held[d] = cuts[d][0] || cuts[d][1];
   in.surface = surface_input(rigid.shape, config.mesh, config.dim);
   in.surface_normal = rigid.contact_normal == ContactNormal::surface;
   in.separates = rigid.separates;
-  if (rigid.penalty) in.reach = rigid.penalty_reach * config.mesh.spacing;
-  in.exponent = rigid.penalty_exponent;
+  if (rigid.contact_gap_scaling) in.reach = rigid.contact_gap_reach * config.mesh.spacing;
+  in.exponent = rigid.contact_gap_exponent;
   return in;
 }
 
@@ -109,7 +128,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   timers_.sample(!is_device<Space>);
   GridInput grid{config_.mesh.spacing, config_.mesh.cells, model.patches, config_.mesh.walls};
   std::vector<MaterialInput> materials;
-  for (const auto& m : config_.materials) materials.push_back({model_index(m.model), m.parameters});
+  for (const auto& m : config_.materials)
+    materials.push_back({model_index(m.model), m.parameters, m.object, m.pore_stiffness});
   for (BodyParticles& particles : model.bodies) {
     first_.push_back(total_);
     total_ += std::max(particles.total, static_cast<long>(particles.position.size()) / Dim);
@@ -125,22 +145,23 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
 
   state_.p2g = {config_.p2g.strategy, config_.p2g.margin, config_.p2g.mosaic_cells};
   for (int d = 0; d < Dim; ++d) state_.gravity[d] = config_.gravity[d];
+  state_.water = water_of<Dim>(config_);
   if (model.owners.empty() && !config_.p2g.rebuild_interval) state_.rebuild_late = GlobalBound::k_late;
   state_.batches.limit = config_.device_memory_limit.value_or(0) * k_gib;
   state_.damping = config_.damping;
-  state_.flip_fraction = config_.flip_share;
+  state_.flip_fraction = config_.flip_fraction;
   if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;
   state_.affine = config_.velocity_update == VelocityUpdate::apic;
   state_.strays.rule = config_.stray_particles;
   // On several ranks the pressure of a cell is averaged once all its particles are here.
-  state_.f_bar_fraction = model.owners.empty() ? config_.f_bar_share : 0;
+  state_.f_bar_fraction = model.owners.empty() ? config_.f_bar_fraction : 0;
   state_.keeps_stress = model.from_run;
   Fault fault{};
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
   *failure = fault.kind == FaultKind::none ? too_small() : describe(fault);
   PetscCall(share(failure));
   if (!model.owners.empty() && failure->what.empty()) {
-    state_.f_bar_fraction = config_.f_bar_share;
+    state_.f_bar_fraction = config_.f_bar_fraction;
     ranks_ = std::make_unique<Decomposition<Space, T, Dim>>();
     PetscCallCXX(PetscCall(ranks_->start(comm_, config_.partition, model.owners, state_)));
   }
@@ -189,7 +210,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double time, dou
   }
   overlap_.join(state_.space);
   const Control control = read_control(state_);
-  if ((control.paused & Pause::not_co_resident) != 0) resume_single_steps(state_);
+  if constexpr (is_device<Space>)
+    if ((control.paused & Pause::not_co_resident) != 0) resume_single_steps(state_);
   batch->steps = control.steps;
   batch->bound = control.bound;
   batch->failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
@@ -284,13 +306,7 @@ std::vector<FunctionTime> TypedStepper<Space, T, Dim>::times() const {
 
 template <class Space, class T, int Dim>
 std::string TypedStepper<Space, T, Dim>::strategy() const {
-  switch (chosen(config_.p2g.strategy, backend_of<Space>)) {
-    case P2G::sequential: return "sequential";
-    case P2G::atomic: return "atomic";
-    case P2G::mosaic: return "mosaic";
-    case P2G::gather: return "gather";
-    default: return "tile";
-  }
+  return word_of(chosen(config_.p2g.strategy, backend_of<Space>));
 }
 
 template <class Space, class T, int Dim>

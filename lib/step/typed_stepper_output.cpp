@@ -6,6 +6,7 @@
 #include "data/memory_of.hpp"
 #include "parallel/gather.hpp"
 #include "step/typed_stepper.hpp"
+#include "step/water.hpp"
 
 namespace mpm {
 namespace {
@@ -49,7 +50,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
     if (ranks_ && !ranks_->forces_shared())
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, impulse, Dim, MPI_DOUBLE, MPI_SUM, comm_));
     for (int d = 0; d < Dim; ++d) {
-      rigid.displacement[d] = r.displacement[d];
+      rigid.displacement[d] = r.pose.displacement[d];
       rigid.velocity[d] = r.velocity[d];
       rigid.force[d] = interval > 0 ? impulse[d] / interval : 0;
     }
@@ -83,6 +84,25 @@ std::vector<StateField> state_fields(const MaterialConfig& material, const SoilF
   }
   if (!has_plastic_strain) fields.push_back({"plastic_strain", std::vector<double>(to - from)});
   return fields;
+}
+
+/// Where frames tell pore pressures: adds those of the particles [from, to) to a body's fields, and makes its
+/// stress total. `pore`: column of the excess pressure, -1 where there is none.
+template <int Dim>
+void add_pore_pressures(const Config& config, const SoilFields& soil, int pore, std::size_t from,
+                        std::size_t to, ParticleSnapshot* body) {
+  const Water<Dim> water = water_of<Dim>(config);
+  std::vector<double> excess(to - from), total(to - from);
+  for (std::size_t p = from; p < to; ++p) {
+    Vector<double, Dim> x;
+    for (int d = 0; d < Dim; ++d) x[d] = soil.position[p * Dim + d];
+    const double hydrostatic = water.is_there() ? water.pressure(x) : 0.0;
+    if (pore >= 0) excess[p - from] = soil.history[pore][p];
+    total[p - from] = hydrostatic + excess[p - from];
+    for (int k = 0; k < 3; ++k) body->stress[6 * (p - from) + k] -= hydrostatic;
+  }
+  body->state.push_back({"pore_pressure", std::move(total)});
+  if (pore >= 0) body->state.push_back({k_excess_pore_pressure, std::move(excess)});
 }
 
 template <class Space, class T, int Dim>
@@ -120,6 +140,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     }
     body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
     body.state = state_fields(config_.materials[config_.bodies[b].material], soil, from, to);
+    if (has_pore_pressure(config_))  // of all bodies, so that pictures may show them
+      add_pore_pressures<Dim>(config_, soil, state_.soil.points.history.pore, from, to, &body);
     body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
     body.reference_height.assign(height.begin() + from, height.begin() + to);
     if (ranks_)
@@ -205,12 +227,12 @@ std::string TypedStepper<Space, T, Dim>::batches_report() const {
       batches, most, stay, turns, b.places - stay, memory_of(state_) / k_gib, b.limit / k_gib,
       b.store.extent(0) / k_gib);
   const BatchCost& c = b.cost;
-  if (turns == 0 || c.apart == 0 || c.steps == c.apart || stepping_ <= 0) return text;
-  // Means of a step; what copies and kernels take alone is from the steps that were taken apart.
+  if (turns == 0 || c.sampled == 0 || c.steps == c.sampled || stepping_ <= 0) return text;
+  // Means of a step; what copies and kernels take alone is from the steps that were sampled.
   const double in = c.copied_in / c.steps, out = c.copied_out / c.steps;
-  const double in_alone = c.in_seconds / c.apart, out_alone = c.out_seconds / c.apart;
-  const double kernels = c.kernel_seconds / c.apart, update = c.seconds / (c.steps - c.apart);
-  const double beside = std::max(0.0, stepping_ - c.seconds - c.apart * (in_alone + kernels + out_alone));
+  const double in_alone = c.in_seconds / c.sampled, out_alone = c.out_seconds / c.sampled;
+  const double kernels = c.kernel_seconds / c.sampled, update = c.seconds / (c.steps - c.sampled);
+  const double beside = std::max(0.0, stepping_ - c.seconds - c.sampled * (in_alone + kernels + out_alone));
   const double step = update + beside / c.steps;
   text += formatted("\n  a step copies %.4g MB to the device and %.4g MB back, alone at %.1f and %.1f GB/s",
                     in / 1e6, out / 1e6, in / in_alone / 1e9, out / out_alone / 1e9);

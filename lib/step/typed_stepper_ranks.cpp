@@ -85,7 +85,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
       batch->failure.what = formatted(
           "a particle moved %.3g cells since the last rebuild, and the lists hold for %.3g: its speed grew "
           "more "
-          "than by half while the ranks exchanged their bounds; lower -time_courant or -p2g_margin",
+          "than by half while the ranks exchanged their bounds; lower -time_courant or -rebuild_margin",
           own.bound, margin);
     PetscCall(share(&batch->failure));
   }
@@ -145,6 +145,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
     reduce(m.momentum, 3, MPI_DOUBLE, MPI_SUM);
     reduce(m.centre, 3, MPI_DOUBLE, MPI_SUM);
     reduce(&m.mass, 1, MPI_DOUBLE, MPI_SUM);
+    reduce(&m.water_energy, 1, MPI_DOUBLE, MPI_SUM);
     reduce(&m.weight, 1, MPI_DOUBLE, MPI_SUM);
     for (long* count : {&m.count, &m.alone, &m.limited}) reduce(count, 1, MPI_LONG, MPI_SUM);
     reduce(&speed, 1, MPI_DOUBLE, MPI_MAX);
@@ -153,7 +154,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
     over.largest = [=](double* value) { reduce(value, 1, MPI_DOUBLE, MPI_MAX); };
   }
   PetscCall(note_out_of_order(b, body));
-  body->mass = m.mass, body->strays = m.alone, body->limited = m.limited;
+  body->mass = m.mass, body->water_energy = m.water_energy, body->strays = m.alone, body->limited = m.limited;
   if (m.count == 0) PetscFunctionReturn(PETSC_SUCCESS);
   const long rank = m.count - m.count / 1000;  // of the 99.9th percentile, the nearest one above
   const Vec3& origin = config_.mesh.lower;

@@ -14,11 +14,12 @@ namespace mpm {
 double wave_speed(const Config& config, const BodyConfig& body) {
   const MaterialConfig& material = config.materials[body.material];
   const double lowest = bounds_of(body.shape, config.mesh, config.dim).lower[config.dim - 1];
-  const auto law = make_material<double>(model_index(material.model), material.parameters);
+  const auto law =
+      make_material<double>(model_index(material.model), material.parameters, material.object.get());
   Sym6 stress = body.stress;
   const bool of_file = body.shape.kind == ShapeKind::particles && !body.stress_given;
   if (of_file) stress = {-body.largest_pressure, -body.largest_pressure, -body.largest_pressure};
-  return std::sqrt(wave_modulus(law, lowest, stress) / material.density);
+  return std::sqrt((wave_modulus(law, lowest, stress) + material.pore_stiffness) / material.density);
 }
 
 bool stiffness_changes(const Config& config) {
@@ -38,7 +39,8 @@ double viscous_time_step(const Config& config) {
   double step = std::numeric_limits<double>::infinity();
   for (const BodyConfig& body : config.bodies) {
     const MaterialConfig& material = config.materials[body.material];
-    const auto law = make_material<double>(model_index(material.model), material.parameters);
+    const auto law =
+        make_material<double>(model_index(material.model), material.parameters, material.object.get());
     step = std::min(step, largest_time_step(law, config.mesh.spacing, material.density, config.dim));
   }
   return step;

@@ -10,7 +10,7 @@ TABLE = read_table()
 LIGHT = ("Run", "Particle", "Several", "Time", "Physics", "Output", "Material", "Each material", "Each rigid", "Each body NAME")
 HEAVY = ("particles_per_cell", "mesh_lower", "mesh_upper", "mesh_spacing", "time_max_steps", "fill", "fillet")
 # What makes most decks wrong is drawn seldom.
-RARE = ("dim", "output_dir", "restart", "materials", "bodies", "rigids", "wall_time_limit", "mesh_lower", "mesh_upper",
+RARE = ("dim", "output_dir", "restart", "materials", "bodies", "rigid_bodies", "wall_time_limit", "mesh_lower", "mesh_upper",
         "mesh_spacing", "dry_run", "device_memory_limit", "NAME_model", "NAME_shape")
 GEOMETRY = ("lower", "upper", "polygon", "width", "centre", "radius", "point", "normal", "file", "fillet", "angle_deg",
             "material", "cut_out")
@@ -110,10 +110,10 @@ def template(random):
         lines += shape(random, name, at, layer, cell, dim, name in rigids)
         lines += [f"-{name}_material clay"] if name in bodies else motion(random, name, 0.01 * speed, dim)
     if rigids:
-        lines.append("-rigids plate")
+        lines.append("-rigid_bodies plate")
     if extreme:
         lines.append(f"-soil_velocity {','.join(f'{power(-200, 200):.9g}' for _ in range(dim))}")
-    what = {"dim": dim, "bodies": bodies, "rigids": rigids, "materials": ["clay"], "low": low, "cell": cell}
+    what = {"dim": dim, "bodies": bodies, "rigid_bodies": rigids, "materials": ["clay"], "low": low, "cell": cell}
     return lines, what
 
 
@@ -124,8 +124,8 @@ def mutations(random, what):
         option, (section, takes) = random.choice(list(TABLE.items()))
         if (option in RARE or option.removeprefix("NAME_") in GEOMETRY) and random.random() < 0.9:
             continue
-        owner = what["materials"] if "aterial" in section else what["rigids"] if "Each rigid" in section else what["bodies"] + (
-            what["rigids"] if "or rigid" in section else [])
+        owner = what["materials"] if "aterial" in section else what["rigid_bodies"] if "Each rigid" in section else what["bodies"] + (
+            what["rigid_bodies"] if "or rigid" in section else [])
         if "NAME" in option and not owner:
             continue
         value = wrong_value(random) if random.random() < 0.08 else value_of(random, takes, what["dim"], what)

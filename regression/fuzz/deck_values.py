@@ -89,7 +89,7 @@ def words_of(takes):
 
 
 def value_of(random, takes, dim, names):
-    """A value for what an option takes. `names`: {"materials": [...], "rigids": [...]} of the deck."""
+    """A value for what an option takes. `names`: {"materials": [...], "rigid_bodies": [...]} of the deck."""
     if words_of(takes):
         return random.choice(words_of(takes)).replace("no value", "")
     vector = re.match(r"([2346]) numbers", takes)
@@ -101,8 +101,8 @@ def value_of(random, takes, dim, names):
     if takes.startswith("names of fields"):
         fields = takes.partition(": ")[2].split(", ")
         return ",".join(random.sample(fields, random.randint(1, len(fields))))
-    if "of -materials" in takes or "of -rigids" in takes:
-        known = names["rigids" if "rigids" in takes else "materials"] or ["none"]
+    if "of -materials" in takes or "of -rigid_bodies" in takes:
+        known = names["rigid_bodies" if "rigid_bodies" in takes else "materials"] or ["none"]
         return random.choice(known)
     if takes.startswith("names"):
         return random.choice(ODD_NAMES)

@@ -20,7 +20,7 @@ VARIANTS = {
     "half the cell": {"mesh_spacing": 0.05},
     "fixed sides": FIXED,
     "apic": {"velocity_update": "apic"},
-    "no F-bar": {"f_bar_share": 0},
+    "no F-bar": {"f_bar_fraction": 0},
     "small steps": {"time_courant": 0.1},
     "block thrown at a wall": {"dam_lower": (0.5, 0.5), "dam_upper": (1.5, 1.5), "dam_velocity": (8, 0)}}
 
@@ -37,6 +37,7 @@ class Deck:
     origin: tuple = (0, 0, 0)  # m, the mesh's lower corner
     ranks: int = 1
     threads: int = 1
+    lift: float = 0.0  # share of the weight that water carries
 
     @property
     def dim(self):
@@ -118,12 +119,12 @@ def draw_method(draw):
     if update != "flip" or draw.some(0.3):
         o["velocity_update"] = update
     if update == "flip" and draw.some(0.4):
-        o["flip_share"] = draw.uniform(0.5, 1)
+        o["flip_fraction"] = draw.uniform(0.5, 1)
     if update == "xpic":
         o["xpic_order"] = draw.random.randint(2, 5)
-        o["flip_share"] = draw.random.choice([0, 0, draw.uniform(0, 1)])
+        o["flip_fraction"] = draw.random.choice([0, 0, draw.uniform(0, 1)])
     if draw.some(0.5):
-        o["f_bar_share"] = draw.random.choice([0, 0.5, 1, draw.uniform(0, 1)])
+        o["f_bar_fraction"] = draw.random.choice([0, 0.5, 1, draw.uniform(0, 1)])
     if draw.some(0.4):
         o["time_courant"] = draw.uniform(0.1, 0.4)
     if draw.some(0.2):
@@ -138,7 +139,7 @@ def draw_machine(draw):
     if o["p2g"] == "sequential":
         o["backend"] = "serial"
     if draw.some(0.3):
-        o["p2g_margin"] = draw.uniform(0.05, 0.5)
+        o["rebuild_margin"] = draw.uniform(0.05, 0.5)
     ranks = draw.random.choices((1, 2, 3, 4), (6, 2, 1, 1))[0]
     if ranks > 1:
         o["partition"] = draw.one(box=1, metis=1)
@@ -224,7 +225,7 @@ def draw_slide(draw):
     x, gap = d, 0.3 * d  # the block stands a little off the slope
     x, z = x + gap * math.sin(angle), top - x * math.tan(angle) + gap * math.cos(angle)
     o.update(slide_lower=draw.vector(x, 0, z), slide_upper=draw.vector(x + length, ny * d, z + high))
-    o.update(rigids="base", base_shape="half_plane", base_point=draw.vector(0, 0, top), base_particles_per_cell=2,
+    o.update(rigid_bodies="base", base_shape="half_plane", base_point=draw.vector(0, 0, top), base_particles_per_cell=2,
              base_normal=draw.vector(math.sin(angle), 0, math.cos(angle)), gravity=draw.vector(0, 0, -9.81))
     o.update({"base_friction": draw.uniform(0, 0.5)} if draw.some(0.5) else {"base_shear_limit": draw.logarithmic(1, 1e4)})
     return nx * nz * 2 ** draw.dim * (ny if draw.dim == 3 else 1), 0.0
@@ -250,7 +251,7 @@ def draw_impact(draw):
         particles += add_block(draw, "other", beyond, size)
         o["other_velocity"] = tuple(-v * draw.uniform(0, 1) for v in o["block_velocity"])
     if against == "rigid":
-        o.update(rigids="stone", stone_shape="box", stone_lower=draw.vector(*beyond), stone_particles_per_cell=2,
+        o.update(rigid_bodies="stone", stone_shape="box", stone_lower=draw.vector(*beyond), stone_particles_per_cell=2,
                  stone_upper=draw.vector(*(x + s for x, s in zip(beyond, size))), stone_friction=draw.uniform(0, 1))
     o["gravity"] = draw.vector(0, 0, -draw.random.choice([0, 9.81, 9.81]))
     return particles, speed

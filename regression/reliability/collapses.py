@@ -114,7 +114,7 @@ def place_faults(deck, history, body):
 
 def energy_faults(deck, history):
     """Kinetic energy beyond that of the start and what gravity gave: each particle that is lost may have left at the
-    place of the mesh where gravity gives the most."""
+    place of the mesh where gravity gives the most. Water carries up to the share deck.lift of soil that rises."""
     g = np.array([float(x) for x in deck.value("gravity").split(",")])
     corners = deck.mesh()
     lowest = sum(max(a * lower, a * upper) for a, lower, upper in zip(g, *corners))  # J/kg
@@ -126,6 +126,7 @@ def energy_faults(deck, history):
         kinetic = kinetic + history[f"{body}_kinetic_energy"]
         given = given + np.where(mass > 0, mass * height, 0) + lost * lowest - mass[0] * height[0]
         heavy += mass[0]
+    given = np.where(given < 0, (1 - deck.lift) * given, given)
     cell = float(deck.value("mesh_spacing"))
     scale = kinetic[0] + np.maximum.accumulate(np.abs(given)) + heavy * np.linalg.norm(g) * cell
     excess = kinetic - kinetic[0] - given - ENERGY_SLACK * scale

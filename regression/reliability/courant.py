@@ -27,7 +27,7 @@ BOX = """-dim 3 -mesh_lower 0,0,0 -mesh_upper 1.6,1,1 -body_shape box -body_lowe
 COMMON = """-mesh_spacing 0.1 -mesh_xmin free -mesh_xmax free -mesh_ymin free -mesh_ymax free -materials rubber
 -rubber_model linear_elastic -rubber_density 1000 -rubber_young 1e5 -rubber_poisson 0.3 -bodies body
 -body_material rubber -backend serial -p2g tile -output_frames off -progress off"""
-UPDATES = {"flip": "", "flip 0.9": "-flip_share 0.9", "xpic": "-velocity_update xpic", "apic": "-velocity_update apic"}
+UPDATES = {"flip": "", "flip 0.9": "-flip_fraction 0.9", "xpic": "-velocity_update xpic", "apic": "-velocity_update apic"}
 LARGEST = 0.6  # whatever the particles are
 WITHOUT_F_BAR = 0.94  # of the limit by particles
 
@@ -43,7 +43,7 @@ def ratio(program, dim, per_cell, update, f_bar, precision, share, time):
         text = f"{DISC if dim == 2 else BOX} {COMMON} {UPDATES[update]} -body_particles_per_cell {per_cell}"
         if dim == 3:
             text += " -mesh_zmin free -mesh_zmax free"
-        text += f" -f_bar_share {f_bar} -precision {precision} -time_courant {share * limit(dim, per_cell, f_bar):.6g}"
+        text += f" -f_bar_fraction {f_bar} -precision {precision} -time_courant {share * limit(dim, per_cell, f_bar):.6g}"
         text += f" -time_end {time:g} -output_dir {folder}/out"
         run = subprocess.run([program, *text.split()], capture_output=True, text=True)
         history = Path(folder) / "out/history.csv"

@@ -94,7 +94,7 @@ class Checks:
 
     def check_other_machine(self):
         """Another backend, precision or strategy goes on, says so, and stays near."""
-        for options in (("-p2g", "tile"), ("-backend", "openmp"), ("-precision", "single"), ("-p2g_margin", 0.2)):
+        for options in (("-p2g", "tile"), ("-backend", "openmp"), ("-precision", "single"), ("-rebuild_margin", 0.2)):
             folder = fresh(self.base / "other")
             self.go(folder, "-time_max_steps", 60)
             done = self.go(folder, "-restart", "latest", *options, status=None)
@@ -255,7 +255,7 @@ class Checks:
         shutil.copytree(self.whole, folder)
         before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
         for option, value in (("-gravity", "0,-9"), ("-mesh_spacing", "0.05"), ("-clay_su", "900"), ("-time_step", "1e-4"),
-                              ("-plate_velocity", "0,-1"), ("-soil_particles_per_cell", "3"), ("-f_bar_share", "0"),
+                              ("-plate_velocity", "0,-1"), ("-soil_particles_per_cell", "3"), ("-f_bar_fraction", "0"),
                               ("-plate_friction", "0.2"), ("-time_end", "1e-3"), ("-time_max_steps", "7"),
                               ("-velocity_update", "pic"), ("-mesh_ymax", "roller")):
             done = self.go(folder, "-restart", "latest", option, value, status=2)

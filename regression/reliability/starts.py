@@ -128,11 +128,11 @@ class Tests:
             box[-1] = ",".join(["3"] * (dim - 1) + ["6"])
             base[base.index("-clay_su") + 1] = "1e3"
             for f_bar in (0, 0.98):
-                common = [*base, "-precision", precision, "-f_bar_share", f_bar, "-time_step", 2e-3, "-p2g", "gather"]
+                common = [*base, "-precision", precision, "-f_bar_fraction", f_bar, "-time_step", 2e-3, "-p2g", "gather"]
                 name = f"cut_{dim}_{ranks}_{precision}"
                 ends = [*common, *box, "-time_end", 0.4, "-output_interval", 0.2, "-checkpoint_interval", 0.2]
                 whole, _ = self.run(name + "_whole", *ends, ranks=ranks)
-                other, _ = self.run(name + "_other", *ends, "-p2g_margin", 0.35, ranks=ranks)
+                other, _ = self.run(name + "_other", *ends, "-rebuild_margin", 0.35, ranks=ranks)
                 before, wanted = (bodies(frames(whole)[k]) for k in (1, -1))
                 again = bodies(frames(other)[-1])
                 for source in (frames(whole)[1], checkpoints(whole)[0]):
@@ -221,8 +221,8 @@ class Tests:
             ([*common, *box, "-restart", str(mark), "-restart_change", "gravity,mesh_spacing"],
              ["-restart_change: given \"gravity,mesh_spacing\", takes names of options among gravity"]),
             ([*common, *box, "-restart", str(mark), "-gravity", "0,-5"], ["-gravity: given \"0,-5\", takes \"0,-10\""]),
-            ([*common, *box, "-restart", str(mark), "-restart_change", "gravity", "-gravity", "0,-5", "-f_bar_share", 0.5],
-             ["-f_bar_share: given \"0.5\", takes \"0.98\""]),
+            ([*common, *box, "-restart", str(mark), "-restart_change", "gravity", "-gravity", "0,-5", "-f_bar_fraction", 0.5],
+             ["-f_bar_fraction: given \"0.5\", takes \"0.98\""]),
         ]
         for options, lines in cases:
             folder = fresh(self.base / "refused")
@@ -253,7 +253,7 @@ class Tests:
         small = 1e-9 if precision == "double" else 1e-4
         base = ("-dim 2 -mesh_lower 0,0 -mesh_upper 8,8 -mesh_spacing 1 -materials rock -rock_model linear_elastic "
                 "-rock_density 2000 -rock_young 1e6 -rock_poisson 0.2 -bodies soil -soil_material rock -soil_shape box "
-                "-soil_lower 2,4 -soil_upper 4,6 -rigids plate -plate_shape box -plate_lower 6,1 -plate_upper 7,2 "
+                "-soil_lower 2,4 -soil_upper 4,6 -rigid_bodies plate -plate_shape box -plate_lower 6,1 -plate_upper 7,2 "
                 "-plate_motion prescribed -plate_velocity 0,0.5 -time_step 1e-3 -history_interval 0.01").split()
         common = [*base, "-precision", precision]
         first, _ = self.run("fall", *common, "-time_end", 0.1, "-checkpoint_interval", 0.1, "-gravity", "0,-1")

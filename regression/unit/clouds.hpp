@@ -10,6 +10,7 @@
 #include <string>
 
 #include "functions/step_kernels.hpp"
+#include "physics/materials/any.hpp"
 #include "transfer/download.hpp"
 #include "transfer/upload.hpp"
 
@@ -60,10 +61,6 @@ Space with_other_threads() {
 }
 
 inline constexpr P2G k_strategies[] = {P2G::sequential, P2G::atomic, P2G::mosaic, P2G::gather, P2G::tile};
-inline const char* strategy_name(P2G how) {
-  const char* const words[] = {"sequential", "atomic", "mosaic", "gather", "tile", "auto"};
-  return words[static_cast<int>(how)];
-}
 
 /// Everything that a State is made of, on the host.
 struct Cloud {

@@ -92,7 +92,7 @@ TEST_CASE("contact: no pull, no penetration, and shear up to the lesser of its b
   glued.separates = false;  // no gap opens
   CHECK(near(with(In2D{}, glued, v, v_r, away), 0, 1.5));
   Interface<double> partly{0, -1};
-  partly.penalty = 0.25;
+  partly.gap_scaling = 0.25;
   CHECK(near(with(In2D{}, partly, v, v_r, n), 0, 0.375));
   const double r = std::sqrt(0.5);
   CHECK(near(with(In2D{}, Interface<double>{0, -1}, V2{2, 0}, V2{0, 0}, V2{r, r}), -1,

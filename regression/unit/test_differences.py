@@ -17,7 +17,7 @@ import differences  # noqa: E402
 from results import Run  # noqa: E402
 
 OPTIONS = {"dim": "2", "mesh_spacing": "0.1", "materials": "clay", "clay_density": "100", "clay_young": "1e4",
-           "clay_poisson": "0", "bodies": "soil", "soil_material": "clay", "rigids": "plate"}
+           "clay_poisson": "0", "bodies": "soil", "soil_material": "clay", "rigid_bodies": "plate"}
 FIELDS = {"position": np.full((4, 3), 2.0), "velocity": np.full((4, 3), 0.5), "stress": np.zeros((4, 6)),
           "volume": np.full(4, 0.0025)}
 HISTORY = {"step": 100, "time": 0.1, "wall_time": 1, "soil_kinetic_energy": 0.3, "plate_y": -0.1, "plate_force_y": 70}

@@ -39,10 +39,10 @@ TEST_CASE("soil may have the energy that it began with and what gravity gives it
   const Config config = config_of_one_body();
   EnergyWatch watch;
   watch.begin(row_of(2, 1), 1e6);
-  CHECK(watch.look(row_of(1.5, 11), config).empty());  // fell by 0.5 m
-  CHECK(watch.look(row_of(2, 1), config).empty());     // and rose again
-  CHECK(watch.look(row_of(2, 9), config).empty());     // within half of what has passed, 21 J
-  CHECK_FALSE(watch.look(row_of(2, 13), config).empty());
+  CHECK(watch.check(row_of(1.5, 11), config).empty());  // fell by 0.5 m
+  CHECK(watch.check(row_of(2, 1), config).empty());     // and rose again
+  CHECK(watch.check(row_of(2, 9), config).empty());     // within half of what has passed, 21 J
+  CHECK_FALSE(watch.check(row_of(2, 13), config).empty());
 }
 
 TEST_CASE("stored energy and the work of rigids are sources", "[energy_watch]") {
@@ -55,23 +55,23 @@ TEST_CASE("stored energy and the work of rigids are sources", "[energy_watch]") 
   HistoryRow pushed = row_of(2, 8);
   pushed.rigids.resize(1);
   pushed.rigids[0].force = {0, 30, 0}, pushed.rigids[0].displacement = {0, -0.1, 0};
-  CHECK(watch.look(pushed, config).empty());
+  CHECK(watch.check(pushed, config).empty());
   EnergyWatch without;
   without.begin(row_of(2, 0), 1e6);
-  CHECK_FALSE(without.look(row_of(2, 8), config).empty());
+  CHECK_FALSE(without.check(row_of(2, 8), config).empty());
 }
 
 TEST_CASE("round-off is no energy, and soil that leaves begins the account anew", "[energy_watch]") {
   const Config config = config_of_one_body();
   EnergyWatch watch;
   watch.begin(row_of(2, 0), 1e6);
-  CHECK(watch.look(row_of(2, 5e-5), config).empty());
+  CHECK(watch.check(row_of(2, 5e-5), config).empty());
   HistoryRow left = row_of(3, 100);
   left.bodies[0].lost_count = 1;
-  CHECK(watch.look(left, config).empty());
+  CHECK(watch.check(left, config).empty());
   HistoryRow next = row_of(3, 160);
   next.bodies[0].lost_count = 1;
-  CHECK_FALSE(watch.look(next, config).empty());
+  CHECK_FALSE(watch.check(next, config).empty());
 }
 
 TEST_CASE("the largest Courant number is that of the rim of the body with the most particles",
@@ -88,9 +88,9 @@ TEST_CASE("the largest Courant number is that of the rim of the body with the mo
       const double expected = std::min(0.6, body);
       CHECK(largest_courant(config) == Catch::Approx(expected));
       CHECK(standard_courant(config) == Catch::Approx(std::min(0.5, 0.95 * expected)));
-      config.f_bar_share = 0;
+      config.f_bar_fraction = 0;
       CHECK(largest_courant(config) == Catch::Approx(std::min(0.6, 0.94 * body)));
-      config.f_bar_share = 0.98, config.damping = 0.44;
+      config.f_bar_fraction = 0.98, config.damping = 0.44;
       CHECK(largest_courant(config) == Catch::Approx(std::min(0.6, body / 1.2)));
     }
 }
@@ -99,14 +99,14 @@ TEST_CASE("the log tells once what happens to soil for the first time", "[energy
   Config config = config_of_one_body();
   Notices notices;
   HistoryRow row = row_of(1, 0);
-  CHECK(notices.look(row, config).empty());
+  CHECK(notices.report(row, config).empty());
   row.bodies[0].strays = 3, row.bodies[0].put_back = 1;
-  CHECK(notices.look(row, config).size() == 2);
+  CHECK(notices.report(row, config).size() == 2);
   row.bodies[0].limited = 2;
-  CHECK(notices.look(row, config).size() == 1);
+  CHECK(notices.report(row, config).size() == 1);
   row.bodies[0].lost_count = 1, row.bodies[0].upper = {2, 2.98, 0};
-  const auto lines = notices.look(row, config);
+  const auto lines = notices.report(row, config);
   REQUIRE(lines.size() == 2);
   CHECK(lines[1].find("-mesh_ymax") != std::string::npos);
-  CHECK(notices.look(row, config).empty());
+  CHECK(notices.report(row, config).empty());
 }

@@ -228,7 +228,8 @@ void check_lanes(const Law& law, Dice& dice, double stress_size, double strain_s
       for (int k = 0; k < N; ++k) state[k].set(l, right[l].state[k]);
       right[l].strain(by, 1e-5);
     }
-    update_lanes(law, stress, state, increment);
+    update_lanes(
+        law, stress, state, increment, [](int) { return true; }, [](int) { return ParticlePlace{}; });
     for (int l = 0; l < W; ++l) {
       for (int k = 0; k < sym_size<Dim>; ++k) {
         apart = std::fmax(apart, std::fabs(double(stress[k][l]) - right[l].stress[k]));

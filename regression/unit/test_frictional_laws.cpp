@@ -247,7 +247,7 @@ TEST_CASE("a cone without friction is von Mises, a pyramid without friction Tres
   const auto a = follow(law_of<MohrCoulomb<double>>(soil));
   const auto b = follow(law_of<Tresca<double>>(clay(3000)));
   for (int k = 0; k < 6; ++k) CHECK(std::fabs(a.stress[k] - b.stress[k]) < 1e-6);
-  CHECK(a.state[0] == b.state[0]);
+  CHECK(std::fabs(a.state[0] / b.state[0] - 1) < 1e-12);
 }
 
 TEST_CASE("cohesion and strength grow with depth and belong to the particle", "[frictional_laws]") {

@@ -92,7 +92,8 @@ void check_lanes(const Values& values) {
       right[l].strain(by);
       yielding += right[l].state[0] > 0;
     }
-    update_lanes(law, stress, state, increment);
+    update_lanes(
+        law, stress, state, increment, [](int) { return true; }, [](int) { return ParticlePlace{}; });
     for (int l = 0; l < W; ++l) {
       for (int k = 0; k < sym_size<Dim>; ++k)
         apart = std::fmax(apart, std::fabs(double(stress[k][l]) - right[l].stress[k]));

@@ -1,4 +1,4 @@
-// The interface of a rigid and the soil: shear as a share of the strength, and planes of symmetry.
+// The interface of a rigid and the soil: shear as a fraction of the strength, and planes of symmetry.
 
 #include <catch2/catch_test_macros.hpp>
 
@@ -37,7 +37,7 @@ Cloud rubbed_soil(double spacing, Strength&& strength) {
 
 }  // namespace
 
-TEST_CASE("a share of one strength is the limit that it comes to", "[interface]") {
+TEST_CASE("a fraction of one strength is the limit that it comes to", "[interface]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     for (const bool surface : {true, false})
@@ -49,14 +49,14 @@ TEST_CASE("a share of one strength is the limit that it comes to", "[interface]"
         auto limited = state_of<B>(cloud, how);
         cloud.rigids[0].shear_limit = 0;
         auto smooth = state_of<B>(cloud, how);
-        cloud.rigids[0].shear_share = 0.4;
+        cloud.rigids[0].shear_fraction = 0.4;
         auto shared = state_of<B>(cloud, how);
         // A node that was in contact has no relative velocity but round-off, which then decides whether it
         // still touches. With mass gradients and sums of threads in any order, only the first step is the
         // same twice.
         const int steps = how == P2G::atomic && !surface ? 1 : 6;
         for (auto* s : {&limited, &smooth, &shared}) run_steps(*s, 1e-4, steps);
-        INFO(build.name() << ' ' << strategy_name(how) << (surface ? " surface" : " gradient"));
+        INFO(build.name() << ' ' << word_of(how) << (surface ? " surface" : " gradient"));
         CHECK(largest_difference(soil_fields(shared), soil_fields(limited)) < B::of(1e-11, 1e-3));
         CHECK(largest_difference(soil_fields(shared), soil_fields(smooth)) > (steps == 1 ? 3e-3 : 1e-2));
       }
@@ -70,7 +70,7 @@ TEST_CASE("a strength that grows with depth is that of the depth at each node ne
     const auto strength = [](double height) { return 5000 - 300 * height; };
     for (P2G how : k_strategies) {
       Cloud cloud = rubbed_soil<Dim>(0.1, strength);
-      cloud.rigids[0].shear_share = 1;
+      cloud.rigids[0].shear_fraction = 1;
       auto s = state_of<B>(cloud, how);
       for (int n = 0; n < 2; ++n) {  // the second finds the sums of the first
         interpolate(s);
@@ -86,7 +86,7 @@ TEST_CASE("a strength that grows with depth is that of the depth at each node ne
           const double got = value[StrengthTerms::strength] / value[StrengthTerms::volume];
           largest = std::max(largest, std::fabs(got / strength(z) - 1));
         }
-      INFO(build.name() << ' ' << strategy_name(how));
+      INFO(build.name() << ' ' << word_of(how));
       CHECK(largest < B::of(1e-12, 1e-5));
     }
   });
@@ -105,9 +105,9 @@ TEST_CASE("a rigid that a plane of symmetry cuts does not move across it by forc
       run_steps(s, 1e-4, 20);
       const auto rigid = on_host(s.rigids)(0);
       INFO(build.name());
-      CHECK((rigid.displacement[0] == 0) == held);
+      CHECK((rigid.pose.displacement[0] == 0) == held);
       CHECK((rigid.velocity[0] == 0) == held);
-      for (int d = 1; d < Dim; ++d) CHECK(rigid.displacement[d] > 0);
+      for (int d = 1; d < Dim; ++d) CHECK(rigid.pose.displacement[d] > 0);
     }
   });
 }

@@ -86,7 +86,8 @@ std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
   for (auto& field : fields) field.value.resize(std::size_t(field.width) * soil.count);
   for (int p = 0; p < soil.count; ++p) {
     Particle<T, Dim> q{soil.coordinate(p), soil.velocity(p), soil.stress(p), soil.volume(p)};
-    const ParticleLaw law{soil, p, soil.bodies(soil.body(p)).material, -1, false};
+    const ParticleLaw<typename B::Space, T, Dim, Materials> law{soil, p, soil.bodies(soil.body(p)).material,
+                                                                -1, false};
     const T mean = static_cast<T>(sum[soil.cell(p)] / volume[soil.cell(p)]);
     advance(q, law, taken[p], mean, by);
     const int id = soil.id(p);

@@ -99,7 +99,7 @@ TEST_CASE("the grid velocity at a particle is the one that a PIC step gives it",
     for (P2G how : k_strategies)
       for (bool rebuilt : {false, true}) {
         auto s = state_of<B>(cloud, how);
-        INFO(build.name() << ' ' << strategy_name(how) << (rebuilt ? " just rebuilt" : " drifted"));
+        INFO(build.name() << ' ' << word_of(how) << (rebuilt ? " just rebuilt" : " drifted"));
         drift_within_margin(s);
         if (rebuilt) rebuild(s);
         const Table seen = grid_velocity_table(s, Dim);
@@ -168,7 +168,7 @@ TEST_CASE("measuring between steps leaves every bit of the run", "[measure]") {
       return soil_fields(s);
     };
     for (P2G how : {P2G::gather, P2G::mosaic}) {
-      INFO(build.name() << ' ' << strategy_name(how));
+      INFO(build.name() << ' ' << word_of(how));
       CHECK(fields_after(how, true) == fields_after(how, false));
     }
   });

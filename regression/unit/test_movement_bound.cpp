@@ -35,7 +35,7 @@ std::vector<Table> everything(const State<Space, T, Dim>& s) {
   const auto rigids = on_host(s.rigids);
   for (std::size_t r = 0; r < rigids.extent(0); ++r)
     all.push_back({1,
-                   {rigids(r).displacement[0], rigids(r).displacement[1], rigids(r).velocity[1],
+                   {rigids(r).pose.displacement[0], rigids(r).pose.displacement[1], rigids(r).velocity[1],
                     rigids(r).impulse[1]}});
   return all;
 }
@@ -122,7 +122,7 @@ TEST_CASE("no step after the bound has passed the margin changes a bit, and a re
   for_each_build([](auto build) {
     using B = decltype(build);
     for (P2G how : k_strategies) {
-      INFO(build.name() << ' ' << strategy_name(how));
+      INFO(build.name() << ' ' << word_of(how));
       Cloud cloud = block<B::dim>({2, -1, 0.5});
       cloud.rigids[0].velocity = {0.1, 0.2, 0};
       cloud.rigids[0].shear_limit = 100;

@@ -134,18 +134,18 @@ TEST_CASE(
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
-    using Share = SoilTerms<Dim>;
+    using Terms = SoilTerms<Dim>;
     INFO(build.name());
     auto s = nodes_that_move<B>(grid_of<Dim>({9, 11, 6}, 0.1, Wall::free));
     s.gravity[1] = -8;
     const auto soil = on_host(s.nodes.soil);
     for (int i = 0; i < s.patches.node_count(); ++i) {
-      soil(i, Share::force) = 4;
-      if (i % 3 == 0) soil(i, Share::mass) = 0;
+      soil(i, Terms::force) = 4;
+      if (i % 3 == 0) soil(i, Terms::mass) = 0;
       if (i % 3 != 1) continue;
       const auto light = static_cast<typename B::real>(s.mass_cut / 2);
-      soil(i, Share::mass) = light;
-      for (int d = 0; d < Dim; ++d) soil(i, Share::momentum + d) = light * (d + 1);
+      soil(i, Terms::mass) = light;
+      for (int d = 0; d < Dim; ++d) soil(i, Terms::momentum + d) = light * (d + 1);
     }
     Kokkos::deep_copy(s.nodes.soil, soil);
     update_nodes(s, 0.25);
@@ -161,7 +161,7 @@ TEST_CASE(
   });
 }
 
-TEST_CASE("damping takes a share of the acceleration, against the velocity", "[nodes]") {
+TEST_CASE("damping takes a fraction of the acceleration, against the velocity", "[nodes]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;

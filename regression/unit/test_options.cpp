@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/text.hpp"
+#include "input/deck.hpp"
 #include "input/options.hpp"
 #include "output/frames.hpp"
 
@@ -61,7 +62,7 @@ TEST_CASE("the least deck gives the documented defaults", "[options]") {
   CHECK(config.gravity == Vec3{});
   CHECK(config.time.courant == 0.5);
   CHECK_FALSE(config.time.step);
-  CHECK(config.flip_share == 1);
+  CHECK(config.flip_fraction == 1);
   CHECK(config.damping == 0);
   CHECK(config.output.directory == "out/mpm");
   CHECK(config.output.interval == 10.0 / 50);
@@ -93,12 +94,12 @@ TEST_CASE("rigidity takes the place of Young's modulus", "[options]") {
 }
 
 TEST_CASE("a rigid body has its motion and interface", "[options]") {
-  const Config config =
-      config_of(k_deck +
-                "-rigids pipe,wall -pipe_shape disc -pipe_centre 4,3.5 -pipe_radius 0.5 -pipe_motion dynamic "
-                "-pipe_density 3000 -pipe_force 10,0 -pipe_shear_limit 500 -wall_shape box -wall_lower 0,2 "
-                "-wall_upper 1,5 "
-                "-wall_friction 0.3 -wall_particles_per_cell 2");
+  const Config config = config_of(
+      k_deck +
+      "-rigid_bodies pipe,wall -pipe_shape disc -pipe_centre 4,3.5 -pipe_radius 0.5 -pipe_motion dynamic "
+      "-pipe_density 3000 -pipe_force 10,0 -pipe_shear_limit 500 -wall_shape box -wall_lower 0,2 "
+      "-wall_upper 1,5 "
+      "-wall_friction 0.3 -wall_particles_per_cell 2");
   const auto &pipe = config.rigids.at(0), &wall = config.rigids.at(1);
   CHECK(pipe.motion == Motion::dynamic);
   CHECK(pipe.force == Vec3{10, 0, 0});
@@ -126,7 +127,7 @@ TEST_CASE("3D takes three components and a ball", "[options]") {
 TEST_CASE("a cylinder and a cone have the height that was given, or that of their apex angle", "[options]") {
   const std::string deck =
       k_deck +
-      "-dim 3 -mesh_lower 0,0,0 -mesh_upper 8,6,6 -soil_lower 0,0,0 -soil_upper 8,6,2 -rigids pile "
+      "-dim 3 -mesh_lower 0,0,0 -mesh_upper 8,6,6 -soil_lower 0,0,0 -soil_upper 8,6,2 -rigid_bodies pile "
       "-pile_centre 4,3,2 -pile_radius 0.5 ";
   const auto shape_of = [&](const std::string& more) { return config_of(deck + more).rigids.at(0).shape; };
   const Shape pile = shape_of("-pile_shape cylinder -pile_height 3");
@@ -138,10 +139,10 @@ TEST_CASE("a cylinder and a cone have the height that was given, or that of thei
   CHECK(shape_of("-pile_shape cone -pile_height 1.5 -pile_tip up").tip_up);
 }
 
-TEST_CASE("the shear limit may be a share of the strength", "[options]") {
-  const std::string deck = k_deck + "-rigids wall -wall_shape box -wall_lower 0,2 -wall_upper 1,5 ";
-  CHECK_FALSE(config_of(deck).rigids.at(0).shear_share);
-  CHECK(config_of(deck + "-wall_shear_share 0.4").rigids.at(0).shear_share == 0.4);
+TEST_CASE("the shear limit may be a fraction of the strength", "[options]") {
+  const std::string deck = k_deck + "-rigid_bodies wall -wall_shape box -wall_lower 0,2 -wall_upper 1,5 ";
+  CHECK_FALSE(config_of(deck).rigids.at(0).shear_fraction);
+  CHECK(config_of(deck + "-wall_shear_fraction 0.4").rigids.at(0).shear_fraction == 0.4);
 }
 
 TEST_CASE("an initial stress has four components in 2D, six in 3D", "[options]") {
@@ -183,7 +184,7 @@ TEST_CASE("particles of a file are those of a body there, and options take the p
 TEST_CASE("a prism, a half plane and a turned box have their geometry", "[options]") {
   const Config config = config_of(
       k_deck +
-      "-dim 3 -mesh_lower 0,0,0 -mesh_upper 8,6,2 -soil_lower 0,0,0 -soil_upper 8,2,2 -rigids "
+      "-dim 3 -mesh_lower 0,0,0 -mesh_upper 8,6,2 -soil_lower 0,0,0 -soil_upper 8,2,2 -rigid_bodies "
       "ramp,floor,plate "
       "-ramp_shape polygon -ramp_polygon 0,0,4,0,0,2 -ramp_width 1,3 -floor_shape half_plane -floor_point "
       "0,0,0.5 "
@@ -198,21 +199,21 @@ TEST_CASE("a prism, a half plane and a turned box have their geometry", "[option
 TEST_CASE("what is cut out of a body are rigids by their place in the list", "[options]") {
   const Config config =
       config_of(k_deck +
-                "-rigids wall,pipe -wall_shape half_plane -wall_point 7,0 -wall_normal -1,0 "
+                "-rigid_bodies wall,pipe -wall_shape half_plane -wall_point 7,0 -wall_normal -1,0 "
                 "-pipe_shape disc -pipe_centre 3,1 -pipe_radius 0.5 -soil_cut_out pipe,wall");
   CHECK(config.bodies.at(0).cut_out == std::vector<int>{1, 0});
   CHECK(config_of(k_deck).bodies.at(0).cut_out.empty());
 }
 
-TEST_CASE("pic is a FLIP share of 0", "[options]") {
-  CHECK(config_of(k_deck + "-velocity_update pic").flip_share == 0);
-  CHECK(config_of(k_deck + "-velocity_update apic").flip_share == 0);
-  CHECK(config_of(k_deck + "-velocity_update xpic").flip_share == 0);
-  const Config xpic = config_of(k_deck + "-velocity_update xpic -xpic_order 5 -flip_share 0.9");
+TEST_CASE("pic is a FLIP fraction of 0", "[options]") {
+  CHECK(config_of(k_deck + "-velocity_update pic").flip_fraction == 0);
+  CHECK(config_of(k_deck + "-velocity_update apic").flip_fraction == 0);
+  CHECK(config_of(k_deck + "-velocity_update xpic").flip_fraction == 0);
+  const Config xpic = config_of(k_deck + "-velocity_update xpic -xpic_order 5 -flip_fraction 0.9");
   CHECK(xpic.velocity_update == VelocityUpdate::xpic);
   CHECK(xpic.xpic_order == 5);
-  CHECK(xpic.flip_share == 0.9);
-  CHECK(config_of(k_deck + "-flip_share 0.99").flip_share == 0.99);
+  CHECK(xpic.flip_fraction == 0.9);
+  CHECK(config_of(k_deck + "-flip_fraction 0.99").flip_fraction == 0.99);
 }
 
 TEST_CASE("the last of an option given twice holds", "[options]") {
@@ -239,7 +240,8 @@ TEST_CASE("a backend that is not compiled in is refused with those that are", "[
 
 TEST_CASE("a name's number does not make it inherit the options of the name without", "[options]") {
   const auto errors =
-      read(k_deck + "-rigids pile,pile_1 -pile_shape box -pile_lower 0,4 -pile_upper 1,5").report.errors;
+      read(k_deck + "-rigid_bodies pile,pile_1 -pile_shape box -pile_lower 0,4 -pile_upper 1,5")
+          .report.errors;
   REQUIRE(errors.size() == 1);
   CHECK(errors[0] ==
         "mpm: -pile_1_shape: not given, takes box, polygon, disc, ball, cylinder, cone or half_plane");
@@ -263,7 +265,7 @@ TEST_CASE("every option in force is listed with its unit and whether it is the d
       if (option.name == name) return option;
     return EffectiveOption{};
   };
-  const auto spacing = find("-mesh_spacing"), share = find("-flip_share"), step = find("-time_step");
+  const auto spacing = find("-mesh_spacing"), share = find("-flip_fraction"), step = find("-time_step");
   CHECK((spacing.value == "0.5" && spacing.unit == "m" && !spacing.standard));
   CHECK((share.value == "1" && share.unit == "-" && share.standard));
   CHECK((step.value == "none" && step.unit == "s" && step.standard));
@@ -274,10 +276,11 @@ TEST_CASE("help lists every option that a deck may give", "[options]") {
   InputReport report, listed;
   listed.help = true;
   REQUIRE(read_options(nullptr, {Backend::serial}, config, listed) == PETSC_SUCCESS);
-  report = read(k_deck +
-                "-rigids plate -plate_shape box -plate_lower 0,4 -plate_upper 1,5 -plate_motion dynamic "
-                "-plate_density 1")
-               .report;
+  report =
+      read(k_deck +
+           "-rigid_bodies plate -plate_shape box -plate_lower 0,4 -plate_upper 1,5 -plate_motion dynamic "
+           "-plate_density 1")
+          .report;
   CHECK(report.options.size() > 50);
   for (const auto& option : report.options) {
     std::string name = option.name;
@@ -398,13 +401,100 @@ TEST_CASE("what a shorter list leaves out is one warning", "[options]") {
       "6,5 ";
   InputReport report;
   Config config;
-  report.replaced = {"rigids", "pipe,plate"};
-  REQUIRE(PetscOptionsInsertString(nullptr, (k_deck + rigids + "-rigids plate -soil_cut_out pipe").c_str()) ==
+  report.replaced = {"rigid_bodies", "pipe,plate"};
+  REQUIRE(PetscOptionsInsertString(nullptr,
+                                   (k_deck + rigids + "-rigid_bodies plate -soil_cut_out pipe").c_str()) ==
           PETSC_SUCCESS);
   REQUIRE(read_options(nullptr, {Backend::serial}, config, report) == PETSC_SUCCESS);
   REQUIRE(PetscOptionsClear(nullptr) == PETSC_SUCCESS);
   CHECK(join(report.errors, "\n") == "");
   CHECK(config.rigids.size() == 1);
   REQUIRE(report.warnings.size() == 1);
-  CHECK(report.warnings[0] == "warning: -rigids: given \"plate\", so 3 options of pipe are not used");
+  CHECK(report.warnings[0] == "warning: -rigid_bodies: given \"plate\", so 3 options of pipe are not used");
+}
+
+TEST_CASE("a former name of an option is that of today, with one note for each", "[options]") {
+  DeckReader reader;
+  reader.read_words({"-p2g_margin",
+                     "0.2",
+                     "-flip_share",
+                     "0.9",
+                     "-f_bar_share",
+                     "0",
+                     "-rigids",
+                     "Plate",
+                     "-Plate_shear_share",
+                     "0.5",
+                     "-Plate_contact_penalty",
+                     "none",
+                     "-Plate_penalty_reach",
+                     "0.1",
+                     "-Plate_penalty_exponent",
+                     "2",
+                     "-Plate_shape",
+                     "box",
+                     "-flip_share",
+                     "0.8"},
+                    Source::command_line, "");
+  CHECK(reader.errors.empty());
+  const std::vector<std::string> notes = {
+      "mpm: note: -p2g_margin is now -rebuild_margin",
+      "mpm: note: -flip_share is now -flip_fraction",
+      "mpm: note: -f_bar_share is now -f_bar_fraction",
+      "mpm: note: -rigids is now -rigid_bodies",
+      "mpm: note: -Plate_shear_share is now -Plate_shear_fraction",
+      "mpm: note: -Plate_contact_penalty is now -Plate_contact_gap_scaling",
+      "mpm: note: -Plate_penalty_reach is now -Plate_contact_gap_reach",
+      "mpm: note: -Plate_penalty_exponent is now -Plate_contact_gap_exponent"};
+  CHECK(reader.notes == notes);
+  const auto options = reader.take();
+  REQUIRE(options.size() == 10);
+  CHECK((options[0].name == "-rebuild_margin" && options[0].former == "-p2g_margin"));
+  CHECK((options[8].name == "-Plate_shape" && options[8].former.empty()));
+  CHECK((options[9].name == "-flip_fraction" && options[9].value == "0.8"));
+}
+
+TEST_CASE("precedence does not depend on which name of an option is used", "[options]") {
+  const std::pair<const char*, const char*> orders[] = {{"-rigids", "-rigid_bodies"},
+                                                        {"-rigid_bodies", "-rigids"}};
+  for (const auto& [in_deck, on_line] : orders) {
+    DeckReader reader;
+    reader.read_words({on_line, "b"}, Source::command_line, "");
+    reader.read_words({in_deck, "a"}, Source::deck, "");
+    CHECK(reader.errors.empty());
+    const auto options = reader.take();
+    REQUIRE(options.size() == 2);
+    CHECK((options[1].name == "-rigid_bodies" && options[1].value == "b"));
+  }
+}
+
+TEST_CASE("both names of an option in one place are an error that tells both", "[options]") {
+  DeckReader reader;
+  reader.read_words({"-flip_share", "0.9", "-FLIP_fraction", "0.8"}, Source::command_line, "");
+  REQUIRE(reader.errors.size() == 1);
+  CHECK(
+      reader.errors[0] ==
+      "mpm: -FLIP_fraction: given \"0.8\", takes its place without -flip_share, which is another name of the "
+      "same option");
+}
+
+TEST_CASE("an error tells the name that was given", "[options]") {
+  InputReport report;
+  report.renamed = {"flip_fraction", "flip_share"};
+  REQUIRE(PetscOptionsClear(nullptr) == PETSC_SUCCESS);
+  REQUIRE(PetscOptionsInsertString(nullptr, (k_deck + "-flip_fraction 2").c_str()) == PETSC_SUCCESS);
+  Config config;
+  REQUIRE(read_options(nullptr, {Backend::serial}, config, report) == PETSC_SUCCESS);
+  REQUIRE(PetscOptionsClear(nullptr) == PETSC_SUCCESS);
+  CHECK(report.errors ==
+        std::vector<std::string>{"mpm: -flip_share: given \"2\", takes a number from 0 to 1"});
+}
+
+TEST_CASE("new names of options take no name from bodies", "[options]") {
+  const std::string shape = "_shape box -NAME_lower 0,4 -NAME_upper 1,5";
+  for (const std::string name : {"rigid", "rebuild"}) {
+    std::string deck = k_deck + "-rigid_bodies NAME -NAME" + shape;
+    for (std::size_t at; (at = deck.find("NAME")) != std::string::npos;) deck.replace(at, 4, name);
+    CHECK(config_of(deck).rigids.at(0).name == name);
+  }
 }

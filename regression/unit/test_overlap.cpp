@@ -236,6 +236,8 @@ TEST_CASE("each mistake that is likely has a warning of its own", "[warnings]") 
   warns("times the strength", [](Config& c) { c.materials[0].parameters[2] = 10; });
   warns("looks like t/m3", [](Config& c) { c.materials[0].density = 1.8; });
   warns("is it given in kPa?", [](Config& c) { c.materials[0].parameters = {3000, 0.49, 20, 0, 0, 0}; });
+  warns("is below all soil", [](Config& c) { c.water.level = -5; });
+  warns("rises", [](Config& c) { c.water.level = 1, c.materials[0].density = 999; });
   warns("-halo_path", [](Config& c) { c.partition.halo_path = HaloPath::host; });
 
   const auto silent = [&](auto&& change) {
@@ -243,6 +245,7 @@ TEST_CASE("each mistake that is likely has a warning of its own", "[warnings]") 
     change(config);
     CHECK(warnings_of(config) == std::vector<std::string>{});
   };
+  silent([](Config& c) { c.water.level = 1, c.materials[0].density = 1800; });
   silent([](Config& c) {
     c.mesh.walls[0] = {Wall::free, Wall::free}, c.rigids[0].shape.lower[0] = 2.6,
     c.rigids[0].shape.upper[0] = 3.1;

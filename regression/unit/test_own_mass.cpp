@@ -68,7 +68,7 @@ TEST_CASE("own masses that are all alike give what one mass a body gives", "[own
         Cloud cloud = cloud_with_masses<B::dim>(3, 0);
         choose_update(cloud, kind);
         auto own = state_of<B>(cloud, how), common = state_of<B>(without_masses(cloud), how);
-        INFO(B::name() << " " << strategy_name(how) << ", velocity update " << kind);
+        INFO(B::name() << " " << word_of(how) << ", velocity update " << kind);
         CHECK(own.soil.points.has_own_mass);
         CHECK(common.soil.points.mass.extent(0) == 0);
         CHECK(own.mass_cut == common.mass_cut);
@@ -94,7 +94,7 @@ TEST_CASE("every strategy gives the nodes the masses that the particles have", "
     for (const P2G how : k_strategies) {
       auto s = state_of<B>(cloud, how);
       interpolate(s);
-      INFO(B::name() << " " << strategy_name(how));
+      INFO(B::name() << " " << word_of(how));
       CHECK(largest_difference(nodes_of(s, s.nodes.soil), nodes) < B::of(1e-12, 1e-4));
     }
   });
@@ -114,7 +114,7 @@ TEST_CASE("steps with own masses are those of the plain loop, and at once those 
       for (const P2G how : k_strategies) {
         auto s = state_of<B>(cloud, how);
         run_steps(s, k_dt, 6);
-        INFO(B::name() << " " << strategy_name(how) << ", velocity update " << kind);
+        INFO(B::name() << " " << word_of(how) << ", velocity update " << kind);
         CHECK(largest_difference(soil_fields(s), soil_fields(plain)) < B::of(1e-10, 2e-2));
       }
     }

@@ -22,7 +22,7 @@ import runout  # noqa: E402
 
 OPTIONS = {"dim": "2", "mesh_lower": "0,0", "mesh_upper": "3,4.5", "mesh_spacing": "0.05", "mesh_xmin": "roller",
            "materials": "clay", "clay_model": "von_mises", "clay_su": "3000", "clay_young": "1.5e6", "clay_poisson": "0.49",
-           "bodies": "soil", "soil_material": "clay", "soil_shape": "box", "soil_lower": "0,0", "soil_upper": "3,4", "rigids": "plate",
+           "bodies": "soil", "soil_material": "clay", "soil_shape": "box", "soil_lower": "0,0", "soil_upper": "3,4", "rigid_bodies": "plate",
            "plate_shape": "box", "plate_lower": "0,4", "plate_upper": "0.5,4.05", "plate_motion": "prescribed",
            "plate_velocity": "0,-0.1", "plate_friction": "none"}
 
@@ -44,7 +44,7 @@ def write_run(folder, nc, **changes):
 
 
 SLIDE = {"dim": "2", "mesh_spacing": "0.25", "gravity": "0.8549978,-9.7726699", "materials": "clay", "clay_su": "2500",
-         "clay_density": "600", "bodies": "slide", "slide_shape": "polygon", "rigids": "base", "base_shear_limit": "2500",
+         "clay_density": "600", "bodies": "slide", "slide_shape": "polygon", "rigid_bodies": "base", "base_shear_limit": "2500",
          "slide_polygon": "0,0,48.66025403784439,0,40,5,8.660254037844386,5"}
 
 

@@ -24,7 +24,7 @@ import plot_fields  # noqa: E402
 import plot_film  # noqa: E402
 import results  # noqa: E402
 
-CUBE = {"dim": "3", "mesh_lower": "0,0,0", "mesh_upper": "4,4,2", "mesh_spacing": "0.5", "bodies": "soil", "rigids": "pile",
+CUBE = {"dim": "3", "mesh_lower": "0,0,0", "mesh_upper": "4,4,2", "mesh_spacing": "0.5", "bodies": "soil", "rigid_bodies": "pile",
         "pile_motion": "prescribed", "mesh_ymin": "roller"}
 
 
@@ -53,6 +53,15 @@ class Cube(unittest.TestCase):
         run = results.Run(self.folder)
         run.options.update(changes)
         return plot_fields.Scene(run, run.frame, cut)
+
+    def test_colours_of_softening_clay_end_where_its_strength_is_lost(self):
+        write_cube(self.folder)
+        across = plot_fields.Slice(0, 2.0)  # holds every y
+        self.assertGreater(self.scene(across).limits("plastic_strain")[1], 3)
+        softening = {"soil_material": "clay", "clay_model": "softening_clay", "clay_xi95": "2"}
+        self.assertEqual(self.scene(across, **softening).limits("plastic_strain"), (0, 2))
+        self.assertEqual(self.scene(across, **softening, clay_xi95_cell="0.25").limits("plastic_strain"), (0, 1))
+        self.assertGreater(self.scene(across, **softening).limits("mises")[1], 2)
 
     def test_places_of_slices(self):
         self.assertEqual(plot_fields.parse_slice("auto"), plot_fields.Slice(1, None))

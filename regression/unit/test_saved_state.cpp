@@ -85,7 +85,7 @@ TEST_CASE("a run from a saved state has the bits of the run that was saved", "[s
       shuffle(saved.soil, 3);
       auto again = state_of<B>(cloud, how);
       REQUIRE(restore_state(again, saved).empty());
-      INFO(B::name() << " " << strategy_name(how));
+      INFO(B::name() << " " << word_of(how));
       CHECK(same(save_state(again), save_state(whole)));
       if (!gives_same_bits<B>(how)) continue;
       run_steps(whole, dt, 120), run_steps(again, dt, 120);

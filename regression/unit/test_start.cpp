@@ -11,6 +11,7 @@
 
 #include "checkpoint/checkpoint.hpp"
 #include "input/particle_file.hpp"
+#include "mesh/background.hpp"
 #include "output/frame_fields.hpp"
 #include "output/frames.hpp"
 #include "step/stepper.hpp"
@@ -47,7 +48,7 @@ BodyParticles pair_of(int dim) {
 /// What they hold on the device.
 ParticleSnapshot start_of(const Config& config, BodyParticles particles) {
   const auto stepper = make_stepper(config);
-  const int patch = config.dim == 2 ? 8 : 4;
+  const int patch = patch_edge(config.dim);
   Model model;
   for (int d = 0; d < 3; ++d) model.patches[d] = d < config.dim ? 8 / patch + 2 : 1;
   model.bodies.push_back(std::move(particles));
@@ -208,7 +209,7 @@ TEST_CASE("a strength follows the height where the particle was created", "[star
     particles.reference_height = {4.5, 3.25};
     const auto stepper = make_stepper(config);
     Model model;
-    for (int d = 0; d < 3; ++d) model.patches[d] = d < dim ? 8 / (dim == 2 ? 8 : 4) + 2 : 1;
+    for (int d = 0; d < 3; ++d) model.patches[d] = d < dim ? 8 / (patch_edge(dim)) + 2 : 1;
     model.bodies.push_back(particles);
     Failure failure;
     REQUIRE(stepper->set_up(std::move(model), &failure) == PETSC_SUCCESS);
@@ -234,7 +235,7 @@ TEST_CASE("particles of a checkpoint are those of its frame, by the body's name"
     if (!make_stepper(config)) continue;
     const auto stepper = make_stepper(config);
     Model model;
-    for (int d = 0; d < 3; ++d) model.patches[d] = d < dim ? 8 / (dim == 2 ? 8 : 4) + 2 : 1;
+    for (int d = 0; d < 3; ++d) model.patches[d] = d < dim ? 8 / (patch_edge(dim)) + 2 : 1;
     model.bodies = {pair_of(dim), pair_of(dim)};
     BodyParticles& soil = model.bodies[1];
     for (double& x : soil.position) x += 1.0 / 3;

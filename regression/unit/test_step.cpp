@@ -70,7 +70,7 @@ TEST_CASE("a body in free flight moves by v t, across rebuilds", "[step]") {
       for (std::size_t n = 0; n < expected.value.size(); ++n)
         expected.value[n] += v[n % Dim] * dt * steps / k_spacing;
       const int rebuilds = run_steps(s, dt, steps);
-      INFO(build.name() << ' ' << strategy_name(how));
+      INFO(build.name() << ' ' << word_of(how));
       CHECK(rebuilds >= 7);
       CHECK(read_control(s).fault_count == 0);
       CHECK(largest_difference(soil_fields(s)[0], expected) < B::of(1e-12, 1e-5));
@@ -134,7 +134,7 @@ TEST_CASE("in a linear velocity field every particle strains and turns by its gr
   });
 }
 
-TEST_CASE("FLIP and PIC mix by their share, and PIC's velocity is the one that moved the particle",
+TEST_CASE("FLIP and PIC mix by their fraction, and PIC's velocity is the one that moved the particle",
           "[step]") {
   for_each_reference([](auto reference) {
     using B = decltype(reference);
@@ -210,7 +210,7 @@ TEST_CASE("a rigid falls freely as it should, to round-off", "[step]") {
     for (int d = 0; d < Dim; ++d) {
       const double a = cloud.rigids[0].force[d] / rigid(0).mass, v = cloud.rigids[0].velocity[d];
       CHECK(std::fabs(rigid(0).velocity[d] - v - a * t) < 1e-12);
-      CHECK(std::fabs(rigid(0).displacement[d] - v * t - a * t * t / 2) < 1e-12);
+      CHECK(std::fabs(rigid(0).pose.displacement[d] - v * t - a * t * t / 2) < 1e-12);
     }
   });
 }
@@ -229,7 +229,7 @@ TEST_CASE("one step of a random cloud is the plain loop's in double on one threa
         using B = decltype(build);
         if constexpr (B::dim == Dim) {
           for (P2G how : k_strategies) {
-            INFO(build.name() << ' ' << strategy_name(how) << " seed " << seed);
+            INFO(build.name() << ' ' << word_of(how) << " seed " << seed);
             CHECK(largest_difference(fields_after<B>(cloud, how, 1e-5, 1), expected) < B::of(1e-12, 1e-5));
           }
         }
@@ -253,7 +253,7 @@ TEST_CASE("one step of a footing under way is the plain loop's in double on one 
       using B = decltype(build);
       if constexpr (B::dim == Dim) {
         for (P2G how : k_strategies) {
-          INFO(build.name() << ' ' << strategy_name(how));
+          INFO(build.name() << ' ' << word_of(how));
           CHECK(largest_difference(fields_after<B>(cloud, how, k_footing_step, 1), expected) <
                 B::of(1e-12, 1e-5));
         }
@@ -272,7 +272,7 @@ TEST_CASE("100 steps of a small footing are the plain loop's in double on one th
       using B = decltype(build);
       if constexpr (B::dim == Dim && B::is_double) {
         for (P2G how : k_strategies) {
-          INFO(build.name() << ' ' << strategy_name(how));
+          INFO(build.name() << ' ' << word_of(how));
           CHECK(largest_difference(fields_after<B>(cloud, how, k_footing_step, steps), expected) < 1e-9);
         }
       }
@@ -288,7 +288,7 @@ TEST_CASE("a margin or an interval of rebuilds does not change the solution", "[
     for (double margin : {0.05, 0.5}) {
       cloud.p2g.margin = margin;
       for (P2G how : {P2G::gather, P2G::mosaic, P2G::tile}) {
-        INFO(Dim << "D " << strategy_name(how) << " margin " << margin);
+        INFO(Dim << "D " << word_of(how) << " margin " << margin);
         CHECK(largest_difference(fields_after<Reference<Dim>>(cloud, how, k_footing_step, 50), expected) <
               1e-9);
       }

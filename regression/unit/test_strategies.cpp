@@ -74,7 +74,7 @@ TEST_CASE("every strategy gives the nodal fields of the plain loop in double on 
           using B = decltype(build);
           if constexpr (B::dim == Dim) {
             for (P2G how : k_strategies) {
-              INFO(build.name() << ' ' << strategy_name(how) << " seed " << seed << " margin " << margin);
+              INFO(build.name() << ' ' << word_of(how) << " seed " << seed << " margin " << margin);
               CHECK(largest_difference(drifted_fields<B>(cloud, how), expected) < B::of(1e-12, 1e-5));
             }
           }
@@ -133,7 +133,7 @@ TEST_CASE("every strategy keeps the total mass and momentum, and internal forces
       }
     }
     for (P2G how : k_strategies) {
-      INFO(build.name() << ' ' << strategy_name(how));
+      INFO(build.name() << ' ' << word_of(how));
       const auto fields = drifted_fields<B>(cloud, how);
       CHECK(std::fabs(total_of(fields[0], S::mass).sum / mass - 1) < tolerance);
       for (int d = 0; d < Dim; ++d) {
@@ -157,7 +157,7 @@ TEST_CASE("gather and the plain loop give the same bits on every run and number 
     using B = decltype(build);
     const Cloud cloud = random_cloud<B::dim>(4);
     for (P2G how : {P2G::sequential, P2G::gather}) {
-      INFO(build.name() << ' ' << strategy_name(how));
+      INFO(build.name() << ' ' << word_of(how));
       const auto first = drifted_fields<B>(cloud, how);
       for (int run = 0; run < 3; ++run) CHECK(drifted_fields<B>(cloud, how) == first);
       if (B::is_double)
@@ -202,7 +202,7 @@ TEST_CASE("no strategy touches a node while the steps are paused", "[strategies]
   for_each_build([](auto build) {
     using B = decltype(build);
     for (P2G how : k_strategies) {
-      INFO(build.name() << ' ' << strategy_name(how));
+      INFO(build.name() << ' ' << word_of(how));
       auto s = state_of<B>(random_cloud<B::dim>(2), how);
       interpolate(s);
       const auto before = nodal_fields(s);

@@ -151,7 +151,7 @@ TEST_CASE("the soil's boundary sums to the area of each face, wherever the block
               (z < (low[Dim - 1] + high[Dim - 1]) / 2 ? lower : upper) += a[Dim - 1];
               across += std::fabs(a[0]) > 0 ? a[0] : 0;
             }
-        INFO(build.name() << ' ' << strategy_name(how));
+        INFO(build.name() << ' ' << word_of(how));
         CHECK(std::fabs(lower + face) < B::of(1e-12, 1e-5) * face);
         CHECK(std::fabs(upper - face) < B::of(1e-12, 1e-5) * face);
         CHECK(std::fabs(across) < B::of(1e-12, 1e-5) * face);
@@ -240,7 +240,7 @@ TEST_CASE(
               apart = std::max(apart, std::fabs(v(y) - (d == 1 ? -1 : 1) * v(20 - y)));
               if (d == 2 && x < 14 && y > 6) slowest = std::min(slowest, std::fabs(v(y)));
             }
-        INFO(build.name() << ' ' << strategy_name(how));
+        INFO(build.name() << ' ' << word_of(how));
         CHECK(apart < B::of(1e-12, 1e-5));
         CHECK(slowest < B::of(1e-12, 1e-5));
       }
@@ -290,11 +290,11 @@ TEST_CASE("a patch counts as near a rigid if its particles reach a node that the
   });
 }
 
-TEST_CASE("the penalty is 1 in touch and 0 from its reach on", "[surface]") {
-  CHECK(penalty(-0.1, 0.5, 6.) == 1);
-  CHECK(penalty(0., 0.5, 6.) == 1);
-  CHECK(std::fabs(penalty(0.25, 0.5, 6.) - (1 - 1. / 64)) < 1e-15);
-  CHECK(penalty(0.5, 0.5, 6.) == 0);
+TEST_CASE("the gap scaling is 1 in touch and 0 from its reach on", "[surface]") {
+  CHECK(gap_scaling(-0.1, 0.5, 6.) == 1);
+  CHECK(gap_scaling(0., 0.5, 6.) == 1);
+  CHECK(std::fabs(gap_scaling(0.25, 0.5, 6.) - (1 - 1. / 64)) < 1e-15);
+  CHECK(gap_scaling(0.5, 0.5, 6.) == 0);
 }
 
 TEST_CASE("soil begins where its volume and area at a node say, whatever part of the cells it covers",
@@ -335,7 +335,7 @@ TEST_CASE("contact begins where the gap is closed, and the mass of the body does
         return motion.value[s.grid.address_of(node) * motion.width + Dim - 1];
       };
       INFO(build.name() << " gap " << gap);
-      CHECK(std::fabs(speed(10) - (1 - penalty(gap, 0.15, 6.))) < B::of(1e-10, 1e-3));
+      CHECK(std::fabs(speed(10) - (1 - gap_scaling(gap, 0.15, 6.))) < B::of(1e-10, 1e-3));
       CHECK(std::fabs(speed(9) - 1) < B::of(1e-10, 1e-4));  // within the soil
     }
   });

@@ -84,7 +84,7 @@ TEST_CASE("bodies of two velocity fields pass through each other, each as it mov
       const auto apart = after_steps<B>(both, how), stuck = after_steps<B>(together, how);
       const std::size_t n = both.bodies[0].position.size() / B::dim,
                         all = n + both.bodies[1].position.size() / B::dim;
-      INFO(build.name() << ' ' << strategy_name(how));
+      INFO(build.name() << ' ' << word_of(how));
       // In single precision a velocity of 8 m/s is known to 5e-7 m/s, which is 1e-4 of the stress a step.
       const double allowed = exact ? 0 : B::of(1e-11, 5e-3);
       CHECK(largest_difference(rows_of(apart, 0, n), after_steps<B>(first, how)) <= allowed);

@@ -139,7 +139,7 @@ TEST_CASE("XPIC(m) is v - (I - S S+)^m v, by full matrices", "[velocity_update]"
   });
 }
 
-TEST_CASE("XPIC and FLIP mix by their share, and PIC is XPIC(1)", "[velocity_update]") {
+TEST_CASE("XPIC and FLIP mix by their fraction, and PIC is XPIC(1)", "[velocity_update]") {
   for_each_reference([](auto reference) {
     using B = decltype(reference);
     Cloud cloud = random_cloud<B::dim>(4, Wall::fixed);
@@ -221,7 +221,7 @@ TEST_CASE("APIC keeps a linear field of velocity at free surfaces, from the firs
     Cloud cloud = holed_block<Dim>();
     BodyInput& body = cloud.bodies[0];
     for (P2G how : k_strategies) {
-      INFO(build.name() << ' ' << strategy_name(how));
+      INFO(build.name() << ' ' << word_of(how));
       const auto error = [&](const double(&field)[3][3], int steps) {
         set_linear<Dim>(body, field, b);
         std::vector<Table> expected{{Dim, body.particle_velocity}};
@@ -323,7 +323,7 @@ TEST_CASE("a step with XPIC or APIC is the plain loop's in double on one thread"
         using B = decltype(build);
         if constexpr (B::dim == Dim) {
           for (P2G how : k_strategies) {
-            INFO(build.name() << ' ' << strategy_name(how) << " order " << order);
+            INFO(build.name() << ' ' << word_of(how) << " order " << order);
             CHECK(largest_difference(velocities_after<B>(cloud, how, 1), expected) < B::of(1e-11, 1e-4));
           }
         }

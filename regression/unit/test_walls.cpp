@@ -102,7 +102,7 @@ TEST_CASE("half a slump at a roller is half of the whole one, with every strateg
       whole.affine = half.affine, whole.xpic_order = half.xpic_order;
       const std::size_t count = strength_of(half.bodies[0]).size();
       for (const P2G how : k_strategies) {
-        INFO(build.name() << " " << strategy_name(how) << " " << update);
+        INFO(build.name() << " " << word_of(how) << " " << update);
         const auto own = places_after<B>(half, how, 100, count),
                    all = places_after<B>(whole, how, 100, count);
         double worst = 0, moved = 0;
@@ -123,7 +123,7 @@ TEST_CASE("the nodes beyond a wall hold nothing, and those at it move as it allo
     constexpr int Dim = B::dim;
     for (const Wall wall : {Wall::roller, Wall::fixed})
       for (const P2G how : k_strategies) {
-        INFO(build.name() << " " << strategy_name(how));
+        INFO(build.name() << " " << word_of(how));
         auto s = state_of<B>(random_cloud<Dim>(2, wall), how);
         interpolate(s);
         finish_sums(s);
@@ -199,7 +199,7 @@ TEST_CASE("a particle that is alone carries no stress and flies as a stone does"
   for_each_build([](auto build) {
     using B = decltype(build);
     for (const P2G how : k_strategies) {
-      INFO(build.name() << " " << strategy_name(how));
+      INFO(build.name() << " " << word_of(how));
       Cloud cloud = lone_particle<B::dim>(Wall::roller, {1, 2, 0}, {0.13, 0.2, 0.3});
       cloud.gravity = {0, -10, 0};
       cloud.bodies[0].stress.assign(sym_size<B::dim>, 500.0);
@@ -239,7 +239,7 @@ TEST_CASE("a volume beyond its bounds is limited, or a fault where strays stop t
     using B = decltype(build);
     for (const P2G how : k_strategies)
       for (const StrayRule rule : {StrayRule::keep, StrayRule::stop}) {
-        INFO(build.name() << " " << strategy_name(how) << (rule == StrayRule::stop ? " stop" : " keep"));
+        INFO(build.name() << " " << word_of(how) << (rule == StrayRule::stop ? " stop" : " keep"));
         Cloud cloud;
         cloud.grid = grid_of<B::dim>({8, 8, 8}, k_edge, Wall::roller);
         cloud.materials = clays();

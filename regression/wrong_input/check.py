@@ -6,7 +6,8 @@ Usage: check.py PATH_TO_mpm [WORD ...]   (WORD: only rows whose options hold it)
 Each row of wrong_input.tsv is run by itself in an empty folder with base.opts, a deck that is right. Checked are the
 exit status, that stderr has exactly the lines expected, each of which names what was given and what is taken, and that
 a refused run left no file behind. Rows of status 3 are runs that fail on their way: their one line says where and when.
-Rows of status 0 that expect lines are runs that warn: each is in a line of its own on stdout, and in the log if there is one.
+Rows of status 0 that expect lines are runs that warn, or that note a former name of an option: each line is on stdout, and in
+the log if there is one.
 
 Beside options of mpm a row may have
     !NAME         that line of base.opts is left out; !options_file: the deck is not given
@@ -91,7 +92,7 @@ def check(binary, status, options, fragments):
     faults = [] if result.returncode == status else [f"status {result.returncode}, expected {status}"]
     if status == 0 and fragments:
         for lines in [result.stdout.splitlines()] + logs:
-            faults += [fault for fault in match([line for line in lines if line.startswith("warning: ")], fragments)
+            faults += [fault for fault in match([line for line in lines if line.startswith(("warning: ", "mpm: note: "))], fragments)
                        if not fault.startswith("not expected")]
     if status == 0:
         faults += [f"stderr: {line}" for line in result.stderr.splitlines() if line.startswith("mpm: -")]

@@ -9,16 +9,19 @@
 
 namespace mpm {
 
-/// The update of a law for all lanes.
-template <class Law, class R, class T, int Dim, int N>
+/// The update of a law. One that takes a single particle is called for the lanes that are active(lane), and
+/// where it asks for the particle's place, with place(lane).
+template <class Law, class R, class T, int Dim, int N, class Active, class Place>
 KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stress, LawState<R, N>& state,
-                                         const Increment<R, T, Dim>& by) {
+                                         const Increment<R, T, Dim>& by, const Active& active,
+                                         [[maybe_unused]] const Place& place) {
   if constexpr (!has_scalar_update<Law>()) {
     law.update(stress, state, by);
   } else {
     for (int l = 0; l < R::k_count; ++l) {
+      if (!active(l)) continue;
       SymTensor<T, Dim> own_stress;
-      LawState<T, N> own_state;
+      LawState<T, N> own_state{};  // 0 where a particle does not carry a variable
       Increment<T, T, Dim> own_by;
       own_by.dt = by.dt, own_by.clock = by.clock;
       for (int k = 0; k < sym_size<Dim>; ++k)
@@ -26,16 +29,19 @@ KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stre
       for (int k = 0; k < (Dim == 2 ? 1 : 3); ++k) own_by.spin.c[k] = by.spin.c[k][l];
       for (int k = 0; k < Dim * Dim; ++k)
         own_by.gradient[k / Dim][k % Dim] = by.gradient[k / Dim][k % Dim][l];
-      for (int k = 0; k < N; ++k) own_state[k] = state[k][l];
-      law.update(own_stress, own_state, own_by);
+      for (int k = 0; k < N && carries(law, k); ++k) own_state[k] = state[k][l];
+      if constexpr (takes_place<Law>())
+        law.update(own_stress, own_state, own_by, place(l));
+      else
+        law.update(own_stress, own_state, own_by);
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k].set(l, own_stress[k]);
-      for (int k = 0; k < N; ++k) state[k].set(l, own_state[k]);
+      for (int k = 0; k < N && carries(law, k); ++k) state[k].set(l, own_state[k]);
     }
   }
 }
 
 /// The laws of the particles [p, p + count), as many as R has lanes at most, with their state in memory.
-/// Those that fly freely, being alone, carry no stress and keep their state.
+/// Those that fly freely, being alone, carry no stress, nor an excess pore pressure, and keep their state.
 template <class R, class Space, class T, int Dim>
 struct LawLanes {
   const Soil<Space, T, Dim>& soil;
@@ -44,13 +50,18 @@ struct LawLanes {
   bool some_fly = false;
   R flies = 0;  // 1 where a particle does
   int material[R::k_count] = {};
+  Coord<Dim> corner{};  // cells, of the patch
+  double spacing = 1;   // m
 
   KOKKOS_FORCEINLINE_FUNCTION void operator()(SymTensor<R, Dim>& stress,
                                               const Increment<R, T, Dim>& by) const {
-    if (one_law && !some_fly)
-      update(material[0], stress, by, [](const R& now, const R&) { return now; });
-    else
+    if (one_law && !some_fly) {
+      const auto now = [](const R& after, const R&) { return after; };
+      update(
+          material[0], stress, by, [&](int l) { return l < count; }, now, now);
+    } else {
       update_some(stress, by);
+    }
   }
 
   /// Each law takes all lanes; those that are not of its material keep what they have.
@@ -67,18 +78,53 @@ struct LawLanes {
       const auto mine = own > 0;
       SymTensor<R, Dim> now = old;
       const auto moves = (own > 0) & (flies < 1);
-      update(material_of(l), now, by,
-             [&](const R& after, const R& was) { return select(moves, after, was); });
+      const int own_material = material_of(l);
+      const auto kept = [&](const R& after, const R& was) { return select(moves, after, was); };
+      update(
+          own_material, now, by,
+          [&](int k) { return k < count && material_of(k) == own_material && flies[k] < 1; }, kept,
+          [&](const R& after, const R& was) {
+            return select((own > 0) & (flies > 0), R(0), kept(after, was));
+          });
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(mine, now[k], stress[k]);
     }
     for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(flies > 0, R(0), stress[k]);
   }
 
-  /// kept(after, before): what becomes of a state variable.
-  template <class Kept>
+  /// The place of a lane's particle before the step.
+  KOKKOS_INLINE_FUNCTION ParticlePlace place_of(int l) const {
+    ParticlePlace place{.id = soil.id(p + l)};
+    const Coord<Dim> cell = coord_of<Dim>(soil.cell(p + l));
+    const Vector<T, Dim> x = soil.coordinate(p + l);
+    for (int d = 0; d < Dim; ++d) place.position[d] = (double(corner[d]) + cell[d] + x[d]) * spacing;
+    return place;
+  }
+
+  /// active(lane): whether the lane's particle is of this material. kept(after, before): what becomes of a
+  /// state variable; kept_pressure: of the excess pore pressure.
+  template <class Active, class Kept, class KeptPressure>
   KOKKOS_FORCEINLINE_FUNCTION void update(int m, SymTensor<R, Dim>& stress, const Increment<R, T, Dim>& by,
-                                          const Kept& kept) const {
-    soil.materials.data()[m].visit([&](const auto& law) {
+                                          const Active& active, const Kept& kept,
+                                          const KeptPressure& kept_pressure) const {
+    const AnyMaterial<T>& of = material_in(soil.materials.data()[m]);
+    const bool undrained = soil.history.pore >= 0 && of.pore_stiffness > 0;
+    R excess = 0;
+    if (undrained) {
+      load_field(soil.history.column[soil.history.pore], p, count, excess);
+      add_isotropic(stress, excess);  // effective: the law's own
+    }
+    update_law(of, stress, by, active, kept);
+    if (!undrained) return;
+    const R pressure = undrained_pressure(excess, of.pore_stiffness, by.strain);
+    add_isotropic(stress, R(-pressure));
+    store_field(kept_pressure(pressure, excess), soil.history.column[soil.history.pore], p, count);
+  }
+
+  template <class Active, class Kept>
+  KOKKOS_FORCEINLINE_FUNCTION void update_law(const AnyMaterial<T>& of, SymTensor<R, Dim>& stress,
+                                              const Increment<R, T, Dim>& by, const Active& active,
+                                              const Kept& kept) const {
+    of.visit([&](const auto& law) {
       using Law = std::decay_t<decltype(law)>;
       LawState<R, state_size<Law>> was, state;
       for (int k = 0; k < state.size; ++k) {
@@ -86,9 +132,9 @@ struct LawLanes {
         if (carries(law, k)) load_field(soil.history.column[k], p, count, was[k]);
         state[k] = was[k];
       }
-      update_lanes(law, stress, state, by);
-      for (int k = 0; k < state.size; ++k) {
-        if (!Law::state()[k].changes) continue;
+      update_lanes(law, stress, state, by, active, [&](int l) { return place_of(l); });
+      for (int k = 0; k < state.size && carries(law, k); ++k) {
+        if (!changes_all<Law>() && !Law::state()[k].changes) continue;
         state[k] = kept(state[k], was[k]);
         if (any_of(state[k] != was[k])) store_field(state[k], soil.history.column[k], p, count);
       }
@@ -180,10 +226,10 @@ struct HostParticles {
     take(nodes, from, to, stage);
     if (by.f_bar > 0) weigh_dilatation(from, to, stage);
     for (int k = c; k < end; ++k) {
-      T volume = 0, sum = 0;
+      CellMean<T> dilatation;
       const int first = begin(slot * cells + k), last = begin(slot * cells + k + 1);
-      if (by.f_bar > 0) add_dilatation(first, last, stage, from, volume, sum);
-      const T mean = volume > 0 ? sum / volume : T(0);
+      if (by.f_bar > 0) add_dilatation(first, last, stage, from, dilatation);
+      const T mean = dilatation.value();
       for (int p = first; p < last; ++p) stage.mean[p - from] = mean;
     }
     for (int n = to - from; n % W != 0; ++n) stage.mean[n] = stage.mean[n - 1];
@@ -193,7 +239,7 @@ struct HostParticles {
   /// One cell with more particles than the stage holds: they take from the nodes twice.
   void move_crowd(Window nodes, int slot, int c, Stage& stage, R& moved) const {
     const int from = begin(slot * cells + c), to = begin(slot * cells + c + 1);
-    T volume = 0, sum = 0;
+    CellMean<T> dilatation;
     for (int pass = by.f_bar > 0 ? 0 : 1; pass < 2; ++pass)
       for (int first = from; first < to; first += k_room) {
         const int last = Kokkos::min(first + k_room, to);
@@ -201,10 +247,10 @@ struct HostParticles {
         take(nodes, first, last, stage);
         if (pass == 0) {
           weigh_dilatation(first, last, stage);
-          add_dilatation(first, last, stage, first, volume, sum);
+          add_dilatation(first, last, stage, first, dilatation);
           continue;
         }
-        for (int n = 0; n < k_room; ++n) stage.mean[n] = volume > 0 ? sum / volume : T(0);
+        for (int n = 0; n < k_room; ++n) stage.mean[n] = dilatation.value();
         for (int p = first; p < last; p += W)
           move_block(p, Kokkos::min(W, last - p), slot, stage, p - first, moved);
       }
@@ -267,13 +313,9 @@ struct HostParticles {
       (rate * volume).store(stage.mean + (p - from));
     }
   }
-  /// Adds the volumes [m3] of the particles [first, last), and with their dilatation rates [m3/s]. from: the
-  /// first particle of the stage.
-  void add_dilatation(int first, int last, const Stage& stage, int from, T& volume, T& sum) const {
-    for (int p = first; p < last; ++p) {
-      volume += soil.volume(p);
-      sum += stage.mean[p - from];
-    }
+  /// Adds the dilatation rates of the particles [first, last). from: the first particle of the stage.
+  void add_dilatation(int first, int last, const Stage& stage, int from, CellMean<T>& dilatation) const {
+    for (int p = first; p < last; ++p) dilatation.add(soil.volume(p), stage.mean[p - from]);
   }
 
   /// `count` particles from p on, of the stage from n on; `moved` by lane.
@@ -288,6 +330,7 @@ struct HostParticles {
     for (int k = 0; k < k_motion; ++k) t.kinematics[k] = R::load(stage.kinematics[k] + n);
     for (int k = 0; k < Dim * Dim; ++k) t.gradient[k / Dim][k % Dim] = R::load(stage.gradient[k] + n);
     LawLanes<R, Space, T, Dim> law{.soil = soil, .p = p, .count = count, .one_law = stage.one_body};
+    law.corner = origin(slot), law.spacing = spacing;
     for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
       law.material[l] = soil.bodies(soil.body(p + Kokkos::min(l, count - 1))).material;
     if (alone(slot) != 0) find_alone(law);
@@ -333,13 +376,7 @@ struct HostParticles {
       for (int d = 0; d < Dim; ++d) q.x[d] = block.x[d][l], q.v[d] = block.v[d][l];
       q.volume = block.volume[l];
       for (int k = 0; k < sym_size<Dim>; ++k) q.stress[k] = block.stress[k][l];
-      FaultKind fault = fault_of(q, moved[l], by);
-      if (fault == FaultKind::none) continue;
-      if (fault == FaultKind::not_finite && has_failed(soil, p + l)) fault = FaultKind::law;
-      const Coord<Dim> cell = coord_of<Dim>(soil.cell(p + l));
-      double position[3] = {};
-      for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
-      report(control, fault, soil.id(p + l), position, Dim);
+      report_fault(control, soil, p + l, q, moved[l], by, origin(slot), spacing);
     }
   }
 };

@@ -118,22 +118,22 @@ template <class Source>
 struct HostSums {
   HostTile<Source> tile;
   NodesOfWindows<Source> nodes;
-  bool apart;
+  bool windowed;
 
   explicit HostSums(const Interpolation<Source>& it)
       : tile{it.source, it.bins.begin, it.patches.neighbours, it.patches.origin, it.grid, it.out},
         nodes{it.bins, it.windows, it.patches, it.out, it.adds},
-        apart(has_windows(it.space)) {}
+        windowed(has_windows(it.space)) {}
 
   /// The particles of a slot, which holds some.
   void sum(int slot) const {
     if (tile.source.skips(slot)) return;
-    if (!apart) return tile(slot);
+    if (!windowed) return tile(slot);
     auto& sums = *nodes.window_of(slot);
     std::memset(sums, 0, sizeof sums);
     tile.sum(slot, sums);
   }
-  /// Any slot, if `apart`.
+  /// Any slot, if `windowed`.
   void give_nodes(int slot) const { nodes.give_nodes(slot); }
 };
 
@@ -145,7 +145,7 @@ void sum_on_host(const Interpolation<Source>& it) {
   const Shared held = slots_held<Source::dim>(it.bins);
   const Shared nodes =
       near ? Shared{0, it.near_count, 1} : slots_about<Source::dim>(it.bins, it.patches.slots);
-  const Shared phases[] = {held, sums.apart ? nodes : Shared{}};
+  const Shared phases[] = {held, sums.windowed ? nodes : Shared{}};
   for_each_shared("mpm::reduce_by_tile", it.space, phases, [&](int phase, int n) {
     if (it.control().paused) return;
     if (phase == 0)

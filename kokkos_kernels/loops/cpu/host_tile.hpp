@@ -21,7 +21,7 @@ struct HostTile {
   using Rows = Lanes<T, k_rows * k_row>;
   static constexpr bool k_offset = requires { Source::takes_offset; };
 
-  static constexpr int k_point = sizeof(Point) / sizeof(T) - 2;
+  static constexpr int k_point = k_point_numbers<T, Point>;
   /// Whether the points of many particles are made at once.
   static constexpr bool k_in_lanes = [] {
     if constexpr (requires { typename Source::template PointOf<T>; })
@@ -117,19 +117,19 @@ struct HostTile {
       load_field(soil.volume, p, count, volume);
       if (soil.has_own_mass) load_field(soil.mass, p, count, mass);
       const auto point = source.point({mass[0], body.half_length, 0}, v, stress, volume[0]);
-      const R* const value = reinterpret_cast<const R*>(&point) + 2;
+      const R* const value = numbers_of<R>(point);
       unrolled<k_point>([&](auto k) { value[k].store(stage.value[k] + n); });
     } else {
       for (int l = 0; l < count; ++l) {
         const Point point = source.load(p + l);
-        const T* const value = reinterpret_cast<const T*>(&point) + 2;
+        const T* const value = numbers_of<T>(point);
         for (int k = 0; k < k_point; ++k) stage.value[k][n + l] = value[k];
       }
     }
   }
   KOKKOS_FORCEINLINE_FUNCTION static Point point(const Stage& stage, int e) {
     Point q{};  // its half length has been used
-    T* const value = reinterpret_cast<T*>(&q) + 2;
+    T* const value = numbers_of<T>(q);
     unrolled<k_point>([&](auto k) { value[k] = stage.value[k][e]; });
     return q;
   }

@@ -33,16 +33,24 @@ KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const KinematicValues<T, Dim>* wi
   return sum * inv_spacing;
 }
 
-/// A team moves the particles of a patch. If Sums, it adds them where they now are to
-/// the nodes for the next step, as the strategy `tile` does: a particle is read and written once a step.
-template <class Space, class T, int Dim, bool Sums>
+/// The patches that a kernel is for. A patch is common if its window holds no node at a wall or beyond it,
+/// and none of its particles is alone.
+enum class PatchKind { common, any };
+
+/// A team moves the particles of a patch, whose laws are of the list Laws. If Sums, it adds them where they
+/// now are to the nodes for the next step, as the strategy `tile` does: a particle is read and written once a
+/// step.
+template <class Space, class T, int Dim, bool Sums, PatchKind kind, class Laws>
 struct UpdateParticles {
   using Source = SoilSource<Space, T, Dim>;
   using Boundary = BoundarySource<Space, T, Dim>;
   using Tile_ = Tile<Source>;
-  using Team = PatchTeam<Space, T, Dim>;
+  // Patches that are not common are few: one team less on a multiprocessor leaves them the registers they need.
+  static constexpr int k_teams = teams_at_once<T, Dim> - (kind == PatchKind::common ? 0 : 1);
+  using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, k_teams>>;
   using Member = typename Team::member_type;
   using Memory = typename Space::memory_space;
+  using Images = std::conditional_t<kind == PatchKind::common, NoImages, WindowImages<T, Dim>>;
   static constexpr int cells = Patch<Dim>::cells, window = Patch<Dim>::window;
   static constexpr int threads = team_threads<Space>;
   /// What is left of a tile where nothing is summed.
@@ -85,57 +93,57 @@ struct UpdateParticles {
     if (!paused) update(team, Scratch(team, bytes()), slot);
   }
 
+  KOKKOS_INLINE_FUNCTION Images images_at([[maybe_unused]] int slot) const {
+    if constexpr (kind == PatchKind::common)
+      return {};
+    else
+      return Images(grid, reach, origin(slot));
+  }
+
   KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot) const {
     prefetch_particles(team, slot);
+    const Images images = images_at(slot);
     const auto number_of = [&](int n) {
-      return number_at<decltype(neighbours), Dim>(neighbours, slot, window_coord<Dim>(n));
+      return number_at<decltype(neighbours), Dim>(neighbours, slot, window_coord<Dim>(images(n)));
     };
-    update(team, all, slot, sums, number_of, [&](int, int number) {
+    update(team, all, slot, sums, images, number_of, [&](int, int number) {
       return *reinterpret_cast<const KinematicValues<T, Dim>*>(&kinematics(number, 0));
     });
   }
 
-  /// all: bytes(). out: the sums of the next step. number_of(n): of node n of the window. motion_of(n,
-  /// number): what becomes of it.
+  /// all: bytes(). out: the sums of the next step. number_of(n): of the image of node n of the window.
+  /// motion_of(n, number): what becomes of that image.
   template <class Number, class Motion>
   KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot,
-                                     const NodeSums<Space, T, Dim>& out, const Number& number_of,
-                                     const Motion& motion_of) const {
+                                     const NodeSums<Space, T, Dim>& out, const Images& images,
+                                     const Number& number_of, const Motion& motion_of) const {
     const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
     const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
     Scratch scratch = all;
     KinematicValues<T, Dim>* const nodes = scratch.take<KinematicValues<T, Dim>>(window);
     T* const mean = scratch.take<T>(cells);
     const TileOrNothing tile(scratch);
-    const Coord<Dim> from = origin(slot);  // asked for before the nodes are waited for
-    const bool lone = alone(slot) != 0;
+    const std::uint64_t lone = kind == PatchKind::common ? 0 : alone(slot);
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
       const int number = number_of(n);
       tile.set_node(n, number);
-      nodes[n] = motion_of(n, number);
+      KinematicValues<T, Dim> motion = motion_of(n, number);
+      turn_motion(images, n, motion);
+      nodes[n] = motion;
     });
-    const bool uncommon = reach(from) || lone;
-    if (reach(from)) mirror(team, from, nodes);
     T moved = 0;
-    // Compiled twice: the rule of walls takes no registers where most patches are.
-    const auto particle = [&](int p) {
-      return uncommon ? step_particle<true>(nodes, mean, slot, p, body, moved)
-                      : step_particle<false>(nodes, mean, slot, p, body, moved);
-    };
+    const auto particle = [&](int p) { return step_particle(nodes, mean, images, slot, lone, p, body, moved); };
     if constexpr (Sums) {
       tile.clear(team, cell_begin);
       team.team_barrier();
       if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
       tile.add(team, particle);
       note_movement(team, slot, moved);
-      if (uncommon && reach(origin(slot)))  // read again: kept, the origin would take registers above
-        tile.give_window(team, out.soil, grid, origin(slot));
-      else
-        tile.give_window(team, out.soil);
+      tile.give_window(team, out.soil, images);
       if (has_boundary && near_rigid(slot) != 0) {
         team.team_barrier();
         sum_patch(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, number_of, cell_begin,
-                  grid, origin(slot), out.boundary);
+                  images, out.boundary);
       }
     } else {
       team.team_barrier();
@@ -145,18 +153,6 @@ struct UpdateParticles {
     }
   }
 
-  /// The nodes beyond walls take the motion of their images.
-  KOKKOS_INLINE_FUNCTION void mirror(const Member& team, const Coord<Dim>& from,
-                                     KinematicValues<T, Dim>* nodes) const {
-    team.team_barrier();
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
-      const int image = image_in_window(grid, from, n);
-      if (image == n) return;
-      const ImageSigns<Kind::motion, T, Dim> sign(grid, from, n);
-      for (int k = 0; k < NodeKinematics<Dim>::size; ++k) nodes[n].c[k] = sign(k % Dim) * nodes[image].c[k];
-    });
-  }
-
   /// Asks the memory for what the particles of a thread hold, before their nodes are there.
   KOKKOS_INLINE_FUNCTION void prefetch_particles(const Member& team, int slot) const {
     const auto& soil = source.points;
@@ -164,7 +160,12 @@ struct UpdateParticles {
     for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
       prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
       prefetch(&soil.volume(p));
-      for (int k = 0; k < soil.history.columns; ++k) prefetch(&soil.history.column[k](p));
+      if constexpr (Dim == 2) {  // the forms that spill least: scripts/law_registers
+        for (int k = 0; k < most_state(Laws{}, true); ++k)
+          if (k < soil.history.columns) prefetch(&soil.history.column[k](p));
+      } else {
+        for (int k = 0; k < soil.history.columns; ++k) prefetch(&soil.history.column[k](p));
+      }
     }
   }
 
@@ -198,11 +199,11 @@ struct UpdateParticles {
     team.team_barrier();
   }
 
-  /// Moves particle p; `moved` [cells] becomes the largest movement so far. Uncommon: its patch is at a wall
-  /// or holds particles that are alone. Returns what the particle then gives.
-  template <bool Uncommon>
+  /// Moves particle p; `moved` [cells] becomes the largest movement so far. lone: Strays::alone of the slot.
+  /// Returns what the particle then gives.
   KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const KinematicValues<T, Dim>* nodes,
-                                                             const T* mean, int slot, int p,
+                                                             const T* mean, const Images& images, int slot,
+                                                             std::uint64_t lone, int p,
                                                              const BodyProperties<T>& common,
                                                              T& moved) const {
     const auto& soil = source.points;
@@ -210,30 +211,21 @@ struct UpdateParticles {
     const int place = soil.cell(p) - slot * cells;
     const Coord<Dim> cell = coord_of<Dim>(place);
     Particle<T, Dim> q{soil.coordinate(p), soil.velocity(p), soil.stress(p), soil.volume(p)};
-    const bool flies = Uncommon && is_alone(alone, soil.cell(p));
+    const bool flies = kind != PatchKind::common && (lone >> place & 1) != 0;
     T own = 0;
     with_weights_near(q.x, body.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-      own = advance(q, ParticleLaw<Space, T, Dim>{soil, p, body.material, law, flies},
+      own = advance(q, ParticleLaw<Space, T, Dim, Laws>{soil, p, body.material, law, flies},
                     sample_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean[place] : T(0), by);
     });
     if (flies) q.volume = soil.volume(p);
     soil.coordinate(p) = q.x;
     soil.velocity(p) = q.v;
-    bool leaves_cell = false;
-    for (int d = 0; d < Dim; ++d) leaves_cell |= !(q.x[d] >= 0 && q.x[d] < 1);
-    if (Uncommon && leaves_cell) {
-      const auto cell_along = [&](int d) {
-        return origin(slot)[d] + (place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1));
-      };
-      if (put_on_walls(grid, cell_along, soil.coordinate(p), soil.velocity(p)))
-        Kokkos::atomic_inc(&put_back(soil.body(p)));
-      q.x = soil.coordinate(p), q.v = soil.velocity(p);
-    }
+    if constexpr (kind != PatchKind::common) put_back_particle(images, slot, place, p, q);
     soil.volume(p) = q.volume;
     soil.stress(p) = q.stress;
     FaultKind fault = fault_of(q, own, by);
     if (fault != FaultKind::none) {
-      if (fault == FaultKind::not_finite && has_failed(soil, p)) fault = FaultKind::law;
+      if (fault == FaultKind::not_finite && has_failed<Laws>(soil, p)) fault = FaultKind::law;
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
       report(control, fault, soil.id(p), position, Dim);
@@ -242,11 +234,28 @@ struct UpdateParticles {
     body.mass = soil.mass_of(p, body);
     return {q.x, source.point(body, q.v, q.stress, q.volume)};
   }
+
+  /// Brings particle p, which may have passed a wall, back to it. In memory, where that takes few registers.
+  KOKKOS_INLINE_FUNCTION void put_back_particle(const Images& images, int slot, int place, int p,
+                                                Particle<T, Dim>& q) const {
+    const auto& soil = source.points;
+    // The loops of put_on_walls read the patch's place from memory: indexed by a variable, `images` and with
+    // it the kernel's arguments would be copied to the memory of each thread.
+    const auto in_patch = [&](int d) {
+      return place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1);
+    };
+    const auto cell_along = [&](int d) { return origin(slot)[d] + in_patch(d); };
+    if (!images.at_wall || !is_beyond_walls(grid, in_mesh(images.origin, coord_of<Dim>(place)), q.x)) return;
+    if (put_on_walls(grid, cell_along, soil.coordinate(p), soil.velocity(p)))
+      Kokkos::atomic_inc(&put_back(soil.body(p)));
+    q.x = soil.coordinate(p), q.v = soil.velocity(p);
+  }
 };
 
 /// Whether a team has room for the update and the sums that follow.
 template <class Space, class T, int Dim>
-inline constexpr bool sums_fit = scratch_fits<Space, T, Dim>(UpdateParticles<Space, T, Dim, true>::bytes());
+inline constexpr bool sums_fit =
+    scratch_fits<Space, T, Dim>(UpdateParticles<Space, T, Dim, true, PatchKind::any, Materials>::bytes());
 
 template <class Space, class T, int Dim>
 UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
@@ -263,13 +272,14 @@ UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
 }
 
 template <class Update, class Space, class T, int Dim>
-Update update_of(const State<Space, T, Dim>& s, double dt, int first) {
+Update update_of(const State<Space, T, Dim>& s, double dt,
+                 const Kokkos::View<int*, typename Space::memory_space>& slots, int first) {
   const auto& set = s.soil;
   const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
       reinterpret_cast<T*>(s.scratch.data()), set.points.count);
   return {.source = {set.points, s.grid.inv_spacing},
           .begin = set.bins.begin,
-          .slots = set.bins.active_slots,
+          .slots = slots,
           .neighbours = s.patches.neighbours,
           .origin = s.patches.origin,
           .kinematics = s.nodes.kinematics,

@@ -29,10 +29,10 @@ inline constexpr int k_patience = 20'000;
 /// that all teams are co-resident on the device. If some teams have not begun when the others have finished
 /// the first step, the launch ends with that step. The last team decides this. The part of the last team goes
 /// to the team that begins first, so that it is never one of those that have not begun.
-template <class Space, class T, int Dim, bool WithNodes>
+template <class Space, class T, int Dim, bool WithNodes, class Laws>
 struct PersistentStep {
   static constexpr int threads = team_threads<Space>;
-  using Update = UpdateParticles<Space, T, Dim, true>;
+  using Update = UpdateParticles<Space, T, Dim, true, PatchKind::any, Laws>;
   using NodeUpdate = UpdateNodes<Space, T, Dim>;
   using Member = typename Update::Member;
   using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_most_rigids>;
@@ -50,7 +50,7 @@ struct PersistentStep {
   Kokkos::View<LaunchBarrier, typename Space::memory_space> launch_barrier;
 
   static constexpr std::size_t bytes(int values) {
-    return (WithNodes ? scratch_bytes<int>(Update::window) + scratch_bytes<Rigid<Dim>>(values / Dim) +
+    return (WithNodes ? 2 * scratch_bytes<int>(Update::window) + scratch_bytes<Rigid<Dim>>(values / Dim) +
                             scratch_bytes<double>(values * cells)
                       : 0) +
            Update::bytes();
@@ -61,7 +61,8 @@ struct PersistentStep {
     int number, near;  // near: a rigid, as in State::near_rigid
     Coord<Dim> from;
     bool empty;
-    int* numbers;  // of the window's nodes
+    int* numbers;  // of the images of the window's nodes
+    int* images;   // WindowImages::entry of these nodes
   };
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
@@ -93,10 +94,18 @@ struct PersistentStep {
 
   KOKKOS_INLINE_FUNCTION Slot slot_of(const Member& team, Scratch& scratch, int number) const {
     const bool empty = update.begin(number * cells) == update.begin((number + 1) * cells);
-    const Slot slot{number, nodes.value_count > 0 ? update.near_rigid(number) : 0, update.origin(number),
-                    empty, scratch.take<int>(Update::window)};
-    for_each_of_window<Dim>(team, update.neighbours, number,
-                            [&](int n, int node) { slot.numbers[n] = node; });
+    const Slot slot{number,
+                    nodes.value_count > 0 ? update.near_rigid(number) : 0,
+                    update.origin(number),
+                    empty,
+                    scratch.take<int>(Update::window),
+                    scratch.take<int>(Update::window)};
+    const auto images = update.images_at(number);
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Update::window), [&](int n) {
+      slot.images[n] = images.entry(n);
+      slot.numbers[n] = number_at<decltype(update.neighbours), Dim>(update.neighbours, number,
+                                                                    window_coord<Dim>(images(n)));
+    });
     return slot;
   }
 
@@ -177,22 +186,26 @@ struct PersistentStep {
     Rigid<Dim>* const bodies = scratch.take<Rigid<Dim>>(rigid_bodies);
     double* const force = scratch.take<double>(nodes.value_count * cells);
     if (slot.near > 0) copy_rigids(team, bodies, rigid_bodies);
+    typename Update::Images images(update.grid, update.reach, slot.from);
+    images.table = slot.images;
     const auto motion_of = [&](int n, int number) {
-      const Coord<Dim> place = window_coord<Dim>(n);
-      Coord<Dim> at = slot.from;
+      const int image = images(n);
+      const Coord<Dim> place = window_coord<Dim>(n), at = in_mesh(slot.from, window_coord<Dim>(image));
       bool own = true;
-      for (int d = 0; d < Dim; ++d)
-        at[d] += place[d], own = own && place[d] >= 0 && place[d] < Patch<Dim>::edge;
+      for (int d = 0; d < Dim; ++d) own = own && place[d] >= 0 && place[d] < Patch<Dim>::edge;
       if (slot.empty && !own) return KinematicValues<T, Dim>{};
       double* const told = own && slot.near > 0 ? force + place_of<Dim>(place) : nullptr;
       for (int v = 0; v < nodes.value_count && told != nullptr; ++v) told[v * cells] = 0;
+      const bool beyond = image != n;  // of a wall, where a node has no motion of its own
       const KinematicValues<T, Dim> kinematics =
-          nodes.kinematics(present, bodies, number, at, slot.near > 0, told);
-      if (own) nodes.keep(number, kinematics);
+          nodes.kinematics(present, bodies, number, at, slot.near > 0, beyond ? nullptr : told);
+      if (own)
+        nodes.keep(slot.number * cells + place_of<Dim>(place),
+                   beyond ? KinematicValues<T, Dim>{} : kinematics);
       return kinematics;
     };
     update.update(
-        team, scratch, slot.number, next, [&](int n) { return slot.numbers[n]; }, motion_of);
+        team, scratch, slot.number, next, images, [&](int n) { return slot.numbers[n]; }, motion_of);
     clear_sums(team, last, slot.number, nodes.has_boundary, nodes.has_mass_normals ? rigid_bodies : 0);
     if (slot.near == 0) return;
     team.team_barrier();

@@ -4,9 +4,11 @@
 // registers. host_tile.hpp is the loop shape of a processor.
 
 #include <cstring>
+#include <type_traits>
 
 #include "device/warp.hpp"
 #include "loops/window.hpp"
+#include "physics/walls.hpp"
 
 namespace mpm {
 
@@ -72,7 +74,8 @@ class Tile {
         begin_(scratch.take<int>(cells + 1)),
         to_(scratch.take<int>(window)) {}
 
-  /// Before all else, as clear(), and the team must wait for both: the number of node n of the window.
+  /// Before all else, as clear(), and the team must wait for both: the number of node n of the window, that
+  /// of its image where it lies beyond a wall.
   KOKKOS_INLINE_FUNCTION void set_node(int n, int number) const { to_[n] = number - n; }
 
   /// begin(c): first particle of cell c of the patch.
@@ -99,25 +102,17 @@ class Tile {
     }
   }
 
-  /// Adds the window to the nodes; other teams do so too.
-  template <class Team, class Field>
-  KOKKOS_INLINE_FUNCTION void give_window(const Team& team, const Field& out) const {
+  /// Adds the window to the nodes; other teams do so too. images: NoImages, or WindowImages.
+  template <class Team, class Field, class Images>
+  KOKKOS_INLINE_FUNCTION void give_window(const Team& team, const Field& out, const Images& images) const {
+    if constexpr (!std::is_same_v<Images, NoImages>)
+      if (images.at_wall) {
+        turn_sums<Source>(team, images, sums_);
+        team.team_barrier();
+      }
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int m) {
       const T own = sums_[m];  // neighbours in memory by neighbouring threads
       if (own != 0) Kokkos::atomic_add(out.data() + (m + size * static_cast<long>(to_[m / size])), own);
-    });
-  }
-  /// The same of a patch at a wall, which is at `origin`: what nodes beyond have goes to their images.
-  template <class Team, class Field>
-  KOKKOS_INLINE_FUNCTION void give_window(const Team& team, const Field& out, const Grid<T, Dim>& grid,
-                                          const Coord<Dim>& origin) const {
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
-      const int image = image_in_window(grid, origin, n), number = to_[image] + image;
-      const ImageSigns<Source::kind, T, Dim> sign(grid, origin, n);
-      for (int v = 0; v < size; ++v) {
-        const T own = sign(Source::component(v)) * sums_[n * size + v];
-        if (own != 0) Kokkos::atomic_add(&out(number, v), own);
-      }
     });
   }
 
@@ -243,12 +238,12 @@ class Tile {
   }
 };
 
-/// A team gives the points of a slot to the nodes. number_of(n): of node n of the window; cell_begin(c): the
-/// first point of cell c of the patch, which is at `origin`.
-template <class Source, class Team, class Number, class Begin, class T, int Dim, class Field>
+/// A team gives the points of a slot to the nodes. number_of(n): of the image of node n of the window, as
+/// `images` tells it; cell_begin(c): the first point of cell c of the patch.
+template <class Source, class Team, class Number, class Begin, class Images, class Field>
 KOKKOS_INLINE_FUNCTION void sum_patch(const Team& team, Scratch scratch, const Source& source,
-                                      const Number& number_of, const Begin& cell_begin,
-                                      const Grid<T, Dim>& grid, const Coord<Dim>& origin, const Field& out) {
+                                      const Number& number_of, const Begin& cell_begin, const Images& images,
+                                      const Field& out) {
   using Tile_ = Tile<Source>;
   const Tile_ tile(scratch);
   Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Source::dim>::window),
@@ -256,10 +251,7 @@ KOKKOS_INLINE_FUNCTION void sum_patch(const Team& team, Scratch scratch, const S
   tile.clear(team, cell_begin);
   team.team_barrier();
   tile.add(team, [&](int p) { return typename Tile_::Entry{source.points.coordinate(p), source.load(p)}; });
-  if (reaches_wall(grid, origin))
-    tile.give_window(team, out, grid, origin);
-  else
-    tile.give_window(team, out);
+  tile.give_window(team, out, images);
 }
 
 }  // namespace mpm

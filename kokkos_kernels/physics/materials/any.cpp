@@ -8,7 +8,8 @@ namespace mpm {
 namespace {
 
 template <class T, template <class> class... Models>
-AnyMaterial<T> make(ModelList<Models...>, int which, const std::vector<double>& values) {
+AnyMaterial<T> make(ModelList<Models...>, int which, const std::vector<double>& values,
+                    [[maybe_unused]] const void* object) {
   AnyMaterial<T> any;
   any.which = which;
   int k = 0;
@@ -22,6 +23,8 @@ AnyMaterial<T> make(ModelList<Models...>, int which, const std::vector<double>& 
           static_cast<T>(left_out ? parameter.standard : values.at(n));
       ++n;
     }
+    if constexpr (requires { typename Model::Object; })
+      reinterpret_cast<Model*>(any.bytes)->object = static_cast<const typename Model::Object*>(object);
     reinterpret_cast<Model*>(any.bytes)->prepare();
   };
   (void)((which == k++ ? (fill(static_cast<Models<T>*>(nullptr)), true) : false) || ...);
@@ -42,6 +45,11 @@ std::vector<std::vector<StateVariable>> tables(ModelList<Models...>) {
 template <template <class> class... Models>
 std::vector<bool> changing(ModelList<Models...>) {
   return {stiffness_changes<Models<double>>()...};
+}
+
+template <template <class> class... Models>
+std::vector<bool> of_host(ModelList<Models...>) {
+  return {on_host_in_double<Models<double>>()...};
 }
 
 template <class Law>
@@ -67,17 +75,40 @@ auto start_of(const Law& law, double height, const std::array<double, 6>& stress
 }  // namespace
 
 template <class T>
-AnyMaterial<T> make_material(int which, const std::vector<double>& parameters) {
-  return make<T>(Materials{}, which, parameters);
+AnyMaterial<T> make_material(int which, const std::vector<double>& parameters, const void* object) {
+  return make<T>(Materials{}, which, parameters, object);
 }
-template AnyMaterial<float> make_material<float>(int, const std::vector<double>&);
-template AnyMaterial<double> make_material<double>(int, const std::vector<double>&);
+template AnyMaterial<float> make_material<float>(int, const std::vector<double>&, const void*);
+template AnyMaterial<double> make_material<double>(int, const std::vector<double>&, const void*);
+
+std::shared_ptr<const void> make_object(int which, const LawSetup& setup, ParameterFault& fault) {
+  std::shared_ptr<const void> object;
+  AnyMaterial<double> any;  // the law's type alone is asked for
+  any.visit_as(Materials{}, which, [&](const auto& law) {
+    using Law = std::decay_t<decltype(law)>;
+    if constexpr (requires { typename Law::Object; }) object = Law::make_object(setup, fault);
+  });
+  return object;
+}
+
+template <class T>
+StoredMaterial<T> store_material(int which, const std::vector<double>& parameters, const void* object,
+                                 double pore_stiffness) {
+  StoredMaterial<T> stored{};
+  auto* const material = new (stored.bytes) AnyMaterial<T>(make_material<T>(which, parameters, object));
+  material->pore_stiffness = static_cast<T>(pore_stiffness);
+  return stored;
+}
+template StoredMaterial<float> store_material<float>(int, const std::vector<double>&, const void*, double);
+template StoredMaterial<double> store_material<double>(int, const std::vector<double>&, const void*, double);
 
 std::vector<const char*> material_models() { return names(Materials{}); }
 
 std::vector<StateVariable> state_variables(int which) { return tables(Materials{})[which]; }
 
 bool stiffness_changes(int which) { return changing(Materials{})[which]; }
+
+bool on_host_in_double(int which) { return of_host(Materials{})[which]; }
 
 ParameterFault parameter_fault(const AnyMaterial<double>& material) {
   ParameterFault fault;

@@ -3,10 +3,14 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "base/spaces.hpp"
 #include "physics/materials/list.hpp"
+#include "physics/materials/stored.hpp"
 
 namespace mpm {
 
@@ -18,34 +22,62 @@ template <class T, template <class> class... Models>
 struct OneOf<T, ModelList<Models...>> {
   static constexpr std::size_t k_bytes = Kokkos::max({sizeof(Models<T>)...});
   int which = -1;
+  T pore_stiffness = 0;  // Pa, of the water in the pores (physics/pore_water.hpp); 0: the pores drain
   alignas(16) unsigned char bytes[k_bytes];
 
   template <class F>
   KOKKOS_INLINE_FUNCTION void visit(F&& f) const {
-    visit_as(which, f);
+    visit_as(ModelList<Models...>{}, which, f);
   }
-  /// The same where the caller knows which model it is.
-  template <class F>
-  KOKKOS_INLINE_FUNCTION void visit_as(int known, F&& f) const {
-    int k = 0;
-    (void)((known == k++ ? (f(*reinterpret_cast<const Models<T>*>(bytes)), true) : false) || ...);
+  /// The same where the caller knows which model it is, and that it is of some list.
+  template <template <class> class... Some, class F>
+  KOKKOS_INLINE_FUNCTION void visit_as(ModelList<Some...>, int known, F&& f) const {
+    (void)((known == model_index_in<Some>(Materials{})
+                ? (call(f, *reinterpret_cast<const Some<T>*>(bytes)), true)
+                : false) ||
+           ...);
+  }
+
+ private:
+  /// Calls f(law), where code for the law is built at all.
+  template <class F, class Law>
+  static KOKKOS_INLINE_FUNCTION void call([[maybe_unused]] F&& f, [[maybe_unused]] const Law& law) {
+    if constexpr (!on_host_in_double<Law>())
+      f(law);
+    else if constexpr (std::is_same_v<T, double>)
+      KOKKOS_IF_ON_HOST((f(law);))
   }
 };
 
 template <class T>
 using AnyMaterial = OneOf<T, Materials>;
 
-/// A material by its model's index in Materials and its parameters in the order of the model's table. The
-/// last ones may be left out where they have defaults.
+/// The material that a table of a device holds.
 template <class T>
-AnyMaterial<T> make_material(int which, const std::vector<double>& parameters);
-
-/// The most state variables of any law.
-template <template <class> class... Models>
-constexpr int most_state(ModelList<Models...>) {
-  return Kokkos::max({1, state_size<Models<double>>...});
+KOKKOS_INLINE_FUNCTION const AnyMaterial<T>& material_in(const StoredMaterial<T>& stored) {
+  static_assert(sizeof(AnyMaterial<T>) <= sizeof(StoredMaterial<T>) &&
+                    alignof(AnyMaterial<T>) <= alignof(StoredMaterial<T>) &&
+                    std::is_trivially_copyable_v<AnyMaterial<T>>,
+                "a law has more parameters than StoredMaterial has room for");
+  return *reinterpret_cast<const AnyMaterial<T>*>(stored.bytes);
 }
-inline constexpr int k_most_state = most_state(Materials{});
+
+/// A material by its model's index in Materials and its parameters in the order of the model's table. The
+/// last ones may be left out where they have defaults. object: what make_object made, which must stay.
+template <class T>
+AnyMaterial<T> make_material(int which, const std::vector<double>& parameters, const void* object = nullptr);
+
+/// The object of a material, where its law has one, else null. Where it cannot be made, fault tells why.
+std::shared_ptr<const void> make_object(int which, const LawSetup& setup, ParameterFault& fault);
+
+/// The most state variables of any law; on a device those that run on processors alone do not count.
+template <template <class> class... Models>
+constexpr int most_state(ModelList<Models...>, bool device) {
+  return Kokkos::max({1, device && on_host_in_double<Models<double>>() ? 0 : state_size<Models<double>>...});
+}
+static_assert(most_state(Materials{}, true) <= k_most_state_on_device &&
+                  most_state(Materials{}, false) <= k_most_state_on_host,
+              "a law has more state variables than there is room for");
 
 /// What is wrong with the parameters of a material together.
 ParameterFault parameter_fault(const AnyMaterial<double>& material);

@@ -16,7 +16,7 @@ template <class T>
 struct CamClay {
   using real = T;
   static constexpr const char* k_name = "cam_clay";
-  static constexpr bool k_scalar_update = true, k_stiffness_changes = true;
+  static constexpr bool k_scalar_update = true, k_called_update = true, k_stiffness_changes = true;
   /// What a failed particle is said to have; see failed().
   static constexpr const char* k_failure =
       "has a specific volume of 1.02 or less, or strained by more than 0.0064 in one step: cam_clay does not "
@@ -28,7 +28,7 @@ struct CamClay {
 
   T critical_state_ratio, lambda, kappa, poisson, shear_modulus, specific_volume_start, ocr,
       preconsolidation_start, pressure_min;
-  T shear_share;  // -, G over K where Poisson's ratio is constant, else 0
+  T shear_ratio;  // -, G over K where Poisson's ratio is constant, else 0
   T least;        // Pa, pressure_min or its default
 
   static constexpr auto parameters() {
@@ -63,7 +63,7 @@ struct CamClay {
   /// Called once the parameters are set.
   void prepare() {
     const double nu = poisson;
-    shear_share = shear_modulus > 0 ? T(0) : static_cast<T>(3 * (1 - 2 * nu) / (2 * (1 + nu)));
+    shear_ratio = shear_modulus > 0 ? T(0) : static_cast<T>(3 * (1 - 2 * nu) / (2 * (1 + nu)));
     least = pressure_min > 0 ? pressure_min : static_cast<T>(k_standard_least);
   }
   /// The default of pressure_min follows from the initial stress.
@@ -154,7 +154,7 @@ struct CamClay {
 
  private:
   KOKKOS_INLINE_FUNCTION T shear_modulus_of_step(T bulk_modulus) const {
-    return shear_share > 0 ? shear_share * bulk_modulus : shear_modulus;
+    return shear_ratio > 0 ? shear_ratio * bulk_modulus : shear_modulus;
   }
 
   /// One sub-increment of strain `e`.
@@ -163,8 +163,8 @@ struct CamClay {
                                         const SymTensor<T, Dim>& e) const {
     const T mean = mean_of(s), p = Kokkos::fmax(T(0), -mean), pc = state[preconsolidation];
     const T dilatation = e[0] + e[1] + e[2], v = state[specific_volume],
-            v_middle = v * Kokkos::exp(dilatation / 2);
-    add_with_rest(state[specific_volume], state[specific_volume_rest], v * Kokkos::expm1(dilatation));
+            v_middle = v * (1 + growth_of(dilatation / 2));
+    add_with_rest(state[specific_volume], state[specific_volume_rest], v * growth_of(dilatation));
     const T a = v_middle / kappa, b = v_middle / (lambda - kappa);
     const ElasticPressure<T> elastic{least};
     const T rise = elastic.change(p, -a * dilatation), trial = p + rise;
@@ -180,15 +180,14 @@ struct CamClay {
     const T slope2 = critical_state_ratio * critical_state_ratio;
     if (q * q / slope2 + over * (over - 1) <= 0) return;
     const CamClayReturn<T> to_surface{{least / pc}, p / pc, -dilatation, a, b, q, over, shear / pc, slope2};
-    T l, x;  // multiplier times Pc, plastic volume strain
-    to_surface.solve(l, x);
+    const auto [l, x] = root_of(to_surface);  // multiplier times Pc, plastic volume strain
     const T less = rise - elastic.change(p, a * (-dilatation - x)), softer = 6 * (shear / pc) * l / slope2;
     const bool free = !(trial - less > 0);
     const T from = mean_of(s), share = 1 / (1 + softer);
     for (int k = 0; k < sym_size<Dim>; ++k)
       s[k] = free ? T(0) : s[k] + (k < 3 ? less - softer * share * (s[k] - from) : -softer * share * s[k]);
     add_with_rest(state[preconsolidation], state[preconsolidation_rest],
-                  pc * Kokkos::expm1(Kokkos::fmin(T(4), Kokkos::fmax(T(-4), b * x))));
+                  pc * growth_of(Kokkos::fmin(T(4), Kokkos::fmax(T(-4), b * x))));
     if (!(state[preconsolidation] > least)) state[preconsolidation] = least, state[preconsolidation_rest] = 0;
   }
 };

@@ -42,7 +42,7 @@ struct LinearElastic {
   ParameterFault check() const { return {}; }
   std::array<double, 1> initial_state(const ParticleStart& at) const {
     const double depth = at.height < young_datum ? young_datum - at.height : 0.0;
-    return {1 + young_gradient * depth / young};
+    return {{1 + young_gradient * depth / young}};  // nvcc drops a single pair of braces
   }
   /// Young's modulus of the particle over `young`.
   template <class R>

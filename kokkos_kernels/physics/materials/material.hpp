@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "base/types.hpp"
 #include "device/warp.hpp"
@@ -28,6 +29,31 @@ struct Parameter {
   double standard;                          // default; NaN where the parameter is required
   const char* instead_of = nullptr;         // key of the parameter whose place it takes where it is given
   std::array<ParameterWord, 3> words = {};  // words, beside or in lieu of numbers; a list may be shorter
+};
+
+/// One row of a model's table of options that are texts (its optional member `texts`).
+struct TextOption {
+  const char* key;  // option key: -NAME_key
+  const char* meaning;
+  const char* takes;             // "takes ..." of the option
+  bool required = false;         // else it may be left out, and is empty
+  bool list_of_numbers = false;  // numbers with commas between them, which the option reader checks
+};
+
+/// What an object of a law is made from (the optional members Object and make_object of a law): what does not
+/// fit into the law itself, which kernels copy.
+struct LawSetup {
+  std::string material;            // name
+  std::vector<std::string> texts;  // values of the options of texts(), in its order
+  int dim = 2;
+  std::array<double, 3> lower{};  // m, lower corner of the mesh
+  double spacing = 1;             // m, edge of the mesh's cells
+};
+
+/// Which particle a law updates, for laws that ask (k_takes_place).
+struct ParticlePlace {
+  int id = 0;                        // order of creation
+  std::array<double, 3> position{};  // m, from the lower corner of the mesh
 };
 
 /// How a particle is when it is created: a law's initial_state() follows from it.
@@ -68,7 +94,7 @@ struct Clock {
 /// What a step does to a particle, as its law sees it. R: the real type T, or lanes of it.
 template <class R, class T, int Dim>
 struct Increment {
-  SymTensor<R, Dim> strain;  // -, tensor shear strains, with the cell's share of dilatation (F-bar)
+  SymTensor<R, Dim> strain;  // -, tensor shear strains, with the cell's fraction of dilatation (F-bar)
   Spin<R, Dim> spin;         // -
   R gradient[Dim][Dim];      // 1/s, L_ij = dv_i/dx_j
   T dt;                      // s
@@ -96,6 +122,13 @@ constexpr bool has_scalar_update() {
   if constexpr (requires { Law::k_scalar_update; }) return Law::k_scalar_update;
   return false;
 }
+/// Whether a GPU calls a law's update as a function (k_called_update), as one that takes many registers, so
+/// that the kernel needs none for it.
+template <class Law>
+constexpr bool has_called_update() {
+  if constexpr (requires { Law::k_called_update; }) return Law::k_called_update;
+  return false;
+}
 /// Whether the stiffness of a law depends on stress or state (k_stiffness_changes), so that the time step has
 /// to follow it.
 template <class Law>
@@ -104,12 +137,49 @@ constexpr bool stiffness_changes() {
   return false;
 }
 
+/// Whether a law runs on processors in double precision alone (k_host_double): no kernel of a GPU and none in
+/// single precision holds its code.
+template <class Law>
+constexpr bool on_host_in_double() {
+  if constexpr (requires { Law::k_host_double; }) return Law::k_host_double;
+  return false;
+}
+
+/// Whether the update of a law takes the particle's place too (k_takes_place).
+template <class Law>
+constexpr bool takes_place() {
+  if constexpr (requires { Law::k_takes_place; }) return Law::k_takes_place;
+  return false;
+}
+
+/// Whether the update of a law changes all of its state variables.
+template <class Law>
+constexpr bool changes_all() {
+  for (const StateVariable& variable : Law::state())
+    if (!variable.changes) return false;
+  return true;
+}
+
 /// Whether a law has states that end the run (failed).
 template <class Law>
 constexpr bool can_fail() {
   return requires(const Law& law, const LawState<typename Law::real, state_size<Law>>& state) {
     law.failed(state);
   };
+}
+
+/// What a law makes of a particle.
+template <class Law, int Dim>
+struct Updated {
+  SymTensor<typename Law::real, Dim> stress;
+  LawState<typename Law::real, state_size<Law>> state;
+};
+/// A law's update of one particle, as a function that a GPU calls.
+template <class Law, int Dim>
+MPM_CALLED_FUNCTION Updated<Law, Dim> called_update(
+    const Law& law, Updated<Law, Dim> particle, Increment<typename Law::real, typename Law::real, Dim> by) {
+  law.update(particle.stress, particle.state, by);
+  return particle;
 }
 
 /// Stress turned with the material by the spin times dt: Q s Q^T with Q = (I - w/2)^-1 (I + w/2), which is a
@@ -124,19 +194,25 @@ KOKKOS_INLINE_FUNCTION SymTensor<T, 2> rotated(const SymTensor<T, 2>& s, const S
   return {mean + half_new, mean - half_new, s[2], cos_2a * s[3] - sin_2a * half};
 }
 
+/// The rotation Q itself: Cayley transform of the skew tensor W with axial vector a,
+/// Q = I + (2/(1+|a|^2/4)) (W/2 + W^2/4).
 template <class T>
-KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const Spin<T, 3>& w) {
-  // Cayley transform of the skew tensor W with axial vector a: Q = I + (2/(1+|a|^2/4)) (W/2 + W^2/4)
+KOKKOS_INLINE_FUNCTION void rotation_of(const Spin<T, 3>& w, T (&q)[3][3]) {
   const T half[3][3] = {
       {0, w.c[0] / 2, -w.c[2] / 2}, {-w.c[0] / 2, 0, w.c[1] / 2}, {w.c[2] / 2, -w.c[1] / 2, 0}};
   const T scale = 2 / (1 + (w.c[0] * w.c[0] + w.c[1] * w.c[1] + w.c[2] * w.c[2]) / 4);
-  T q[3][3];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       T square = 0;
       for (int k = 0; k < 3; ++k) square += half[i][k] * half[k][j];
       q[i][j] = (i == j) + scale * (half[i][j] + square);
     }
+}
+
+template <class T>
+KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const Spin<T, 3>& w) {
+  T q[3][3];
+  rotation_of(w, q);
   SymTensor<T, 3> r;
   for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j) {

@@ -174,7 +174,7 @@ KOKKOS_INLINE_FUNCTION void return_to_pyramid(const PyramidShape<T>& shape, cons
 }
 
 /// Whether a stress is inside of the surface for any direction of its deviator: a bound without principal
-/// stresses, which spares most particles in 3D their axes. With r = sqrt(J2), s1 <= p + 2 r / sqrt(3) and
+/// stresses, which spares most particles their axes. With r = sqrt(J2), s1 <= p + 2 r / sqrt(3) and
 /// k s1 - s3 <= (k - 1) p + steepness r.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool is_well_inside(const PyramidShape<T>& shape, const PyramidSize<T>& size,
@@ -184,18 +184,23 @@ KOKKOS_INLINE_FUNCTION bool is_well_inside(const PyramidShape<T>& shape, const P
          (!size.cuts || mean + T(1.1547005383792515) * r < size.cut_off);
 }
 
-/// Returns a stress to the surface. The stress of a particle that does not yield keeps its bits. The result
-/// is the engineering shear strain of the plastic increment, sqrt(2 de_p : de_p) of its deviator.
+/// A stress on the surface, and the engineering shear strain of the plastic increment that led there,
+/// sqrt(2 de_p : de_p) of its deviator.
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION T return_stress(const PyramidShape<T>& shape, const PyramidSize<T>& whole,
-                                       T shear_modulus, SymTensor<T, Dim>& stress) {
-  const T mean = mean_of(stress);
-  if constexpr (Dim == 3)
-    if (is_well_inside(shape, whole, stress, mean)) return 0;
+struct ReturnedStress {
+  SymTensor<T, Dim> stress;
+  T strain;
+};
+
+/// The return of a stress with this mean that may be outside of the surface.
+template <class T, int Dim>
+MPM_CALLED_FUNCTION ReturnedStress<T, Dim> returned_stress(const PyramidShape<T>& shape, PyramidSize<T> whole,
+                                                           T shear_modulus, SymTensor<T, Dim> stress,
+                                                           T mean) {
   const auto principal = principal_of(stress, mean);
   const PyramidSize<T> size = whole.without(mean, shape.k);
   const Sorted3<T> trial = sorted_down(principal.value);
-  if (outside(shape, size, trial.value[0], trial.value[2]) <= 0) return 0;
+  if (outside(shape, size, trial.value[0], trial.value[2]) <= 0) return {stress, 0};
   T by[3];
   return_to_pyramid(shape, size, trial.value, by);
   for (int k = 0; k < 3; ++k) by[k] -= trial.value[k];
@@ -204,7 +209,19 @@ KOKKOS_INLINE_FUNCTION T return_stress(const PyramidShape<T>& shape, const Pyram
   for (int k = 0; k < 3; ++k) square += (by[k] - mean_by) * (by[k] - mean_by);
   unsort(trial, by);
   add_along_axes(stress, principal, by);
-  return Kokkos::sqrt(square / 2) / shear_modulus;
+  return {stress, Kokkos::sqrt(square / 2) / shear_modulus};
+}
+
+/// Returns a stress to the surface. The stress of a particle that does not yield keeps its bits. The result
+/// is ReturnedStress::strain.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T return_stress(const PyramidShape<T>& shape, const PyramidSize<T>& size,
+                                       T shear_modulus, SymTensor<T, Dim>& stress) {
+  const T mean = mean_of(stress);
+  if (is_well_inside(shape, size, stress, mean)) return 0;
+  const ReturnedStress<T, Dim> back = returned_stress(shape, size, shear_modulus, stress, mean);
+  stress = back.stress;
+  return back.strain;
 }
 
 }  // namespace mpm

@@ -15,10 +15,10 @@ template <class T>
 struct PowerElastic {
   using real = T;
   static constexpr const char* k_name = "power_elastic";
-  static constexpr bool k_scalar_update = true, k_stiffness_changes = true;
+  static constexpr bool k_scalar_update = true, k_called_update = true, k_stiffness_changes = true;
   T bulk_modulus, pressure_reference, exponent, pressure_offset, pressure_min, poisson;
   T factor;       // Pa^(1-n), K / X^n
-  T shear_share;  // -, G / K
+  T shear_ratio;  // -, G / K
 
   static constexpr auto parameters() {
     constexpr double required = std::numeric_limits<double>::quiet_NaN();
@@ -37,20 +37,20 @@ struct PowerElastic {
   /// Called once the parameters are set.
   void prepare() {
     factor = static_cast<T>(bulk_modulus / std::pow(double(pressure_reference), double(exponent)));
-    shear_share = static_cast<T>(3 * (1 - 2.0 * poisson) / (2 * (1.0 + poisson)));
+    shear_ratio = static_cast<T>(3 * (1 - 2.0 * poisson) / (2 * (1.0 + poisson)));
   }
   static constexpr std::array<StateVariable, 0> state() { return {}; }
   ParameterFault check() const { return {}; }
   std::array<double, 0> initial_state(const ParticleStart&) const { return {}; }
 
   /// K [Pa] at X = P + pressure_offset [Pa].
-  KOKKOS_FUNCTION T bulk_modulus_at(T x) const {
+  MPM_CALLED_FUNCTION T bulk_modulus_at(T x) const {
     return factor * Kokkos::pow(Kokkos::fmax(x, pressure_min), exponent);
   }
   /// K + 4 G / 3 [Pa], which gives the speed of the fastest wave (Eq. 14).
   template <int Dim>
   KOKKOS_FUNCTION T wave_modulus(const SymTensor<T, Dim>& stress, const LawState<T, 0>&) const {
-    return bulk_modulus_at(pressure_offset - mean_of(stress)) * (1 + shear_share * 4 / 3);
+    return bulk_modulus_at(pressure_offset - mean_of(stress)) * (1 + shear_ratio * 4 / 3);
   }
   /// Undrained shear strength [Pa]; none here.
   KOKKOS_FUNCTION T shear_strength(const LawState<T, 0>&) const { return 0; }
@@ -65,7 +65,7 @@ struct PowerElastic {
     const double middle = (below + start_below) / 2 - pressure_offset;
     const double linear = (below - start_below) * middle / Kokkos::pow(least, double(exponent));
     return static_cast<T>((power_energy(above) - power_energy(start) + linear) / factor) +
-           shear * shear / (2 * shear_share * bulk_modulus_at(x));
+           shear * shear / (2 * shear_ratio * bulk_modulus_at(x));
   }
 
   template <int Dim>
@@ -73,13 +73,13 @@ struct PowerElastic {
     s = rotated(s, by.spin);
     const T dilatation = by.strain[0] + by.strain[1] + by.strain[2];
     const T before = pressure_offset - mean_of(s), grown = growth(before, -dilatation);
-    add_shear(s, by.strain, dilatation, shear_share * bulk_modulus_at(before + grown / 2));
+    add_shear(s, by.strain, dilatation, shear_ratio * bulk_modulus_at(before + grown / 2));
     for (int d = 0; d < 3; ++d) s[d] -= grown;
   }
 
   /// Growth of X [Pa] from x by a volume strain, compression positive: exact, and to round-off of the growth,
   /// which may be far below that of X. Below pressure_min the modulus is constant.
-  KOKKOS_FUNCTION T growth(T x, T compression) const {
+  MPM_CALLED_FUNCTION T growth(T x, T compression) const {
     const T least = pressure_min, slope = bulk_modulus_at(least);  // Pa
     if (x < least) {
       const T straight = slope * compression;

@@ -13,7 +13,7 @@ namespace mpm {
 template <class T>
 struct SofteningClay : Clay<T> {
   static constexpr const char* k_name = "softening_clay";
-  static constexpr bool k_scalar_update = true;
+  static constexpr bool k_scalar_update = true, k_called_update = true;
   static constexpr double k_most_decades = 9;  // that R takes of the rate: beyond is the noise of waves
   enum Surface : int { von_mises, tresca };
   T remoulded_ratio, xi95, xi95_cell, rate_factor, rate_reference, rate_time, surface;

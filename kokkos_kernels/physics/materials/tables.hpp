@@ -14,11 +14,18 @@ struct StateVariable {
   bool output = true;   // frames have it
 };
 
+/// Name of the excess pore pressure [Pa] in frames, checkpoints and files of particles. Particles of a
+/// material with a pore stiffness carry it beside the state of their law.
+inline constexpr const char* k_excess_pore_pressure = "excess_pore_pressure";
+
 /// Name of each model in the list, in its order.
 std::vector<const char*> material_models();
 
 /// Whether the stiffness of the model of this index in Materials depends on stress or state.
 bool stiffness_changes(int which);
+
+/// Whether the model of this index in Materials runs on processors in double precision alone.
+bool on_host_in_double(int which);
 
 /// What a particle is said to have that the model of this index in Materials calls failed; empty where no
 /// state is a failure.

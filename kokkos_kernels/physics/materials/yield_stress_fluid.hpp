@@ -95,7 +95,7 @@ struct YieldStressFluid {
   };
   /// Solves beyond = G g dt + k g^n: in the share y of the part that is linear in the unknown, and a y^p of
   /// the other one. For n < 1 the unknown is the stress, else the rate, so that p >= 1.
-  KOKKOS_FUNCTION Flow flow(T beyond, T dt) const {
+  MPM_CALLED_FUNCTION Flow flow(T beyond, T dt) const {
     const T stiffness = shear_modulus * dt;  // Pa s
     if (exponent == 1) {
       const T rate = beyond / (stiffness + consistency);

@@ -3,8 +3,10 @@
 // per metre of width and the third component of a vector is zero and unused.
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "choices.hpp"
@@ -53,8 +55,10 @@ struct Shape {
 /// A material: its model's name, density, and the model's parameters in the order of the model's own table.
 struct MaterialConfig {
   std::string name, model;
-  double density = 0;              // kg/m3
-  std::vector<double> parameters;  // as Model::parameters() lists them
+  double density = 0;                    // kg/m3
+  std::vector<double> parameters;        // as Model::parameters() lists them
+  std::shared_ptr<const void> object{};  // what the model made of its options that are texts; most need none
+  double pore_stiffness = 0;             // Pa, of the water in its pores, which does not flow; 0: they drain
 };
 
 /// A deformable body.
@@ -86,13 +90,13 @@ struct RigidConfig {
   double density = 0;              // kg/m3 (dynamic)
   Vec3 force{};                    // N, external (dynamic), beside gravity
   double shear_limit = 0;          // Pa, largest shear stress of the interface; 0 is smooth
-  std::optional<double> shear_share;  // -, the limit as a share of the soil's strength, instead of it
+  std::optional<double> shear_fraction;  // -, the limit as a fraction of the soil's strength, instead of it
   std::optional<double> friction;     // -, Coulomb coefficient
   ContactNormal contact_normal = ContactNormal::surface;
   bool separates = true;         // the soil may part from it
-  bool penalty = true;           // the normal correction decreases with the gap (Geo-contact)
-  double penalty_reach = 0.15;   // cells, gap at which it ends
-  double penalty_exponent = 6;   // -
+  bool contact_gap_scaling = true;  // the normal correction decreases with the gap (Geo-contact)
+  double contact_gap_reach = 0.15;  // cells, gap at which it ends
+  double contact_gap_exponent = 6;  // -
   bool has_shear_limit = false;  // -NAME_shear_limit was given (it then bounds the friction too)
 };
 
@@ -117,7 +121,7 @@ struct P2GConfig {
 /// METIS cuts.
 enum class PartitionKind { box, metis };
 
-/// How the shares of nodes travel from rank to rank (-halo_path): through the host's memory, by MPI from
+/// How the ghost sums of nodes travel from rank to rank (-halo_path): through the host's memory, by MPI from
 /// where kernels run, or straight into the other rank's memory.
 enum class HaloPath { automatic, host, device, peer };
 
@@ -125,7 +129,7 @@ struct PartitionConfig {
   PartitionKind kind = PartitionKind::box;
   double rebalance_threshold = 1.1;  // -, largest over mean work of the ranks above which METIS cuts anew
   HaloPath halo_path = HaloPath::automatic;
-  bool halo_overlap = true;  // shares travel while other patches are computed
+  bool halo_overlap = true;  // ghost sums travel while other patches are computed
 };
 
 enum class Progress { automatic, on, off };
@@ -147,6 +151,36 @@ struct OutputConfig {
   std::vector<std::string> restart_change;  // names of options, without dash, that may differ from its own
 };
 
+/// Water at rest, in which the soil is submerged.
+struct WaterConfig {
+  std::optional<double> level;  // m, of its surface: height against gravity; none: there is no water
+  double density = 1000;        // kg/m3
+};
+
+/// What drives a component over a row of a path: an increment of strain, the strain since the start that it
+/// ends with, or an increment of stress.
+enum class Drive { strain, total_strain, stress };
+
+/// A row of the path of a single material point.
+struct ElementRow {
+  long line = 0;  // of the file
+  double dt = 1;  // s
+  std::array<Drive, 6> drive{};
+  Sym6 value{};  // -, tensor shear strains; Pa
+};
+
+/// A single material point that is driven along a path, in lieu of a mesh.
+struct ElementConfig {
+  std::string file;                           // CSV; empty: an ordinary run
+  int parts = 40;                             // equal parts in which each row is done
+  double height = 0;                          // m, of the point, for parameters that grow with depth
+  double time = 0;                            // s, at the start
+  bool timed = false;                         // the file has times; otherwise each row takes 1 s
+  Sym6 stress{};                              // Pa, at the start
+  std::vector<std::pair<int, double>> state;  // state variables of the law that the file gives for the start
+  std::vector<ElementRow> rows;
+};
+
 inline constexpr double k_gib = 1024.0 * 1024 * 1024;  // bytes
 
 /// Everything that a run needs to know.
@@ -159,17 +193,19 @@ struct Config {
   PartitionConfig partition;
   MeshConfig mesh;
   Vec3 gravity{};  // m/s2
+  WaterConfig water;
   TimeConfig time;
   double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
   VelocityUpdate velocity_update = VelocityUpdate::flip;
   int xpic_order = 2;         // -, m of XPIC(m), with xpic
-  double flip_share = 1;      // -, share of FLIP in the velocity update, the rest PIC, or XPIC with xpic
+  double flip_fraction = 1;   // -, fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic
   StrayRule stray_particles = StrayRule::keep;
-  double f_bar_share = 0.98;  // -, share of the cell's mean in a particle's dilatation (F-bar)
+  double f_bar_fraction = 0.98;  // -, fraction of the cell's mean in a particle's dilatation (F-bar)
   std::vector<MaterialConfig> materials;
   std::vector<BodyConfig> bodies;
   std::vector<RigidConfig> rigids;
   OutputConfig output;
+  ElementConfig element;
   bool dry_run = false;  // tell what the run would take, and do not run
 };
 

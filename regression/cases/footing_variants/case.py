@@ -18,7 +18,7 @@ FULL = " -mesh_lower -3,0 -soil_lower -3,0 -plate_lower -0.5,4"
 AWAY = (" -mesh_lower 200,0 -mesh_upper 203,4.45 -soil_lower 200,0 -soil_upper 203,4"
         " -plate_lower 200,4 -plate_upper 200.5,4.05")
 MIRROR = (" -precision single -mesh_upper 0,4.45 -soil_lower -3,0 -soil_upper 0,4 -plate_lower -0.5,4 -plate_upper 0,4.05"
-          " -rigids plate,bank -bank_shape box -bank_lower -3.2,0 -bank_upper -3,4.45")
+          " -rigid_bodies plate,bank -bank_shape box -bank_lower -3.2,0 -bank_upper -3,4.45")
 STRATEGIES = ("atomic", "mosaic", "gather", "tile")
 RUNS = {
     "half": "-p2g sequential",

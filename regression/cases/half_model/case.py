@@ -18,10 +18,10 @@ SPACE = ("-dim 3 -mesh_spacing 0.125 -mesh_upper 1,1,1 -soil_upper 1,1,0 -pipe_v
 WHOLE, QUARTER = ("-mesh_lower {0},{0},-1 -soil_lower {0},{0},-1 ".format(x) for x in (-1, 0))
 BALL = SPACE + "-pipe_shape ball -pipe_centre 0,0,0.5 -pipe_radius 0.5 "
 PILE = SPACE + ("-pipe_shape cylinder -pipe_centre 0,0,-0.5 -pipe_radius 0.25 -pipe_height 1.5 -pipe_tip_angle_deg 60 "
-                "-soil_cut_out pipe -clay_su_gradient 3000 -pipe_shear_share 0.5 ")
+                "-soil_cut_out pipe -clay_su_gradient 3000 -pipe_shear_fraction 0.5 ")
 AREA, HEIGHT, YOUNG = 0.25, 1.0, 1e6
 RUNS = {
-    "pipe": "-pipe_shear_share 0.5",
+    "pipe": "-pipe_shear_fraction 0.5",
     "half_pipe": "-mesh_lower 0,-1.5 -soil_lower 0,-1.5 -pipe_shear_limit 1500",
     "ball": BALL + WHOLE, "quarter_ball": BALL + QUARTER,
     "pile": PILE + WHOLE, "quarter_pile": PILE + QUARTER,

@@ -1,9 +1,10 @@
 """Strip footing on clay whose strength grows with depth
 
-$s_u = s_{u0} + k z$. The limit load per width $q$ depends on $k B / s_{u0}$ and on the base, which is smooth or rough (shear
-limit $s_{u0}$, the strength of the clay that touches it). The exact values are those of the problem of Davis & Booker (1973),
-from slip lines that were converged to four digits. The clay is stiff (E = 5000 $s_{u0}$), and the penetration 0.01 $B$, over
-which $q$ is a straight line: its value at zero penetration, by least squares over 0.004-0.010 $B$, is compared.
+$s_u = s_{u0} + k z$. The limit load per width $q$ depends on $k B / s_{u0}$ and on the base, which is smooth or rough
+(shear limit $s_{u0}$, the strength of the clay that touches it). The exact values are those of the problem of Davis &
+Booker (1973), from slip lines that were converged to four digits. The clay is stiff (E = 5000 $s_{u0}$), and the
+penetration 0.01 $B$, over which $q$ is a straight line: its value at zero penetration, by least squares over
+0.004-0.010 $B$, is compared. `tresca` has the strength of `von_mises` in plane strain, and must give the same.
 """
 
 import numpy as np
@@ -15,6 +16,8 @@ EXACT = {("smooth", 2): 6.661, ("smooth", 6): 8.839, ("smooth", 20): 14.678,
          ("rough", 2): 7.597, ("rough", 6): 10.421, ("rough", 20): 17.402}
 RUNS = {f"{base}_{growth}": f"-clay_su_gradient {3000 * growth}" + (" -plate_shear_limit 3000" if base == "rough" else "")
         for base, growth in EXACT}
+TRESCA = 6
+RUNS |= {f"{base}_tresca": RUNS[f"{base}_{TRESCA}"] + " -clay_model tresca" for base in ("smooth", "rough")}
 LONG = True
 
 
@@ -28,6 +31,9 @@ def line(run):
 def check(runs):
     for (base, growth), exact in EXACT.items():
         yield Row(f"q/su0, {base}, k B/su0 = {growth}", line(runs[f"{base}_{growth}"])[1], exact, 0.03,
+                  "slip lines; problem of Davis & Booker (1973)", relative=True)
+    for base in ("smooth", "rough"):
+        yield Row(f"q/su0, {base}, k B/su0 = {TRESCA}, Tresca", line(runs[f"{base}_tresca"])[1], EXACT[base, TRESCA], 0.03,
                   "slip lines; problem of Davis & Booker (1973)", relative=True)
 
 

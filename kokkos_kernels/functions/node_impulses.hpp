@@ -16,7 +16,7 @@ struct NodeImpulses {
   std::vector<T> value;    // N s [rigids][of each node: node after node]
 };
 
-/// Those of the nodes that this rank answers for (State::counted) and that are not zero.
+/// Those of the nodes that this rank answers for (State::owned_nodes) and that are not zero.
 template <class Space, class T, int Dim>
 NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s);
 

@@ -1,4 +1,4 @@
-#include "functions/share_impulse.hpp"
+#include "functions/node_impulses.hpp"
 
 namespace mpm {
 namespace {

@@ -1,0 +1,36 @@
+#pragma once
+// Where a rigid body is.
+
+#include "base/types.hpp"
+
+namespace mpm {
+
+/// Takes points of a rigid body, as it was placed at the start, to where they are now, and back. The body
+/// translates.
+template <int Dim>
+struct RigidPose {
+  Vector<double, Dim> displacement;  // m, since the start
+
+  /// Where a point of the body is now; x and the place are in m.
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> to_world(const Vector<double, Dim>& x) const {
+    Vector<double, Dim> place;
+    for (int d = 0; d < Dim; ++d) place[d] = x[d] + displacement[d];
+    return place;
+  }
+  /// Which point of the body, as it was placed at the start, is at a place now. x(d): component d of the
+  /// place; both are in m. Where x(d) is a product, the compiler may round it and the difference once.
+  template <class Component>
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> to_body(const Component& x) const {
+    Vector<double, Dim> point;
+    for (int d = 0; d < Dim; ++d) point[d] = x(d) - displacement[d];
+    return point;
+  }
+  /// The same pose for lengths in cells; spacing is in m.
+  KOKKOS_INLINE_FUNCTION RigidPose in_cells(double spacing) const {
+    RigidPose pose;
+    for (int d = 0; d < Dim; ++d) pose.displacement[d] = displacement[d] / spacing;
+    return pose;
+  }
+};
+
+}  // namespace mpm

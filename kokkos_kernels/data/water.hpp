@@ -1,0 +1,41 @@
+#pragma once
+// Hydrostatic water, in which soil is submerged.
+
+#include "base/types.hpp"
+
+namespace mpm {
+
+/// Hydrostatic water. Lengths are from the mesh's lower corner.
+template <int Dim>
+struct Water {
+  double density = 0;          // kg/m3; 0: there is none
+  double level = 0;            // m, height of the level against gravity
+  Vector<double, Dim> down{};  // -, unit vector of gravity
+  double gravity = 0;          // m/s2, its size
+
+  KOKKOS_INLINE_FUNCTION bool is_there() const { return density > 0; }
+  /// Depth of a point below the level [m]; negative above it.
+  KOKKOS_INLINE_FUNCTION double depth(const Vector<double, Dim>& x) const {
+    double depth = level;
+    for (int d = 0; d < Dim; ++d) depth += x[d] * down[d];
+    return depth;
+  }
+  /// Hydrostatic pressure u_h [Pa] at a point.
+  KOKKOS_INLINE_FUNCTION double pressure(const Vector<double, Dim>& x) const {
+    return density * gravity * Kokkos::fmax(0.0, depth(x));
+  }
+  /// Share of a square particle of this half-length [m] that is below the level, its centre at x: exact where
+  /// gravity is along an axis.
+  KOKKOS_INLINE_FUNCTION double submerged_share(const Vector<double, Dim>& x, double half_length) const {
+    double reach = 0;
+    for (int d = 0; d < Dim; ++d) reach += half_length * Kokkos::fabs(down[d]);
+    return Kokkos::fmin(1.0, Kokkos::fmax(0.0, (depth(x) / reach + 1) / 2));
+  }
+};
+
+/// Mass of the water that particles displace at a node [kg]; what it weighs carries the soil.
+struct DisplacedTerms {
+  static constexpr int mass = 0, size = 1;
+};
+
+}  // namespace mpm

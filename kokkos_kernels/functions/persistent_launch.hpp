@@ -1,0 +1,151 @@
+#pragma once
+// Persistent steps, for small problems, whose time is that of launches and of waiting for memory: one launch
+// does what several do in large problems. The program has them for GPUs (persistent_step.cpp); the tests have
+// them for processors too, so that they are tested where there is no GPU.
+
+#include "functions/step_kernels.hpp"
+#include "loops/gpu/persistent_step.hpp"
+
+#include <algorithm>
+
+namespace mpm {
+namespace persistent {
+
+// More patches than this take their turns, and then what several teams compute of the nodes at a patch's rim
+// costs more than a launch.
+inline constexpr int k_most_patches = 1000;
+inline constexpr long k_most_steps =
+    1000;  // of one launch: a device that also shows pictures must not wait long
+
+template <bool WithNodes, class Laws, class Space, class T, int Dim>
+auto step_of(const State<Space, T, Dim>& s, double dt, int steps) {
+  using Functor = PersistentStep<Space, T, Dim, WithNodes, Laws>;
+  Functor f{update_of<typename Functor::Update>(s, dt, s.soil.bins.active_slots, 0),
+            node_update_of(s, dt),
+            {s, dt},
+            {},
+            0,
+            0,
+            steps,
+            {s.nodes, WithNodes ? s.next_sums : s.nodes, s.last_sums},
+            s.launch_barrier};
+  for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
+    const auto& points = s.rigid_points[r].points;
+    if (points.surface_normal) continue;
+    f.rigids[f.rigid_count++] = {points, s.rigids, r, s.patches.origin, s.spacing};
+    f.rigid_teams += (points.count + f.threads - 1) / f.threads;
+  }
+  return f;
+}
+
+template <class Space, class Functor>
+void launch_functor(const Space& space, int slots, const Functor& f) {
+  static_assert(!is_device<Space> || sizeof(Functor) <= 4000, "CUDA sends arguments of 4 KiB with a launch");
+  typename Functor::Team team(space, f.rigid_teams + slots + 1, Functor::threads);
+  Kokkos::parallel_for(
+      "mpm::persistent_step",
+      light(team.set_scratch_size(0, Kokkos::PerTeam(f.bytes(f.nodes.value_count) + k_scratch_slack))), f);
+}
+
+template <bool WithNodes, class Space, class T, int Dim>
+void launch(const State<Space, T, Dim>& s, int slots, double dt, int steps) {
+  if (s.light_laws)
+    launch_functor(s.space, slots, step_of<WithNodes, LightMaterials>(s, dt, steps));
+  else
+    launch_functor(s.space, slots, step_of<WithNodes, Materials>(s, dt, steps));
+}
+
+/// Makes sure that the sums of the next and of the last step have room, and that the next one's are zero.
+template <class Space, class T, int Dim>
+void prepare_sums(State<Space, T, Dim>& s) {
+  if (s.next_zero) return;
+  const auto prepare = [&](auto& view, const auto& like) {
+    if (view.layout() != like.layout())
+      view = std::decay_t<decltype(view)>(Kokkos::view_alloc(like.label(), Kokkos::WithoutInitializing),
+                                          like.layout());
+    Kokkos::deep_copy(s.space, view, T(0));
+  };
+  for (NodeSums<Space, T, Dim>* sums : {&s.next_sums, &s.last_sums}) {
+    prepare(sums->soil, s.nodes.soil);
+    prepare(sums->boundary, s.nodes.boundary);
+    prepare(sums->rigid, s.nodes.rigid);
+  }
+  s.next_zero = true;
+}
+
+/// Whether a launch of this kind has room for its rigids.
+template <bool WithNodes, class Space, class T, int Dim>
+bool has_room(const State<Space, T, Dim>& s) {
+  using Step = PersistentStep<Space, T, Dim, WithNodes, Materials>;
+  int with_points = 0;
+  for (const auto& set : s.rigid_points) with_points += !set.points.surface_normal;
+  const int values = Dim * static_cast<int>(s.rigid_points.size());
+  const std::size_t parts = EndStep<Space, T, Dim>(s, 0).room(Step::threads) * sizeof(double);
+  return with_points <= k_most_rigids && parts <= Step::Update::bytes() &&
+         Step::bytes(values) <= k_team_bytes<Space> - k_scratch_slack - 8 * (Step::threads + 2);
+}
+
+}  // namespace persistent
+
+template <class Space, class T, int Dim>
+bool ends_in_launch(const State<Space, T, Dim>& s) {
+  if constexpr (is_device<Space> && sums_fit<Space, T, Dim>) return persistent::has_room<false>(s);
+  return false;
+}
+
+template <class Space, class T, int Dim>
+void update_and_end(State<Space, T, Dim>& s, double dt) {
+  if constexpr (is_device<Space> && sums_fit<Space, T, Dim>) {
+    persistent::launch<false>(s, s.soil.bins.colour_begin[Patch<Dim>::colours], dt, 1);
+    s.summed = {true, s.soil_boundary, true};
+  }
+}
+
+template <class Space, class T, int Dim>
+bool can_persist(const State<Space, T, Dim>& s) {
+  // What friction keeps of the impulse at a node changes whenever it is read.
+  // The strengths are summed before the nodes, not ahead with the soil.
+  const bool independent = !s.shear_fraction && !s.has_friction && !(s.rigid_dynamic && s.mass_normals);
+  const bool summed = s.summed.soil && s.summed.boundary == s.soil_boundary && s.summed.rigids;
+  const bool pays = s.co_resident || s.patches.slots <= persistent::k_most_patches;
+  if constexpr (sums_fit<Space, T, Dim>)
+    return pays && independent && summed && s.xpic_order == 0 && !s.affine && persistent::has_room<true>(s);
+  return false;
+}
+
+template <class Space, class T, int Dim>
+int run_persistent_steps(State<Space, T, Dim>& s, double dt, long most) {
+  if constexpr (sums_fit<Space, T, Dim>) {
+    const int steps =
+        is_device<Space> && s.co_resident ? static_cast<int>(std::min(most, persistent::k_most_steps)) : 1;
+    persistent::prepare_sums(s);
+    persistent::launch<true>(s, s.patches.slots, dt, steps);
+    NodeSums<Space, T, Dim>& sums = s.nodes;
+    for (int n = 0; n < steps % 3; ++n) {
+      std::swap(sums, s.next_sums);  // and what was read is zero one step later
+      std::swap(s.next_sums, s.last_sums);
+    }
+    return steps;
+  }
+  return 0;
+}
+
+template <class Space, class T, int Dim>
+void resume_single_steps(State<Space, T, Dim>& s) {
+  s.co_resident = false;
+  s.summed = {};  // the host does not know whose turn the sums are
+  const auto control = s.control;
+  Kokkos::parallel_for(
+      "mpm::resume_single_steps", Kokkos::RangePolicy<Space>(s.space, 0, 1),
+      KOKKOS_LAMBDA(int) { control().paused &= ~Pause::not_co_resident; });
+}
+
+/// Instances for a space, a real type and a dimension.
+#define MPM_INSTANTIATE_PERSISTENT(Space, T, Dim)                         \
+  template bool ends_in_launch(const State<Space, T, Dim>&);              \
+  template void update_and_end(State<Space, T, Dim>&, double);            \
+  template bool can_persist(const State<Space, T, Dim>&);                 \
+  template int run_persistent_steps(State<Space, T, Dim>&, double, long); \
+  template void resume_single_steps(State<Space, T, Dim>&);
+
+}  // namespace mpm

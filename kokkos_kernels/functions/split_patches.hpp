@@ -1,0 +1,20 @@
+#pragma once
+// Which patches function 5 updates with which kernel of a device.
+
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// Whether steps are done with split patches. The persistent step and batches have one kernel for all
+/// patches.
+template <class Space, class T, int Dim>
+bool wants_split(const State<Space, T, Dim>& s) {
+  return is_device<Space> && s.plan.form != StepForm::persistent && s.plan.form != StepForm::out_of_core;
+}
+
+/// Makes State::split from the present lists, when it is known which particles are alone. On `stream`, for
+/// which the host waits.
+template <class Space, class T, int Dim>
+void split_patches(State<Space, T, Dim>& s, const Space& stream);
+
+}  // namespace mpm

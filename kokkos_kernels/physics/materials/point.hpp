@@ -1,0 +1,38 @@
+#pragma once
+// A single material point, for code that does not see the laws: its law updates it as it updates a particle.
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace mpm {
+
+/// Stress and state of a material point. In single precision the values are those of float.
+struct PointState {
+  std::array<double, 6> stress{};  // Pa: xx yy zz xy yz zx, tension positive
+  std::vector<double> state;       // all state variables of the law, in the order of its table
+};
+
+/// What one update does to a point. There is no spin.
+struct PointIncrement {
+  std::array<double, 6> strain{};  // -, tensor shear strains
+  double dt = 1;                   // s
+  double time = 0;                 // s, at its start
+};
+
+/// The law of a material, in one precision and dimension.
+struct PointLaw {
+  std::function<PointState(const PointState&, const PointIncrement&)> update;
+  std::function<bool(const PointState&)> failed;          // the law does not hold there (its member `failed`)
+  std::function<double(const PointState&)> wave_modulus;  // K + 4/3 G [Pa]
+};
+
+/// The law of the model of this index in Materials with these parameters. In 2D the shear components yz and
+/// zx stay as they are.
+PointLaw point_law(int which, const std::vector<double>& parameters, bool single, int dim);
+
+/// A point that is created at a height [m] with a stress [Pa].
+PointState point_start(int which, const std::vector<double>& parameters, double height,
+                       const std::array<double, 6>& stress);
+
+}  // namespace mpm

@@ -1,0 +1,13 @@
+#pragma once
+// Options that have a new name. The former names stay accepted: decks, command lines and checkpoints may hold
+// them.
+
+#include <string>
+
+namespace mpm {
+
+/// The name of an option today, with its dash: that given, unless it is a former name. A name may begin with
+/// a prefix or with the name of a body (-plate_contact_penalty).
+std::string present_name(const std::string& name);
+
+}  // namespace mpm

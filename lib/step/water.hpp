@@ -1,0 +1,32 @@
+#pragma once
+// The water of a configuration, as kernels and output take it.
+
+#include <cmath>
+
+#include "data/water.hpp"
+#include "mpm/config.hpp"
+
+namespace mpm {
+
+/// Hydrostatic water, by lengths from the mesh's lower corner.
+template <int Dim>
+Water<Dim> water_of(const Config& config) {
+  Water<Dim> water;
+  if (!config.water.level) return water;
+  water.density = config.water.density, water.level = *config.water.level;
+  water.gravity = std::hypot(config.gravity[0], config.gravity[1], config.gravity[2]);
+  for (int d = 0; d < Dim; ++d) {
+    water.down[d] = config.gravity[d] / water.gravity;
+    water.level += config.mesh.lower[d] * water.down[d];
+  }
+  return water;
+}
+
+/// Whether frames tell a pore pressure.
+inline bool has_pore_pressure(const Config& config) {
+  for (const MaterialConfig& material : config.materials)
+    if (material.pore_stiffness > 0) return true;
+  return config.water.level.has_value();
+}
+
+}  // namespace mpm

@@ -1,0 +1,53 @@
+"""Films on a slope
+
+A film of the thickness $H$ flows down a slope under its weight, with the shear stress $\\tau = \\rho g \\sin\\theta (H -
+y)$. A Newtonian film has the velocity $\\rho g \\sin\\theta H^2 / 2\\eta$ at the surface. A Bingham film has a plug of the
+thickness $h_p = \\tau_y / \\rho g \\sin\\theta$ with the velocity $\\rho g \\sin\\theta (H - h_p)^2 / 2k$. The films start
+with 95 % of this velocity and run for two relaxation times, after which 0.7 % are missing. A layer of 20 mm, thinner than
+$h_p$ = 26 mm, must rest in its middle third, and one of 40 mm must flow.
+
+| film | $H$ (m) | slope | $\\rho$ (kg/m3) | $\\tau_y$ (Pa) | $k$ or $\\eta$ |
+| --- | --- | --- | --- | --- | --- |
+| Newtonian | 0.05 | 10° | 1000 | 0 | 5 Pa s |
+| Bingham | 0.5 | 15° | 1500 | 100 | 200 Pa s |
+
+The mesh has no periodic sides: the film has open ends, and the check measures the part that no wave from an end has reached.
+The velocity is that of the nodes. Six or eight cells over the height of a film; `film_fine` has more, and other laws.
+"""
+
+import numpy as np
+
+import film
+from curves import last_frame
+from film import FluidFilm
+from row import Row
+
+FILMS = {"newtonian": FluidFilm(10, 0.05, 1000, 0, 5, 1, 8), "Bingham": FluidFilm(15, 0.5, 1500, 100, 200, 1, 6)}
+LAYERS = {"thin": FluidFilm(15, 0.02, 1500, 100, 200, 1, 5), "thick": FluidFilm(15, 0.04, 1500, 100, 200, 1, 5)}
+LENGTH = 0.32  # m, of the layers
+RUNS = {law: each.options() for law, each in FILMS.items()} | {name: each.from_rest(LENGTH, 1) for name, each in LAYERS.items()}
+
+
+def prepare(run, path, options):
+    if run in FILMS:
+        FILMS[run].write(path)
+    else:
+        LAYERS[run].write(path, LENGTH, 0.0)
+
+
+def middle_speed(run):
+    """Largest speed of the nodes in the middle third of a layer, m/s."""
+    frame = last_frame(run, "layer")
+    inside = np.abs(frame["position"][:, 0] - LENGTH / 2) < LENGTH / 6
+    return np.linalg.norm(frame["grid_velocity"][inside], axis=1).max()
+
+
+def check(runs):
+    for (law, each), tolerance in zip(FILMS.items(), (0.02, 0.03)):
+        yield from film.flow_rows(law, runs[law], each, tolerance)
+    yield Row("speed of a layer thinner than the plug (m/s)", middle_speed(runs["thin"]), 0, 1e-6, "it rests")
+    yield Row("speed of a layer thicker than the plug (m/s)", middle_speed(runs["thick"]), 2e-4, 0, "a control: it flows", at_least=True)
+
+
+def draw(axes, runs):
+    film.draw(axes, runs, FILMS)
