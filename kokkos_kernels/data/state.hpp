@@ -34,7 +34,7 @@ struct State {
   Patches<Space, Dim> patches;
   ParticleSet<Space, Soil<Space, T, Dim>> soil;
   int law = -1;             // index in Materials of the law of all bodies; -1: they differ
-  bool light_laws = false;  // all of them are of LightMaterials
+  bool light_laws = false;  // all of them are of LightMaterials, and no soil has a pore stiffness
   Strays<Space> strays;
   SplitPatches<Space> split;
   Batches<Space, T, Dim> batches;  // of the soil, where the device's memory does not hold it all

@@ -2,6 +2,8 @@
 // What one step does to one particle (Eqs (11)-(13)), or to as many as an instruction of a processor takes at
 // once. The real type R of a particle is T, or lanes of T; parameters are T.
 
+#include <type_traits>
+
 #include "base/lanes.hpp"
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
@@ -65,7 +67,9 @@ struct ParticleLaw {
 
   KOKKOS_INLINE_FUNCTION void operator()(SymTensor<T, Dim>& stress, const Increment<T, T, Dim>& by) const {
     const AnyMaterial<T>& of = material_in(soil.materials(material));
-    const bool undrained = soil.history.pore >= 0 && of.pore_stiffness > 0;
+    // Kernels of light laws alone are for soil that drains (State::light_laws).
+    const bool undrained =
+        !std::is_same_v<Laws, LightMaterials> && soil.history.pore >= 0 && of.pore_stiffness > 0;
     if (flies) {
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = 0;
       if (undrained) soil.history.column[soil.history.pore](p) = 0;

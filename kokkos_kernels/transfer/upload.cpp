@@ -171,7 +171,7 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
                              materials[m].pore_stiffness);
   });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
-  s.light_laws = true;
+  s.light_laws = soil.history.pore < 0;
   for (const BodyInput& body : bodies) {
     const int model = materials[body.material].model;
     if (model != s.law) s.law = -1;

@@ -22,8 +22,9 @@ def read_table():
         if line.startswith("## "):
             section = line[3:]
         elif line.startswith("| `-"):
-            name, _, takes, _ = (cell.strip() for cell in line.strip("|").split("|"))
-            table[name.strip("`-")] = (section, takes)
+            cells = [cell.strip() for cell in line.strip("|").split("|")]
+            if len(cells) == 4:  # the table of former names has fewer
+                table[cells[0].strip("`-")] = (section, cells[2])
     return table
 
 
