@@ -45,6 +45,10 @@ void check_start_of_path(OptionReader& in, Config& config) {
   const ElementConfig& path = config.element;
   const double pressure = -(path.stress[0] + path.stress[1] + path.stress[2]) / 3;
   MaterialConfig& material = config.materials[0];
+  if (material.object) {  // a library of the user: a point has no particle to hand to it
+    in.reject("element_path", "a material of a built-in model; " + material.name + " is of " + material.model);
+    return;
+  }
   // The point stands for cells of the size to which parameters of softening refer.
   const double cell = parameter_of(material, "xi95_cell");
   prepare_material(material, cell > 0 ? cell : 1, std::max(0.0, pressure));
