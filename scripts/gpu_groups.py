@@ -40,7 +40,6 @@ PROCESSORS = {  # commands at the same time, in regression/
               "reliability/faults.py {program} {inject}", "reliability/files.py {program} {inject}",
               "reliability/starts.py {program} --precisions double,single", "fuzz/decks.py {program} --count 10000 --jobs 7"],
 }
-WITH_FRAME = {"film_fine"}  # cases whose picture needs more than the history
 
 
 class Clock:
@@ -103,32 +102,25 @@ def suite(program, backends, cases, given, results, log, setting, jobs):
 
 
 def answers(name, program, given):
-    cases = ANSWERS[name]
-    sound = suite(program, given.backend, cases, given, "gpu.json", f"answers_{name}.txt", environment(), given.jobs)
-    keep_curves(cases, given)
-    return sound
+    return suite(program, given.backend, ANSWERS[name], given, "gpu.json", "answers.txt", environment(), given.jobs)
 
 
 def processor_answers(name, program, given):
     backends, threads, jobs, cases = PROCESSOR_ANSWERS[name]
-    return suite(program, backends, cases, given, "cpu.json", f"processors_{name}.txt", settings(threads), jobs)
+    return suite(program, backends, cases, given, "cpu.json", "processors.txt", settings(threads), jobs)
 
 
 def processors(name, program, given):
     inject = (processor_build() or program.parent.parent / "regression") / "libmpm_inject.so"
     commands = [[sys.executable, *shlex.split(f"regression/{line}".format(program=program, inject=inject))] for line in PROCESSORS[name]]
-    return run_together(commands, given.out / f"processors_{name}.txt", given.clock, settings(1) | {"TMPDIR": str(given.scratch)})
+    return run_together(commands, given.out / "processors.txt", given.clock, settings(1) | {"TMPDIR": str(given.scratch)})
 
 
-def keep_curves(cases, given):
-    """Adds options and history of the cases' runs, and the last frame of some, to runs_*.tar.xz, for regression/run --draw."""
-    paths = []
-    for case in cases:
-        for history in sorted((given.scratch / "cases" / case).glob("*/*/history.csv")):
-            frames = sorted(history.parent.glob("frames/frame_*.h5")) if case in WITH_FRAME else []
-            paths += [history.parent / "options.json", history, *frames[-1:]]
+def keep_curves(given):
+    """Puts options and history of the cases' runs on the GPU into runs.tar.xz, for regression/run --draw."""
+    paths = [path for history in sorted((given.scratch / "cases").glob(f"*/{given.backend}-*/*/history.csv"))
+             for path in (history.parent / "options.json", history)]
     if paths:
-        number = len(list(given.out.glob("runs_*.tar.xz")))
-        with tarfile.open(given.out / f"runs_{number}.tar.xz", "w:xz") as archive:
+        with tarfile.open(given.out / "runs.tar.xz", "w:xz") as archive:
             for path in paths:
                 archive.add(path, path.relative_to(given.scratch / "cases"))
