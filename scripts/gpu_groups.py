@@ -34,6 +34,7 @@ PROCESSOR_ANSWERS = {  # back ends, threads and runs at a time, cases: the longe
     "clay": ("serial,openmp", 2, 9, ["footing_variants", "strip_fine", "cut_fine", "pipe_fine", "strip_gradient", "footing", "pipe",
                                      "slump", "strip", "cut", "footing_coarse"]),
 }
+PROCESSOR_ANSWERS["quick"] = ("serial,openmp", 1, 14, [*ANSWERS["contact"], *ANSWERS["quick"], "shear_band", "landslide_coarse"])
 PROCESSORS = {  # commands at the same time, in regression/
     "soil": ["reliability/collapses.py {program} --count 200 --jobs 8", "reliability/water.py {program} --count 60 --jobs 4",
              "reliability/courant.py {program} --jobs 2"],
