@@ -35,12 +35,12 @@ PROCESSOR_ANSWERS = {  # back ends, threads and runs at a time, cases: the longe
                                      "slump", "strip", "cut", "footing_coarse"]),
 }
 PROCESSOR_ANSWERS["quick"] = ("serial,openmp", 1, 14, [*ANSWERS["contact"], *ANSWERS["quick"], "shear_band", "landslide_coarse"])
-PROCESSORS = {  # commands at the same time, in regression/
-    "soil": ["reliability/collapses.py {program} --count 200 --jobs 8", "reliability/water.py {program} --count 60 --jobs 4",
+PROCESSORS = {  # commands at the same time, in regression/; random decks take up to 4 ranks of 2 threads
+    "soil": ["reliability/collapses.py {program} --count 200 --jobs 4", "reliability/water.py {program} --count 60 --jobs 2",
              "reliability/courant.py {program} --jobs 2"],
     "files": ["reliability/kill.py {program} --kills 220", "reliability/kill.py {program} --kills 40 --seed 3 --ranks 2",
               "reliability/faults.py {program} {inject}", "reliability/files.py {program} {inject}",
-              "reliability/starts.py {program} --precisions double,single", "fuzz/decks.py {program} --count 10000 --jobs 7"],
+              "reliability/starts.py {program} --precisions double,single", "fuzz/decks.py {program} --count 10000 --jobs 6"],
 }
 
 
