@@ -63,11 +63,13 @@ struct Soil : Points<Space, T, Dim> {
   KOKKOS_INLINE_FUNCTION T mass_of(int p, const BodyProperties<T>& of) const {
     return has_own_mass ? mass(p) : of.mass;
   }
-  /// The values of the state variables of particle p, whose law this is; 0 where it does not carry one.
+  /// The values of the state variables of particle p, whose law this is; 0 where it does not carry one, and
+  /// where no update asks for it.
   template <class Law>
   KOKKOS_INLINE_FUNCTION LawState<T, state_size<Law>> state_of(const Law& law, int p) const {
-    LawState<T, state_size<Law>> state;
-    for (int k = 0; k < state_size<Law>; ++k) state[k] = carries(law, k) ? history.column[k](p) : T(0);
+    LawState<T, state_size<Law>> state{};
+    for (int k = 0; k < state_size<Law>; ++k)
+      state[k] = Law::state()[k].used && carries(law, k) ? history.column[k](p) : T(0);
     return state;
   }
   /// Excess pore pressure [Pa] of particle p, which is of this material: its stress is the effective stress

@@ -37,17 +37,25 @@ KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const KinematicValues<T, Dim>* wi
 /// and none of its particles is alone.
 enum class PatchKind { common, any };
 
+/// Teams that share a multiprocessor. Fewer of them leave a thread more registers, which a kernel for one
+/// heavy law needs, and one for patches that are not common, which are few.
+template <class Space, class T, int Dim>
+constexpr int teams_for(PatchKind kind, bool heavy) {
+  const int fewer = heavy ? (sizeof(T) == sizeof(float) ? 2 : 1) : (kind == PatchKind::common ? 0 : 1);
+  return teams_at_once<T, Dim> - fewer;
+}
+
 /// A team moves the particles of a patch, whose laws are of the list Laws. If Sums, it adds them where they
 /// now are to the nodes for the next step, as the strategy `tile` does: a particle is read and written once a
 /// step.
-template <class Space, class T, int Dim, bool Sums, PatchKind kind, class Laws>
+/// teams: those that share a multiprocessor.
+template <class Space, class T, int Dim, bool Sums, PatchKind kind, class Laws,
+          int teams = teams_for<Space, T, Dim>(kind, Laws::k_size == 1)>
 struct UpdateParticles {
   using Source = SoilSource<Space, T, Dim>;
   using Boundary = BoundarySource<Space, T, Dim>;
-  using Tile_ = Tile<Source>;
-  // Patches that are not common are few: one team less on a multiprocessor leaves them the registers they need.
-  static constexpr int k_teams = teams_at_once<T, Dim> - (kind == PatchKind::common ? 0 : 1);
-  using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, k_teams>>;
+  using Tile_ = Tile<Source, teams>;
+  using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, teams>>;
   using Member = typename Team::member_type;
   using Memory = typename Space::memory_space;
   using Images = std::conditional_t<kind == PatchKind::common, NoImages, WindowImages<T, Dim>>;
@@ -132,7 +140,9 @@ struct UpdateParticles {
       nodes[n] = motion;
     });
     T moved = 0;
-    const auto particle = [&](int p) { return step_particle(nodes, mean, images, slot, lone, p, body, moved); };
+    const auto particle = [&](int p) {
+      return step_particle(nodes, mean, images, slot, lone, p, body, moved);
+    };
     if constexpr (Sums) {
       tile.clear(team, cell_begin);
       team.team_barrier();
@@ -241,9 +251,7 @@ struct UpdateParticles {
     const auto& soil = source.points;
     // The loops of put_on_walls read the patch's place from memory: indexed by a variable, `images` and with
     // it the kernel's arguments would be copied to the memory of each thread.
-    const auto in_patch = [&](int d) {
-      return place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1);
-    };
+    const auto in_patch = [&](int d) { return place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1); };
     const auto cell_along = [&](int d) { return origin(slot)[d] + in_patch(d); };
     if (!images.at_wall || !is_beyond_walls(grid, in_mesh(images.origin, coord_of<Dim>(place)), q.x)) return;
     if (put_on_walls(grid, cell_along, soil.coordinate(p), soil.velocity(p)))

@@ -12,6 +12,7 @@ struct StateVariable {
   const char* unit;
   bool changes = true;  // update() changes it; else it follows from where the particle was created
   bool output = true;   // frames have it
+  bool used = true;     // update() asks for it
 };
 
 /// Name of the excess pore pressure [Pa] in frames, checkpoints and files of particles. Particles of a
