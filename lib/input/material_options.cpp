@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <set>
 
@@ -171,6 +172,23 @@ void read_object(OptionReader& in, int model, const std::vector<std::string>& te
   if (!fault.key.empty()) in.reject(material.name + "_" + fault.key, with_prefix(fault.takes, material.name));
 }
 
+/// The fraction of F-bar, which is by default that of the run. Where soil dilates as it yields, F-bar creates
+/// energy (docs/soils.md): only a fraction that is given holds there.
+void read_f_bar(OptionReader& in, const Config& config, MaterialConfig& material) {
+  const bool dilates = std::strtod(in.given_text(material.name + "_dilation_deg").c_str(), nullptr) > 0;
+  const bool none = dilates && !in.given("f_bar_fraction");
+  double fraction = none ? 0 : config.f_bar_fraction;
+  const bool found = in.number(
+      {.name = material.name + "_f_bar_fraction",
+       .meaning = "f_bar_fraction of its soil",
+       .unit = "-",
+       .range = {.lowest = 0, .highest = 1},
+       .standard =
+           in.listing() ? "f_bar_fraction; where that is not given and dilation_deg is above 0, 0" : ""},
+      fraction);
+  if (found || none) material.f_bar_fraction = fraction;
+}
+
 }  // namespace
 
 double parameter_of(const MaterialConfig& material, const std::string& key) {
@@ -204,6 +222,7 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
              .unit = "Pa",
              .range = {.lowest = 0, .highest = 1e12}},
             material.pore_stiffness);
+  read_f_bar(in, config, material);
   if (in.listing()) {
     for (const Model& model : models) {
       in.section("Material NAME of model " + model.name);
