@@ -193,9 +193,10 @@ void warn_of_f_bar(const Config& config, const MaterialConfig& material, Lines& 
   const double fraction = f_bar_fraction(config, material);
   if (!(fraction > 0 && parameter_of(material, "dilation_deg") > 0)) return;
   const std::string own = material.f_bar_fraction ? material.name + "_" : "";
-  lines.push_back(formatted(
-      "warning: -%sf_bar_fraction: given \"%g\", creates energy in %s, which dilates as it yields; 0 does not",
-      own.c_str(), fraction, material.name.c_str()));
+  lines.push_back(
+      formatted("warning: -%sf_bar_fraction: given \"%g\", creates energy in %s, which dilates as it yields; "
+                "0 does not",
+                own.c_str(), fraction, material.name.c_str()));
 }
 
 }  // namespace

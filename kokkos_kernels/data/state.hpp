@@ -71,7 +71,7 @@ struct State {
   int xpic_order = 0;             // m of XPIC(m), 0 without it
   bool affine = false;            // APIC: Soil::affine is in use; flip_fraction is then 0
   double f_bar_fraction = 0;      // -, the largest of all materials; each takes its share of it
-  bool f_bar_by_material = false;  // bodies differ in material
+  bool f_bar_by_material = false; // bodies differ in material
   bool keeps_stress = false;      // sorting brings no pressures together: at a start from another run
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them

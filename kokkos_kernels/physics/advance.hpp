@@ -106,8 +106,8 @@ struct ParticleLaw {
 };
 
 /// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The fraction f_bar of
-/// its dilatation is that of its cell, `mean_dilatation` [1/s], or what mean_for() makes of it. law(stress, increment) changes the stress.
-/// Returns the largest component of the particle's movement [cells].
+/// its dilatation is that of its cell, `mean_dilatation` [1/s], or what mean_for() makes of it. law(stress,
+/// increment) changes the stress. Returns the largest component of the particle's movement [cells].
 template <class R, class T, int Dim, class Law>
 KOKKOS_INLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law, const GridSample<R, Dim>& t,
                                  R mean_dilatation, const UpdateScalars<T>& by) {

@@ -314,7 +314,9 @@ void average_pressure_by_material(State<Space, T, Dim>& s) {
       "mpm::average_pressure_by_material", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
       KOKKOS_LAMBDA(int cell) {
         const int first = begin(cell), last = begin(cell + 1);
-        const auto fraction_of = [&](int p) { return most * soil.materials(soil.material_of(p)).f_bar_share; };
+        const auto fraction_of = [&](int p) {
+          return most * soil.materials(soil.material_of(p)).f_bar_share;
+        };
         average_by_material(
             soil, first, last, [&](int p) { return soil.volume(p) * mean_of(soil.stress(p)); },
             [&](int p, T mean) {

@@ -256,11 +256,33 @@ void prepare_material(MaterialConfig& material, double spacing, double largest_p
       parameters_for(model_index(material.model), material.parameters, {spacing, largest_pressure});
 }
 
+std::string own_parameter_fault(const MaterialConfig& material, const std::string& key, double least,
+                                double largest) {
+  const int which = model_index(material.model);
+  const Model model = tables_of(Materials{})[which];
+  MaterialConfig weakest = material;
+  for (std::size_t k = 0; k < model.options.size(); ++k) {
+    const Option& option = model.options[k];
+    if (option.name != key) continue;
+    const std::string takes =
+        "particles whose " + key + " is a number in " + option.unit + option.range.text();
+    if (!option.range.holds(least)) return takes + "; the least of this file is " + text_of(least);
+    if (!option.range.holds(largest)) return takes + "; the largest of this file is " + text_of(largest);
+    weakest.parameters.at(k) = least;
+  }
+  const ParameterFault fault =
+      parameter_fault(make_material<double>(which, weakest.parameters, weakest.object.get()));
+  if (fault.key != key) return "";
+  return "particles whose " + key + " is " + with_prefix(fault.takes, material.name) +
+         "; the least of this file is " + text_of(least);
+}
+
 bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
-                 const Sym6& stress) {
+                 const Sym6& stress, std::optional<double> own) {
   const auto law =
       make_material<double>(model_index(material.model), material.parameters, material.object.get());
-  const ParameterFault fault = start_fault(law, {.position = {}, .height = height, .stress = stress});
+  const ParameterFault fault =
+      start_fault(law, {.position = {}, .height = height, .stress = stress, .own = own});
   if (fault.key.empty()) return true;
   const bool of_body = fault.key == "stress";
   in.reject((of_body ? body : material.name) + "_" + fault.key, with_prefix(fault.takes, material.name));

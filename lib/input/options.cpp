@@ -200,13 +200,14 @@ void read_physics(OptionReader& in, Config& config) {
            "leave the run; stop: the run ends with exit status 3"},
       Words<StrayRule>{{"keep", StrayRule::keep}, {"remove", StrayRule::remove}, {"stop", StrayRule::stop}},
       config.stray_particles);
-  in.number({.name = "f_bar_fraction",
-             .meaning = "fraction of the cell's mean in a particle's dilatation (F-bar), against locking, of all "
-                        "materials without an f_bar_fraction of their own; by default a material with a "
-                        "dilation_deg above 0 has 0",
-             .unit = "-",
-             .range = {.lowest = 0, .highest = 1}},
-            config.f_bar_fraction);
+  in.number(
+      {.name = "f_bar_fraction",
+       .meaning = "fraction of the cell's mean in a particle's dilatation (F-bar), against locking, of all "
+                  "materials without an f_bar_fraction of their own; by default a material with a "
+                  "dilation_deg above 0 has 0",
+       .unit = "-",
+       .range = {.lowest = 0, .highest = 1}},
+      config.f_bar_fraction);
 }
 
 /// What frames hold.

@@ -1,6 +1,6 @@
 #include "step/typed_stepper.hpp"
-#include "device/device_agrees.hpp"
 #include "common/f_bar.hpp"
+#include "device/device_agrees.hpp"
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
@@ -28,7 +28,7 @@ void note_heights(const MeshConfig& mesh, BodyParticles& particles) {
 }
 
 /// The state variables of the particles of a body [variable][particle]: those of their creation, but for
-/// those that a law changes and a file gives.
+/// those that a law changes and a file gives. Where a file gives the law's strength, that is the particles'.
 template <int Dim>
 std::vector<std::vector<double>> start_state(const Config& config, const AnyMaterial<double>& law,
                                              const BodyInput& in, BodyParticles& particles) {
@@ -38,6 +38,7 @@ std::vector<std::vector<double>> start_state(const Config& config, const AnyMate
   ParticleStart start;
   for (std::size_t p = 0; p < count && !variables.empty(); ++p) {
     start.height = particles.reference_height[p];
+    if (!particles.own_parameter.empty()) start.own = particles.own_parameter[p];
     for (int d = 0; d < Dim; ++d) start.position[d] = in.position[p * Dim + d] + config.mesh.lower[d];
     for (int k = 0; k < sym_size<Dim> && !in.stress.empty(); ++k)
       start.stress[k] = in.stress[p * sym_size<Dim> + k];

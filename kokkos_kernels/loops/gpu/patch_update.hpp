@@ -231,7 +231,8 @@ struct UpdateParticles {
     T own = 0;
     with_weights_near(q.x, body.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
       own = advance(q, ParticleLaw<Space, T, Dim, Laws>{soil, p, body.material, law, flies},
-                    sample_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by);
+                    sample_nodes(nodes, cell, a, by.inv_spacing),
+                    by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by);
     });
     if (flies) q.volume = soil.volume(p);
     soil.coordinate(p) = q.x;

@@ -73,6 +73,9 @@ struct BodyConfig {
   bool stress_given = false;
   /// Pa, largest mean stress in compression of its particles at the start.
   double largest_pressure = 0;
+  /// Largest value of the law's strength that its file gives each particle, in the parameter's unit; none
+  /// where it gives none.
+  std::optional<double> largest_own_parameter;
   std::vector<int> cut_out;         // indices into Config::rigids: particles in their shapes are left out
   std::vector<int> cut_out_bodies;  // the same of Config::bodies
 };
