@@ -93,7 +93,7 @@ using Dilatations = Kokkos::View<T*, typename Space::memory_space, Kokkos::Memor
 /// Those that a step works with, in State::scratch.
 template <class Space, class T, int Dim>
 Dilatations<Space, T> dilatations_of(const State<Space, T, Dim>& s) {
-  return {reinterpret_cast<T*>(s.scratch.data()), static_cast<std::size_t>(s.soil.points.count)};
+  return Dilatations<Space, T>(reinterpret_cast<T*>(s.scratch.data()), s.soil.points.count);
 }
 
 }  // namespace mpm
