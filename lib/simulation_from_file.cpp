@@ -43,7 +43,7 @@ std::string missing(const ParticleTable& table, const BodyConfig& body, const st
     add(formatted("each with its own %s: %.6g to %.6g", parameter.c_str(),
                   *std::min_element(own.begin(), own.end()), *std::max_element(own.begin(), own.end())));
   if (table.mass.empty()) add("without masses: they are the material's density times the volumes");
-  if (table.reference_height.empty())
+  if (table.reference_height.empty() && table.own_parameter.empty())
     add("without reference heights: strengths that grow with depth are those of where the particles are now");
   if (table.put_inside > 0)
     add(formatted("%ld that were less than half a cell outside the mesh are put to its side",

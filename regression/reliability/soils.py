@@ -189,10 +189,10 @@ class Case:
             yield from self.restart_faults(out, way)
 
     def f_bar_faults(self, out):
-        text = (out / "options.json").read_text()
+        options = json.loads((out / "options.json").read_text())["options"]
         for soil, fraction in self.fractions.items():
-            told = value_in(json.loads(text), f"-{soil}_f_bar_fraction")
-            if told is None or float(told) != fraction:
+            told = options[f"{soil}_f_bar_fraction"]
+            if float(told) != fraction:
                 yield f"-{soil}_f_bar_fraction is {told} where the rule says {fraction}"
 
     def strength_faults(self, frame):
@@ -257,21 +257,6 @@ class Case:
             a, b = group_of(frames(out)[-1], body), group_of(frames(again)[-1], body)
             if any((a[key] != b[key]).any() for key in a):
                 yield f"a restart from {first.name} reaches another state of {body}"
-
-
-def value_in(options, name):
-    """The value of an option in options.json, wherever it stands there."""
-    if isinstance(options, dict):
-        if options.get("name") in (name, name[1:]):
-            return options.get("value")
-        for key, item in options.items():
-            if key in (name, name[1:]):
-                return item["value"] if isinstance(item, dict) else item
-            if (found := value_in(item, name)) is not None:
-                return found
-    if isinstance(options, list):
-        return next((found for item in options if (found := value_in(item, name)) is not None), None)
-    return None
 
 
 def main():
