@@ -6,6 +6,7 @@
 #include <map>
 
 #include "common/checksum.hpp"
+#include "common/material_table.hpp"
 #include "common/text.hpp"
 
 namespace mpm {
@@ -56,7 +57,17 @@ std::string value_of(const std::string& name, const std::vector<EffectiveOption>
   return "";
 }
 
+/// What a checkpoint says of a body's file that gives the particles their own values of a parameter.
+std::string own_parameter_note(const BodyConfig& body, const Config& config) {
+  if (!body.largest_own_parameter) return "";
+  return own_parameter_words(own_parameter(state_variables(config.materials[body.material])));
+}
+
 }  // namespace
+
+std::string own_parameter_words(const std::string& parameter) {
+  return ", with " + parameter + " of each particle";
+}
 
 std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>& options,
                                              const Config& config) {
@@ -67,8 +78,8 @@ std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>&
     const std::string contents(std::istreambuf_iterator<char>(file), {});
     for (EffectiveOption& option : kept)
       if (option.name == "-" + body.name + "_file")
-        option.value =
-            formatted("a file of %zu bytes with crc32 %08x", contents.size(), checksum(0, contents));
+        option.value = formatted("a file of %zu bytes with crc32 %08x%s", contents.size(),
+                                 checksum(0, contents), own_parameter_note(body, config).c_str());
   }
   return kept;
 }

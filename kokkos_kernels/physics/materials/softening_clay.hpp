@@ -87,7 +87,7 @@ struct SofteningClay : Clay<T> {
   using State = LawState<T, 4>;
   static constexpr std::array<StateVariable, 4> state() {
     return {{{"plastic_strain", "-"},  // xi, accumulated engineering plastic shear strain
-             {.name = "strength", .unit = "Pa", .changes = false, .output = false},  // su0
+             {.name = "strength", .unit = "Pa", .changes = false, .output = false, .parameter = "su"},  // su0
              rest_variable<T>("plastic_strain_rest", "-"),
              {.name = "shear_rate", .unit = "1/s"}}};  // smoothed
   }
