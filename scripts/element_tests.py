@@ -166,7 +166,7 @@ def read_course(test, words, measured):
         raise WrongTest(f"{test.kind}: stress is not given, takes stress=STRESS:STRESS... in Pa")
     else:
         test.strains = [0.2]
-    if test.kind in ("triaxial", "biaxial", "oedometer") and any(value >= 1 for value in test.strains):
+    if test.kind in ("triaxial", "biaxial", "oedometer") and any(test.sign * value >= 1 for value in test.strains):
         raise WrongTest("strain: takes engineering strains less than 1 in compression")
 
 

@@ -18,9 +18,9 @@ constexpr int k_most_halvings = 10, k_most_iterations = 40;
 struct Equation {
   std::string name;  // for messages, syy or sxx+syy+szz
   bool of_strain = false;
-  Sym6 weight{};            // -, the largest is 1 or -1 ...
-  double size = 1;          // ... after those of the path were divided by this
-  double from = 0, to = 0;  // at the start and at the end of the row, divided likewise
+  Sym6 weight{};            // -, over the largest of the path's
+  double size = 1;          // -, the largest
+  double from = 0, to = 0;  // the sum at the start and at the end of the row, over `size`
 
   double at(const Sym6& stress, const Sym6& strain) const {
     double sum = 0;
@@ -171,7 +171,8 @@ class Solver {
     }
     for (int n = 0; n < k_most_iterations && now.sound; ++n) {
       const double scale = std::max(strength, modulus_ * largest_of(increment));
-      if (now.size <= tolerance_ * scale) return accept(part, now, increment, point);
+      const bool solved = now.size <= tolerance_ * scale;
+      if (now.size == 0) return accept(part, now, increment, point);
       const auto rows = tangent(part, point, increment, now, share * scale / modulus_);
       bool better = false;
       for (; !better && damping < 1e6; damping = std::max(100 * damping, 1e-10)) {
@@ -180,9 +181,10 @@ class Solver {
         for (std::size_t k = 0; k < unknown_.size(); ++k) next[unknown_[k]] -= step[k];
         Trial trial = try_strain(part, point, next);
         better = trial.sound && trial.size < now.size;
-        if (!better) continue;
-        now = std::move(trial), increment = next;
+        if (better) now = std::move(trial), increment = next;
+        if (solved) break;  // one step more: it costs little, and brings the residual to round-off
       }
+      if (solved) return accept(part, now, increment, point);
       if (!better) break;
       damping = std::max(1e-14, damping * 1e-4);
     }
@@ -214,7 +216,7 @@ Equation equation_of(const ElementSum& sum, double change, const DrivenPoint& po
 std::vector<Equation> equations_of(const ElementRow& row, const std::vector<ElementSum>& sums,
                                    DrivenPoint& point) {
   std::vector<Equation> equations;
-  const auto before = std::exchange(point.goals, {6 + sums.size(), std::nullopt});
+  const auto before = std::exchange(point.goals, std::vector<std::optional<double>>(6 + sums.size()));
   const auto govern = [&](std::size_t k, const ElementSum& sum, double change) {
     equations.push_back(equation_of(sum, change, point, k < before.size() ? before[k] : std::nullopt));
     point.goals[k] = equations.back().to * equations.back().size;
@@ -252,7 +254,8 @@ std::string drive_row(const PointLaw& law, const ElementRow& row, int parts, dou
   Solver solver(law, equations, unknown, tolerance);
   Sym6 guess{};
   for (int n = 0; n < parts; ++n) {
-    Part part{.dt = row.dt / parts};
+    Part part;
+    part.dt = row.dt / parts;
     for (int c = 0; c < 6; ++c) part.strain[c] = strain[c] / parts;
     for (const Equation& e : equations) part.goal.push_back(e.from + (e.to - e.from) * ((n + 1.0) / parts));
     if (!solver.advance(part, guess, point)) return solver.why();

@@ -43,10 +43,13 @@ ENERGY_SLACK = 0.05  # of the energy so far: steps are explicit, and nodes see t
 def launch(program, deck, folder):
     """Runs a deck: (exit status or None where it took too long, what it printed on stderr)."""
     folder.mkdir(parents=True)
+    if deck.ground:
+        deck.ground.write(folder / "start.h5")
+        deck.options.update({name: folder / "start.h5" for name in deck.options if name.endswith("_file")})
     (folder / "deck.opts").write_text(deck.text())
     ranks = ["mpirun", "-n", str(deck.ranks), "--bind-to", "none"] if deck.ranks > 1 else []
     command = [*ranks, str(program), "-options_file", str(folder / "deck.opts"), "-output_dir", str(folder / "out"),
-               "-output_frames", "off", "-progress", "off"]
+               "-output_frames", "on" if deck.frames else "off", "-progress", "off"]
     environment = {**ENVIRONMENT, "OMP_NUM_THREADS": str(deck.threads), "OMP_WAIT_POLICY": "passive",
                    "OMPI_MCA_orte_tmpdir_base": str(folder)}  # runs at once clear each other's
     process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
@@ -150,9 +153,14 @@ def faults_of(deck, status, stderr, folder):
     faults += finite_faults(history)
     for body in deck.bodies():
         faults += [*mass_faults(deck, history, body), *place_faults(deck, history, body)]
-    if all(f"{body}_{column}" in history for body in deck.bodies() for column in ("mass", "lost_mass")):
+    if not deck.loaded and all(f"{body}_{column}" in history for body in deck.bodies() for column in ("mass", "lost_mass")):
         faults += energy_faults(deck, history)
     return faults
+
+
+def more_faults(program, deck, folder):
+    """What else a deck of a script that imports this one demands of a run that is sound so far."""
+    return []
 
 
 # ---------------------------------------------------------------------------------------------- all of them
@@ -162,7 +170,7 @@ def try_deck(program, deck, folder):
     """(seconds, faults) of a deck."""
     started = time.monotonic()
     try:
-        faults = faults_of(deck, *launch(program, deck, folder), folder)
+        faults = faults_of(deck, *launch(program, deck, folder), folder) or more_faults(program, deck, folder)
     except (OSError, ValueError, KeyError) as error:
         faults = [f"{type(error).__name__}: {error}"]
     return time.monotonic() - started, faults

@@ -43,9 +43,9 @@ std::array<double, 3> position_at(double height, int dim) {
 template <class T, int Dim>
 PointState updated(const AnyMaterial<T>& material, double height, const PointState& point,
                    const PointIncrement& by) {
-  static constexpr int k_no_steps = 0;
+  int no_steps = 0;  // not constant: to load it atomically may write it
   PointState next = point;
-  const auto increment = increment_of<T, Dim>(by, &k_no_steps);
+  const auto increment = increment_of<T, Dim>(by, &no_steps);
   material.visit([&](const auto& law) {
     using Law = std::remove_cvref_t<decltype(law)>;
     auto stress = tensor_of<T, Dim>(point.stress);
