@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Clay that collapses, slides and strikes: every run reaches its end, and every kilogram is accounted for.
 
-    collapses.py MPM [--count 200] [--seed 1] [--only K,...] [--jobs 2] [--keep FOLDER] [--precisions double,single]
+    collapses.py MPM [--count 200] [--seed 1] [--only K,...] [--jobs 2] [--keep FOLDER] [--precisions double,single] [--limit 300]
 
 First the collapse of a column in nine variants, then --count random decks (collapse_decks.py) with all strengths, shapes,
 sides, velocity updates, strategies, back ends and one to four ranks. --only runs some of them: numbers of random decks, or
@@ -144,7 +144,7 @@ def faults_of(deck, status, stderr, folder):
     lines = sorted((line for line in stderr.splitlines() if line.strip()), key=lambda line: not line.startswith("mpm:"))
     told = "".join(f"\n    {line}" for line in lines[:5])  # ours before those of the launcher
     if status is None:
-        return [f"no end within {TIME_LIMIT} s{told}"]
+        return [f"no end within {TIME_LIMIT:g} s{told}"]
     if status != 0:
         return [f"exit status {status}{told}"]
     history = read_history(folder / "out" / "history.csv")
@@ -210,6 +210,7 @@ def chosen_decks(arguments):
 
 
 def main():
+    global TIME_LIMIT
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--count", type=int, default=200, help="of random decks")
@@ -218,7 +219,9 @@ def main():
     parser.add_argument("--jobs", type=int, default=1, help="runs at once")
     parser.add_argument("--keep", type=pathlib.Path, help="where folders of decks that fail are kept")
     parser.add_argument("--precisions", default="double,single", help="those that the program is built for")
+    parser.add_argument("--limit", type=float, default=TIME_LIMIT, help="s that a run may take")
     arguments = parser.parse_args()
+    TIME_LIMIT = arguments.limit
     decks, kinds = chosen_decks(arguments), collections.Counter()
     if not decks:
         parser.error(f"--only: no deck is {arguments.only}")

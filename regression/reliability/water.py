@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Soil under water that collapses, slides and strikes, and level ground: every run reaches its end, and its water is right.
 
-    water.py MPM [--count 60] [--seed 1] [--only K,...] [--jobs 2] [--keep FOLDER] [--precisions double,single]
+    water.py MPM [--count 60] [--seed 1] [--only K,...] [--jobs 2] [--keep FOLDER] [--precisions double,single] [--limit 300]
 
 Of the random decks every second is one of collapses.py, with a level of water anywhere from below the mesh to above it, and a
 law of total or of effective stress, drained or undrained. The others are level ground in up to three layers, drained and

@@ -18,6 +18,7 @@ from collapse_decks import Deck, order  # noqa: E402
 
 G = 9.81  # m/s2
 NAMES = ("lower", "middle", "upper")  # layers from the base up
+FREE = 4  # cells of the mesh above the ground
 STEPS = {"rest": 150, "plate": 200}
 # Bounds by precision. Of speeds over that of the waves, of pressures and stresses over the largest, at rest; of the yield
 # condition over the stress; of a run over the same in a row.
@@ -131,6 +132,9 @@ class Ground:
         self.per_cell = dice.choice([1, 2, 2, 3]) if self.dim == 2 else dice.choice([1, 2])
         self.level = self.height * dice.choice([dice.uniform(0, 1), dice.uniform(1, 3), round(dice.uniform(0, 1), 1)])
         self.water = dice.choice([1000.0, 1025.0])
+        self.covered = dice.random() < 0.25  # soil of one density, and water above all of the mesh
+        if self.covered:
+            self.level = (self.deep + FREE + 1 + dice.uniform(0, 20)) * self.cell
         self.layers = self.draw_layers()
         self.time_step()
 
@@ -145,11 +149,11 @@ class Ground:
     def draw_layers(self):
         dice = self.dice
         count = dice.randint(1, min(3, self.deep // 2))
-        cuts = sorted(dice.sample(range(1, self.deep), count - 1))
+        cuts, common = sorted(dice.sample(range(1, self.deep), count - 1)), round(dice.uniform(1500, 2200), 1)
         layers = []
         for name, base, top in zip(NAMES, [0, *cuts], [*cuts, self.deep]):
             law = draw_law(dice, self.height * 2200 * G)
-            law["density"] = round(dice.uniform(1500, 2200), 1)
+            law["density"] = common if self.covered else round(dice.uniform(1500, 2200), 1)
             if dice.random() < 0.5:
                 bulk, _ = moduli(law, self.height * 1000 * G)
                 law["pore_stiffness"] = float(f"{bulk * dice.uniform(3, 50):.4g}")
@@ -194,7 +198,7 @@ class Ground:
     def options(self):
         d, dice, axis = self.cell, self.dice, "xyz"[self.dim - 1]
         o = {"dim": self.dim, "mesh_lower": self.vector(0, 0, 0), "mesh_spacing": d,
-             "mesh_upper": self.vector(self.wide * d, self.across * d, (self.deep + 4) * d),
+             "mesh_upper": self.vector(self.wide * d, self.across * d, (self.deep + FREE) * d),
              f"mesh_{axis}max": "free", f"mesh_{axis}min": dice.choice(["roller", "fixed"]), "gravity": self.vector(0, 0, -G),
              "time_end": float(f"{STEPS[self.kind] * self.dt:.4g}"), "water_level": (self.level,), "water_density": self.water,
              "materials": ",".join(f"{each.name}_soil" for each in self.layers), "bodies": ",".join(each.name for each in self.layers)}
@@ -241,7 +245,8 @@ def ground_deck(seed, k):
     draw_method(o, ground.dice)
     ranks, threads = draw_machine(o, ground.dice)
     laws = ", ".join(f"{each.law['model']} {'undrained' if 'pore_stiffness' in each.law else 'drained'}" for each in ground.layers)
-    deck = Deck(f"{k}: ground, {ground.kind}, {laws}, water to {ground.level / ground.height:.2f}", order(o), ranks=ranks,
+    deck = Deck(f"{k}: ground, {ground.kind}, {laws}, water to {ground.level / ground.height:.2f}"
+                f"{' over all' if ground.covered else ''}", order(o), ranks=ranks,
                 threads=threads)
     deck.ground, deck.loaded, deck.frames = ground, ground.kind == "plate", True
     return deck
