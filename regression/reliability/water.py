@@ -114,7 +114,7 @@ def pressure_faults(deck, body, fields):
     density, g = deck.options.get("water_density", 1000.0), np.linalg.norm([float(x) for x in deck.value("gravity").split(",")])
     right = excess + (density * g * np.maximum(0, depth_of(deck, fields["position"])) if wet else 0)
     pore = fields.get("pore_pressure", excess)
-    size = np.abs(fields["stress"][:, :3]).max(axis=1) + np.abs(right) + density * g * float(deck.value("mesh_spacing"))
+    size = np.abs(fields["stress"][:, :3]).max(axis=1) + np.abs(right) + density * g * float(deck.value("mesh_spacing")) + 1e-9
     error = np.abs(pore - right) / size
     if not error.max() <= PRESSURE[precision]:
         yield f"pore pressure of {body} is off by {error.max():.2g} of the stress"

@@ -77,8 +77,10 @@ def principal(stress):
 
 
 def beyond_yield(law, effective, state):
-    """How far effective stresses lie beyond the yield condition of a law, over a stress [N]; None where it has none. state:
-    the fields of the body's frame."""
+    """How far effective stresses lie beyond the yield condition of a law, over a stress [N]; None where it has none, or one
+    that differs from particle to particle. state: the fields of the body's frame."""
+    if "su_gradient" in law:
+        return None
     model, mean = law["model"], effective[:, :3].mean(axis=1)
     s = principal(effective)
     j2 = ((s - mean[:, None]) ** 2).sum(axis=1) / 2
