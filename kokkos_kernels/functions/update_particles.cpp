@@ -19,7 +19,7 @@ void launch_for(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, c
 }
 template <bool Sums, PatchKind kind, class Space, class T, int Dim>
 void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
-  if (s.light_laws)
+  if (light_kernels_do(s))
     launch_for<Sums, kind, LightMaterials>(s, dt, slots, part);
   else
     launch_for<Sums, kind, Materials>(s, dt, slots, part);
