@@ -49,7 +49,7 @@ void launch_functor(const Space& space, int slots, const Functor& f) {
 
 template <bool WithNodes, class Space, class T, int Dim>
 void launch(const State<Space, T, Dim>& s, int slots, double dt, int steps) {
-  if (s.light_laws)
+  if (light_kernels_do(s))
     launch_functor(s.space, slots, step_of<WithNodes, LightMaterials>(s, dt, steps));
   else
     launch_functor(s.space, slots, step_of<WithNodes, Materials>(s, dt, steps));

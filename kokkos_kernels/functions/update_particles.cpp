@@ -27,7 +27,7 @@ bool launch_heavy(ModelList<Models...>, State<Space, T, Dim>& s, double dt, cons
 }
 template <bool Sums, PatchKind kind, class Space, class T, int Dim>
 void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
-  if (s.light_laws) return launch_for<Sums, kind, LightMaterials>(s, dt, slots, part);
+  if (light_kernels_do(s)) return launch_for<Sums, kind, LightMaterials>(s, dt, slots, part);
   if constexpr (kind == PatchKind::common)
     if (launch_heavy<Sums, kind>(HeavyMaterials{}, s, dt, slots, part)) return;
   launch_for<Sums, kind, Materials>(s, dt, slots, part);

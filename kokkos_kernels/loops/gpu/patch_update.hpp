@@ -200,7 +200,7 @@ struct UpdateParticles {
     });
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
-      if (by.f_bar_by_material) return average_cell(cell_begin(c), cell_begin(c + 1));
+      if (averages_by_material()) return average_cell(cell_begin(c), cell_begin(c + 1));
       T volume = 0, sum = 0;
       for (int p = cell_begin(c); p < cell_begin(c + 1); ++p) {
         volume += soil.volume(p);
@@ -211,6 +211,10 @@ struct UpdateParticles {
     team.team_barrier();
   }
 
+  /// Kernels of light laws alone, which have no registers for it, are not for it (light_kernels_do).
+  KOKKOS_INLINE_FUNCTION bool averages_by_material() const {
+    return !std::is_same_v<Laws, LightMaterials> && by.f_bar_by_material;
+  }
   /// The particles [first, last) of a cell, by material.
   KOKKOS_INLINE_FUNCTION void average_cell(int first, int last) const {
     const auto& soil = source.points;
@@ -222,7 +226,7 @@ struct UpdateParticles {
   }
   /// What average_dilatation has found for particle p in this cell of the patch [1/s].
   KOKKOS_INLINE_FUNCTION T mean_dilatation(const T* mean, int place, int p) const {
-    return by.f_bar_by_material ? dilatation(p) : mean[place];
+    return averages_by_material() ? dilatation(p) : mean[place];
   }
 
   /// Moves particle p; `moved` [cells] becomes the largest movement so far. lone: Strays::alone of the slot.
@@ -295,6 +299,12 @@ UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
           .volume_is_fault = s.strays.rule == StrayRule::stop,
           .clock = {.start = s.time, .dt = dt, .steps = &s.control.data()->steps},
           .f_bar_by_material = s.f_bar_by_material && s.f_bar_fraction > 0};
+}
+
+/// Whether the kernels of light laws alone do all that this run asks for.
+template <class Space, class T, int Dim>
+bool light_kernels_do(const State<Space, T, Dim>& s) {
+  return s.light_laws && !(s.f_bar_by_material && s.f_bar_fraction > 0);
 }
 
 template <class Update, class Space, class T, int Dim>
