@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
+ROUND_OFF = 1e-5  # of a stress or strain that a path was to reach, in single precision
 MEAN, EVEN = "dsxx+dsyy+dszz", "dsxx-dszz"  # sums of a path: of the mean stress, and of the two lateral stresses
 KINDS = ("triaxial", "biaxial", "oedometer", "isotropic", "shear")
 # What a laboratory plots against what: the abscissa of each kind, and what may be measured over it.
@@ -356,5 +357,9 @@ def at_measured(test, found, measured, name):
         rows = np.concatenate([[max(rows[0] - 1, 0)], rows])
         order = np.argsort(along[rows], kind="stable")
         here = stage == k
-        values[here] = np.interp(x[here], along[rows][order], found[name][rows][order], left=np.nan, right=np.nan)
+        # A point at the very end of a stage belongs to it whichever way the last digit of the model's end goes.
+        low, high = along[rows].min(), along[rows].max()
+        inside = np.clip(x[here], low, high)
+        beyond = np.abs(inside - x[here]) > ROUND_OFF * max(abs(low), abs(high))
+        values[here] = np.where(beyond, np.nan, np.interp(inside, along[rows][order], found[name][rows][order]))
     return values
