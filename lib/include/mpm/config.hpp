@@ -59,7 +59,7 @@ struct MaterialConfig {
   std::vector<double> parameters;        // as Model::parameters() lists them
   std::shared_ptr<const void> object{};  // what the model made of its options that are texts; most need none
   double pore_stiffness = 0;             // Pa, of the water in its pores, which does not flow; 0: they drain
-  std::optional<double> f_bar_fraction;  // -, as Config::f_bar_fraction, which holds where there is none
+  std::optional<double> f_bar_fraction{};  // -, as Config::f_bar_fraction, which holds where there is none
 };
 
 /// A deformable body.
