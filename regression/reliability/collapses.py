@@ -214,7 +214,7 @@ def main():
     decks, kinds = chosen_decks(arguments), collections.Counter()
     if not decks:
         parser.error(f"--only: no deck is {arguments.only}")
-    program, failed = pathlib.Path(arguments.program).resolve(), []
+    program, failed = pathlib.Path(arguments.program).absolute(), []
     with tempfile.TemporaryDirectory(prefix="mpm_collapses_") as place, \
             concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         folders = [pathlib.Path(place) / str(k) for k in range(len(decks))]
