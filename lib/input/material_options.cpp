@@ -180,7 +180,7 @@ void read_f_bar(OptionReader& in, const Config& config, MaterialConfig& material
        .unit = "-",
        .range = {.lowest = 0, .highest = 1},
        .standard =
-           in.listing() ? "f_bar_fraction; where that is not given and dilation_deg is above 0, 0" : ""},
+           in.listing() ? "f_bar_fraction, or 0 where that is not given and dilation_deg is above 0" : ""},
       fraction);
   if (found || none) material.f_bar_fraction = fraction;
 }
