@@ -96,7 +96,7 @@ bool ends_in_launch(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void update_and_end(State<Space, T, Dim>& s, double dt) {
   if constexpr (is_device<Space> && sums_fit<Space, T, Dim>) {
-    persistent::launch<false>(s, s.soil.bins.colour_begin[Patch<Dim>::colours], dt, 1);
+    persistent::launch<false>(s, s.soil.bins.last_active, dt, 1);
     s.summed = {true, s.soil_boundary, true};
   }
 }

@@ -64,7 +64,7 @@ void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const
 
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt, const Space& aside) {
-  update_particles(s, dt, Part<Space>{s.space, 0, s.soil.bins.colour_begin[Patch<Dim>::colours]}, aside);
+  update_particles(s, dt, Part<Space>{s.space, 0, s.soil.bins.last_active}, aside);
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                         \

@@ -143,62 +143,27 @@ void permute_fields(const Space& space, ParticleSet<Space, Points_>& set, const 
   permute_fields(space, set.points, set.order, scratch);
 }
 
-/// Numbers of slots of each colour that hold points, and of the points.
-template <int Dim>
-struct Held {
-  int slots[Patch<Dim>::colours] = {}, points = 0;
-  KOKKOS_INLINE_FUNCTION Held& operator+=(const Held& other) {
-    for (int colour = 0; colour < Patch<Dim>::colours; ++colour) slots[colour] += other.slots[colour];
-    points += other.points;
-    return *this;
-  }
-};
-
-/// Colour of the patch of a slot, -1 where it holds no points.
-template <class Space, int Dim>
-struct ColourOfSlot {
-  Kokkos::View<int*, typename Space::memory_space> begin;
-  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  KOKKOS_INLINE_FUNCTION int operator()(int slot) const {
-    if (begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells)) return -1;
-    int colour = 0;
-    for (int d = 0; d < Dim && is_device<Space>; ++d)
-      colour |= ((origin(slot)[d] >> Patch<Dim>::log_edge) & 1) << d;
-    return colour;
-  }
-};
-
-/// What holds points: how many of them have a slot, and these slots, ordered by the colour of their patch.
+/// What holds points: how many of them have a slot, and these slots.
 template <class Space, class Points_, int Dim>
 void list_held(const Space& space, ParticleSet<Space, Points_>& set, const Patches<Space, Dim>& patches) {
-  using Range = Kokkos::RangePolicy<Space>;
+  constexpr int cells = Patch<Dim>::cells;
   const int slots = patches.slots;
   ensure(set.bins.active_slots, slots);
   const auto active_slots = set.bins.active_slots, begin = set.bins.begin;
-  const ColourOfSlot<Space, Dim> colour_of{begin, patches.origin};
-  Held<Dim> held, first;
-  Kokkos::parallel_reduce(
-      "mpm::count_held", Range(space, 0, slots),
-      KOKKOS_LAMBDA(int slot, Held<Dim>& n) {
-        const int colour = colour_of(slot);
-        if (colour >= 0) ++n.slots[colour];
-        if (slot == slots - 1) n.points = begin(slots * Patch<Dim>::cells);
+  int held = 0;
+  Kokkos::parallel_scan(
+      "mpm::list_held", Kokkos::RangePolicy<Space>(space, 0, slots),
+      KOKKOS_LAMBDA(int slot, int& before, bool last) {
+        if (begin(slot * cells) == begin((slot + 1) * cells)) return;
+        if (last) active_slots(before) = slot;
+        ++before;
       },
       held);
-  set.points.count = held.points;
+  Kokkos::deep_copy(space, Kokkos::View<int, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(&set.points.count),
+                    Kokkos::subview(begin, slots * cells));
+  space.fence("mpm::list_held");
   set.bins.first_slot = 0, set.bins.last_slot = slots;
-  set.bins.colour_begin[0] = 0;
-  for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
-    first.slots[colour] = set.bins.colour_begin[colour];
-    set.bins.colour_begin[colour + 1] = first.slots[colour] + held.slots[colour];
-  }
-  Kokkos::parallel_scan(
-      "mpm::slots_by_colour", Range(space, 0, slots), KOKKOS_LAMBDA(int slot, Held<Dim>& n, bool last) {
-        const int colour = colour_of(slot);
-        if (colour < 0) return;
-        if (last) active_slots(first.slots[colour] + n.slots[colour]) = slot;
-        ++n.slots[colour];
-      });
+  set.bins.first_active = 0, set.bins.last_active = held;
 }
 
 template <class Space, class Points_, int Dim, class ScratchView>
