@@ -19,7 +19,6 @@ std::string fault_of_bins(const State<Space, T, Dim>& s, const Set& set) {
   const auto begin = on_host(set.bins.begin), active_slots = on_host(set.bins.active_slots);
   const auto cell = on_host(set.points.cell), id = on_host(set.points.id);
   const auto x = on_host(set.points.coordinate);
-  const auto origin = on_host(s.patches.origin);
   const int cells = s.patches.node_count();
   std::set<int> ids;
   for (int c = 0; c < cells; ++c)
