@@ -236,6 +236,13 @@ PetscErrorCode Simulation::Body::start() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Masses of particles whose volumes differ.
+static void weigh(double density, BodyParticles& particles) {
+  if (particles.most_volume == 0) return;
+  for (const double volume : particles.volume) particles.mass.push_back(density * volume);
+  particles.least_mass = density * particles.least_volume;
+}
+
 /// Mesh and particles.
 PetscErrorCode Simulation::Body::load(Model* model) {
   PetscFunctionBeginUser;
@@ -248,6 +255,7 @@ PetscErrorCode Simulation::Body::load(Model* model) {
     PetscCall(listed ? load_file(body, &particles, &model->from_run)
                      : load_shape("body " + body.name, body.shape, cut_out_of(config, body),
                                   {rank_of(comm), ranks()}, &particles));
+    if (!listed) weigh(config.materials[body.material].density, particles);
   }
   for (const auto& rigid : config.rigids)
     PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, {}, &model->rigids.emplace_back()));
@@ -256,6 +264,20 @@ PetscErrorCode Simulation::Body::load(Model* model) {
       for (std::size_t k = 0; k < particles.position.size(); ++k)
         particles.position[k] -= config.mesh.lower[k % config.dim];
   PetscCall(distribute(comm, config, mesh, model));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Volumes of parts of cells: one figure for all where they are the same. The masses follow with the density of
+/// the material.
+static PetscErrorCode take_volumes(MPI_Comm comm, std::vector<double>&& volume, BodyParticles* particles) {
+  PetscFunctionBeginUser;
+  double ends[2] = {particles->particle_volume, particles->particle_volume};  // least, most
+  for (const double v : volume) ends[0] = std::min(ends[0], v), ends[1] = std::max(ends[1], v);
+  ends[1] = -ends[1];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPI_DOUBLE, MPI_MIN, comm));
+  if (ends[0] == -ends[1]) PetscFunctionReturn(PETSC_SUCCESS);
+  particles->least_volume = ends[0], particles->most_volume = -ends[1];
+  particles->volume = std::move(volume);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -271,6 +293,7 @@ PetscErrorCode Simulation::Body::load_shape(const std::string& name, const Shape
   particles->position = std::move(lattice.position);
   particles->spacing = lattice.spacing;
   particles->particle_volume = lattice.particle_volume;
+  PetscCall(take_volumes(comm, std::move(lattice.volume), particles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -294,14 +317,16 @@ PetscErrorCode Simulation::Body::log_cuts(const std::string& name, const Shape& 
 PetscErrorCode Simulation::Body::log_shape(const std::string& name, const Lattice& lattice, bool in_parts) {
   PetscFunctionBeginUser;
   long counts[2] = {static_cast<long>(lattice.position.size()) / config.dim, lattice.cut_out};
+  double volumes[2] = {lattice.held_volume(), lattice.cut_volume};
   if (in_parts) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_LONG, MPI_SUM, comm));
+  if (in_parts) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, volumes, 2, MPI_DOUBLE, MPI_SUM, comm));
   const auto [count, cut_out] = counts;
   const char* unit = config.dim == 2 ? "m2" : "m3";
   PetscCall(log.print("%s: %ld particles stand for %.6g %s, the shape has %.6g %s", name.c_str(), count,
-                      count * lattice.particle_volume, unit, lattice.shape_volume, unit));
+                      volumes[0], unit, lattice.shape_volume, unit));
   if (cut_out > 0)
     PetscCall(log.print("%s: %ld particles, %.6g %s, were cut out", name.c_str(), cut_out,
-                        cut_out * lattice.particle_volume, unit));
+                        volumes[1], unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/checksum.hpp"
 #include "common/text.hpp"
+#include "input/shapes.hpp"
 
 namespace mpm {
 namespace {
@@ -56,20 +57,25 @@ std::string value_of(const std::string& name, const std::vector<EffectiveOption>
   return "";
 }
 
+/// What the files of a shape hold, in place of their names.
+void keep_contents(const std::string& name, const Shape& shape, std::vector<EffectiveOption>& options) {
+  for (const auto& [key, path] : files_of(shape)) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string contents(std::istreambuf_iterator<char>(file), {});
+    for (EffectiveOption& option : options)
+      if (option.name == "-" + name + key)
+        option.value =
+            formatted("a file of %zu bytes with crc32 %08x", contents.size(), checksum(0, contents));
+  }
+}
+
 }  // namespace
 
 std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>& options,
                                              const Config& config) {
   std::vector<EffectiveOption> kept = options;
-  for (const BodyConfig& body : config.bodies) {
-    if (body.shape.kind != ShapeKind::particles) continue;
-    std::ifstream file(body.shape.file, std::ios::binary);
-    const std::string contents(std::istreambuf_iterator<char>(file), {});
-    for (EffectiveOption& option : kept)
-      if (option.name == "-" + body.name + "_file")
-        option.value =
-            formatted("a file of %zu bytes with crc32 %08x", contents.size(), checksum(0, contents));
-  }
+  for (const BodyConfig& body : config.bodies) keep_contents(body.name, body.shape, kept);
+  for (const RigidConfig& rigid : config.rigids) keep_contents(rigid.name, rigid.shape, kept);
   return kept;
 }
 

@@ -45,9 +45,9 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
 /// Whether soil of a material has a strength, somewhere.
 bool has_strength(const MaterialConfig& material);
 
-/// The geometry and lattice of a body or rigid. Whether all of it was sound. Only where `listed` may a file
-/// list the particles.
-bool read_shape(OptionReader& in, const std::string& name, int dim, bool listed, Shape& shape);
+/// The geometry and lattice of a body or rigid, where `body` says which. Whether all of it was sound. A file may
+/// list the particles of a body. The bodies before it have been read.
+bool read_shape(OptionReader& in, const std::string& name, const Config& config, bool body, Shape& shape);
 
 /// Checks that a sound shape lies in the mesh, or is cut by planes of symmetry, and holds a particle.
 void check_shape(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
