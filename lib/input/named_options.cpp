@@ -216,7 +216,7 @@ void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
         std::vector<std::pair<std::string, bool>>{{"none", false}, {"geo", true}}, rigid.contact_gap_scaling);
   else
     in.not_taken(name, rigid.name + "_separation is none");
-  if (rigid.contact_gap_scaling && !has_distance(rigid.shape))
+  if (rigid.contact_gap_scaling && in.given(name) && !has_distance(rigid.shape))
     in.reject(name, "none where " + rigid.name + "_shape is " + in.given_text(rigid.name + "_shape"));
   const Option reach{.name = rigid.name + "_contact_gap_reach",
                      .meaning = "geo: the gap at which contact ends, in cells",

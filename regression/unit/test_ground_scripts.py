@@ -213,6 +213,23 @@ class Fields(Folder):
         lowest = [fields.read_field(row[0], "su")[0].min() for row in rows]
         self.assertEqual(lowest, [1.9e4] * 3)
 
+    def test_a_sweep_has_the_distribution_of_a_column(self):
+        values = np.random.default_rng(3).normal(10, 2, 40)
+        (self.folder / "t.csv").write_text("soil_field\n" + "".join(f"f{k}.h5\n" for k in range(40)))
+        for k, value in enumerate(values):
+            folder = self.folder / "out" / f"run_{k:04d}"
+            folder.mkdir(parents=True)
+            (folder / "history.csv").write_text(f"time,a\n0,0\n1,{value!r}\n2,1\n")
+        words = [self.folder / "t.csv", "--gather", "--out", self.folder / "out", "--distribution"]
+        done = run("sweep", *words, "a:max")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        got = np.genfromtxt(self.folder / "out" / "distribution.csv", delimiter=",", skip_header=1)
+        np.testing.assert_array_equal(got[:, 1], values)
+        self.assertIn(f"40 runs: mean {values.mean():.4g}, deviation {values.std(ddof=1):.4g}", done.stdout)
+        self.assertTrue((self.folder / "out" / "distribution.png").stat().st_size > 0)
+        self.assertIn("no column b", run("sweep", *words, "b").stderr)
+        self.assertIn("takes COLUMN:last", run("sweep", *words, "a:mean").stderr)
+
     def test_what_is_wrong_is_told_in_one_line(self):
         words = {"--name": "su", "--lower": "0,0", "--upper": "4,2", "--spacing": "0.5", "--mean": "1", "--cov": "0.3",
                  "--length": "2,1"}
