@@ -43,7 +43,7 @@ def triangles_of_prism(outline, width):
     n, faces = len(outline), []
     for k in range(n):
         m = (k + 1) % n
-        faces += [(front[k], front[m], back[m]), (front[k], back[m], back[k])]
+        faces += [(front[k], back[m], front[m]), (front[k], back[k], back[m])]
     for k in range(1, n - 1):
         faces += [(front[0], front[k + 1], front[k])[::-1], (back[0], back[k + 1], back[k])]
     return np.array(faces)
