@@ -25,8 +25,10 @@ void add_files(const std::string& name, const Shape& shape, std::vector<Input>& 
 std::vector<Input> inputs_of(const Config& config, const InputReport& report) {
   std::vector<Input> inputs;
   for (const std::string& file : report.files) inputs.emplace_back("-options_file", file);
-  for (const BodyConfig& body : config.bodies)
+  for (const BodyConfig& body : config.bodies) {
     add_files(body.name, body.shape, inputs);
+    if (!body.field.empty()) inputs.emplace_back("-" + body.name + "_field", body.field);
+  }
   for (const RigidConfig& rigid : config.rigids) add_files(rigid.name, rigid.shape, inputs);
   if (!config.element.file.empty()) inputs.emplace_back("-element_path", config.element.file);
   return inputs;

@@ -35,12 +35,15 @@ void take_masses(ParticleTable&& table, double density, BodyParticles& particles
   particles.mass = std::move(table.mass);
 }
 
-/// What the file does not tell, and what takes its place, for the log.
-std::string missing(const ParticleTable& table, const BodyConfig& body) {
+/// What the file tells in the place of the material, and what it does not tell, for the log.
+std::string missing(const ParticleTable& table, const BodyConfig& body, const std::string& parameter) {
   std::string text;
   const auto add = [&](const std::string& line) { text += "\n  " + line; };
+  if (const auto& own = table.own_parameter; !own.empty())
+    add(formatted("each with its own %s: %.6g to %.6g", parameter.c_str(),
+                  *std::min_element(own.begin(), own.end()), *std::max_element(own.begin(), own.end())));
   if (table.mass.empty()) add("without masses: they are the material's density times the volumes");
-  if (table.reference_height.empty())
+  if (table.reference_height.empty() && table.own_parameter.empty())
     add("without reference heights: strengths that grow with depth are those of where the particles are now");
   if (table.put_inside > 0)
     add(formatted("%ld that were less than half a cell outside the mesh are put to its side",
@@ -59,7 +62,8 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
   PetscFunctionBeginUser;
   ParticleTable table;
   std::string fault;
-  PetscCallCXX(fault = read_particles(source_of(body, config), config.mesh, config.dim, table));
+  const ParticleSource source = source_of(body, config);
+  PetscCallCXX(fault = read_particles(source, config.mesh, config.dim, table));
   PetscCheck(fault.empty(), comm, PETSC_ERR_FILE_READ, "%s has changed: it should be %s",
              body.shape.file.c_str(), fault.c_str());
   const long cut = cut_particles(cut_out_of(config, body), config.mesh, config.dim, table);
@@ -72,7 +76,7 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
   PetscCall(log.line(formatted("body %s: %ld particles of %s%s stand for %.6g %s, %.9g kg", body.name.c_str(),
                                static_cast<long>(table.volume.size()), body.shape.file.c_str(),
                                origin.c_str(), volume, config.dim == 2 ? "m2" : "m3", mass) +
-                     missing(table, body)));
+                     missing(table, body, source.parameter)));
   *from_run = *from_run || !table.origin.empty();
   particles->position = std::move(table.position);
   particles->spacing = config.mesh.spacing / body.shape.particles_per_cell;
@@ -80,6 +84,7 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
   particles->stress = std::move(table.stress);
   particles->state = std::move(table.state);
   particles->reference_height = std::move(table.reference_height);
+  particles->own_parameter = std::move(table.own_parameter);
   if (config.velocity_update == VelocityUpdate::apic)
     particles->velocity_gradient = std::move(table.velocity_gradient);
   PetscCallCXX(take_masses(std::move(table), density, *particles));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/f_bar.hpp"
 #include "common/text.hpp"
 #include "input/groups.hpp"
 #include "input/shapes.hpp"
@@ -188,6 +189,16 @@ void warn_of_walls(const Config& config, const RigidConfig& rigid, const Bounds&
         rigid.name.c_str(), nearest, width_there, where.c_str(), k_least));
 }
 
+void warn_of_f_bar(const Config& config, const MaterialConfig& material, Lines& lines) {
+  const double fraction = f_bar_fraction(config, material);
+  if (!(fraction > 0 && parameter_of(material, "dilation_deg") > 0)) return;
+  const std::string own = material.f_bar_fraction ? material.name + "_" : "";
+  lines.push_back(
+      formatted("warning: -%sf_bar_fraction: given \"%g\", creates energy in %s, which dilates as it yields; "
+                "0 does not",
+                own.c_str(), fraction, material.name.c_str()));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Config& config, int ranks) {
@@ -210,10 +221,7 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
     if (told[body.material]) continue;
     told[body.material] = 1;
     for (const std::string& line : warnings_of_law(material)) lines.push_back("warning: " + line);
-    if (config.f_bar_fraction > 0 && parameter_of(material, "dilation_deg") > 0)
-      lines.push_back(formatted(
-          "warning: -f_bar_fraction: given \"%g\", creates energy in %s, which dilates as it yields; 0 does not",
-          config.f_bar_fraction, material.name.c_str()));
+    warn_of_f_bar(config, material, lines);
     warn_of_rigidity(material.name, soil, lines);
     warn_of_units(config, material, soil, bounds.upper[up] - bounds.lower[up], lines);
   }

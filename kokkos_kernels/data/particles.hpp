@@ -63,6 +63,8 @@ struct Soil : Points<Space, T, Dim> {
   KOKKOS_INLINE_FUNCTION T mass_of(int p, const BodyProperties<T>& of) const {
     return has_own_mass ? mass(p) : of.mass;
   }
+  /// Index of the material of particle p.
+  KOKKOS_INLINE_FUNCTION int material_of(int p) const { return bodies(body(p)).material; }
   /// The values of the state variables of particle p, whose law this is; 0 where it does not carry one.
   template <class Law>
   KOKKOS_INLINE_FUNCTION LawState<T, state_size<Law>> state_of(const Law& law, int p) const {

@@ -70,7 +70,8 @@ struct State {
   double flip_fraction = 1;       // -, what is not FLIP is PIC, or XPIC
   int xpic_order = 0;             // m of XPIC(m), 0 without it
   bool affine = false;            // APIC: Soil::affine is in use; flip_fraction is then 0
-  double f_bar_fraction = 0;      // -
+  double f_bar_fraction = 0;      // -, the largest of all materials; each takes its share of it
+  bool f_bar_by_material = false; // bodies differ in material
   bool keeps_stress = false;      // sorting brings no pressures together: at a start from another run
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them
@@ -85,5 +86,14 @@ struct State {
   bool shear_fraction = false;  // some contact needs the soil's strength at the nodes
   bool has_friction = false;    // some contact has Coulomb friction
 };
+
+/// Dilatation rates of particles [1/s].
+template <class Space, class T>
+using Dilatations = Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged>;
+/// Those that a step works with, in State::scratch.
+template <class Space, class T, int Dim>
+Dilatations<Space, T> dilatations_of(const State<Space, T, Dim>& s) {
+  return Dilatations<Space, T>(reinterpret_cast<T*>(s.scratch.data()), s.soil.points.count);
+}
 
 }  // namespace mpm

@@ -7,6 +7,7 @@
 #include "base/lanes.hpp"
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
+#include "physics/cell_mean.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/pore_water.hpp"
 
@@ -45,6 +46,7 @@ struct UpdateScalars {
   T least_volume, most_volume;  // m3
   bool volume_is_fault;         // one that is at a bound
   Clock clock{};
+  bool f_bar_by_material = false;  // State::f_bar_by_material
 };
 
 /// What a step changes of a particle.
@@ -103,20 +105,9 @@ struct ParticleLaw {
   }
 };
 
-/// Mean over the particles of a cell, weighted by volume.
-template <class T>
-struct CellMean {
-  T volume = 0, sum = 0;  // m3; m3 times the unit of what is averaged
-
-  /// weighted: the particle's volume times its value.
-  KOKKOS_INLINE_FUNCTION void add(T of_particle, T weighted) { volume += of_particle, sum += weighted; }
-  /// 0 in an empty cell.
-  KOKKOS_INLINE_FUNCTION T value() const { return volume > 0 ? sum / volume : T(0); }
-};
-
 /// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The fraction f_bar of
-/// its dilatation is that of its cell, `mean_dilatation` [1/s]. law(stress, increment) changes the stress.
-/// Returns the largest component of the particle's movement [cells].
+/// its dilatation is that of its cell, `mean_dilatation` [1/s], or what mean_for() makes of it. law(stress,
+/// increment) changes the stress. Returns the largest component of the particle's movement [cells].
 template <class R, class T, int Dim, class Law>
 KOKKOS_INLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law, const GridSample<R, Dim>& t,
                                  R mean_dilatation, const UpdateScalars<T>& by) {

@@ -2,6 +2,7 @@
 // points are put in order of id, so that the result does not depend on how threads ran.
 
 #include "functions/step_kernels.hpp"
+#include "physics/cell_mean.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
 #include "physics/surface.hpp"
@@ -303,8 +304,36 @@ void average_pore_pressure(State<Space, T, Dim>& s) {
       });
 }
 
+/// Where each material has means and a share of F-bar of its own: effective stress and excess pore pressure.
+template <class Space, class T, int Dim>
+void average_pressure_by_material(State<Space, T, Dim>& s) {
+  const auto soil = s.soil.points;
+  const auto begin = s.soil.bins.begin;
+  const T most = static_cast<T>(s.f_bar_fraction);
+  Kokkos::parallel_for(
+      "mpm::average_pressure_by_material", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
+      KOKKOS_LAMBDA(int cell) {
+        const int first = begin(cell), last = begin(cell + 1);
+        const auto fraction_of = [&](int p) {
+          return most * soil.materials(soil.material_of(p)).f_bar_share;
+        };
+        average_by_material(
+            soil, first, last, [&](int p) { return soil.volume(p) * mean_of(soil.stress(p)); },
+            [&](int p, T mean) {
+              const T change = fraction_of(p) * (mean - mean_of(soil.stress(p)));
+              for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
+            });
+        if (soil.history.pore < 0) return;
+        const auto excess = soil.history.column[soil.history.pore];  // 0 where a material drains
+        average_by_material(
+            soil, first, last, [&](int p) { return soil.volume(p) * excess(p); },
+            [&](int p, T mean) { excess(p) += fraction_of(p) * (mean - excess(p)); });
+      });
+}
+
 template <class Space, class T, int Dim>
 void average_pressure(State<Space, T, Dim>& s) {
+  if (s.f_bar_by_material) return average_pressure_by_material(s);
   const auto soil = s.soil.points;
   const auto begin = s.soil.bins.begin;
   const T fraction = static_cast<T>(s.f_bar_fraction);

@@ -167,8 +167,13 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
-    return store_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get(),
-                             materials[m].pore_stiffness);
+    auto stored = store_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get(),
+                                    materials[m].pore_stiffness);
+    stored.f_bar_share = static_cast<T>(materials[m].f_bar_share);
+    return stored;
+  });
+  s.f_bar_by_material = std::any_of(bodies.begin(), bodies.end(), [&](const BodyInput& body) {
+    return body.material != bodies.front().material;
   });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
   s.light_laws = soil.history.pore < 0;

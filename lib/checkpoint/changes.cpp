@@ -6,6 +6,7 @@
 #include <map>
 
 #include "common/checksum.hpp"
+#include "common/material_table.hpp"
 #include "common/text.hpp"
 #include "input/shapes.hpp"
 
@@ -57,25 +58,42 @@ std::string value_of(const std::string& name, const std::vector<EffectiveOption>
   return "";
 }
 
-/// What the files of a shape hold, in place of their names.
-void keep_contents(const std::string& name, const Shape& shape, std::vector<EffectiveOption>& options) {
-  for (const auto& [key, path] : files_of(shape)) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string contents(std::istreambuf_iterator<char>(file), {});
-    for (EffectiveOption& option : options)
-      if (option.name == "-" + name + key)
-        option.value =
-            formatted("a file of %zu bytes with crc32 %08x", contents.size(), checksum(0, contents));
-  }
+/// What a checkpoint says of a body's file that gives the particles their own values of a parameter.
+std::string own_parameter_note(const BodyConfig& body, const Config& config) {
+  if (!body.largest_own_parameter) return "";
+  return own_parameter_words(own_parameter(state_variables(config.materials[body.material])));
+}
+
+/// What a file holds, in place of its name.
+void keep_contents(const std::string& option, const std::string& path, const std::string& note,
+                   std::vector<EffectiveOption>& options) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string contents(std::istreambuf_iterator<char>(file), {});
+  for (EffectiveOption& kept : options)
+    if (kept.name == option)
+      kept.value = formatted("a file of %zu bytes with crc32 %08x%s", contents.size(), checksum(0, contents),
+                             note.c_str());
 }
 
 }  // namespace
 
+std::string own_parameter_words(const std::string& parameter) {
+  return ", with " + parameter + " of each particle";
+}
+
 std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>& options,
                                              const Config& config) {
   std::vector<EffectiveOption> kept = options;
-  for (const BodyConfig& body : config.bodies) keep_contents(body.name, body.shape, kept);
-  for (const RigidConfig& rigid : config.rigids) keep_contents(rigid.name, rigid.shape, kept);
+  for (const BodyConfig& body : config.bodies) {
+    const std::string note = own_parameter_note(body, config), name = "-" + body.name;
+    for (const auto& [key, path] : files_of(body.shape)) {
+      const bool listed = body.shape.kind == ShapeKind::particles;
+      keep_contents(name + key, path, listed ? note : "", kept);
+    }
+    if (!body.field.empty()) keep_contents(name + "_field", body.field, note, kept);
+  }
+  for (const RigidConfig& rigid : config.rigids)
+    for (const auto& [key, path] : files_of(rigid.shape)) keep_contents("-" + rigid.name + key, path, "", kept);
   return kept;
 }
 

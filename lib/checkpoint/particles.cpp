@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "checkpoint/changes.hpp"
 #include "checkpoint/checkpoint.hpp"
 #include "checkpoint/sealed_file.hpp"
 #include "common/material_table.hpp"
@@ -100,16 +101,34 @@ std::string find_body(const Checkpoint& c, const std::string& name, BodyRows& bo
   return body.rows.empty() ? "a checkpoint with particles of " + name : "";
 }
 
+/// The state variables of a body's law.
+std::vector<StateVariable> variables_of(const Checkpoint& c, const std::string& body) {
+  return state_variables(value_of(c, "-" + value_of(c, "-" + body + "_material") + "_model"));
+}
+
 /// The field of a checkpoint that holds a state variable of a body: by its name, or where the laws of several
 /// bodies share columns, by its place in the table of the body's law. Empty where the body has no such one.
 std::string column_of(const Checkpoint& c, const std::string& body, const std::string& name,
                       const BodyRows& rows) {
   if (name == k_excess_pore_pressure) return rows.has(k_excess_pore_pressure, 1) ? name : "";
-  const auto variables = state_variables(value_of(c, "-" + value_of(c, "-" + body + "_material") + "_model"));
+  const auto variables = variables_of(c, body);
   for (std::size_t k = 0; k < variables.size(); ++k) {
     if (name != variables[k].name) continue;
     return rows.has(name.c_str(), 1) ? name : "column_" + std::to_string(k);
   }
+  return "";
+}
+
+/// The same of the variable that is each particle's own value of a parameter; empty where the body's
+/// particles had no values of their own.
+std::string column_of_own(const Checkpoint& c, const std::string& body, const std::string& parameter,
+                          const BodyRows& rows) {
+  const std::string note = own_parameter_words(parameter);
+  const auto has_note = [&](const char* key) { return value_of(c, "-" + body + key).ends_with(note); };
+  if (parameter.empty() || !(has_note("_file") || has_note("_field"))) return "";
+  for (const StateVariable& variable : variables_of(c, body))
+    if (variable.parameter != nullptr && parameter == variable.parameter)
+      return column_of(c, body, variable.name, rows);
   return "";
 }
 
@@ -139,6 +158,8 @@ std::string read_checkpoint_particles(const ParticleSource& source, const MeshCo
     const std::string column = column_of(c, source.group, name, body);
     if (!column.empty()) table.state.push_back({name, body.read(column.c_str(), 1)});
   }
+  if (const auto own = column_of_own(c, source.group, source.parameter, body); !own.empty())
+    table.own_parameter = body.read(own.c_str(), 1);
   table.reference_height = body.read("reference_height", 1);
   if (source.velocity) table.velocity = body.read("velocity", dim);
   if (source.stress) table.stress = body.read("stress", dim == 2 ? 4 : 6);

@@ -14,6 +14,12 @@ std::vector<StateVariable> state_variables(const std::string& model) {
   return index < 0 ? std::vector<StateVariable>{} : state_variables(index);
 }
 
+std::string own_parameter(const std::vector<StateVariable>& variables) {
+  for (const StateVariable& variable : variables)
+    if (variable.parameter != nullptr) return variable.parameter;
+  return "";
+}
+
 std::vector<StateVariable> state_variables(const MaterialConfig& material) {
   const int index = model_index(material.model);
   return index < 0 ? std::vector<StateVariable>{} : state_variables(index, material.parameters);

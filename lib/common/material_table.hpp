@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "physics/materials/tables.hpp"
 #include "mpm/config.hpp"
+#include "physics/materials/tables.hpp"
 
 namespace mpm {
 
@@ -14,6 +14,10 @@ int model_index(const std::string& name);
 
 /// All state variables of the law of this name; none where there is no such law.
 std::vector<StateVariable> state_variables(const std::string& model);
+
+/// Key of the parameter that each particle of a material may have a value of its own of (a file of particles
+/// gives it); empty where there is none.
+std::string own_parameter(const std::vector<StateVariable>& variables);
 
 /// The state variables that the particles of a material carry; none where there is no such law.
 std::vector<StateVariable> state_variables(const MaterialConfig& material);

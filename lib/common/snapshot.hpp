@@ -29,10 +29,14 @@ struct ParticleSnapshot {
   std::vector<double> stress;            // Pa    [6 N], Cauchy, tension positive
   std::vector<double> volume;            // m3    [N]
   std::vector<StateField> state;         // the state variables that frames have
+  std::string own_parameter{};           // the one of them that is each particle's own value of a parameter
   std::vector<double> mass;              // kg    [N], of particles and nodes
   std::vector<double> reference_height;  // m   [N], where the particle was created
   std::vector<double> number;            // -     [N], of nodes: in the whole mesh, x fastest
 };
+
+/// The attribute of a body's group in a frame that names the parameter of which each particle has its own.
+inline constexpr const char* k_own_parameter = "own_parameter";
 
 /// The name of the group of nodes.
 inline constexpr const char* k_nodes = "nodes";

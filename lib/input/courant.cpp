@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/f_bar.hpp"
+
 namespace mpm {
 namespace {
 
@@ -27,7 +29,7 @@ double largest_courant(const Config& config) {
   constexpr double k_lone_cell = 6;
   // Measured (regression/reliability/courant.py): particles of a cell that dilate apart are stiffer.
   constexpr double k_without_f_bar = 0.94, k_has_f_bar = 0.5;
-  const double apart = config.f_bar_fraction < k_has_f_bar ? k_without_f_bar : 1;
+  const double apart = f_bar_range(config).least < k_has_f_bar ? k_without_f_bar : 1;
   double largest = k_largest_courant;
   for (const BodyConfig& body : config.bodies) {
     const int n = body.shape.particles_per_cell;

@@ -2,6 +2,7 @@
 // The groups of options, each read at one place. All report their mistakes to the reader.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,14 +32,19 @@ void prepare_material(MaterialConfig& material, double spacing, double largest_p
 /// The same for all materials, each with the largest pressure of its bodies.
 void prepare_for_pressure(double spacing, Config& config);
 
-/// Whether a particle of a sound material may start at a height [m] with a stress [Pa]; reports why it may
-/// not.
+/// Whether a particle of a sound material may start at a height [m] with a stress [Pa], and with its own
+/// value of the law's strength where there is one; reports why it may not.
 bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
-                 const Sym6& stress);
+                 const Sym6& stress, std::optional<double> own = {});
+
+/// What particles should be whose own values of a parameter are from `least` to `largest`, as the end of
+/// "takes ..."; empty where their material takes these.
+std::string own_parameter_fault(const MaterialConfig& material, const std::string& key, double least,
+                                double largest);
 
 /// Checks the starts of the particles of a body of a sound material, by the lowest and highest point of its
-/// shape or by the file that lists them, and notes their largest pressure. Particles whose state a file gives
-/// go on as they are.
+/// shape or by the file that lists them, and notes their largest pressure and own strength. Particles whose
+/// state a file gives go on as they are.
 void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config, const ParticleTable& listed,
                   BodyConfig& body);
 
@@ -68,6 +74,13 @@ std::array<double, 2> heights_of(const Shape& shape, const Config& config);
 /// Checks that a rigid that moves by forces is wholly below the water's level or above it: its buoyancy is
 /// constant. The mesh must be sound.
 void check_in_water(OptionReader& in, const Config& config, const RigidConfig& rigid);
+
+/// -NAME_field of a body; `listed`: a file lists its particles, and it takes none.
+void read_body_field(OptionReader& in, const std::string& name, bool listed, BodyConfig& body);
+/// Checks the field against the body's sound shape and material, and notes its largest value.
+void check_body_field(OptionReader& in, const MeshConfig& mesh, const Config& config, BodyConfig& body);
+/// The parameter of a body's law that a field gives; empty where it has none.
+std::string field_key(const BodyConfig& body, const Config& config);
 
 /// The initial velocity and stress of a body, which take the place of those of its file.
 void read_start(OptionReader& in, int dim, BodyConfig& body);

@@ -1,5 +1,6 @@
 // What a body takes from a file that lists its particles, and what from options.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -57,8 +58,10 @@ ParticleSource source_of(const BodyConfig& body) {
 ParticleSource source_of(const BodyConfig& body, const Config& config) {
   ParticleSource source = source_of(body);
   if (body.material >= static_cast<int>(config.materials.size())) return source;  // reported
-  for (const StateVariable& variable : state_variables(config.materials[body.material]))
+  const auto variables = state_variables(config.materials[body.material]);
+  for (const StateVariable& variable : variables)
     if (variable.changes && variable.output) source.state.push_back(variable.name);
+  source.parameter = own_parameter(variables);
   if (config.materials[body.material].pore_stiffness > 0) source.state.push_back(k_excess_pore_pressure);
   return source;
 }
@@ -69,8 +72,13 @@ void check_particles(OptionReader& in, const BodyConfig& body, const Config& con
   if (will_be_removed(body.shape.file, config.output.directory))
     return in.reject(option, "a file that this run does not remove; give another -output_dir than " +
                                  config.output.directory);
-  std::string fault = read_particles(source_of(body, config), mesh, config.dim, table);
+  const ParticleSource source = source_of(body, config);
+  std::string fault = read_particles(source, mesh, config.dim, table);
   if (fault.empty()) fault = beyond_bounds(table, mesh, config.dim);
+  if (const auto& own = table.own_parameter; fault.empty() && !own.empty())
+    fault = own_parameter_fault(config.materials[body.material], source.parameter,
+                                *std::min_element(own.begin(), own.end()),
+                                *std::max_element(own.begin(), own.end()));
   if (!fault.empty()) {
     table = {};
     in.reject(option, fault);

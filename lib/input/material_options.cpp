@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <set>
 
@@ -171,6 +172,23 @@ void read_object(OptionReader& in, int model, const std::vector<std::string>& te
   if (!fault.key.empty()) in.reject(material.name + "_" + fault.key, with_prefix(fault.takes, material.name));
 }
 
+/// The fraction of F-bar, which is by default that of the run. Where soil dilates as it yields, F-bar creates
+/// energy (docs/soils.md): only a fraction that is given holds there.
+void read_f_bar(OptionReader& in, const Config& config, MaterialConfig& material) {
+  const bool dilates = std::strtod(in.given_text(material.name + "_dilation_deg").c_str(), nullptr) > 0;
+  const bool none = dilates && !in.given("f_bar_fraction");
+  double fraction = none ? 0 : config.f_bar_fraction;
+  const bool found = in.number(
+      {.name = material.name + "_f_bar_fraction",
+       .meaning = "f_bar_fraction of its soil",
+       .unit = "-",
+       .range = {.lowest = 0, .highest = 1},
+       .standard =
+           in.listing() ? "f_bar_fraction; where that is not given and dilation_deg is above 0, 0" : ""},
+      fraction);
+  if (found || none) material.f_bar_fraction = fraction;
+}
+
 }  // namespace
 
 double parameter_of(const MaterialConfig& material, const std::string& key) {
@@ -204,6 +222,7 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
              .unit = "Pa",
              .range = {.lowest = 0, .highest = 1e12}},
             material.pore_stiffness);
+  read_f_bar(in, config, material);
   if (in.listing()) {
     for (const Model& model : models) {
       in.section("Material NAME of model " + model.name);
@@ -237,11 +256,33 @@ void prepare_material(MaterialConfig& material, double spacing, double largest_p
       parameters_for(model_index(material.model), material.parameters, {spacing, largest_pressure});
 }
 
+std::string own_parameter_fault(const MaterialConfig& material, const std::string& key, double least,
+                                double largest) {
+  const int which = model_index(material.model);
+  const Model model = tables_of(Materials{})[which];
+  MaterialConfig weakest = material;
+  for (std::size_t k = 0; k < model.options.size(); ++k) {
+    const Option& option = model.options[k];
+    if (option.name != key) continue;
+    const std::string takes =
+        "particles whose " + key + " is a number in " + option.unit + option.range.text();
+    if (!option.range.holds(least)) return takes + "; the least of this file is " + text_of(least);
+    if (!option.range.holds(largest)) return takes + "; the largest of this file is " + text_of(largest);
+    weakest.parameters.at(k) = least;
+  }
+  const ParameterFault fault =
+      parameter_fault(make_material<double>(which, weakest.parameters, weakest.object.get()));
+  if (fault.key != key) return "";
+  return "particles whose " + key + " is " + with_prefix(fault.takes, material.name) +
+         "; the least of this file is " + text_of(least);
+}
+
 bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
-                 const Sym6& stress) {
+                 const Sym6& stress, std::optional<double> own) {
   const auto law =
       make_material<double>(model_index(material.model), material.parameters, material.object.get());
-  const ParameterFault fault = start_fault(law, {.position = {}, .height = height, .stress = stress});
+  const ParameterFault fault =
+      start_fault(law, {.position = {}, .height = height, .stress = stress, .own = own});
   if (fault.key.empty()) return true;
   const bool of_body = fault.key == "stress";
   in.reject((of_body ? body : material.name) + "_" + fault.key, with_prefix(fault.takes, material.name));

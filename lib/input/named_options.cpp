@@ -135,6 +135,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
              .aside = ", of -materials"},
             materials, body.material);
   read_start(in, config.dim, body);
+  read_body_field(in, body.name, from_file, body);
   read_cut_out(in, names, body);
   if (!sound || !mesh) return;
   ParticleTable listed;
@@ -142,6 +143,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
     check_particles(in, body, config, *mesh, listed);
     check_density(in, body, config, listed);
   }
+  if (sound_materials && in.errors() == errors) check_body_field(in, *mesh, config, body);
   if (sound_materials && in.errors() == errors) check_starts(in, *mesh, config, listed, body);
 }
 

@@ -181,14 +181,6 @@ void read_velocity_update(OptionReader& in, Config& config) {
     in.not_taken("xpic_order", "-velocity_update is not xpic");
 }
 
-/// Whether some soil dilates as it yields: F-bar creates energy there (docs/soils.md).
-bool has_dilation(const OptionReader& in) {
-  const auto owners = in.owners_of("dilation_deg");
-  return std::any_of(owners.begin(), owners.end(), [&](const std::string& name) {
-    return std::strtod(in.given_text(name + "_dilation_deg").c_str(), nullptr) > 0;
-  });
-}
-
 void read_physics(OptionReader& in, Config& config) {
   in.section("Physics");
   in.vector({.name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2", .range = k_speed},
@@ -208,13 +200,14 @@ void read_physics(OptionReader& in, Config& config) {
            "leave the run; stop: the run ends with exit status 3"},
       Words<StrayRule>{{"keep", StrayRule::keep}, {"remove", StrayRule::remove}, {"stop", StrayRule::stop}},
       config.stray_particles);
-  if (has_dilation(in)) config.f_bar_fraction = 0;
-  in.number({.name = "f_bar_fraction",
-             .meaning = "fraction of the cell's mean in a particle's dilatation (F-bar), against locking; where "
-                        "a material has a -NAME_dilation_deg above 0 the default is 0",
-             .unit = "-",
-             .range = {.lowest = 0, .highest = 1}},
-            config.f_bar_fraction);
+  in.number(
+      {.name = "f_bar_fraction",
+       .meaning = "fraction of the cell's mean in a particle's dilatation (F-bar), against locking, of all "
+                  "materials without an f_bar_fraction of their own; by default a material with a "
+                  "dilation_deg above 0 has 0",
+       .unit = "-",
+       .range = {.lowest = 0, .highest = 1}},
+      config.f_bar_fraction);
 }
 
 /// What frames hold.

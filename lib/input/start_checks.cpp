@@ -36,12 +36,15 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
   }
   bool looks = std::all_of(listed.state.begin(), listed.state.end(),
                            [](const StateField& field) { return field.name == k_excess_pore_pressure; });
+  const auto& own = listed.own_parameter;
+  if (!own.empty()) body.largest_own_parameter = *std::max_element(own.begin(), own.end());
   for (std::size_t p = 0; p < listed.volume.size(); ++p) {
     const bool is_new = listed.reference_height.empty();
     const double height = is_new ? listed.position[p * config.dim + up] : listed.reference_height[p];
     const Sym6 stress = stress_of(body, listed, p, config.dim);
     body.largest_pressure = std::max(body.largest_pressure, pressure_of(stress));
-    looks = looks && check_start(in, body.name, material, height, stress);
+    looks = looks && check_start(in, body.name, material, height, stress,
+                                 own.empty() ? std::nullopt : std::optional(own[p]));
   }
 }
 

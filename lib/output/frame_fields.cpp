@@ -25,6 +25,10 @@ const std::vector<Field>& frame_fields() {
       for (const StateVariable& variable : state_variables(model))
         if (variable.output && is_new(variable.name))
           all.push_back({variable.name, variable.unit, 1, Of::bodies, nullptr});
+    for (int model = 0; model < static_cast<int>(material_models().size()); ++model)
+      for (const StateVariable& variable : state_variables(model))
+        if (variable.parameter != nullptr && is_new(variable.parameter))
+          all.push_back({variable.parameter, variable.unit, 1, Of::bodies, nullptr});
     const Field last[] = {{"pore_pressure", "Pa", 1, Of::bodies, nullptr},
                           {k_excess_pore_pressure, "Pa", 1, Of::bodies, nullptr},
                           {"mass", "kg", 1, Of::bodies_and_nodes, &ParticleSnapshot::mass},

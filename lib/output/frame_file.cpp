@@ -31,14 +31,18 @@ PetscErrorCode write_attribute(hid_t where, const std::string& path, const char*
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// The unit of a dataset, as the text attribute `unit`.
-PetscErrorCode write_unit(hid_t dataset, const std::string& path, const std::string& unit) {
+PetscErrorCode write_text(hid_t where, const std::string& path, const char* name, const std::string& text) {
   PetscFunctionBeginUser;
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  PetscCall(check(type.id, path, "unit"));
-  PetscCall(check(H5Tset_size(type.id, unit.size()), path, "unit"));
-  PetscCall(write_attribute(dataset, path, "unit", type.id, unit.data()));
+  PetscCall(check(type.id, path, name));
+  PetscCall(check(H5Tset_size(type.id, text.size()), path, name));
+  PetscCall(write_attribute(where, path, name, type.id, text.data()));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The unit of a dataset, as the text attribute `unit`.
+PetscErrorCode write_unit(hid_t dataset, const std::string& path, const std::string& unit) {
+  return write_text(dataset, path, "unit", unit);
 }
 
 hid_t file_type(const Field& field, Precision precision) {
@@ -144,6 +148,8 @@ PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSn
   const char* name = particles.name.c_str();
   Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   PetscCall(check(group.id, path, name));
+  if (!particles.own_parameter.empty())
+    PetscCall(write_text(group.id, path, k_own_parameter, particles.own_parameter));
   for (const Field& field : frame_fields()) {
     if (!is_written(particles, field, kind, style)) continue;
     if (reserve == nullptr) {

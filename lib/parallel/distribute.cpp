@@ -35,6 +35,7 @@ std::vector<Field> fields_of(BodyParticles& body, int dim) {
                                {&body.volume, 1},
                                {&body.mass, 1},
                                {&body.reference_height, 1},
+                               {&body.own_parameter, 1},
                                {&body.velocity_gradient, dim * dim}};
   for (StateField& state : body.state) fields.push_back({&state.values, 1});
   return fields;

@@ -1,4 +1,5 @@
 #include "step/typed_stepper.hpp"
+#include "common/f_bar.hpp"
 #include "device/device_agrees.hpp"
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
@@ -27,7 +28,7 @@ void note_heights(const MeshConfig& mesh, BodyParticles& particles) {
 }
 
 /// The state variables of the particles of a body [variable][particle]: those of their creation, but for
-/// those that a law changes and a file gives.
+/// those that a law changes and a file gives. Where a file gives the law's strength, that is the particles'.
 template <int Dim>
 std::vector<std::vector<double>> start_state(const Config& config, const AnyMaterial<double>& law,
                                              const BodyInput& in, BodyParticles& particles) {
@@ -37,6 +38,7 @@ std::vector<std::vector<double>> start_state(const Config& config, const AnyMate
   ParticleStart start;
   for (std::size_t p = 0; p < count && !variables.empty(); ++p) {
     start.height = particles.reference_height[p];
+    if (!particles.own_parameter.empty()) start.own = particles.own_parameter[p];
     for (int d = 0; d < Dim; ++d) start.position[d] = in.position[p * Dim + d] + config.mesh.lower[d];
     for (int k = 0; k < sym_size<Dim> && !in.stress.empty(); ++k)
       start.stress[k] = in.stress[p * sym_size<Dim> + k];
@@ -127,9 +129,11 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
              "views differently; build it with Kokkos_ENABLE_IMPL_MDSPAN=OFF");
   timers_.sample(!is_device<Space>);
   GridInput grid{config_.mesh.spacing, config_.mesh.cells, model.patches, config_.mesh.walls};
+  const double f_bar = f_bar_range(config_).largest;
   std::vector<MaterialInput> materials;
   for (const auto& m : config_.materials)
-    materials.push_back({model_index(m.model), m.parameters, m.object, m.pore_stiffness});
+    materials.push_back({model_index(m.model), m.parameters, m.object, m.pore_stiffness,
+                         f_bar > 0 ? f_bar_fraction(config_, m) / f_bar : 1.0});
   for (BodyParticles& particles : model.bodies) {
     first_.push_back(total_);
     total_ += std::max(particles.total, static_cast<long>(particles.position.size()) / Dim);
@@ -154,14 +158,14 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.affine = config_.velocity_update == VelocityUpdate::apic;
   state_.strays.rule = config_.stray_particles;
   // On several ranks the pressure of a cell is averaged once all its particles are here.
-  state_.f_bar_fraction = model.owners.empty() ? config_.f_bar_fraction : 0;
+  state_.f_bar_fraction = model.owners.empty() ? f_bar : 0;
   state_.keeps_stress = model.from_run;
   Fault fault{};
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
   *failure = fault.kind == FaultKind::none ? too_small() : describe(fault);
   PetscCall(share(failure));
   if (!model.owners.empty() && failure->what.empty()) {
-    state_.f_bar_fraction = config_.f_bar_fraction;
+    state_.f_bar_fraction = f_bar;
     ranks_ = std::make_unique<Decomposition<Space, T, Dim>>();
     PetscCallCXX(PetscCall(ranks_->start(comm_, config_.partition, model.owners, state_)));
   }

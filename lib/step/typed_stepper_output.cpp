@@ -68,18 +68,21 @@ PetscErrorCode TypedStepper<Space, T, Dim>::fastest_wave(double* speed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// The state variables of a body's particles [from, to) that frames have. Every body has a plastic strain
-/// there, so that pictures of all bodies may show it: zero where the law has none.
-std::vector<StateField> state_fields(const MaterialConfig& material, const SoilFields& soil, std::size_t from,
-                                     std::size_t to) {
+/// The state variables of a body's particles [from, to) that frames have, and where they have own values of a
+/// parameter (own_parameter), these. Every body has a plastic strain there, so that pictures of all bodies
+/// may show it: zero where the law has none.
+std::vector<StateField> state_fields(const std::vector<StateVariable>& variables,
+                                     const std::string& own_parameter, const SoilFields& soil,
+                                     std::size_t from, std::size_t to) {
   std::vector<StateField> fields;
   bool has_plastic_strain = false;
-  const auto variables = state_variables(material);
   for (std::size_t k = 0; k < variables.size(); ++k) {
-    if (!variables[k].output) continue;
-    const auto& column = soil.history[k];
-    const auto begin = column.begin();
-    fields.push_back({variables[k].name, {begin + static_cast<long>(from), begin + static_cast<long>(to)}});
+    const StateVariable& variable = variables[k];
+    const bool own = variable.parameter != nullptr && own_parameter == variable.parameter;
+    if (!variable.output && !own) continue;
+    const auto begin = soil.history[k].begin();
+    fields.push_back({own ? variable.parameter : variable.name,
+                      {begin + static_cast<long>(from), begin + static_cast<long>(to)}});
     has_plastic_strain = has_plastic_strain || fields.back().name == "plastic_strain";
   }
   if (!has_plastic_strain) fields.push_back({"plastic_strain", std::vector<double>(to - from)});
@@ -139,7 +142,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
         body.stress[6 * (p - from) + k] = soil.stress[p * sym_size<Dim> + k];
     }
     body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
-    body.state = state_fields(config_.materials[config_.bodies[b].material], soil, from, to);
+    const auto variables = state_variables(config_.materials[config_.bodies[b].material]);
+    if (config_.bodies[b].largest_own_parameter) body.own_parameter = own_parameter(variables);
+    body.state = state_fields(variables, body.own_parameter, soil, from, to);
     if (has_pore_pressure(config_))  // of all bodies, so that pictures may show them
       add_pore_pressures<Dim>(config_, soil, state_.soil.points.history.pore, from, to, &body);
     body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);

@@ -34,7 +34,7 @@ Cloud busy_cloud(int seed) {
     for (std::size_t n = 0; n < strength_of(body).size() * sym_size<Dim>; ++n)
       body.stress.push_back(dice.uniform(-300, 300));
   }
-  cloud.f_bar_fraction = 0.9;
+  cloud.f_bar_fraction = 0.9, cloud.materials[1].f_bar_share = 0.4;
   cloud.p2g.margin = 0.05;
   cloud.gravity = {0, -10, -5};
   return cloud;

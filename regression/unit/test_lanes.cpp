@@ -2,6 +2,8 @@
 
 #include <array>
 #include <catch2/catch_test_macros.hpp>
+#include <map>
+#include <utility>
 
 #include "compare.hpp"
 #include "physics/advance.hpp"
@@ -66,7 +68,11 @@ std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
                             T(s.strays.most_volume),
                             false};
   std::vector<GridSample<T, Dim>> taken(soil.count);
-  std::vector<double> volume(s.patches.node_count()), sum = volume;
+  struct Mean {
+    double volume = 0, sum = 0;  // m3, m3/s
+  };
+  std::map<std::pair<int, int>, Mean> means;  // of a cell and a material
+  const auto mean_for = [&](int p) -> Mean& { return means[{soil.cell(p), soil.material_of(p)}]; };
   for (int p = 0; p < soil.count; ++p) {
     GridSample<T, Dim>& t = taken[p] = {};
     for_each_node<Kind::motion>(soil, soil.bodies(soil.body(p)).half_length, places, p,
@@ -79,8 +85,8 @@ std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
                                     for (int e = 0; e < Dim; ++e)
                                       t.gradient[d][e] += v[M::velocity + d] * grad[e] * inv;
                                 });
-    volume[soil.cell(p)] += soil.volume(p);
-    for (int d = 0; d < Dim; ++d) sum[soil.cell(p)] += soil.volume(p) * t.gradient[d][d];
+    mean_for(p).volume += soil.volume(p);
+    for (int d = 0; d < Dim; ++d) mean_for(p).sum += soil.volume(p) * t.gradient[d][d];
   }
   std::vector<Table> fields{{Dim, {}}, {Dim, {}}, {sym_size<Dim>, {}}, {1, {}}, {1, {}}};
   for (auto& field : fields) field.value.resize(std::size_t(field.width) * soil.count);
@@ -88,8 +94,9 @@ std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
     Particle<T, Dim> q{soil.coordinate(p), soil.velocity(p), soil.stress(p), soil.volume(p)};
     const ParticleLaw<typename B::Space, T, Dim, Materials> law{soil, p, soil.bodies(soil.body(p)).material,
                                                                 -1, false};
-    const T mean = static_cast<T>(sum[soil.cell(p)] / volume[soil.cell(p)]);
-    advance(q, law, taken[p], mean, by);
+    UpdateScalars<T> own = by;
+    own.f_bar *= soil.materials(soil.material_of(p)).f_bar_share;
+    advance(q, law, taken[p], static_cast<T>(mean_for(p).sum / mean_for(p).volume), own);
     const int id = soil.id(p);
     for (int d = 0; d < Dim; ++d) fields[0].value[id * Dim + d] = q.x[d];
     for (int d = 0; d < Dim; ++d) fields[1].value[id * Dim + d] = q.v[d];
@@ -216,9 +223,11 @@ TEST_CASE("particles that move many at once move as one by one", "[lanes]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     if constexpr (!is_device<typename B::Space>) {
-      for (int seed : {1, 2, 3, 4}) {
+      for (int seed : {1, 2, 3, 4, 5}) {
         Cloud cloud = seed < 3 ? random_cloud<B::dim>(seed) : crowded_cloud<B::dim>(seed);
         cloud.f_bar_fraction = seed % 2 ? 0.9 : 0;
+        for (BodyInput& body : cloud.bodies) body.material = seed == 5 ? 1 : body.material;
+        if (seed != 1) cloud.materials[0].f_bar_share = 0.3;
         cloud.flip_fraction = seed == 2 ? 0.9 : 1;
         auto s = state_of<B>(cloud);
         drift_within_margin(s);

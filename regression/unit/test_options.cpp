@@ -3,15 +3,18 @@
 #include <unistd.h>
 
 #include <catch2/catch_test_macros.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <string>
 
+#include "common/f_bar.hpp"
 #include "common/text.hpp"
 #include "input/deck.hpp"
 #include "input/options.hpp"
 #include "output/frames.hpp"
+#include "step/stepper.hpp"
 
 using namespace mpm;
 
@@ -91,6 +94,34 @@ TEST_CASE("rigidity takes the place of Young's modulus", "[options]") {
   CHECK(read(k_deck + "-clay_rigidity 500").report.errors.at(0) ==
         "mpm: -clay_young: given \"1e6\", takes nothing here: -clay_rigidity is in its place");
   CHECK(read(deck + "-clay_rigidity 500 -clay_su 0").report.errors.size() == 1);
+}
+
+TEST_CASE("a material has the run's fraction of F-bar, but its own where that is given or it dilates",
+          "[options]") {
+  const std::string deck = k_deck.substr(0, k_deck.find("-materials")) + "-materials clay,sand " +
+                           k_deck.substr(k_deck.find("-clay_model")) +
+                           "-sand_model mohr_coulomb -sand_density 1800 -sand_young 1e7 -sand_poisson 0.3 "
+                           "-sand_cohesion 100 -sand_friction_deg 35 ";
+  const auto fractions = [&](const std::string& more) {
+    const Config config = config_of(deck + more);
+    return std::array{f_bar_fraction(config, config.materials.at(0)),
+                      f_bar_fraction(config, config.materials.at(1))};
+  };
+  CHECK(fractions("") == std::array{0.98, 0.98});
+  CHECK(fractions("-sand_dilation_deg 0") == std::array{0.98, 0.98});
+  CHECK(fractions("-sand_dilation_deg 5") == std::array{0.98, 0.});
+  CHECK(fractions("-sand_dilation_deg 5 -f_bar_fraction 0.5") == std::array{0.5, 0.5});
+  CHECK(fractions("-sand_dilation_deg 5 -sand_f_bar_fraction 0.3") == std::array{0.98, 0.3});
+  CHECK(fractions("-sand_dilation_deg 5 -clay_f_bar_fraction 0.3") == std::array{0.3, 0.});
+  CHECK(fractions("-f_bar_fraction 0.5 -sand_f_bar_fraction 1") == std::array{0.5, 1.});
+  const auto told = [&](const std::string& more) {
+    for (const auto& option : read(deck + more).report.options)
+      if (option.name == "-sand_f_bar_fraction") return option.value + (option.standard ? " by default" : "");
+    return std::string();
+  };
+  CHECK(told("-sand_dilation_deg 5") == "0 by default");
+  CHECK(told("-f_bar_fraction 0.5") == "0.5 by default");
+  CHECK(told("-sand_f_bar_fraction 1") == "1");
 }
 
 TEST_CASE("a rigid body has its motion and interface", "[options]") {
@@ -178,6 +209,64 @@ TEST_CASE("particles of a file are those of a body there, and options take the p
   CHECK(error_of(" -mesh_lower 1.5,0 -mesh_upper 3.5,2") ==
         given + "particles inside the mesh, 1.5,0 to 3.5,2; particle 0 is at 1,1");
   CHECK(error_of(" -soil_file_body soil") == given + "a file with the group soil");
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("strengths that a file gives each particle are those that the material takes", "[options]") {
+  const auto path =
+      std::filesystem::temp_directory_path() / ("mpm_strengths_" + std::to_string(::getpid()) + ".h5");
+  const std::string head = k_deck.substr(0, k_deck.find("-clay_model")),
+                    body = k_deck.substr(k_deck.find("-bodies"),
+                                         k_deck.find("-soil_shape") - k_deck.find("-bodies"));
+  const std::string rest = "-clay_density 1500 -clay_poisson 0.3 " + body +
+                           "-soil_shape particles -soil_file " + path.string() + " ";
+  const auto with = [&](const char* key, std::vector<double> values) {
+    ParticleSnapshot soil;
+    soil.name = "soil", soil.position = {1, 1, 0, 2, 1, 0}, soil.volume = {0.0625, 0.0625};
+    soil.state = {{"plastic_strain", {0, 0}}, {key, std::move(values)}};
+    soil.velocity = soil.grid_velocity = {0, 0, 0, 0, 0, 0}, soil.stress.assign(12, 0);
+    soil.mass = {93.75, 93.75}, soil.reference_height = {1, 1};
+    REQUIRE(write_frame(path.string(), {0, 0, {soil}, {}}, Precision::double_) == PETSC_SUCCESS);
+  };
+  const auto error_of = [&](const std::string& law) {
+    const auto errors = read(head + rest + law).report.errors;
+    const std::string given = "mpm: -soil_file: given \"" + path.string() + "\", takes particles whose ";
+    if (errors.empty()) return std::string();
+    return errors[0].starts_with(given) ? errors[0].substr(given.size()) : join(errors, "; ");
+  };
+  const auto largest = [&](const std::string& law) {
+    return config_of(head + rest + law).bodies.at(0).largest_own_parameter;
+  };
+  const std::string clay = "-clay_model von_mises -clay_su 1000 ", young = "-clay_young 1e6 ",
+                    sand = "-clay_model mohr_coulomb -clay_cohesion 9 -clay_young 1e6 -clay_friction_deg ";
+  with("su", {300, 700});
+  CHECK(largest(clay + young) == 700);
+  CHECK_FALSE(largest(sand + "30"));  // it has no su
+  const Config stiff = config_of(head + rest + clay + "-clay_rigidity 500");
+  const MaterialConfig twice{"clay", "von_mises", 1500, {500 * 700., 0.3, 1, 0, 0, 0}};
+  Config plain = stiff;
+  plain.materials = {twice}, plain.bodies[0].largest_own_parameter.reset();
+  CHECK(std::fabs(wave_speed(stiff, stiff.bodies[0]) / wave_speed(plain, plain.bodies[0]) - 1) < 1e-12);
+
+  with("su", {0, 700});
+  CHECK(largest(clay + young) == 700);
+  CHECK(error_of(clay + "-clay_rigidity 500") ==
+        "su is a strength in Pa greater than 0 where -clay_rigidity is given; the least of this file is 0");
+  with("su", {300, -1});
+  CHECK(error_of(clay + young) == "su is a number in Pa from 0 to 1e+12; the least of this file is -1");
+  with("su", {2e12, 300});
+  CHECK(error_of(clay + young) == "su is a number in Pa from 0 to 1e+12; the largest of this file is 2e+12");
+  with("su", {300, 9e5});  // too brittle for its stiffness
+  const std::string soft = "-clay_model softening_clay -clay_su 1000 -clay_remoulded_ratio 0.2 -clay_xi95 1 ";
+  CHECK(read(head + rest + soft + young)
+            .report.errors.at(0)
+            .starts_with("mpm: -clay_xi95: given \"1\", takes more than"));
+  with("cohesion", {0, 5});
+  CHECK(largest(sand + "30") == 5);
+  CHECK(error_of(sand + "0") ==
+        "cohesion is a cohesion in Pa greater than 0 where -clay_friction_deg is 0; the least of this file "
+        "is 0");
+  CHECK_FALSE(largest(clay + young));
   std::filesystem::remove(path);
 }
 

@@ -86,6 +86,11 @@ TEST_CASE("a step in one launch is the step function by function, across rebuild
           const int most = f_bar > 0 ? 1 : 7;
           Cloud cloud = two_rigids<B::dim>(surface, dynamic);
           cloud.f_bar_fraction = f_bar;
+          if (f_bar > 0 && surface) {  // another material in the same cells
+            constexpr double h = 0.1;
+            cloud.materials[0].f_bar_share = 0.5;
+            cloud.bodies.push_back(body_of<B::dim>(lattice<B::dim>({2, 1, 1}, {7, 4, 3}, 1, h), 1, h, 0));
+          }
           auto one = state_of<B>(cloud, P2G::tile), two = state_of<B>(cloud, P2G::tile);
           interpolate(one);
           one.summed = {true, one.soil_boundary, true};

@@ -209,6 +209,7 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
       cloud.gravity = {0, -9.81, 0};
       keep_inside<B::dim>(cloud);
       cloud.f_bar_fraction = 0.5;
+      if (kind != 1) cloud.materials[1].f_bar_share = 0.4;
       if (kind == 1) cloud.xpic_order = 3, cloud.flip_fraction = 0;
       if (kind == 2) cloud.affine = true, cloud.flip_fraction = 0;
       if (kind == 3) give_own_masses(cloud, 3, 0.6);

@@ -64,7 +64,7 @@ Cloud moving_cloud(int seed) {
   Cloud cloud = random_cloud<Dim>(seed, Wall::roller);
   for (BodyInput& body : cloud.bodies)
     for (double& stress : body.stress) stress *= 0.01;
-  cloud.f_bar_fraction = 0.9;
+  cloud.f_bar_fraction = 0.9, cloud.materials[1].f_bar_share = 0.4;
   cloud.p2g.margin = 0.1;
   cloud.gravity = {0, -10, -5};
   return cloud;

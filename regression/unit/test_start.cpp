@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "checkpoint/changes.hpp"
 #include "checkpoint/checkpoint.hpp"
 #include "input/particle_file.hpp"
 #include "mesh/background.hpp"
@@ -77,7 +78,8 @@ struct File {
                     const FrameStyle& style = {}) {
     REQUIRE(write_frame(path, {0.5, 12, {particles}, {}, {}, dim_of_frame}, Precision::double_, style) ==
             PETSC_SUCCESS);
-    return read_particles({path, "soil", true, true, {"plastic_strain"}}, config_of(dim).mesh, dim, table);
+    return read_particles({path, "soil", true, true, {"plastic_strain"}, "su"}, config_of(dim).mesh, dim,
+                          table);
   }
 };
 
@@ -224,6 +226,84 @@ TEST_CASE("a strength follows the height where the particle was created", "[star
       }
     CHECK(saved.soil.fields.back().name == "reference_height");
   }
+}
+
+TEST_CASE("a strength that a file gives each particle is in the state, the frames and the checkpoints",
+          "[start]") {
+  const std::vector<double> own = {1234.5, 99.25};
+  for (const char* model : {"von_mises", "tresca", "softening_clay", "mohr_coulomb", "drucker_prager"})
+    for (int dim : {2, 3}) {
+      const bool rubs = std::string(model).find("_coulomb") != std::string::npos || model[0] == 'd';
+      const std::string key = rubs ? "cohesion" : "su";
+      Config config = config_of(dim);
+      if (!make_stepper(config)) continue;
+      config.materials = {{"clay", model, 2000,
+                           rubs ? std::vector{1e6, 0.3, 500., 20.} : std::vector{1e6, 0.3, 500., 50., 9.}}};
+      if (key == "cohesion" && model[0] == 'd')
+        config.materials[0].parameters = {1e6, 0.3, 500, 20, 0, -1, 0, 0, 2};
+      if (model[0] == 's') config.materials[0].parameters = {1e6, 0.3, 500, 50, 9, 0, 1};
+      BodyParticles particles = pair_of(dim);
+      particles.own_parameter = own;
+      config.bodies[0].largest_own_parameter = own[0];
+      const auto stepper = make_stepper(config);
+      Model start;
+      for (int d = 0; d < 3; ++d) start.patches[d] = d < dim ? 8 / patch_edge(dim) + 2 : 1;
+      start.bodies = {particles};
+      Failure failure;
+      REQUIRE(stepper->set_up(std::move(start), &failure) == PETSC_SUCCESS);
+      Snapshot frame;
+      Checkpoint c;
+      REQUIRE(stepper->snapshot(&frame) == PETSC_SUCCESS);
+      REQUIRE(stepper->save(&c.state) == PETSC_SUCCESS);
+      frame.dim = dim;
+      CHECK(frame.bodies[0].own_parameter == key);
+      c.version = "1", c.dim = dim, c.backend = "serial", c.precision = "double", c.strategy = "tile";
+      c.options = {{"-bodies", "soil", "", false},
+                   {"-soil_material", "clay", "", false},
+                   {"-soil_file", "a file" + own_parameter_words(key), "", false},
+                   {"-clay_model", model, "", false},
+                   {"-mesh_lower", dim == 2 ? "1,-2" : "1,-2,3", "m", false},
+                   {"-mesh_upper", dim == 2 ? "9,6" : "9,6,11", "m", false},
+                   {"-mesh_spacing", "1", "m", false}};
+      Checkpoint without = c;
+      without.options[2].value = "a file";
+      File file;
+      REQUIRE(write_checkpoint(PETSC_COMM_SELF, file.path, std::move(c)) == PETSC_SUCCESS);
+      REQUIRE(write_checkpoint(PETSC_COMM_SELF, file.path + ".without", std::move(without)) == PETSC_SUCCESS);
+      REQUIRE(write_frame(file.path + ".frame", frame, Precision::double_) == PETSC_SUCCESS);
+      const auto read = [&](const std::string& path, const std::string& parameter) {
+        ParticleTable table;
+        INFO(model << " " << path);
+        CHECK(read_particles({path, "soil", true, true, {}, parameter}, config.mesh, dim, table) == "");
+        return table.own_parameter;
+      };
+      CHECK(read(file.path, key) == own);
+      CHECK(read(file.path + ".frame", key) == own);
+      CHECK(read(file.path + ".without", key).empty());
+      CHECK(read(file.path, key == "su" ? "cohesion" : "su").empty());
+      CHECK(read(file.path + ".frame", "").empty());
+    }
+}
+
+TEST_CASE("a frame whose -output_fields left out the particles' own strength is refused", "[start]") {
+  File file;
+  ParticleSnapshot particles = three(2);
+  particles.state.push_back({"su", {3, 2, 1}});
+  ParticleTable table;
+  CHECK(file.fault(particles, table, 2, 2) == "");  // copied to the frame by the user
+  CHECK(table.own_parameter == std::vector<double>{3, 2, 1});
+  FrameStyle style;
+  for (const std::string& name : frame_field_names())
+    if (name != "su") style.fields.push_back(name);
+  CHECK(file.fault(particles, table, 2, 2, style) == "");
+  CHECK(table.own_parameter.empty());
+  particles.own_parameter = "su";
+  CHECK(file.fault(particles, table, 2, 2) == "");
+  CHECK(table.own_parameter == std::vector<double>{3, 2, 1});
+  CHECK(file.fault(particles, table, 2, 2, style) ==
+        "a frame with soil/su, which -output_fields of its run left out");
+  particles.own_parameter = "cohesion";  // of another law
+  CHECK(file.fault(particles, table, 2, 2, style) == "");
 }
 
 TEST_CASE("particles of a checkpoint are those of its frame, by the body's name", "[start]") {

@@ -160,13 +160,16 @@ TEST_CASE("FLIP and PIC mix by their fraction, and PIC's velocity is the one tha
   });
 }
 
-TEST_CASE("with F-bar the particles of a cell dilate alike, and their pressures begin alike", "[step]") {
+TEST_CASE("with F-bar the particles of a cell and material dilate alike, and their pressures begin alike",
+          "[step]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     Cloud cloud = random_cloud<B::dim>(2);
     cloud.f_bar_fraction = 1;
     auto s = state_of<B>(cloud);
     const auto cell = on_host(s.soil.points.cell);
+    const auto body = on_host(s.soil.points.body);
+    const auto material = [&](int p) { return cloud.bodies[body(p)].material; };
     const auto start = on_host(s.soil.points.volume);
     const std::vector<double> before(start.data(), start.data() + start.extent(0));
     one_step(s, 1e-5);
@@ -176,7 +179,7 @@ TEST_CASE("with F-bar the particles of a cell dilate alike, and their pressures 
     int together = 0;
     for (int p = 1; p < s.soil.points.count; ++p) {
       change = std::max(change, std::fabs(after(p) / before[p] - 1));
-      if (cell(p) != cell(p - 1)) continue;
+      if (cell(p) != cell(p - 1) || material(p) != material(p - 1)) continue;
       ++together;
       ratio = std::max(ratio, std::fabs(after(p) / before[p] - after(p - 1) / before[p - 1]));
       pressure = std::max(pressure, std::fabs(double(mean_of(stress(p))) - mean_of(stress(p - 1))));

@@ -184,6 +184,7 @@ struct HostParticles {
   decltype(Strays<Space>::put_back) put_back;
   UpdateScalars<T> by;
   double spacing;
+  Dilatations<Space, T> dilatation;  // of a crowd that is averaged by material
 
   /// Asks for what the next slot takes from the nodes.
   void fetch_nodes(int slot) const {
@@ -226,8 +227,14 @@ struct HostParticles {
     take(nodes, from, to, stage);
     if (by.f_bar > 0) weigh_dilatation(from, to, stage);
     for (int k = c; k < end; ++k) {
-      CellMean<T> dilatation;
       const int first = begin(slot * cells + k), last = begin(slot * cells + k + 1);
+      if (by.f_bar_by_material) {
+        average_by_material(
+            soil, first, last, [&](int p) { return stage.mean[p - from]; },
+            [&](int p, T of_cell) { stage.mean[p - from] = mean_of(p, of_cell, stage, p - from); });
+        continue;
+      }
+      CellMean<T> dilatation;
       if (by.f_bar > 0) add_dilatation(first, last, stage, from, dilatation);
       const T mean = dilatation.value();
       for (int p = first; p < last; ++p) stage.mean[p - from] = mean;
@@ -239,21 +246,37 @@ struct HostParticles {
   /// One cell with more particles than the stage holds: they take from the nodes twice.
   void move_crowd(Window nodes, int slot, int c, Stage& stage, R& moved) const {
     const int from = begin(slot * cells + c), to = begin(slot * cells + c + 1);
-    CellMean<T> dilatation;
-    for (int pass = by.f_bar > 0 ? 0 : 1; pass < 2; ++pass)
-      for (int first = from; first < to; first += k_room) {
-        const int last = Kokkos::min(first + k_room, to);
-        for (int n = 0; n < k_room; ++n) stage.base[n] = window_base<Dim>(c);
-        take(nodes, first, last, stage);
-        if (pass == 0) {
-          weigh_dilatation(first, last, stage);
-          add_dilatation(first, last, stage, first, dilatation);
-          continue;
-        }
-        for (int n = 0; n < k_room; ++n) stage.mean[n] = dilatation.value();
-        for (int p = first; p < last; p += W)
-          move_block(p, Kokkos::min(W, last - p), slot, stage, p - first, moved);
-      }
+    const T mean = by.f_bar > 0 ? average_crowd(nodes, from, to, c, stage) : T(0);
+    for (int first = from; first < to; first += k_room) {
+      const int last = Kokkos::min(first + k_room, to);
+      take_crowd(nodes, first, last, c, stage);
+      for (int n = 0; n < k_room; ++n) stage.mean[n] = mean;
+      for (int p = first; p < last && by.f_bar_by_material; ++p)
+        stage.mean[p - first] = mean_of(p, dilatation(p), stage, p - first);
+      for (int p = first; p < last; p += W)
+        move_block(p, Kokkos::min(W, last - p), slot, stage, p - first, moved);
+    }
+  }
+  void take_crowd(Window nodes, int first, int last, int c, Stage& stage) const {
+    for (int n = 0; n < k_room; ++n) stage.base[n] = window_base<Dim>(c);
+    take(nodes, first, last, stage);
+  }
+  /// Mean dilatation rate of the particles [from, to) of cell c [1/s]; where each material has its own, they
+  /// are in `dilatation` by particle.
+  T average_crowd(Window nodes, int from, int to, int c, Stage& stage) const {
+    CellMean<T> all;
+    for (int first = from; first < to; first += k_room) {
+      const int last = Kokkos::min(first + k_room, to);
+      take_crowd(nodes, first, last, c, stage);
+      weigh_dilatation(first, last, stage);
+      add_dilatation(first, last, stage, first, all);
+      for (int p = first; p < last && by.f_bar_by_material; ++p) dilatation(p) = stage.mean[p - first];
+    }
+    if (by.f_bar_by_material)
+      average_by_material(
+          soil, from, to, [&](int p) { return dilatation(p); },
+          [&](int p, T of_cell) { dilatation(p) = of_cell; });
+    return all.value();
   }
 
   /// The particles [from, to) take from the nodes; the weights of many at once, then the values of a node at
@@ -312,6 +335,12 @@ struct HostParticles {
       for (int d = 0; d < Dim; ++d) rate += R::load(stage.gradient[d * (Dim + 1)] + (p - from));
       (rate * volume).store(stage.mean + (p - from));
     }
+  }
+  /// mean_for() of particle p, n on the stage.
+  T mean_of(int p, T of_cell, const Stage& stage, int n) const {
+    T own = 0;
+    for (int d = 0; d < Dim; ++d) own += stage.gradient[d * (Dim + 1)][n];
+    return mean_for(soil.materials(soil.material_of(p)).f_bar_share, of_cell, own);
   }
   /// Adds the dilatation rates of the particles [first, last). from: the first particle of the stage.
   void add_dilatation(int first, int last, const Stage& stage, int from, CellMean<T>& dilatation) const {

@@ -13,9 +13,9 @@ template <class Space, class T, int Dim>
 void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by, bool sums) {
   const auto& bins = s.soil.bins;
   const HostParticles<Space, T, Dim> particles{
-      s.soil.points, bins.begin, s.patches.neighbours, s.patches.origin,  s.nodes.kinematics,
-      s.control,     s.grid,     s.strays.alone,       s.strays.put_back, by,
-      s.spacing};
+      s.soil.points, bins.begin,       s.patches.neighbours, s.patches.origin,  s.nodes.kinematics,
+      s.control,     s.grid,           s.strays.alone,       s.strays.put_back, by,
+      s.spacing,     dilatations_of(s)};
   const HostSoil<Space, T, Dim> soil(s);
   const bool gives = sums && !s.summed.in_windows;
   const Shared phases[] = {slots_held<Dim>(bins), gives ? slots_about<Dim>(bins, s.patches.slots) : Shared{}};

@@ -70,7 +70,7 @@ struct UpdateParticles {
   Kokkos::View<int*, Memory> near_rigid;
   ControlView<Space> control;
   Movements<Space> movements;
-  Kokkos::View<T*, Memory, Kokkos::MemoryUnmanaged> dilatation;  // 1/s, by particle
+  Dilatations<Space, T> dilatation;
   Grid<T, Dim> grid;
   WallReach<Dim> reach;
   decltype(Strays<Space>::alone) alone;
@@ -175,7 +175,8 @@ struct UpdateParticles {
     if (team.team_rank() % k_warp == 0) movements.note(slot, most);
   }
 
-  /// Mean dilatation rate of each cell [1/s], weighted by volume.
+  /// Mean dilatation rate of each cell [1/s], weighted by volume; where materials have means of their own,
+  /// the mean for each particle takes the place of its `dilatation`.
   template <class Begin>
   KOKKOS_INLINE_FUNCTION void average_dilatation(const Member& team, const Begin& cell_begin,
                                                  const KinematicValues<T, Dim>* nodes, T* mean) const {
@@ -189,6 +190,7 @@ struct UpdateParticles {
     });
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
+      if (by.f_bar_by_material) return average_cell(cell_begin(c), cell_begin(c + 1));
       T volume = 0, sum = 0;
       for (int p = cell_begin(c); p < cell_begin(c + 1); ++p) {
         volume += soil.volume(p);
@@ -197,6 +199,20 @@ struct UpdateParticles {
       mean[c] = volume > 0 ? sum / volume : T(0);
     });
     team.team_barrier();
+  }
+
+  /// The particles [first, last) of a cell, by material.
+  KOKKOS_INLINE_FUNCTION void average_cell(int first, int last) const {
+    const auto& soil = source.points;
+    average_by_material(
+        soil, first, last, [&](int p) { return soil.volume(p) * dilatation(p); },
+        [&](int p, T of_cell) {
+          dilatation(p) = mean_for(soil.materials(soil.material_of(p)).f_bar_share, of_cell, dilatation(p));
+        });
+  }
+  /// What average_dilatation has found for particle p in this cell of the patch [1/s].
+  KOKKOS_INLINE_FUNCTION T mean_dilatation(const T* mean, int place, int p) const {
+    return by.f_bar_by_material ? dilatation(p) : mean[place];
   }
 
   /// Moves particle p; `moved` [cells] becomes the largest movement so far. lone: Strays::alone of the slot.
@@ -215,7 +231,8 @@ struct UpdateParticles {
     T own = 0;
     with_weights_near(q.x, body.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
       own = advance(q, ParticleLaw<Space, T, Dim, Laws>{soil, p, body.material, law, flies},
-                    sample_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean[place] : T(0), by);
+                    sample_nodes(nodes, cell, a, by.inv_spacing),
+                    by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by);
     });
     if (flies) q.volume = soil.volume(p);
     soil.coordinate(p) = q.x;
@@ -268,15 +285,14 @@ UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
           .least_volume = T(s.strays.least_volume),
           .most_volume = T(s.strays.most_volume),
           .volume_is_fault = s.strays.rule == StrayRule::stop,
-          .clock = {.start = s.time, .dt = dt, .steps = &s.control.data()->steps}};
+          .clock = {.start = s.time, .dt = dt, .steps = &s.control.data()->steps},
+          .f_bar_by_material = s.f_bar_by_material && s.f_bar_fraction > 0};
 }
 
 template <class Update, class Space, class T, int Dim>
 Update update_of(const State<Space, T, Dim>& s, double dt,
                  const Kokkos::View<int*, typename Space::memory_space>& slots, int first) {
   const auto& set = s.soil;
-  const Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged> dilatation(
-      reinterpret_cast<T*>(s.scratch.data()), set.points.count);
   return {.source = {set.points, s.grid.inv_spacing},
           .begin = set.bins.begin,
           .slots = slots,
@@ -287,7 +303,7 @@ Update update_of(const State<Space, T, Dim>& s, double dt,
           .near_rigid = s.near_rigid,
           .control = s.control,
           .movements = s.movements,
-          .dilatation = dilatation,
+          .dilatation = dilatations_of(s),
           .grid = s.grid,
           .reach = WallReach<Dim>(s.grid),
           .alone = s.strays.alone,

@@ -105,9 +105,10 @@ std::string warning_of(const AnyMaterial<double>& material);
 /// Values of the state variables that a particle carries which is created now.
 std::vector<double> initial_state(const AnyMaterial<double>& material, const ParticleStart& at);
 
-/// lambda + 2 G [Pa] of a material that is created at a height [m] with a stress [Pa].
+/// lambda + 2 G [Pa] of a material that is created at a height [m] with a stress [Pa]. own: that of
+/// ParticleStart.
 double wave_modulus(const AnyMaterial<double>& material, double height = 0,
-                    const std::array<double, 6>& stress = {});
+                    const std::array<double, 6>& stress = {}, std::optional<double> own = {});
 
 /// Undrained shear strength [Pa] of a material that is created at a height [m] without stress.
 double strength_at(const AnyMaterial<double>& material, double height);

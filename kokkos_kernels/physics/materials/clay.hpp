@@ -43,14 +43,14 @@ struct Clay {
   using State = LawState<T, 2>;
   static constexpr std::array<StateVariable, 2> state() {
     return {{{"plastic_strain", "-"},  // accumulated engineering plastic shear strain
-             {.name = "strength", .unit = "Pa", .changes = false, .output = false}}};
+             {.name = "strength", .unit = "Pa", .changes = false, .output = false, .parameter = "su"}}};
   }
   ParameterFault check() const {
     if (young > 0 || su > 0) return {};
     return {"su", "a strength in Pa greater than 0 where -NAME_rigidity is given"};
   }
   std::array<double, 2> initial_state(const ParticleStart& at) const {
-    return {0, su + (at.height < su_datum ? su_gradient * (su_datum - at.height) : 0.0)};
+    return {0, at.own.value_or(su + (at.height < su_datum ? su_gradient * (su_datum - at.height) : 0.0))};
   }
 
   /// lambda + 2 G [Pa], which gives the speed of the fastest wave (Eq. 14).

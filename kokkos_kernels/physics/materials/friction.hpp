@@ -50,7 +50,7 @@ struct FrictionalSoil {
   using State = LawState<T, 2>;
   static constexpr std::array<StateVariable, 2> state() {
     return {{{"plastic_strain", "-"},  // accumulated engineering plastic shear strain
-             {.name = "cohesion", .unit = "Pa", .changes = false, .output = false}}};
+             {.name = "cohesion", .unit = "Pa", .changes = false, .output = false, .parameter = "cohesion"}}};
   }
   ParameterFault check() const {
     if (dilation_deg > friction_deg)
@@ -60,8 +60,9 @@ struct FrictionalSoil {
     return {};
   }
   std::array<double, 2> initial_state(const ParticleStart& at) const {
-    return {0,
-            cohesion + (at.height < cohesion_datum ? cohesion_gradient * (cohesion_datum - at.height) : 0.0)};
+    return {0, at.own.value_or(cohesion + (at.height < cohesion_datum
+                                               ? cohesion_gradient * (cohesion_datum - at.height)
+                                               : 0.0))};
   }
 
   /// lambda + 2 G [Pa], which gives the speed of the fastest wave (Eq. 14).

@@ -87,9 +87,9 @@ struct SofteningClay : Clay<T> {
   using State = LawState<T, 4>;
   static constexpr std::array<StateVariable, 4> state() {
     return {{{"plastic_strain", "-"},  // xi, accumulated engineering plastic shear strain
-             {.name = "strength", .unit = "Pa", .changes = false, .output = false},  // su0
-             {.name = "plastic_strain_rest", .unit = "-", .output = false},          // see add_with_rest
-             {.name = "shear_rate", .unit = "1/s"}}};                                // smoothed
+             {.name = "strength", .unit = "Pa", .changes = false, .output = false, .parameter = "su"},  // su0
+             {.name = "plastic_strain_rest", .unit = "-", .output = false},  // see add_with_rest
+             {.name = "shear_rate", .unit = "1/s"}}};                        // smoothed
   }
   KOKKOS_FUNCTION bool carries(int k) const { return k != shear_rate || rate_time > 0; }
 

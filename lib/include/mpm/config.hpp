@@ -65,6 +65,7 @@ struct MaterialConfig {
   std::vector<double> parameters;        // as Model::parameters() lists them
   std::shared_ptr<const void> object{};  // what the model made of its options that are texts; most need none
   double pore_stiffness = 0;             // Pa, of the water in its pores, which does not flow; 0: they drain
+  std::optional<double> f_bar_fraction;  // -, as Config::f_bar_fraction, which holds where there is none
 };
 
 /// A deformable body.
@@ -78,6 +79,10 @@ struct BodyConfig {
   bool stress_given = false;
   /// Pa, largest mean stress in compression of its particles at the start.
   double largest_pressure = 0;
+  std::string field;  // HDF5 file with a grid of the law's strength, from which its particles take theirs
+  /// Largest value of the law's strength that its file or field gives each particle, in the parameter's unit;
+  /// none where neither is given.
+  std::optional<double> largest_own_parameter;
   std::vector<int> cut_out;         // indices into Config::rigids: particles in their shapes are left out
   std::vector<int> cut_out_bodies;  // the same of Config::bodies
 };
