@@ -8,9 +8,15 @@
 namespace mpm {
 namespace {
 
-/// The number of the line at or before x, of lines that are about equally far apart or few; -1 before the
-/// first one.
+/// The number of the line at or before x; -1 before the first one. The lines of a raster are equally far apart,
+/// but for the outermost ones: a guess finds them without a search.
 long line_before(const std::vector<double>& lines, double x) {
+  if (lines.size() > 4) {
+    const double guess = 1 + (x - lines[1]) / (lines[2] - lines[1]);
+    if (guess > 0 && guess < static_cast<double>(lines.size() - 1))
+      for (long k = static_cast<long>(guess) - 1; k <= static_cast<long>(guess) + 1; ++k)
+        if (k >= 0 && k + 1 < static_cast<long>(lines.size()) && lines[k] <= x && x < lines[k + 1]) return k;
+  }
   return std::upper_bound(lines.begin(), lines.end(), x) - lines.begin() - 1;
 }
 
