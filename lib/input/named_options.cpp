@@ -189,14 +189,12 @@ void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
 }
 
 /// Whether the step knows the distance to the surface of a shape.
-bool has_distance(const Shape& shape) {
-  return shape.kind != ShapeKind::stl && shape.kind != ShapeKind::layer;
-}
+bool has_distance(const Shape& shape) { return shape.kind != ShapeKind::stl; }
 
 void read_contact_normal(OptionReader& in, RigidConfig& rigid) {
   const Option option{.name = rigid.name + "_contact_normal",
                       .meaning = "contact normals: of the body's own surface, or of its nodal mass gradient (Eq. 3)",
-                      .standard = in.listing() ? "surface; of an stl or a layer: gradient" : ""};
+                      .standard = in.listing() ? "surface; of an stl: gradient" : ""};
   if (!has_distance(rigid.shape)) rigid.contact_normal = ContactNormal::gradient;
   in.word(option,
           std::vector<std::pair<std::string, ContactNormal>>{{"surface", ContactNormal::surface},
