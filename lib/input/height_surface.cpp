@@ -146,6 +146,34 @@ std::array<double, 2> heights_of(const HeightSurface& surface, const MeshConfig&
   return range;
 }
 
+LayerBounds bounds_between(const HeightSurface& top, const HeightSurface& base, const MeshConfig& mesh, int dim) {
+  const int up = dim - 1;
+  LayerBounds whole{mesh.lower, mesh.upper};
+  whole.lower[up] = heights_of(base, mesh, dim)[0], whole.upper[up] = heights_of(top, mesh, dim)[1];
+  const auto &x = top.lines(0), &y = top.lines(1);
+  if (dim == 2 || y.empty() || x != base.lines(0) || y != base.lines(1)) return whole;
+  constexpr double k_far = 1e300;
+  LayerBounds part{{k_far, k_far, k_far}, {-k_far, -k_far, -k_far}};
+  const auto add = [&part](int d, double at) {
+    part.lower[d] = std::min(part.lower[d], at), part.upper[d] = std::max(part.upper[d], at);
+  };
+  const auto columns = top.lines_around(0, mesh.lower[0], mesh.upper[0]),
+             rows = top.lines_around(1, mesh.lower[1], mesh.upper[1]);
+  for (std::size_t j = rows[0]; j <= rows[1]; ++j)
+    for (std::size_t i = columns[0]; i <= columns[1]; ++i) {
+      if (!(top.node(i, j) - base.node(i, j) > 1e-9 * mesh.spacing)) continue;
+      for (std::size_t l = std::max(j, rows[0] + 1) - 1; l <= std::min(j + 1, rows[1]); ++l)
+        for (std::size_t k = std::max(i, columns[0] + 1) - 1; k <= std::min(i + 1, columns[1]); ++k)
+          add(0, x[k]), add(1, y[l]), add(2, top.node(k, l)), add(2, base.node(k, l));
+    }
+  if (part.upper[0] < part.lower[0]) return whole;  // nowhere apart
+  for (int d = 0; d < 3; ++d) {
+    part.lower[d] = std::max(part.lower[d], whole.lower[d]);
+    part.upper[d] = std::min(part.upper[d], whole.upper[d]);
+  }
+  return part;
+}
+
 std::string fault_of(const HeightSurface& surface, const MeshConfig& mesh, int dim) {
   if (const std::string gap = gap_fault(surface, mesh, dim); !gap.empty()) return gap;
   const int up = dim - 1;

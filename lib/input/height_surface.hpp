@@ -33,6 +33,12 @@ class HeightSurface {
   std::vector<double> height_;  // m
 };
 
+/// Bounds of what is between two surfaces in the mesh; of rasters of the same cells, only where they are apart.
+struct LayerBounds {
+  Vec3 lower{}, upper{};  // m
+};
+LayerBounds bounds_between(const HeightSurface& top, const HeightSurface& base, const MeshConfig& mesh, int dim);
+
 /// Lowest and highest height in the mesh [m].
 std::array<double, 2> heights_of(const HeightSurface& surface, const MeshConfig& mesh, int dim);
 

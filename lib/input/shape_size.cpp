@@ -136,10 +136,8 @@ Bounds behind_bounds(const Shape& shape, const MeshConfig& mesh, int dim) {
 }
 
 Bounds layer_bounds(const Shape& shape, const MeshConfig& mesh, int dim) {
-  Bounds bounds{mesh.lower, mesh.upper};
-  bounds.lower[dim - 1] = heights_of(*shape.base, mesh, dim)[0];
-  bounds.upper[dim - 1] = heights_of(*shape.top, mesh, dim)[1];
-  return bounds;
+  const LayerBounds bounds = bounds_between(*shape.top, *shape.base, mesh, dim);
+  return {bounds.lower, bounds.upper};
 }
 
 }  // namespace

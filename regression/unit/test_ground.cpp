@@ -220,6 +220,21 @@ TEST_CASE("a raster's surface has the volume of the bilinear one", "[ground]") {
   CHECK(surface->at(0.1, 0.1) == surface->node(1, 1));  // level in the outer half of the rim
 }
 
+TEST_CASE("the bounds of a layer are those of the part where its surfaces are apart", "[ground]") {
+  const auto mesh = mesh_of({0, 0, 0}, {20, 20, 20}, 0.5);
+  const auto slope = [](double x, double y) { return 3 + 0.5 * x + 0.1 * y; };
+  const auto hollow = [&](double x, double y) {
+    return slope(x, y) - std::max(0.0, 2 * (1 - std::pow((x - 12.2) / 3, 2) - std::pow((y - 7.3) / 2, 2)));
+  };
+  const Shape scoop = layer(raster(-1, -1, 0.4, 56, 57, slope), raster(-1, -1, 0.4, 56, 57, hollow));
+  const Bounds bounds = bounds_of(scoop, mesh, 3);
+  CHECK((bounds.lower[0] > 8 && bounds.upper[0] < 16.1 && bounds.lower[1] > 4.4 && bounds.upper[1] < 10.2));
+  CHECK((bounds.lower[2] > 6 && bounds.upper[2] < 12.2));
+  const Lattice lattice = filled(scoop, mesh, 3);
+  CHECK(Moments(lattice).volume == Approx(lattice.shape_volume).epsilon(1e-4));
+  CHECK(lattice.shape_volume == Approx(std::numbers::pi * 6).epsilon(0.02));
+}
+
 TEST_CASE("a box of triangles has the particles of the box", "[ground]") {
   const auto mesh = mesh_of({0, 0, 0}, {4, 4, 4}, 0.5);
   Shape same;
