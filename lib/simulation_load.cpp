@@ -68,8 +68,8 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Volumes of parts of cells: one figure for all where they are the same. The masses follow with the density of
-/// the material.
+/// Volumes of parts of cells: one figure for all where they are the same. The masses follow with the density
+/// of the material.
 static PetscErrorCode take_volumes(MPI_Comm comm, std::vector<double>&& volume, BodyParticles* particles) {
   PetscFunctionBeginUser;
   double ends[2] = {particles->particle_volume, particles->particle_volume};  // least, most
@@ -126,8 +126,7 @@ PetscErrorCode Simulation::Body::log_shape(const std::string& name, const Lattic
   PetscCall(log.print("%s: %ld particles stand for %.6g %s, the shape has %.6g %s", name.c_str(), count,
                       volumes[0], unit, lattice.shape_volume, unit));
   if (cut_out > 0)
-    PetscCall(log.print("%s: %ld particles, %.6g %s, were cut out", name.c_str(), cut_out,
-                        volumes[1], unit));
+    PetscCall(log.print("%s: %ld particles, %.6g %s, were cut out", name.c_str(), cut_out, volumes[1], unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -76,7 +76,8 @@ KOKKOS_INLINE_FUNCTION Distance<3> distance_to_revolved(const Surface<3>& body, 
 /// Height of the ground at a point [m], linear in each direction between the places where it is given; beyond
 /// them that of the nearest one.
 template <class Vertices>
-KOKKOS_INLINE_FUNCTION double height_at(const Surface<3>& body, const Vertices& vertices, double x, double y) {
+KOKKOS_INLINE_FUNCTION double height_at(const Surface<3>& body, const Vertices& vertices, double x,
+                                        double y) {
   const int last_column = body.columns - 1, last_row = body.count / body.columns - 1;
   const double u = Kokkos::fmin(double(last_column), Kokkos::fmax(0.0, (x - body.centre[0]) / body.radius)),
                v = Kokkos::fmin(double(last_row), Kokkos::fmax(0.0, (y - body.centre[1]) / body.radius));
@@ -87,11 +88,11 @@ KOKKOS_INLINE_FUNCTION double height_at(const Surface<3>& body, const Vertices& 
          t * ((1 - s) * vertices(at + body.columns).z + s * vertices(at + body.columns + 1).z);
 }
 
-/// Distance to the ground: that to the plane through the place below with the slope over two squares. All below
-/// the ground is inside.
+/// Distance to the ground: that to the plane through the place below with the slope over two squares. All
+/// below the ground is inside.
 template <class Vertices>
-MPM_CALLED_FUNCTION Distance<3> distance_to_heights(const Surface<3>& body, const Vertices& vertices, double x,
-                                                    double y, double z) {
+MPM_CALLED_FUNCTION Distance<3> distance_to_heights(const Surface<3>& body, const Vertices& vertices,
+                                                    double x, double y, double z) {
   const double h = body.radius;
   const double a = (height_at(body, vertices, x + h, y) - height_at(body, vertices, x - h, y)) / (2 * h),
                b = (height_at(body, vertices, x, y + h) - height_at(body, vertices, x, y - h)) / (2 * h);

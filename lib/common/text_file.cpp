@@ -18,11 +18,12 @@ std::string read_whole(const std::string& path, double copies, std::string& text
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::string("a file that can be read: ") + std::strerror(errno);
   std::error_code error;
-  const double bytes = static_cast<double>(std::filesystem::file_size(path, error)), free = free_host_memory();
+  const double bytes = static_cast<double>(std::filesystem::file_size(path, error)),
+               free = free_host_memory();
   if (error) return "a file that can be read: " + error.message();
   if (const double needed = (1 + copies) * bytes; free > 0 && needed > free)
-    return formatted("a file that fits into memory: it needs about %.4g GB, and %.4g GB are free", needed / 1e9,
-                     free / 1e9);
+    return formatted("a file that fits into memory: it needs about %.4g GB, and %.4g GB are free",
+                     needed / 1e9, free / 1e9);
   text.resize(static_cast<std::size_t>(bytes));
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
@@ -30,7 +31,9 @@ std::string read_whole(const std::string& path, double copies, std::string& text
 }
 
 std::string_view Words::next() {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; };
+  const auto blank = [](char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+  };
   std::size_t first = 0;
   for (; first < rest_.size() && blank(rest_[first]); ++first) line_ += rest_[first] == '\n';
   std::size_t last = first;

@@ -7,9 +7,9 @@
 
 namespace mpm {
 
-/// Reads a regular file whole. Returns what it should have been, as the end of "takes ..."; empty where it could
-/// be read. A file that needs more memory than is free, with `copies` of its size for what it becomes, is
-/// refused before it is read.
+/// Reads a regular file whole. Returns what it should have been, as the end of "takes ..."; empty where it
+/// could be read. A file that needs more memory than is free, with `copies` of its size for what it becomes,
+/// is refused before it is read.
 std::string read_whole(const std::string& path, double copies, std::string& text);
 
 /// The words of a text between blanks, tabulators and line ends, one after another.

@@ -56,7 +56,7 @@ struct ConvexPiece {
 /// Integrals over the place of a piece as seen from above, with z the height of the piece over a base: what
 /// lies between the base and the piece.
 struct UnderPiece {
-  double area = 0, area_x = 0, area_y = 0;                        // of 1, x, y
+  double area = 0, area_x = 0, area_y = 0;                      // of 1, x, y
   double volume = 0, moment_x = 0, moment_y = 0, moment_z = 0;  // of z, x z, y z, z^2 / 2
 
   /// Coordinates less those of `origin`.
@@ -67,7 +67,8 @@ struct UnderPiece {
  private:
   void add_triangle(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& o) {
     const double a = ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])) / 2;
-    const double x[3] = {p[0] - o[0], q[0] - o[0], r[0] - o[0]}, y[3] = {p[1] - o[1], q[1] - o[1], r[1] - o[1]},
+    const double x[3] = {p[0] - o[0], q[0] - o[0], r[0] - o[0]},
+                 y[3] = {p[1] - o[1], q[1] - o[1], r[1] - o[1]},
                  z[3] = {p[2] - o[2], q[2] - o[2], r[2] - o[2]};
     const double sx = x[0] + x[1] + x[2], sy = y[0] + y[1] + y[2], sz = z[0] + z[1] + z[2];
     double xz = sx * sz, yz = sy * sz, zz = sz * sz;

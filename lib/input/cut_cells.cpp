@@ -7,7 +7,7 @@
 namespace mpm {
 namespace {
 
-constexpr double k_round = 1e-9;     // of a cell: round-off
+constexpr double k_round = 1e-9;    // of a cell: round-off
 constexpr double k_nothing = 1e-3;  // of a cell: too little for a particle where no neighbour takes it
 
 }  // namespace
@@ -160,7 +160,8 @@ class Levels {
 };
 
 void Levels::join_small(long k) {
-  constexpr std::array<int, 3> k_ways[] = {{0, 0, -1}, {0, 0, 1}, {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}};
+  constexpr std::array<int, 3> k_ways[] = {{0, 0, -1}, {0, 0, 1},  {-1, 0, 0},
+                                           {1, 0, 0},  {0, -1, 0}, {0, 1, 0}};
   const long rows = grid_.last[1] - grid_.first[1];
   for (long column = 0; column < grid_.columns(); ++column) {
     CellPart& part = at(k).own[column];
@@ -178,7 +179,8 @@ void Levels::join_small(long k) {
       const long to = (j + (*taker)[1]) * width_ + i + (*taker)[0];
       add(part, {-(*taker)[0], -(*taker)[1], -(*taker)[2]}, at(k + (*taker)[2]).taken[to]);
     }
-    if (taker || part.volume < k_nothing) part.volume = -part.volume;  // marked: others still see no taker in it
+    if (taker || part.volume < k_nothing)
+      part.volume = -part.volume;  // marked: others still see no taker in it
   }
   for (CellPart& part : at(k).own)
     if (part.volume < 0) part = {};
@@ -208,7 +210,8 @@ bool any_cut_particle(const Facets& facets, const CellGrid& grid, long from, lon
       for (int d = 0; d < 3; ++d)
         x[d] = grid.origin[d] + (static_cast<double>(cell[d]) + part.moment[d] / part.volume) * grid.edge;
       if (grid.dim == 2)
-        x[1] = grid.origin[1] + (static_cast<double>(done) + part.moment[2] / part.volume) * grid.edge, x[2] = 0;
+        x[1] = grid.origin[1] + (static_cast<double>(done) + part.moment[2] / part.volume) * grid.edge,
+        x[2] = 0;
       if (visit(x, part.volume)) return true;
     }
   }

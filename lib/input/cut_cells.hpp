@@ -24,10 +24,10 @@ struct CellPart {
   Vec3 moment{};      // volume times the centre, in edges from the cell's lower corner
 };
 
-/// The cells of a grid level by level, from the lowest one up. What a cell holds is what lies between its floor
-/// and the pieces of the surface in it, and is full up to its ceiling under the pieces above: a sum over pieces
-/// with the sign of their area. The pieces below a level have, in each column, the opposite area of those
-/// above. Work: the number of pairs of a facet and a cell that it cuts, and of levels.
+/// The cells of a grid level by level, from the lowest one up. What a cell holds is what lies between its
+/// floor and the pieces of the surface in it, and is full up to its ceiling under the pieces above: a sum
+/// over pieces with the sign of their area. The pieces below a level have, in each column, the opposite area
+/// of those above. Work: the number of pairs of a facet and a cell that it cuts, and of levels.
 class CutCells {
  public:
   /// Both must outlive it.
@@ -49,18 +49,19 @@ class CutCells {
   const Facets& facets_;
   const CellGrid& grid_;
   long level_;
-  std::vector<std::size_t> order_, begin_;  // facets by the level of their lowest point, and where each begins
+  std::vector<std::size_t> order_,
+      begin_;  // facets by the level of their lowest point, and where each begins
   std::vector<std::size_t> active_;
   std::vector<Area> below_;  // of the pieces below the level's ceiling, by column
 };
 
-/// A cell whose part is smaller than this gives it to a neighbour across a face, if one has as much: a particle
-/// would have so small a mass.
+/// A cell whose part is smaller than this gives it to a neighbour across a face, if one has as much: a
+/// particle would have so small a mass.
 inline constexpr double k_least_part = 0.125;
 
-/// Calls visit(x, volume) for the particles of cells of the levels from <= k < to, at the centre [m] of the part
-/// that they stand for, volume over a cell's; x fastest, then y. Until visit returns true; returns whether it
-/// did. Whatever from and to are, the particles of a level are the same to the bit.
+/// Calls visit(x, volume) for the particles of cells of the levels from <= k < to, at the centre [m] of the
+/// part that they stand for, volume over a cell's; x fastest, then y. Until visit returns true; returns
+/// whether it did. Whatever from and to are, the particles of a level are the same to the bit.
 bool any_cut_particle(const Facets& facets, const CellGrid& grid, long from, long to,
                       const std::function<bool(const Vec3&, double)>& visit);
 

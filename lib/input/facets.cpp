@@ -39,8 +39,8 @@ Polygon disc_outline(const Shape& shape, double width) {
   return outline;
 }
 
-/// The side of a ball from its lower to its upper end, about its centre: the distances from the axis are those
-/// that give the ball's volume as the frusta turn about it.
+/// The side of a ball from its lower to its upper end, about its centre: the distances from the axis are
+/// those that give the ball's volume as the frusta turn about it.
 Polygon ball_side(double radius, double width) {
   const int count = around(radius, width) / 2;
   Polygon side;
@@ -92,8 +92,10 @@ Facets::Facets(const Shape& shape, const MeshConfig& mesh, int dim, double width
   } else if (dim == 2) {
     add_outline(disc_outline(shape, width), 0, 1);
   } else {
-    const Polygon side = shape.kind == ShapeKind::disc ? ball_side(shape.radius, width) : revolved_side(shape);
-    const Vec3 about = shape.kind == ShapeKind::disc ? shape.centre : Vec3{shape.centre[0], shape.centre[1], 0};
+    const Polygon side =
+        shape.kind == ShapeKind::disc ? ball_side(shape.radius, width) : revolved_side(shape);
+    const Vec3 about =
+        shape.kind == ShapeKind::disc ? shape.centre : Vec3{shape.centre[0], shape.centre[1], 0};
     add_revolved(side, about, width);
   }
 }
@@ -133,7 +135,9 @@ void Facets::add_surface(const HeightSurface& surface, bool upper) {
 ConvexPiece Facets::Raster::operator[](std::size_t k) const {
   const std::size_t cell = k / 4, i = first[0] + cell % cells[0], j = first[1] + cell / cells[0];
   const auto &x = surface->lines(0), &y = surface->lines(1);
-  const auto corner = [&](std::size_t a, std::size_t b) { return Vec3{x[i + a], y[j + b], surface->node(i + a, j + b)}; };
+  const auto corner = [&](std::size_t a, std::size_t b) {
+    return Vec3{x[i + a], y[j + b], surface->node(i + a, j + b)};
+  };
   const Vec3 corners[4] = {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
   Vec3 middle{(x[i] + x[i + 1]) / 2, (y[j] + y[j + 1]) / 2, 0};
   for (const Vec3& c : corners) middle[2] += c[2] / 4;

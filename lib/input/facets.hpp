@@ -13,13 +13,13 @@ namespace mpm {
 /// Whether facets_of() knows the surface of a shape.
 bool has_facets(const Shape& shape);
 
-/// Pieces, anticlockwise as seen from outside: from above, an upper side has a positive area and a lower one a
-/// negative area. Pieces that are vertical may be missing. In 2D the shape is one that goes on from y = 0 to 1,
-/// and its heights are the third coordinate.
+/// Pieces, anticlockwise as seen from outside: from above, an upper side has a positive area and a lower one
+/// a negative area. Pieces that are vertical may be missing. In 2D the shape is one that goes on from y = 0
+/// to 1, and its heights are the third coordinate.
 class Facets {
  public:
-  /// Of a shape that has them. Curved shapes have so many facets that each is about as wide as `width` [m], at
-  /// least 64 around, and the radius that gives their volume.
+  /// Of a shape that has them. Curved shapes have so many facets that each is about as wide as `width` [m],
+  /// at least 64 around, and the radius that gives their volume.
   Facets(const Shape& shape, const MeshConfig& mesh, int dim, double width);
 
   std::size_t size() const { return pieces_.size() + rasters_[0].count + rasters_[1].count; }

@@ -33,7 +33,8 @@ std::string size_fault(hid_t data, const std::string& key, double numbers) {
   const double needed = 2 * numbers * sizeof(double), free = free_host_memory();
   if (free > 0 && needed > free)
     return "a file whose " + key +
-           formatted(" fits into memory: it needs about %.4g GB, and %.4g GB are free", needed / 1e9, free / 1e9);
+           formatted(" fits into memory: it needs about %.4g GB, and %.4g GB are free", needed / 1e9,
+                     free / 1e9);
   return "";
 }
 
@@ -53,13 +54,15 @@ std::string read_data(hid_t file, const std::string& key, int dim, GridField& fi
     numbers *= static_cast<double>(sizes[d]);
     if (sizes[d] == 0) return form;
   }
-  if (!read_vector(data.id, "lower", dim, field.lower) || !read_vector(data.id, "spacing", dim, field.spacing) ||
+  if (!read_vector(data.id, "lower", dim, field.lower) ||
+      !read_vector(data.id, "spacing", dim, field.spacing) ||
       std::any_of(field.spacing.begin(), field.spacing.end(), [](double h) { return !(h > 0); }))
     return "a file whose " + key + " has the attributes lower and spacing, " + std::to_string(dim) +
            " numbers in m each, the spacing greater than 0";
   if (const std::string fault = size_fault(data.id, key, numbers); !fault.empty()) return fault;
   field.values.resize(static_cast<std::size_t>(numbers));
-  if (H5Dread(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.values.data()) < 0) return form;
+  if (H5Dread(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.values.data()) < 0)
+    return form;
   for (std::size_t k = 0; k < field.values.size(); ++k)
     if (!std::isfinite(field.values[k]))
       return "a file whose " + key + " is finite; value " + std::to_string(k + 1) + " is not";
@@ -107,8 +110,8 @@ std::string read_field(const std::string& path, const std::string& key, int dim,
 std::string uncovered(const GridField& field, const Bounds& bounds, double slack) {
   for (int d = 0; d < field.dim; ++d) {
     if (field.lower[d] <= bounds.lower[d] + slack && field.upper(d) >= bounds.upper[d] - slack) continue;
-    return formatted("a field that covers the body, in %c from %.10g to %.10g; it has %.10g to %.10g", "xyz"[d],
-                     bounds.lower[d], bounds.upper[d], field.lower[d], field.upper(d));
+    return formatted("a field that covers the body, in %c from %.10g to %.10g; it has %.10g to %.10g",
+                     "xyz"[d], bounds.lower[d], bounds.upper[d], field.lower[d], field.upper(d));
   }
   return "";
 }

@@ -21,8 +21,8 @@ struct GridField {
 
 /// Reads the dataset `key` of an HDF5 file: numbers with the vertical axis first and x last, the place of the
 /// first value in its attribute `lower` and the distances in `spacing`, dim numbers each by axis x, y, z
-/// (scripts/random_field). Returns what the file should have been, as the end of "takes ..."; empty where all is
-/// well.
+/// (scripts/random_field). Returns what the file should have been, as the end of "takes ..."; empty where all
+/// is well.
 std::string read_field(const std::string& path, const std::string& key, int dim, GridField& field);
 
 /// The same of a field that does not reach to the sides of what is to have its values.

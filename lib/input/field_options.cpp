@@ -10,10 +10,12 @@
 namespace mpm {
 
 void read_body_field(OptionReader& in, const std::string& name, bool listed, BodyConfig& body) {
-  if (listed && !in.listing()) return in.not_taken(name + "_field", "the particles are those of " + name + "_file");
+  if (listed && !in.listing())
+    return in.not_taken(name + "_field", "the particles are those of " + name + "_file");
   in.text({.name = name + "_field",
-           .meaning = "HDF5 file with a grid of the strength of the material's law by its key, su or cohesion, from "
-                      "which each particle takes its own",
+           .meaning =
+               "HDF5 file with a grid of the strength of the material's law by its key, su or cohesion, from "
+               "which each particle takes its own",
            .standard = "none"},
           body.field);
 }
@@ -27,7 +29,8 @@ void check_body_field(OptionReader& in, const MeshConfig& mesh, const Config& co
   const std::string option = body.name + "_field", key = field_key(body, config);
   const MaterialConfig& material = config.materials[body.material];
   if (key.empty())
-    return in.reject(option, "nothing here: the model " + material.model + " has no strength of each particle");
+    return in.reject(option,
+                     "nothing here: the model " + material.model + " has no strength of each particle");
   GridField field;
   std::string fault = read_field(body.field, key, config.dim, field);
   if (fault.empty()) fault = uncovered(field, bounds_of(body.shape, mesh, config.dim), 1e-9 * mesh.spacing);

@@ -51,10 +51,11 @@ bool share_surface(OptionReader& in, const SurfaceOption& option, const BodyConf
 bool read_surface(OptionReader& in, const SurfaceOption& option, const Option& about, const Config& config,
                   Surface& surface, std::string& file) {
   const std::string takes =
-      in.listing()       ? "a level in m, a polyline x0,y0,x1,y1,... (x0,z0,... in 3D), a raster (3D) or a body"
-      : config.dim == 2 ? "a level in m, a polyline x0,y0,x1,y1,... or the name of a layer among the bodies before"
-                        : "a level in m, a polyline x0,z0,x1,z1,..., the file of a raster or the name of a layer "
-                          "among the bodies before";
+      in.listing() ? "a level in m, a polyline x0,y0,x1,y1,... (x0,z0,... in 3D), a raster (3D) or a body"
+      : config.dim == 2
+          ? "a level in m, a polyline x0,y0,x1,y1,... or the name of a layer among the bodies before"
+          : "a level in m, a polyline x0,z0,x1,z1,..., the file of a raster or the name of a layer "
+            "among the bodies before";
   std::vector<std::string> pieces;
   if (!in.list_of(about, takes, pieces)) return false;
   std::vector<double> numbers;
@@ -110,7 +111,8 @@ bool read_layer(OptionReader& in, const std::string& name, const Config& config,
   return has_top && has_base;
 }
 
-bool check_layer(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh, int dim) {
+bool check_layer(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
+                 int dim) {
   for (const auto& [key, surface] : {std::pair{"_top", &shape.top}, std::pair{"_base", &shape.base}}) {
     const std::string fault = fault_of(**surface, mesh, dim);
     if (fault.empty()) continue;
@@ -121,7 +123,8 @@ bool check_layer(OptionReader& in, const std::string& name, const Shape& shape, 
   if (!crossing) return true;
   const std::string at = dim == 2 ? "x = " + text_of({&crossing->x, 1})
                                   : text_of(std::array<double, 2>{crossing->x, crossing->y});
-  in.reject(name + "_base", "a surface nowhere above -" + name + "_top; at " + at + formatted(" it is %.6g m above", crossing->height));
+  in.reject(name + "_base", "a surface nowhere above -" + name + "_top; at " + at +
+                                formatted(" it is %.6g m above", crossing->height));
   return false;
 }
 

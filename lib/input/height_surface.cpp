@@ -8,8 +8,8 @@
 namespace mpm {
 namespace {
 
-/// The number of the line at or before x; -1 before the first one. The lines of a raster are equally far apart,
-/// but for the outermost ones: a guess finds them without a search.
+/// The number of the line at or before x; -1 before the first one. The lines of a raster are equally far
+/// apart, but for the outermost ones: a guess finds them without a search.
 long line_before(const std::vector<double>& lines, double x) {
   if (lines.size() > 4) {
     const double guess = 1 + (x - lines[1]) / (lines[2] - lines[1]);
@@ -27,7 +27,8 @@ struct Within {
 
   Within(const std::vector<double>& lines, double x) {
     if (lines.size() < 2) return;
-    cell = static_cast<std::size_t>(std::clamp(line_before(lines, x), 0L, static_cast<long>(lines.size()) - 2));
+    cell =
+        static_cast<std::size_t>(std::clamp(line_before(lines, x), 0L, static_cast<long>(lines.size()) - 2));
     part = std::clamp((x - lines[cell]) / (lines[cell + 1] - lines[cell]), 0.0, 1.0);
   }
 };
@@ -78,7 +79,8 @@ void visit_nodes(const HeightSurface& surface, const Plan& plan, Visit&& visit) 
   const auto middles = [&plan](const std::vector<double>& lines, int d) {
     std::vector<double> at;
     for (std::size_t k = 0; k + 1 < lines.size(); ++k)
-      if (const double m = (lines[k] + lines[k + 1]) / 2; m > plan.lower[d] && m < plan.upper[d]) at.push_back(m);
+      if (const double m = (lines[k] + lines[k + 1]) / 2; m > plan.lower[d] && m < plan.upper[d])
+        at.push_back(m);
     return at;
   };
   const auto u = middles(surface.lines(0), 0), v = middles(surface.lines(1), 1);
@@ -131,7 +133,8 @@ double HeightSurface::at(double x, double y) const {
 std::array<std::size_t, 2> HeightSurface::lines_around(int d, double low, double high) const {
   const auto& lines = this->lines(d);
   if (lines.size() < 2) return {0, 0};
-  const long end = static_cast<long>(lines.size()) - 1, first = std::clamp(line_before(lines, low), 0L, end - 1);
+  const long end = static_cast<long>(lines.size()) - 1,
+             first = std::clamp(line_before(lines, low), 0L, end - 1);
   const auto above = std::lower_bound(lines.begin(), lines.end(), high) - lines.begin();
   return {static_cast<std::size_t>(first), static_cast<std::size_t>(std::clamp(above, first + 1, end))};
 }
@@ -146,7 +149,8 @@ std::array<double, 2> heights_of(const HeightSurface& surface, const MeshConfig&
   return range;
 }
 
-LayerBounds bounds_between(const HeightSurface& top, const HeightSurface& base, const MeshConfig& mesh, int dim) {
+LayerBounds bounds_between(const HeightSurface& top, const HeightSurface& base, const MeshConfig& mesh,
+                           int dim) {
   const int up = dim - 1;
   LayerBounds whole{mesh.lower, mesh.upper};
   whole.lower[up] = heights_of(base, mesh, dim)[0], whole.upper[up] = heights_of(top, mesh, dim)[1];
@@ -191,8 +195,8 @@ std::string fault_of(const HeightSurface& surface, const MeshConfig& mesh, int d
   return fault;
 }
 
-std::optional<Crossing> crossing_of(const HeightSurface& top, const HeightSurface& base, const MeshConfig& mesh,
-                                    int dim) {
+std::optional<Crossing> crossing_of(const HeightSurface& top, const HeightSurface& base,
+                                    const MeshConfig& mesh, int dim) {
   const Plan plan(mesh, dim);
   Crossing worst{0, 0, 1e-9 * mesh.spacing};
   bool found = false;

@@ -9,9 +9,9 @@
 
 namespace mpm {
 
-/// Heights at the crossings of lines of constant x and y. In 2D, and for a polyline in 3D, the height does not
-/// depend on y. A cell of the lines has four triangles, which share the mean of its corners: the same volume as
-/// the bilinear surface, and no direction is preferred.
+/// Heights at the crossings of lines of constant x and y. In 2D, and for a polyline in 3D, the height does
+/// not depend on y. A cell of the lines has four triangles, which share the mean of its corners: the same
+/// volume as the bilinear surface, and no direction is preferred.
 class HeightSurface {
  public:
   /// A level [m].
@@ -33,25 +33,27 @@ class HeightSurface {
   std::vector<double> height_;  // m
 };
 
-/// Bounds of what is between two surfaces in the mesh; of rasters of the same cells, only where they are apart.
+/// Bounds of what is between two surfaces in the mesh; of rasters of the same cells, only where they are
+/// apart.
 struct LayerBounds {
   Vec3 lower{}, upper{};  // m
 };
-LayerBounds bounds_between(const HeightSurface& top, const HeightSurface& base, const MeshConfig& mesh, int dim);
+LayerBounds bounds_between(const HeightSurface& top, const HeightSurface& base, const MeshConfig& mesh,
+                           int dim);
 
 /// Lowest and highest height in the mesh [m].
 std::array<double, 2> heights_of(const HeightSurface& surface, const MeshConfig& mesh, int dim);
 
-/// What a surface should have been for a mesh, as the end of "takes ...": it covers the mesh as seen from above,
-/// has a height everywhere there, and is in the mesh. Empty where all is well.
+/// What a surface should have been for a mesh, as the end of "takes ...": it covers the mesh as seen from
+/// above, has a height everywhere there, and is in the mesh. Empty where all is well.
 std::string fault_of(const HeightSurface& surface, const MeshConfig& mesh, int dim);
 
-/// The place in the mesh where the surface `base` is furthest above `top`; none where it nowhere is by more than
-/// round-off.
+/// The place in the mesh where the surface `base` is furthest above `top`; none where it nowhere is by more
+/// than round-off.
 struct Crossing {
   double x, y, height;  // m
 };
-std::optional<Crossing> crossing_of(const HeightSurface& top, const HeightSurface& base, const MeshConfig& mesh,
-                                    int dim);
+std::optional<Crossing> crossing_of(const HeightSurface& top, const HeightSurface& base,
+                                    const MeshConfig& mesh, int dim);
 
 }  // namespace mpm

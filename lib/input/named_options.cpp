@@ -192,16 +192,18 @@ void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
 bool has_distance(const Shape& shape) { return shape.kind != ShapeKind::stl; }
 
 void read_contact_normal(OptionReader& in, RigidConfig& rigid) {
-  const Option option{.name = rigid.name + "_contact_normal",
-                      .meaning = "contact normals: of the body's own surface, or of its nodal mass gradient (Eq. 3)",
-                      .standard = in.listing() ? "surface; of an stl: gradient" : ""};
+  const Option option{
+      .name = rigid.name + "_contact_normal",
+      .meaning = "contact normals: of the body's own surface, or of its nodal mass gradient (Eq. 3)",
+      .standard = in.listing() ? "surface; of an stl: gradient" : ""};
   if (!has_distance(rigid.shape)) rigid.contact_normal = ContactNormal::gradient;
   in.word(option,
           std::vector<std::pair<std::string, ContactNormal>>{{"surface", ContactNormal::surface},
                                                              {"gradient", ContactNormal::gradient}},
           rigid.contact_normal);
   if (!has_distance(rigid.shape) && rigid.contact_normal == ContactNormal::surface)
-    in.reject(option.name, "gradient where " + rigid.name + "_shape is " + in.given_text(rigid.name + "_shape"));
+    in.reject(option.name,
+              "gradient where " + rigid.name + "_shape is " + in.given_text(rigid.name + "_shape"));
 }
 
 /// The gap counts by default where it is known and may open.

@@ -23,7 +23,8 @@ std::string read_header(Words& words, std::map<std::string, double>& header, std
     if (!known) return word;
     const auto number = words.number();
     if (!number || header.count(key)) {
-      fault = formatted("an ESRI ASCII grid: line %ld takes %s and a number, once", words.line(), key.c_str());
+      fault =
+          formatted("an ESRI ASCII grid: line %ld takes %s and a number, once", words.line(), key.c_str());
       return "";
     }
     header[key] = *number;
@@ -87,8 +88,8 @@ std::string read_raster(const std::string& path, Raster& raster) {
           *value == no_data ? std::numeric_limits<double>::quiet_NaN() : *value;
     }
   if (!words.next().empty())
-    return formatted("an ESRI ASCII grid of %ld x %ld numbers; line %ld has more", raster.columns, raster.rows,
-                     words.line());
+    return formatted("an ESRI ASCII grid of %ld x %ld numbers; line %ld has more", raster.columns,
+                     raster.rows, words.line());
   return "";
 }
 
@@ -100,7 +101,8 @@ std::shared_ptr<const HeightSurface> surface_of(const Raster& raster) {
     for (long i = 0; i < raster.columns + 2; ++i)
       heights.push_back(raster.values[within(j, raster.rows) * raster.columns + within(i, raster.columns)]);
   return std::make_shared<const HeightSurface>(lines_of(raster.x, raster.cell, raster.columns),
-                                               lines_of(raster.y, raster.cell, raster.rows), std::move(heights));
+                                               lines_of(raster.y, raster.cell, raster.rows),
+                                               std::move(heights));
 }
 
 }  // namespace mpm

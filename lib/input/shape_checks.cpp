@@ -66,9 +66,8 @@ bool check_overlaps(OptionReader& in, const std::string& name, const Shape& shap
   }
   const auto cell = overfull_cell(Facets(shape, mesh, 3, mesh.spacing), grid);
   if (cell)
-    in.reject(name + "_file",
-              "a surface whose parts do not lie in each other and all face outwards; near " + text_of(*cell, 3) +
-                  " it encloses space twice, or from outside");
+    in.reject(name + "_file", "a surface whose parts do not lie in each other and all face outwards; near " +
+                                  text_of(*cell, 3) + " it encloses space twice, or from outside");
   return !cell;
 }
 

@@ -240,7 +240,8 @@ bool read_kind(OptionReader& in, const std::string& name, const Config& config, 
       .name = name + "_shape",
       .meaning =
           "box, polygon, disc (2D), ball, vertical cylinder or cone (3D), what is behind a plane, a closed "
-          "surface of triangles (stl, 3D), the layer between two surfaces, or the particles of a file (bodies)",
+          "surface of triangles (stl, 3D), the layer between two surfaces, or the particles of a file "
+          "(bodies)",
       .required = true};
   int index = 0;
   const bool known = in.word(option, words, index);
@@ -258,16 +259,17 @@ bool read_kind(OptionReader& in, const std::string& name, const Config& config, 
 
 /// Which particles a shape has. Those of a rigid have one volume.
 void read_fill(OptionReader& in, const std::string& name, bool body, Shape& shape) {
-  static const std::vector<std::pair<std::string, Fill>> fills = {{"centre", Fill::centre},
-                                                                  {"cell", Fill::cell},
-                                                                  {"cut", Fill::cut}};
+  static const std::vector<std::pair<std::string, Fill>> fills = {
+      {"centre", Fill::centre}, {"cell", Fill::cell}, {"cut", Fill::cut}};
   const bool ground = shape.kind == ShapeKind::stl || shape.kind == ShapeKind::layer;
   if (body && ground) shape.fill = Fill::cut;
-  in.word({.name = name + "_fill",
-           .meaning = "particles whose centre is in the shape, those of cells that lie wholly in it, or the parts of "
-                      "the particles' cells that are in it, each with its own volume (bodies)",
-           .standard = in.listing() ? "centre; of a body that is an stl or a layer: cut" : ""},
-          fills, shape.fill);
+  in.word(
+      {.name = name + "_fill",
+       .meaning =
+           "particles whose centre is in the shape, those of cells that lie wholly in it, or the parts of "
+           "the particles' cells that are in it, each with its own volume (bodies)",
+       .standard = in.listing() ? "centre; of a body that is an stl or a layer: cut" : ""},
+      fills, shape.fill);
   const std::string of_kind = " where " + name + "_shape is ";
   if (shape.fill == Fill::cut && !body)
     in.reject(name + "_fill", "centre or cell for a rigid body, whose particles have one volume");

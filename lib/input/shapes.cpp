@@ -92,7 +92,8 @@ bool any_site(const Shape& shape, const MeshConfig& mesh, int dim, const Sites& 
 
 /// The cells of a lattice, of which each may hold a particle.
 CellGrid grid_of(const Sites& sites, int dim) {
-  CellGrid grid{.origin = sites.origin, .edge = sites.edge, .dim = dim, .first = sites.first, .last = sites.last};
+  CellGrid grid{
+      .origin = sites.origin, .edge = sites.edge, .dim = dim, .first = sites.first, .last = sites.last};
   if (dim == 2) {
     grid.first = {sites.first[0], 0, sites.first[1]};
     grid.last = {sites.last[0], 1, sites.last[1]};

@@ -36,11 +36,11 @@ struct LatticePart {
 /// Fill::centre: the lattice points in the shape. The lattice of a box starts at the box's own lower corner
 /// and turns with it; that of another shape is the mesh's. Fill::cell: all particles of every mesh cell that
 /// lies wholly in the shape. Particles whose centre is in one of the shapes `cut_out` are left out.
-/// Fill::cut: the parts of the lattice's cells that are in the shape, each a particle at the part's centre with
-/// its volume; a part of less than an eighth of a cell joins a neighbour's.
-/// "In" includes the boundary, with a tolerance of 1e-9 of the mesh spacing, so that round-off never decides.
-/// Nothing is filled beyond the mesh: a box that it cuts has the lattice of the box that ends there.
-/// ShapeKind::particles has no lattice (PETSC_ERR_SUP).
+/// Fill::cut: the parts of the lattice's cells that are in the shape, each a particle at the part's centre
+/// with its volume; a part of less than an eighth of a cell joins a neighbour's. "In" includes the boundary,
+/// with a tolerance of 1e-9 of the mesh spacing, so that round-off never decides. Nothing is filled beyond
+/// the mesh: a box that it cuts has the lattice of the box that ends there. ShapeKind::particles has no
+/// lattice (PETSC_ERR_SUP).
 PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice& lattice,
                     const std::vector<Shape>& cut_out = {}, LatticePart part = {});
 

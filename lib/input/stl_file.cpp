@@ -33,7 +33,8 @@ bool is_binary(std::string_view text) {
 }
 
 bool is_ascii(std::string_view text) {
-  return lower_case(text.substr(0, 5)) == "solid" && text.substr(0, 1000).find('\0') == std::string_view::npos;
+  return lower_case(text.substr(0, 5)) == "solid" &&
+         text.substr(0, 1000).find('\0') == std::string_view::npos;
 }
 
 std::string read_binary(std::string_view text, double scale, std::vector<Vec3>& corners) {
@@ -63,7 +64,7 @@ std::string read_ascii(std::string_view text, double scale, std::vector<Vec3>& c
       Vec3& x = corners.emplace_back();
       for (double& coordinate : x) {
         const auto number = words.number();
-        if (!number || !(std::abs(*number * scale) <= k_largest)) 
+        if (!number || !(std::abs(*number * scale) <= k_largest))
           return fault("3 numbers behind \"vertex\", of at most 1e9 m");
         coordinate = *number * scale;
       }
@@ -96,8 +97,8 @@ std::string read_stl(const std::string& path, double scale, std::shared_ptr<cons
   else if (is_ascii(text))
     fault = read_ascii(text, scale, corners);
   else if (text.size() >= k_header)
-    fault = formatted("an STL file: its header says %u triangles, %.0f bytes, and it has %zu bytes", count_of(text),
-                      double(k_header) + double(k_triangle) * count_of(text), text.size());
+    fault = formatted("an STL file: its header says %u triangles, %.0f bytes, and it has %zu bytes",
+                      count_of(text), double(k_header) + double(k_triangle) * count_of(text), text.size());
   else
     fault = "an STL file, ASCII or binary";
   if (!fault.empty()) return fault;

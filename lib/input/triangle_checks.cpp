@@ -22,7 +22,9 @@ struct EdgeUse {
   bool forward;
   bool same_edge(const EdgeUse& other) const { return low == other.low && high == other.high; }
   bool operator<(const EdgeUse& other) const {
-    return low != other.low ? low < other.low : high != other.high ? high < other.high : forward < other.forward;
+    return low != other.low     ? low < other.low
+           : high != other.high ? high < other.high
+                                : forward < other.forward;
   }
 };
 
@@ -122,7 +124,8 @@ std::string fault_of(const TriangleSurface& surface) {
   if (surface.size() == 0) return "a surface that has triangles";
   if (const std::string fault = edge_fault(surface); !fault.empty()) return fault;
   if (surface.volume() < 0)
-    return "triangles that face outwards, anticlockwise as seen from there; these face inwards: their volume is " +
+    return "triangles that face outwards, anticlockwise as seen from there; these face inwards: their volume "
+           "is " +
            formatted("%.6g m3", surface.volume());
   if (surface.volume() == 0) return "a surface that encloses a volume";
   return crossing_fault(surface);

@@ -25,8 +25,8 @@ std::vector<int> join_corners(const std::vector<Vec3>& corners, std::vector<Vec3
   return number;
 }
 
-/// Side of the edge from a to b that a point is on, seen from above: 1 left, -1 right. The same edge the other
-/// way round gives the other side, to the bit.
+/// Side of the edge from a to b that a point is on, seen from above: 1 left, -1 right. The same edge the
+/// other way round gives the other side, to the bit.
 int side_of(const Vec3& a, const Vec3& b, const Vec3& x) {
   const double turn = (b[0] - a[0]) * (x[1] - a[1]) - (b[1] - a[1]) * (x[0] - a[0]);
   if (turn != 0) return turn > 0 ? 1 : -1;
@@ -70,9 +70,8 @@ bool TriangleSurface::holds(const Vec3& x, double slack) const {
     const Vec3 a = less(vertices_[v[1]], vertices_[v[0]]), b = less(vertices_[v[2]], vertices_[v[0]]),
                r = less(x, vertices_[v[0]]);
     const double normal = a[0] * b[1] - a[1] * b[0];  // its vertical component
-    const double height =
-        vertices_[v[0]][2] +
-        (r[0] * (a[2] * b[1] - a[1] * b[2]) + r[1] * (a[0] * b[2] - a[2] * b[0])) / normal;
+    const double height = vertices_[v[0]][2] +
+                          (r[0] * (a[2] * b[1] - a[1] * b[2]) + r[1] * (a[0] * b[2] - a[2] * b[0])) / normal;
     if (height > x[2] + (side[0] > 0 ? -slack : slack)) winding += side[0];
     return false;
   });

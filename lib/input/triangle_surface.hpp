@@ -25,9 +25,9 @@ class TriangleSurface {
 
   /// Enclosed volume [m3], by the divergence theorem; less than 0 if the triangles face inwards.
   double volume() const { return volume_; }
-  /// Whether a point is inside, or below or above the inside by less than `slack` [m]: a vertical line upwards
-  /// from it leaves more often than it enters. The point counts as moved by an infinitely small length along
-  /// x, and by one smaller still along y, so that no line meets an edge.
+  /// Whether a point is inside, or below or above the inside by less than `slack` [m]: a vertical line
+  /// upwards from it leaves more often than it enters. The point counts as moved by an infinitely small
+  /// length along x, and by one smaller still along y, so that no line meets an edge.
   bool holds(const Vec3& x, double slack) const;
 
  private:

@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "compare.hpp"
+#include "input/height_surface.hpp"
 #include "loops/window.hpp"
 #include "physics/contact.hpp"
 #include "physics/surface.hpp"
-#include "input/height_surface.hpp"
 #include "step/surface_input.hpp"
 
 using namespace mpm;
