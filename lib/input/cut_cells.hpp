@@ -59,6 +59,9 @@ class CutCells {
 /// particle would have so small a mass.
 inline constexpr double k_least_part = 0.125;
 
+/// Bytes that any_cut_particle() needs for a column of the grid: six levels of parts, and what is below.
+inline constexpr double k_column_bytes = 6 * sizeof(CellPart) + 3 * sizeof(double);
+
 /// Calls visit(x, volume) for the particles of cells of the levels from <= k < to, at the centre [m] of the
 /// part that they stand for, volume over a cell's; x fastest, then y. Until visit returns true; returns
 /// whether it did. Whatever from and to are, the particles of a level are the same to the bit.

@@ -11,7 +11,7 @@ namespace mpm {
 namespace {
 
 constexpr double k_pi = std::numbers::pi;
-constexpr double k_most_around = 4096;  // facets
+constexpr double k_most_around = 1024;  // facets
 
 /// Facets around a circle, a multiple of 4.
 int around(double radius, double width) {
@@ -85,8 +85,7 @@ Facets::Facets(const Shape& shape, const MeshConfig& mesh, int dim, double width
     add_surface(*shape.top, true);
     add_surface(*shape.base, false);
   } else if (shape.kind == ShapeKind::stl) {
-    for (int k = 0; k < shape.triangles->size(); ++k)
-      add(shape.triangles->corner(k, 0), shape.triangles->corner(k, 1), shape.triangles->corner(k, 2));
+    surface_ = shape.triangles.get();
   } else if (shape.kind == ShapeKind::polygon) {
     add_outline(shape.polygon, dim == 3 ? shape.width[0] : 0, dim == 3 ? shape.width[1] : 1);
   } else if (dim == 2) {
@@ -100,16 +99,10 @@ Facets::Facets(const Shape& shape, const MeshConfig& mesh, int dim, double width
   }
 }
 
-void Facets::add(const Vec3& a, const Vec3& b, const Vec3& c) {
-  ConvexPiece piece;
-  piece.add(a), piece.add(b), piece.add(c);
-  pieces_.push_back(piece);
-}
+void Facets::add(const Vec3& a, const Vec3& b, const Vec3& c) { flats_.push_back({3, {a, b, c, {}}}); }
 
 void Facets::add(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  ConvexPiece piece;
-  piece.add(a), piece.add(b), piece.add(c), piece.add(d);
-  pieces_.push_back(piece);
+  flats_.push_back({4, {a, b, c, d}});
 }
 
 void Facets::add_surface(const HeightSurface& surface, bool upper) {
@@ -184,8 +177,17 @@ void Facets::add_revolved(const std::vector<std::array<double, 2>>& side, const 
 }
 
 ConvexPiece Facets::operator[](std::size_t k) const {
-  if (k < pieces_.size()) return pieces_[k];
-  k -= pieces_.size();
+  ConvexPiece piece;
+  if (k < flats_.size()) {
+    for (int v = 0; v < flats_[k].count; ++v) piece.add(flats_[k].x[v]);
+    return piece;
+  }
+  k -= flats_.size();
+  if (k < triangles()) {
+    for (int c = 0; c < 3; ++c) piece.add(surface_->corner(static_cast<int>(k), c));
+    return piece;
+  }
+  k -= triangles();
   return k < rasters_[0].count ? rasters_[0][k] : rasters_[1][k - rasters_[0].count];
 }
 

@@ -22,7 +22,7 @@ class Facets {
   /// at least 64 around, and the radius that gives their volume.
   Facets(const Shape& shape, const MeshConfig& mesh, int dim, double width);
 
-  std::size_t size() const { return pieces_.size() + rasters_[0].count + rasters_[1].count; }
+  std::size_t size() const { return flats_.size() + triangles() + rasters_[0].count + rasters_[1].count; }
   ConvexPiece operator[](std::size_t k) const;
   /// Volume [m3] (area [m2] in 2D) in the mesh.
   double volume() const;
@@ -36,6 +36,11 @@ class Facets {
     ConvexPiece operator[](std::size_t k) const;
   };
 
+  /// A triangle or a quadrilateral.
+  struct Flat {
+    int count;
+    Vec3 x[4];
+  };
   void add(const Vec3& a, const Vec3& b, const Vec3& c);
   void add(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
   void add_surface(const HeightSurface& surface, bool upper);
@@ -45,7 +50,10 @@ class Facets {
 
   MeshConfig mesh_;
   int dim_;
-  std::vector<ConvexPiece> pieces_;
+  std::size_t triangles() const { return surface_ ? static_cast<std::size_t>(surface_->size()) : 0; }
+
+  std::vector<Flat> flats_;
+  const TriangleSurface* surface_ = nullptr;
   Raster rasters_[2];
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/host_memory.hpp"
 #include "common/text.hpp"
 #include "input/cut_cells.hpp"
 #include "input/ground_options.hpp"
@@ -89,6 +90,8 @@ void check_shape(OptionReader& in, const std::string& name, const Shape& shape, 
                                                                            text_of(mesh.upper, dim) + cut);
     }
   check_cut_fillet(in, name, shape, mesh, cuts, dim);
+  // What does not fit into memory is told with all that is needed.
+  if (const double free = free_host_memory(); free > 0 && fill_bytes(shape, mesh, dim) > free / 2) return;
   if (!check_overlaps(in, name, shape, mesh)) return;
   if (!holds_particle(shape, mesh, dim))
     in.reject(name + "_shape", shape.fill == Fill::cell ? "a shape that a whole cell of the mesh fits in"

@@ -198,6 +198,15 @@ PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+double fill_bytes(const Shape& shape, const MeshConfig& mesh, int dim) {
+  if (shape.fill != Fill::cut) return 0;
+  const Bounds bounds = within(bounds_of(shape, mesh, dim), mesh, dim);
+  const double edge = mesh.spacing / shape.particles_per_cell;
+  double columns = 1;
+  for (int d = 0; d < dim - 1; ++d) columns *= std::max(0.0, bounds.upper[d] - bounds.lower[d]) / edge + 2;
+  return columns * k_column_bytes;
+}
+
 bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim, const std::vector<Shape>& cut_out) {
   Holes holes(cut_out, mesh, dim);
   return any_particle(shape, mesh, dim, {}, [&](const Vec3& x, double) { return !holes.hold(x); });

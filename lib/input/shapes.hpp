@@ -44,6 +44,9 @@ struct LatticePart {
 PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice& lattice,
                     const std::vector<Shape>& cut_out = {}, LatticePart part = {});
 
+/// Bytes that fill() needs beside the particles: Fill::cut keeps some levels of cells as a whole.
+double fill_bytes(const Shape& shape, const MeshConfig& mesh, int dim);
+
 /// Whether fill() would give at least one particle; stops at the first.
 bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim,
                     const std::vector<Shape>& cut_out = {});
