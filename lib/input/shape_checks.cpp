@@ -65,6 +65,8 @@ bool check_overlaps(OptionReader& in, const std::string& name, const Shape& shap
     grid.first[d] = std::lround(std::floor((bounds.lower[d] - mesh.lower[d]) / mesh.spacing));
     grid.last[d] = std::lround(std::ceil((bounds.upper[d] - mesh.lower[d]) / mesh.spacing));
   }
+  const double free = free_host_memory();  // what does not fit into it is told with all that is needed
+  if (free > 0 && static_cast<double>(grid.columns()) * k_column_bytes > free / 2) return true;
   const auto cell = overfull_cell(Facets(shape, mesh, 3, mesh.spacing), grid);
   if (cell)
     in.reject(name + "_file", "a surface whose parts do not lie in each other and all face outwards; near " +
