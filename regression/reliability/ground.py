@@ -241,6 +241,37 @@ class Tests:
                         self.check(np.array_equal(one[name][field][()], many[name][field][()]), f"{about} on {ranks} ranks: {name}/{field}")
 
 
+    def spoiled(self, seed, k):
+        """A file of which bytes are changed, taken out or put in: the run is refused with one line, or takes it."""
+        draw = random.Random(f"{seed}-{k}-spoiled")
+        files = self.base / "files"
+        files.mkdir(exist_ok=True)
+        options, _, _ = deck(draw, files, 3)
+        used = [pathlib.Path(word) for word in options if word.startswith(str(files))]
+        if not used:
+            return
+        path = draw.choice(used)
+        content = bytearray(path.read_bytes())
+        for _ in range(draw.choice([1, 1, 3, 30])):
+            at = draw.randrange(len(content))
+            what = draw.choice(["change", "cut", "out", "in"])
+            if what == "change":
+                content[at] = draw.randrange(256)
+            elif what == "cut" and draw.random() < 0.3:
+                del content[at:]
+            elif what == "out":
+                del content[at:at + draw.choice([1, 7, 50])]
+            else:
+                content[at:at] = draw.choice([b"0", b"9e9", b"-", b"nan", b"\0", b" vertex ", b"\n", bytes(draw.randrange(256) for _ in range(9))])
+            content = content or bytearray(b"x")
+        path.write_bytes(bytes(content))
+        _, result = self.run("spoiled", [*options, "-dry_run"], 1)
+        lines = result.stderr.strip().splitlines()
+        good = result.returncode == 0 or (result.returncode == 2 and 1 <= len(lines) <= 4 and all(
+            line.startswith("mpm: -") and ", takes " in line for line in lines))
+        self.check(good, f"spoiled file {k} of seed {seed}: status {result.returncode}\n{result.stderr[-2000:]}\n{' '.join(options)}")
+
+
 def main():
     parser = argparse.ArgumentParser(usage=__doc__.split("\n\n")[1].strip(), description=__doc__.split("\n")[0])
     parser.add_argument("binary", type=pathlib.Path)
@@ -254,7 +285,9 @@ def main():
         tests = Tests(arguments.binary.resolve(), (arguments.folder or pathlib.Path(name)).resolve())
         for k in range(arguments.count):
             tests.deck(arguments.seed, k, dims[k % len(dims)])
-    print(f"{arguments.count} random decks of ground, {tests.checks} checks passed")
+            if 3 in dims:
+                tests.spoiled(arguments.seed, k)
+    print(f"{arguments.count} random decks of ground and as many spoiled files, {tests.checks} checks passed")
 
 
 if __name__ == "__main__":
