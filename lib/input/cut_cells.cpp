@@ -7,8 +7,8 @@
 namespace mpm {
 namespace {
 
-constexpr double k_round = 1e-9;    // of a cell: round-off
-constexpr double k_nothing = 1e-3;  // of a cell: too little for a particle where no neighbour takes it
+constexpr double k_round = 1e-9;        // of a cell: round-off
+constexpr double k_nothing = 1.0 / 32;  // of a cell: too little for a particle where no other takes it
 
 }  // namespace
 
@@ -116,16 +116,22 @@ void CutCells::add_cell(const ConvexPiece& piece, long i, long j, std::vector<Ce
 
 namespace {
 
-/// Three levels one above the other, of which the middle one's small parts find their takers.
+/// Levels one above the other, of which the middle one's small parts find their takers.
 class Levels {
  public:
-  explicit Levels(const CellGrid& grid) : grid_(grid), width_(grid.last[0] - grid.first[0]) {
-    for (Level& level : levels_) level.own.resize(grid.columns()), level.taken.resize(grid.columns());
+  static constexpr long k_reach = 2;  // levels from a small part to its taker
+  static constexpr long k_window = 2 * k_reach + 1;
+
+  explicit Levels(const CellGrid& grid)
+      : grid_(grid), width_(grid.last[0] - grid.first[0]), rows_(grid.last[1] - grid.first[1]) {
+    for (Level& level : levels_)
+      level.own.resize(grid.columns()), level.taken.resize(grid.columns()), level.gone.resize(grid.columns());
   }
   std::vector<CellPart>& enter(long k) {
     Level& level = at(k);
     std::fill(level.own.begin(), level.own.end(), CellPart{});
     std::fill(level.taken.begin(), level.taken.end(), CellPart{});
+    std::fill(level.gone.begin(), level.gone.end(), 0);
     return level.own;
   }
   /// Full cells and empty ones, without round-off.
@@ -135,72 +141,82 @@ class Levels {
       if (part.volume < k_round) part = {};
     }
   }
+  /// Gives the small parts of a level to their takers.
   void join_small(long k);
   /// The part that the particle of a cell stands for.
   CellPart particle(long k, long column) const {
-    const Level& level = levels_[(k - grid_.first[2] + 3) % 3];
-    CellPart part = level.own[column];
-    add(level.taken[column], {0, 0, 0}, part);
+    CellPart part = at(k).taken[column];
+    if (!at(k).gone[column]) add(at(k).own[column], {}, part);
     return part;
   }
 
  private:
   struct Level {
-    std::vector<CellPart> own, taken;  // by column; taken from neighbours
+    std::vector<CellPart> own, taken;  // by column; taken from others
+    std::vector<char> gone;            // its own part stands for no particle of its own
   };
-  Level& at(long k) { return levels_[(k - grid_.first[2] + 3) % 3]; }
-  static void add(const CellPart& part, const std::array<int, 3>& offset, CellPart& to) {
+  using Cell = std::array<long, 3>;
+  Level& at(long k) { return levels_[(k - grid_.first[2] + k_window) % k_window]; }
+  const Level& at(long k) const { return levels_[(k - grid_.first[2] + k_window) % k_window]; }
+  Cell cell_of(long k, long column) const { return {column % width_, column / width_, k}; }
+  const CellPart& own_of(const Cell& cell) const { return at(cell[2]).own[cell[1] * width_ + cell[0]]; }
+  Cell largest_neighbour(const Cell& cell) const;
+  /// A cell of k_least_part or more that is a neighbour, or a neighbour's neighbour; itself if there is none.
+  Cell taker_of(const Cell& cell) const {
+    const Cell next = largest_neighbour(cell);
+    if (own_of(next).volume >= k_least_part || next == cell) return next;
+    const Cell last = largest_neighbour(next);
+    return own_of(last).volume >= k_least_part ? last : cell;
+  }
+  static void add(const CellPart& part, const Cell& offset, CellPart& to) {
     to.volume += part.volume;
-    for (int d = 0; d < 3; ++d) to.moment[d] += part.moment[d] + offset[d] * part.volume;
+    for (int d = 0; d < 3; ++d) to.moment[d] += part.moment[d] + static_cast<double>(offset[d]) * part.volume;
   }
 
   const CellGrid& grid_;
-  long width_;
-  Level levels_[3];
+  long width_, rows_;
+  Level levels_[k_window];
 };
 
+/// Of the cells that touch a cell the one that holds most, if that is more than the cell itself; else the
+/// cell. Of equal ones the first counts, those below before those above.
+Levels::Cell Levels::largest_neighbour(const Cell& cell) const {
+  Cell best = cell;
+  for (long k = cell[2] - 1; k <= cell[2] + 1; ++k)
+    for (long j = std::max(cell[1] - 1, 0L); j <= std::min(cell[1] + 1, rows_ - 1); ++j)
+      for (long i = std::max(cell[0] - 1, 0L); i <= std::min(cell[0] + 1, width_ - 1); ++i)
+        if (own_of({i, j, k}).volume > own_of(best).volume) best = {i, j, k};
+  return best;
+}
+
 void Levels::join_small(long k) {
-  constexpr std::array<int, 3> k_ways[] = {{0, 0, -1}, {0, 0, 1},  {-1, 0, 0},
-                                           {1, 0, 0},  {0, -1, 0}, {0, 1, 0}};
-  const long rows = grid_.last[1] - grid_.first[1];
   for (long column = 0; column < grid_.columns(); ++column) {
-    CellPart& part = at(k).own[column];
+    const CellPart& part = at(k).own[column];
     if (part.volume == 0 || part.volume >= k_least_part) continue;
-    const long i = column % width_, j = column / width_;
-    double most = k_least_part;
-    const std::array<int, 3>* taker = nullptr;
-    for (const auto& way : k_ways) {
-      const long a = i + way[0], b = j + way[1];
-      if (a < 0 || a >= width_ || b < 0 || b >= rows) continue;
-      const double volume = at(k + way[2]).own[b * width_ + a].volume;
-      if (volume >= most && (volume > most || !taker)) most = volume, taker = &way;
-    }
-    if (taker) {
-      const long to = (j + (*taker)[1]) * width_ + i + (*taker)[0];
-      add(part, {-(*taker)[0], -(*taker)[1], -(*taker)[2]}, at(k + (*taker)[2]).taken[to]);
-    }
-    if (taker || part.volume < k_nothing)
-      part.volume = -part.volume;  // marked: others still see no taker in it
+    const Cell here = cell_of(k, column), to = taker_of(here);
+    at(k).gone[column] = to != here || part.volume < k_nothing;
+    if (to == here) continue;
+    add(part, {here[0] - to[0], here[1] - to[1], here[2] - to[2]}, at(to[2]).taken[to[1] * width_ + to[0]]);
   }
-  for (CellPart& part : at(k).own)
-    if (part.volume < 0) part = {};
 }
 
 }  // namespace
 
 bool any_cut_particle(const Facets& facets, const CellGrid& grid, long from, long to,
                       const std::function<bool(const Vec3&, double)>& visit) {
+  constexpr long k_reach = Levels::k_reach;
   CutCells cells(facets, grid);
   Levels levels(grid);
   const long width = grid.last[0] - grid.first[0];
-  std::vector<CellPart> none;
-  for (long k = grid.first[2]; k < to + 2; ++k) {
-    const bool near = k >= from - 2;
-    if (near) levels.enter(k);
-    if (k < grid.last[2]) cells.next(near ? &levels.enter(k) : nullptr);
+  // What a level takes comes from two levels above and below it, whose takers depend on two more.
+  for (long k = grid.first[2]; k < to + 2 * k_reach; ++k) {
+    const bool near = k >= from - 2 * k_reach;
+    std::vector<CellPart>* const own = near ? &levels.enter(k) : nullptr;
+    if (k < grid.last[2]) cells.next(own);
     if (near) levels.round(k);
-    if (k - 1 >= grid.first[2] && k - 1 >= from - 1) levels.join_small(k - 1);
-    const long done = k - 2;
+    if (const long middle = k - k_reach; middle >= grid.first[2] && middle >= from - k_reach)
+      levels.join_small(middle);
+    const long done = k - 2 * k_reach;
     if (done < from || done >= to) continue;
     for (long column = 0; column < grid.columns(); ++column) {
       const CellPart part = levels.particle(done, column);

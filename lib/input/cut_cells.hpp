@@ -55,12 +55,12 @@ class CutCells {
   std::vector<Area> below_;  // of the pieces below the level's ceiling, by column
 };
 
-/// A cell whose part is smaller than this gives it to a neighbour across a face, if one has as much: a
-/// particle would have so small a mass.
+/// A cell whose part is smaller than this gives it to a neighbour that holds as much, or to a neighbour's: a
+/// particle so much lighter than those around it would be thrown about by them.
 inline constexpr double k_least_part = 0.125;
 
-/// Bytes that any_cut_particle() needs for a column of the grid: six levels of parts, and what is below.
-inline constexpr double k_column_bytes = 6 * sizeof(CellPart) + 3 * sizeof(double);
+/// Bytes that any_cut_particle() needs for a column of the grid: ten levels of parts, and what is below.
+inline constexpr double k_column_bytes = 10 * sizeof(CellPart) + 5 + 3 * sizeof(double);
 
 /// Calls visit(x, volume) for the particles of cells of the levels from <= k < to, at the centre [m] of the
 /// part that they stand for, volume over a cell's; x fastest, then y. Until visit returns true; returns
