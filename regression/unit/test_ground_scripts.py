@@ -127,6 +127,29 @@ class Terrain(Folder):
         self.refused(run("terrain", self.folder / "bad.tif", self.folder / "o.asc"),
                      "that rasterio can read" if HAS_RASTERIO else "takes the Python package rasterio")
 
+    def test_a_depth_on_the_terrain_has_the_volume_of_the_particles(self):
+        import h5py
+        terrain = self.write(self.plane(20, 20, 1.0, 0.0, 0.0), "t.asc")
+        (self.folder / "t.json").write_text(json.dumps({"origin": [500, 700, 0]}))
+        (self.folder / "frames").mkdir()
+        (self.folder / "history.csv").write_text("time\n0\n")
+        options = {"dim": "3", "bodies": "slide", "mesh_lower": "0,0,90", "mesh_upper": "20,20,120", "mesh_spacing": "1"}
+        (self.folder / "options.json").write_text(json.dumps({"version": "0", "options": options}))
+        random = np.random.default_rng(2)
+        for k, low in enumerate((2, 8)):
+            with h5py.File(self.folder / "frames" / f"frame_{k:05d}.h5", "w") as file:
+                file.attrs["time"] = float(k)
+                file["slide/position"] = low + 6 * random.random((4000, 3))
+                file["slide/volume"] = np.full(4000, 0.02)
+        done = run("plot_terrain", self.folder, terrain, "--write", "--cell", 1)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        depth = raster.read_ascii(self.folder / "depth.asc")
+        self.assertEqual((depth.x, depth.y), (500, 700))
+        self.assertAlmostEqual(depth.values.sum(), 80, places=4)
+        self.assertEqual(depth.values[:8].sum(), 0)
+        self.assertTrue((self.folder / "terrain.png").stat().st_size > 0)
+        self.refused(run("plot_terrain", self.folder, terrain, "--body", "mud"), "--body: takes a body of the run")
+
     @unittest.skipUnless(HAS_RASTERIO, "no rasterio")
     def test_geotiff_in_metres_and_in_degrees(self):
         import rasterio
