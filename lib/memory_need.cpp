@@ -69,6 +69,7 @@ double count_particles(const Config& config, MemoryNeed& need) {
                                 : cells_in(body.shape, config) * in_cell;
     constexpr double k_numbers = 40;  // of a particle as it is read and as it is kept
     if (listed) need.host += k_numbers * sizeof(double) * count;
+    need.host += fill_bytes(body.shape, config.mesh, config.dim);
     cells += count / in_cell;
     need.particles += count;
   }

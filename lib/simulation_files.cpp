@@ -8,6 +8,7 @@
 
 #include "common/collectives.hpp"
 #include "common/text.hpp"
+#include "input/shapes.hpp"
 #include "output/own_files.hpp"
 #include "simulation_body.hpp"
 
@@ -17,11 +18,18 @@ namespace {
 /// An option that names an input file, and that file.
 using Input = std::pair<std::string, std::string>;
 
+void add_files(const std::string& name, const Shape& shape, std::vector<Input>& inputs) {
+  for (const auto& [key, file] : files_of(shape)) inputs.emplace_back("-" + name + key, file);
+}
+
 std::vector<Input> inputs_of(const Config& config, const InputReport& report) {
   std::vector<Input> inputs;
   for (const std::string& file : report.files) inputs.emplace_back("-options_file", file);
-  for (const BodyConfig& body : config.bodies)
-    if (!body.shape.file.empty()) inputs.emplace_back("-" + body.name + "_file", body.shape.file);
+  for (const BodyConfig& body : config.bodies) {
+    add_files(body.name, body.shape, inputs);
+    if (!body.field.empty()) inputs.emplace_back("-" + body.name + "_field", body.field);
+  }
+  for (const RigidConfig& rigid : config.rigids) add_files(rigid.name, rigid.shape, inputs);
   if (!config.element.file.empty()) inputs.emplace_back("-element_path", config.element.file);
   return inputs;
 }

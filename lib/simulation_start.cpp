@@ -15,7 +15,6 @@
 #include "output/files.hpp"
 #include "output/measurement_cache.hpp"
 #include "output/performance_json.hpp"
-#include "parallel/distribute.hpp"
 #include "signals.hpp"
 #include "simulation_body.hpp"
 #include "warnings.hpp"
@@ -233,75 +232,6 @@ PetscErrorCode Simulation::Body::start() {
   wall_start = seconds_now();
   PetscCall(write_row());
   PetscCall(write_frame());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/// Mesh and particles.
-PetscErrorCode Simulation::Body::load(Model* model) {
-  PetscFunctionBeginUser;
-  BackgroundMesh mesh;
-  PetscCall(mesh.create(comm, config.mesh, config.dim));
-  model->patches = mesh.patches_with_ring();
-  for (const auto& body : config.bodies) {
-    const bool listed = body.shape.kind == ShapeKind::particles;
-    BodyParticles& particles = model->bodies.emplace_back();
-    PetscCall(listed ? load_file(body, &particles, &model->from_run)
-                     : load_shape("body " + body.name, body.shape, cut_out_of(config, body),
-                                  {rank_of(comm), ranks()}, &particles));
-  }
-  for (const auto& rigid : config.rigids)
-    PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, {}, &model->rigids.emplace_back()));
-  for (auto* all : {&model->bodies, &model->rigids})
-    for (BodyParticles& particles : *all)
-      for (std::size_t k = 0; k < particles.position.size(); ++k)
-        particles.position[k] -= config.mesh.lower[k % config.dim];
-  PetscCall(distribute(comm, config, mesh, model));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/// Particles of a shape's lattice, or this rank's part of them. Their positions are absolute, as in a file.
-PetscErrorCode Simulation::Body::load_shape(const std::string& name, const Shape& shape,
-                                            const std::vector<Shape>& cut_out, LatticePart part,
-                                            BodyParticles* particles) {
-  PetscFunctionBeginUser;
-  Lattice lattice;
-  PetscCall(fill(shape, config.mesh, config.dim, lattice, cut_out, part));
-  PetscCall(log_shape(name, lattice, part.of > 1));
-  PetscCall(log_cuts(name, shape));
-  particles->position = std::move(lattice.position);
-  particles->spacing = lattice.spacing;
-  particles->particle_volume = lattice.particle_volume;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/// The planes of symmetry that cut a shape.
-PetscErrorCode Simulation::Body::log_cuts(const std::string& name, const Shape& shape) {
-  PetscFunctionBeginUser;
-  const Cuts cuts = cuts_of(shape, config.mesh, config.dim);
-  std::string sides;
-  for (int d = 0; d < config.dim; ++d)
-    for (int side = 0; side < 2; ++side)
-      if (cuts[d][side])
-        sides += std::string(sides.empty() ? "" : ", ") + "-mesh_" + "xyz"[d] + (side == 0 ? "min" : "max");
-  if (!sides.empty())
-    PetscCall(
-        log.print("%s: cut by the plane of symmetry at %s; masses and forces are those of the part inside",
-                  name.c_str(), sides.c_str()));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/// in_parts: each rank has a part of the lattice.
-PetscErrorCode Simulation::Body::log_shape(const std::string& name, const Lattice& lattice, bool in_parts) {
-  PetscFunctionBeginUser;
-  long counts[2] = {static_cast<long>(lattice.position.size()) / config.dim, lattice.cut_out};
-  if (in_parts) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_LONG, MPI_SUM, comm));
-  const auto [count, cut_out] = counts;
-  const char* unit = config.dim == 2 ? "m2" : "m3";
-  PetscCall(log.print("%s: %ld particles stand for %.6g %s, the shape has %.6g %s", name.c_str(), count,
-                      count * lattice.particle_volume, unit, lattice.shape_volume, unit));
-  if (cut_out > 0)
-    PetscCall(log.print("%s: %ld particles, %.6g %s, were cut out", name.c_str(), cut_out,
-                        cut_out * lattice.particle_volume, unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

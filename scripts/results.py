@@ -97,7 +97,11 @@ def extent(run, name):
     if shape in ("disc", "ball", "cylinder", "cone"):
         centre, radius = run.number(f"{name}_centre"), run.number(f"{name}_radius")
         return in_mesh(run, centre - radius, centre + radius)
-    if shape == "half_plane":
+    if shape == "stl":  # where its particles begin
+        with h5py.File(run.frames[0]) as file:
+            x = file[name]["position"][:, 0]
+        return float(x.min()), float(x.max())
+    if shape in ("half_plane", "layer"):
         return run.number("mesh_lower"), run.number("mesh_upper")
     (left, low), (right, high) = run.numbers(f"{name}_lower")[:2], run.numbers(f"{name}_upper")[:2]
     angle = np.radians(run.number(f"{name}_angle_deg"))  # about the lower corner

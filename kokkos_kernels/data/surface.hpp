@@ -5,11 +5,12 @@
 
 namespace mpm {
 
-enum class SurfaceKind : int { box, polygon, disc, half_plane, revolved };
+enum class SurfaceKind : int { box, polygon, disc, half_plane, revolved, heights };
 
 /// A vertex of a polygon in the plane of x and the vertical axis [m from the mesh's lower corner], and
 /// whether the edge that begins there lies on the mesh's boundary, where no soil can be behind it. Of what is
-/// revolved: of its section, distance from the axis and height above the centre.
+/// revolved: of its section, distance from the axis and height above the centre. Of heights: z is one of
+/// them.
 struct Vertex {
   double x, z;
   bool outside;
@@ -24,7 +25,9 @@ struct Surface {
   Vector<double, Dim> normal;  // half_plane: outward, of length 1
   double radius;               // disc; box, revolved: of its corners
   double cosine, sine;         // box: of the angle that turns x to the vertical axis
-  int first, count;            // polygon; revolved: vertices of its section, made smaller by the radius
+  int first, count;  // polygon; revolved: vertices of its section, made smaller by the radius; heights:
+                     // on a grid of squares of edge `radius` from `centre` on, x fastest
+  int columns;       // heights: in a row
 };
 
 }  // namespace mpm

@@ -73,6 +73,33 @@ KOKKOS_INLINE_FUNCTION Distance<3> distance_to_revolved(const Surface<3>& body, 
   return {section.value - body.radius, {section.normal[0] * x, section.normal[0] * y, section.normal[1]}};
 }
 
+/// Height of the ground at a point [m], linear in each direction between the places where it is given; beyond
+/// them that of the nearest one.
+template <class Vertices>
+KOKKOS_INLINE_FUNCTION double height_at(const Surface<3>& body, const Vertices& vertices, double x,
+                                        double y) {
+  const int last_column = body.columns - 1, last_row = body.count / body.columns - 1;
+  const double u = Kokkos::fmin(double(last_column), Kokkos::fmax(0.0, (x - body.centre[0]) / body.radius)),
+               v = Kokkos::fmin(double(last_row), Kokkos::fmax(0.0, (y - body.centre[1]) / body.radius));
+  const int i = Kokkos::min(static_cast<int>(u), last_column - 1),
+            j = Kokkos::min(static_cast<int>(v), last_row - 1), at = body.first + j * body.columns + i;
+  const double s = u - i, t = v - j;
+  return (1 - t) * ((1 - s) * vertices(at).z + s * vertices(at + 1).z) +
+         t * ((1 - s) * vertices(at + body.columns).z + s * vertices(at + body.columns + 1).z);
+}
+
+/// Distance to the ground: that to the plane through the place below with the slope over two squares. All
+/// below the ground is inside.
+template <class Vertices>
+MPM_CALLED_FUNCTION Distance<3> distance_to_heights(const Surface<3>& body, const Vertices& vertices,
+                                                    double x, double y, double z) {
+  const double h = body.radius;
+  const double a = (height_at(body, vertices, x + h, y) - height_at(body, vertices, x - h, y)) / (2 * h),
+               b = (height_at(body, vertices, x, y + h) - height_at(body, vertices, x, y - h)) / (2 * h);
+  const double up = 1 / Kokkos::sqrt(1 + a * a + b * b);
+  return {(z - height_at(body, vertices, x, y)) * up, {-a * up, -b * up, up}};
+}
+
 /// Signed distance of x [m from the mesh's lower corner, less the body's displacement].
 template <int Dim, class Vertices>
 KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const Vertices& vertices,
@@ -90,6 +117,8 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
     for (int d = 0; d < Dim; ++d) out.normal[d] = length > 0 ? r[d] / length : 0;
   } else if (body.kind == SurfaceKind::revolved) {
     if constexpr (Dim == 3) out = distance_to_revolved(body, vertices, r);
+  } else if (body.kind == SurfaceKind::heights) {
+    if constexpr (Dim == 3) out = distance_to_heights(body, vertices, x[0], x[1], x[2]);
   } else if (body.kind == SurfaceKind::box) {
     const double along = body.cosine * r[0] + body.sine * r[up];
     r[up] = body.cosine * r[up] - body.sine * r[0];

@@ -222,7 +222,9 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
           const auto place = rigid.pose.to_body([&](int d) {
             return grid.coordinate_within(d, origin(slot)[d] + Patch<Dim>::edge / 2, spacing);
           });
-          if (rigid.surface_normal && distance_to(rigid.surface, vertices, place).value > far) return;
+          // The ground may be much nearer to one side of a patch than to its middle.
+          const bool trims = rigid.surface_normal && rigid.surface.kind != SurfaceKind::heights;
+          if (trims && distance_to(rigid.surface, vertices, place).value > far) return;
           near(slot) = 1;
         });
   }

@@ -271,6 +271,7 @@ Surface<Dim> surface_of(const SurfaceInput& in) {
   out.radius = in.radius;
   out.cosine = std::cos(in.angle), out.sine = std::sin(in.angle);
   out.count = static_cast<int>(in.vertices.size());
+  out.columns = in.columns;
   return out;
 }
 

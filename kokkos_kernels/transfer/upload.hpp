@@ -54,6 +54,7 @@ struct SurfaceInput {
   std::array<double, 3> centre{}, half{}, normal{};
   double radius = 0, angle = 0;  // m, rad
   std::vector<Vertex> vertices;
+  int columns = 0;  // of heights, in a row
 };
 
 template <int Dim>

@@ -8,6 +8,7 @@
 #include "common/checksum.hpp"
 #include "common/material_table.hpp"
 #include "common/text.hpp"
+#include "input/shapes.hpp"
 
 namespace mpm {
 namespace {
@@ -63,6 +64,17 @@ std::string own_parameter_note(const BodyConfig& body, const Config& config) {
   return own_parameter_words(own_parameter(state_variables(config.materials[body.material])));
 }
 
+/// What a file holds, in place of its name.
+void keep_contents(const std::string& option, const std::string& path, const std::string& note,
+                   std::vector<EffectiveOption>& options) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string contents(std::istreambuf_iterator<char>(file), {});
+  for (EffectiveOption& kept : options)
+    if (kept.name == option)
+      kept.value = formatted("a file of %zu bytes with crc32 %08x%s", contents.size(), checksum(0, contents),
+                             note.c_str());
+}
+
 }  // namespace
 
 std::string own_parameter_words(const std::string& parameter) {
@@ -73,14 +85,15 @@ std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>&
                                              const Config& config) {
   std::vector<EffectiveOption> kept = options;
   for (const BodyConfig& body : config.bodies) {
-    if (body.shape.kind != ShapeKind::particles) continue;
-    std::ifstream file(body.shape.file, std::ios::binary);
-    const std::string contents(std::istreambuf_iterator<char>(file), {});
-    for (EffectiveOption& option : kept)
-      if (option.name == "-" + body.name + "_file")
-        option.value = formatted("a file of %zu bytes with crc32 %08x%s", contents.size(),
-                                 checksum(0, contents), own_parameter_note(body, config).c_str());
+    const std::string note = own_parameter_note(body, config), name = "-" + body.name;
+    for (const auto& [key, path] : files_of(body.shape)) {
+      const bool listed = body.shape.kind == ShapeKind::particles;
+      keep_contents(name + key, path, listed ? note : "", kept);
+    }
+    if (!body.field.empty()) keep_contents(name + "_field", body.field, note, kept);
   }
+  for (const RigidConfig& rigid : config.rigids)
+    for (const auto& [key, path] : files_of(rigid.shape)) keep_contents("-" + rigid.name + key, path, "", kept);
   return kept;
 }
 

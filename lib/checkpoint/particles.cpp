@@ -123,8 +123,9 @@ std::string column_of(const Checkpoint& c, const std::string& body, const std::s
 /// particles had no values of their own.
 std::string column_of_own(const Checkpoint& c, const std::string& body, const std::string& parameter,
                           const BodyRows& rows) {
-  if (parameter.empty() || !value_of(c, "-" + body + "_file").ends_with(own_parameter_words(parameter)))
-    return "";
+  const std::string note = own_parameter_words(parameter);
+  const auto has_note = [&](const char* key) { return value_of(c, "-" + body + key).ends_with(note); };
+  if (parameter.empty() || !(has_note("_file") || has_note("_field"))) return "";
   for (const StateVariable& variable : variables_of(c, body))
     if (variable.parameter != nullptr && parameter == variable.parameter)
       return column_of(c, body, variable.name, rows);

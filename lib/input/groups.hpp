@@ -55,9 +55,9 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
 /// Whether soil of a material has a strength, somewhere.
 bool has_strength(const MaterialConfig& material);
 
-/// The geometry and lattice of a body or rigid. Whether all of it was sound. Only where `listed` may a file
-/// list the particles.
-bool read_shape(OptionReader& in, const std::string& name, int dim, bool listed, Shape& shape);
+/// The geometry and lattice of a body or rigid, where `body` says which. Whether all of it was sound. A file may
+/// list the particles of a body. The bodies before it have been read.
+bool read_shape(OptionReader& in, const std::string& name, const Config& config, bool body, Shape& shape);
 
 /// Checks that a sound shape lies in the mesh, or is cut by planes of symmetry, and holds a particle.
 void check_shape(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
@@ -78,6 +78,13 @@ std::array<double, 2> heights_of(const Shape& shape, const Config& config);
 /// Checks that a rigid that moves by forces is wholly below the water's level or above it: its buoyancy is
 /// constant. The mesh must be sound.
 void check_in_water(OptionReader& in, const Config& config, const RigidConfig& rigid);
+
+/// -NAME_field of a body; `listed`: a file lists its particles, and it takes none.
+void read_body_field(OptionReader& in, const std::string& name, bool listed, BodyConfig& body);
+/// Checks the field against the body's sound shape and material, and notes its largest value.
+void check_body_field(OptionReader& in, const MeshConfig& mesh, const Config& config, BodyConfig& body);
+/// The parameter of a body's law that a field gives; empty where it has none.
+std::string field_key(const BodyConfig& body, const Config& config);
 
 /// The initial velocity and stress of a body, which take the place of those of its file.
 void read_start(OptionReader& in, int dim, BodyConfig& body);

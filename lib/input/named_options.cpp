@@ -119,7 +119,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
                bool sound_materials, BodyConfig& body) {
   const auto errors = in.errors();
   in.section("Each body or rigid NAME: its shape and particles");
-  const bool sound = read_shape(in, body.name, config.dim, /*listed*/ true, body.shape);
+  const bool sound = read_shape(in, body.name, config, /*body*/ true, body.shape);
   const bool from_file = body.shape.kind == ShapeKind::particles;
   if (sound && mesh && !from_file) check_shape(in, body.name, body.shape, *mesh, config.dim);
 
@@ -135,6 +135,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
              .aside = ", of -materials"},
             materials, body.material);
   read_start(in, config.dim, body);
+  read_body_field(in, body.name, from_file, body);
   read_cut_out(in, names, body);
   if (!sound || !mesh) return;
   ParticleTable listed;
@@ -142,6 +143,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
     check_particles(in, body, config, *mesh, listed);
     check_density(in, body, config, listed);
   }
+  if (sound_materials && in.errors() == errors) check_body_field(in, *mesh, config, body);
   if (sound_materials && in.errors() == errors) check_starts(in, *mesh, config, listed, body);
 }
 
@@ -186,6 +188,24 @@ void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
   }
 }
 
+/// Whether the step knows the distance to the surface of a shape.
+bool has_distance(const Shape& shape) { return shape.kind != ShapeKind::stl; }
+
+void read_contact_normal(OptionReader& in, RigidConfig& rigid) {
+  const Option option{
+      .name = rigid.name + "_contact_normal",
+      .meaning = "contact normals: of the body's own surface, or of its nodal mass gradient (Eq. 3)",
+      .standard = in.listing() ? "surface; of an stl: gradient" : ""};
+  if (!has_distance(rigid.shape)) rigid.contact_normal = ContactNormal::gradient;
+  in.word(option,
+          std::vector<std::pair<std::string, ContactNormal>>{{"surface", ContactNormal::surface},
+                                                             {"gradient", ContactNormal::gradient}},
+          rigid.contact_normal);
+  if (!has_distance(rigid.shape) && rigid.contact_normal == ContactNormal::surface)
+    in.reject(option.name,
+              "gradient where " + rigid.name + "_shape is " + in.given_text(rigid.name + "_shape"));
+}
+
 /// The gap counts by default where it is known and may open.
 void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
   const std::string name = rigid.name + "_contact_gap_scaling";
@@ -198,6 +218,8 @@ void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
         std::vector<std::pair<std::string, bool>>{{"none", false}, {"geo", true}}, rigid.contact_gap_scaling);
   else
     in.not_taken(name, rigid.name + "_separation is none");
+  if (rigid.contact_gap_scaling && in.given(name) && !has_distance(rigid.shape))
+    in.reject(name, "none where " + rigid.name + "_shape is " + in.given_text(rigid.name + "_shape"));
   const Option reach{.name = rigid.name + "_contact_gap_reach",
                      .meaning = "geo: the gap at which contact ends, in cells",
                      .unit = "-",
@@ -238,7 +260,7 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
   const int dim = config.dim;
   rigid.shape.particles_per_cell = 4;
   // listed with the bodies'
-  const bool sound = !in.listing() && read_shape(in, rigid.name, dim, /*listed*/ false, rigid.shape);
+  const bool sound = !in.listing() && read_shape(in, rigid.name, config, /*body*/ false, rigid.shape);
   if (sound && mesh) check_shape(in, rigid.name, rigid.shape, *mesh, dim);
   in.section("Each rigid NAME");
   read_motion(in, dim, rigid);
@@ -257,11 +279,7 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
        .unit = "-",
        .range = {.lowest = 0, .highest = 10}},
       rigid.friction);
-  in.word({.name = rigid.name + "_contact_normal",
-           .meaning = "contact normals: of the body's own surface, or of its nodal mass gradient (Eq. 3)"},
-          std::vector<std::pair<std::string, ContactNormal>>{{"surface", ContactNormal::surface},
-                                                             {"gradient", ContactNormal::gradient}},
-          rigid.contact_normal);
+  read_contact_normal(in, rigid);
   in.word({.name = rigid.name + "_separation",
            .meaning = "whether the soil may part from it; none: contact pulls as well (suction)"},
           std::vector<std::pair<std::string, bool>>{{"free", true}, {"none", false}}, rigid.separates);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "input/height_surface.hpp"
 #include "input/revolved.hpp"
+#include "input/triangle_surface.hpp"
 
 namespace mpm {
 namespace {
@@ -97,6 +99,11 @@ bool Region::prism_holds(const Vec3& x) const {
   return is_inside(edges_, in_plane(x, dim_), slack_);
 }
 
+bool Region::layer_holds(const Vec3& x) const {
+  const double y = dim_ == 3 ? x[1] : 0, height = x[dim_ - 1];
+  return height <= shape_.top->at(x[0], y) + slack_ && height >= shape_.base->at(x[0], y) - slack_;
+}
+
 bool Region::holds(const Vec3& x) const {
   double square = 0, beyond = 0;  // of the distance to the centre; distance beyond the face
   for (int d = 0; d < dim_; ++d) {
@@ -110,6 +117,8 @@ bool Region::holds(const Vec3& x) const {
     case ShapeKind::cylinder:
     case ShapeKind::cone: return revolved_holds(shape_, x, slack_);
     case ShapeKind::half_plane: return beyond <= slack_;
+    case ShapeKind::stl: return shape_.triangles->holds(x, slack_);
+    case ShapeKind::layer: return layer_holds(x);
     default: return false;  // a list of particles has no inside
   }
 }

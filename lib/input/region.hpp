@@ -36,6 +36,7 @@ class Region {
  private:
   bool box_holds(const Vec3& x) const;
   bool prism_holds(const Vec3& x) const;
+  bool layer_holds(const Vec3& x) const;
   Span span_of_edges() const;
   Span span_of_disc(double low, double high) const;
   Span span_behind(double low, double high) const;

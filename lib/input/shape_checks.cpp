@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/host_memory.hpp"
 #include "common/text.hpp"
+#include "input/cut_cells.hpp"
+#include "input/ground_options.hpp"
 #include "input/groups.hpp"
 #include "input/shapes.hpp"
 
@@ -24,6 +27,7 @@ bool may_be_cut(const Shape& shape) {
 /// The option that places the lower or upper side of a shape in direction d.
 std::string placing_option(const Shape& shape, const std::string& name, int dim, int d, bool lower) {
   if (is_round(shape)) return name + "_centre";
+  if (shape.kind == ShapeKind::stl) return name + "_file";
   if (shape.kind == ShapeKind::polygon) return name + (dim == 3 && d == 1 ? "_width" : "_polygon");
   return name + (shape.angle != 0 ? "_angle_deg" : lower ? "_lower" : "_upper");
 }
@@ -51,10 +55,30 @@ void check_cut_fillet(OptionReader& in, const std::string& name, const Shape& sh
     }
 }
 
+/// A closed surface that does not cross itself may still have one part within another, or one that is inside
+/// out: no cell may hold more than itself, or less than nothing.
+bool check_overlaps(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh) {
+  if (shape.kind != ShapeKind::stl) return true;
+  CellGrid grid{.origin = mesh.lower, .edge = mesh.spacing};
+  const Bounds bounds = bounds_of(shape, mesh, 3);
+  for (int d = 0; d < 3; ++d) {
+    grid.first[d] = std::lround(std::floor((bounds.lower[d] - mesh.lower[d]) / mesh.spacing));
+    grid.last[d] = std::lround(std::ceil((bounds.upper[d] - mesh.lower[d]) / mesh.spacing));
+  }
+  const double free = free_host_memory();  // what does not fit into it is told with all that is needed
+  if (free > 0 && static_cast<double>(grid.columns()) * k_column_bytes > free / 2) return true;
+  const auto cell = overfull_cell(Facets(shape, mesh, 3, mesh.spacing), grid);
+  if (cell)
+    in.reject(name + "_file", "a surface whose parts do not lie in each other and all face outwards; near " +
+                                  text_of(*cell, 3) + " it encloses space twice, or from outside");
+  return !cell;
+}
+
 }  // namespace
 
 void check_shape(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
                  int dim) {
+  if (shape.kind == ShapeKind::layer && !check_layer(in, name, shape, mesh, dim)) return;
   const Cuts cuts = cuts_of(shape, mesh, dim);
   for (int d = 0; d < dim; ++d)
     for (int side = 0; side < 2; ++side) {
@@ -68,6 +92,9 @@ void check_shape(OptionReader& in, const std::string& name, const Shape& shape, 
                                                                            text_of(mesh.upper, dim) + cut);
     }
   check_cut_fillet(in, name, shape, mesh, cuts, dim);
+  // What does not fit into memory is told with all that is needed.
+  if (const double free = free_host_memory(); free > 0 && fill_bytes(shape, mesh, dim) > free / 2) return;
+  if (!check_overlaps(in, name, shape, mesh)) return;
   if (!holds_particle(shape, mesh, dim))
     in.reject(name + "_shape", shape.fill == Fill::cell ? "a shape that a whole cell of the mesh fits in"
                                                         : "a shape that holds a particle of the lattice");

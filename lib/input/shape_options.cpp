@@ -4,6 +4,8 @@
 #include <set>
 
 #include "common/text.hpp"
+#include "input/facets.hpp"
+#include "input/ground_options.hpp"
 #include "input/groups.hpp"
 #include "input/polygon.hpp"
 
@@ -155,7 +157,8 @@ void read_cone(OptionReader& in, const std::string& name, Shape& shape) {
 
 void read_file(OptionReader& in, const std::string& name, Shape& shape) {
   in.text({.name = name + "_file",
-           .meaning = "particles: a frame or checkpoint of another run, or an HDF5 file laid out as a frame",
+           .meaning = "particles: a frame or checkpoint of another run, or an HDF5 file laid out as a frame; "
+                      "stl: a closed surface of triangles, ASCII or binary",
            .required = true},
           shape.file);
   shape.file_body = name;
@@ -179,6 +182,8 @@ constexpr Kind k_kinds[] = {
     {"cylinder", ShapeKind::cylinder, false, true, true},
     {"cone", ShapeKind::cone, false, true, true},
     {"half_plane", ShapeKind::half_plane, true, true, true},
+    {"stl", ShapeKind::stl, false, true, true},
+    {"layer", ShapeKind::layer, true, true, true},
     {"particles", ShapeKind::particles, true, true, false},
 };
 
@@ -190,11 +195,16 @@ const std::vector<std::pair<ShapeKind, std::vector<std::string>>> k_keys = {
     {ShapeKind::cylinder, {"centre", "radius", "height", "tip_angle_deg"}},
     {ShapeKind::cone, {"centre", "radius", "height", "tip_angle_deg", "tip"}},
     {ShapeKind::half_plane, {"point", "normal"}},
+    {ShapeKind::stl, {"file", "scale"}},
+    {ShapeKind::layer, {"top", "base"}},
     {ShapeKind::particles, {"file", "file_body"}}};
 
-/// Reads what belongs to the kind of shape and rejects what belongs to another.
-void read_geometry(OptionReader& in, const std::string& name, int dim, const std::string& word,
+/// Reads what belongs to the kind of shape and rejects what belongs to another. False where the shape lacks a
+/// part that another body's mistake keeps from it.
+bool read_geometry(OptionReader& in, const std::string& name, const Config& config, const std::string& word,
                    Shape& shape) {
+  const int dim = config.dim;
+  bool whole = true;
   std::set<std::string> taken;
   for (const auto& [kind, of_kind] : k_keys)
     if (kind == shape.kind) taken.insert(of_kind.begin(), of_kind.end());
@@ -208,14 +218,18 @@ void read_geometry(OptionReader& in, const std::string& name, int dim, const std
     if (wanted && kind == ShapeKind::cylinder) read_cylinder(in, name, shape);
     if (wanted && kind == ShapeKind::cone) read_cone(in, name, shape);
     if (wanted && kind == ShapeKind::half_plane) read_half_plane(in, name, dim, shape);
+    if (wanted && kind == ShapeKind::stl) read_stl_shape(in, name, shape);
+    if (wanted && kind == ShapeKind::layer) whole = read_layer(in, name, config, shape);
     if (wanted && kind == ShapeKind::particles) read_file(in, name, shape);
     for (const auto& key : of_kind)
       if (!wanted && taken.insert(key).second) in.not_taken(name + "_" + key, name + "_shape is " + word);
   }
+  return whole;
 }
 
 /// The kind of shape and its geometry; whether it is known, so that what was given for it has a meaning.
-bool read_kind(OptionReader& in, const std::string& name, int dim, bool listed, Shape& shape) {
+bool read_kind(OptionReader& in, const std::string& name, const Config& config, bool listed, Shape& shape) {
+  const int dim = config.dim;
   std::vector<std::string> words, fitting;
   for (const Kind& k : k_kinds) {
     if (!k.for_rigids && !listed) continue;
@@ -225,8 +239,9 @@ bool read_kind(OptionReader& in, const std::string& name, int dim, bool listed, 
   const Option option{
       .name = name + "_shape",
       .meaning =
-          "box, polygon, disc (2D), ball, vertical cylinder or cone (3D), what is behind a plane, or the "
-          "particles of a file (bodies)",
+          "box, polygon, disc (2D), ball, vertical cylinder or cone (3D), what is behind a plane, a closed "
+          "surface of triangles (stl, 3D), the layer between two surfaces, or the particles of a file "
+          "(bodies)",
       .required = true};
   int index = 0;
   const bool known = in.word(option, words, index);
@@ -239,17 +254,36 @@ bool read_kind(OptionReader& in, const std::string& name, int dim, bool listed, 
       for (const auto& key : keys) in.ignore(name + "_" + key);
     return false;
   }
-  read_geometry(in, name, dim, words[index], shape);
-  return true;
+  return read_geometry(in, name, config, words[index], shape);
+}
+
+/// Which particles a shape has. Those of a rigid have one volume.
+void read_fill(OptionReader& in, const std::string& name, bool body, Shape& shape) {
+  static const std::vector<std::pair<std::string, Fill>> fills = {
+      {"centre", Fill::centre}, {"cell", Fill::cell}, {"cut", Fill::cut}};
+  const bool ground = shape.kind == ShapeKind::stl || shape.kind == ShapeKind::layer;
+  if (body && ground) shape.fill = Fill::cut;
+  in.word(
+      {.name = name + "_fill",
+       .meaning =
+           "particles whose centre is in the shape, those of cells that lie wholly in it, or the parts of "
+           "the particles' cells that are in it, each with its own volume (bodies)",
+       .standard = in.listing() ? "centre; of a body that is an stl or a layer: cut" : ""},
+      fills, shape.fill);
+  const std::string of_kind = " where " + name + "_shape is ";
+  if (shape.fill == Fill::cut && !body)
+    in.reject(name + "_fill", "centre or cell for a rigid body, whose particles have one volume");
+  else if (shape.fill == Fill::cut && !has_facets(shape) && !in.listing())
+    in.reject(name + "_fill", "centre or cell" + of_kind + in.given_text(name + "_shape"));
+  else if (shape.fill == Fill::cell && ground)
+    in.reject(name + "_fill", (body ? "centre or cut" : "centre") + of_kind + in.given_text(name + "_shape"));
 }
 
 }  // namespace
 
-bool read_shape(OptionReader& in, const std::string& name, int dim, bool listed, Shape& shape) {
-  static const std::vector<std::pair<std::string, Fill>> fills = {{"centre", Fill::centre},
-                                                                  {"cell", Fill::cell}};
+bool read_shape(OptionReader& in, const std::string& name, const Config& config, bool listed, Shape& shape) {
   const auto errors = in.errors();
-  read_kind(in, name, dim, listed, shape);
+  const bool whole = read_kind(in, name, config, listed, shape);
   in.integer({.name = name + "_particles_per_cell",
               .meaning = "particles in each direction of a cell; of a file: their width is a cell's over it",
               .unit = "-",
@@ -259,12 +293,10 @@ bool read_shape(OptionReader& in, const std::string& name, int dim, bool listed,
   if (shape.kind == ShapeKind::particles && !in.listing())
     in.not_taken(name + "_fill", "the particles are those of " + name + "_file");
   else
-    in.word({.name = name + "_fill",
-             .meaning = "particles whose centre is in the shape, or those of cells that lie wholly in it"},
-            fills, shape.fill);
+    read_fill(in, name, listed, shape);
   if (shape.angle != 0 && shape.fill == Fill::cell)
     in.reject(name + "_fill", "centre where " + name + "_angle_deg turns the box");
-  return !in.listing() && in.errors() == errors;
+  return !in.listing() && in.errors() == errors && whole;
 }
 
 }  // namespace mpm

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "input/facets.hpp"
 #include "input/polygon.hpp"
 #include "input/region.hpp"
 #include "input/revolved.hpp"
@@ -134,6 +135,11 @@ Bounds behind_bounds(const Shape& shape, const MeshConfig& mesh, int dim) {
   return bounds;
 }
 
+Bounds layer_bounds(const Shape& shape, const MeshConfig& mesh, int dim) {
+  const LayerBounds bounds = bounds_between(*shape.top, *shape.base, mesh, dim);
+  return {bounds.lower, bounds.upper};
+}
+
 }  // namespace
 
 double shape_volume(const Shape& shape, const MeshConfig& mesh, int dim) {
@@ -144,6 +150,8 @@ double shape_volume(const Shape& shape, const MeshConfig& mesh, int dim) {
     case ShapeKind::cylinder:
     case ShapeKind::cone: return round_volume(shape, mesh, dim);
     case ShapeKind::half_plane: return part_behind(shape, mesh, dim);
+    case ShapeKind::stl: return shape.triangles->volume();
+    case ShapeKind::layer: return Facets(shape, mesh, dim, mesh.spacing).volume();
     default: return 0;
   }
 }
@@ -156,6 +164,8 @@ Bounds bounds_of(const Shape& shape, const MeshConfig& mesh, int dim) {
     case ShapeKind::cylinder:
     case ShapeKind::cone: return revolved_bounds(shape);
     case ShapeKind::half_plane: return behind_bounds(shape, mesh, dim);
+    case ShapeKind::stl: return {shape.triangles->bounds().lower, shape.triangles->bounds().upper};
+    case ShapeKind::layer: return layer_bounds(shape, mesh, dim);
     default: return {mesh.lower, mesh.upper};
   }
 }

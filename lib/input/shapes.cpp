@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "input/cut_cells.hpp"
 #include "input/region.hpp"
 
 namespace mpm {
@@ -88,17 +90,42 @@ bool any_site(const Shape& shape, const MeshConfig& mesh, int dim, const Sites& 
   return false;
 }
 
-/// As any_site, with the place of each particle.
+/// The cells of a lattice, of which each may hold a particle.
+CellGrid grid_of(const Sites& sites, int dim) {
+  CellGrid grid{
+      .origin = sites.origin, .edge = sites.edge, .dim = dim, .first = sites.first, .last = sites.last};
+  if (dim == 2) {
+    grid.first = {sites.first[0], 0, sites.first[1]};
+    grid.last = {sites.last[0], 1, sites.last[1]};
+  }
+  return grid;
+}
+
+/// The particles of parts of cells, with their volumes.
+template <class Visit>
+bool any_part(const Shape& shape, const MeshConfig& mesh, int dim, LatticePart part, Visit&& visit) {
+  const Sites all(shape, mesh, dim);
+  Sites some = all;
+  some.cut(part, dim);
+  const Facets facets(shape, mesh, dim, all.edge);
+  const double cell = std::pow(all.edge, dim);
+  return any_cut_particle(facets, grid_of(all, dim), some.first[dim - 1], some.last[dim - 1],
+                          [&](const Vec3& x, double volume) { return visit(x, volume * cell); });
+}
+
+/// As any_site, with the place and volume of each particle.
 template <class Visit>
 bool any_particle(const Shape& shape, const MeshConfig& mesh, int dim, LatticePart part, Visit&& visit) {
+  if (shape.fill == Fill::cut) return any_part(shape, mesh, dim, part, visit);
   Sites sites(shape, mesh, dim);
   sites.cut(part, dim);
   const int n = sites.particles;
+  const double volume = std::pow(sites.edge / n, dim);
   return any_site(shape, mesh, dim, sites, [&](long i, long j, long k) {
     for (int c = 0; c < (dim == 3 ? n : 1); ++c)
       for (int b = 0; b < n; ++b)
         for (int a = 0; a < n; ++a)
-          if (visit(sites.particle(i * n + a, j * n + b, k * n + c, dim))) return true;
+          if (visit(sites.particle(i * n + a, j * n + b, k * n + c, dim), volume)) return true;
     return false;
   });
 }
@@ -123,11 +150,24 @@ class Holes {
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> files_of(const Shape& shape) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const auto& [key, file] :
+       {std::pair{"_file", shape.file}, {"_top", shape.top_file}, {"_base", shape.base_file}})
+    if (!file.empty()) files.emplace_back(key, file);
+  return files;
+}
+
 std::vector<Shape> cut_out_of(const Config& config, const BodyConfig& body) {
   std::vector<Shape> shapes;
   for (const int rigid : body.cut_out) shapes.push_back(config.rigids[rigid].shape);
   for (const int other : body.cut_out_bodies) shapes.push_back(config.bodies[other].shape);
   return shapes;
+}
+
+double Lattice::held_volume() const {
+  if (volume.empty()) return static_cast<double>(position.size()) / dim * particle_volume;
+  return std::accumulate(volume.begin(), volume.end(), 0.0);
 }
 
 PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice& lattice,
@@ -136,6 +176,7 @@ PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice
   PetscCheck(shape.kind != ShapeKind::particles, PETSC_COMM_SELF, PETSC_ERR_SUP,
              "A list of particles has no lattice");
   lattice = {};
+  lattice.dim = dim;
   lattice.spacing = mesh.spacing / shape.particles_per_cell;
   lattice.particle_volume = std::pow(lattice.spacing, dim);
   lattice.shape_volume = shape_volume(shape, mesh, dim);
@@ -144,19 +185,31 @@ PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice
       static_cast<std::size_t>(1.01 * lattice.shape_volume / lattice.particle_volume / part.of);
   PetscCallCXX(position.reserve(dim * expected));
   Holes holes(cut_out, mesh, dim);
-  PetscCallCXX(any_particle(shape, mesh, dim, part, [&](const Vec3& x) {
-    if (holes.hold(x))
+  PetscCallCXX(any_particle(shape, mesh, dim, part, [&](const Vec3& x, double volume) {
+    if (holes.hold(x)) {
       ++lattice.cut_out;
-    else
-      position.insert(position.end(), x.begin(), x.begin() + dim);
+      lattice.cut_volume += volume;
+      return false;
+    }
+    position.insert(position.end(), x.begin(), x.begin() + dim);
+    if (shape.fill == Fill::cut) lattice.volume.push_back(volume);
     return false;
   }));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+double fill_bytes(const Shape& shape, const MeshConfig& mesh, int dim) {
+  if (shape.fill != Fill::cut) return 0;
+  const Bounds bounds = within(bounds_of(shape, mesh, dim), mesh, dim);
+  const double edge = mesh.spacing / shape.particles_per_cell;
+  double columns = 1;
+  for (int d = 0; d < dim - 1; ++d) columns *= std::max(0.0, bounds.upper[d] - bounds.lower[d]) / edge + 2;
+  return columns * k_column_bytes;
+}
+
 bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim, const std::vector<Shape>& cut_out) {
   Holes holes(cut_out, mesh, dim);
-  return any_particle(shape, mesh, dim, {}, [&](const Vec3& x) { return !holes.hold(x); });
+  return any_particle(shape, mesh, dim, {}, [&](const Vec3& x, double) { return !holes.hold(x); });
 }
 
 }  // namespace mpm

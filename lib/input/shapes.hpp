@@ -3,6 +3,8 @@
 
 #include <petscsys.h>
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "mpm/config.hpp"
@@ -11,12 +13,17 @@ namespace mpm {
 
 /// The particles of a shape. The volumes are areas [m2] in 2D.
 struct Lattice {
+  int dim = 0;
   std::vector<double>
       position;        // m, packed: component c of particle k is position[k * dim + c]; x varies fastest
   double spacing = 0;  // m, between neighbouring particles
   double particle_volume = 0;  // m3, spacing^dim
+  std::vector<double> volume;  // m3, of each particle; or empty where particle_volume holds for all
   double shape_volume = 0;     // m3, of the shape itself, exact, with what is cut out of it
   long cut_out = 0;            // particles left out
+  double cut_volume = 0;       // m3, of these
+
+  double held_volume() const;  // m3, of all particles here
 };
 
 /// Which part of a lattice one rank makes: of so many equal lots of rows or, in 3D, layers, that of this
@@ -29,15 +36,23 @@ struct LatticePart {
 /// Fill::centre: the lattice points in the shape. The lattice of a box starts at the box's own lower corner
 /// and turns with it; that of another shape is the mesh's. Fill::cell: all particles of every mesh cell that
 /// lies wholly in the shape. Particles whose centre is in one of the shapes `cut_out` are left out.
-/// "In" includes the boundary, with a tolerance of 1e-9 of the mesh spacing, so that round-off never decides.
-/// Nothing is filled beyond the mesh: a box that it cuts has the lattice of the box that ends there.
-/// ShapeKind::particles has no lattice (PETSC_ERR_SUP).
+/// Fill::cut: the parts of the lattice's cells that are in the shape, each a particle at the part's centre
+/// with its volume; a part of less than an eighth of a cell joins a neighbour's. "In" includes the boundary,
+/// with a tolerance of 1e-9 of the mesh spacing, so that round-off never decides. Nothing is filled beyond
+/// the mesh: a box that it cuts has the lattice of the box that ends there. ShapeKind::particles has no
+/// lattice (PETSC_ERR_SUP).
 PetscErrorCode fill(const Shape& shape, const MeshConfig& mesh, int dim, Lattice& lattice,
                     const std::vector<Shape>& cut_out = {}, LatticePart part = {});
+
+/// Bytes that fill() needs beside the particles: Fill::cut keeps some levels of cells as a whole.
+double fill_bytes(const Shape& shape, const MeshConfig& mesh, int dim);
 
 /// Whether fill() would give at least one particle; stops at the first.
 bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim,
                     const std::vector<Shape>& cut_out = {});
+
+/// The options that name files of a shape, without its name, and these files.
+std::vector<std::pair<std::string, std::string>> files_of(const Shape& shape);
 
 /// The shapes that are cut out of a body.
 std::vector<Shape> cut_out_of(const Config& config, const BodyConfig& body);

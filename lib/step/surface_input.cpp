@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "input/height_surface.hpp"
 #include "input/revolved.hpp"
 
 namespace mpm {
@@ -66,6 +67,51 @@ SurfaceInput polygon(const Shape& shape, const MeshConfig& mesh, int dim) {
   return out;
 }
 
+bool depends_on_y(const Shape& layer) {
+  return !layer.top->lines(1).empty() || !layer.base->lines(1).empty();
+}
+
+/// The outline of a layer whose surfaces do not depend on y.
+Shape prism_of(const Shape& layer, const MeshConfig& mesh) {
+  Shape prism;
+  prism.kind = ShapeKind::polygon;
+  prism.width = {mesh.lower[1], mesh.upper[1]};
+  const auto add = [&](const HeightSurface& surface, bool forward) {
+    std::vector<double> x{mesh.lower[0]};
+    for (const double line : surface.lines(0))
+      if (line > mesh.lower[0] && line < mesh.upper[0]) x.push_back(line);
+    x.push_back(mesh.upper[0]);
+    if (!forward) std::reverse(x.begin(), x.end());
+    for (const double at : x) {
+      const Point2 vertex{at, surface.at(at, 0)};
+      if (prism.polygon.empty() || (prism.polygon.back() != vertex && prism.polygon.front() != vertex))
+        prism.polygon.push_back(vertex);
+    }
+  };
+  add(*layer.base, true);
+  add(*layer.top, false);
+  return prism;
+}
+
+/// The ground under the top of a layer, by its heights over the mesh's nodes.
+SurfaceInput heights(const HeightSurface& top, const MeshConfig& mesh) {
+  SurfaceInput out;
+  out.kind = SurfaceKind::heights;
+  out.radius = mesh.spacing;
+  out.columns = mesh.cells[0] + 1;
+  for (int j = 0; j <= mesh.cells[1]; ++j)
+    for (int i = 0; i <= mesh.cells[0]; ++i) {
+      const double x = mesh.lower[0] + i * mesh.spacing, y = mesh.lower[1] + j * mesh.spacing;
+      out.vertices.push_back({x - mesh.lower[0], top.at(x, y) - mesh.lower[2], false});
+    }
+  return out;
+}
+
+SurfaceInput layer(const Shape& shape, const MeshConfig& mesh, int dim) {
+  if (dim == 2 || !depends_on_y(shape)) return polygon(prism_of(shape, mesh), mesh, dim);
+  return heights(*shape.top, mesh);
+}
+
 /// Radius [m] that corners of a convex polygon, anticlockwise, can be rounded by: half a cell, but no corner
 /// recedes by more than that, and no edge loses more than half its length.
 double rounding_of(const Polygon& polygon, double spacing) {
@@ -126,6 +172,7 @@ SurfaceInput surface_input(const Shape& shape, const MeshConfig& mesh, int dim) 
   if (shape.kind == ShapeKind::box) return box(shape, mesh, dim);
   if (shape.kind == ShapeKind::polygon) return polygon(shape, mesh, dim);
   if (is_revolved(shape)) return revolved(shape, mesh);
+  if (shape.kind == ShapeKind::layer) return layer(shape, mesh, dim);
   SurfaceInput out;
   out.kind = shape.kind == ShapeKind::disc ? SurfaceKind::disc : SurfaceKind::half_plane;
   const Vec3& centre = shape.kind == ShapeKind::disc ? shape.centre : shape.point;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "compare.hpp"
+#include "input/height_surface.hpp"
 #include "loops/window.hpp"
 #include "physics/contact.hpp"
 #include "physics/surface.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 MeshConfig mesh_of() {
   MeshConfig mesh;
-  mesh.lower = {-5, -5, -5}, mesh.upper = {5, 5, 5}, mesh.spacing = 0.1;
+  mesh.lower = {-5, -5, -5}, mesh.upper = {5, 5, 5}, mesh.spacing = 0.1, mesh.cells = {100, 100, 100};
   return mesh;
 }
 
@@ -67,6 +68,47 @@ RigidInput plate_of(const std::array<double, 3>& from, const std::array<double, 
 }
 
 }  // namespace
+
+TEST_CASE("distance to a layer of rasters: a plane, and a slope that curves", "[surface]") {
+  const auto ground = [](auto&& height) {
+    std::vector<double> lines, heights;
+    for (int k = 0; k <= 40; ++k) lines.push_back(-6 + 0.3 * k);
+    for (const double y : lines)
+      for (const double x : lines) heights.push_back(height(x, y));
+    Shape shape;
+    shape.kind = ShapeKind::layer;
+    shape.top = std::make_shared<const HeightSurface>(lines, lines, heights);
+    shape.base = std::make_shared<const HeightSurface>(-5.0);
+    return shape;
+  };
+  const Shape plane = ground([](double x, double y) { return 0.5 * x - 0.25 * y; });
+  const double up = 1 / std::sqrt(1 + 0.25 + 0.0625);
+  CHECK(is<3>(distance<3>(plane, {1.23, 0.4, 0.9}), (0.9 - 0.615 + 0.1) * up, {-0.5 * up, 0.25 * up, up}));
+  CHECK(is<3>(distance<3>(plane, {-2, 1, -4}), (-4 + 1 + 0.25) * up, {-0.5 * up, 0.25 * up, up}));
+  // A wide ball from above: the distance to its surface, near it.
+  const Shape ball = ground([](double x, double y) { return std::sqrt(400 - x * x - y * y) - 19; });
+  for (const double x : {-2.0, 0.0, 1.5})
+    for (const double z : {-0.2, 0.1, 0.3}) {
+      const double r = std::sqrt(x * x + 1 + std::pow(std::sqrt(399 - x * x) + z, 2));
+      const auto got = distance<3>(ball, {x, 1, std::sqrt(399 - x * x) - 19 + z});
+      CHECK(std::fabs(got.value - (r - 20)) < 3e-3);
+      CHECK(std::fabs(got.normal[0] - x / r) < 5e-3);
+    }
+}
+
+TEST_CASE("a layer between levels and polylines has the distance of its polygon", "[surface]") {
+  Shape layer;
+  layer.kind = ShapeKind::layer;
+  layer.top = std::make_shared<const HeightSurface>(std::vector<double>{-6, 0, 7}, std::vector<double>{},
+                                                    std::vector<double>{1, 1, 4.5});
+  layer.base = std::make_shared<const HeightSurface>(-5.0);
+  CHECK(is<2>(distance<2>(layer, {-2, 1.5}), 0.5, {0, 1}));
+  CHECK(is<2>(distance<2>(layer, {-2, 0.5}), -0.5, {0, 1}));
+  CHECK(is<2>(distance<2>(layer, {-2, -5}), -6, {0, 1}));  // the base is the mesh's side, no surface
+  const double n = 1 / std::sqrt(1.25);
+  CHECK(is<2>(distance<2>(layer, {2 - 0.5 * n, 2 + n}), 1, {-0.5 * n, n}));
+  CHECK(is<3>(distance<3>(layer, {2 - 0.5 * n, 3, 2 + n}), 1, {-0.5 * n, 0, n}));
+}
 
 TEST_CASE("distance to a box: faces, rounded corners, inside, turned, cut off by the mesh", "[surface]") {
   const Shape plate = box({-2, 0}, {1, 1});

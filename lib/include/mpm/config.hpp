@@ -27,8 +27,11 @@ struct MeshConfig {
   std::array<std::array<Wall, 2>, 3> walls{};  // [direction][0 lower, 1 upper side]; default roller
 };
 
-enum class ShapeKind { box, polygon, disc, cylinder, cone, half_plane, particles };
-enum class Fill { centre, cell };
+enum class ShapeKind { box, polygon, disc, cylinder, cone, half_plane, stl, layer, particles };
+enum class Fill { centre, cell, cut };
+
+class TriangleSurface;
+class HeightSurface;
 
 /// A region of space and the lattice of particles that fills it. The vertical axis is y in 2D and z in 3D. A
 /// box that is not turned, a disc, a cylinder and a cone may reach beyond sides of the mesh that are planes of
@@ -46,8 +49,11 @@ struct Shape {
   double tip_height = 0;  // m, cylinder: of the cone that its lower end is; 0 where that is flat
   bool tip_up = false;    // cone: its tip is its highest point, not its lowest
   Vec3 point{}, normal{};                      // m, -, half_plane: on its face; outward, of length 1
-  std::string file, file_body;                 // particles (of a body): the HDF5 file that lists them, and
-                                               // the body's name there
+  std::shared_ptr<const TriangleSurface> triangles;  // stl: closed
+  std::shared_ptr<const HeightSurface> top, base;    // layer: what it is between
+  std::string top_file, base_file;                   // layer: of its surfaces that are rasters
+  std::string file, file_body;                 // stl: its file; particles (of a body): the HDF5 file that
+                                               // lists them, and the body's name there
   int particles_per_cell = 2;                  // in each direction
   Fill fill = Fill::centre;
 };
@@ -74,8 +80,9 @@ struct BodyConfig {
   bool stress_given = false;
   /// Pa, largest mean stress in compression of its particles at the start.
   double largest_pressure = 0;
-  /// Largest value of the law's strength that its file gives each particle, in the parameter's unit; none
-  /// where it gives none.
+  std::string field;  // HDF5 file with a grid of the law's strength, from which its particles take theirs
+  /// Largest value of the law's strength that its file or field gives each particle, in the parameter's unit;
+  /// none where neither is given.
   std::optional<double> largest_own_parameter;
   std::vector<int> cut_out;         // indices into Config::rigids: particles in their shapes are left out
   std::vector<int> cut_out_bodies;  // the same of Config::bodies

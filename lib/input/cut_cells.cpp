@@ -1,0 +1,257 @@
+#include "input/cut_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace mpm {
+namespace {
+
+constexpr double k_round = 1e-9;        // of a cell: round-off
+constexpr double k_nothing = 1.0 / 32;  // of a cell: too little for a particle where no other takes it
+
+}  // namespace
+
+CutCells::CutCells(const Facets& facets, const CellGrid& grid)
+    : facets_(facets), grid_(grid), level_(grid.first[2]), below_(grid.columns()) {
+  const long levels = grid.last[2] - grid.first[2];
+  std::vector<long> lowest(facets.size());
+  begin_.assign(levels + 2, 0);
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    const double z = std::floor(in_cells(facets[f]).lowest(2)) - static_cast<double>(grid.first[2]);
+    lowest[f] = static_cast<long>(std::clamp(z, 0.0, static_cast<double>(levels)));
+    ++begin_[lowest[f] + 1];
+  }
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  order_.resize(facets.size());
+  std::vector<std::size_t> place(begin_.begin(), begin_.end() - 1);
+  for (std::size_t f = 0; f < facets.size(); ++f) order_[place[lowest[f]]++] = f;
+}
+
+ConvexPiece CutCells::in_cells(const ConvexPiece& piece) const {
+  ConvexPiece scaled = piece;
+  const int up = grid_.dim - 1;
+  for (int v = 0; v < piece.count; ++v) {
+    scaled.x[v][0] = (piece.x[v][0] - grid_.origin[0]) / grid_.edge;
+    if (grid_.dim == 3) scaled.x[v][1] = (piece.x[v][1] - grid_.origin[1]) / grid_.edge;
+    scaled.x[v][2] = (piece.x[v][2] - grid_.origin[up]) / grid_.edge;
+  }
+  return scaled;
+}
+
+/// Those that begin in this level; what of them is below the first one counts there.
+void CutCells::take_facets() {
+  const long at = level_ - grid_.first[2];
+  for (std::size_t k = begin_[at]; k < begin_[at + 1]; ++k) {
+    active_.push_back(order_[k]);
+    if (at > 0) continue;
+    ConvexPiece below, above;
+    in_cells(facets_[order_[k]]).split(2, static_cast<double>(level_), below, above);
+    if (below.count > 0 && below.lowest(2) < static_cast<double>(level_)) add_columns(below, nullptr);
+  }
+}
+
+void CutCells::next(std::vector<CellPart>* parts) {
+  if (parts) parts->assign(grid_.columns(), {});
+  take_facets();
+  const auto floor = static_cast<double>(level_), ceiling = floor + 1;
+  std::size_t kept = 0;
+  for (const std::size_t f : active_) {
+    const ConvexPiece facet = in_cells(facets_[f]);
+    const double highest = facet.highest(2);
+    if (highest >= floor) {
+      const ConvexPiece piece = facet.between(2, floor, ceiling);
+      if (piece.count > 0) add_columns(piece, parts);
+    }
+    if (highest > ceiling) active_[kept++] = f;
+  }
+  active_.resize(kept);
+  ++level_;
+  if (!parts) return;
+  for (std::size_t c = 0; c < parts->size(); ++c) {
+    CellPart& part = (*parts)[c];
+    const Area& full = below_[c];
+    part.volume -= full.area;
+    part.moment[0] -= full.x, part.moment[1] -= full.y, part.moment[2] -= full.area / 2;
+  }
+}
+
+void CutCells::add_columns(const ConvexPiece& piece, std::vector<CellPart>* parts) {
+  const auto first = static_cast<double>(grid_.first[0]), last = static_cast<double>(grid_.last[0]);
+  const double low = std::max(piece.lowest(0), first), high = std::min(piece.highest(0), last);
+  if (!(low < high)) return;
+  ConvexPiece rest = piece, strip, next;
+  if (piece.lowest(0) < first) piece.split(0, first, strip, rest);
+  for (long i = static_cast<long>(std::floor(low)); rest.count > 0 && static_cast<double>(i) < high; ++i) {
+    rest.split(0, static_cast<double>(i + 1), strip, next);
+    if (strip.count > 0) add_row(strip, i, parts);
+    rest = next;
+  }
+}
+
+void CutCells::add_row(const ConvexPiece& strip, long i, std::vector<CellPart>* parts) {
+  const auto first = static_cast<double>(grid_.first[1]), last = static_cast<double>(grid_.last[1]);
+  const double low = std::max(strip.lowest(1), first), high = std::min(strip.highest(1), last);
+  if (!(low < high)) return;
+  ConvexPiece rest = strip, cell, next;
+  if (strip.lowest(1) < first) strip.split(1, first, cell, rest);
+  for (long j = static_cast<long>(std::floor(low)); rest.count > 0 && static_cast<double>(j) < high; ++j) {
+    rest.split(1, static_cast<double>(j + 1), cell, next);
+    if (cell.count > 0) add_cell(cell, i, j, parts);
+    rest = next;
+  }
+}
+
+void CutCells::add_cell(const ConvexPiece& piece, long i, long j, std::vector<CellPart>* parts) {
+  UnderPiece under;
+  under.add(piece, {static_cast<double>(i), static_cast<double>(j), static_cast<double>(level_)});
+  const long column = (j - grid_.first[1]) * (grid_.last[0] - grid_.first[0]) + i - grid_.first[0];
+  Area& below = below_[column];
+  below.area += under.area, below.x += under.area_x, below.y += under.area_y;
+  if (!parts) return;
+  CellPart& part = (*parts)[column];
+  part.volume += under.volume;
+  part.moment[0] += under.moment_x, part.moment[1] += under.moment_y, part.moment[2] += under.moment_z;
+}
+
+namespace {
+
+/// Levels one above the other, of which the middle one's small parts find their takers.
+class Levels {
+ public:
+  static constexpr long k_reach = 2;  // levels from a small part to its taker
+  static constexpr long k_window = 2 * k_reach + 1;
+
+  explicit Levels(const CellGrid& grid)
+      : grid_(grid), width_(grid.last[0] - grid.first[0]), rows_(grid.last[1] - grid.first[1]) {
+    for (Level& level : levels_)
+      level.own.resize(grid.columns()), level.taken.resize(grid.columns()), level.gone.resize(grid.columns());
+  }
+  std::vector<CellPart>& enter(long k) {
+    Level& level = at(k);
+    std::fill(level.own.begin(), level.own.end(), CellPart{});
+    std::fill(level.taken.begin(), level.taken.end(), CellPart{});
+    std::fill(level.gone.begin(), level.gone.end(), 0);
+    return level.own;
+  }
+  /// Full cells and empty ones, without round-off.
+  void round(long k) {
+    for (CellPart& part : at(k).own) {
+      if (std::abs(part.volume - 1) < k_round) part = {1, {0.5, 0.5, 0.5}};
+      if (part.volume < k_round) part = {};
+    }
+  }
+  /// Gives the small parts of a level to their takers.
+  void join_small(long k);
+  /// The part that the particle of a cell stands for.
+  CellPart particle(long k, long column) const {
+    CellPart part = at(k).taken[column];
+    if (!at(k).gone[column]) add(at(k).own[column], {}, part);
+    return part;
+  }
+
+ private:
+  struct Level {
+    std::vector<CellPart> own, taken;  // by column; taken from others
+    std::vector<char> gone;            // its own part stands for no particle of its own
+  };
+  using Cell = std::array<long, 3>;
+  Level& at(long k) { return levels_[(k - grid_.first[2] + k_window) % k_window]; }
+  const Level& at(long k) const { return levels_[(k - grid_.first[2] + k_window) % k_window]; }
+  Cell cell_of(long k, long column) const { return {column % width_, column / width_, k}; }
+  const CellPart& own_of(const Cell& cell) const { return at(cell[2]).own[cell[1] * width_ + cell[0]]; }
+  Cell largest_neighbour(const Cell& cell) const;
+  /// A cell of k_least_part or more that is a neighbour, or a neighbour's neighbour; itself if there is none.
+  Cell taker_of(const Cell& cell) const {
+    const Cell next = largest_neighbour(cell);
+    if (own_of(next).volume >= k_least_part || next == cell) return next;
+    const Cell last = largest_neighbour(next);
+    return own_of(last).volume >= k_least_part ? last : cell;
+  }
+  static void add(const CellPart& part, const Cell& offset, CellPart& to) {
+    to.volume += part.volume;
+    for (int d = 0; d < 3; ++d) to.moment[d] += part.moment[d] + static_cast<double>(offset[d]) * part.volume;
+  }
+
+  const CellGrid& grid_;
+  long width_, rows_;
+  Level levels_[k_window];
+};
+
+/// Of the cells that touch a cell the one that holds most, if that is more than the cell itself; else the
+/// cell. Of equal ones the first counts, those below before those above.
+Levels::Cell Levels::largest_neighbour(const Cell& cell) const {
+  Cell best = cell;
+  for (long k = cell[2] - 1; k <= cell[2] + 1; ++k)
+    for (long j = std::max(cell[1] - 1, 0L); j <= std::min(cell[1] + 1, rows_ - 1); ++j)
+      for (long i = std::max(cell[0] - 1, 0L); i <= std::min(cell[0] + 1, width_ - 1); ++i)
+        if (own_of({i, j, k}).volume > own_of(best).volume) best = {i, j, k};
+  return best;
+}
+
+void Levels::join_small(long k) {
+  for (long column = 0; column < grid_.columns(); ++column) {
+    const CellPart& part = at(k).own[column];
+    if (part.volume == 0 || part.volume >= k_least_part) continue;
+    const Cell here = cell_of(k, column), to = taker_of(here);
+    at(k).gone[column] = to != here || part.volume < k_nothing;
+    if (to == here) continue;
+    add(part, {here[0] - to[0], here[1] - to[1], here[2] - to[2]}, at(to[2]).taken[to[1] * width_ + to[0]]);
+  }
+}
+
+}  // namespace
+
+bool any_cut_particle(const Facets& facets, const CellGrid& grid, long from, long to,
+                      const std::function<bool(const Vec3&, double)>& visit) {
+  constexpr long k_reach = Levels::k_reach;
+  CutCells cells(facets, grid);
+  Levels levels(grid);
+  const long width = grid.last[0] - grid.first[0];
+  // What a level takes comes from two levels above and below it, whose takers depend on two more.
+  for (long k = grid.first[2]; k < to + 2 * k_reach; ++k) {
+    const bool near = k >= from - 2 * k_reach;
+    std::vector<CellPart>* const own = near ? &levels.enter(k) : nullptr;
+    if (k < grid.last[2]) cells.next(own);
+    if (near) levels.round(k);
+    if (const long middle = k - k_reach; middle >= grid.first[2] && middle >= from - k_reach)
+      levels.join_small(middle);
+    const long done = k - 2 * k_reach;
+    if (done < from || done >= to) continue;
+    for (long column = 0; column < grid.columns(); ++column) {
+      const CellPart part = levels.particle(done, column);
+      if (part.volume == 0) continue;
+      Vec3 x{};
+      const std::array<long, 3> cell{column % width + grid.first[0], column / width + grid.first[1], done};
+      for (int d = 0; d < 3; ++d)
+        x[d] = grid.origin[d] + (static_cast<double>(cell[d]) + part.moment[d] / part.volume) * grid.edge;
+      if (grid.dim == 2)
+        x[1] = grid.origin[1] + (static_cast<double>(done) + part.moment[2] / part.volume) * grid.edge,
+        x[2] = 0;
+      if (visit(x, part.volume)) return true;
+    }
+  }
+  return false;
+}
+
+std::optional<Vec3> overfull_cell(const Facets& facets, const CellGrid& grid) {
+  constexpr double k_slack = 1e-6;
+  CutCells cells(facets, grid);
+  std::vector<CellPart> parts;
+  const long width = grid.last[0] - grid.first[0];
+  for (long k = grid.first[2]; k < grid.last[2]; ++k) {
+    cells.next(&parts);
+    for (std::size_t c = 0; c < parts.size(); ++c) {
+      if (parts[c].volume > -k_slack && parts[c].volume < 1 + k_slack) continue;
+      const long column = static_cast<long>(c);
+      Vec3 x;
+      const std::array<long, 3> cell{column % width + grid.first[0], column / width + grid.first[1], k};
+      for (int d = 0; d < 3; ++d) x[d] = grid.origin[d] + (static_cast<double>(cell[d]) + 0.5) * grid.edge;
+      if (grid.dim == 2) x[1] = grid.origin[1] + (static_cast<double>(k) + 0.5) * grid.edge, x[2] = 0;
+      return x;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace mpm

@@ -1,0 +1,74 @@
+#pragma once
+// The parts of the cells of a grid that are in a shape, and the particles that stand for them.
+
+#include <functional>
+#include <vector>
+
+#include "input/facets.hpp"
+
+namespace mpm {
+
+/// Cells first <= k < last along x, y and up; in 2D there is one cell in y, from 0 to 1.
+struct CellGrid {
+  Vec3 origin{};    // m, lower corner of cell 0, 0, 0
+  double edge = 0;  // m
+  int dim = 3;
+  std::array<long, 3> first{}, last{};
+
+  long columns() const { return (last[0] - first[0]) * (last[1] - first[1]); }
+};
+
+/// The part of a cell that is in a shape.
+struct CellPart {
+  double volume = 0;  // of the cell's
+  Vec3 moment{};      // volume times the centre, in edges from the cell's lower corner
+};
+
+/// The cells of a grid level by level, from the lowest one up. What a cell holds is what lies between its
+/// floor and the pieces of the surface in it, and is full up to its ceiling under the pieces above: a sum
+/// over pieces with the sign of their area. The pieces below a level have, in each column, the opposite area
+/// of those above. Work: the number of pairs of a facet and a cell that it cuts, and of levels.
+class CutCells {
+ public:
+  /// Both must outlive it.
+  CutCells(const Facets& facets, const CellGrid& grid);
+  /// The parts of the next level, by column, x fastest; a null pointer passes it over.
+  void next(std::vector<CellPart>* parts);
+  long level() const { return level_; }
+
+ private:
+  ConvexPiece in_cells(const ConvexPiece& piece) const;
+  void take_facets();
+  void add_columns(const ConvexPiece& piece, std::vector<CellPart>* parts);
+  void add_row(const ConvexPiece& strip, long i, std::vector<CellPart>* parts);
+  void add_cell(const ConvexPiece& piece, long i, long j, std::vector<CellPart>* parts);
+
+  struct Area {
+    double area = 0, x = 0, y = 0;  // and its moments about the column's corner
+  };
+  const Facets& facets_;
+  const CellGrid& grid_;
+  long level_;
+  std::vector<std::size_t> order_,
+      begin_;  // facets by the level of their lowest point, and where each begins
+  std::vector<std::size_t> active_;
+  std::vector<Area> below_;  // of the pieces below the level's ceiling, by column
+};
+
+/// A cell whose part is smaller than this gives it to a neighbour that holds as much, or to a neighbour's: a
+/// particle so much lighter than those around it would be thrown about by them.
+inline constexpr double k_least_part = 0.125;
+
+/// Bytes that any_cut_particle() needs for a column of the grid: ten levels of parts, and what is below.
+inline constexpr double k_column_bytes = 10 * sizeof(CellPart) + 5 + 3 * sizeof(double);
+
+/// Calls visit(x, volume) for the particles of cells of the levels from <= k < to, at the centre [m] of the
+/// part that they stand for, volume over a cell's; x fastest, then y. Until visit returns true; returns
+/// whether it did. Whatever from and to are, the particles of a level are the same to the bit.
+bool any_cut_particle(const Facets& facets, const CellGrid& grid, long from, long to,
+                      const std::function<bool(const Vec3&, double)>& visit);
+
+/// A cell that holds less than nothing or more than all of itself, as where a surface overlaps itself [m].
+std::optional<Vec3> overfull_cell(const Facets& facets, const CellGrid& grid);
+
+}  // namespace mpm

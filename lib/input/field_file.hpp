@@ -1,0 +1,31 @@
+#pragma once
+// A parameter that differs from place to place: values on a grid of points.
+
+#include <string>
+#include <vector>
+
+#include "input/shapes.hpp"
+
+namespace mpm {
+
+/// Values at points that are equally far apart along each axis; linear between them.
+struct GridField {
+  int dim = 0;
+  std::array<long, 3> count{1, 1, 1};  // points along x, y, z (third is 1 in 2D)
+  Vec3 lower{}, spacing{1, 1, 1};      // m, first point; distances
+  std::vector<double> values;          // x fastest
+
+  double at(const Vec3& x) const;
+  double upper(int d) const { return lower[d] + spacing[d] * static_cast<double>(count[d] - 1); }
+};
+
+/// Reads the dataset `key` of an HDF5 file: numbers with the vertical axis first and x last, the place of the
+/// first value in its attribute `lower` and the distances in `spacing`, dim numbers each by axis x, y, z
+/// (scripts/random_field). Returns what the file should have been, as the end of "takes ..."; empty where all
+/// is well.
+std::string read_field(const std::string& path, const std::string& key, int dim, GridField& field);
+
+/// The same of a field that does not reach to the sides of what is to have its values.
+std::string uncovered(const GridField& field, const Bounds& bounds, double slack);
+
+}  // namespace mpm

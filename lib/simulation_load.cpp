@@ -1,0 +1,133 @@
+// Mesh and particles of a run.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/collectives.hpp"
+#include "input/field_file.hpp"
+#include "input/groups.hpp"
+#include "mesh/background.hpp"
+#include "parallel/distribute.hpp"
+#include "simulation_body.hpp"
+
+namespace mpm {
+
+/// Masses of particles whose volumes differ.
+static void weigh(double density, BodyParticles& particles) {
+  if (particles.most_volume == 0) return;
+  for (const double volume : particles.volume) particles.mass.push_back(density * volume);
+  particles.least_mass = density * particles.least_volume;
+}
+
+/// Each particle's own strength, from a field that was checked with the options.
+PetscErrorCode Simulation::Body::take_field(const BodyConfig& body, BodyParticles* particles) {
+  PetscFunctionBeginUser;
+  GridField field;
+  const std::string key = field_key(body, config);
+  std::string fault;
+  PetscCallCXX(fault = read_field(body.field, key, config.dim, field));
+  PetscCheck(fault.empty(), comm, PETSC_ERR_FILE_READ, "%s has changed: it should be %s", body.field.c_str(),
+             fault.c_str());
+  double ends[2] = {std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};  // least, -most
+  for (std::size_t p = 0; p < particles->position.size(); p += config.dim) {
+    Vec3 x{};
+    std::copy_n(&particles->position[p], config.dim, x.begin());
+    const double value = field.at(x);
+    PetscCallCXX(particles->own_parameter.push_back(value));
+    ends[0] = std::min(ends[0], value), ends[1] = std::min(ends[1], -value);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPI_DOUBLE, MPI_MIN, comm));
+  PetscCall(log.print("body %s: %s of each particle from %s, %.6g to %.6g", body.name.c_str(), key.c_str(),
+                      body.field.c_str(), ends[0], -ends[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Mesh and particles.
+PetscErrorCode Simulation::Body::load(Model* model) {
+  PetscFunctionBeginUser;
+  BackgroundMesh mesh;
+  PetscCall(mesh.create(comm, config.mesh, config.dim));
+  model->patches = mesh.patches_with_ring();
+  for (const auto& body : config.bodies) {
+    const bool listed = body.shape.kind == ShapeKind::particles;
+    BodyParticles& particles = model->bodies.emplace_back();
+    PetscCall(listed ? load_file(body, &particles, &model->from_run)
+                     : load_shape("body " + body.name, body.shape, cut_out_of(config, body),
+                                  {rank_of(comm), ranks()}, &particles));
+    if (!listed) weigh(config.materials[body.material].density, particles);
+    if (!body.field.empty()) PetscCall(take_field(body, &particles));
+  }
+  for (const auto& rigid : config.rigids)
+    PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, {}, &model->rigids.emplace_back()));
+  for (auto* all : {&model->bodies, &model->rigids})
+    for (BodyParticles& particles : *all)
+      for (std::size_t k = 0; k < particles.position.size(); ++k)
+        particles.position[k] -= config.mesh.lower[k % config.dim];
+  PetscCall(distribute(comm, config, mesh, model));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Volumes of parts of cells: one figure for all where they are the same. The masses follow with the density
+/// of the material.
+static PetscErrorCode take_volumes(MPI_Comm comm, std::vector<double>&& volume, BodyParticles* particles) {
+  PetscFunctionBeginUser;
+  double ends[2] = {particles->particle_volume, particles->particle_volume};  // least, most
+  for (const double v : volume) ends[0] = std::min(ends[0], v), ends[1] = std::max(ends[1], v);
+  ends[1] = -ends[1];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPI_DOUBLE, MPI_MIN, comm));
+  if (ends[0] == -ends[1]) PetscFunctionReturn(PETSC_SUCCESS);
+  particles->least_volume = ends[0], particles->most_volume = -ends[1];
+  particles->volume = std::move(volume);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Particles of a shape's lattice, or this rank's part of them. Their positions are absolute, as in a file.
+PetscErrorCode Simulation::Body::load_shape(const std::string& name, const Shape& shape,
+                                            const std::vector<Shape>& cut_out, LatticePart part,
+                                            BodyParticles* particles) {
+  PetscFunctionBeginUser;
+  Lattice lattice;
+  PetscCall(fill(shape, config.mesh, config.dim, lattice, cut_out, part));
+  PetscCall(log_shape(name, lattice, part.of > 1));
+  PetscCall(log_cuts(name, shape));
+  particles->position = std::move(lattice.position);
+  particles->spacing = lattice.spacing;
+  particles->particle_volume = lattice.particle_volume;
+  PetscCall(take_volumes(comm, std::move(lattice.volume), particles));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The planes of symmetry that cut a shape.
+PetscErrorCode Simulation::Body::log_cuts(const std::string& name, const Shape& shape) {
+  PetscFunctionBeginUser;
+  const Cuts cuts = cuts_of(shape, config.mesh, config.dim);
+  std::string sides;
+  for (int d = 0; d < config.dim; ++d)
+    for (int side = 0; side < 2; ++side)
+      if (cuts[d][side])
+        sides += std::string(sides.empty() ? "" : ", ") + "-mesh_" + "xyz"[d] + (side == 0 ? "min" : "max");
+  if (!sides.empty())
+    PetscCall(
+        log.print("%s: cut by the plane of symmetry at %s; masses and forces are those of the part inside",
+                  name.c_str(), sides.c_str()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// in_parts: each rank has a part of the lattice.
+PetscErrorCode Simulation::Body::log_shape(const std::string& name, const Lattice& lattice, bool in_parts) {
+  PetscFunctionBeginUser;
+  long counts[2] = {static_cast<long>(lattice.position.size()) / config.dim, lattice.cut_out};
+  double volumes[2] = {lattice.held_volume(), lattice.cut_volume};
+  if (in_parts) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_LONG, MPI_SUM, comm));
+  if (in_parts) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, volumes, 2, MPI_DOUBLE, MPI_SUM, comm));
+  const auto [count, cut_out] = counts;
+  const char* unit = config.dim == 2 ? "m2" : "m3";
+  PetscCall(log.print("%s: %ld particles stand for %.6g %s, the shape has %.6g %s", name.c_str(), count,
+                      volumes[0], unit, lattice.shape_volume, unit));
+  if (cut_out > 0)
+    PetscCall(log.print("%s: %ld particles, %.6g %s, were cut out", name.c_str(), cut_out, volumes[1], unit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm
