@@ -63,7 +63,7 @@ struct NodeSums {
 template <class Space, class T, int Dim>
 struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, NodeKinematics<Dim>::size> kinematics;
-  NodeField<Space, T, StrengthTerms::size> strength;  // allocated where a contact asks for it
+  NodeField<Space, T, StrengthTerms::size> strength;    // allocated where a contact asks for it
   NodeField<Space, T, DisplacedTerms::size> displaced;  // kg, of water; allocated with it
   NodeField<Space, T, Dim> residual;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
@@ -113,8 +113,7 @@ inline constexpr int due = 1,  // the bound passed the margin, a rebuild is due,
 struct Control {
   double bound;      // cells that any point can have moved since the last rebuild
   double increment;  // of the last step
-  int ended;         // steps that run_persistent_steps has ended
-  int paused;        // Pause; next to `ended`, to be read with it
+  int paused;        // Pause
   int due_in;        // steps to a rebuild that is due; 0: none is
   int steps;         // steps done since the host last read this
   int lost;          // particles that the last locate() found to leave the run
@@ -122,18 +121,18 @@ struct Control {
   Fault fault;
 };
 
-/// The barrier of a launch: how many of its teams have begun, and how many are done with their part of the
-/// step.
+/// What teams of one launch that wait for each other read at once.
+struct alignas(8) Signal {
+  int ended;   // steps that run_persistent_steps has ended
+  int paused;  // Pause, after the last of them; before, Pause::last if the step at hand is to be the last
+};
+/// The barrier of a launch: how many of its teams have begun, how many are done with their part of the step,
+/// and the signal for which teams wait. It is apart in memory, since all of them ask for it all the time.
 struct LaunchBarrier {
   int begun, arrived;
+  char apart[128 - 2 * sizeof(int)];
+  Signal signal;
 };
-
-/// What teams of one launch that wait for each other read.
-struct Signal {
-  int ended, paused;
-};
-static_assert(offsetof(Control, ended) % sizeof(Signal) == 0 &&
-              offsetof(Control, paused) == offsetof(Control, ended) + sizeof(int));
 
 /// Whether lists must be rebuilt `late` steps after the one that these are of [cells]; speeds may grow by
 /// half until then. Several ranks know of each other only so late; one rank rebuilds at the same steps all

@@ -25,4 +25,10 @@ KOKKOS_INLINE_FUNCTION long long acquire_of_others(const long long* value) {
   KOKKOS_IF_ON_HOST((const long long seen = Kokkos::atomic_load(value); Kokkos::memory_fence(); return seen;))
 }
 
+/// Writes a value that other teams of the same launch wait for.
+KOKKOS_INLINE_FUNCTION void store_for_others(long long* value, long long to) {
+  KOKKOS_IF_ON_DEVICE((*static_cast<volatile long long*>(value) = to;))
+  KOKKOS_IF_ON_HOST((Kokkos::atomic_store(value, to);))
+}
+
 }  // namespace mpm

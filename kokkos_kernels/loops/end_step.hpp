@@ -4,7 +4,6 @@
 
 #include "base/serial_team.hpp"
 #include "data/state.hpp"
-#include "device/acquire.hpp"
 #include "device/warp.hpp"
 
 namespace mpm {
@@ -53,11 +52,6 @@ struct MovingRigid {
     r.pose = pose, r.velocity = velocity, r.impulse = impulse;
   }
 };
-
-/// The two as they are at one moment, in the memory that all teams see; acquire_of_others.
-KOKKOS_INLINE_FUNCTION Signal signal_of(const Control& control) {
-  return Kokkos::bit_cast<Signal>(acquire_of_others(reinterpret_cast<const long long*>(&control.ended)));
-}
 
 /// Counts the step after `before` and adds what any point can have moved to the bound; moved, margin [cells];
 /// late: State::rebuild_late. Returns why the steps are paused then.

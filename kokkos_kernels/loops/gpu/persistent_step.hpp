@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "device/acquire.hpp"
 #include "device/warp.hpp"
 #include "loops/end_step.hpp"
 #include "loops/gpu/patch_update.hpp"
@@ -67,7 +68,7 @@ struct PersistentStep {
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
     const Control& control = update.control();
-    const int before = control.ended, others = team.league_size() - 1;
+    const int before = launch_barrier().signal.ended, others = team.league_size() - 1;
     if ((control.paused & ~Pause::last) != 0) return;
     int part = team.league_rank();
     if (steps > 1)
@@ -86,7 +87,7 @@ struct PersistentStep {
         step(team, scratch, part, slot, k);
         paused = arrive(team, before + k, k + 1 < steps);
       } else {
-        paused = end_step(team, scratch, others, k == 0 && steps > 1);
+        paused = end_step(team, scratch, others, before + k, k == 0 && steps > 1);
       }
       if (paused != 0) return;
     }
@@ -130,19 +131,31 @@ struct PersistentStep {
           fence_of_teams();  // what this team noted is there for the last one
           Kokkos::atomic_inc(&launch_barrier().arrived);
           Signal signal{ended, 0};
-          while (waits && signal.ended == ended && signal.paused == 0) signal = signal_of(update.control());
+          while (waits && signal.ended == ended && (signal.paused & Pause::last) == 0)
+            signal = Kokkos::bit_cast<Signal>(acquire_of_others(signal_bits()));
           why = signal.paused;
         },
         paused);
     return paused;
   }
 
-  /// Waits for all others and ends their step.
-  KOKKOS_INLINE_FUNCTION int end_step(const Member& team, Scratch scratch, int others, bool impatient) const {
+  KOKKOS_INLINE_FUNCTION long long* signal_bits() const {
+    return reinterpret_cast<long long*>(&launch_barrier().signal);
+  }
+  KOKKOS_INLINE_FUNCTION void tell(const Signal& signal) const {
+    store_for_others(signal_bits(), Kokkos::bit_cast<long long>(signal));
+  }
+
+  /// Waits for all others and ends their step, the one after so many of all launches.
+  KOKKOS_INLINE_FUNCTION int end_step(const Member& team, Scratch scratch, int others, int ended,
+                                      bool impatient) const {
     Control& control = update.control();
     Kokkos::single(Kokkos::PerTeam(team), [&] {
       for (int looks = 0; acquire_of_others(&launch_barrier().arrived) < others; ++looks)
-        if (impatient && looks == k_patience) Kokkos::atomic_or(&control.paused, Pause::last);
+        if (impatient && looks == k_patience) {
+          control.paused |= Pause::last;
+          tell({ended, Pause::last});
+        }
     });
     team.team_barrier();
     int paused = end(team, scratch.template take<double>(0));
@@ -151,9 +164,9 @@ struct PersistentStep {
         [&](int& why) {
           if ((paused & Pause::last) != 0) control.paused = paused += Pause::not_co_resident - Pause::last;
           why = paused;
-          launch_barrier() = {};
+          launch_barrier().begun = launch_barrier().arrived = 0;
           fence_of_teams();
-          Kokkos::atomic_inc(&control.ended);
+          tell({ended + 1, paused});
         },
         paused);
     return paused;
