@@ -275,10 +275,11 @@ TEST_CASE("the safeguard of Cam-Clay's return finds what Newton's method finds",
   for (int n = 0; n < 10000; ++n) {
     const double p = dice.uniform(0.05, 1.2), m = dice.uniform(0.5, 1.5), v = 2, kappa = 0.04, lambda = 0.2;
     const double q = m * std::sqrt(std::fmax(0.0, p * (1 - p))) + dice.uniform(1e-4, 1e-2);
-    const CamClayReturn<double> back{{1e-4}, p, 0, v / kappa, v / (lambda - kappa), q, p, 30 * p, m * m};
-    double l, x, safe_l, safe_x;
+    const CamClayReturn<double> back{{1e-4}, p, 0,      v / kappa,  v / (lambda - kappa),
+                                     q,      p, 30 * p, 1 / (m * m)};
+    double l, x;
     back.iterate(l, x);
-    back.bisect(safe_l, safe_x);
+    const auto [safe_l, safe_x] = bisected(back);
     if (std::fabs(back.at(l, x).of_f) < 1e-12)
       apart = std::fmax(apart, std::fabs(safe_x - x) + std::fabs(safe_l / l - 1));
     CHECK(std::fabs(back.at(safe_l, safe_x).of_f) < 1e-10);
