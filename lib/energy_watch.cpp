@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/gravity_on_soil.hpp"
 #include "common/text.hpp"
 
 namespace mpm {
@@ -33,9 +34,10 @@ void EnergyWatch::begin(const HistoryRow& row, double wave_energy) {
 
 void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
   const auto add = [&](double work) { available_ += work, passed_ += std::fabs(work); };
+  const Vec3 gravity = gravity_on_soil(config);  // of other water the rows tell the energy
   for (std::size_t b = 0; b < row.bodies.size(); ++b) {
     for (int d = 0; d < config.dim; ++d)
-      add(row.bodies[b].mass * config.gravity[d] * (row.bodies[b].centre[d] - last_.bodies[b].centre[d]));
+      add(row.bodies[b].mass * gravity[d] * (row.bodies[b].centre[d] - last_.bodies[b].centre[d]));
     add(last_.bodies[b].water_energy - row.bodies[b].water_energy);
   }
   for (std::size_t r = 0; r < row.rigids.size(); ++r)

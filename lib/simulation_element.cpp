@@ -15,13 +15,15 @@
 namespace mpm {
 namespace {
 
+PointMaterial material_of(const Config& config) {
+  const MaterialConfig& material = config.materials[0];
+  return {model_index(material.model), material.parameters, material.object, config.element.height};
+}
+
 /// The point as its path starts: state variables that the file gives take the place of the law's own.
 DrivenPoint start_of(const Config& config) {
   const ElementConfig& path = config.element;
-  const MaterialConfig& material = config.materials[0];
-  DrivenPoint point{
-      .now = point_start(model_index(material.model), material.parameters, path.height, path.stress),
-      .time = path.time};
+  DrivenPoint point{.now = point_start(material_of(config), config.dim, path.stress), .time = path.time};
   for (const auto& [k, value] : path.state) point.now.state[k] = value;
   return point;
 }
@@ -29,15 +31,14 @@ DrivenPoint start_of(const Config& config) {
 /// Drives the point to the end of its path, or to the row where that fails. The rows of the table.
 std::string drive(const Config& config, std::string* failure) {
   const ElementConfig& path = config.element;
-  const MaterialConfig& material = config.materials[0];
   const bool single = config.precision == Precision::single;
-  const PointLaw law = point_law(model_index(material.model), material.parameters, single, config.dim);
+  const PointLaw law = point_law(material_of(config), single, config.dim);
   const double tolerance = single ? k_element_tolerance_single : k_element_tolerance_double;
-  const auto state = state_variables(material);
+  const auto state = state_variables(config.materials[0]);
   DrivenPoint point = start_of(config);
   std::string rows = element_header(state) + element_line(state, point);
   for (std::size_t n = 0; n < path.rows.size(); ++n) {
-    const std::string why = drive_row(law, path.rows[n], path.parts, tolerance, point);
+    const std::string why = drive_row(law, path.rows[n], path.parts, tolerance, point, path.sums);
     if (!why.empty()) {
       *failure =
           formatted("row %zu of the path (line %ld), time %.9g s: ", n + 1, path.rows[n].line, point.time) +

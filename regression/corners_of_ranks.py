@@ -130,7 +130,7 @@ def main():
     parser.add_argument("--precisions", default="double")
     parser.add_argument("--backend", default="serial")
     given = parser.parse_args()
-    given.program = given.program.resolve()
+    given.program = given.program.absolute()
     with tempfile.TemporaryDirectory() as folder:
         wrong = check(given, Path(folder))
     print("all agree" if wrong == 0 else f"{wrong} differ")

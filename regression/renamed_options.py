@@ -49,7 +49,7 @@ def expect(condition, message):
 
 
 def main():
-    binary = pathlib.Path(sys.argv[1]).resolve()
+    binary = pathlib.Path(sys.argv[1]).absolute()
     with tempfile.TemporaryDirectory(prefix="mpm_renamed_") as base:
         base = pathlib.Path(base)
         text = (HERE / "reliability" / "small.opts").read_text() + MORE

@@ -127,10 +127,11 @@ def machines(results):
 
 
 def draw(drawn):
-    """docs/images/verification_CASE.png of each (case, runs) whose case.py can draw."""
+    """docs/images/verification_CASE.png of each (case, runs) whose case.py can draw; the names of these cases."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    names = []
     for case, runs in drawn:
         if not hasattr(case.module, "draw") or not runs:
             continue
@@ -138,3 +139,5 @@ def draw(drawn):
         case.module.draw(axes, runs)
         figure.savefig(IMAGES / f"verification_{case.name}.png", dpi=110)
         plt.close(figure)
+        names.append(case.name)
+    return names

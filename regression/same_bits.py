@@ -47,7 +47,7 @@ def compare(given, both, run, variant, strategy, base):
     folders = []
     for name, program, case in (("before", given.before, both[0]), ("after", given.after, both[1])):
         folders.append(base / name)
-        cases.run_program(program.resolve(), case, run, variant, base / name, more)
+        cases.run_program(program.absolute(), case, run, variant, base / name, more)
     return differences(*(folder / run for folder in folders))
 
 

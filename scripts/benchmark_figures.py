@@ -96,4 +96,4 @@ def draw(kept, folder):
             axes.legend(fontsize=8, loc="best" if axes in panels[:, 0] else "upper left", ncols=1 if axes in panels[:, 0] else 3)
     figure.savefig(folder / "performance_paper.png", dpi=100)
     plt.close(figure)
-    return "![Figs 5, 6, 8 and 10 of the paper by our runs](images/performance_paper.png)"
+    return "![Figs 5, 6, 8 and 10 of the paper by our runs](../images/performance_paper.png)"

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
+ROUND_OFF = 1e-5  # of a stress or strain that a path was to reach, in single precision
+MEAN, EVEN = "dsxx+dsyy+dszz", "dsxx-dszz"  # sums of a path: of the mean stress, and of the two lateral stresses
 KINDS = ("triaxial", "biaxial", "oedometer", "isotropic", "shear")
 # What a laboratory plots against what: the abscissa of each kind, and what may be measured over it.
 ABSCISSA = {"triaxial": "axial_strain", "biaxial": "axial_strain", "oedometer": "vertical_stress", "isotropic": "p",
@@ -26,12 +28,13 @@ class WrongTest(ValueError):
 @dataclass
 class Stage:
     """One monotone part of a path. `drive`: for xx, yy, zz, xy how it is driven, "e" by strain or "s" by stress, and by how
-    much in all (logarithmic tensor strain, Pa; tension positive)."""
+    much in all (logarithmic tensor strain, Pa; tension positive), or "free" where sums of stresses that are kept decide it."""
     drive: dict
     rows: int
     duration: float  # s
     ratio: float = 1.0  # last over first stress, for rows that are equal steps of the logarithm of the stress
     sheared: bool = True  # part of the test itself, not of the consolidation
+    kept: tuple = ()  # names of sums of stresses that do not change
 
 
 @dataclass
@@ -40,6 +43,7 @@ class Test:
     kind: str
     name: str
     drained: bool = True
+    constant_mean: bool = False  # drained: the mean stress stays, not the lateral stress
     sign: int = 1  # 1 compression, -1 extension
     cell: float = 0.0  # lateral stress at the start of shearing
     vertical: float = 0.0  # axial stress then
@@ -85,12 +89,13 @@ def turning_points(key, text, lowest, highest):
     return points
 
 
+START, COURSE = "vertical k0 from consolidation", "strain amplitude cycles rate duration rows e0 data name"
 KEYS = {
-    "triaxial": "cell vertical k0 from consolidation drainage direction strain amplitude cycles rate duration rows e0 data name",
-    "biaxial": "cell vertical k0 from consolidation drainage direction strain amplitude cycles rate duration rows e0 data name",
+    "triaxial": f"cell {START} drainage constant direction {COURSE}",
+    "biaxial": f"cell {START} drainage constant direction {COURSE}",
     "oedometer": "vertical k0 stress strain rate duration rows e0 data name",
     "isotropic": "cell stress duration rows e0 data name",
-    "shear": "vertical k0 from consolidation hold strain amplitude cycles rate duration rows e0 data name",
+    "shear": f"{START} hold {COURSE}",
 }
 
 
@@ -162,7 +167,7 @@ def read_course(test, words, measured):
         raise WrongTest(f"{test.kind}: stress is not given, takes stress=STRESS:STRESS... in Pa")
     else:
         test.strains = [0.2]
-    if test.kind in ("triaxial", "biaxial", "oedometer") and any(value >= 1 for value in test.strains):
+    if test.kind in ("triaxial", "biaxial", "oedometer") and any(test.sign * value >= 1 for value in test.strains):
         raise WrongTest("strain: takes engineering strains less than 1 in compression")
 
 
@@ -174,6 +179,9 @@ def parse_test(text, number_of_test=1):
     test.drained = choice(words, "drainage", ("drained", "undrained")) == "drained"
     if kind == "shear":
         test.drained = choice(words, "hold", ("stress", "volume")) == "stress"
+    test.constant_mean = choice(words, "constant", ("cell", "p")) == "p"
+    if "constant" in words and not test.drained:
+        raise WrongTest(f'constant: given "{words["constant"]}", takes nothing with drainage=undrained')
     test.sign = 1 if choice(words, "direction", ("compression", "extension")) == "compression" else -1
     test.rate = number("rate", words.get("rate", "1e-5"))
     test.duration = number("duration", words.get("duration", "86400"))
@@ -224,13 +232,18 @@ def consolidation(test):
 def strained_stage(test, change):
     """One stage by the strain of the axis, or by engineering shear strain (twice the tensor's)."""
     drive = {"xx": ("e", 0.0), "yy": ("e", change), "zz": ("e", 0.0), "xy": ("e", 0.0)}
-    if test.kind == "triaxial":
+    kept = ()
+    if test.constant_mean:
+        drive["xx"], kept = ("free", 0.0), (MEAN,)
+        if test.kind == "triaxial":
+            drive["zz"], kept = ("free", 0.0), (MEAN, EVEN)
+    elif test.kind == "triaxial":
         drive["xx"] = drive["zz"] = ("s", 0.0) if test.drained else ("e", -change / 2)
     elif test.kind == "biaxial":
         drive["xx"] = ("s", 0.0) if test.drained else ("e", -change)
     elif test.kind == "shear":
         drive.update(yy=("s", 0.0) if test.drained else ("e", 0.0), xy=("e", change / 2))
-    return Stage(drive, test.rows, abs(change) / test.rate)
+    return Stage(drive, test.rows, abs(change) / test.rate, kept=kept)
 
 
 def stressed_stage(test, first, last):
@@ -261,18 +274,19 @@ def shares(stage):
 
 def write_path(test, path):
     """Writes the path of a test as `mpm -element_path` reads it; numbers of the stage of each row of the result."""
-    driven = ("xx", "yy", "zz", "xy")
-    columns = ["dt"] + [f"{kind}{c}" for c in driven for kind in ("de", "ds")] + ["s" + c for c in COMPONENTS]
+    driven, stages = ("xx", "yy", "zz", "xy"), stages_of(test)
+    sums = sorted({name for stage in stages for name in stage.kept})
+    columns = ["dt"] + [f"{kind}{c}" for c in driven for kind in ("de", "ds")] + sums + ["s" + c for c in COMPONENTS]
     side, axis = (test.start, test.start) if test.start else (test.cell, test.vertical)
-    rows, stage_of_row = [[""] * 9 + [-side, -axis, -side, 0, 0, 0]], [0]
-    for k, stage in enumerate(stages_of(test)):
+    rows, stage_of_row = [[""] * (9 + len(sums)) + [-side, -axis, -side, 0, 0, 0]], [0]
+    for k, stage in enumerate(stages):
         steps = np.diff(shares(stage), prepend=0.0)
         for step in steps:
             row = [stage.duration / stage.rows]
             for c in driven:
                 kind, change = stage.drive[c]
-                row += [change * step, ""] if kind == "e" else ["", change * step]
-            rows.append(row + [""] * 6)
+                row += [change * step if kind == "e" else "", change * step if kind == "s" else ""]
+            rows.append(row + [0.0 if name in stage.kept else "" for name in sums] + [""] * 6)
             stage_of_row.append(k)
     text = [f"# {test.kind}, made by scripts/element", ",".join(columns)]
     text += [",".join(cell if isinstance(cell, str) else repr(float(cell)) for cell in row) for row in rows]
@@ -292,7 +306,8 @@ def results(test, table, stage_of_row):
     whole = sum(np.array(table["e" + c]) for c in ("xx", "yy", "zz"))
     p = (stress["xx"] + stress["yy"] + stress["zz"]) / 3
     volume = 1 - np.exp(change["xx"] + change["yy"] + change["zz"])
-    lost = stress["yy"][begin] - stress["yy"] if test.kind == "shear" else stress["xx"][begin] - stress["xx"]
+    held = "yy" if test.kind == "shear" else "xx"
+    lost = np.zeros_like(p) if test.drained else stress[held][begin] - stress[held]
     if "specific_volume" in table:
         void_ratio = np.array(table["specific_volume"]) - 1
     else:
@@ -342,5 +357,9 @@ def at_measured(test, found, measured, name):
         rows = np.concatenate([[max(rows[0] - 1, 0)], rows])
         order = np.argsort(along[rows], kind="stable")
         here = stage == k
-        values[here] = np.interp(x[here], along[rows][order], found[name][rows][order], left=np.nan, right=np.nan)
+        # A point at the very end of a stage belongs to it whichever way the last digit of the model's end goes.
+        low, high = along[rows].min(), along[rows].max()
+        inside = np.clip(x[here], low, high)
+        beyond = np.abs(inside - x[here]) > ROUND_OFF * max(abs(low), abs(high))
+        values[here] = np.where(beyond, np.nan, np.interp(inside, along[rows][order], found[name][rows][order]))
     return values

@@ -65,11 +65,13 @@ struct Soil : Points<Space, T, Dim> {
   }
   /// Index of the material of particle p.
   KOKKOS_INLINE_FUNCTION int material_of(int p) const { return bodies(body(p)).material; }
-  /// The values of the state variables of particle p, whose law this is; 0 where it does not carry one.
+  /// The values of the state variables of particle p, whose law this is; 0 where it does not carry one, and
+  /// where no update asks for it.
   template <class Law>
   KOKKOS_INLINE_FUNCTION LawState<T, state_size<Law>> state_of(const Law& law, int p) const {
-    LawState<T, state_size<Law>> state;
-    for (int k = 0; k < state_size<Law>; ++k) state[k] = carries(law, k) ? history.column[k](p) : T(0);
+    LawState<T, state_size<Law>> state{};
+    for (int k = 0; k < state_size<Law>; ++k)
+      state[k] = Law::state()[k].used && carries(law, k) ? history.column[k](p) : T(0);
     return state;
   }
   /// Excess pore pressure [Pa] of particle p, which is of this material: its stress is the effective stress
@@ -149,11 +151,10 @@ struct Bins {
   using Memory = typename Space::memory_space;
   Kokkos::View<int*, Memory> begin;         // first point of a cell [cells + 1]
   int first_slot = 0, last_slot = 0;        // slots that may hold points: [first_slot, last_slot)
-  Kokkos::View<int*, Memory> active_slots;  // slots that hold points, ordered by colour; on a processor all
-                                            // are of one, so that they rise
-  int colour_begin[8 + 1] = {};             // ranges of active_slots
-  int border = 0;  // of active_slots, on several ranks: slots in front that share nodes with other ranks, all
-                   // colours of them; but with OpenMP, where slots rise
+  Kokkos::View<int*, Memory> active_slots;  // slots that hold points, rising
+  int first_active = 0, last_active = 0;    // of active_slots, those meant: [first_active, last_active)
+  int border = 0;  // of active_slots, on several ranks but with OpenMP: slots that share nodes with other
+                   // ranks, which are in front; they rise, and so do the others
   Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]
   Kokkos::View<int*, Memory> list;        // gather: points that may reach the node, in order
   Kokkos::View<long*, Memory> blocks;     // mosaic: blocks that hold points, ordered by colour
@@ -173,8 +174,7 @@ struct Part {
 template <class Space>
 Bins<Space> bins_of(const Bins<Space>& all, const Part<Space>& part) {
   Bins<Space> bins = all;
-  bins.colour_begin[0] = part.first;
-  for (int colour = 1; colour <= 8; ++colour) bins.colour_begin[colour] = part.last;
+  bins.first_active = part.first, bins.last_active = part.last;
   return bins;
 }
 

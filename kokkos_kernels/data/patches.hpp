@@ -17,7 +17,7 @@ struct Patch {
   static constexpr int log_edge = Dim == 2 ? 3 : 2;
   static constexpr int cells = power(edge, Dim);    // 64 in both
   static constexpr int neighbours = power(3, Dim);  // patches round one, itself included
-  static constexpr int colours = power(2, Dim);     // patches of one colour do not touch
+  static constexpr int colours = power(2, Dim);     // of the mosaic's blocks
   static constexpr int window_edge = edge + 3;      // nodes that its particles reach: -1 ... edge + 1
   static constexpr int window = power(window_edge, Dim);
   static_assert(edge == 1 << log_edge);

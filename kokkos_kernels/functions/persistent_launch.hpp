@@ -49,7 +49,7 @@ void launch_functor(const Space& space, int slots, const Functor& f) {
 
 template <bool WithNodes, class Space, class T, int Dim>
 void launch(const State<Space, T, Dim>& s, int slots, double dt, int steps) {
-  if (s.light_laws)
+  if (light_kernels_do(s))
     launch_functor(s.space, slots, step_of<WithNodes, LightMaterials>(s, dt, steps));
   else
     launch_functor(s.space, slots, step_of<WithNodes, Materials>(s, dt, steps));
@@ -96,7 +96,7 @@ bool ends_in_launch(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void update_and_end(State<Space, T, Dim>& s, double dt) {
   if constexpr (is_device<Space> && sums_fit<Space, T, Dim>) {
-    persistent::launch<false>(s, s.soil.bins.colour_begin[Patch<Dim>::colours], dt, 1);
+    persistent::launch<false>(s, s.soil.bins.last_active, dt, 1);
     s.summed = {true, s.soil_boundary, true};
   }
 }

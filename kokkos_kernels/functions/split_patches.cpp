@@ -8,7 +8,7 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void split_patches(State<Space, T, Dim>& s, const Space& stream) {
   const auto& bins = s.soil.bins;
-  const int end = bins.colour_begin[Patch<Dim>::colours];
+  const int end = bins.last_active;
   const bool has_border = s.plan.form == StepForm::overlapped && bins.border > 0 && bins.border < end;
   ensure(s.split.slots, end);
   s.split.parts.clear();

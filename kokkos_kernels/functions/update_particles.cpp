@@ -17,12 +17,20 @@ void launch_for(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, c
                                  .set_scratch_size(0, Kokkos::PerTeam(Update::bytes() + k_scratch_slack))),
                        update_of<Update>(s, dt, slots, part.first));
 }
+/// Launches the kernel of the one law that all soil has, if it has one of its own.
+template <bool Sums, PatchKind kind, template <class> class... Models, class Space, class T, int Dim>
+bool launch_heavy(ModelList<Models...>, State<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
+                  const Part<Space>& part) {
+  return ((s.law == model_index_in<Models>(Materials{}) &&
+           (launch_for<Sums, kind, ModelList<Models>>(s, dt, slots, part), true)) ||
+          ...);
+}
 template <bool Sums, PatchKind kind, class Space, class T, int Dim>
 void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
-  if (s.light_laws)
-    launch_for<Sums, kind, LightMaterials>(s, dt, slots, part);
-  else
-    launch_for<Sums, kind, Materials>(s, dt, slots, part);
+  if (light_kernels_do(s)) return launch_for<Sums, kind, LightMaterials>(s, dt, slots, part);
+  if constexpr (kind == PatchKind::common)
+    if (launch_heavy<Sums, kind>(HeavyMaterials{}, s, dt, slots, part)) return;
+  launch_for<Sums, kind, Materials>(s, dt, slots, part);
 }
 
 /// The patches that are not common are few and take longer each. They are launched first, on a stream of
@@ -56,7 +64,7 @@ void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const
 
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt, const Space& aside) {
-  update_particles(s, dt, Part<Space>{s.space, 0, s.soil.bins.colour_begin[Patch<Dim>::colours]}, aside);
+  update_particles(s, dt, Part<Space>{s.space, 0, s.soil.bins.last_active}, aside);
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                         \

@@ -4,6 +4,7 @@
 
 #include "base/serial_team.hpp"
 #include "data/state.hpp"
+#include "device/acquire.hpp"
 #include "device/warp.hpp"
 
 namespace mpm {
@@ -53,24 +54,24 @@ struct MovingRigid {
   }
 };
 
-/// The two as they are at one moment, in the memory that all teams see.
+/// The two as they are at one moment, in the memory that all teams see; acquire_of_others.
 KOKKOS_INLINE_FUNCTION Signal signal_of(const Control& control) {
-  return Kokkos::bit_cast<Signal>(load_of_others(reinterpret_cast<const long long*>(&control.ended)));
+  return Kokkos::bit_cast<Signal>(acquire_of_others(reinterpret_cast<const long long*>(&control.ended)));
 }
 
 /// Counts the step after `before` and adds what any point can have moved to the bound; moved, margin [cells];
-/// late: State::rebuild_late.
+/// late: State::rebuild_late. Returns why the steps are paused then.
 template <class T>
-KOKKOS_INLINE_FUNCTION void count_step(Control& c, const Control& before, double moved, double margin,
-                                       int late) {
+KOKKOS_INLINE_FUNCTION int count_step(Control& c, const Control& before, double moved, double margin,
+                                      int late) {
   constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
   const double increment = moved + epsilon, bound = before.bound + increment;
   const bool due = late > 0 && rebuild_due(bound, increment, margin, late);
   c.increment = increment, c.bound = bound;
   c.due_in = before.due_in > 0 ? before.due_in - 1 : (due ? late : 0);
   c.steps = before.steps + 1;
-  if (before.due_in == 1 || !(bound <= margin) || before.fault_count > 0)
-    c.paused = before.paused | Pause::due;
+  if (before.due_in != 1 && bound <= margin && before.fault_count == 0) return before.paused;
+  return c.paused = before.paused | Pause::due;
 }
 
 template <class Space, class T, int Dim>
@@ -100,18 +101,18 @@ struct EndStep {
 
   static constexpr int warps(int threads) { return (threads + k_warp - 1) / k_warp; }
   /// Doubles that a team of so many threads needs.
-  int room(int threads) const { return warps(threads) * (Dim * count + 1); }
+  int room(int threads) const { return Dim * count + warps(threads); }
 
-  /// part: room(threads)
+  /// part: room(threads). Returns, to the thread of once(), why the steps are paused then.
   template <class Team>
-  KOKKOS_INLINE_FUNCTION void operator()(const Team& team, double* part) const {
+  KOKKOS_INLINE_FUNCTION int operator()(const Team& team, double* part) const {
     const int values = Dim * count, parts = warps(team.team_size()), rank = team.team_rank();
     const Control before = control();  // asked for with all else
     MovingRigid<Dim> rigid{};
     if (rank < count) rigid = MovingRigid<Dim>(rigids(rank));
-    const double moved = largest_movement(team);
-    if (!summed) sum_forces(team, 0, values, part);
-    keep(team, largest_of_warp(moved), part + values * parts);
+    const Noted noted = noted_movements(team);
+    if (!summed) sum_by_warps(team, 0, values, part);
+    keep(team, largest_of_warp(noted.largest()), part + values);
     team.team_barrier();  // also: no thread looks at `paused` any more
     MPM_ROLLED
     for (int r = rank; r < count; r += team.team_size()) {
@@ -119,29 +120,35 @@ struct EndStep {
       Vector<double, Dim> contact;
       for (int d = 0; d < Dim; ++d) {
         const int v = r * Dim + d;
-        contact[d] = summed ? sums(v) : total(part + v * parts, parts);
+        contact[d] = summed ? sums(v) : part[v];
         if (!summed) sums(v) = contact[d];
       }
-      part[r * Dim * parts] = rigid.move(contact, dt) / spacing;
+      part[r * Dim] = rigid.move(contact, dt) / spacing;
       rigid.keep_in(rigids(r));
     }
     team.team_barrier();
+    int paused = 0;
     once(team, [&] {
       double furthest = 0;  // cells
       MPM_ROLLED
-      for (int w = 0; w < parts; ++w) furthest = Kokkos::fmax(furthest, part[values * parts + w]);
+      for (int w = 0; w < parts; ++w) furthest = Kokkos::fmax(furthest, part[values + w]);
       MPM_ROLLED
-      for (int r = 0; r < count; ++r) furthest = Kokkos::fmax(furthest, part[r * Dim * parts]);
-      count_step<T>(control(), before, furthest, margin, late);
+      for (int r = 0; r < count; ++r) furthest = Kokkos::fmax(furthest, part[r * Dim]);
+      paused = count_step<T>(control(), before, furthest, margin, late);
     });
+    return paused;
   }
 
   /// The team of a value sums it. part: room(threads)
   template <class Team>
   KOKKOS_INLINE_FUNCTION void sum(const Team& team, int value, double* part) const {
-    sum_forces(team, value, 1, part);
+    keep(team, sum_of_warp(sum_of_thread(value, team.team_rank(), team.team_size())), part);
     team.team_barrier();
-    once(team, [&] { sums(value) = total(part, warps(team.team_size())); });
+    once(team, [&] {
+      double sum = 0;
+      for (int w = 0; w < warps(team.team_size()); ++w) sum += part[w];
+      sums(value) = sum;
+    });
   }
 
   /// Displacement [m] that rigid r will have, to the same bits. Dynamic: it may move by the forces on it,
@@ -151,12 +158,10 @@ struct EndStep {
     const MovingRigid<Dim> rigid(rigids(r));
     Vector<double, Dim> a{}, to = rigid.pose.displacement;
     if constexpr (Dynamic) {
-      const int parts = warps(team.team_size());
       team.team_barrier();  // what was there before is done with
-      if (rigid.dynamic) sum_forces(team, r * Dim, Dim, part);
+      if (rigid.dynamic) sum_by_warps(team, r * Dim, Dim, part);
       team.team_barrier();
-      for (int d = 0; d < Dim && rigid.dynamic; ++d)
-        a[d] = rigid.acceleration(d, total(part + d * parts, parts));
+      for (int d = 0; d < Dim && rigid.dynamic; ++d) a[d] = rigid.acceleration(d, part[d]);
     }
     for (int d = 0; d < Dim; ++d) to[d] += rigid.movement(d, a[d], dt);
     return to;
@@ -167,52 +172,55 @@ struct EndStep {
   KOKKOS_INLINE_FUNCTION static void keep(const Team& team, double of_warp, double* part) {
     if (team.team_rank() % k_warp == 0) part[team.team_rank() / k_warp] = of_warp;
   }
-  /// Of those noted at the places of a thread [cells], two of which it asks for at once.
+  /// Movements [cells], of which a thread has asked for the last two without waiting for them.
+  struct Noted {
+    double most, last[2];
+    KOKKOS_INLINE_FUNCTION double largest() const {
+      return Kokkos::fmax(most, Kokkos::fmax(last[0], last[1]));
+    }
+  };
+  /// Those noted at the places of a thread.
   template <class Team>
-  KOKKOS_INLINE_FUNCTION double largest_movement(const Team& team) const {
-    double moved = 0;
+  KOKKOS_INLINE_FUNCTION Noted noted_movements(const Team& team) const {
+    Noted noted{};
     MPM_ROLLED
     for (int n = team.team_rank(); n < movements.places; n += 2 * team.team_size()) {
       const int m = n + team.team_size();
       const bool two = m < movements.places;
-      const double first = movements.noted(n), second = two ? movements.noted(m) : 0.0;
+      noted = {noted.largest(), {movements.noted(n), two ? movements.noted(m) : 0.0}};
       movements.begin(n);
       if (two) movements.begin(m);
-      moved = Kokkos::fmax(moved, Kokkos::fmax(first, second));
     }
-    return moved;
+    return noted;
   }
-  /// Sums of the forces number `first` to first + n by warp, [n][warps], in an order that is always the same.
+  /// Sums the forces number `first` to first + n over the slots into part[n], a warp each.
   template <class Team>
-  KOKKOS_INLINE_FUNCTION void sum_forces(const Team& team, int first, int n, double* part) const {
-    // Slots and values that a thread asks the memory for at once. On a processor one after the other, so that
-    // slots that leave no force change nothing.
-    constexpr int k_slots = is_device<Space> ? 4 : 1, k_values = 2;
-    const int size = team.team_size(), values = Dim * count;
+  KOKKOS_INLINE_FUNCTION void sum_by_warps(const Team& team, int first, int n, double* part) const {
+    const int size = team.team_size(), rank = team.team_rank(), lanes = size < k_warp ? size : k_warp;
     MPM_ROLLED
-    for (int v = 0; v < n; v += k_values) {
-      double sum[k_slots][k_values] = {};
-      MPM_ROLLED
-      for (int k = team.team_rank(); k < slots; k += k_slots * size)
-        for (int m = 0; m < k_slots; ++m)
-          for (int w = 0; w < k_values; ++w) {
-            const int slot = Kokkos::min(k + m * size, slots - 1), of = Kokkos::min(v + w, n - 1);
-            const double value = forces(slot * values + first + of);  // some for nothing, but none waits
-            sum[m][w] += slot == k + m * size ? value : 0;
-          }
-      for (int w = 0; w < k_values; ++w) {
-        for (int step = 1; step < k_slots; step *= 2)
-          for (int m = 0; m < k_slots; m += 2 * step) sum[m][w] += sum[m + step][w];
-        const double all = sum_of_warp(sum[0][w]);
-        if (v + w < n) keep(team, all, part + (v + w) * warps(size));
-      }
+    for (int v = rank / k_warp; v < n; v += warps(size)) {
+      const double sum = sum_of_warp(sum_of_thread(first + v, rank % k_warp, lanes));
+      if (rank % k_warp == 0) part[v] = sum;
     }
   }
-  KOKKOS_INLINE_FUNCTION static double total(const double* part, int parts) {
-    double sum = 0;
+  /// What a thread sums of a force, number `rank` of those that share the slots, in an order that is always
+  /// the same.
+  KOKKOS_INLINE_FUNCTION double sum_of_thread(int value, int rank, int threads) const {
+    // Slots that a thread asks the memory for at once. On a processor one after the other, so that slots that
+    // leave no force change nothing.
+    constexpr int k_slots = is_device<Space> ? 4 : 1;
+    const int values = Dim * count;
+    double sum[k_slots] = {};
     MPM_ROLLED
-    for (int w = 0; w < parts; ++w) sum += part[w];
-    return sum;
+    for (int k = rank; k < slots; k += k_slots * threads)
+      for (int m = 0; m < k_slots; ++m) {
+        const int slot = Kokkos::min(k + m * threads, slots - 1);
+        const double force = forces(slot * values + value);  // some for nothing, but none waits
+        sum[m] += slot == k + m * threads ? force : 0;
+      }
+    for (int step = 1; step < k_slots; step *= 2)
+      for (int m = 0; m < k_slots; m += 2 * step) sum[m] += sum[m + step];
+    return sum[0];
   }
 };
 

@@ -21,7 +21,7 @@ void sum_on_device(const Interpolation<Source>& it) {
   const auto origin = it.patches.origin;
   const auto out = it.out;
   const auto control = it.control;
-  const int first = it.bins.colour_begin[0], teams = it.bins.colour_begin[Patch<Dim>::colours] - first;
+  const int first = it.bins.first_active, teams = it.bins.last_active - first;
   if (teams == 0) return;
 
   Kokkos::parallel_for(

@@ -46,14 +46,13 @@ inline constexpr int k_scratch_slack = 16;
 /// Bytes that a team can have, of which Kokkos takes 8 a thread and two.
 template <class Space>
 inline constexpr std::size_t k_team_bytes = (is_device<Space> ? 48 : 32) * 1024;
-/// Whether a team can have so much, so that teams_at_once share a multiprocessor of a GPU: one of Hopper has
+/// Whether a team can have so much, so that this many share a multiprocessor of a GPU: one of Hopper has
 /// 227 KiB, of which 1 KiB a team is the driver's.
 template <class Space, class T, int Dim>
-constexpr bool scratch_fits(std::size_t bytes) {
+constexpr bool scratch_fits(std::size_t bytes, int teams = teams_at_once<T, Dim>) {
   constexpr int kib = 1024;
   const std::size_t all = bytes + k_scratch_slack + 8 * (team_threads<Space> + 2);
-  return all <= k_team_bytes<Space> &&
-         (!is_device<Space> || (all + kib) * teams_at_once<T, Dim> <= 227 * kib);
+  return all <= k_team_bytes<Space> && (!is_device<Space> || (all + kib) * teams <= 227 * kib);
 }
 
 /// Bytes of scratch memory for so many values.

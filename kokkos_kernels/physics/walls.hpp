@@ -96,8 +96,8 @@ KOKKOS_INLINE_FUNCTION Coord<Dim> in_mesh(const Coord<Dim>& origin, const Coord<
   return c;
 }
 
-/// Whether a particle is where put_on_walls() moves it: beyond a wall, or on the upper one, which belongs to no
-/// cell.
+/// Whether a particle is where put_on_walls() moves it: beyond a wall, or on the upper one, which belongs to
+/// no cell.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool is_beyond_walls(const Grid<T, Dim>& grid, const Coord<Dim>& cell,
                                             const Vector<T, Dim>& x) {
@@ -175,31 +175,28 @@ struct WindowImages {
   KOKKOS_INLINE_FUNCTION WindowImages(const Grid<T, Dim>& mesh, const WallReach<Dim>& reach,
                                       const Coord<Dim>& from)
       : grid(mesh), origin(from), at_wall(reach(from)) {}
-  KOKKOS_INLINE_FUNCTION int operator()(int n) const { return at_wall ? image_of(n) : n; }
-  /// Bit k: component k of a velocity at node n is opposite to that at its image.
-  KOKKOS_INLINE_FUNCTION int turned(int n) const {
-    return !at_wall ? 0 : table ? table[n] >> k_place_bits : turned_of(n);
+  KOKKOS_INLINE_FUNCTION int operator()(int n) const {
+    return at_wall ? entry_of(n) & ((1 << k_place_bits) - 1) : n;
   }
-  /// Image and turned components of node n in one number.
+  /// Bit k: component k of a velocity at node n is opposite to that at its image.
+  KOKKOS_INLINE_FUNCTION int turned(int n) const { return at_wall ? entry_of(n) >> k_place_bits : 0; }
+  /// Image and turned components of node n in one number: image_in_window, and the product of image_sign.
   KOKKOS_INLINE_FUNCTION int entry(int n) const {
-    return image_in_window(grid, origin, n) | turned_of(n) << k_place_bits;
+    constexpr int across = Patch<Dim>::window_edge, all = (1 << Dim) - 1;
+    const Coord<Dim> c = window_coord<Dim>(n);
+    int place = 0, turns = 0;
+    bool outside = false;
+    for (int d = 0, step = 1; d < Dim; ++d, step *= across) {
+      const int at = origin[d] + c[d], image = image_along(grid, d, at), to = image - origin[d] + 1;
+      if (image != at) turns ^= (at > 0 ? grid.wall[d][1] : grid.wall[d][0]) == Wall::fixed ? all : 1 << d;
+      outside |= to < 0 || to >= across;
+      place += to * step;
+    }
+    return outside ? n : place | turns << k_place_bits;
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION int image_of(int n) const {
-    return table ? table[n] & ((1 << k_place_bits) - 1) : image_in_window(grid, origin, n);
-  }
-  KOKKOS_INLINE_FUNCTION int turned_of(int n) const {
-    if (image_in_window(grid, origin, n) == n) return 0;
-    const Coord<Dim> c = window_coord<Dim>(n);
-    int bits = 0;
-    for (int k = 0; k < Dim; ++k) {
-      T sign = 1;
-      for (int d = 0; d < Dim; ++d) sign *= image_sign<Kind::motion, T>(grid, d, origin[d] + c[d], k);
-      bits |= (sign < 0) << k;
-    }
-    return bits;
-  }
+  KOKKOS_INLINE_FUNCTION int entry_of(int n) const { return table ? table[n] : entry(n); }
 };
 
 /// Turns the motion that node n of a window has taken from its image.

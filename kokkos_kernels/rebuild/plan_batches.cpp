@@ -89,31 +89,21 @@ void cut_into_batches(State<Space, T, Dim>& s, const First& first, int most) {
 /// Bins::active_slots of every batch.
 template <class Space, class T, int Dim>
 void list_slots(State<Space, T, Dim>& s) {
-  constexpr int colours = Patch<Dim>::colours;
   const auto& whole = s.soil.bins;
   auto& b = s.batches;
-  const int count = whole.colour_begin[colours];
-  ensure(b.slots, count);
-  const auto active_slots = on_host(whole.active_slots, count);
-  std::vector<std::array<std::vector<int>, colours>> lists(b.all.size());
-  for (int colour = 0, n = 0; colour < colours; ++colour)
-    for (std::size_t batch = 0; n < whole.colour_begin[colour + 1]; ++n) {  // slots rise within a colour
-      while (active_slots(n) >= b.all[batch].set.bins.last_slot) ++batch;
-      lists[batch][colour].push_back(active_slots(n));
-    }
-  const auto slots = Kokkos::create_mirror_view(b.slots);
+  ensure(b.slots, whole.last_active);
+  const auto slots = on_host(whole.active_slots, whole.last_active);
   int end = 0;
-  for (std::size_t n = 0; n < lists.size(); ++n) {
-    Bins<Space>& bins = b.all[n].set.bins;
+  for (SoilBatch<Space, T, Dim>& batch : b.all) {
+    Bins<Space>& bins = batch.set.bins;
     const int begin = end;
+    while (end < whole.last_active && slots(end) < bins.last_slot) ++end;
     bins.begin = whole.begin, bins.windows = whole.windows;
-    for (int colour = 0; colour < colours; ++colour) {
-      for (const int slot : lists[n][colour]) slots(end++) = slot;
-      bins.colour_begin[colour + 1] = end - begin;
-    }
+    bins.first_active = 0, bins.last_active = end - begin;
     bins.active_slots = Kokkos::subview(b.slots, Kokkos::make_pair(begin, end));
   }
-  Kokkos::deep_copy(b.slots, slots);
+  const auto all = Kokkos::make_pair(0, end);
+  Kokkos::deep_copy(Kokkos::subview(b.slots, all), Kokkos::subview(whole.active_slots, all));
 }
 
 /// Gives each batch its place. As many as can stay on the device.
@@ -168,7 +158,7 @@ void plan_batches(State<Space, T, Dim>& s) {
     largest = std::max(largest, first(slot + 1) - first(slot));
   b.all.clear();
   b.loaded = false;
-  ensure(b.slots, s.soil.bins.colour_begin[Patch<Dim>::colours]);
+  ensure(b.slots, s.soil.bins.last_active);
   const double beside = double(memory_of(s)) - b.room.extent(0),
                least = k_turns * double(bytes_of(s, largest));
   b.least = beside + least;

@@ -111,7 +111,7 @@ void build_blocks(const Space& space, const Grid<T, Dim>& grid, const Patches<Sp
 /// Room for the window of each slot that holds points.
 template <class Source, class Space, int Dim>
 void build_windows(const Space& space, const Patches<Space, Dim>& patches, Bins<Space>& bins) {
-  const int held = bins.colour_begin[Patch<Dim>::colours];
+  const int held = bins.last_active;
   ensure(bins.windows.place, patches.slots);
   ensure(bins.windows.sums, window_bytes<Source> * held);
   const auto place = bins.windows.place, active_slots = bins.active_slots;

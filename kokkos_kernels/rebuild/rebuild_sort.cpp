@@ -143,62 +143,27 @@ void permute_fields(const Space& space, ParticleSet<Space, Points_>& set, const 
   permute_fields(space, set.points, set.order, scratch);
 }
 
-/// Numbers of slots of each colour that hold points, and of the points.
-template <int Dim>
-struct Held {
-  int slots[Patch<Dim>::colours] = {}, points = 0;
-  KOKKOS_INLINE_FUNCTION Held& operator+=(const Held& other) {
-    for (int colour = 0; colour < Patch<Dim>::colours; ++colour) slots[colour] += other.slots[colour];
-    points += other.points;
-    return *this;
-  }
-};
-
-/// Colour of the patch of a slot, -1 where it holds no points.
-template <class Space, int Dim>
-struct ColourOfSlot {
-  Kokkos::View<int*, typename Space::memory_space> begin;
-  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  KOKKOS_INLINE_FUNCTION int operator()(int slot) const {
-    if (begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells)) return -1;
-    int colour = 0;
-    for (int d = 0; d < Dim && is_device<Space>; ++d)
-      colour |= ((origin(slot)[d] >> Patch<Dim>::log_edge) & 1) << d;
-    return colour;
-  }
-};
-
-/// What holds points: how many of them have a slot, and these slots, ordered by the colour of their patch.
+/// What holds points: how many of them have a slot, and these slots.
 template <class Space, class Points_, int Dim>
 void list_held(const Space& space, ParticleSet<Space, Points_>& set, const Patches<Space, Dim>& patches) {
-  using Range = Kokkos::RangePolicy<Space>;
+  constexpr int cells = Patch<Dim>::cells;
   const int slots = patches.slots;
   ensure(set.bins.active_slots, slots);
   const auto active_slots = set.bins.active_slots, begin = set.bins.begin;
-  const ColourOfSlot<Space, Dim> colour_of{begin, patches.origin};
-  Held<Dim> held, first;
-  Kokkos::parallel_reduce(
-      "mpm::count_held", Range(space, 0, slots),
-      KOKKOS_LAMBDA(int slot, Held<Dim>& n) {
-        const int colour = colour_of(slot);
-        if (colour >= 0) ++n.slots[colour];
-        if (slot == slots - 1) n.points = begin(slots * Patch<Dim>::cells);
+  int held = 0;
+  Kokkos::parallel_scan(
+      "mpm::list_held", Kokkos::RangePolicy<Space>(space, 0, slots),
+      KOKKOS_LAMBDA(int slot, int& before, bool last) {
+        if (begin(slot * cells) == begin((slot + 1) * cells)) return;
+        if (last) active_slots(before) = slot;
+        ++before;
       },
       held);
-  set.points.count = held.points;
+  Kokkos::deep_copy(space, Kokkos::View<int, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(&set.points.count),
+                    Kokkos::subview(begin, slots * cells));
+  space.fence("mpm::list_held");
   set.bins.first_slot = 0, set.bins.last_slot = slots;
-  set.bins.colour_begin[0] = 0;
-  for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
-    first.slots[colour] = set.bins.colour_begin[colour];
-    set.bins.colour_begin[colour + 1] = first.slots[colour] + held.slots[colour];
-  }
-  Kokkos::parallel_scan(
-      "mpm::slots_by_colour", Range(space, 0, slots), KOKKOS_LAMBDA(int slot, Held<Dim>& n, bool last) {
-        const int colour = colour_of(slot);
-        if (colour < 0) return;
-        if (last) active_slots(first.slots[colour] + n.slots[colour]) = slot;
-        ++n.slots[colour];
-      });
+  set.bins.first_active = 0, set.bins.last_active = held;
 }
 
 template <class Space, class Points_, int Dim, class ScratchView>
@@ -284,75 +249,72 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
   ensure(s.slot_forces, std::size_t(s.near_count) * Dim * s.rigid_points.size());
 }
 
+/// Takes from the pressure of each of the particles [first, last) of a cell this fraction of what it differs
+/// from their mean.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void average_pressure_of(const Soil<Space, T, Dim>& soil, int first, int last,
+                                                T fraction) {
+  T volume = 0, sum = 0;
+  for (int p = first; p < last; ++p) {
+    volume += soil.volume(p);
+    sum += soil.volume(p) * mean_of(soil.stress(p));
+  }
+  for (int p = first; p < last; ++p) {
+    const T change = fraction * (sum / volume - mean_of(soil.stress(p)));
+    for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
+  }
+}
 /// The same for the excess pore pressure, of the particles that have one: with the stress and it, effective
 /// stress is averaged too.
 template <class Space, class T, int Dim>
-void average_pore_pressure(State<Space, T, Dim>& s) {
-  const auto soil = s.soil.points;
-  const auto begin = s.soil.bins.begin;
-  const auto excess = soil.history.column[soil.history.pore];
-  const T fraction = static_cast<T>(s.f_bar_fraction);
-  Kokkos::parallel_for(
-      "mpm::average_pore_pressure", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
-      KOKKOS_LAMBDA(int cell) {
-        const auto has = [&](int p) {
-          return material_in(soil.materials(soil.bodies(soil.body(p)).material)).pore_stiffness > 0;
-        };
-        T volume = 0, sum = 0;
-        for (int p = begin(cell); p < begin(cell + 1); ++p)
-          if (has(p)) volume += soil.volume(p), sum += soil.volume(p) * excess(p);
-        for (int p = begin(cell); p < begin(cell + 1); ++p)
-          if (has(p)) excess(p) += fraction * (sum / volume - excess(p));
-      });
+KOKKOS_INLINE_FUNCTION void average_pore_pressure_of(const Soil<Space, T, Dim>& soil, int first, int last,
+                                                     T fraction) {
+  const auto& excess = soil.history.column[soil.history.pore];
+  const auto has = [&](int p) { return material_in(soil.materials(soil.material_of(p))).pore_stiffness > 0; };
+  T volume = 0, sum = 0;
+  for (int p = first; p < last; ++p)
+    if (has(p)) volume += soil.volume(p), sum += soil.volume(p) * excess(p);
+  for (int p = first; p < last; ++p)
+    if (has(p)) excess(p) += fraction * (sum / volume - excess(p));
 }
 
-/// Where each material has means and a share of F-bar of its own: effective stress and excess pore pressure.
+/// Both, of a cell whose particles differ in material: each material has means and a share of F-bar of its
+/// own. most: the run's fraction of F-bar.
 template <class Space, class T, int Dim>
-void average_pressure_by_material(State<Space, T, Dim>& s) {
-  const auto soil = s.soil.points;
-  const auto begin = s.soil.bins.begin;
-  const T most = static_cast<T>(s.f_bar_fraction);
-  Kokkos::parallel_for(
-      "mpm::average_pressure_by_material", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
-      KOKKOS_LAMBDA(int cell) {
-        const int first = begin(cell), last = begin(cell + 1);
-        const auto fraction_of = [&](int p) {
-          return most * soil.materials(soil.material_of(p)).f_bar_share;
-        };
-        average_by_material(
-            soil, first, last, [&](int p) { return soil.volume(p) * mean_of(soil.stress(p)); },
-            [&](int p, T mean) {
-              const T change = fraction_of(p) * (mean - mean_of(soil.stress(p)));
-              for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
-            });
-        if (soil.history.pore < 0) return;
-        const auto excess = soil.history.column[soil.history.pore];  // 0 where a material drains
-        average_by_material(
-            soil, first, last, [&](int p) { return soil.volume(p) * excess(p); },
-            [&](int p, T mean) { excess(p) += fraction_of(p) * (mean - excess(p)); });
+KOKKOS_INLINE_FUNCTION void average_mixed_cell(const Soil<Space, T, Dim>& soil, int first, int last, T most) {
+  const auto fraction_of = [&](int p) { return most * soil.materials(soil.material_of(p)).f_bar_share; };
+  average_by_material(
+      soil, first, last, [&](int p) { return soil.volume(p) * mean_of(soil.stress(p)); },
+      [&](int p, T mean) {
+        const T change = fraction_of(p) * (mean - mean_of(soil.stress(p)));
+        for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
       });
+  if (soil.history.pore < 0) return;
+  const auto& excess = soil.history.column[soil.history.pore];  // 0 where a material drains
+  average_by_material(
+      soil, first, last, [&](int p) { return soil.volume(p) * excess(p); },
+      [&](int p, T mean) { excess(p) += fraction_of(p) * (mean - excess(p)); });
 }
 
 template <class Space, class T, int Dim>
 void average_pressure(State<Space, T, Dim>& s) {
-  if (s.f_bar_by_material) return average_pressure_by_material(s);
   const auto soil = s.soil.points;
   const auto begin = s.soil.bins.begin;
   const T fraction = static_cast<T>(s.f_bar_fraction);
+  const bool by_material = s.f_bar_by_material;
   Kokkos::parallel_for(
       "mpm::average_pressure", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
       KOKKOS_LAMBDA(int cell) {
-        T volume = 0, sum = 0;
-        for (int p = begin(cell); p < begin(cell + 1); ++p) {
-          volume += soil.volume(p);
-          sum += soil.volume(p) * mean_of(soil.stress(p));
+        const int first = begin(cell), last = begin(cell + 1);
+        T of_cell = fraction;
+        for (int p = first; by_material && p < last; ++p) {
+          if (soil.material_of(p) != soil.material_of(first))
+            return average_mixed_cell(soil, first, last, fraction);
+          of_cell = fraction * soil.materials(soil.material_of(p)).f_bar_share;
         }
-        for (int p = begin(cell); p < begin(cell + 1); ++p) {
-          const T change = fraction * (sum / volume - mean_of(soil.stress(p)));
-          for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
-        }
+        average_pressure_of(soil, first, last, of_cell);
+        if (soil.history.pore >= 0) average_pore_pressure_of(soil, first, last, of_cell);
       });
-  if (soil.history.pore >= 0) average_pore_pressure(s);
 }
 
 template <class Space, class T, int Dim>

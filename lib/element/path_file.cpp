@@ -9,11 +9,13 @@
 
 #include "common/regular_file.hpp"
 #include "common/text.hpp"
+#include "element/sum.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double k_largest_stress = 1e15, k_largest_strain = 100, k_largest_state = 1e12;
+constexpr double k_largest_stress = 1e15, k_largest_strain = 100, k_largest_part = 0.2,
+                 k_largest_state = 1e12;
 
 /// Short names of state variables, as tables of element tests have them.
 constexpr const char* k_short_names[][2] = {
@@ -36,6 +38,7 @@ struct Columns {
   int time = -1, dt = -1;
   std::array<int, 6> total{}, strain{}, stress_change{}, stress{};
   std::vector<int> state;
+  std::vector<int> sums;  // in the order of ElementConfig::sums
 
   int find(const std::string& name) const {
     const auto found = std::find(names.begin(), names.end(), name);
@@ -59,6 +62,14 @@ bool is_state(const std::string& name, const std::vector<StateVariable>& state) 
                                   [&](const auto& pair) { return name == pair[0]; });
 }
 
+/// Whether a column is of an increment of one component.
+bool component_name(const std::string& name) {
+  const auto is = [&](const char* c) {
+    return name == std::string("de") + c || name == std::string("ds") + c;
+  };
+  return std::any_of(std::begin(k_components), std::end(k_components), is);
+}
+
 /// What is wrong with the names of a header.
 std::string fault_of_names(const std::vector<std::string>& names, const std::vector<StateVariable>& state) {
   std::vector<std::string> known = {"time", "dt"};
@@ -68,16 +79,18 @@ std::string fault_of_names(const std::vector<std::string>& names, const std::vec
     if (std::find(names.begin(), names.begin() + static_cast<long>(k), names[k]) !=
         names.begin() + static_cast<long>(k))
       return "a header that names each column once; " + printable(names[k]) + " is there twice";
-    if (std::find(known.begin(), known.end(), names[k]) != known.end() || is_state(names[k], state)) continue;
-    return "a header of the columns time or dt, exx or dexx, dsxx, sxx (and yy, zz, xy, yz, zx) and the "
-           "state "
-           "variables of the law; \"" +
+    if (std::find(known.begin(), known.end(), names[k]) != known.end() || is_state(names[k], state) ||
+        parse_sum(names[k]))
+      continue;
+    return "a header of the columns time or dt, exx or dexx, dsxx, sxx (and yy, zz, xy, yz, zx), sums as "
+           "dsxx+dsyy+dszz or dsyy-0.5*dsxx, and the state variables of the law; \"" +
            printable(names[k]) + "\" is none";
   }
   return "";
 }
 
-std::string read_header(const std::string& line, const std::vector<StateVariable>& state, Columns& columns) {
+std::string read_header(const std::string& line, const std::vector<StateVariable>& state, Columns& columns,
+                        std::vector<ElementSum>& sums) {
   columns.names = cells_of(line);
   if (std::string fault = fault_of_names(columns.names, state); !fault.empty()) return fault;
   columns.time = columns.find("time"), columns.dt = columns.find("dt");
@@ -91,7 +104,12 @@ std::string read_header(const std::string& line, const std::vector<StateVariable
       return "a header with e" + name + " or de" + name + ", not both";
     drives |= columns.drives(c);
   }
-  if (!drives)
+  for (std::size_t k = 0; k < columns.names.size(); ++k) {
+    const auto sum = parse_sum(columns.names[k]);
+    if (!sum || component_name(columns.names[k])) continue;
+    columns.sums.push_back(static_cast<int>(k)), sums.push_back(*sum);
+  }
+  if (!drives && sums.empty())
     return "a header with at least one column of strain or of stress increments, as exx, dexx or dsxx";
   for (const StateVariable& variable : state) columns.state.push_back(find_state(columns, variable.name));
   return "";
@@ -134,6 +152,10 @@ std::string read_start(const Row& row, const Columns& columns, Sym6& strain, Ele
     if (!(std::fabs(path.stress[c]) <= k_largest_stress))
       return "stresses of at most 1e15 Pa;" + row.where() + " s" + name + " is larger";
   }
+  for (const int column : columns.sums)
+    if (row.at(column).value_or(0) != 0)
+      return "row 0 without increments, since it is the start;" + row.where() + " there is one of " +
+             columns.names[column];
   for (std::size_t k = 0; k < columns.state.size(); ++k) {
     const auto value = row.at(columns.state[k]);
     if (!value) continue;
@@ -145,10 +167,32 @@ std::string read_start(const Row& row, const Columns& columns, Sym6& strain, Ele
   return "";
 }
 
+/// The sums that a row governs.
+std::string read_sums(const Row& row, const Columns& columns, int parts, const std::vector<ElementSum>& sums,
+                      ElementRow& to) {
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    to.sums.push_back(row.at(columns.sums[k]));
+    double weights = 0;
+    for (const double weight : sums[k].weight) weights += std::fabs(weight);
+    const double most = weights * (sums[k].of_strain ? k_largest_part * parts : k_largest_stress);
+    if (std::fabs(to.sums[k].value_or(0)) <= most) continue;
+    return "increments of sums of at most " + text_of(most) + ";" + row.where() + " that of " + sums[k].name +
+           " is larger";
+  }
+  return "";
+}
+
+/// Whether sums that a row governs hold component c.
+bool in_sums(const ElementRow& row, const std::vector<ElementSum>& sums, int c) {
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    if (row.sums[k] && sums[k].weight[c] != 0) return true;
+  return false;
+}
+
 /// What drives component c over a row. `known` is its strain as far as strains alone have driven it.
 std::string read_component(const Row& row, const Columns& columns, int c, int parts,
-                           std::optional<double>& known, ElementRow& to) {
-  constexpr double k_largest_part = 0.2;
+                           std::optional<double>& known, const std::vector<ElementSum>& sums,
+                           ElementRow& to) {
   const std::string name = k_components[c];
   const auto total = row.at(columns.total[c]), increment = row.at(columns.strain[c]),
              stress = row.at(columns.stress_change[c]);
@@ -156,6 +200,10 @@ std::string read_component(const Row& row, const Columns& columns, int c, int pa
   if (by_strain && stress)
     return "a strain or a stress increment for each component, not both;" + row.where() + " " + name +
            " has both";
+  if (!by_strain && !stress && in_sums(to, sums, c)) {
+    known.reset(), to.drive[c] = Drive::free;
+    return "";
+  }
   if (!by_strain && !stress && columns.drives(c))
     return "a strain or a stress increment for each component that has columns;" + row.where() + " " + name +
            " has none";
@@ -217,7 +265,7 @@ std::string read_path(const std::string& file, const std::vector<StateVariable>&
   std::vector<std::pair<long, std::string>> lines;
   Columns columns;
   std::string fault = read_lines(file, lines);
-  if (fault.empty()) fault = read_header(lines[0].second, state, columns);
+  if (fault.empty()) fault = read_header(lines[0].second, state, columns, path.sums);
   Sym6 start{};
   std::array<std::optional<double>, 6> known;
   double time = 0;
@@ -234,10 +282,12 @@ std::string read_path(const std::string& file, const std::vector<StateVariable>&
     ElementRow& to = path.rows.emplace_back();
     to.line = row.line;
     fault = read_time(row, columns, time, to);
+    if (fault.empty()) fault = read_sums(row, columns, path.parts, path.sums, to);
     for (int c = 0; c < 6 && fault.empty(); ++c) {
-      fault = read_component(row, columns, c, path.parts, known[c], to);
+      fault = read_component(row, columns, c, path.parts, known[c], path.sums, to);
       if (to.drive[c] == Drive::total_strain) to.value[c] -= start[c];
     }
+    if (fault.empty()) fault = fault_of_sums(to, path.sums);
   }
   path.timed = columns.time >= 0 || columns.dt >= 0;
   return fault;

@@ -10,6 +10,8 @@
 namespace mpm {
 namespace {
 
+constexpr double k_point_cell = 1;  // m, edge of the cells for which a point stands, unless the law knows it
+
 /// The options of a run of a mesh that are given, which a single point does not use.
 void pass_over_mesh(OptionReader& in) {
   InputReport report;
@@ -31,7 +33,8 @@ void choose_dim(OptionReader& in, Config& config) {
   const ElementConfig& path = config.element;
   bool spatial = path.stress[4] != 0 || path.stress[5] != 0;
   for (const ElementRow& row : path.rows)
-    for (int c = 4; c < 6; ++c) spatial |= row.value[c] != 0 || row.drive[c] == Drive::stress;
+    for (int c = 4; c < 6; ++c)
+      spatial |= row.value[c] != 0 || row.drive[c] == Drive::stress || row.drive[c] == Drive::free;
   if (!spatial || config.dim == 3) return;
   if (in.given("dim"))
     in.reject("dim", "3, for the path in " + path.file + " has yz or zx");
@@ -45,13 +48,9 @@ void check_start_of_path(OptionReader& in, Config& config) {
   const ElementConfig& path = config.element;
   const double pressure = -(path.stress[0] + path.stress[1] + path.stress[2]) / 3;
   MaterialConfig& material = config.materials[0];
-  if (material.object) {  // a library of the user: a point has no particle to hand to it
-    in.reject("element_path", "a material of a built-in model; " + material.name + " is of " + material.model);
-    return;
-  }
   // The point stands for cells of the size to which parameters of softening refer.
   const double cell = parameter_of(material, "xi95_cell");
-  prepare_material(material, cell > 0 ? cell : 1, std::max(0.0, pressure));
+  prepare_material(material, cell > 0 ? cell : k_point_cell, std::max(0.0, pressure));
   const auto variables = state_variables(material);
   bool all_given = !path.state.empty();
   for (std::size_t k = 0; k < variables.size(); ++k)
@@ -99,6 +98,9 @@ void read_element(OptionReader& in, Config& config) {
   }
   if (in.errors() == errors && !path.file.empty()) {
     choose_dim(in, config);
+    make_law_object(in, MeshConfig{.spacing = k_point_cell}, config.dim, config.materials[0]);
+  }
+  if (in.errors() == errors && !path.file.empty()) {
     check_start_of_path(in, config);
   }
   pass_over_mesh(in);

@@ -19,6 +19,10 @@ bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh);
 void read_material(OptionReader& in, const std::string& name, const MeshConfig* mesh, const Config& config,
                    MaterialConfig& material);
 
+/// The object that the model of a material makes from its texts, for a mesh and a dimension, and what the law
+/// then says of its parameters together. Of a single point that is done once its path decides the dimension.
+void make_law_object(OptionReader& in, const MeshConfig& mesh, int dim, MaterialConfig& material);
+
 /// A parameter of a material by its key; NaN where its model has none of that name.
 double parameter_of(const MaterialConfig& material, const std::string& key);
 

@@ -151,10 +151,14 @@ void check_together(OptionReader& in, int model, const MaterialConfig& material)
   if (!fault.key.empty()) in.reject(material.name + "_" + fault.key, with_prefix(fault.takes, material.name));
 }
 
-/// Whether the model runs where the run's options say.
+/// Whether a single point is driven, in lieu of a mesh.
+bool is_single_point(const Config& config) { return !config.element.file.empty(); }
+
+/// Whether the model runs where the run's options say. A single point is always computed on the processor.
 bool check_run(OptionReader& in, int model, const Config& config, const MaterialConfig& material) {
   if (!on_host_in_double(model)) return true;
-  const bool cuda = config.backend == Backend::cuda, single = config.precision == Precision::single;
+  const bool cuda = config.backend == Backend::cuda && !is_single_point(config),
+             single = config.precision == Precision::single;
   if (cuda)
     in.reject(material.name + "_model", "another model on a GPU: " + material.model +
                                             " runs on processors, with -backend serial or openmp");
@@ -162,14 +166,6 @@ bool check_run(OptionReader& in, int model, const Config& config, const Material
     in.reject(material.name + "_model",
               "another model with -precision single: " + material.model + " takes -precision double");
   return !cuda && !single;
-}
-
-/// The object that a model makes from its texts.
-void read_object(OptionReader& in, int model, const std::vector<std::string>& texts, const MeshConfig& mesh,
-                 int dim, MaterialConfig& material) {
-  ParameterFault fault;
-  material.object = make_object(model, {material.name, texts, dim, mesh.lower, mesh.spacing}, fault);
-  if (!fault.key.empty()) in.reject(material.name + "_" + fault.key, with_prefix(fault.takes, material.name));
 }
 
 /// The fraction of F-bar, which is by default that of the run. Where soil dilates as it yields, F-bar creates
@@ -184,7 +180,7 @@ void read_f_bar(OptionReader& in, const Config& config, MaterialConfig& material
        .unit = "-",
        .range = {.lowest = 0, .highest = 1},
        .standard =
-           in.listing() ? "f_bar_fraction; where that is not given and dilation_deg is above 0, 0" : ""},
+           in.listing() ? "f_bar_fraction, or 0 where that is not given and dilation_deg is above 0" : ""},
       fraction);
   if (found || none) material.f_bar_fraction = fraction;
 }
@@ -233,14 +229,26 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
     const auto errors = in.errors();
     material.model = words[chosen];
     read_parameters(in, name, models[chosen], material.parameters);
-    const auto texts = read_texts(in, name, models[chosen]);
+    material.texts = read_texts(in, name, models[chosen]);
     const bool sound = check_run(in, chosen, config, material) && in.errors() == errors;
-    if (sound) read_object(in, chosen, texts, mesh ? *mesh : MeshConfig{}, config.dim, material);
-    if (sound && in.errors() == errors) check_together(in, chosen, material);
+    if (sound && is_single_point(config))
+      check_together(in, chosen, material);
+    else if (sound)
+      make_law_object(in, mesh ? *mesh : MeshConfig{}, config.dim, material);
     reject_others(in, name, models[chosen], models);
   } else {
     in.ignore(name + "_");
   }
+}
+
+void make_law_object(OptionReader& in, const MeshConfig& mesh, int dim, MaterialConfig& material) {
+  const int model = model_index(material.model);
+  ParameterFault fault;
+  material.object = make_object(model, {material.name, material.texts, dim, mesh.lower, mesh.spacing}, fault);
+  if (!fault.key.empty())
+    in.reject(material.name + "_" + fault.key, with_prefix(fault.takes, material.name));
+  else
+    check_together(in, model, material);
 }
 
 std::vector<std::string> warnings_of_law(const MaterialConfig& material) {
@@ -291,7 +299,8 @@ bool check_start(OptionReader& in, const std::string& body, const MaterialConfig
 
 bool check_element_start(OptionReader& in, const MaterialConfig& material, double height,
                          const Sym6& stress) {
-  const auto law = make_material<double>(model_index(material.model), material.parameters);
+  const auto law =
+      make_material<double>(model_index(material.model), material.parameters, material.object.get());
   const ParameterFault fault = start_fault(law, {.position = {}, .height = height, .stress = stress});
   if (fault.key.empty()) return true;
   const std::string takes = with_prefix(fault.takes, material.name);

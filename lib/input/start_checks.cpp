@@ -34,9 +34,10 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
       check_start(in, body.name, material, bounds.upper[up], body.stress);
     return;
   }
-  bool looks = std::all_of(listed.state.begin(), listed.state.end(),
-                           [](const StateField& field) { return field.name == k_excess_pore_pressure; });
   const auto& own = listed.own_parameter;
+  bool looks = !own.empty() ||
+               std::all_of(listed.state.begin(), listed.state.end(),
+                           [](const StateField& field) { return field.name == k_excess_pore_pressure; });
   if (!own.empty()) body.largest_own_parameter = *std::max_element(own.begin(), own.end());
   for (std::size_t p = 0; p < listed.volume.size(); ++p) {
     const bool is_new = listed.reference_height.empty();

@@ -143,7 +143,7 @@ Part<Space> Decomposition<Space, T, Dim>::border(const State_& s) {
 
 template <class Space, class T, int Dim>
 Part<Space> Decomposition<Space, T, Dim>::inner(const State_& s) const {
-  return {s.space, s.soil.bins.border, s.soil.bins.colour_begin[Patch<Dim>::colours]};
+  return {s.space, s.soil.bins.border, s.soil.bins.last_active};
 }
 
 template <class Space, class T, int Dim>

@@ -145,7 +145,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::make_lists(State_& s) {
   PetscFunctionBeginUser;
   const auto number = on_host(s.patches.number, s.patches.slots);
-  const int holding = s.soil.bins.colour_begin[Patch<Dim>::colours];
+  const int holding = s.soil.bins.last_active;
   const auto held = on_host(s.soil.bins.active_slots, holding);
   const std::vector<long> slots(number.data(), number.data() + s.patches.slots);
   occupied_.assign(grid_.fields * grid_.count(), 0);

@@ -148,8 +148,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
     rigids.push_back(rigid_input(config_, config_.rigids[r], std::move(model.rigids[r])));
 
   state_.p2g = {config_.p2g.strategy, config_.p2g.margin, config_.p2g.mosaic_cells};
-  for (int d = 0; d < Dim; ++d) state_.gravity[d] = config_.gravity[d];
-  state_.water = water_of<Dim>(config_);
+  for (int d = 0; d < Dim; ++d) state_.gravity[d] = gravity_on_soil(config_)[d];
+  state_.water = water_of_kernels<Dim>(config_);
   if (model.owners.empty() && !config_.p2g.rebuild_interval) state_.rebuild_late = GlobalBound::k_late;
   state_.batches.limit = config_.device_memory_limit.value_or(0) * k_gib;
   state_.damping = config_.damping;

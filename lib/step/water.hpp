@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/gravity_on_soil.hpp"
 #include "data/water.hpp"
 #include "mpm/config.hpp"
 
@@ -20,6 +21,12 @@ Water<Dim> water_of(const Config& config) {
     water.level += config.mesh.lower[d] * water.down[d];
   }
   return water;
+}
+
+/// The water that the kernels know: none where it carries all soil alike (gravity_on_soil).
+template <int Dim>
+Water<Dim> water_of_kernels(const Config& config) {
+  return carries_alike(config) ? Water<Dim>{} : water_of<Dim>(config);
 }
 
 /// Whether frames tell a pore pressure.

@@ -92,6 +92,28 @@ def sand_triaxial(lab):
     lab.near("Mohr-Coulomb: cell pressure in extension", found["lateral_stress"][-1], 1e5, 1e-6)
 
 
+def sand_constant_mean(lab):
+    """At a constant mean stress nothing elastic changes the volume: q = 3 G e up to failure, at the cone of the principal
+    stresses whose mean is kept."""
+    k, m, p = slope(30), slope(10), 1e5
+    for direction, right in (("compression", (k - 1) * (3 * p - 1e4 * math.sqrt(k)) / (k + 2) + 1e4 * math.sqrt(k)),
+                             ("extension", -((k - 1) * (3 * p - 2e4 * math.sqrt(k)) / (2 * k + 1) + 1e4 * math.sqrt(k)))):
+        found, point = lab.test(f"mean_{direction}", "mohr_coulomb", SAND, f"triaxial,cell=100e3,constant=p,strain=0.05,"
+                                f"direction={direction}", "--parts", "4")
+        lab.near(f"Mohr-Coulomb: {direction} at constant p", found["q"][-1], right, 1e-6)
+        lab.near(f"Mohr-Coulomb: largest p in {direction}", max(found["p"]), p, 1e-6)
+        lab.near(f"Mohr-Coulomb: least p in {direction}", min(found["p"]), p, 1e-6)
+        lab.near(f"Mohr-Coulomb: lateral stresses in {direction}", point["sxx"][-1], point["szz"][-1], 1e-6)
+        lab.near(f"Mohr-Coulomb: 3 G in {direction}", found["q"][5] / -point["eyy"][5], 3 * 2e7 / 2.6, 1e-6)
+        lab.near(f"Mohr-Coulomb: elastic volume in {direction}", 1 + found["volume_strain"][5], 1, 1e-9)
+        volume = [sum(point[e][n] for e in ("exx", "eyy", "ezz")) for n in (-40, -1)]
+        lab.near(f"Mohr-Coulomb: dilation in {direction}", (volume[1] - volume[0]) / (point["eyy"][-1] - point["eyy"][-40]),
+                 1 - m if direction == "compression" else 1 - 1 / m, 1e-6)
+    soil = dict(young=1e7, poisson=0.3, cohesion=8000, friction_deg=25, dilation_deg=5, match="compression")
+    found, _ = lab.test("mean_cone", "drucker_prager", soil, "biaxial,cell=50e3,constant=p,strain=0.1")
+    lab.near("Drucker-Prager: p of the biaxial test", max(abs(p - 5e4) for p in found["p"]) / 5e4 + 1, 1, 1e-6)
+
+
 def sand_k0_start(lab):
     found, _ = lab.test("k0_start", "mohr_coulomb", SAND, "triaxial,cell=50e3,k0=0.5,strain=0.1")
     lab.near("Mohr-Coulomb: from K0, first deviator", found["q"][0], 5e4, 1e-9)
@@ -148,6 +170,41 @@ def cam_clay_drained(lab):
                  found["q"][below] + share * (found["q"][below + 1] - found["q"][below]), right, 5e-3)
     lab.near("Cam-Clay: drained strength", found["q"][-1], 150000, 5e-3)
     lab.near("Cam-Clay: specific volume at failure", point["specific_volume"][-1], 1.80800, 5e-3)
+
+
+def cam_clay_constant_mean(lab):
+    """At a constant mean stress p the plastic volume follows the yield surface: with Pc = p (1 + (q/(M p))^2) specific volume
+    falls by (lambda - kappa) ln(Pc/Pc0) as long as q rises, and at the critical state q = M p."""
+    found, point = lab.test("mean", "cam_clay", dict(CLAY, ocr=1), f"triaxial,cell=100e3,constant=p,strain={engineering(1.5)!r},"
+                            "rows=750", "--parts", "20")
+    lab.near("Cam-Clay: q = M p at the critical state", found["q"][-1], 1e5, 1e-3)
+    lab.near("Cam-Clay: specific volume there", point["specific_volume"][-1], 2 - 0.16 * math.log(2), 1e-3)
+    for n in (25, 50, 100, 300):
+        pc = 1e5 * (1 + (found["q"][n] / 1e5) ** 2)
+        lab.near(f"Cam-Clay: Pc at row {n} of constant p", point["preconsolidation"][n], pc, 1e-4)
+        lab.near(f"Cam-Clay: specific volume at row {n}", point["specific_volume"][n], 2 - 0.16 * math.log(pc / 1e5), 1e-3)
+    for key in (max, min):
+        lab.near(f"Cam-Clay: {key.__name__} of p", key(found["p"]), 1e5, 1e-6)
+    found, point = lab.test("mean_dense", "cam_clay", dict(CLAY, ocr=8), "triaxial,cell=100e3,constant=p,rows=750,"
+                            f"strain={engineering(1.5)!r}", "--parts", "20")
+    lab.near("Cam-Clay: dense clay at constant p, q at the end", found["q"][-1], 1e5, 2e-3)
+    lab.near("Cam-Clay: its specific volume", point["specific_volume"][-1], 2 + 0.16 * math.log(8 / 2), 2e-3)
+    found, _ = lab.test("mean_extension", "cam_clay", dict(CLAY, ocr=1), "triaxial,cell=100e3,constant=p,rows=750,strain=3,"
+                        "direction=extension", "--parts", "20")
+    lab.near("Cam-Clay: extension at constant p", found["q"][-1], -1e5, 1e-3)
+    undrained, point = lab.test("mean_undrained", "cam_clay", dict(CLAY, ocr=1), "triaxial,cell=100e3,drainage=undrained,strain=0.05")
+    # the same path by sums: no volume, and q of each row is given, after what the test found
+    q = [b - a for a, b in zip([0.0] + undrained["q"], undrained["q"])]
+    rows = {"dt": [1.0] * len(q), "dexx+deyy+dezz": [0.0] * len(q), "dsyy-0.5*dsxx-0.5*dszz": [-x for x in q],
+            "dsxx-dszz": [0.0] * len(q), **{key: [-1e5] * len(q) for key in ("sxx", "syy", "szz")}}
+    path = lab.folder / f"sums_{lab.precision}.csv"
+    write_path(path, rows)
+    table = run_point(lab.binary, lab.folder / f"sums_{lab.precision}", deck_of("cam_clay", **dict(CLAY, ocr=1)), path,
+                      "-element_parts", 20, "-precision", lab.precision)
+    for n in (10, 30, 60):
+        lab.near(f"Cam-Clay: undrained by sums, strain of row {n}", table["eyy"][n], point["eyy"][n], 1e-3)
+        lab.near(f"Cam-Clay: undrained by sums, mean stress of row {n}", sum(table[s][n] for s in ("sxx", "syy", "szz")),
+                 sum(point[s][n] for s in ("sxx", "syy", "szz")), 1e-4)
 
 
 def cam_clay_k0(lab):
@@ -271,7 +328,9 @@ def refusals(lab):
             (["--test", "triaxial,cell=-1"], 'cell: given "-1"'), (["--test", triaxial + ",cell=2e5"], "takes each key once"),
             (["--test", triaxial + ",speed=2"], "takes KEY=VALUE of"), (["--test", triaxial + ",drainage=no"], "takes drained or"),
             (["--test", triaxial + ",strain=1.5"], "less than 1"), (["--test", triaxial + ",strain=a"], "takes numbers"),
-            (["--test", triaxial + ",consolidation=k0"], "takes from=STRESS"), (["--test", "oedometer,vertical=1e4"], "stress="),
+            (["--test", triaxial + ",consolidation=k0"], "takes from=STRESS"), (["--test", triaxial + ",constant=q"], "takes cell or p"),
+            (["--test", triaxial + ",constant=p,drainage=undrained"], "takes nothing with drainage=undrained"),
+            (["--test", "oedometer,vertical=1e4,constant=p"], "takes KEY=VALUE of"), (["--test", "oedometer,vertical=1e4"], "stress="),
             (["--test", triaxial + f",data={lab.folder / 'none.csv'}"], "takes a CSV file"),
             (["--test", triaxial + f",data={lab.folder / 'bad.csv'}"], "columns axial_strain"),
             (["--test", triaxial, "--fit", "young=1:2"], "takes a --test with data=FILE"),
@@ -293,8 +352,8 @@ def pipe(lab):
         lab.faults.append(f"a named pipe: {lines}")
 
 
-CHECKS = [clays, sand_triaxial, sand_k0_start, sand_shear, sand_oedometer, cone_biaxial, cam_clay_undrained, cam_clay_drained,
-          cam_clay_k0, clay_isotropic, rates, cycles, fit_sand, fit_clay, refusals, pipe]
+CHECKS = [clays, sand_triaxial, sand_constant_mean, sand_k0_start, sand_shear, sand_oedometer, cone_biaxial,
+          cam_clay_undrained, cam_clay_drained, cam_clay_constant_mean, cam_clay_k0, clay_isotropic, rates, cycles, fit_sand, fit_clay, refusals, pipe]
 ONCE = {fit_sand, fit_clay, refusals, pipe}  # in double precision alone
 
 

@@ -232,7 +232,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=1, help="decks at once")
     parser.add_argument("--keep", type=pathlib.Path, help="where the offenders go")
     arguments = parser.parse_args()
-    program, numbers = pathlib.Path(arguments.program).resolve(), list(numbers_of(arguments))
+    program, numbers = pathlib.Path(arguments.program).absolute(), list(numbers_of(arguments))
     offenders, statuses = collections.defaultdict(list), collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         results = pool.map(lambda k: try_trial(make_trial(arguments.seed, k), program), numbers)

@@ -38,6 +38,9 @@ class Deck:
     ranks: int = 1
     threads: int = 1
     lift: float = 0.0  # share of the weight that water carries
+    loaded: bool = False  # by what gives energy beside gravity
+    frames: bool = False  # of the start and the end
+    ground: object = None  # of water_decks.py: what the particles' file is made from
 
     @property
     def dim(self):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Clay that collapses, slides and strikes: every run reaches its end, and every kilogram is accounted for.
 
-    collapses.py MPM [--count 200] [--seed 1] [--only K,...] [--jobs 2] [--keep FOLDER] [--precisions double,single]
+    collapses.py MPM [--count 200] [--seed 1] [--only K,...] [--jobs 2] [--keep FOLDER] [--precisions double,single] [--limit 300]
 
 First the collapse of a column in nine variants, then --count random decks (collapse_decks.py) with all strengths, shapes,
 sides, velocity updates, strategies, back ends and one to four ranks. --only runs some of them: numbers of random decks, or
@@ -43,10 +43,13 @@ ENERGY_SLACK = 0.05  # of the energy so far: steps are explicit, and nodes see t
 def launch(program, deck, folder):
     """Runs a deck: (exit status or None where it took too long, what it printed on stderr)."""
     folder.mkdir(parents=True)
+    if deck.ground:
+        deck.ground.write(folder / "start.h5")
+        deck.options.update({name: folder / "start.h5" for name in deck.options if name.endswith("_file")})
     (folder / "deck.opts").write_text(deck.text())
     ranks = ["mpirun", "-n", str(deck.ranks), "--bind-to", "none"] if deck.ranks > 1 else []
     command = [*ranks, str(program), "-options_file", str(folder / "deck.opts"), "-output_dir", str(folder / "out"),
-               "-output_frames", "off", "-progress", "off"]
+               "-output_frames", "on" if deck.frames else "off", "-progress", "off"]
     environment = {**ENVIRONMENT, "OMP_NUM_THREADS": str(deck.threads), "OMP_WAIT_POLICY": "passive",
                    "OMPI_MCA_orte_tmpdir_base": str(folder)}  # runs at once clear each other's
     process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
@@ -141,7 +144,7 @@ def faults_of(deck, status, stderr, folder):
     lines = sorted((line for line in stderr.splitlines() if line.strip()), key=lambda line: not line.startswith("mpm:"))
     told = "".join(f"\n    {line}" for line in lines[:5])  # ours before those of the launcher
     if status is None:
-        return [f"no end within {TIME_LIMIT} s{told}"]
+        return [f"no end within {TIME_LIMIT:g} s{told}"]
     if status != 0:
         return [f"exit status {status}{told}"]
     history = read_history(folder / "out" / "history.csv")
@@ -150,9 +153,14 @@ def faults_of(deck, status, stderr, folder):
     faults += finite_faults(history)
     for body in deck.bodies():
         faults += [*mass_faults(deck, history, body), *place_faults(deck, history, body)]
-    if all(f"{body}_{column}" in history for body in deck.bodies() for column in ("mass", "lost_mass")):
+    if not deck.loaded and all(f"{body}_{column}" in history for body in deck.bodies() for column in ("mass", "lost_mass")):
         faults += energy_faults(deck, history)
     return faults
+
+
+def more_faults(program, deck, folder):
+    """What else a deck of a script that imports this one demands of a run that is sound so far."""
+    return []
 
 
 # ---------------------------------------------------------------------------------------------- all of them
@@ -162,7 +170,7 @@ def try_deck(program, deck, folder):
     """(seconds, faults) of a deck."""
     started = time.monotonic()
     try:
-        faults = faults_of(deck, *launch(program, deck, folder), folder)
+        faults = faults_of(deck, *launch(program, deck, folder), folder) or more_faults(program, deck, folder)
     except (OSError, ValueError, KeyError) as error:
         faults = [f"{type(error).__name__}: {error}"]
     return time.monotonic() - started, faults
@@ -202,6 +210,7 @@ def chosen_decks(arguments):
 
 
 def main():
+    global TIME_LIMIT
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--count", type=int, default=200, help="of random decks")
@@ -210,11 +219,13 @@ def main():
     parser.add_argument("--jobs", type=int, default=1, help="runs at once")
     parser.add_argument("--keep", type=pathlib.Path, help="where folders of decks that fail are kept")
     parser.add_argument("--precisions", default="double,single", help="those that the program is built for")
+    parser.add_argument("--limit", type=float, default=TIME_LIMIT, help="s that a run may take")
     arguments = parser.parse_args()
+    TIME_LIMIT = arguments.limit
     decks, kinds = chosen_decks(arguments), collections.Counter()
     if not decks:
         parser.error(f"--only: no deck is {arguments.only}")
-    program, failed = pathlib.Path(arguments.program).resolve(), []
+    program, failed = pathlib.Path(arguments.program).absolute(), []
     with tempfile.TemporaryDirectory(prefix="mpm_collapses_") as place, \
             concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         folders = [pathlib.Path(place) / str(k) for k in range(len(decks))]

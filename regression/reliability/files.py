@@ -517,7 +517,7 @@ def alterations_of_particles():
 def main():
     words = [word for word in sys.argv[1:] if word != "--short"]
     binary, inject, *names = words
-    checks = Checks(pathlib.Path(binary).resolve(), inject, short=len(words) < len(sys.argv) - 1)
+    checks = Checks(pathlib.Path(binary).absolute(), inject, short=len(words) < len(sys.argv) - 1)
     for name in names or [name[6:] for name in dir(checks) if name.startswith("check_")]:
         began = time.time()
         try:

@@ -27,7 +27,7 @@ echo "$3" > "$QUEUE.script"; mv "$QUEUE.part" "$QUEUE"
 
 
 def main():
-    binary = pathlib.Path(sys.argv[1]).resolve()
+    binary = pathlib.Path(sys.argv[1]).absolute()
     with tempfile.TemporaryDirectory(prefix="mpm_pbs_") as temporary:
         base = pathlib.Path(temporary)
         began = time.time()

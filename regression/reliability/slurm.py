@@ -124,7 +124,7 @@ def main():
     with Slurm(base) as slurm:
         limits = f"--cpus-per-task=1 --time=1 --signal=B:USR1@10 --output={base}/job-%j.log"
         slurm.call("sbatch", *limits.split(), str(ROOT / "scripts/slurm/cpu_node.sbatch"), str(DECK), *OPTIONS, "-time_max_steps",
-                   steps, environment={"MPM": str(pathlib.Path(arguments.binary).resolve()),
+                   steps, environment={"MPM": str(pathlib.Path(arguments.binary).absolute()),
                                           "MPM_SCRIPTS": str(ROOT / "scripts"), "MPM_OUTPUT": str(base / "chain"),
                                           "MPM_SBATCH_OPTIONS": limits})
         until = time.time() + arguments.wait

@@ -287,7 +287,7 @@ def main():
     given = parser.parse_intermixed_args()
     base = pathlib.Path(given.folder or tempfile.mkdtemp(prefix="mpm_starts_"))
     base.mkdir(parents=True, exist_ok=True)
-    tests = Tests(pathlib.Path(given.binary).resolve(), base.resolve(), given.decks)
+    tests = Tests(pathlib.Path(given.binary).absolute(), base.resolve(), given.decks)
     for name in given.tests or ("column", "cut", "decks", "refused", "changed"):
         for precision in given.precisions.split(","):
             before = tests.count

@@ -7,6 +7,7 @@ c, fortran   a footing with the law and with its UMAT: the same fields and force
              restarted, and started from a frame; then random decks of random states
 probe        what a UMAT is given: numbers, names, places, rotations, strains
 gives_up     PNEWDT, XIT and a stress that is not a number end the run with status 3, the particle, the step and the place
+driver       -element_path: the same paths through a law and through its UMAT, and what the UMAT is given
 refused      options and libraries that are wrong: one line, and nothing is written
 
 Exit status 77 where a compiler is missing for all that is asked for.
@@ -23,8 +24,9 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-sys.path[:0] = [str(HERE.parent), str(HERE.parent / "reliability")]
+sys.path[:0] = [str(HERE.parent), str(HERE.parent / "reliability"), str(HERE.parent / "element")]
 import particles  # noqa: E402
+import point  # noqa: E402
 from folders import checkpoints, contents, differences, frames, fresh, rows, run  # noqa: E402
 
 # Largest difference of a field from the built-in law's over the field's largest value; friction amplifies round-off.
@@ -266,6 +268,76 @@ class Tests:
                     self.check(how != 2 or "umat: strain 0.25 in step 7 of probe" in done.stderr, what)
                     self.check(frames(folder) and contents(frames(folder)[0]), "frames before the failure")
 
+    def paths_of(self, dim, size):
+        """Paths {name: columns}: by strains, with states that turn, and with stresses that are kept."""
+        dice, count = np.random.default_rng(dim), 40
+        axes = ("xx", "yy", "zz", "xy", "yz", "zx")[:4 if dim == 2 else 6]
+        # Lateral stresses differ: soil at an edge of the yield surface may share its flow among the two planes in any way.
+        start = {key: [stress] * (count + 1) for key, stress in (("sxx", -2e5), ("syy", -2e5), ("szz", -2.01e5))}
+        turns = np.cumsum(dice.uniform(-1, 1, (count + 1, len(axes))), axis=0) * size
+        by_strain = {"dt": [0] + [0.5] * count, **{"e" + c: turns[:, k] - turns[0, k] for k, c in enumerate(axes)}, **start}
+        shear = np.concatenate([[0], -size * np.sign(np.sin(np.arange(count) / 7 + 0.1))])
+        triaxial = {"dt": [0] + [0.5] * count, "deyy": shear, "dsxx": [0] * (count + 1), "dszz": [0] * (count + 1), **start}
+        constant_mean = {"deyy": shear, "dexy": shear / 3, "dsxx+dsyy+dszz": [0] * (count + 1), "dsxx-dszz": [0] * (count + 1),
+                         **start}
+        return {"strains": by_strain, "triaxial": triaxial, "constant mean": constant_mean}
+
+    def drive(self, law, columns, dim, *more, name="driver", status=0):
+        path = self.base / "path.csv"
+        point.write_path(path, columns)
+        pairs = zip(["-materials", "-clay_density", *law[::2]], ["clay", 1800, *law[1::2]])
+        deck = "".join(f"{option} {value}\n" for option, value in pairs)
+        return point.run_point(self.binary, fresh(self.base / name), deck, path, "-dim", dim, *more, status=status)
+
+    def test_driver(self, language):
+        """A point along the same path through a law and through its UMAT: the same to 1e-12 of the largest value."""
+        own, umat = self.laws(language)
+        worst = 0.0
+        for dim in self.dims:
+            for name, columns in self.paths_of(dim, 5e-3).items():
+                wanted, found = self.drive(own, columns, dim), self.drive(umat, columns, dim)
+                self.check(found["plastic_strain" if "plastic_strain" in found else "state_1"][-1] > 1e-3, f"{name} has not yielded")
+                stress = max(np.abs(wanted[key]).max() for key in point.STRESS)
+                strain = max(np.abs(wanted[key]).max() for key in point.STRAIN)
+                for keys, size in ((point.STRESS, stress), (point.STRAIN, strain)):
+                    for key in keys:
+                        worst = max(worst, np.abs(np.subtract(found[key], wanted[key])).max() / size)
+                worst = max(worst, apart(np.array(found["state_1"]), np.array(wanted["plastic_strain"])))
+                for key, c in (("strain_" + c, "e" + c) for c in point.COMPONENTS):  # what the law itself has summed
+                    worst = max(worst, np.abs(np.subtract(found[key], found[c])).max() / strain)
+                self.check(worst <= 1e-12, f"driver, {name} in {dim}D: {worst:.3g}")
+        self.worst = max(self.worst, worst)
+        print(f"driver: the built-in law and its UMAT differ by {worst:.2g}")
+
+    def test_driver_given(self):
+        """What the probe is given along a path, that it may give up, and that a path may go on from another's end."""
+        library = self.build(HERE / "probe.c", "probe.so")
+        for dim in self.dims:
+            path = {"time": [2, 3, 5], "exx": [0, 1e-3, 3e-3], "eyy": [0, 0, -1e-3], "exy": [0, 2e-3, 2e-3]}
+            law = self.umat(library, [1e6, 0.3], 38)
+            found = self.drive(law, path, dim, "-element_parts", 4, "-element_height", -7)
+            for key, right in {"state_1": 1, "state_2": 4.5, "state_3": 0.5, "state_4": 0, "state_5": -7 if dim == 2 else 0,
+                               "state_6": 0 if dim == 2 else -7, "state_16": 3e-3, "state_17": -1e-3, "state_19": 4e-3,
+                               "state_22": 4 if dim == 2 else 6, "state_23": 1, "state_24": 10, "state_25": ord("C"),
+                               "state_26": 8, "state_37": 38}.items():
+                self.check(abs(found[key][-1] - right) <= 1e-12 * max(abs(right), 1e-3), f"{key} is {found[key][-1]}, not {right}")
+            elastic = self.drive(["-clay_model", "linear_elastic", "-clay_young", "1e6", "-clay_poisson", "0.3"], path, dim)
+            for key in point.STRESS:
+                self.check(abs(found[key][-1] - elastic[key][-1]) <= 1e-9, f"{key} of the probe in {dim}D")
+            rest = {key: values[1:] for key, values in found.items()}
+            again = self.drive(law, rest, dim, "-element_parts", 4, "-element_height", -7)
+            for key in ("sxx", "sxy", "strain_xx", "state_26"):
+                self.check(abs(again[key][-1] - found[key][-1]) <= 1e-12 * abs(found[key][-1]), f"{key} of a path that goes on")
+            for how in (1, 2, 3):
+                lines = self.drive(self.umat(library, [1e6, 0.3, how, 1e-3], 38), path, dim, status=3)
+                told = [line for line in lines if line.startswith("mpm: row ")]
+                self.check(len(told) == 1 and "the law fails, or its stress is not finite" in told[0], f"gives up {how}: {lines}")
+        lines = self.drive(self.umat(library, [1e6, 0.3], 38), path, 2, "-precision", "single", status=2)
+        self.check(lines == ['mpm: -clay_model: given "umat", takes another model with -precision single: umat takes '
+                             '-precision double'], f"driven in single precision: {lines}")
+        lines = self.drive(self.umat(self.base / "none.so", [1e6, 0.3]), path, 2, status=2)
+        self.check(len(lines) == 1 and lines[0].startswith("mpm: -clay_library: given"), f"driven without a library: {lines}")
+
     def refused(self, words, *options):
         deck, _ = self.block(2, "-time_end", "1e-3")
         folder, done = self.run("refused", *deck, *options, status=2)
@@ -317,7 +389,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("binary", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("tests", nargs="*", default=["c", "fortran", "probe", "gives_up", "refused"])
+    parser.add_argument("tests", nargs="*", default=["c", "fortran", "driver", "probe", "gives_up", "refused"])
     parser.add_argument("--decks", type=int, default=60)
     parser.add_argument("--dims", default="2,3")
     args = parser.parse_intermixed_args()
@@ -330,8 +402,11 @@ def main():
     tests = Tests(args)
     for name in asked:
         if name in LAWS:
+            tests.test_driver(name)
             tests.test_language(name)
             tests.test_decks(name)
+        elif name == "driver":
+            tests.test_driver_given()
         else:
             getattr(tests, f"test_{name}")()
         print(f"{name}: {tests.count} checks so far, largest difference from the built-in laws {tests.worst:.2g}", flush=True)

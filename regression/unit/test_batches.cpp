@@ -106,12 +106,11 @@ TEST_CASE("what goes in batches covers each patch once, and leaves the rest of i
     const auto s = state_in_batches<B>(busy_cloud<B::dim>(7), 0.3);
     const auto active_slots = on_host(s.soil.bins.active_slots);
     std::multiset<int> expected, got;
-    for (int n = 0; n < s.soil.bins.colour_begin[Patch<B::dim>::colours]; ++n)
-      expected.insert(active_slots(n));
+    for (int n = 0; n < s.soil.bins.last_active; ++n) expected.insert(active_slots(n));
     int particles = 0;
     for (const auto& batch : s.batches.all) {
       const auto slots = on_host(batch.set.bins.active_slots);
-      for (int n = 0; n < batch.set.bins.colour_begin[Patch<B::dim>::colours]; ++n) got.insert(slots(n));
+      for (int n = 0; n < batch.set.bins.last_active; ++n) got.insert(slots(n));
       CHECK(batch.first == particles);
       particles = batch.last;
     }

@@ -4,8 +4,10 @@
 usage: test_benchmark.py PATH_TO_mpm
 """
 
+import contextlib
 import importlib.machinery
 import importlib.util
+import io
 import json
 import pathlib
 import re
@@ -108,6 +110,27 @@ class Benchmark(unittest.TestCase):
         self.assertIn("| interpolation, soil to nodes | ours, gather | 50 | - | - | - | - | - | - |", rows)
         self.assertIn("| interpolation, soil to nodes | ours, default | - | - | - | - | - | - | - |", rows)  # sums ahead
         self.assertIn("| 76,800 | `gather` | 120 (640) | - |", tables.strategies(measured).splitlines())
+
+    def test_pages(self):
+        """The page of each measurement holds the tables of its kept results between its marks."""
+        for what in ("strategies", "threads", "scaling", "paper"):
+            kept = benchmark.load([benchmark.ROOT / "docs" / "benchmarks" / f"{what}.json"])
+            page = benchmark.page_of(what).read_text()
+            self.assertIn(f"<!-- {what}: begin, by scripts/benchmark -->\n\n{benchmark.text_of(what, kept)}\n\n", page)
+            self.assertEqual(page.count(f"<!-- {what}: end, by scripts/benchmark -->"), 1)
+
+    def test_fill(self):
+        """fill() replaces the text between the marks, and nothing else; a page without marks stays."""
+        begin, end = "<!-- paper: begin, by scripts/benchmark -->", "<!-- paper: end, by scripts/benchmark -->"
+        with tempfile.TemporaryDirectory() as folder:
+            page = pathlib.Path(folder) / "page.md"
+            page.write_text(f"before\n\n{begin}\n\nformer\n\n{end}\n\nafter\n")
+            with contextlib.redirect_stdout(io.StringIO()):
+                benchmark.fill(page, "paper", r"a \1 b")
+            self.assertEqual(page.read_text(), f"before\n\n{begin}\n\na \\1 b\n\n{end}\n\nafter\n")
+            with self.assertRaises(SystemExit):
+                benchmark.fill(page, "threads", "a")
+            self.assertIn("before", page.read_text())
 
     def test_kept_results(self):
         """What is measured again replaces what was kept of it, and nothing else."""

@@ -19,7 +19,6 @@ std::string fault_of_bins(const State<Space, T, Dim>& s, const Set& set) {
   const auto begin = on_host(set.bins.begin), active_slots = on_host(set.bins.active_slots);
   const auto cell = on_host(set.points.cell), id = on_host(set.points.id);
   const auto x = on_host(set.points.coordinate);
-  const auto origin = on_host(s.patches.origin);
   const int cells = s.patches.node_count();
   std::set<int> ids;
   for (int c = 0; c < cells; ++c)
@@ -35,18 +34,13 @@ std::string fault_of_bins(const State<Space, T, Dim>& s, const Set& set) {
     return "an id is missing";
 
   std::set<int> slots;
-  for (int colour = 0; colour < Patch<Dim>::colours; ++colour)
-    for (int n = set.bins.colour_begin[colour]; n < set.bins.colour_begin[colour + 1]; ++n) {
-      const int slot = active_slots(n);
-      int own = 0;
-      for (int d = 0; d < Dim && is_device<Space>; ++d)
-        own |= (origin(slot)[d] / Patch<Dim>::edge % 2 != 0) << d;
-      if (own != colour) return "a slot is under the wrong colour";
-      if (n > set.bins.colour_begin[colour] && active_slots(n - 1) >= slot) return "slots do not rise";
-      if (begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells))
-        return "an empty slot is listed";
-      slots.insert(slot);
-    }
+  for (int n = set.bins.first_active; n < set.bins.last_active; ++n) {
+    const int slot = active_slots(n);
+    if (n > set.bins.first_active && active_slots(n - 1) >= slot) return "slots do not rise";
+    if (begin(slot * Patch<Dim>::cells) == begin((slot + 1) * Patch<Dim>::cells))
+      return "an empty slot is listed";
+    slots.insert(slot);
+  }
   for (int p = 0; p < set.points.count; ++p)
     if (!slots.count(cell(p) / Patch<Dim>::cells)) return "a slot that holds points is not listed";
   return "";

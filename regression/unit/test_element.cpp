@@ -11,6 +11,7 @@
 #include "element/drive.hpp"
 #include "element/least_squares.hpp"
 #include "element/path_file.hpp"
+#include "element/sum.hpp"
 #include "element/table.hpp"
 
 using namespace mpm;
@@ -138,6 +139,78 @@ TEST_CASE("rows of stress do not drift, and a total strain is reached whatever c
   REQUIRE(
       drive_row(law, row_of({k_t, k_t, k_t, k_t, k_e, k_e}, {1e-3, 0, 0, 0, 0, 0}), 3, 1e-9, point).empty());
   CHECK(point.strain == Sym6{1e-3, 0, 0, 0, 0, 0});
+}
+
+TEST_CASE("sums of stresses and of strains are governed", "[element]") {
+  const double bulk = 1e7, shear = 3e6;
+  const PointLaw law = saturating(bulk, shear, 1e4);
+  constexpr Drive k_f = Drive::free;
+  const std::vector<ElementSum> sums = {*parse_sum("dsxx+dsyy+dszz"), *parse_sum("dsxx - dszz"),
+                                        *parse_sum("2*deyy-4*dexx")};
+  DrivenPoint point{.now = {.stress = {-4e4, -7e4, -4e4}, .state = {0}}};
+  // yy strained at a constant mean stress: no volume, and the sides alike
+  ElementRow row = row_of({k_f, k_e, k_f, k_e, k_e, k_e}, {0, -1e-3, 0, 0, 0, 0});
+  row.sums = {0.0, 0.0, std::nullopt};
+  REQUIRE(drive_row(law, row, 3, 1e-10, point, sums).empty());
+  CHECK(std::fabs(point.strain[0] - 5e-4) < 1e-10);
+  CHECK(std::fabs(point.strain[2] - 5e-4) < 1e-10);
+  CHECK(std::fabs(point.now.stress[1] + 7e4 + 2 * shear * 1e-3) < 1e-4);
+  CHECK(std::fabs(point.now.stress[0] + point.now.stress[1] + point.now.stress[2] + 15e4) < 1e-4);
+  // a stress, a sum of stresses and a sum of strains together
+  const Sym6 before = point.strain;
+  row = row_of({k_f, k_s, k_f, k_e, k_e, k_e}, {0, -500, 0, 0, 0, 0});
+  row.sums = {-1500.0, std::nullopt, 1e-4};
+  REQUIRE(drive_row(law, row, 3, 1e-10, point, sums).empty());
+  CHECK(std::fabs(point.now.stress[0] + point.now.stress[1] + point.now.stress[2] + 15e4 + 1500) < 1e-3);
+  CHECK(std::fabs(2 * (point.strain[1] - before[1]) - 4 * (point.strain[0] - before[0]) - 1e-4) < 1e-10);
+  const double volume = -500 / bulk;  // yy takes a third of the change of the sum: no deviator of yy
+  CHECK(std::fabs(point.strain[1] - before[1] - volume / 3) < 1e-10);
+  // back and forth without drift
+  for (int n = 0; n < 200; ++n) {
+    row.sums = {n % 2 == 0 ? 3000.0 : -3000.0, std::nullopt, 0.0};
+    row.value[1] = n % 2 == 0 ? 1000 : -1000;
+    REQUIRE(drive_row(law, row, 2, 1e-3, point, sums).empty());
+  }
+  CHECK(std::fabs(point.now.stress[0] + point.now.stress[1] + point.now.stress[2] + 15e4 + 1500) < 500);
+}
+
+TEST_CASE("a sum that the law does not bear is told by its name", "[element]") {
+  const PointLaw law = saturating(1e7, 3e6, 1e4);
+  DrivenPoint point{.now = {.state = {0}}};
+  ElementRow row = row_of({k_e, k_e, k_e, Drive::free, k_e, k_e}, {});
+  row.sums = {3e4};
+  const std::string why = drive_row(law, row, 10, 1e-9, point, {*parse_sum("2*dsxy")});
+  CHECK(why.find("no strain increment was found that brings 2*sxy to") == 0);
+}
+
+TEST_CASE("the names of sums", "[element]") {
+  const auto sum = parse_sum("-dsyy + 1e-3*dsxx-0.5*dszz");
+  REQUIRE(sum);
+  CHECK(sum->weight == Sym6{1e-3, -1, -0.5, 0, 0, 0});
+  CHECK(!sum->of_strain);
+  CHECK(sum->name == "-dsyy+1e-3*dsxx-0.5*dszz");
+  CHECK(parse_sum("dexx+deyy+dezz")->of_strain);
+  for (const char* name : {"", "dsxx+deyy", "dsxx+", "dsxxdsyy", "0*dsxx", "dsxx-dsxx", "sxx+syy",
+                           "dsxx+2dsyy", "*dsxx", "x*dsxx", "dsab", "dsxx*2", "1e9*dsxx", "+", "time"})
+    CHECK(!parse_sum(name));
+}
+
+TEST_CASE("rows govern as many sums as they leave components free", "[element]") {
+  const auto fault_of = [](const std::string& text) {
+    const File file(text);
+    ElementConfig path;
+    const std::string fault = read_path(file.path, state_variables("von_mises"), path);
+    return fault.empty() && path.rows.back().drive[0] != Drive::free ? "xx is not free" : fault;
+  };
+  CHECK(fault_of("deyy,dsxx+dsyy+dszz,dsxx-dszz\n,,\n1e-3,5,0\n").empty());
+  CHECK(fault_of("deyy,dexx,dsxx+dsyy\n,,\n1e-3,,0\n").empty());
+  CHECK(fault_of("deyy,dsxx+dsyy+dszz\n,\n1e-3,5\n").find("as many numbers of sums as components") == 0);
+  CHECK(fault_of("dexx,dsxx+dsyy\n,\n1e-3,\n").find("xx is not free") == 0);
+  CHECK(fault_of("dexx,deyy,dsxx+dsyy\n,,\n1e-3,0,5\n").find("as many numbers of sums") == 0);
+  CHECK(fault_of("dsxx+dszz,2*dsxx+2*dszz\n,\n1,2\n").find("stresses and sums of which none follows") == 0);
+  CHECK(fault_of("dsyy,dsyy+dsxx,dsyy-dszz,dsxx+dszz\n,,,\n1,2,3,\n").empty());
+  CHECK(fault_of("dsyy,dsyy+dsxx,dsyy-dszz\n,,\n1,2,\n").empty());
+  CHECK(fault_of("deyy,dsxx+dsyy\n,3\n1e-3,5\n").find("row 0 without increments") == 0);
 }
 
 TEST_CASE("the table of a point", "[element]") {

@@ -4,6 +4,7 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 
+#include "common/gravity_on_soil.hpp"
 #include "energy_watch.hpp"
 #include "input/courant.hpp"
 #include "notices.hpp"
@@ -43,6 +44,42 @@ TEST_CASE("soil may have the energy that it began with and what gravity gives it
   CHECK(watch.check(row_of(2, 1), config).empty());     // and rose again
   CHECK(watch.check(row_of(2, 9), config).empty());     // within half of what has passed, 21 J
   CHECK_FALSE(watch.check(row_of(2, 13), config).empty());
+}
+
+TEST_CASE("water that covers all soil of one density takes the same share of gravity everywhere",
+          "[energy_watch][pore_water]") {
+  Config config = config_of_one_body();
+  config.materials.resize(2);
+  config.materials[0].density = 2000, config.materials[1].density = 1800;
+  config.bodies.push_back(config.bodies[0]);
+  CHECK_FALSE(carries_alike(config));
+  CHECK(gravity_on_soil(config) == config.gravity);
+  config.water = {.level = 3.09, .density = 1000};  // the mesh ends at 3 m, and its cells are of 0.1 m
+  CHECK_FALSE(carries_alike(config));
+  config.water.level = 3.1001;
+  CHECK(carries_alike(config));
+  CHECK(gravity_on_soil(config)[1] == -5);
+  config.gravity = {6, -8, 0};  // heights are against gravity: 0.8 y - 0.6 x
+  config.water.level = 2.4 + 0.0999;
+  CHECK_FALSE(carries_alike(config));
+  config.water.level = 2.4 + 0.1001;
+  CHECK(carries_alike(config));
+  CHECK(gravity_on_soil(config)[0] == 3);
+  config.bodies[1].material = 1;
+  CHECK_FALSE(carries_alike(config));
+  CHECK(gravity_on_soil(config) == config.gravity);
+}
+
+TEST_CASE("a body that sinks through covering water has the buoyant weight's energy",
+          "[energy_watch][pore_water]") {
+  Config config = config_of_one_body();
+  config.materials.resize(1);
+  config.materials[0].density = 2000;
+  config.water = {.level = 20, .density = 1000};
+  EnergyWatch watch;
+  watch.begin(row_of(2, 1), 1e6);
+  CHECK(watch.check(row_of(1, 11), config).empty());  // 2 kg by 1 m and 5 m/s2
+  CHECK_FALSE(watch.check(row_of(1, 18), config).empty());
 }
 
 TEST_CASE("stored energy and the work of rigids are sources", "[energy_watch]") {

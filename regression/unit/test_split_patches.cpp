@@ -53,7 +53,7 @@ TEST_CASE("patches are split by walls and by particles that are alone", "[split_
     using B = decltype(build);
     auto s = before_update<B>(scattered<B::dim>(3));
     s.plan.form = StepForm::overlapped;
-    const int held = s.soil.bins.colour_begin[Patch<B::dim>::colours];
+    const int held = s.soil.bins.last_active;
     for (const int border : {0, held / 3, held}) {
       INFO(B::name() << " border " << border);
       s.soil.bins.border = border;
@@ -99,7 +99,7 @@ TEST_CASE("kernels for common patches and for light laws do what those for all d
     auto whole = before_update<B>(cloud), split = before_update<B>(cloud), step = before_update<B>(cloud);
     INFO(B::name());
     REQUIRE(whole.light_laws);
-    const int held = whole.soil.bins.colour_begin[Patch<B::dim>::colours];
+    const int held = whole.soil.bins.last_active;
     const auto active = whole.soil.bins.active_slots;
     update_by_teams<PatchKind::any, Materials>(whole, active, 0, held);
     split_patches(split, split.space);

@@ -157,7 +157,7 @@ void for_each_shared(const char* label, const Space& space, const Shared (&all)[
 /// The slots that hold points, as places in Bins::active_slots.
 template <int Dim, class Space>
 Shared slots_held(const Bins<Space>& bins) {
-  return {bins.colour_begin[0], bins.colour_begin[Patch<Dim>::colours], 1};
+  return {bins.first_active, bins.last_active, 1};
 }
 /// All slots. Each thread has those next to its part of slots_held; their nodes are little work.
 template <int Dim, class Space>

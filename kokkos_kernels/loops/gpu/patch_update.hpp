@@ -37,17 +37,25 @@ KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const KinematicValues<T, Dim>* wi
 /// and none of its particles is alone.
 enum class PatchKind { common, any };
 
+/// Teams that share a multiprocessor. Fewer of them leave a thread more registers, which a kernel for one
+/// heavy law needs, and one for patches that are not common, which are few.
+template <class Space, class T, int Dim>
+constexpr int teams_for(PatchKind kind, bool heavy) {
+  const int fewer = heavy ? (sizeof(T) == sizeof(float) ? 2 : 1) : (kind == PatchKind::common ? 0 : 1);
+  return teams_at_once<T, Dim> - fewer;
+}
+
 /// A team moves the particles of a patch, whose laws are of the list Laws. If Sums, it adds them where they
 /// now are to the nodes for the next step, as the strategy `tile` does: a particle is read and written once a
 /// step.
-template <class Space, class T, int Dim, bool Sums, PatchKind kind, class Laws>
+/// teams: those that share a multiprocessor.
+template <class Space, class T, int Dim, bool Sums, PatchKind kind, class Laws,
+          int teams = teams_for<Space, T, Dim>(kind, Laws::k_size == 1)>
 struct UpdateParticles {
   using Source = SoilSource<Space, T, Dim>;
   using Boundary = BoundarySource<Space, T, Dim>;
-  using Tile_ = Tile<Source>;
-  // Patches that are not common are few: one team less on a multiprocessor leaves them the registers they need.
-  static constexpr int k_teams = teams_at_once<T, Dim> - (kind == PatchKind::common ? 0 : 1);
-  using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, k_teams>>;
+  using Tile_ = Tile<Source, teams>;
+  using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, teams>>;
   using Member = typename Team::member_type;
   using Memory = typename Space::memory_space;
   using Images = std::conditional_t<kind == PatchKind::common, NoImages, WindowImages<T, Dim>>;
@@ -132,7 +140,9 @@ struct UpdateParticles {
       nodes[n] = motion;
     });
     T moved = 0;
-    const auto particle = [&](int p) { return step_particle(nodes, mean, images, slot, lone, p, body, moved); };
+    const auto particle = [&](int p) {
+      return step_particle(nodes, mean, images, slot, lone, p, body, moved);
+    };
     if constexpr (Sums) {
       tile.clear(team, cell_begin);
       team.team_barrier();
@@ -190,7 +200,7 @@ struct UpdateParticles {
     });
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
-      if (by.f_bar_by_material) return average_cell(cell_begin(c), cell_begin(c + 1));
+      if (averages_by_material()) return average_cell(cell_begin(c), cell_begin(c + 1));
       T volume = 0, sum = 0;
       for (int p = cell_begin(c); p < cell_begin(c + 1); ++p) {
         volume += soil.volume(p);
@@ -201,6 +211,10 @@ struct UpdateParticles {
     team.team_barrier();
   }
 
+  /// Kernels of light laws alone, which have no registers for it, are not for it (light_kernels_do).
+  KOKKOS_INLINE_FUNCTION bool averages_by_material() const {
+    return !std::is_same_v<Laws, LightMaterials> && by.f_bar_by_material;
+  }
   /// The particles [first, last) of a cell, by material.
   KOKKOS_INLINE_FUNCTION void average_cell(int first, int last) const {
     const auto& soil = source.points;
@@ -212,7 +226,7 @@ struct UpdateParticles {
   }
   /// What average_dilatation has found for particle p in this cell of the patch [1/s].
   KOKKOS_INLINE_FUNCTION T mean_dilatation(const T* mean, int place, int p) const {
-    return by.f_bar_by_material ? dilatation(p) : mean[place];
+    return averages_by_material() ? dilatation(p) : mean[place];
   }
 
   /// Moves particle p; `moved` [cells] becomes the largest movement so far. lone: Strays::alone of the slot.
@@ -258,9 +272,7 @@ struct UpdateParticles {
     const auto& soil = source.points;
     // The loops of put_on_walls read the patch's place from memory: indexed by a variable, `images` and with
     // it the kernel's arguments would be copied to the memory of each thread.
-    const auto in_patch = [&](int d) {
-      return place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1);
-    };
+    const auto in_patch = [&](int d) { return place >> (d * Patch<Dim>::log_edge) & (Patch<Dim>::edge - 1); };
     const auto cell_along = [&](int d) { return origin(slot)[d] + in_patch(d); };
     if (!images.at_wall || !is_beyond_walls(grid, in_mesh(images.origin, coord_of<Dim>(place)), q.x)) return;
     if (put_on_walls(grid, cell_along, soil.coordinate(p), soil.velocity(p)))
@@ -287,6 +299,12 @@ UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
           .volume_is_fault = s.strays.rule == StrayRule::stop,
           .clock = {.start = s.time, .dt = dt, .steps = &s.control.data()->steps},
           .f_bar_by_material = s.f_bar_by_material && s.f_bar_fraction > 0};
+}
+
+/// Whether the kernels of light laws alone do all that this run asks for.
+template <class Space, class T, int Dim>
+bool light_kernels_do(const State<Space, T, Dim>& s) {
+  return s.light_laws && !(s.f_bar_by_material && s.f_bar_fraction > 0);
 }
 
 template <class Update, class Space, class T, int Dim>

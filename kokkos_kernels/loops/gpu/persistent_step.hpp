@@ -32,14 +32,14 @@ inline constexpr int k_patience = 20'000;
 template <class Space, class T, int Dim, bool WithNodes, class Laws>
 struct PersistentStep {
   static constexpr int threads = team_threads<Space>;
-  using Update = UpdateParticles<Space, T, Dim, true, PatchKind::any, Laws>;
+  static constexpr int k_teams = WithNodes ? 3 : teams_at_once<T, Dim>;  // that share a multiprocessor
+  using Update = UpdateParticles<Space, T, Dim, true, PatchKind::any, Laws, k_teams>;
   using NodeUpdate = UpdateNodes<Space, T, Dim>;
   using Member = typename Update::Member;
   using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_most_rigids>;
   using Sums = NodeSums<Space, T, Dim>;
   static constexpr int cells = Patch<Dim>::cells;
-  using Bounds = Kokkos::LaunchBounds<threads, WithNodes ? 3 : teams_at_once<T, Dim>>;
-  using Team = Kokkos::TeamPolicy<Space, Bounds>;
+  using Team = typename Update::Team;
   Update update;
   NodeUpdate nodes;
   EndStep<Space, T, Dim> end;
@@ -131,7 +131,6 @@ struct PersistentStep {
           Kokkos::atomic_inc(&launch_barrier().arrived);
           Signal signal{ended, 0};
           while (waits && signal.ended == ended && signal.paused == 0) signal = signal_of(update.control());
-          fence_of_teams();
           why = signal.paused;
         },
         paused);
@@ -142,18 +141,16 @@ struct PersistentStep {
   KOKKOS_INLINE_FUNCTION int end_step(const Member& team, Scratch scratch, int others, bool impatient) const {
     Control& control = update.control();
     Kokkos::single(Kokkos::PerTeam(team), [&] {
-      for (int looks = 0; load_of_others(&launch_barrier().arrived) < others; ++looks)
+      for (int looks = 0; acquire_of_others(&launch_barrier().arrived) < others; ++looks)
         if (impatient && looks == k_patience) Kokkos::atomic_or(&control.paused, Pause::last);
-      fence_of_teams();
     });
     team.team_barrier();
-    end(team, scratch.template take<double>(0));
-    int paused = 0;
+    int paused = end(team, scratch.template take<double>(0));
     Kokkos::single(
         Kokkos::PerTeam(team),
         [&](int& why) {
-          if ((control.paused & Pause::last) != 0) control.paused += Pause::not_co_resident - Pause::last;
-          why = control.paused;
+          if ((paused & Pause::last) != 0) control.paused = paused += Pause::not_co_resident - Pause::last;
+          why = paused;
           launch_barrier() = {};
           fence_of_teams();
           Kokkos::atomic_inc(&control.ended);

@@ -12,7 +12,8 @@
 
 namespace mpm {
 
-template <class Source>
+/// teams: those that share a multiprocessor.
+template <class Source, int teams = teams_at_once<typename Source::real, Source::dim>>
 class Tile {
  public:
   using T = typename Source::real;
@@ -51,10 +52,13 @@ class Tile {
            scratch_bytes<int>(cells + 1) + scratch_bytes<int>(window);
   }
   /// Entries that the stage has room for: somewhat more than a patch or layer of 2^Dim particles a cell
-  /// holds; less where a processor does what only tests ask of it.
+  /// holds, and all that three rounds of a team take where few teams leave it the memory; less where a
+  /// processor does what only tests ask of it.
   static constexpr int room() {
-    int entries = (Dim == 2 ? 288 : 128) / (is_device<Space> ? 1 : 2);
-    while (!scratch_fits<Space, T, Dim>(bytes_of(entries))) entries -= 32;
+    const bool much = Dim == 2 && sizeof(T) == sizeof(float) && teams <= 3;
+    int entries = (Dim == 2 ? (much ? 384 : 288) : 128) / (is_device<Space> ? 1 : 2);
+    while (!scratch_fits<Space, T, Dim>(bytes_of(entries), much ? teams : teams_at_once<T, Dim>))
+      entries -= 32;
     return entries;
   }
   static constexpr int capacity = room(), pitch = place(capacity);

@@ -28,8 +28,9 @@ struct CamClay {
 
   T critical_state_ratio, lambda, kappa, poisson, shear_modulus, specific_volume_start, ocr,
       preconsolidation_start, pressure_min;
-  T shear_ratio;  // -, G over K where Poisson's ratio is constant, else 0
-  T least;        // Pa, pressure_min or its default
+  T shear_ratio;                         // -, G over K where Poisson's ratio is constant, else 0
+  T least;                               // Pa, pressure_min or its default
+  T inv_kappa, inv_plastic, inv_slope2;  // -, 1/kappa, 1/(lambda - kappa), 1/M^2
 
   static constexpr auto parameters() {
     constexpr double required = std::numeric_limits<double>::quiet_NaN();
@@ -65,6 +66,8 @@ struct CamClay {
     const double nu = poisson;
     shear_ratio = shear_modulus > 0 ? T(0) : static_cast<T>(3 * (1 - 2 * nu) / (2 * (1 + nu)));
     least = pressure_min > 0 ? pressure_min : static_cast<T>(k_standard_least);
+    inv_kappa = 1 / kappa, inv_plastic = 1 / (lambda - kappa);
+    inv_slope2 = 1 / (critical_state_ratio * critical_state_ratio);
   }
   /// The default of pressure_min follows from the initial stress.
   void prepare_for(const RunFigures& run) {
@@ -78,8 +81,8 @@ struct CamClay {
   static constexpr std::array<StateVariable, 4> state() {
     return {{{"preconsolidation", "Pa"},
              {"specific_volume", "-"},
-             {.name = "preconsolidation_rest", .unit = "Pa", .output = false},  // see add_with_rest
-             {.name = "specific_volume_rest", .unit = "-", .output = false}}};
+             rest_variable<T>("preconsolidation_rest", "Pa"),
+             rest_variable<T>("specific_volume_rest", "-")}};
   }
   ParameterFault check() const {
     if (!(kappa < lambda)) return {"kappa", "a slope less than -NAME_lambda"};
@@ -142,11 +145,12 @@ struct CamClay {
     s = rotated(s, by.spin);
     T square = 0;
     for (int k = 0; k < sym_size<Dim>; ++k) square += (k < 3 ? 1 : 2) * by.strain[k] * by.strain[k];
-    const T wanted = Kokkos::ceil(Kokkos::sqrt(square) / T(k_largest_increment));
+    const T wanted = Kokkos::ceil(Kokkos::sqrt(square) * T(1 / k_largest_increment));
     const bool too_many = !(wanted <= k_most_increments);
     const int parts = too_many ? k_most_increments : Kokkos::max(1, static_cast<int>(wanted));
+    const T share = parts > 1 ? 1 / static_cast<T>(parts) : T(1);
     SymTensor<T, Dim> part;
-    for (int k = 0; k < sym_size<Dim>; ++k) part[k] = by.strain[k] / parts;
+    for (int k = 0; k < sym_size<Dim>; ++k) part[k] = by.strain[k] * share;
     MPM_ROLLED
     for (int n = 0; n < parts; ++n) strain_by(s, state, part);
     if (too_many) state[specific_volume] = state[specific_volume_rest] = 0;  // failed() tells it
@@ -165,7 +169,7 @@ struct CamClay {
     const T dilatation = e[0] + e[1] + e[2], v = state[specific_volume],
             v_middle = v * (1 + growth_of(dilatation / 2));
     add_with_rest(state[specific_volume], state[specific_volume_rest], v * growth_of(dilatation));
-    const T a = v_middle / kappa, b = v_middle / (lambda - kappa);
+    const T a = v_middle * inv_kappa, b = v_middle * inv_plastic;
     const ElasticPressure<T> elastic{least};
     const T rise = elastic.change(p, -a * dilatation), trial = p + rise;
     if (!(trial > 0)) {  // no pressure is left, and no stress
@@ -176,12 +180,14 @@ struct CamClay {
     add_shear(s, e, dilatation, shear);
     const T misfit = mean + p;  // 0, unless the stress was tensile
     for (int k = 0; k < 3; ++k) s[k] -= rise + misfit;
-    const T q = Kokkos::sqrt(3 * second_invariant(s, mean - rise - misfit)) / pc, over = trial / pc;
-    const T slope2 = critical_state_ratio * critical_state_ratio;
-    if (q * q / slope2 + over * (over - 1) <= 0) return;
-    const CamClayReturn<T> to_surface{{least / pc}, p / pc, -dilatation, a, b, q, over, shear / pc, slope2};
-    const auto [l, x] = root_of(to_surface);  // multiplier times Pc, plastic volume strain
-    const T less = rise - elastic.change(p, a * (-dilatation - x)), softer = 6 * (shear / pc) * l / slope2;
+    const T inv_pc = 1 / pc, over = trial * inv_pc;
+    const T q = Kokkos::sqrt(3 * second_invariant(s, mean - rise - misfit)) * inv_pc;
+    if (q * q * inv_slope2 + over * (over - 1) <= 0) return;
+    const CamClayReturn<T> to_surface{{least * inv_pc}, p * inv_pc, -dilatation, a, b, q, over,
+                                      shear * inv_pc,   inv_slope2};
+    const auto [l, x] = to_surface.solve();  // multiplier times Pc, plastic volume strain
+    const T less = rise - elastic.change(p, a * (-dilatation - x)),
+            softer = 6 * shear * inv_pc * l * inv_slope2;
     const bool free = !(trial - less > 0);
     const T from = mean_of(s), share = 1 / (1 + softer);
     for (int k = 0; k < sym_size<Dim>; ++k)

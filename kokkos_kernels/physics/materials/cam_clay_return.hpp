@@ -1,19 +1,9 @@
 #pragma once
 // The return to the yield surface of modified Cam-Clay (Borja & Lee 1990, Borja 1991), in two invariants.
 
-#include "base/types.hpp"
+#include "physics/materials/material.hpp"
 
 namespace mpm {
-
-/// exp(x) - 1. Steps of a run are small, and there a few terms of the series have all digits.
-template <class T>
-KOKKOS_INLINE_FUNCTION T growth_of(T x) {
-  constexpr T k_small = T(0.01);  // the first term left out is x^6/5040 of the sum
-  if (Kokkos::fabs(x) < k_small)
-    return x * (1 + x * (T(1.0 / 2) +
-                         x * (T(1.0 / 6) + x * (T(1.0 / 24) + x * (T(1.0 / 120) + x * T(1.0 / 720))))));
-  return Kokkos::expm1(x);
-}
 
 /// P(E) [Pa]: mean effective pressure, compression positive, over the elastic coordinate E = ln(P/least),
 /// which grows by v/kappa de_v. Below `least` the line P = least (1 + E) goes on with the slope, so that both
@@ -36,6 +26,11 @@ struct ElasticPressure {
   KOKKOS_INLINE_FUNCTION T slope(T at) const { return Kokkos::fmax(at, least); }
 };
 
+template <class T>
+struct CamClayReturn;
+template <class T>
+MPM_CALLED_FUNCTION typename CamClayReturn<T>::Root bisected(CamClayReturn<T> equations);
+
 /// A sub-increment of modified Cam-Clay that yields. Unknown are the multiplier l and the plastic volume
 /// strain x (compression positive) with
 ///   x = l (2P - Pc),  q = q_t / (1 + 6 G l / M^2),  f = q^2/M^2 + P (P - Pc) = 0.
@@ -48,47 +43,53 @@ struct CamClayReturn {
   T a, b;            // -, v/kappa and v/(lambda - kappa)
   T trial_q, trial;  // -, q and P of the elastic trial
   T shear_modulus;   // -
-  T slope2;          // -, M^2
+  T inv_slope2;      // -, 1/M^2
 
-  /// P, Pc and q for unknowns l and x, and the residuals of x and f.
+  struct Root {
+    T l, x;
+  };
+  /// P, Pc and q for unknowns l and x, 1/(1 + 6 G l / M^2), and the residuals of x and f.
   struct Point {
-    T p, pc, q, divisor, of_x, of_f;
+    T p, pc, q, share, of_x, of_f;
   };
   KOKKOS_INLINE_FUNCTION Point at(T l, T x) const {
     Point now;
     now.p = start + elastic.change(start, a * (compression - x));
     now.pc = 1 + growth_of(Kokkos::fmin(T(4), Kokkos::fmax(T(-4), b * x)));
-    now.divisor = 1 + 6 * shear_modulus * l / slope2;
-    now.q = trial_q / now.divisor;
+    now.share = 1 / (1 + 6 * shear_modulus * inv_slope2 * l);
+    now.q = trial_q * now.share;
     now.of_x = x - l * (2 * now.p - now.pc);
-    now.of_f = now.q * now.q / slope2 + now.p * (now.p - now.pc);
+    now.of_f = now.q * now.q * inv_slope2 + now.p * (now.p - now.pc);
     return now;
   }
 
-  /// Newton's method on both unknowns at once. Of 1e5 random increments of 2e-4 and less, six iterations leave
-  /// one in 1e5 that has not converged; the increments of a run need two or three. Returns whether the last
-  /// change was so small that the error, about its square, is round-off.
+  /// Newton's method on both unknowns at once. Of 1e5 random increments of 2e-4 and less, six iterations
+  /// leave one in 1e5 that has not converged; the increments of a run need two or three. Returns whether the
+  /// last change was so small that the error, about its square, is round-off.
   KOKKOS_INLINE_FUNCTION bool iterate(T& l, T& x) const {
     constexpr int k_iterations = 6;
     constexpr T k_largest = T(0.02);  // change of x
-    constexpr T k_last = sizeof(T) == sizeof(double) ? T(1e-8) : T(3e-4);
+    constexpr T k_last = sizeof(T) == sizeof(double) ? T(1e-6) : T(1e-3);
     const T n = 2 * trial - 1;
-    const T f = trial_q * trial_q / slope2 + trial * (trial - 1);
-    const T steepness =
-        12 * trial_q * trial_q * shear_modulus / (slope2 * slope2) + n * n * a * trial + trial * b * n;
-    l = f / Kokkos::fmax(steepness, T(1e-6) * a);
-    x = l * n / (1 + l * (2 * a * trial + b));
+    const T square = trial_q * trial_q * inv_slope2;
+    const T f = square + trial * (trial - 1), falls = 12 * shear_modulus * inv_slope2;
+    const T steepness = falls * square + n * n * a * trial + trial * b * n;
+    const T divisor = Kokkos::fmax(steepness, T(1e-6) * a), divisor_x = divisor + f * (2 * a * trial + b);
+    const T inverse = 1 / (divisor * divisor_x);
+    l = f * divisor_x * inverse;
+    x = f * n * divisor * inverse;
     MPM_ROLLED
     for (int n_done = 0; n_done < k_iterations; ++n_done) {
       const Point now = at(l, x);
       const T normal = 2 * now.p - now.pc, p_x = -a * elastic.slope(now.p), pc_x = b * now.pc;
       const T x_l = -normal, x_x = 1 - l * (2 * p_x - pc_x);
-      const T f_l = -12 * shear_modulus * now.q * now.q / (slope2 * slope2 * now.divisor);
+      const T f_l = -falls * now.q * now.q * inv_slope2 * now.share;
       const T f_x = p_x * normal - now.p * pc_x;
-      T det = x_l * f_x - x_x * f_l;
+      const T det = x_l * f_x - x_x * f_l;
       const T least = T(1e-6) * a;
-      det = Kokkos::fabs(det) > least ? det : (det < 0 ? -least : least);
-      const T by_l = (now.of_f * x_x - now.of_x * f_x) / det, by_x = (now.of_x * f_l - now.of_f * x_l) / det;
+      const T inv_det = 1 / (Kokkos::fabs(det) > least ? det : (det < 0 ? -least : least));
+      const T by_l = (now.of_f * x_x - now.of_x * f_x) * inv_det,
+              by_x = (now.of_x * f_l - now.of_f * x_l) * inv_det;
       const bool last = Kokkos::fabs(by_x) <= k_last * Kokkos::fabs(x) && Kokkos::fabs(by_l) <= k_last * l;
       x += Kokkos::fmin(k_largest, Kokkos::fmax(-k_largest, by_x));
       l = l + by_l > 0 ? l + by_l : l / 4;
@@ -110,39 +111,32 @@ struct CamClayReturn {
     }
     return x;
   }
-  /// The safeguard: bisection of l, with x of each l.
-  KOKKOS_FUNCTION void bisect(T& l, T& x) const {
-    constexpr int k_doublings = 40, k_halvings = sizeof(T) == sizeof(double) ? 50 : 26;
-    T low = 0, high = T(1e-6);
-    MPM_ROLLED
-    for (int k = 0; k < k_doublings && at(high, volume_of(high)).of_f > 0; ++k) low = high, high *= 2;
-    MPM_ROLLED
-    for (int k = 0; k < k_halvings; ++k) {
-      const T middle = (low + high) / 2;
-      (at(middle, volume_of(middle)).of_f > 0 ? low : high) = middle;
-    }
-    l = (low + high) / 2;
-    x = volume_of(l);
-  }
-
-  struct Root {
-    T l, x;
-  };
+  /// The multiplier and the plastic volume strain.
   KOKKOS_INLINE_FUNCTION Root solve() const {
     constexpr T k_converged = T(1e-4);
     Root root;
     if (iterate(root.l, root.x)) return root;
     const Point now = at(root.l, root.x);
-    if (!(Kokkos::fabs(now.of_x) < k_converged && Kokkos::fabs(now.of_f) < k_converged))
-      bisect(root.l, root.x);
-    return root;
+    const bool converged = Kokkos::fabs(now.of_x) < k_converged && Kokkos::fabs(now.of_f) < k_converged;
+    return converged ? root : bisected(*this);
   }
 };
 
-/// Its solution.
+/// The safeguard: bisection of l, with x of each l.
 template <class T>
-MPM_CALLED_FUNCTION typename CamClayReturn<T>::Root root_of(CamClayReturn<T> equations) {
-  return equations.solve();
+MPM_CALLED_FUNCTION typename CamClayReturn<T>::Root bisected(CamClayReturn<T> equations) {
+  constexpr int k_doublings = 40, k_halvings = sizeof(T) == sizeof(double) ? 50 : 26;
+  const auto yields_at = [&](T l) { return equations.at(l, equations.volume_of(l)).of_f > 0; };
+  T low = 0, high = T(1e-6);
+  MPM_ROLLED
+  for (int k = 0; k < k_doublings && yields_at(high); ++k) low = high, high *= 2;
+  MPM_ROLLED
+  for (int k = 0; k < k_halvings; ++k) {
+    const T middle = (low + high) / 2;
+    (yields_at(middle) ? low : high) = middle;
+  }
+  const T l = (low + high) / 2;
+  return {l, equations.volume_of(l)};
 }
 
 }  // namespace mpm

@@ -31,6 +31,9 @@ using Materials = ModelList<LinearElastic, VonMises, Tresca, MohrCoulomb, Drucke
 /// others cost them nothing (docs/development/gpu_laws.md).
 using LightMaterials = ModelList<LinearElastic, VonMises>;
 
+/// Laws whose update takes many. Common patches of soil that has no other law have a kernel for each.
+using HeavyMaterials = ModelList<Tresca, MohrCoulomb, CamClay, SofteningClay>;
+
 /// Index in Materials of a model.
 template <template <class> class Model, template <class> class... Models>
 constexpr int model_index_in(ModelList<Models...>) {

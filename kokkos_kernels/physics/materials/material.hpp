@@ -227,13 +227,33 @@ KOKKOS_INLINE_FUNCTION SymTensor<T, 3> rotated(const SymTensor<T, 3>& s, const S
   return r;
 }
 
-/// Adds to a sum with what is left of it: `rest` keeps what the sum has rounded off (Kahan 1965), so that a
-/// sum of many small increments does not stand still in single precision.
+/// The state variable that is a rest; see add_with_rest.
+template <class T>
+constexpr StateVariable rest_variable(const char* name, const char* unit) {
+  constexpr bool single = sizeof(T) == sizeof(float);
+  return {.name = name, .unit = unit, .changes = single, .output = false, .used = single};
+}
+/// Adds to a sum. In single precision `rest` keeps what the sum has rounded off (Kahan 1965), so that a sum
+/// of many small increments does not stand still. Double precision needs no rests.
 template <class T>
 KOKKOS_INLINE_FUNCTION void add_with_rest(T& sum, T& rest, T increment) {
-  const T whole = increment + rest, next = sum + whole;
-  rest = whole - (next - sum);
-  sum = next;
+  if constexpr (sizeof(T) > sizeof(float)) {
+    sum += increment;
+  } else {
+    const T whole = increment + rest, next = sum + whole;
+    rest = whole - (next - sum);
+    sum = next;
+  }
+}
+
+/// exp(x) - 1. Steps of a run are small, and there a few terms of the series have all digits.
+template <class T>
+KOKKOS_INLINE_FUNCTION T growth_of(T x) {
+  constexpr T k_small = T(0.01);  // the first term left out is x^6/5040 of the sum
+  if (Kokkos::fabs(x) < k_small)
+    return x * (1 + x * (T(1.0 / 2) +
+                         x * (T(1.0 / 6) + x * (T(1.0 / 24) + x * (T(1.0 / 120) + x * T(1.0 / 720))))));
+  return Kokkos::expm1(x);
 }
 
 /// Mean stress (s_xx + s_yy + s_zz) / 3.

@@ -33,16 +33,27 @@ Increment<T, T, Dim> increment_of(const PointIncrement& by, const int* no_steps)
   return increment;
 }
 
+/// The position of a point at a height, which is along the last axis.
+std::array<double, 3> position_at(double height, int dim) {
+  std::array<double, 3> position{};
+  position[dim - 1] = height;
+  return position;
+}
+
 template <class T, int Dim>
-PointState updated(const AnyMaterial<T>& material, const PointState& point, const PointIncrement& by) {
-  static constexpr int k_no_steps = 0;
+PointState updated(const AnyMaterial<T>& material, double height, const PointState& point,
+                   const PointIncrement& by) {
+  int no_steps = 0;  // not constant: to load it atomically may write it
   PointState next = point;
-  const auto increment = increment_of<T, Dim>(by, &k_no_steps);
+  const auto increment = increment_of<T, Dim>(by, &no_steps);
   material.visit([&](const auto& law) {
     using Law = std::remove_cvref_t<decltype(law)>;
     auto stress = tensor_of<T, Dim>(point.stress);
     auto state = state_of<T, Law>(point);
-    law.update(stress, state, increment);
+    if constexpr (takes_place<Law>())
+      law.update(stress, state, increment, ParticlePlace{.position = position_at(height, Dim)});
+    else
+      law.update(stress, state, increment);
     for (int k = 0; k < sym_size<Dim>; ++k) next.stress[k] = stress[k];
     for (std::size_t k = 0; k < next.state.size(); ++k) next.state[k] = state[static_cast<int>(k)];
   });
@@ -69,29 +80,30 @@ double modulus_at(const AnyMaterial<T>& material, const PointState& point) {
   return modulus;
 }
 
+/// The law keeps its object as long as it lives.
 template <class T, int Dim>
-PointLaw law_in(int which, const std::vector<double>& parameters) {
-  const auto material = make_material<T>(which, parameters);
-  return {[material](const PointState& point, const PointIncrement& by) {
-            return updated<T, Dim>(material, point, by);
-          },
-          [material](const PointState& point) { return has_failed<T, Dim>(material, point); },
-          [material](const PointState& point) { return modulus_at<T, Dim>(material, point); }};
+PointLaw law_in(const PointMaterial& of) {
+  const auto material = make_material<T>(of.which, of.parameters, of.object.get());
+  return {
+      [material, object = of.object, height = of.height](const PointState& point, const PointIncrement& by) {
+        return updated<T, Dim>(material, height, point, by);
+      },
+      [material](const PointState& point) { return has_failed<T, Dim>(material, point); },
+      [material](const PointState& point) { return modulus_at<T, Dim>(material, point); }};
 }
 
 }  // namespace
 
-PointLaw point_law(int which, const std::vector<double>& parameters, bool single, int dim) {
-  if (single) return dim == 2 ? law_in<float, 2>(which, parameters) : law_in<float, 3>(which, parameters);
-  return dim == 2 ? law_in<double, 2>(which, parameters) : law_in<double, 3>(which, parameters);
+PointLaw point_law(const PointMaterial& material, bool single, int dim) {
+  if (single) return dim == 2 ? law_in<float, 2>(material) : law_in<float, 3>(material);
+  return dim == 2 ? law_in<double, 2>(material) : law_in<double, 3>(material);
 }
 
-PointState point_start(int which, const std::vector<double>& parameters, double height,
-                       const std::array<double, 6>& stress) {
-  const auto material = make_material<double>(which, parameters);
-  PointState point{.stress = stress,
-                   .state = initial_state(material, {.position = {}, .height = height, .stress = stress})};
-  point.state.resize(state_variables(which).size());  // those that its particles do not carry are 0
+PointState point_start(const PointMaterial& of, int dim, const std::array<double, 6>& stress) {
+  const auto material = make_material<double>(of.which, of.parameters, of.object.get());
+  const ParticleStart start{.position = position_at(of.height, dim), .height = of.height, .stress = stress};
+  PointState point{.stress = stress, .state = initial_state(material, start)};
+  point.state.resize(state_variables(of.which).size());  // those that its particles do not carry are 0
   return point;
 }
 

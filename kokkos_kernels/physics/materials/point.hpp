@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace mpm {
@@ -27,12 +28,19 @@ struct PointLaw {
   std::function<double(const PointState&)> wave_modulus;  // K + 4/3 G [Pa]
 };
 
-/// The law of the model of this index in Materials with these parameters. In 2D the shear components yz and
-/// zx stay as they are.
-PointLaw point_law(int which, const std::vector<double>& parameters, bool single, int dim);
+/// Which material a point is of.
+struct PointMaterial {
+  int which = -1;                        // index of its model in Materials
+  std::vector<double> parameters{};      // in the order of the model's table
+  std::shared_ptr<const void> object{};  // of make_object, where the model has one
+  double height = 0;                     // m, of the point
+};
 
-/// A point that is created at a height [m] with a stress [Pa].
-PointState point_start(int which, const std::vector<double>& parameters, double height,
-                       const std::array<double, 6>& stress);
+/// The law of a material. In 2D the shear components yz and zx stay as they are. A law that asks for the
+/// place of its particle is told the first particle, at the point's height.
+PointLaw point_law(const PointMaterial& material, bool single, int dim);
+
+/// A point that is created with a stress [Pa].
+PointState point_start(const PointMaterial& material, int dim, const std::array<double, 6>& stress);
 
 }  // namespace mpm

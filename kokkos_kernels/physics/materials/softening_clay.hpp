@@ -88,8 +88,8 @@ struct SofteningClay : Clay<T> {
   static constexpr std::array<StateVariable, 4> state() {
     return {{{"plastic_strain", "-"},  // xi, accumulated engineering plastic shear strain
              {.name = "strength", .unit = "Pa", .changes = false, .output = false, .parameter = "su"},  // su0
-             {.name = "plastic_strain_rest", .unit = "-", .output = false},  // see add_with_rest
-             {.name = "shear_rate", .unit = "1/s"}}};                        // smoothed
+             rest_variable<T>("plastic_strain_rest", "-"),
+             {.name = "shear_rate", .unit = "1/s"}}};  // smoothed
   }
   KOKKOS_FUNCTION bool carries(int k) const { return k != shear_rate || rate_time > 0; }
 
@@ -182,14 +182,20 @@ struct SofteningClay : Clay<T> {
   template <int Dim>
   KOKKOS_INLINE_FUNCTION T return_to_circle(SymTensor<T, Dim>& s, const State& state, T shear_modulus,
                                             T rapid) const {
-    constexpr int k_iterations = sizeof(T) == sizeof(double) ? 4 : 3;
-    const T mean = mean_of(s), r = shear_stress_of(s, mean), xi = state[plastic_strain];
+    constexpr int k_iterations = 5;
+    constexpr T k_last =
+        sizeof(T) == sizeof(double) ? T(1e-7) : T(1e-3);  // change of g, of which the square is left
+    const T mean = mean_of(s), r = shear_stress_of(s, mean),
+            left = rapid * what_is_left(state[plastic_strain]);
+    const T over = r - rapid * remoulded_ratio - left;
+    if (over <= 0) return 0;
     const T fall = remoulded_ratio < 1 ? 3 / xi95 : T(0);
-    if (r <= rapid * (remoulded_ratio + what_is_left(xi))) return 0;
-    T g = 0;
-    for (int k = 0; k < k_iterations; ++k) {
-      const T left = rapid * what_is_left(xi + g);
-      g += (r - shear_modulus * g - rapid * remoulded_ratio - left) / (shear_modulus - fall * left);
+    T g = over / (shear_modulus - fall * left);
+    for (int k = 1; k < k_iterations; ++k) {
+      const T softer = left * growth_of(-fall * g);  // less than 0
+      const T more = (over - shear_modulus * g - softer) / (shear_modulus - fall * (left + softer));
+      g += more;
+      if (more <= k_last * g) break;
     }
     const T share = Kokkos::fmin(T(1), shear_modulus * g / r);
     for (int k = 0; k < sym_size<Dim>; ++k) s[k] -= share * (k < 3 ? s[k] - mean : s[k]);

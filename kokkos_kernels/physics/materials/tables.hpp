@@ -12,6 +12,7 @@ struct StateVariable {
   const char* unit;
   bool changes = true;  // update() changes it; else it follows from where the particle was created
   bool output = true;   // frames have it
+  bool used = true;     // update() asks for it
   const char* parameter = nullptr;  // key of the parameter whose value at the particle it is, which a file of
                                     // particles may give; at most one variable of a law has one
 };

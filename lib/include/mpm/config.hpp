@@ -63,9 +63,10 @@ struct MaterialConfig {
   std::string name, model;
   double density = 0;                    // kg/m3
   std::vector<double> parameters;        // as Model::parameters() lists them
-  std::shared_ptr<const void> object{};  // what the model made of its options that are texts; most need none
+  std::vector<std::string> texts{};      // values of the model's options that are texts, as it lists them
+  std::shared_ptr<const void> object{};  // what the model made of its texts; most need none
   double pore_stiffness = 0;             // Pa, of the water in its pores, which does not flow; 0: they drain
-  std::optional<double> f_bar_fraction;  // -, as Config::f_bar_fraction, which holds where there is none
+  std::optional<double> f_bar_fraction{};  // -, as Config::f_bar_fraction, which holds where there is none
 };
 
 /// A deformable body.
@@ -169,15 +170,23 @@ struct WaterConfig {
 };
 
 /// What drives a component over a row of a path: an increment of strain, the strain since the start that it
-/// ends with, or an increment of stress.
-enum class Drive { strain, total_strain, stress };
+/// ends with, an increment of stress, or nothing of its own, so that sums of components decide its strain.
+enum class Drive { strain, total_strain, stress, free };
+
+/// A weighted sum of increments of stress, or of strain, that rows of a path may govern.
+struct ElementSum {
+  std::string name;        // as the header has it, dsxx+dsyy+dszz
+  bool of_strain = false;  // else of stress
+  Sym6 weight{};           // -
+};
 
 /// A row of the path of a single material point.
 struct ElementRow {
   long line = 0;  // of the file
   double dt = 1;  // s
   std::array<Drive, 6> drive{};
-  Sym6 value{};  // -, tensor shear strains; Pa
+  Sym6 value{};                             // -, tensor shear strains; Pa
+  std::vector<std::optional<double>> sums{};  // Pa or -, change of each sum; none where it is not governed
 };
 
 /// A single material point that is driven along a path, in lieu of a mesh.
@@ -189,6 +198,7 @@ struct ElementConfig {
   bool timed = false;                         // the file has times; otherwise each row takes 1 s
   Sym6 stress{};                              // Pa, at the start
   std::vector<std::pair<int, double>> state;  // state variables of the law that the file gives for the start
+  std::vector<ElementSum> sums;               // that rows may govern
   std::vector<ElementRow> rows;
 };
 

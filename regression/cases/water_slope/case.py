@@ -29,27 +29,33 @@ RUNS = {f"{name}_{how}": f"-gravity {G * np.sin(BETA):.15g},{-G * np.cos(BETA):.
         f" -sand_friction_deg {phi(factor):.12g} -sand_dilation_deg {phi(factor):.12g} -slab_file {{start}}"
         + (" -water_level 20" if how == "submerged" else "") for name, factor in SAFETY.items() for how in ("dry", "submerged")}
 
+IN_3D = (f" -dim 3 -mesh_lower 0,0,0 -mesh_upper 32,0.5,2 -gravity {G * np.sin(BETA):.15g},0,{-G * np.cos(BETA):.15g}"
+         " -mesh_ymin roller -mesh_ymax roller -mesh_zmin fixed -mesh_zmax free")
+RUNS["slides_submerged_3D"] = RUNS["slides_submerged"] + IN_3D
+
 
 def weight(run):
     """Effective unit weight, N/m3."""
-    return (DENSITY - WATER * run.endswith("submerged")) * G
+    return (DENSITY - WATER * ("submerged" in run)) * G
 
 
 def prepare(run, path, options):
-    place = particles.lattice((1, 0), (1 + LENGTH, THICK), SPACING)
-    depth = THICK - place[:, 1]
+    dim = 3 if run.endswith("3D") else 2
+    place = particles.lattice((1, *[0] * (dim - 1)), (1 + LENGTH, *[0.5] * (dim - 2), THICK), SPACING)
+    depth = THICK - place[:, -1]
+    up, across, shear = (1, 2, 3) if dim == 2 else (2, 1, 5)
     stress = np.zeros((len(place), 6))
-    stress[:, 1] = -weight(run) * depth * np.cos(BETA)
-    stress[:, 0] = (2 / np.cos(BETA) ** 2 - 1) * stress[:, 1]
-    stress[:, 2] = (stress[:, 0] + stress[:, 1]) / 2
-    stress[:, 3] = weight(run) * depth * np.sin(BETA)
+    stress[:, up] = -weight(run) * depth * np.cos(BETA)
+    stress[:, 0] = (2 / np.cos(BETA) ** 2 - 1) * stress[:, up]
+    stress[:, across] = (stress[:, 0] + stress[:, up]) / 2
+    stress[:, shear] = weight(run) * depth * np.sin(BETA)
     particles.write(path, "slab", place, SPACING, stress=stress)
 
 
 def speed(run):
     """Mean speed down the slope of the upper half of the middle third, m/s."""
     slab = last_frame(run, "slab")
-    x, y = slab["position"][:, 0], slab["position"][:, 1]
+    x, y = slab["position"][:, 0], slab["position"][:, int(run.number("dim", 2)) - 1]
     inside = (np.abs(x - 1 - LENGTH / 2) < LENGTH / 6) & (y > THICK / 2)
     return slab["velocity"][inside, 0].mean()
 
@@ -61,3 +67,6 @@ def check(runs):
                   0, 1e-9, "rest", single=1e-3)
         yield Row(f"speed over g' t sin(beta), factor of safety 0.9, {how}", speed(runs[f"slides_{how}"]) / (g * END * np.sin(BETA)),
                   0.1 * np.cos(np.radians(phi(SAFETY["slides"]))) ** 2, 0.01, "sliding, (1 - 0.9) cos2(phi)")
+    yield Row("speed over g' t sin(beta), factor of safety 0.9, submerged, 3D",
+              speed(runs["slides_submerged_3D"]) / (weight("submerged") / DENSITY * END * np.sin(BETA)),
+              0.1 * np.cos(np.radians(phi(SAFETY["slides"]))) ** 2, 0.01, "sliding, (1 - 0.9) cos2(phi)")
