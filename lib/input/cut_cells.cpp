@@ -7,8 +7,8 @@
 namespace mpm {
 namespace {
 
-constexpr double k_round = 1e-9;        // of a cell: round-off
-constexpr double k_nothing = 1.0 / 32;  // of a cell: too little for a particle where no other takes it
+constexpr double k_round = 1e-9;                       // of a cell: round-off
+constexpr double k_tiny = 1.0 / 32, k_nothing = 1e-3;  // of a cell: a small particle; too little for one
 
 }  // namespace
 
@@ -161,12 +161,15 @@ class Levels {
   Cell cell_of(long k, long column) const { return {column % width_, column / width_, k}; }
   const CellPart& own_of(const Cell& cell) const { return at(cell[2]).own[cell[1] * width_ + cell[0]]; }
   Cell largest_neighbour(const Cell& cell) const;
-  /// A cell of k_least_part or more that is a neighbour, or a neighbour's neighbour; itself if there is none.
+  /// A cell of k_least_part or more that is a neighbour, or a neighbour's neighbour. If there is none, a tiny
+  /// part goes where there is more, and others stay.
   Cell taker_of(const Cell& cell) const {
     const Cell next = largest_neighbour(cell);
     if (own_of(next).volume >= k_least_part || next == cell) return next;
     const Cell last = largest_neighbour(next);
-    return own_of(last).volume >= k_least_part ? last : cell;
+    if (own_of(last).volume >= k_least_part) return last;
+    if (own_of(cell).volume >= k_tiny) return cell;
+    return own_of(next).volume >= k_tiny ? next : last;
   }
   static void add(const CellPart& part, const Cell& offset, CellPart& to) {
     to.volume += part.volume;
@@ -194,7 +197,7 @@ void Levels::join_small(long k) {
     const CellPart& part = at(k).own[column];
     if (part.volume == 0 || part.volume >= k_least_part) continue;
     const Cell here = cell_of(k, column), to = taker_of(here);
-    at(k).gone[column] = to != here || part.volume < k_nothing;
+    at(k).gone[column] = to != here;
     if (to == here) continue;
     add(part, {here[0] - to[0], here[1] - to[1], here[2] - to[2]}, at(to[2]).taken[to[1] * width_ + to[0]]);
   }
@@ -220,7 +223,7 @@ bool any_cut_particle(const Facets& facets, const CellGrid& grid, long from, lon
     if (done < from || done >= to) continue;
     for (long column = 0; column < grid.columns(); ++column) {
       const CellPart part = levels.particle(done, column);
-      if (part.volume == 0) continue;
+      if (part.volume < k_nothing) continue;
       Vec3 x{};
       const std::array<long, 3> cell{column % width + grid.first[0], column / width + grid.first[1], done};
       for (int d = 0; d < 3; ++d)

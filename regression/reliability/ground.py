@@ -4,7 +4,7 @@
     ground.py MPM [--count 60] [--seed 1] [--folder FOLDER] [--dims 2,3]
 
 A deck has one to four layers between random levels, polylines and rasters (which may touch), or a ball, a wedge or a tilted box of triangles, with
-one to four particles a cell in each direction, on 1 to 3 ranks, and makes a few steps under gravity. Each run must end well with the exact volume,
+one to four particles a cell in each direction, on 1 to 3 ranks, and makes a few steps under gravity. Some take their strength from a field. Each run must end well with the exact volume,
 to 1e-3, in the history's masses and the first frame; the particles of several ranks must be those of one; and no particle is outside its shape's bounds.
 """
 import argparse
@@ -179,6 +179,20 @@ def solid(draw, folder):
     return ["-soil_shape", "stl", "-soil_file", str(path)], {"soil": volume_of(faces)}
 
 
+STRENGTH = np.array([2e4, 700.0, -450.0, 1100.0])  # Pa, and its growth along x, y, z
+
+
+def write_field(path, draw, dim):
+    """A strength that is linear in space, on a grid around the mesh."""
+    lower, spacing = [-draw.random() for _ in range(dim)], [draw.uniform(0.4, 2) for _ in range(dim)]
+    axes = [low + h * np.arange(int(np.ceil((6 - low) / h)) + 2) for low, h in zip(lower, spacing)]
+    grid = np.meshgrid(*axes, indexing="ij")
+    slopes = STRENGTH[1:] if dim == 3 else STRENGTH[[1, 3]]
+    with h5py.File(path, "w") as file:
+        data = file.create_dataset("su", data=(STRENGTH[0] + sum(s * x for s, x in zip(slopes, grid))).T)
+        data.attrs["lower"], data.attrs["spacing"] = lower, spacing
+
+
 def deck(draw, folder, dim):
     options, bodies = {}, {}
     while not bodies:
@@ -192,8 +206,13 @@ def deck(draw, folder, dim):
              ",".join(bodies)]
     if "von_mises" in words:
         words += ["-clay_su", draw.choice([1e3, 1e5])]
+    field = folder / "field.h5"
+    field.unlink(missing_ok=True)
+    if "von_mises" in words and draw.random() < 0.7:
+        write_field(field, draw, dim)
     for name in bodies:
         words += [f"-{name}_material", "clay", f"-{name}_particles_per_cell", per_cell]
+        words += [f"-{name}_field", field] if field.exists() else []
     return [str(word) for word in words + options], bodies, spacing / per_cell
 
 
@@ -231,13 +250,17 @@ class Tests:
                 self.check(abs(mass / DENSITY / volume - 1) < 1e-3, f"{about}\n{name}: mass {mass / DENSITY}, exact volume {volume}")
                 self.check(abs(held.sum() / volume - 1) < 1e-3, f"{about}\n{name}: volume {held.sum()}, exact {volume}")
                 self.check(held.min() > 0 and held.max() < 2.5 * width ** dim, f"{about}\n{name}: volumes {held.min()} to {held.max()}")
+                if f"-{name}_field" in options:
+                    x = frame[name]["position"][()]
+                    exact = STRENGTH[0] + x @ (STRENGTH[1:] if dim == 3 else STRENGTH[[1, 3, 2]] * [1, 1, 0])
+                    self.check(np.allclose(frame[name]["su"][()], exact, rtol=1e-6), f"{about}\n{name}: strengths of the field")
         ranks = draw.choice([1, 2, 3])
         if ranks > 1:
             other, result = self.run("parts", options, ranks)
             self.check(result.returncode == 0, f"{about} on {ranks} ranks\n{result.stderr}")
             with h5py.File(frames(folder)[0]) as one, h5py.File(frames(other)[0]) as many:
                 for name in bodies:
-                    for field in ("position", "volume", "mass"):
+                    for field in ("position", "volume", "mass", *(["su"] if f"-{name}_field" in options else [])):
                         self.check(np.array_equal(one[name][field][()], many[name][field][()]), f"{about} on {ranks} ranks: {name}/{field}")
 
 
