@@ -145,12 +145,12 @@ def profile(run, film):
     return (np.array([field[row].mean() for row in inside]) for field in (y, frame["grid_velocity"][:, 0]))
 
 
-def flow_rows(law, run, film, tolerance):
+def flow_rows(law, run, film, tolerance, **shortfall_of_flow):
     y, velocity = profile(run, film)
     y, velocity = np.r_[0, y, film.height], np.r_[0, velocity, velocity[-1]]
     through = np.sum((velocity[1:] + velocity[:-1]) / 2 * np.diff(y))
     yield Row(f"velocity of the surface, {law} (m/s)", velocity[-1], film.surface(), tolerance, "steady flow", relative=True)
-    yield Row(f"rate of flow, {law} (m2/s)", through, film.flow(), tolerance, "steady flow", relative=True)
+    yield Row(f"rate of flow, {law} (m2/s)", through, film.flow(), tolerance, "steady flow", relative=True, **shortfall_of_flow)
 
 
 def draw(axes, runs, films):

@@ -93,7 +93,8 @@ std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>&
     if (!body.field.empty()) keep_contents(name + "_field", body.field, note, kept);
   }
   for (const RigidConfig& rigid : config.rigids)
-    for (const auto& [key, path] : files_of(rigid.shape)) keep_contents("-" + rigid.name + key, path, "", kept);
+    for (const auto& [key, path] : files_of(rigid.shape))
+      keep_contents("-" + rigid.name + key, path, "", kept);
   return kept;
 }
 
@@ -107,6 +108,12 @@ bool is_load(const std::string& name, const Config& config) {
     for (const char* of_rigid : {"_motion", "_velocity", "_force", "_density"})
       if (key == lower_case(rigid.name) + of_rigid) return true;
   return false;
+}
+
+/// Whether the default of an option follows other options, whose own changes are told.
+bool follows_others(const std::string& name) {
+  const std::string key = "_f_bar_fraction";  // of a material
+  return name.size() > key.size() + 1 && name.compare(name.size() - key.size(), key.size(), key) == 0;
 }
 
 Comparison compare_options(const Checkpoint& checkpoint, const std::vector<EffectiveOption>& now,
@@ -125,6 +132,7 @@ Comparison compare_options(const Checkpoint& checkpoint, const std::vector<Effec
     then.erase(option.name);
     if (may_change(option.name) || (former == nullptr && option.standard)) continue;
     if (former != nullptr && same_value(former->value, option.value)) continue;
+    if (former != nullptr && former->standard && option.standard && follows_others(option.name)) continue;
     if (is_allowed(option.name))
       found.changes.push_back({option.name, former == nullptr ? "none" : former->value, option.value});
     else

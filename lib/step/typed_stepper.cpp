@@ -281,7 +281,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
     unfit.what = "the number of particles";
   PetscCall(share(&unfit));
   PetscCheck(unfit.what.empty(), comm_, PETSC_ERR_ARG_SIZ,
-             "The checkpoint does not fit to what the options describe: %s", unfit.what.c_str());
+             "-restart: given \"%s\", takes a checkpoint of what the options describe; they differ in %s",
+             config_.output.restart.c_str(), unfit.what.c_str());
   if (ranks_) {
     PetscCallCXX(PetscCall(ranks_->restore(state_, saved)));
   } else {

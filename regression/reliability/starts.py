@@ -53,7 +53,7 @@ def apart(a, b):
     """Largest difference over the largest value."""
     if a.shape != b.shape or not (np.isfinite(a).all() and np.isfinite(b).all()):
         return np.inf
-    return np.abs(a - b).max() / max(np.abs(b).max(), 1e-300)
+    return float(np.abs(a - b).max()) / max(float(np.abs(b).max()), 1e-300)
 
 
 def history(folder, name):

@@ -333,7 +333,8 @@ TEST_CASE("a name's number does not make it inherit the options of the name with
           .report.errors;
   REQUIRE(errors.size() == 1);
   CHECK(errors[0] ==
-        "mpm: -pile_1_shape: not given, takes box, polygon, disc, ball, cylinder, cone or half_plane");
+        "mpm: -pile_1_shape: not given, takes box, polygon, disc, ball, cylinder, cone, half_plane, stl or "
+        "layer");
 }
 
 TEST_CASE("a prefix keeps two simulations apart", "[options]") {
