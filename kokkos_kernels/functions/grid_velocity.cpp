@@ -22,7 +22,7 @@ struct GridVelocity {
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> operator()(int p) const {
     using S = SoilTerms<Dim>;
     Vector<double, Dim> v = filled<double, Dim>(0);
-    for_each_node<Kind::motion>(points, points.bodies(points.body(p)).half_length, places, p,
+    for_each_node<Kind::motion>(points, any_domain_of(points, p), places, p,
                                 [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
                                   const double m_i = nodes(i, S::mass);
                                   if (!(m_i > 0)) return;  // a mass too small for T

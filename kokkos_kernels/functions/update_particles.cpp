@@ -7,9 +7,9 @@ namespace {
 template <class Space>
 using Slots = Kokkos::View<int*, typename Space::memory_space>;
 
-template <bool Sums, PatchKind kind, class Laws, class Space, class T, int Dim>
+template <bool Sums, PatchKind kind, class Laws, ParticleDomain domain, class Space, class T, int Dim>
 void launch_for(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
-  using Update = UpdateParticles<Space, T, Dim, Sums, kind, Laws>;
+  using Update = UpdateParticles<Space, T, Dim, Sums, kind, Laws, domain>;
   const int teams = part.last - part.first;
   if (teams == 0) return;
   Kokkos::parallel_for("mpm::update_particles",
@@ -19,10 +19,12 @@ void launch_for(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, c
 }
 template <bool Sums, PatchKind kind, class Space, class T, int Dim>
 void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
-  if (s.light_laws)
-    launch_for<Sums, kind, LightMaterials>(s, dt, slots, part);
-  else
-    launch_for<Sums, kind, Materials>(s, dt, slots, part);
+  with_domain(s.soil.points, [&](auto domain) {
+    if (s.light_laws)
+      launch_for<Sums, kind, LightMaterials, domain()>(s, dt, slots, part);
+    else
+      launch_for<Sums, kind, Materials, domain()>(s, dt, slots, part);
+  });
 }
 
 /// The patches that are not common are few and take longer each. They are launched first, on a stream of
@@ -50,7 +52,9 @@ void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const
       if (sums) return update_on_device<true>(s, dt, part, aside);
     update_on_device<false>(s, dt, part, aside);
   } else {
-    move_on_host(s, update_scalars(s, dt), sums);
+    with_domain(s.soil.points, [&](auto domain) {
+      move_on_host<domain()>(s, update_scalars(s, dt), domain_bounds(s), sums);
+    });
   }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "physics/domain.hpp"
+
 namespace mpm {
 
 template <class Space, class T, int Dim>
@@ -39,6 +41,12 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
     spread(soil.mass, 1, fields.mass, whole);
   else
     spread(soil.body, 1, fields.mass, of_body);
+
+  const double spacing = s.spacing;
+  const auto half_length = [&](const auto& moments, int d) {
+    return double(half_lengths_of(moments)[d]) * spacing;
+  };
+  if (soil.has_domain) spread(soil.domain, Dim, fields.half_length, half_length);
 
   const auto x_p = host_of(soil.coordinate);
   const auto cell = host_of(soil.cell);

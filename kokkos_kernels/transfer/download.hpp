@@ -16,6 +16,7 @@ struct SoilFields {
   std::vector<double> velocity, stress, volume;
   std::vector<std::vector<double>> history;  // of each column in use
   std::vector<double> mass;                  // kg
+  std::vector<double> half_length;           // m [Dim N], where domains stretch
 };
 template <class Space, class T, int Dim>
 SoilFields download_soil(const State<Space, T, Dim>& s);

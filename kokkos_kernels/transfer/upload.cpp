@@ -7,6 +7,7 @@
 
 #include "physics/materials/any.hpp"
 #include "physics/pore_water.hpp"
+#include "physics/stretch_domain.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/velocity_gradients.hpp"
 
@@ -166,6 +167,16 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       const BodyInput& body = bodies[body_of[p]];
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
+  if (soil.has_domain)
+    fill_view(soil.domain, "mpm::domain", soil.count, [&](int p) {
+      const BodyInput& body = bodies[body_of[p]];
+      constexpr int moments = Dim * (Dim + 1) / 2;
+      auto domain = square_domain<T, Dim>(static_cast<T>(body.half_length));
+      for (int k = 0; k < moments && !body.domain.empty(); ++k)
+        domain[k] = static_cast<T>(body.domain[std::size_t(in_body(p)) * moments + k]);
+      limit_domain(domain, DomainBounds<T>{T(s.least_half_length), T(k_most_half_length)});
+      return domain;
+    });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
     return store_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get(),
                              materials[m].pore_stiffness);
@@ -296,6 +307,9 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
     smallest = std::min(smallest, body.most_volume > 0 ? body.least_volume : body.particle_volume);
     largest = std::max(largest, body.most_volume > 0 ? body.most_volume : body.particle_volume);
   }
+  s.least_half_length = k_least_half_length;
+  for (const BodyInput& body : bodies)
+    s.least_half_length = std::min(s.least_half_length, body.half_length);
   s.strays.least_volume = k_least_volume * smallest, s.strays.most_volume = k_most_volume * largest;
   s.strays.lost.assign(bodies.size(), {});
   s.strays.put_back = decltype(s.strays.put_back)("mpm::put_back", bodies.size());

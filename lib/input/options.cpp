@@ -200,6 +200,12 @@ void read_physics(OptionReader& in, Config& config) {
              .range = {.lowest = 0, .highest = 1, .open_highest = true}},
             config.damping);
   read_velocity_update(in, config);
+  in.word({.name = "particle_domain",
+           .meaning = "how the domains of particles follow the soil: fixed: not at all; stretch: each "
+                      "particle has half lengths along the axes that follow its deformation, from 0.1 to 0.5 "
+                      "cells"},
+          Words<ParticleDomain>{{"fixed", ParticleDomain::fixed}, {"stretch", ParticleDomain::stretch}},
+          config.particle_domain);
   in.word(
       {.name = "stray_particles",
        .meaning =

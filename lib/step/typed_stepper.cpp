@@ -1,5 +1,6 @@
 #include "step/typed_stepper.hpp"
 #include "device/device_agrees.hpp"
+#include "input/courant.hpp"
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
@@ -74,6 +75,7 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   in.state = start_state<Dim>(config, law, in, particles);
   in.id = std::move(particles.id);
   in.velocity_gradient = std::move(particles.velocity_gradient);
+  in.domain = std::move(particles.domain);
   return in;
 }
 
@@ -85,7 +87,8 @@ double displaced_mass(const Config& config, const RigidInput& rigid) {
   for (std::size_t p = 0; p < rigid.position.size() / Dim && water.is_there(); ++p) {
     Vector<double, Dim> x;
     for (int d = 0; d < Dim; ++d) x[d] = rigid.position[p * Dim + d];
-    volume += rigid.particle_volume * water.submerged_share(x, rigid.half_length * config.mesh.spacing);
+    volume += rigid.particle_volume *
+              water.submerged_share(x, filled<double, Dim>(rigid.half_length * config.mesh.spacing));
   }
   return water.density * volume;
 }
@@ -153,6 +156,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;
   state_.affine = config_.velocity_update == VelocityUpdate::apic;
   state_.strays.rule = config_.stray_particles;
+  state_.soil.points.has_domain = config_.particle_domain == ParticleDomain::stretch;
+  state_.rim_scale = rim_scale(config_);
   // On several ranks the pressure of a cell is averaged once all its particles are here.
   state_.f_bar_fraction = model.owners.empty() ? config_.f_bar_fraction : 0;
   state_.keeps_stress = model.from_run;

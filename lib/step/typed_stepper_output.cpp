@@ -105,6 +105,17 @@ void add_pore_pressures(const Config& config, const SoilFields& soil, int pore, 
   if (pore >= 0) body->state.push_back({k_excess_pore_pressure, std::move(excess)});
 }
 
+/// The half lengths of the particles [from, to), where domains stretch.
+template <int Dim>
+void add_half_lengths(const SoilFields& soil, std::size_t from, std::size_t to, ParticleSnapshot* body) {
+  static constexpr const char* names[] = {"half_length_x", "half_length_y", "half_length_z"};
+  for (int d = 0; d < Dim; ++d) {
+    StateField field{names[d], {}};
+    for (std::size_t p = from; p < to; ++p) field.values.push_back(soil.half_length[p * Dim + d]);
+    body->state.push_back(std::move(field));
+  }
+}
+
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
   PetscFunctionBeginUser;
@@ -142,6 +153,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     body.state = state_fields(config_.materials[config_.bodies[b].material], soil, from, to);
     if (has_pore_pressure(config_))  // of all bodies, so that pictures may show them
       add_pore_pressures<Dim>(config_, soil, state_.soil.points.history.pore, from, to, &body);
+    if (state_.soil.points.has_domain) add_half_lengths<Dim>(soil, from, to, &body);
     body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
     body.reference_height.assign(height.begin() + from, height.begin() + to);
     if (ranks_)

@@ -5,6 +5,7 @@
 #include "device/warp.hpp"
 #include "loops/gpu/tile.hpp"
 #include "physics/advance.hpp"
+#include "physics/stretch_domain.hpp"
 
 namespace mpm {
 
@@ -40,10 +41,11 @@ enum class PatchKind { common, any };
 /// A team moves the particles of a patch, whose laws are of the list Laws. If Sums, it adds them where they
 /// now are to the nodes for the next step, as the strategy `tile` does: a particle is read and written once a
 /// step.
-template <class Space, class T, int Dim, bool Sums, PatchKind kind, class Laws>
+template <class Space, class T, int Dim, bool Sums, PatchKind kind, class Laws,
+          ParticleDomain domain = ParticleDomain::fixed>
 struct UpdateParticles {
-  using Source = SoilSource<Space, T, Dim>;
-  using Boundary = BoundarySource<Space, T, Dim>;
+  using Source = SoilSource<Space, T, Dim, domain>;
+  using Boundary = BoundarySource<Space, T, Dim, domain>;
   using Tile_ = Tile<Source>;
   // Patches that are not common are few: one team less on a multiprocessor leaves them the registers they need.
   static constexpr int k_teams = teams_at_once<T, Dim> - (kind == PatchKind::common ? 0 : 1);
@@ -60,6 +62,7 @@ struct UpdateParticles {
     static constexpr std::size_t bytes() { return 0; }
   };
   using TileOrNothing = std::conditional_t<Sums, Tile_, Nothing>;
+  using Domain = DomainOf<T, Dim, domain>;
 
   Source source;
   Kokkos::View<int*, Memory> begin, slots;
@@ -81,6 +84,7 @@ struct UpdateParticles {
   int law;        // index in Materials of that of all bodies; -1: they differ
   bool one_body;  // no particle needs to be asked which its body is
   bool has_boundary;
+  DomainBounds<T> bounds;  // where domains stretch
 
   static constexpr std::size_t bytes() {
     const std::size_t own =
@@ -160,6 +164,7 @@ struct UpdateParticles {
     for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
       prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
       prefetch(&soil.volume(p));
+      if constexpr (domain == ParticleDomain::stretch) prefetch(&soil.domain(p));
       if constexpr (Dim == 2) {  // the forms that spill least: scripts/law_registers
         for (int k = 0; k < most_state(Laws{}, true); ++k)
           if (k < soil.history.columns) prefetch(&soil.history.column[k](p));
@@ -181,7 +186,8 @@ struct UpdateParticles {
                                                  const KinematicValues<T, Dim>* nodes, T* mean) const {
     const auto& soil = source.points;
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), [&](int p) {
-      with_weights_near(soil.coordinate(p), soil.bodies(one_body ? 0 : soil.body(p)).half_length,
+      with_weights_near(soil.coordinate(p),
+                        domain_of<domain>(soil, p, soil.bodies(one_body ? 0 : soil.body(p))),
                         [&](const AxisWeights<T>(&a)[Dim]) {
                           dilatation(p) = dilatation_from_nodes<T, Dim>(nodes, coord_of<Dim>(soil.cell(p)), a,
                                                                         by.inv_spacing);
@@ -207,15 +213,25 @@ struct UpdateParticles {
                                                              const BodyProperties<T>& common,
                                                              T& moved) const {
     const auto& soil = source.points;
-    BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
+    const BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
     const int place = soil.cell(p) - slot * cells;
     const Coord<Dim> cell = coord_of<Dim>(place);
     Particle<T, Dim> q{soil.coordinate(p), soil.velocity(p), soil.stress(p), soil.volume(p)};
     const bool flies = kind != PatchKind::common && (lone >> place & 1) != 0;
     T own = 0;
-    with_weights_near(q.x, body.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-      own = advance(q, ParticleLaw<Space, T, Dim, Laws>{soil, p, body.material, law, flies},
-                    sample_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean[place] : T(0), by);
+    Domain half_length = domain_of<domain>(soil, p, body);
+    with_weights_near(q.x, half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+      using Law = ParticleLaw<Space, T, Dim, Laws>;
+      if constexpr (domain == ParticleDomain::fixed) {
+        own = advance(q, Law{soil, p, body.material, law, flies},
+                      sample_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean[place] : T(0), by);
+      } else {
+        DomainMoments<T, Dim> moments = soil.domain(p);
+        const Law of_particle{soil, p, body.material, law, flies};
+        own = advance(q, StretchingLaw<T, T, Dim, Law>{of_particle, moments, bounds},
+                      sample_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean[place] : T(0), by);
+        if (!flies) soil.domain(p) = moments, half_length = half_lengths_of(moments);
+      }
     });
     if (flies) q.volume = soil.volume(p);
     soil.coordinate(p) = q.x;
@@ -231,8 +247,7 @@ struct UpdateParticles {
       report(control, fault, soil.id(p), position, Dim);
     }
     moved = Kokkos::fmax(moved, own);
-    body.mass = soil.mass_of(p, body);
-    return {q.x, source.point(body, q.v, q.stress, q.volume)};
+    return {q.x, source.point(half_length, soil.mass_of(p, body), q.v, q.stress, q.volume)};
   }
 
   /// Brings particle p, which may have passed a wall, back to it. In memory, where that takes few registers.
@@ -271,6 +286,12 @@ UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
           .clock = {.start = s.time, .dt = dt, .steps = &s.control.data()->steps}};
 }
 
+/// Bounds of the half lengths of domains that stretch.
+template <class Space, class T, int Dim>
+DomainBounds<T> domain_bounds(const State<Space, T, Dim>& s) {
+  return {T(s.least_half_length), T(k_most_half_length)};
+}
+
 template <class Update, class Space, class T, int Dim>
 Update update_of(const State<Space, T, Dim>& s, double dt,
                  const Kokkos::View<int*, typename Space::memory_space>& slots, int first) {
@@ -297,7 +318,8 @@ Update update_of(const State<Space, T, Dim>& s, double dt,
           .first = first,
           .law = s.law,
           .one_body = set.points.bodies.extent(0) == 1,
-          .has_boundary = s.soil_boundary};
+          .has_boundary = s.soil_boundary,
+          .bounds = domain_bounds(s)};
 }
 
 }  // namespace mpm
