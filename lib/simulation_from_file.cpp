@@ -82,7 +82,7 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
   particles->reference_height = std::move(table.reference_height);
   if (config.velocity_update == VelocityUpdate::apic)
     particles->velocity_gradient = std::move(table.velocity_gradient);
-  if (config.particle_domain == ParticleDomain::stretch) particles->domain = std::move(table.domain);
+  if (config.particle_domain != ParticleDomain::fixed) particles->domain = std::move(table.domain);
   PetscCallCXX(take_masses(std::move(table), density, *particles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -72,8 +72,7 @@ struct State {
   bool affine = false;            // APIC: Soil::affine is in use; flip_fraction is then 0
   double f_bar_fraction = 0;      // -
   bool keeps_stress = false;      // sorting brings no pressures together: at a start from another run
-  double least_half_length = 0;   // cells, of domains that stretch (k_least_half_length)
-  double rim_scale = 0;           // cells, likewise: by how much they slow the time step (lib/input/courant.hpp)
+  double rim_scale = 0;           // cells, of domains that stretch: by how much they slow the time step
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them
   StepPlan plan;                  // of the steps until the next rebuild

@@ -52,9 +52,8 @@ void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const
       if (sums) return update_on_device<true>(s, dt, part, aside);
     update_on_device<false>(s, dt, part, aside);
   } else {
-    with_domain(s.soil.points, [&](auto domain) {
-      move_on_host<domain()>(s, update_scalars(s, dt), domain_bounds(s), sums);
-    });
+    with_domain(s.soil.points,
+                [&](auto domain) { move_on_host<domain()>(s, update_scalars(s, dt), sums); });
   }
 }
 

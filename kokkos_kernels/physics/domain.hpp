@@ -12,11 +12,12 @@
 
 namespace mpm {
 
-/// Half lengths of the domain with these moments.
-template <class R, int Dim>
-KOKKOS_INLINE_FUNCTION HalfLengths<R, Dim> half_lengths_of(const DomainMoments<R, Dim>& m) {
+/// Half lengths [cells] of the domain with these moments, `least` at least and k_most_half_length at most.
+template <class R, class T, int Dim>
+KOKKOS_INLINE_FUNCTION HalfLengths<R, Dim> half_lengths_of(const DomainMoments<R, Dim>& m, T least) {
   HalfLengths<R, Dim> half;
-  for (int d = 0; d < Dim; ++d) half[d] = HalfLength<R>(Kokkos::sqrt(m[d]));
+  for (int d = 0; d < Dim; ++d)
+    half[d] = HalfLength<R>(Kokkos::fmin(T(k_most_half_length), Kokkos::fmax(least, Kokkos::sqrt(m[d]))));
   return half;
 }
 
@@ -35,12 +36,12 @@ KOKKOS_INLINE_FUNCTION DomainOf<T, Dim, domain> domain_of(const Soil<Space, T, D
   if constexpr (domain == ParticleDomain::fixed)
     return of.half_length;
   else
-    return half_lengths_of(soil.domain(p));
+    return half_lengths_of(soil.domain(p), soil.least_half_length);
 }
 /// The same where only the run knows whether domains stretch, for what is not done in every step.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION HalfLengths<T, Dim> any_domain_of(const Soil<Space, T, Dim>& soil, int p) {
-  if (soil.has_domain) return half_lengths_of(soil.domain(p));
+  if (soil.has_domain) return half_lengths_of(soil.domain(p), soil.least_half_length);
   HalfLengths<T, Dim> half;
   for (int d = 0; d < Dim; ++d) half[d] = soil.bodies(soil.body(p)).half_length;
   return half;

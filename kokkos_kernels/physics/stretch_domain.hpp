@@ -6,20 +6,16 @@
 
 namespace mpm {
 
-/// Bounds of the half lengths [cells].
-template <class T>
-struct DomainBounds {
-  T least, most;
-};
-
-/// Brings the half lengths into their bounds: axis by axis the moments are scaled, M_ij <- s_i s_j M_ij, so
-/// that they stay those of a parallelogram.
-template <class R, class T, int Dim>
-KOKKOS_INLINE_FUNCTION void limit_domain(DomainMoments<R, Dim>& m, const DomainBounds<T>& bounds) {
+/// Brings a domain into the bounds within which a particle remembers how its soil was deformed: soil that flows
+/// deforms without end. Axis by axis the moments are scaled, M_ij <- s_i s_j M_ij, so that they stay those of a
+/// parallelogram. The bounds are far beyond those of the half lengths, so that soil that is compressed and
+/// springs back has the domain that it had. T: the type of the numbers in R.
+template <class T, class R, int Dim>
+KOKKOS_INLINE_FUNCTION void limit_domain(DomainMoments<R, Dim>& m) {
+  constexpr T k_least = T(0.01), k_most = T(4);  // cells
   R scale[Dim];
   for (int d = 0; d < Dim; ++d) {
-    const R within =
-        Kokkos::fmin(bounds.most * bounds.most, Kokkos::fmax(bounds.least * bounds.least, m[d]));
+    const R within = Kokkos::fmin(k_most * k_most, Kokkos::fmax(k_least * k_least, m[d]));
     scale[d] = Kokkos::sqrt(within / m[d]);
     m[d] = within;
   }
@@ -30,8 +26,7 @@ KOKKOS_INLINE_FUNCTION void limit_domain(DomainMoments<R, Dim>& m, const DomainB
 /// Deforms a domain by a step, M <- G M G^T with G = exp(A) to second order and A = L dt, whose trace is that
 /// of the strain increment: its dilatation may be the mean of a cell (F-bar), as that of the particle's volume.
 template <class R, class T, int Dim>
-KOKKOS_INLINE_FUNCTION void stretch_domain(DomainMoments<R, Dim>& m, const Increment<R, T, Dim>& by,
-                                           const DomainBounds<T>& bounds) {
+KOKKOS_INLINE_FUNCTION void stretch_domain(DomainMoments<R, Dim>& m, const Increment<R, T, Dim>& by) {
   R a[Dim][Dim], correction = 0;
   for (int d = 0; d < 3; ++d) correction += by.strain[d];
   for (int d = 0; d < Dim; ++d) correction -= by.dt * by.gradient[d][d];
@@ -57,19 +52,19 @@ KOKKOS_INLINE_FUNCTION void stretch_domain(DomainMoments<R, Dim>& m, const Incre
       for (int k = 0; k < Dim; ++k) sum += gm[i][k] * g[j][k];
       m[moment_index<Dim>(i, j)] = sum;
     }
-  limit_domain(m, bounds);
+  limit_domain<T>(m);
 }
 
 /// A law that stretches the particle's domain too: the function of `advance` that sees the increment.
-template <class R, class T, int Dim, class Law>
+template <class R, int Dim, class Law>
 struct StretchingLaw {
   const Law& law;
   DomainMoments<R, Dim>& domain;
-  const DomainBounds<T>& bounds;
+  template <class T>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(SymTensor<R, Dim>& stress,
                                               const Increment<R, T, Dim>& by) const {
     law(stress, by);
-    stretch_domain(domain, by, bounds);
+    stretch_domain(domain, by);
   }
 };
 

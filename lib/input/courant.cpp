@@ -16,7 +16,7 @@ double viscous_share(const Config& config) {
   double most = 2;  // particles along a cell's edge, or as many as one alone counts for
   for (const BodyConfig& body : config.bodies)
     most = std::max(most, body.shape.particles_per_cell > 1 ? double(body.shape.particles_per_cell) : 3.0);
-  if (config.particle_domain == ParticleDomain::stretch)
+  if (config.particle_domain != ParticleDomain::fixed)
     most = std::max(most, 0.5 / k_least_half_length);  // as short as a domain may become
   return share * 2 / most;
 }

@@ -185,7 +185,6 @@ struct HostParticles {
   decltype(Strays<Space>::put_back) put_back;
   UpdateScalars<T> by;
   double spacing;
-  DomainBounds<T> bounds;  // where domains stretch
 
   /// Asks for what the next slot takes from the nodes.
   void fetch_nodes(int slot) const {
@@ -359,7 +358,7 @@ struct HostParticles {
       DomainMoments<R, Dim> moments;
       load_field(soil.domain, p, count, moments.c);
       const auto was = moments;
-      const StretchingLaw<R, T, Dim, LawLanes<R, Space, T, Dim>> stretching{law, moments, bounds};
+      const StretchingLaw<R, Dim, LawLanes<R, Space, T, Dim>> stretching{law, moments};
       const R moved = advance(q, stretching, t, mean, by);
       for (int k = 0; k < Dim * (Dim + 1) / 2 && law.some_fly; ++k)
         moments[k] = select(law.flies > 0, was[k], moments[k]);

@@ -207,7 +207,7 @@ KOKKOS_FORCEINLINE_FUNCTION DomainOf<R, Dim, domain> domains_of(const Points_& p
   } else {
     DomainMoments<R, Dim> moments;
     load_field(points.domain, p, count, moments.c);
-    return half_lengths_of(moments);
+    return half_lengths_of(moments, points.least_half_length);
   }
 }
 

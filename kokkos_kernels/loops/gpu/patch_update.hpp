@@ -84,7 +84,6 @@ struct UpdateParticles {
   int law;        // index in Materials of that of all bodies; -1: they differ
   bool one_body;  // no particle needs to be asked which its body is
   bool has_boundary;
-  DomainBounds<T> bounds;  // where domains stretch
 
   static constexpr std::size_t bytes() {
     const std::size_t own =
@@ -228,9 +227,9 @@ struct UpdateParticles {
       } else {
         DomainMoments<T, Dim> moments = soil.domain(p);
         const Law of_particle{soil, p, body.material, law, flies};
-        own = advance(q, StretchingLaw<T, T, Dim, Law>{of_particle, moments, bounds},
+        own = advance(q, StretchingLaw<T, Dim, Law>{of_particle, moments},
                       sample_nodes(nodes, cell, a, by.inv_spacing), by.f_bar > 0 ? mean[place] : T(0), by);
-        if (!flies) soil.domain(p) = moments, half_length = half_lengths_of(moments);
+        if (!flies) soil.domain(p) = moments, half_length = half_lengths_of(moments, soil.least_half_length);
       }
     });
     if (flies) q.volume = soil.volume(p);
@@ -286,12 +285,6 @@ UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
           .clock = {.start = s.time, .dt = dt, .steps = &s.control.data()->steps}};
 }
 
-/// Bounds of the half lengths of domains that stretch.
-template <class Space, class T, int Dim>
-DomainBounds<T> domain_bounds(const State<Space, T, Dim>& s) {
-  return {T(s.least_half_length), T(k_most_half_length)};
-}
-
 template <class Update, class Space, class T, int Dim>
 Update update_of(const State<Space, T, Dim>& s, double dt,
                  const Kokkos::View<int*, typename Space::memory_space>& slots, int first) {
@@ -318,8 +311,7 @@ Update update_of(const State<Space, T, Dim>& s, double dt,
           .first = first,
           .law = s.law,
           .one_body = set.points.bodies.extent(0) == 1,
-          .has_boundary = s.soil_boundary,
-          .bounds = domain_bounds(s)};
+          .has_boundary = s.soil_boundary};
 }
 
 }  // namespace mpm
