@@ -3,6 +3,7 @@
 #include <catch2/catch_test_macros.hpp>
 
 #include "compare.hpp"
+#include "physics/advance.hpp"
 #include "physics/stretch_domain.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/measure.hpp"
@@ -313,7 +314,11 @@ TEST_CASE("soil that moves as one body keeps its domains, and steps as with fixe
       const Table before = domains_of_soil(s);
       run_steps(s, k_dt, 50), run_steps(same, k_dt, 50);
       INFO(B::name() << " " << word_of(how));
-      CHECK(largest_difference(domains_of_soil(s), before) < B::of(1e-11, 1e-3));
+      const Table after = domains_of_soil(s);
+      double change = 0;  // cells2
+      for (std::size_t n = 0; n < before.value.size(); ++n)
+        change = std::max(change, std::fabs(after.value[n] - before.value[n]));
+      CHECK(change < B::of(1e-12, 1e-4));
       CHECK(largest_difference(soil_fields(s)[0], soil_fields(same)[0]) < B::of(1e-12, 1e-5));
     }
   });
