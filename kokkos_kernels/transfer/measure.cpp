@@ -146,13 +146,19 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
 }
 
 /// By how much the square of a particle's wave speed counts more for the time step, where its domain is so
-/// short or so long that a node of the rim is less stable than the Courant number allows for.
+/// short or so long that a node of the rim is less stable than the Courant number allows for. A particle that was
+/// split counts as a lone one: its neighbours may be lighter or gone.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION double rim_factor(const Soil<Space, T, Dim>& soil, int p, double rim_scale) {
   if (!soil.has_domain) return 1;
   const HalfLengths<T, Dim> half = any_domain_of(soil, p);
   double sum = 0;
-  for (int d = 0; d < Dim; ++d) sum += Kokkos::fmax(1 / double(half[d]), 2 + 8 * double(half[d]));
+  constexpr double k_whole = 0.75;  // of the mass of a particle that was not split
+  const bool piece = soil.splits && soil.mass(p) < k_whole * double(soil.bodies(soil.body(p)).mass);
+  for (int d = 0; d < Dim; ++d) {
+    const double l = half[d];
+    sum += piece ? 2 / l + 1 / (1 - l) : Kokkos::fmax(1 / l, 2 + 8 * l);
+  }
   return Kokkos::fmax(1.0, rim_scale * sum);
 }
 
