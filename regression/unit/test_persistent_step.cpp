@@ -145,7 +145,7 @@ TEST_CASE("steps in one launch and function by function take turns", "[persisten
 TEST_CASE("teams that a device does not hold at once do one step a launch, or two", "[persistent_step]") {
   for_each_build([](auto build) {
     using B = decltype(build);
-    if constexpr (B::dim == 2)
+    if constexpr (B::dim == 2) {
       for (const int width : {288, 512}) {  // cells: 648 and 2,048 patches
         Cloud cloud = two_rigids<2>(false, false);
         constexpr double h = 0.1;
@@ -161,5 +161,6 @@ TEST_CASE("teams that a device does not hold at once do one step a launch, or tw
         steps_by_function(two, 2e-4, 10);
         CHECK(largest_difference(soil_fields(one), soil_fields(two)) < B::of(1e-10, 1e-3));
       }
+    }
   });
 }
