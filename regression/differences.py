@@ -13,14 +13,22 @@ import numpy as np
 from results import read_frame
 
 
-def impedance(run):
-    """Largest density times speed of compression waves of the run's bodies, Pa s/m."""
-    values = []
-    for body in run.words("bodies"):
-        material = run.text(f"{body}_material")
-        young, nu, density = (run.number(f"{material}_{key}") for key in ("young", "poisson", "density"))
-        values.append(np.sqrt(density * young * (1 - nu) / ((1 + nu) * (1 - 2 * nu))))
-    return max(values)
+def stiffness(run, material, pressure):
+    """Modulus of compression waves, and Young's or, without one, the bulk modulus of a material under a mean pressure, Pa."""
+    def value(key):
+        return run.number(f"{material}_{key}")
+
+    nu, young = value("poisson"), value("young") or value("rigidity") * value("su")
+    if young:
+        return young * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) + value("pore_stiffness"), young
+    bulk = value("bulk_modulus")
+    if value("kappa"):  # cam_clay
+        bulk = value("specific_volume") / value("kappa") * max(pressure, 1e3)  # pressure_min is at most 1 kPa by default
+    shear = value("shear_modulus") or (1.5 * bulk * (1 - 2 * nu) / (1 + nu) if run.text(f"{material}_poisson") else 0)
+    wave = value("wave_modulus") or bulk + 4 / 3 * shear  # the first is a umat's
+    if not wave > 0:
+        raise ValueError(f"{material}: its stiffness is not known here, and without one there is no scale of stress and speed")
+    return wave + value("pore_stiffness"), bulk or wave
 
 
 def mass(run, groups):
@@ -33,13 +41,16 @@ class Scales:
     """What differences of a problem's fields are measured by, from its reference run."""
 
     def __init__(self, run, groups):
-        z = impedance(run)
         fields = [groups[body] for body in run.words("bodies")]
+        pressure = max(0.0, *(float(-each["stress"][:, :3].mean(axis=1).min()) for each in fields))
+        materials = {run.text(f"{body}_material") for body in run.words("bodies")}
+        known = {name: stiffness(run, name, pressure) for name in materials}
+        z = max(np.sqrt(run.number(f"{name}_density") * wave) for name, (wave, _) in known.items())  # Pa s/m
         speed = max(np.abs(each["velocity"]).max() for each in fields)
         self.stress = max(z * speed, *(np.abs(each["stress"]).max() for each in fields))
         self.velocity = self.stress / z
         self.spacing = run.number("mesh_spacing")
-        self.strain = self.stress / min(run.number(f"{name}_young") for name in run.words("materials"))
+        self.strain = self.stress / min(modulus for _, modulus in known.values())
         self.momentum = mass(run, groups) * self.velocity
         self.force = self.stress * self.spacing ** (run.number("dim", 2) - 1)
 

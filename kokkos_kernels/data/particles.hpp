@@ -151,10 +151,10 @@ struct Bins {
   using Memory = typename Space::memory_space;
   Kokkos::View<int*, Memory> begin;         // first point of a cell [cells + 1]
   int first_slot = 0, last_slot = 0;        // slots that may hold points: [first_slot, last_slot)
-  Kokkos::View<int*, Memory> active_slots;  // slots that hold points, rising
-  int first_active = 0, last_active = 0;    // of active_slots, those meant: [first_active, last_active)
-  int border = 0;  // of active_slots, on several ranks but with OpenMP: slots that share nodes with other
-                   // ranks, which are in front; they rise, and so do the others
+  Kokkos::View<int*, Memory> active_slots;  // slots that hold points, in rising order
+  int first_active = 0, last_active = 0;    // range of active_slots that these bins cover
+  int border = 0;  // on several ranks, without OpenMP: this many of active_slots share nodes with other
+                   // ranks. They come first; the border and the rest each rise.
   Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]
   Kokkos::View<int*, Memory> list;        // gather: points that may reach the node, in order
   Kokkos::View<long*, Memory> blocks;     // mosaic: blocks that hold points, ordered by colour

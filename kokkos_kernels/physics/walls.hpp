@@ -142,21 +142,6 @@ KOKKOS_INLINE_FUNCTION bool put_on_walls(const Grid<T, Dim>& grid, const Coord<D
       grid, [&](int d) { return cell[d]; }, x, v);
 }
 
-/// Place in the window of a patch of the image of node n of the window: n itself but beyond a wall. A patch
-/// outside the mesh, which holds no particles, has no images.
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION int image_in_window(const Grid<T, Dim>& grid, const Coord<Dim>& origin, int n) {
-  constexpr int across = Patch<Dim>::window_edge;
-  const Coord<Dim> c = window_coord<Dim>(n);
-  int place = 0;
-  for (int d = 0, step = 1; d < Dim; ++d, step *= across) {
-    const int to = image_along(grid, d, origin[d] + c[d]) - origin[d] + 1;
-    if (to < 0 || to >= across) return n;
-    place += to * step;
-  }
-  return place;
-}
-
 /// Images of the nodes of a team's window. Where none of them lies at a wall or beyond it:
 struct NoImages {
   /// Place in the window of the image of node n.
@@ -180,7 +165,8 @@ struct WindowImages {
   }
   /// Bit k: component k of a velocity at node n is opposite to that at its image.
   KOKKOS_INLINE_FUNCTION int turned(int n) const { return at_wall ? entry_of(n) >> k_place_bits : 0; }
-  /// Image and turned components of node n in one number: image_in_window, and the product of image_sign.
+  /// Place of the image of node n, n itself but beyond a wall, and its turned components in one number. A
+  /// patch outside the mesh, which holds no particles, has no images.
   KOKKOS_INLINE_FUNCTION int entry(int n) const {
     constexpr int across = Patch<Dim>::window_edge, all = (1 << Dim) - 1;
     const Coord<Dim> c = window_coord<Dim>(n);

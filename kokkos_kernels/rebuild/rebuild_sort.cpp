@@ -150,6 +150,9 @@ void list_held(const Space& space, ParticleSet<Space, Points_>& set, const Patch
   const int slots = patches.slots;
   ensure(set.bins.active_slots, slots);
   const auto active_slots = set.bins.active_slots, begin = set.bins.begin;
+  // The scan, for whose result the host waits, is behind this copy on the stream.
+  Kokkos::deep_copy(space, Kokkos::View<int, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(&set.points.count),
+                    Kokkos::subview(begin, slots * cells));
   int held = 0;
   Kokkos::parallel_scan(
       "mpm::list_held", Kokkos::RangePolicy<Space>(space, 0, slots),
@@ -159,9 +162,6 @@ void list_held(const Space& space, ParticleSet<Space, Points_>& set, const Patch
         ++before;
       },
       held);
-  Kokkos::deep_copy(space, Kokkos::View<int, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(&set.points.count),
-                    Kokkos::subview(begin, slots * cells));
-  space.fence("mpm::list_held");
   set.bins.first_slot = 0, set.bins.last_slot = slots;
   set.bins.first_active = 0, set.bins.last_active = held;
 }
@@ -254,13 +254,10 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION void average_pressure_of(const Soil<Space, T, Dim>& soil, int first, int last,
                                                 T fraction) {
-  T volume = 0, sum = 0;
+  CellMean<T> mean;
+  for (int p = first; p < last; ++p) mean.add(soil.volume(p), soil.volume(p) * mean_of(soil.stress(p)));
   for (int p = first; p < last; ++p) {
-    volume += soil.volume(p);
-    sum += soil.volume(p) * mean_of(soil.stress(p));
-  }
-  for (int p = first; p < last; ++p) {
-    const T change = fraction * (sum / volume - mean_of(soil.stress(p)));
+    const T change = fraction * (mean.value() - mean_of(soil.stress(p)));
     for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
   }
 }

@@ -76,30 +76,24 @@ void CutCells::next(std::vector<CellPart>* parts) {
   }
 }
 
-void CutCells::add_columns(const ConvexPiece& piece, std::vector<CellPart>* parts) {
-  const auto first = static_cast<double>(grid_.first[0]), last = static_cast<double>(grid_.last[0]);
-  const double low = std::max(piece.lowest(0), first), high = std::min(piece.highest(0), last);
+template <class F>
+void CutCells::for_each_slab(const ConvexPiece& piece, int d, const F& f) const {
+  const auto first = static_cast<double>(grid_.first[d]), last = static_cast<double>(grid_.last[d]);
+  const double low = std::max(piece.lowest(d), first), high = std::min(piece.highest(d), last);
   if (!(low < high)) return;
-  ConvexPiece rest = piece, strip, next;
-  if (piece.lowest(0) < first) piece.split(0, first, strip, rest);
-  for (long i = static_cast<long>(std::floor(low)); rest.count > 0 && static_cast<double>(i) < high; ++i) {
-    rest.split(0, static_cast<double>(i + 1), strip, next);
-    if (strip.count > 0) add_row(strip, i, parts);
+  ConvexPiece rest = piece, slab, next;
+  if (piece.lowest(d) < first) piece.split(d, first, slab, rest);
+  for (long n = static_cast<long>(std::floor(low)); rest.count > 0 && static_cast<double>(n) < high; ++n) {
+    rest.split(d, static_cast<double>(n + 1), slab, next);
+    if (slab.count > 0) f(slab, n);
     rest = next;
   }
 }
 
-void CutCells::add_row(const ConvexPiece& strip, long i, std::vector<CellPart>* parts) {
-  const auto first = static_cast<double>(grid_.first[1]), last = static_cast<double>(grid_.last[1]);
-  const double low = std::max(strip.lowest(1), first), high = std::min(strip.highest(1), last);
-  if (!(low < high)) return;
-  ConvexPiece rest = strip, cell, next;
-  if (strip.lowest(1) < first) strip.split(1, first, cell, rest);
-  for (long j = static_cast<long>(std::floor(low)); rest.count > 0 && static_cast<double>(j) < high; ++j) {
-    rest.split(1, static_cast<double>(j + 1), cell, next);
-    if (cell.count > 0) add_cell(cell, i, j, parts);
-    rest = next;
-  }
+void CutCells::add_columns(const ConvexPiece& piece, std::vector<CellPart>* parts) {
+  for_each_slab(piece, 0, [&](const ConvexPiece& slab, long i) {
+    for_each_slab(slab, 1, [&](const ConvexPiece& cell, long j) { add_cell(cell, i, j, parts); });
+  });
 }
 
 void CutCells::add_cell(const ConvexPiece& piece, long i, long j, std::vector<CellPart>* parts) {

@@ -40,7 +40,9 @@ class CutCells {
   ConvexPiece in_cells(const ConvexPiece& piece) const;
   void take_facets();
   void add_columns(const ConvexPiece& piece, std::vector<CellPart>* parts);
-  void add_row(const ConvexPiece& strip, long i, std::vector<CellPart>* parts);
+  /// Calls f(slab, n) for the part of a piece in each slab n of cells along axis d, within the grid.
+  template <class F>
+  void for_each_slab(const ConvexPiece& piece, int d, const F& f) const;
   void add_cell(const ConvexPiece& piece, long i, long j, std::vector<CellPart>* parts);
 
   struct Area {

@@ -272,6 +272,7 @@ TEST_CASE("no finite stress and strain give a number of a clay that is not finit
 TEST_CASE("the safeguard of Cam-Clay's return finds what Newton's method finds", "[clay_laws]") {
   Dice dice{std::mt19937_64(33)};
   double apart = 0;
+  int converged = 0;
   for (int n = 0; n < 10000; ++n) {
     const double p = dice.uniform(0.05, 1.2), m = dice.uniform(0.5, 1.5), v = 2, kappa = 0.04, lambda = 0.2;
     const double q = m * std::sqrt(std::fmax(0.0, p * (1 - p))) + dice.uniform(1e-4, 1e-2);
@@ -281,9 +282,10 @@ TEST_CASE("the safeguard of Cam-Clay's return finds what Newton's method finds",
     back.iterate(l, x);
     const auto [safe_l, safe_x] = bisected(back);
     if (std::fabs(back.at(l, x).of_f) < 1e-12)
-      apart = std::fmax(apart, std::fabs(safe_x - x) + std::fabs(safe_l / l - 1));
+      ++converged, apart = std::fmax(apart, std::fabs(safe_x - x) + std::fabs(safe_l / l - 1));
     CHECK(std::fabs(back.at(safe_l, safe_x).of_f) < 1e-10);
     CHECK(std::fabs(back.at(safe_l, safe_x).of_x) < 1e-12);
   }
   CHECK(apart < 1e-7);
+  CHECK(converged > 9000);
 }

@@ -30,12 +30,12 @@ class Differences(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder, self.made = pathlib.Path(folder.name), 0
 
-    def run_with(self, history=(), **fields):
+    def run_with(self, history=(), options=(), **fields):
         """A run that wrote FIELDS and HISTORY, but for what is given."""
         self.made += 1
         folder = self.folder / str(self.made)
         (folder / "frames").mkdir(parents=True)
-        (folder / "options.json").write_text(json.dumps({"options": OPTIONS}))
+        (folder / "options.json").write_text(json.dumps({"options": {**OPTIONS, **dict(options)}}))
         values = {**HISTORY, **dict(history)}
         (folder / "history.csv").write_text(",".join(values) + "\n" + ",".join(map(repr, values.values())) + "\n")
         with h5py.File(folder / "frames" / "frame_00001.h5", "w") as file:
@@ -57,6 +57,20 @@ class Differences(unittest.TestCase):
         share, where = self.apart(stress=np.full((4, 6), 1e-6 * IMPEDANCE * 0.5))
         self.assertAlmostEqual(share, 1e-6)
         self.assertEqual(where, "soil stress")
+
+    def test_without_young(self):
+        """Clay whose stiffness is that of its pressure, and a fluid: the scale is finite, and a difference is seen."""
+        clay = {"clay_young": "none", "clay_kappa": "0.05", "clay_specific_volume": "2", "clay_poisson": "0.2"}
+        fluid = {"clay_young": "none", "clay_bulk_modulus": "1e4", "clay_poisson": "none"}
+        stress = np.tile([-2e3, -2e3, -2e3, 0, 0, 0], (4, 1)).astype(float)
+        for options, wave in ((clay, 8e4 * 2), (fluid, 1e4)):  # G = 0.75 K
+            scale = max(np.sqrt(100 * wave) * 0.5, 2e3)
+            runs = (self.run_with(options=options, stress=each) for each in (stress + 1e-6 * scale, stress))
+            share, where = differences.largest(*runs)
+            self.assertAlmostEqual(share, 1e-6, delta=1e-10)
+            self.assertEqual(where, "soil stress")
+        with self.assertRaises(ValueError):
+            differences.largest(*(self.run_with(options={"clay_young": "none"}) for _ in range(2)))
 
     def test_largest_value(self):
         self.assertAlmostEqual(self.apart(position=FIELDS["position"] + [0, 0, 2e-9])[0], 1e-9, delta=1e-12)

@@ -39,7 +39,7 @@ enum class PatchKind { common, any };
 
 /// Teams that share a multiprocessor. Fewer of them leave a thread more registers, which a kernel for one
 /// heavy law needs, and one for patches that are not common, which are few.
-template <class Space, class T, int Dim>
+template <class T, int Dim>
 constexpr int teams_for(PatchKind kind, bool heavy) {
   const int fewer = heavy ? (sizeof(T) == sizeof(float) ? 2 : 1) : (kind == PatchKind::common ? 0 : 1);
   return teams_at_once<T, Dim> - fewer;
@@ -50,7 +50,7 @@ constexpr int teams_for(PatchKind kind, bool heavy) {
 /// step.
 /// teams: those that share a multiprocessor.
 template <class Space, class T, int Dim, bool Sums, PatchKind kind, class Laws,
-          int teams = teams_for<Space, T, Dim>(kind, Laws::k_size == 1)>
+          int teams = teams_for<T, Dim>(kind, Laws::k_size == 1)>
 struct UpdateParticles {
   using Source = SoilSource<Space, T, Dim>;
   using Boundary = BoundarySource<Space, T, Dim>;
@@ -201,12 +201,10 @@ struct UpdateParticles {
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
       if (averages_by_material()) return average_cell(cell_begin(c), cell_begin(c + 1));
-      T volume = 0, sum = 0;
-      for (int p = cell_begin(c); p < cell_begin(c + 1); ++p) {
-        volume += soil.volume(p);
-        sum += soil.volume(p) * dilatation(p);
-      }
-      mean[c] = volume > 0 ? sum / volume : T(0);
+      CellMean<T> of_cell;
+      for (int p = cell_begin(c); p < cell_begin(c + 1); ++p)
+        of_cell.add(soil.volume(p), soil.volume(p) * dilatation(p));
+      mean[c] = of_cell.value();
     });
     team.team_barrier();
   }

@@ -65,7 +65,7 @@ struct CamClayReturn {
 
   /// Newton's method on both unknowns at once. Of 1e5 random increments of 2e-4 and less, six iterations
   /// leave one in 1e5 that has not converged; the increments of a run need two or three. Returns whether the
-  /// last change was so small that the error, about its square, is round-off.
+  /// last change, relative to the unknowns, was at most k_last; what is left is about its square.
   KOKKOS_INLINE_FUNCTION bool iterate(T& l, T& x) const {
     constexpr int k_iterations = 6;
     constexpr T k_largest = T(0.02);  // change of x

@@ -31,7 +31,8 @@ using Materials = ModelList<LinearElastic, VonMises, Tresca, MohrCoulomb, Drucke
 /// others cost them nothing (docs/development/gpu_laws.md).
 using LightMaterials = ModelList<LinearElastic, VonMises>;
 
-/// Laws whose update takes many. Common patches of soil that has no other law have a kernel for each.
+/// Laws whose update takes many registers and instructions. A GPU has a kernel for each of them alone, for
+/// common patches of soil that has no other law.
 using HeavyMaterials = ModelList<Tresca, MohrCoulomb, CamClay, SofteningClay>;
 
 /// Index in Materials of a model.

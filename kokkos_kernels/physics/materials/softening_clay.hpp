@@ -183,8 +183,8 @@ struct SofteningClay : Clay<T> {
   KOKKOS_INLINE_FUNCTION T return_to_circle(SymTensor<T, Dim>& s, const State& state, T shear_modulus,
                                             T rapid) const {
     constexpr int k_iterations = 5;
-    constexpr T k_last =
-        sizeof(T) == sizeof(double) ? T(1e-7) : T(1e-3);  // change of g, of which the square is left
+    // Relative change of g after which the iterations end: what is left is about its square.
+    constexpr T k_last = sizeof(T) == sizeof(double) ? T(1e-7) : T(1e-3);
     const T mean = mean_of(s), r = shear_stress_of(s, mean),
             left = rapid * what_is_left(state[plastic_strain]);
     const T over = r - rapid * remoulded_ratio - left;
