@@ -9,6 +9,14 @@
 
 namespace mpm {
 
+/// Steps until what moves by `increment` a step now, and in each step by `growth` more, has moved by `left`;
+/// as if it were steady where it slows down.
+inline double steps_to_move(double left, double increment, double growth) {
+  if (!(left > 0)) return 0;
+  const double faster = std::max(growth, 0.0);
+  return 2 * left / std::max(increment + std::sqrt(increment * increment + 2 * faster * left), 1e-300);
+}
+
 /// The steps of a run: all of dt but the last, which ends at time_end. Where the step follows the stiffness
 /// of the soil, what a schedule says of later steps holds until dt changes.
 class Schedule {

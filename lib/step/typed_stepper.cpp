@@ -4,6 +4,7 @@
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
+#include "step/schedule.hpp"
 #include "step/surface_input.hpp"
 #include "step/water.hpp"
 
@@ -15,8 +16,9 @@
 namespace mpm {
 namespace {
 
-// On a device functions are timed in step 20, 40, 80 ... of the run, later each thousand steps.
-constexpr long k_samples_apart = 1000;
+// On a device functions are timed in step 20, 40, 80 ... of the run, later each 5000 steps. A step that is
+// timed takes longer, in a small problem as long as ten.
+constexpr long k_samples_apart = 5000;
 
 /// The reference heights of particles that are created now are their heights [m, absolute]; the last
 /// direction is the vertical one.
@@ -192,6 +194,16 @@ void TypedStepper<Space, T, Dim>::sample(bool on) {
   timers_.sample(due);
 }
 
+/// Steps that the movement bound will probably still allow, of soil that accelerates as it did since the host
+/// last looked. rebuilt: the bound begins anew.
+template <class Space, class T, int Dim>
+long TypedStepper<Space, T, Dim>::steps_to_rebuild(const Control& control, bool rebuilt) {
+  if (control.steps > 0) growth_ = (control.increment - seen_increment_) / control.steps;
+  seen_increment_ = control.increment;
+  const double left = config_.p2g.margin - (rebuilt ? 0 : control.bound);
+  return static_cast<long>(std::min(steps_to_move(left, control.increment, growth_), 1e9)) + 1;
+}
+
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double time, double dt, Batch* batch) {
   PetscFunctionBeginUser;
@@ -220,8 +232,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double time, dou
   batch->bound = control.bound;
   batch->failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
   batch->rebuild = (control.paused & Pause::due) != 0 && control.fault_count == 0;
-  const double left = (config_.p2g.margin - control.bound) / std::max(control.increment, 1e-300);
-  batch->estimate = static_cast<long>(std::min(left, 1e9)) + 1;
+  batch->estimate = steps_to_rebuild(control, batch->rebuild);
   batch->seconds = WorkClock::wall() - start;
   stepping_ += batch->seconds;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -62,6 +62,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode save_for_starts(SavedState* saved) const;
   void sample(bool on);
   long until_sample() const;
+  long steps_to_rebuild(const Control& control, bool rebuilt);
 
   Config config_;
   MPI_Comm comm_;
@@ -70,7 +71,9 @@ class TypedStepper final : public Stepper {
   OverlapStream<Space> overlap_;
   Timers timers_;
   long steps_enqueued_ = 0, next_sample_ = 20;
-  double stepping_ = 0;                                              // s of wall time in advance
+  double seen_increment_ = 0;  // of the movement bound, when the host looked last [cells]
+  double growth_ = 0;          // of the increment a step [cells]
+  double stepping_ = 0;        // s of wall time in advance
   double last_increment_ = std::numeric_limits<double>::infinity();  // cells, of all ranks, of the last batch
   std::vector<long> first_;                                          // id of the first particle of each body
   long total_ = 0;                                                   // particles of all ranks
