@@ -64,6 +64,7 @@ struct LaneMask {
   Bits bits;
   KOKKOS_FORCEINLINE_FUNCTION bool operator[](int lane) const { return bits[lane] != 0; }
   KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator&(LaneMask a, LaneMask b) { return {a.bits & b.bits}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator|(LaneMask a, LaneMask b) { return {a.bits | b.bits}; }
   KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator!(LaneMask a) { return {~a.bits}; }
 };
 
@@ -106,6 +107,25 @@ struct Lanes {
   KOKKOS_FORCEINLINE_FUNCTION friend Mask operator==(Lanes a, Lanes b) { return {a.v == b.v}; }
   KOKKOS_FORCEINLINE_FUNCTION friend Mask operator!=(Lanes a, Lanes b) { return {a.v != b.v}; }
 };
+
+namespace impl {
+template <class R>
+struct RealOf {
+  using type = R;
+};
+template <class T, int W>
+struct RealOf<Lanes<T, W>> {
+  using type = T;
+};
+}  // namespace impl
+/// The real type T of T, and of lanes of T.
+template <class R>
+using RealOf = typename impl::RealOf<R>::type;
+template <class R>
+inline constexpr bool is_lanes = !std::is_same_v<R, RealOf<R>>;
+/// What a comparison gives: bool, or the truth by lane.
+template <class R>
+using Truth = decltype(std::declval<R>() < std::declval<R>());
 
 /// Calls f with the constants 0 ... n - 1, so that loops over arrays of lanes leave them in registers.
 template <int n, class F>
@@ -267,8 +287,12 @@ KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fmax(T a, mpm::Lanes<T, W> b) {
   return fmax(mpm::Lanes<T, W>(a), b);
 }
 template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fmin(mpm::Lanes<T, W> a, mpm::Lanes<T, W> b) {
+  return mpm::select(b < a, b, a);
+}
+template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fmin(T a, mpm::Lanes<T, W> b) {
-  return mpm::select(b < mpm::Lanes<T, W>(a), b, mpm::Lanes<T, W>(a));
+  return fmin(mpm::Lanes<T, W>(a), b);
 }
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fabs(mpm::Lanes<T, W> a) {

@@ -3,6 +3,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "base/lane_functions.hpp"
 #include "base/lanes.hpp"
 
 /// Before a loop whose body is long and seldom runs: it stays one. A GPU fetches the instructions of a kernel
