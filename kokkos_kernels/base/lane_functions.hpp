@@ -52,7 +52,7 @@ KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> ceil(const mpm::Lanes<T, W>& a) {
 }
 /// exp(x) - 1; lane by lane.
 template <class T, int W>
-KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> expm1(const mpm::Lanes<T, W>& a) {
+[[gnu::noinline]] KOKKOS_FUNCTION mpm::Lanes<T, W> expm1(const mpm::Lanes<T, W>& a) {
   return mpm::impl::by_lane(a, [](T x) { return Kokkos::expm1(x); });
 }
 

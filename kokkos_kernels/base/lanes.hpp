@@ -21,6 +21,13 @@
 
 namespace mpm {
 
+/// Whether lanes are arrays, and not vectors.
+#ifdef MPM_PLAIN_LANES
+inline constexpr bool k_plain_lanes = true;
+#else
+inline constexpr bool k_plain_lanes = false;
+#endif
+
 /// Bytes of the processor's widest vectors.
 #if defined(__AVX512F__)
 inline constexpr int k_vector_bytes = 64;

@@ -23,6 +23,14 @@
 #define MPM_CALLED_FUNCTION KOKKOS_FUNCTION
 #endif
 
+/// In lieu of KOKKOS_INLINE_FUNCTION: a part of a formula that particles seldom need. A processor calls it,
+/// so that the vectors of the rest stay in registers.
+#ifdef __CUDA_ARCH__
+#define MPM_SELDOM_FUNCTION KOKKOS_INLINE_FUNCTION
+#else
+#define MPM_SELDOM_FUNCTION [[gnu::noinline]] KOKKOS_FUNCTION
+#endif
+
 namespace mpm {
 
 /// Alignment at which a group of n values is read at once: pairs, and fours up to 16 bytes.

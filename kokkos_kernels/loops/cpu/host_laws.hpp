@@ -42,15 +42,22 @@ KOKKOS_FUNCTION void called_in_some_lanes(const Law& law, SymTensor<R, Dim>& str
   called_in_lanes(law, stress, state, by);
 }
 
-/// The update of a law. One that takes a single particle is called for the lanes that are active(lane), and
-/// where it asks for the particle's place, with place(lane).
+/// Whether a law's update is called lane by lane: where it takes a single particle, or where lanes are
+/// arrays, which a long update does not gain by.
+template <class Law>
+constexpr bool goes_by_lane() {
+  return has_scalar_update<Law>() || (k_plain_lanes && !is_light<Law>());
+}
+
+/// The update of a law. One that goes lane by lane is called for the lanes that are active(lane), and where
+/// it asks for the particle's place, with place(lane).
 template <class Law, class R, class T, int Dim, int N, class Active, class Place>
 KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stress, LawState<R, N>& state,
                                          const Increment<R, T, Dim>& by, const Active& active,
                                          [[maybe_unused]] const Place& place) {
   if constexpr (is_light<Law>()) {
     law.update(stress, state, by);
-  } else if constexpr (!has_scalar_update<Law>()) {
+  } else if constexpr (!goes_by_lane<Law>()) {
     if constexpr (std::is_same_v<Active, FirstLanes>)
       called_in_lanes(law, stress, state, by);
     else

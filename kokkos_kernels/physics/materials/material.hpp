@@ -256,7 +256,7 @@ KOKKOS_INLINE_FUNCTION void add_with_rest_if(const Truth<R>& condition, R& sum, 
 
 /// exp(x) - 1. Steps of a run are small, and there a few terms of the series have all digits.
 template <class R>
-KOKKOS_INLINE_FUNCTION R growth_of(const R& x) {
+KOKKOS_FORCEINLINE_FUNCTION R growth_of(const R& x) {
   using T = RealOf<R>;
   const auto small = Kokkos::fabs(x) < T(0.01);  // the first term left out is x^6/5040 of the sum
   const R series =
