@@ -40,7 +40,7 @@ struct Block {
       active[l] = l == W / 2 || dice.below(5) > 0;
       const bool near_none = pressure > 0 && dice.below(4) == 0;
       for (int k = 0; k < sym_size<Dim>; ++k) {
-        if (near_none) right[l].stress[k] *= T(0.02);
+        if (near_none) right[l].stress[k] *= T(0.001);
         stress[k].set(l, active[l] ? right[l].stress[k] : std::numeric_limits<T>::quiet_NaN());
       }
       for (int k = 0; k < N; ++k) state[k].set(l, active[l] ? right[l].state[k] : T(0));
