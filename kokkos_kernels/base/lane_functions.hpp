@@ -11,14 +11,14 @@ template <class T>
 struct RealFormat;
 template <>
 struct RealFormat<double> {
-  static constexpr int k_mantissa_bits = 52, k_exponent_bias = 1023, k_exp_terms = 14, k_log_terms = 11;
+  static constexpr int k_mantissa_bits = 52, k_exp_terms = 14, k_log_terms = 11;
   static constexpr double k_to_integer = 0x1.8p52;  // a small number added to it is rounded to an integer
   static constexpr double k_least = -708, k_most = 709.7;  // arguments of exp with normal results
   static constexpr double k_ln2_high = 6.93147180369123816490e-01, k_ln2_low = 1.90821492927058770002e-10;
 };
 template <>
 struct RealFormat<float> {
-  static constexpr int k_mantissa_bits = 23, k_exponent_bias = 127, k_exp_terms = 8, k_log_terms = 5;
+  static constexpr int k_mantissa_bits = 23, k_exp_terms = 8, k_log_terms = 5;
   static constexpr float k_to_integer = 0x1.8p23F;
   static constexpr float k_least = -87, k_most = 88.7F;
   static constexpr float k_ln2_high = 6.9313812256e-01F, k_ln2_low = 9.0580006145e-06F;
@@ -66,14 +66,15 @@ KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> log(const mpm::Lanes<T, W>& a) {
   return mpm::impl::by_lane(a, [](T x) { return Kokkos::log(x); });
 }
 #else
-/// To about one unit of the last digit: exp(x) = 2^n exp(x - n ln 2), the latter by its series. Results
+/// To two units of the last digit: exp(x) = 2^n exp(x - n ln 2), the latter by its series. Results
 /// below the smallest normal number are 0.
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> exp(const mpm::Lanes<T, W>& x) {
   using R = mpm::Lanes<T, W>;
   using Of = mpm::impl::RealFormat<T>;
   using Bits = typename mpm::LaneMask<T, W>::Bits;
-  const auto below = x<Of::k_least, above = x> Of::k_most;
+  const auto below = x < Of::k_least;
+  const auto above = x > Of::k_most;
   const R bounded = mpm::select(below, Of::k_least, mpm::select(above, Of::k_most, x));
   const R shifted = bounded * T(1.44269504088896340736) + Of::k_to_integer, n = shifted - Of::k_to_integer;
   const R rest = (bounded - n * Of::k_ln2_high) - n * Of::k_ln2_low;
@@ -86,7 +87,8 @@ KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> exp(const mpm::Lanes<T, W>& x) {
   const R scaled(typename R::Values(Bits(series.v) + (Bits(shifted.v) << Of::k_mantissa_bits)));
   return mpm::select(below, T(0), mpm::select(above, Kokkos::Experimental::infinity_v<T>, scaled));
 }
-/// To a few units of the last digit: x = 2^n m, log(m) = 2 artanh((m - 1) / (m + 1)), by its series.
+/// To three units of the last digit: x = 2^n m with m between 0.7 and 1.4, log(m) = 2 artanh((m - 1) / (m +
+/// 1)), by its series.
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> log(const mpm::Lanes<T, W>& x) {
   using R = mpm::Lanes<T, W>;
@@ -101,10 +103,11 @@ KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> log(const mpm::Lanes<T, W>& x) {
   const R s = (m - 1) / (m + 1);
   const R series = mpm::impl::polynomial<Of::k_log_terms>(s * s, [](int k) { return 2.0 / (2 * k + 1); });
   const R result = power * Of::k_ln2_high + (power * Of::k_ln2_low + s * series);
-  constexpr T most = Kokkos::Experimental::finite_max_v<T>;
+  constexpr T least = Kokkos::Experimental::norm_min_v<T>, most = Kokkos::Experimental::finite_max_v<T>;
   const R beyond = mpm::select(x == 0, -Kokkos::Experimental::infinity_v<T>,
                                mpm::select(x < 0, Kokkos::Experimental::quiet_NaN_v<T>, x));
-  return mpm::select((x >= Kokkos::Experimental::norm_min_v<T>)&(x <= most), result, beyond);
+  const auto is_normal = (x >= least) & (x <= most);
+  return mpm::select(is_normal, result, beyond);
 }
 #endif
 

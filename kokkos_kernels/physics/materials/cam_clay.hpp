@@ -157,16 +157,14 @@ struct CamClay {
     int n = 0;
     MPM_ROLLED
     do {
-      Truth<R> takes_part = {};
       if constexpr (is_lanes<R>)
-        takes_part = parts > T(n);
+        strain_by(s, state, part, parts > T(n));
       else
-        takes_part = true;
-      strain_by(s, state, part, takes_part);
+        strain_by(s, state, part, true);
     } while (any_of(parts > T(++n)));
     if (!any_of(too_many)) return;
-    for (int k : {specific_volume, specific_volume_rest})  // failed() tells it
-      state[k] = select(too_many, R(0), state[k]);
+    state[specific_volume] = select(too_many, R(0), state[specific_volume]);  // failed() tells it
+    state[specific_volume_rest] = select(too_many, R(0), state[specific_volume_rest]);
   }
 
  private:

@@ -245,7 +245,7 @@ KOKKOS_INLINE_FUNCTION void add_with_rest(R& sum, R& rest, const R& increment) {
     sum = next;
   }
 }
-/// The same for the lanes where a condition holds, as it does in one at least.
+/// The same where a condition holds.
 template <class R>
 KOKKOS_INLINE_FUNCTION void add_with_rest_if(const Truth<R>& condition, R& sum, R& rest, const R& increment) {
   R next = sum, next_rest = rest;

@@ -39,8 +39,8 @@ struct MohrCoulomb : FrictionalSoil<T> {
   KOKKOS_FUNCTION PyramidSize<R> size_of(const R& c) const {
     const bool has_apex = apex_over_cohesion > 0, has_tension = this->tension >= 0;
     const R sc = sc_over_cohesion * c, apex = apex_over_cohesion * c;
-    const R lowest = has_apex ? (has_tension ? R(this->tension) : apex) : R(-1);
-    const Truth<R> at_apex = lowest >= apex;
+    const R wanted = has_apex ? (has_tension ? R(this->tension) : apex) : R(k_no_tension);
+    const Truth<R> at_apex = wanted >= apex;
     const R cut_off = select(at_apex, apex, R(this->tension));
     return {.sc = sc,
             .cut_off = cut_off,
