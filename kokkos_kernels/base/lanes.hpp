@@ -18,6 +18,9 @@
 #define MPM_SHUFFLES
 #endif
 #endif
+#if defined(MPM_SHUFFLES) && defined(__AVX__)
+#include <immintrin.h>
+#endif
 
 namespace mpm {
 
@@ -134,11 +137,16 @@ inline constexpr bool is_lanes = !std::is_same_v<R, RealOf<R>>;
 template <class R>
 using Truth = decltype(std::declval<R>() < std::declval<R>());
 
+namespace impl {
+template <class F, int... k>
+KOKKOS_FORCEINLINE_FUNCTION void call_with(const F& f, std::integer_sequence<int, k...>) {
+  (f(std::integral_constant<int, k>{}), ...);
+}
+}  // namespace impl
 /// Calls f with the constants 0 ... n - 1, so that loops over arrays of lanes leave them in registers.
 template <int n, class F>
-KOKKOS_FORCEINLINE_FUNCTION void unrolled(F&& f) {
-  [&]<int... k>(std::integer_sequence<int, k...>) { (f(std::integral_constant<int, k>{}), ...); }
-  (std::make_integer_sequence<int, n>{});
+KOKKOS_FORCEINLINE_FUNCTION void unrolled(const F& f) {
+  impl::call_with(f, std::make_integer_sequence<int, n>{});
 }
 
 namespace impl {
@@ -192,6 +200,18 @@ KOKKOS_FORCEINLINE_FUNCTION Lanes<T, W> select(LaneMask<T, W> condition, std::ty
 KOKKOS_FORCEINLINE_FUNCTION bool any_of(bool condition) { return condition; }
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION bool any_of(LaneMask<T, W> condition) {
+#if defined(MPM_SHUFFLES) && defined(__AVX512F__)
+  if constexpr (sizeof condition.bits == sizeof(__m512i)) {
+    const __m512i bits = reinterpret_cast<__m512i>(condition.bits);
+    return _mm512_test_epi64_mask(bits, bits) != 0;
+  }
+#endif
+#if defined(MPM_SHUFFLES) && defined(__AVX__)
+  if constexpr (sizeof condition.bits == sizeof(__m256i)) {
+    const __m256i bits = reinterpret_cast<__m256i>(condition.bits);
+    return _mm256_testz_si256(bits, bits) == 0;
+  }
+#endif
 #ifdef MPM_SHUFFLES
   return impl::either<W / 2>(condition.bits, std::make_integer_sequence<int, W>{})[0] != 0;
 #else

@@ -218,7 +218,7 @@ struct HostParticles {
     law.corner = origin(slot), law.spacing = spacing;
     for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
       law.material[l] = soil.bodies(soil.body(p + Kokkos::min(l, count - 1))).material;
-    if (alone(slot) != 0) find_alone(law);
+    if (alone(slot) != 0) law.flies = which_are_alone(p, count), law.some_fly = any_of(law.flies > 0);
     const R volume = q.volume, own = advance(q, law, t, R::load(stage.mean + n), by);
     if (law.some_fly) q.volume = select(law.flies > 0, volume, q.volume);
     if (stage.at_wall) put_back_on_walls(q, p, count, slot);
@@ -231,20 +231,25 @@ struct HostParticles {
     moved = Kokkos::fmax(moved, own);
   }
 
-  /// Which particles of the block are alone.
-  [[gnu::noinline]] KOKKOS_FUNCTION void find_alone(LawLanes<R, Space, T, Dim>& law) const {
-    for (int l = 0; l < law.count; ++l) {
-      if (!is_alone(alone, soil.cell(law.p + l))) continue;
-      law.flies.set(l, T(1));
-      law.some_fly = true;
-    }
+  // What few blocks need is in functions of its own, which take and return values, so that the others keep
+  // theirs in registers.
+
+  /// 1 where a particle of the block is alone, else 0.
+  [[gnu::noinline]] KOKKOS_FUNCTION R which_are_alone(int p, int count) const {
+    R which = 0;
+    for (int l = 0; l < count; ++l)
+      if (is_alone(alone, soil.cell(p + l))) which.set(l, T(1));
+    return which;
   }
 
   /// Particles of the block that have passed a wall are put on it (put_on_walls).
-  void put_back_on_walls(Particle<R, Dim>& q, int p, int count, int slot) const {
+  KOKKOS_INLINE_FUNCTION void put_back_on_walls(Particle<R, Dim>& q, int p, int count, int slot) const {
     auto at_home = (q.x[0] >= 0) & (q.x[0] < 1);
     for (int d = 1; d < Dim; ++d) at_home = at_home & (q.x[d] >= 0) & (q.x[d] < 1);
-    if (!any_of(!at_home)) return;  // no cell lies beyond a wall
+    if (any_of(!at_home)) q = put_back_lanes(q, p, count, slot);  // no cell lies beyond a wall
+  }
+  [[gnu::noinline]] KOKKOS_FUNCTION Particle<R, Dim> put_back_lanes(Particle<R, Dim> q, int p, int count,
+                                                                    int slot) const {
     for (int l = 0; l < count; ++l) {
       Vector<T, Dim> x, v;
       for (int d = 0; d < Dim; ++d) x[d] = q.x[d][l], v[d] = q.v[d][l];
@@ -252,9 +257,10 @@ struct HostParticles {
       for (int d = 0; d < Dim; ++d) q.x[d].set(l, x[d]), q.v[d].set(l, v[d]);
       Kokkos::atomic_inc(&put_back(soil.body(p + l)));
     }
+    return q;
   }
 
-  [[gnu::noinline]] KOKKOS_FUNCTION void find_faults(const Particle<R, Dim>& block, const R& moved, int p,
+  [[gnu::noinline]] KOKKOS_FUNCTION void find_faults(const Particle<R, Dim> block, const R moved, int p,
                                                      int count, int slot) const {
     for (int l = 0; l < count; ++l) {
       Particle<T, Dim> q;

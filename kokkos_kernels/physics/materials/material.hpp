@@ -188,7 +188,7 @@ MPM_CALLED_FUNCTION Updated<Law, Dim> called_update(
 /// Stress turned with the material by the spin times dt: Q s Q^T with Q = (I - w/2)^-1 (I + w/2), which is a
 /// rotation for any w (Hughes & Winget 1980), so that the Jaumann rate keeps the invariants.
 template <class T>
-KOKKOS_INLINE_FUNCTION SymTensor<T, 2> rotated(const SymTensor<T, 2>& s, const Spin<T, 2>& w) {
+KOKKOS_FORCEINLINE_FUNCTION SymTensor<T, 2> rotated(const SymTensor<T, 2>& s, const Spin<T, 2>& w) {
   const T h = w.c[0] / 2, scale = 1 / (1 + h * h);
   const T cos_a = (1 - h * h) * scale, sin_a = 2 * h * scale;
   const T mean = (s[0] + s[1]) / 2, half = (s[0] - s[1]) / 2;
