@@ -1,4 +1,4 @@
-"""What a step of the same problem costs with each law, for scripts/gpu_checks."""
+"""What a step of the same problem costs with each law on a GPU, for scripts/gpu_checks; scripts/benchmark laws takes the decks."""
 
 import functools
 import operator

@@ -18,8 +18,18 @@
 #define MPM_SHUFFLES
 #endif
 #endif
+#if defined(MPM_SHUFFLES) && defined(__AVX__)
+#include <immintrin.h>
+#endif
 
 namespace mpm {
+
+/// Whether lanes are arrays, and not vectors.
+#ifdef MPM_PLAIN_LANES
+inline constexpr bool k_plain_lanes = true;
+#else
+inline constexpr bool k_plain_lanes = false;
+#endif
 
 /// Bytes of the processor's widest vectors.
 #if defined(__AVX512F__)
@@ -64,6 +74,7 @@ struct LaneMask {
   Bits bits;
   KOKKOS_FORCEINLINE_FUNCTION bool operator[](int lane) const { return bits[lane] != 0; }
   KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator&(LaneMask a, LaneMask b) { return {a.bits & b.bits}; }
+  KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator|(LaneMask a, LaneMask b) { return {a.bits | b.bits}; }
   KOKKOS_FORCEINLINE_FUNCTION friend LaneMask operator!(LaneMask a) { return {~a.bits}; }
 };
 
@@ -107,11 +118,35 @@ struct Lanes {
   KOKKOS_FORCEINLINE_FUNCTION friend Mask operator!=(Lanes a, Lanes b) { return {a.v != b.v}; }
 };
 
+namespace impl {
+template <class R>
+struct RealOf {
+  using type = R;
+};
+template <class T, int W>
+struct RealOf<Lanes<T, W>> {
+  using type = T;
+};
+}  // namespace impl
+/// The real type T of T, and of lanes of T.
+template <class R>
+using RealOf = typename impl::RealOf<R>::type;
+template <class R>
+inline constexpr bool is_lanes = !std::is_same_v<R, RealOf<R>>;
+/// What a comparison gives: bool, or the truth by lane.
+template <class R>
+using Truth = decltype(std::declval<R>() < std::declval<R>());
+
+namespace impl {
+template <class F, int... k>
+KOKKOS_FORCEINLINE_FUNCTION void call_with(const F& f, std::integer_sequence<int, k...>) {
+  (f(std::integral_constant<int, k>{}), ...);
+}
+}  // namespace impl
 /// Calls f with the constants 0 ... n - 1, so that loops over arrays of lanes leave them in registers.
 template <int n, class F>
-KOKKOS_FORCEINLINE_FUNCTION void unrolled(F&& f) {
-  [&]<int... k>(std::integer_sequence<int, k...>) { (f(std::integral_constant<int, k>{}), ...); }
-  (std::make_integer_sequence<int, n>{});
+KOKKOS_FORCEINLINE_FUNCTION void unrolled(const F& f) {
+  impl::call_with(f, std::make_integer_sequence<int, n>{});
 }
 
 namespace impl {
@@ -165,6 +200,18 @@ KOKKOS_FORCEINLINE_FUNCTION Lanes<T, W> select(LaneMask<T, W> condition, std::ty
 KOKKOS_FORCEINLINE_FUNCTION bool any_of(bool condition) { return condition; }
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION bool any_of(LaneMask<T, W> condition) {
+#if defined(MPM_SHUFFLES) && defined(__AVX512F__)
+  if constexpr (sizeof condition.bits == sizeof(__m512i)) {
+    const __m512i bits = reinterpret_cast<__m512i>(condition.bits);
+    return _mm512_test_epi64_mask(bits, bits) != 0;
+  }
+#endif
+#if defined(MPM_SHUFFLES) && defined(__AVX__)
+  if constexpr (sizeof condition.bits == sizeof(__m256i)) {
+    const __m256i bits = reinterpret_cast<__m256i>(condition.bits);
+    return _mm256_testz_si256(bits, bits) == 0;
+  }
+#endif
 #ifdef MPM_SHUFFLES
   return impl::either<W / 2>(condition.bits, std::make_integer_sequence<int, W>{})[0] != 0;
 #else
@@ -267,8 +314,12 @@ KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fmax(T a, mpm::Lanes<T, W> b) {
   return fmax(mpm::Lanes<T, W>(a), b);
 }
 template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fmin(mpm::Lanes<T, W> a, mpm::Lanes<T, W> b) {
+  return mpm::select(b < a, b, a);
+}
+template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fmin(T a, mpm::Lanes<T, W> b) {
-  return mpm::select(b < mpm::Lanes<T, W>(a), b, mpm::Lanes<T, W>(a));
+  return fmin(mpm::Lanes<T, W>(a), b);
 }
 template <class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> fabs(mpm::Lanes<T, W> a) {

@@ -59,6 +59,9 @@ struct alignas(W * sizeof(T)) Plain {
   KOKKOS_FORCEINLINE_FUNCTION friend Plain operator&(P a, P b) {
     return each(a, b, [](T x, T y) { return x && y; });
   }
+  KOKKOS_FORCEINLINE_FUNCTION friend Plain operator|(P a, P b) {
+    return each(a, b, [](T x, T y) { return x || y; });
+  }
   KOKKOS_FORCEINLINE_FUNCTION friend Plain operator~(P a) {
     return each(a, a, [](T x, T) { return !x; });
   }

@@ -3,6 +3,7 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "base/lane_functions.hpp"
 #include "base/lanes.hpp"
 
 /// Before a loop whose body is long and seldom runs: it stays one. A GPU fetches the instructions of a kernel
@@ -20,6 +21,14 @@
 #define MPM_CALLED_FUNCTION __noinline__ __host__ __device__
 #else
 #define MPM_CALLED_FUNCTION KOKKOS_FUNCTION
+#endif
+
+/// In lieu of KOKKOS_INLINE_FUNCTION: a part of a formula that particles seldom need. A processor calls it,
+/// so that the vectors of the rest stay in registers.
+#ifdef __CUDA_ARCH__
+#define MPM_SELDOM_FUNCTION KOKKOS_INLINE_FUNCTION
+#else
+#define MPM_SELDOM_FUNCTION [[gnu::noinline]] KOKKOS_FUNCTION
 #endif
 
 namespace mpm {

@@ -109,8 +109,8 @@ struct ParticleLaw {
 /// its dilatation is that of its cell, `mean_dilatation` [1/s], or what mean_for() makes of it. law(stress,
 /// increment) changes the stress. Returns the largest component of the particle's movement [cells].
 template <class R, class T, int Dim, class Law>
-KOKKOS_INLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law, const GridSample<R, Dim>& t,
-                                 R mean_dilatation, const UpdateScalars<T>& by) {
+KOKKOS_FORCEINLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law, const GridSample<R, Dim>& t,
+                                      R mean_dilatation, const UpdateScalars<T>& by) {
   Increment<R, T, Dim> increment = increment_of(t.gradient, by.dt, by.clock);
   R trace = 0;
   for (int d = 0; d < Dim; ++d) trace += increment.strain[d];

@@ -19,6 +19,7 @@ sys.dont_write_bytecode = True
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 sys.path.insert(0, str(SCRIPTS))
+import benchmark_laws as laws  # noqa: E402
 import benchmark_runs as runs  # noqa: E402
 import benchmark_tables as tables  # noqa: E402
 import benchmark_threads as threads  # noqa: E402
@@ -99,6 +100,26 @@ class Benchmark(unittest.TestCase):
                                 {**found, "ranks": 4, "rate": 60.0, "apart": 64.0, "copy": 100.0, "moved": 25.0}]).splitlines()
         self.assertIn("| 4 | 60.0 | 75 % | 64.0 | 94 % | 25 % |", rows)
 
+    def test_laws(self):
+        """A few steps with three laws, which take turns, and the table of made-up results."""
+        self.addCleanup(setattr, laws, "STEPS", laws.STEPS)
+        laws.STEPS = 8
+        self.assertEqual(laws.cases(["double"], "linear_elastic,tresca"),
+                         [("double", False, ["von_mises", "linear_elastic", "tresca"]), ("double", True, ["von_mises", "tresca"])])
+        with self.assertRaises(SystemExit):
+            laws.cases(["double"], "tresca,wood")
+        with tempfile.TemporaryDirectory() as folder:
+            found = laws.measure(PROGRAM, "double", True, ["von_mises", "tresca"], 2, pathlib.Path(folder))
+        self.assertEqual([each["problem"] for each in found], ["von_mises", "tresca"])
+        for each in found:
+            self.assertEqual(each["us"], min(each["all_us"]))
+            self.assertEqual((each["particles"], len(each["all_us"]), each["soil"]), (76800, 2, "weak"))
+            self.assertTrue(each["yields"] is None or 0 < each["yields"] <= 1)
+        made_up = [{**each, "us": us, "yields": share} for each, us, share in zip(found, (2000.0, 2500.0), (0.6012, None))]
+        rows = laws.text_of(made_up).splitlines()
+        self.assertIn("| `von_mises` | 2,000 (1.00, 60.1 %) |", rows)
+        self.assertIn("| `tresca` | 2,500 (1.25) |", rows)
+
     def test_tables(self):
         measured = tables.Measured([result("serial", "double", "auto", 6000.0), result("cuda", "single", "auto", 15.0),
                                     result("cuda", "single", "gather", 120.0)])
@@ -113,7 +134,7 @@ class Benchmark(unittest.TestCase):
 
     def test_pages(self):
         """The page of each measurement holds the tables of its kept results between its marks."""
-        for what in ("strategies", "threads", "scaling", "paper"):
+        for what in ("strategies", "threads", "scaling", "paper", "laws"):
             kept = benchmark.load([benchmark.ROOT / "docs" / "benchmarks" / f"{what}.json"])
             page = benchmark.page_of(what).read_text()
             self.assertIn(f"<!-- {what}: begin, by scripts/benchmark -->\n\n{benchmark.text_of(what, kept)}\n\n", page)

@@ -279,7 +279,7 @@ TEST_CASE("the safeguard of Cam-Clay's return finds what Newton's method finds",
     const CamClayReturn<double> back{{1e-4}, p, 0,      v / kappa,  v / (lambda - kappa),
                                      q,      p, 30 * p, 1 / (m * m)};
     double l, x;
-    back.iterate(l, x);
+    back.iterate(true, l, x);
     const auto [safe_l, safe_x] = bisected(back);
     if (std::fabs(back.at(l, x).of_f) < 1e-12)
       ++converged, apart = std::fmax(apart, std::fabs(safe_x - x) + std::fabs(safe_l / l - 1));

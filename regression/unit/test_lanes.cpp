@@ -143,7 +143,8 @@ TEST_CASE("an operation on lanes is that on each number", "[lanes]") {
       b.set(n % R::k_count, a[n % R::k_count]);
       const R sum = a + b, rest = 1 - a, product = 2 * a * b, ratio = a / b, larger = Kokkos::fmax(a, b),
               positive = Kokkos::fmax(T(0), a), size = Kokkos::fabs(a), root = Kokkos::sqrt(size),
-              chosen = select(a < b, a, T(7));
+              chosen = select(a < b, a, T(7)), smaller = Kokkos::fmin(a, b), up = Kokkos::ceil(a);
+      const auto either = (a < 0) | (b < 0);
       const auto equal = a == b;
       T largest = a[0];
       for (int l = 0; l < R::k_count; ++l) {
@@ -156,6 +157,9 @@ TEST_CASE("an operation on lanes is that on each number", "[lanes]") {
         CHECK(size[l] == std::fabs(a[l]));
         CHECK(root[l] == std::sqrt(size[l]));
         CHECK(chosen[l] == (a[l] < b[l] ? a[l] : T(7)));
+        CHECK(smaller[l] == std::fmin(a[l], b[l]));
+        CHECK(up[l] == std::ceil(a[l]));
+        CHECK(either[l] == (a[l] < 0 || b[l] < 0));
         CHECK(equal[l] == (a[l] == b[l]));
         CHECK((!equal)[l] == (a[l] != b[l]));
         largest = std::fmax(largest, a[l]);
@@ -171,6 +175,45 @@ TEST_CASE("an operation on lanes is that on each number", "[lanes]") {
       CHECK(any_of(!(0 * a == 0)));
       CHECK(Kokkos::fmax(R(1), a)[l] == 1);  // as fmax of numbers does
     }
+  });
+}
+
+TEST_CASE("exponentials and logarithms of lanes are those of each number", "[lanes]") {
+  for_each_real([](auto real) {
+    using T = decltype(real);
+    using R = Native<T>;
+    using Limits = std::numeric_limits<T>;
+    Dice dice{std::mt19937_64(4)};
+    const double largest = -std::log(double(Limits::min())) - 1;
+    double apart = 0;  // relative
+    const auto compare = [&](double got, double right) {
+      apart = std::fmax(apart, right == 0 ? std::fabs(got) : std::fabs(got / right - 1));
+    };
+    for (int n = 0; n < 2000; ++n) {
+      const double range = n % 2 ? 1 : largest;
+      const R a = random_lanes<R>(dice, -range, range);
+      R positive;
+      for (int l = 0; l < R::k_count; ++l) positive.set(l, std::exp(a[l]));
+      const R e = Kokkos::exp(a), less_one = Kokkos::expm1(a), log = Kokkos::log(positive),
+              log10 = Kokkos::log10(positive);
+      for (int l = 0; l < R::k_count; ++l) {
+        compare(e[l], std::exp(double(a[l])));
+        compare(less_one[l], std::expm1(double(a[l])));
+        compare(log[l], std::log(double(positive[l])));
+        compare(log10[l], std::log10(double(positive[l])));
+      }
+    }
+    CHECK(apart < 4 * Limits::epsilon());
+    const T infinite = Limits::infinity(), none = Limits::quiet_NaN();
+    CHECK(Kokkos::exp(R(0))[0] == 1);
+    CHECK(Kokkos::exp(R(infinite))[0] == infinite);
+    CHECK(Kokkos::exp(R(-infinite))[0] == 0);
+    CHECK(std::isnan(Kokkos::exp(R(none))[0]));
+    CHECK(Kokkos::log(R(1))[0] == 0);
+    CHECK(Kokkos::log(R(infinite))[0] == infinite);
+    CHECK(Kokkos::log(R(0))[0] == -infinite);
+    CHECK(std::isnan(Kokkos::log(R(-1))[0]));
+    CHECK(std::isnan(Kokkos::log(R(none))[0]));
   });
 }
 

@@ -3,156 +3,12 @@
 // takes.
 
 #include "data/state.hpp"
+#include "loops/cpu/host_laws.hpp"
 #include "loops/cpu/host_window.hpp"
 #include "physics/advance.hpp"
 #include "physics/walls.hpp"
 
 namespace mpm {
-
-/// The update of a law. One that takes a single particle is called for the lanes that are active(lane), and
-/// where it asks for the particle's place, with place(lane).
-template <class Law, class R, class T, int Dim, int N, class Active, class Place>
-KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stress, LawState<R, N>& state,
-                                         const Increment<R, T, Dim>& by, const Active& active,
-                                         [[maybe_unused]] const Place& place) {
-  if constexpr (!has_scalar_update<Law>()) {
-    law.update(stress, state, by);
-  } else {
-    for (int l = 0; l < R::k_count; ++l) {
-      if (!active(l)) continue;
-      SymTensor<T, Dim> own_stress;
-      LawState<T, N> own_state{};  // 0 where a particle does not carry a variable
-      Increment<T, T, Dim> own_by;
-      own_by.dt = by.dt, own_by.clock = by.clock;
-      for (int k = 0; k < sym_size<Dim>; ++k)
-        own_stress[k] = stress[k][l], own_by.strain[k] = by.strain[k][l];
-      for (int k = 0; k < (Dim == 2 ? 1 : 3); ++k) own_by.spin.c[k] = by.spin.c[k][l];
-      for (int k = 0; k < Dim * Dim; ++k)
-        own_by.gradient[k / Dim][k % Dim] = by.gradient[k / Dim][k % Dim][l];
-      for (int k = 0; k < N && carries(law, k); ++k) own_state[k] = state[k][l];
-      if constexpr (takes_place<Law>())
-        law.update(own_stress, own_state, own_by, place(l));
-      else
-        law.update(own_stress, own_state, own_by);
-      for (int k = 0; k < sym_size<Dim>; ++k) stress[k].set(l, own_stress[k]);
-      for (int k = 0; k < N && carries(law, k); ++k) state[k].set(l, own_state[k]);
-    }
-  }
-}
-
-/// The laws of the particles [p, p + count), as many as R has lanes at most, with their state in memory.
-/// Those that fly freely, being alone, carry no stress, nor an excess pore pressure, and keep their state.
-template <class R, class Space, class T, int Dim>
-struct LawLanes {
-  const Soil<Space, T, Dim>& soil;
-  int p, count;
-  bool one_law;  // only material[0] is set
-  bool some_fly = false;
-  R flies = 0;  // 1 where a particle does
-  int material[R::k_count] = {};
-  Coord<Dim> corner{};  // cells, of the patch
-  double spacing = 1;   // m
-
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(SymTensor<R, Dim>& stress,
-                                              const Increment<R, T, Dim>& by) const {
-    if (one_law && !some_fly) {
-      const auto now = [](const R& after, const R&) { return after; };
-      update(
-          material[0], stress, by, [&](int l) { return l < count; }, now, now);
-    } else {
-      update_some(stress, by);
-    }
-  }
-
-  /// Each law takes all lanes; those that are not of its material keep what they have.
-  [[gnu::noinline]] KOKKOS_FUNCTION void update_some(SymTensor<R, Dim>& stress,
-                                                     const Increment<R, T, Dim>& by) const {
-    const SymTensor<R, Dim> old = stress;
-    bool done[R::k_count] = {};
-    const auto material_of = [&](int l) { return material[one_law ? 0 : l]; };
-    for (int l = 0; l < R::k_count; ++l) {
-      if (done[l]) continue;
-      R own = 0;
-      for (int k = l; k < R::k_count; ++k)
-        if (material_of(k) == material_of(l)) done[k] = true, own.set(k, T(1));
-      const auto mine = own > 0;
-      SymTensor<R, Dim> now = old;
-      const auto moves = (own > 0) & (flies < 1);
-      const int own_material = material_of(l);
-      const auto kept = [&](const R& after, const R& was) { return select(moves, after, was); };
-      update(
-          own_material, now, by,
-          [&](int k) { return k < count && material_of(k) == own_material && flies[k] < 1; }, kept,
-          [&](const R& after, const R& was) {
-            return select((own > 0) & (flies > 0), R(0), kept(after, was));
-          });
-      for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(mine, now[k], stress[k]);
-    }
-    for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = select(flies > 0, R(0), stress[k]);
-  }
-
-  /// The place of a lane's particle before the step.
-  KOKKOS_INLINE_FUNCTION ParticlePlace place_of(int l) const {
-    ParticlePlace place{.id = soil.id(p + l)};
-    const Coord<Dim> cell = coord_of<Dim>(soil.cell(p + l));
-    const Vector<T, Dim> x = soil.coordinate(p + l);
-    for (int d = 0; d < Dim; ++d) place.position[d] = (double(corner[d]) + cell[d] + x[d]) * spacing;
-    return place;
-  }
-
-  /// active(lane): whether the lane's particle is of this material. kept(after, before): what becomes of a
-  /// state variable; kept_pressure: of the excess pore pressure.
-  template <class Active, class Kept, class KeptPressure>
-  KOKKOS_FORCEINLINE_FUNCTION void update(int m, SymTensor<R, Dim>& stress, const Increment<R, T, Dim>& by,
-                                          const Active& active, const Kept& kept,
-                                          const KeptPressure& kept_pressure) const {
-    const AnyMaterial<T>& of = material_in(soil.materials.data()[m]);
-    const bool undrained = soil.history.pore >= 0 && of.pore_stiffness > 0;
-    R excess = 0;
-    if (undrained) {
-      load_field(soil.history.column[soil.history.pore], p, count, excess);
-      add_isotropic(stress, excess);  // effective: the law's own
-    }
-    update_law(of, stress, by, active, kept);
-    if (!undrained) return;
-    const R pressure = undrained_pressure(excess, of.pore_stiffness, by.strain);
-    add_isotropic(stress, R(-pressure));
-    store_field(kept_pressure(pressure, excess), soil.history.column[soil.history.pore], p, count);
-  }
-
-  template <class Active, class Kept>
-  KOKKOS_FORCEINLINE_FUNCTION void update_law(const AnyMaterial<T>& of, SymTensor<R, Dim>& stress,
-                                              const Increment<R, T, Dim>& by, const Active& active,
-                                              const Kept& kept) const {
-    of.visit([&](const auto& law) {
-      using Law = std::decay_t<decltype(law)>;
-      LawState<R, state_size<Law>> was, state;
-      for (int k = 0; k < state.size; ++k) {
-        was[k] = 0;
-        if (carries(law, k)) load_field(soil.history.column[k], p, count, was[k]);
-        state[k] = was[k];
-      }
-      update_lanes(law, stress, state, by, active, [&](int l) { return place_of(l); });
-      for (int k = 0; k < state.size && carries(law, k); ++k) {
-        if (!changes_all<Law>() && !Law::state()[k].changes) continue;
-        state[k] = kept(state[k], was[k]);
-        if (any_of(state[k] != was[k])) store_field(state[k], soil.history.column[k], p, count);
-      }
-      if constexpr (can_fail<Law>()) mark_failed(law, state, stress);
-    });
-  }
-
-  /// The stress of a particle that its law calls failed is made not finite: fault_of() finds it.
-  template <class Law>
-  KOKKOS_INLINE_FUNCTION void mark_failed(const Law& law, const LawState<R, state_size<Law>>& state,
-                                          SymTensor<R, Dim>& stress) const {
-    for (int l = 0; l < count; ++l) {
-      LawState<T, state_size<Law>> own;
-      for (int k = 0; k < own.size; ++k) own[k] = state[k][l];
-      if (law.failed(own)) stress[0].set(l, Kokkos::Experimental::quiet_NaN_v<T>);
-    }
-  }
-};
 
 /// Moves the particles of patches.
 template <class Space, class T, int Dim>
@@ -362,7 +218,7 @@ struct HostParticles {
     law.corner = origin(slot), law.spacing = spacing;
     for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
       law.material[l] = soil.bodies(soil.body(p + Kokkos::min(l, count - 1))).material;
-    if (alone(slot) != 0) find_alone(law);
+    if (alone(slot) != 0) law.flies = which_are_alone(p, count), law.some_fly = any_of(law.flies > 0);
     const R volume = q.volume, own = advance(q, law, t, R::load(stage.mean + n), by);
     if (law.some_fly) q.volume = select(law.flies > 0, volume, q.volume);
     if (stage.at_wall) put_back_on_walls(q, p, count, slot);
@@ -375,20 +231,25 @@ struct HostParticles {
     moved = Kokkos::fmax(moved, own);
   }
 
-  /// Which particles of the block are alone.
-  [[gnu::noinline]] KOKKOS_FUNCTION void find_alone(LawLanes<R, Space, T, Dim>& law) const {
-    for (int l = 0; l < law.count; ++l) {
-      if (!is_alone(alone, soil.cell(law.p + l))) continue;
-      law.flies.set(l, T(1));
-      law.some_fly = true;
-    }
+  // What few blocks need is in functions of its own, which take and return values, so that the others keep
+  // theirs in registers.
+
+  /// 1 where a particle of the block is alone, else 0.
+  [[gnu::noinline]] KOKKOS_FUNCTION R which_are_alone(int p, int count) const {
+    R which = 0;
+    for (int l = 0; l < count; ++l)
+      if (is_alone(alone, soil.cell(p + l))) which.set(l, T(1));
+    return which;
   }
 
   /// Particles of the block that have passed a wall are put on it (put_on_walls).
-  void put_back_on_walls(Particle<R, Dim>& q, int p, int count, int slot) const {
+  KOKKOS_INLINE_FUNCTION void put_back_on_walls(Particle<R, Dim>& q, int p, int count, int slot) const {
     auto at_home = (q.x[0] >= 0) & (q.x[0] < 1);
     for (int d = 1; d < Dim; ++d) at_home = at_home & (q.x[d] >= 0) & (q.x[d] < 1);
-    if (!any_of(!at_home)) return;  // no cell lies beyond a wall
+    if (any_of(!at_home)) q = put_back_lanes(q, p, count, slot);  // no cell lies beyond a wall
+  }
+  [[gnu::noinline]] KOKKOS_FUNCTION Particle<R, Dim> put_back_lanes(Particle<R, Dim> q, int p, int count,
+                                                                    int slot) const {
     for (int l = 0; l < count; ++l) {
       Vector<T, Dim> x, v;
       for (int d = 0; d < Dim; ++d) x[d] = q.x[d][l], v[d] = q.v[d][l];
@@ -396,9 +257,10 @@ struct HostParticles {
       for (int d = 0; d < Dim; ++d) q.x[d].set(l, x[d]), q.v[d].set(l, v[d]);
       Kokkos::atomic_inc(&put_back(soil.body(p + l)));
     }
+    return q;
   }
 
-  [[gnu::noinline]] KOKKOS_FUNCTION void find_faults(const Particle<R, Dim>& block, const R& moved, int p,
+  [[gnu::noinline]] KOKKOS_FUNCTION void find_faults(const Particle<R, Dim> block, const R moved, int p,
                                                      int count, int slot) const {
     for (int l = 0; l < count; ++l) {
       Particle<T, Dim> q;

@@ -25,6 +25,11 @@ struct OneOf<T, ModelList<Models...>> {
   T pore_stiffness = 0;  // Pa, of the water in the pores (physics/pore_water.hpp); 0: the pores drain
   alignas(16) unsigned char bytes[k_bytes];
 
+  /// The model, where it is known to be this one.
+  template <template <class> class Model>
+  KOKKOS_FORCEINLINE_FUNCTION const Model<T>& as() const {
+    return *reinterpret_cast<const Model<T>*>(bytes);
+  }
   template <class F>
   KOKKOS_INLINE_FUNCTION void visit(F&& f) const {
     visit_as(ModelList<Models...>{}, which, f);
@@ -32,10 +37,7 @@ struct OneOf<T, ModelList<Models...>> {
   /// The same where the caller knows which model it is, and that it is of some list.
   template <template <class> class... Some, class F>
   KOKKOS_INLINE_FUNCTION void visit_as(ModelList<Some...>, int known, F&& f) const {
-    (void)((known == model_index_in<Some>(Materials{})
-                ? (call(f, *reinterpret_cast<const Some<T>*>(bytes)), true)
-                : false) ||
-           ...);
+    (void)((known == model_index_in<Some>(Materials{}) ? (call(f, as<Some>()), true) : false) || ...);
   }
 
  private:

@@ -11,12 +11,12 @@ namespace mpm {
 /// Modified Cam-Clay (Borja & Lee 1990, Borja 1991): f = q^2/M^2 + P (P - Pc), associated, with the mean
 /// effective pressure P (compression positive), dP = v/kappa P de_v and dPc/Pc = v/(lambda - kappa) de_v^p.
 /// Constant Poisson's ratio, or a constant shear modulus. The surface is a circle in the deviatoric plane.
-/// Steps are done in sub-increments; written for one particle.
+/// Steps are done in sub-increments.
 template <class T>
 struct CamClay {
   using real = T;
   static constexpr const char* k_name = "cam_clay";
-  static constexpr bool k_scalar_update = true, k_called_update = true, k_stiffness_changes = true;
+  static constexpr bool k_called_update = true, k_stiffness_changes = true;
   /// What a failed particle is said to have; see failed().
   static constexpr const char* k_failure =
       "has a specific volume of 1.02 or less, or strained by more than 0.0064 in one step: cam_clay does not "
@@ -140,61 +140,79 @@ struct CamClay {
     return !(state[specific_volume] > T(k_least_volume));
   }
 
-  template <int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<T, Dim>& s, State& state, const Increment<T, T, Dim>& by) const {
+  template <class R, int Dim>
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 4>& state,
+                              const Increment<R, T, Dim>& by) const {
     s = rotated(s, by.spin);
-    T square = 0;
+    R square = 0;
     for (int k = 0; k < sym_size<Dim>; ++k) square += (k < 3 ? 1 : 2) * by.strain[k] * by.strain[k];
-    const T wanted = Kokkos::ceil(Kokkos::sqrt(square) * T(1 / k_largest_increment));
-    const bool too_many = !(wanted <= k_most_increments);
-    const int parts = too_many ? k_most_increments : Kokkos::max(1, static_cast<int>(wanted));
-    const T share = parts > 1 ? 1 / static_cast<T>(parts) : T(1);
-    SymTensor<T, Dim> part;
-    for (int k = 0; k < sym_size<Dim>; ++k) part[k] = by.strain[k] * share;
+    const R wanted = Kokkos::ceil(Kokkos::sqrt(square) * T(1 / k_largest_increment));
+    const Truth<R> too_many = !(wanted <= T(k_most_increments));
+    const R parts = select(too_many, R(k_most_increments), Kokkos::fmax(R(1), wanted));
+    SymTensor<R, Dim> part = by.strain;
+    if (any_of(parts > 1)) {
+      const R share = 1 / parts;
+      for (int k = 0; k < sym_size<Dim>; ++k) part[k] *= share;
+    }
+    int n = 0;
     MPM_ROLLED
-    for (int n = 0; n < parts; ++n) strain_by(s, state, part);
-    if (too_many) state[specific_volume] = state[specific_volume_rest] = 0;  // failed() tells it
+    do {
+      if constexpr (is_lanes<R>)
+        strain_by(s, state, part, parts > T(n));
+      else
+        strain_by(s, state, part, true);
+    } while (any_of(parts > T(++n)));
+    if (!any_of(too_many)) return;
+    state[specific_volume] = select(too_many, R(0), state[specific_volume]);  // failed() tells it
+    state[specific_volume_rest] = select(too_many, R(0), state[specific_volume_rest]);
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION T shear_modulus_of_step(T bulk_modulus) const {
-    return shear_ratio > 0 ? shear_ratio * bulk_modulus : shear_modulus;
+  template <class R>
+  KOKKOS_INLINE_FUNCTION R shear_modulus_of_step(const R& bulk_modulus) const {
+    return shear_ratio > 0 ? shear_ratio * bulk_modulus : R(shear_modulus);
   }
 
-  /// One sub-increment of strain `e`.
-  template <int Dim>
-  KOKKOS_INLINE_FUNCTION void strain_by(SymTensor<T, Dim>& s, State& state,
-                                        const SymTensor<T, Dim>& e) const {
-    const T mean = mean_of(s), p = Kokkos::fmax(T(0), -mean), pc = state[preconsolidation];
-    const T dilatation = e[0] + e[1] + e[2], v = state[specific_volume],
-            v_middle = v * (1 + growth_of(dilatation / 2));
-    add_with_rest(state[specific_volume], state[specific_volume_rest], v * growth_of(dilatation));
-    const T a = v_middle * inv_kappa, b = v_middle * inv_plastic;
-    const ElasticPressure<T> elastic{least};
-    const T rise = elastic.change(p, -a * dilatation), trial = p + rise;
-    if (!(trial > 0)) {  // no pressure is left, and no stress
-      for (int k = 0; k < sym_size<Dim>; ++k) s[k] = 0;
-      return;
+  /// One sub-increment of strain `e`, of particles that take part.
+  template <class R, int Dim>
+  KOKKOS_INLINE_FUNCTION void strain_by(SymTensor<R, Dim>& s, LawState<R, 4>& state,
+                                        const SymTensor<R, Dim>& e, const Truth<R>& takes_part) const {
+    const R mean = mean_of(s), p = Kokkos::fmax(R(0), -mean), pc = state[preconsolidation];
+    const R dilatation = e[0] + e[1] + e[2], v = state[specific_volume], half = growth_of(dilatation / 2),
+            v_middle = v * (1 + half);
+    add_with_rest_if(takes_part, state[specific_volume], state[specific_volume_rest], v * half * (2 + half));
+    const R a = v_middle * inv_kappa, b = v_middle * inv_plastic;
+    const ElasticPressure<R> elastic{least};
+    const R rise = elastic.change(p, -a * dilatation), trial = p + rise;
+    const Truth<R> presses = trial > 0;  // otherwise no pressure is left, and no stress
+    const R shear = shear_modulus_of_step(R(a * elastic.slope(p + rise / 2)));
+    SymTensor<R, Dim> next = s;
+    add_shear(next, e, dilatation, shear);
+    const R misfit = mean + p;  // 0, unless the stress was tensile
+    for (int k = 0; k < 3; ++k) next[k] -= rise + misfit;
+    const R square = 3 * second_invariant(next, R(mean - rise - misfit));
+    const Truth<R> yields = takes_part & presses & !(square * inv_slope2 + trial * (trial - pc) <= 0);
+    if (any_of(yields)) {
+      const R inv_pc = 1 / pc;
+      const CamClayReturn<R> to_surface{
+          {least * inv_pc}, p * inv_pc,     -dilatation, a, b, Kokkos::sqrt(square) * inv_pc,
+          trial * inv_pc,   shear * inv_pc, inv_slope2};
+      const auto [l, x] = to_surface.solve(yields);  // multiplier times Pc, plastic volume strain
+      const R less = rise - elastic.change(p, a * (-dilatation - x)),
+              softer = 6 * shear * inv_pc * l * inv_slope2;
+      const auto free = !(trial - less > 0);
+      const R from = mean_of(next), share = softer / (1 + softer);
+      for (int k = 0; k < sym_size<Dim>; ++k) {
+        const R back = next[k] + (k < 3 ? less - share * (next[k] - from) : -share * next[k]);
+        next[k] = select(yields, select(free, R(0), back), next[k]);
+      }
+      add_with_rest_if(yields, state[preconsolidation], state[preconsolidation_rest],
+                       pc * growth_of(Kokkos::fmin(R(4), Kokkos::fmax(R(-4), b * x))));
+      const auto too_small = yields & !(state[preconsolidation] > least);
+      state[preconsolidation] = select(too_small, R(least), state[preconsolidation]);
+      state[preconsolidation_rest] = select(too_small, R(0), state[preconsolidation_rest]);
     }
-    const T shear = shear_modulus_of_step(a * elastic.slope(p + rise / 2));
-    add_shear(s, e, dilatation, shear);
-    const T misfit = mean + p;  // 0, unless the stress was tensile
-    for (int k = 0; k < 3; ++k) s[k] -= rise + misfit;
-    const T inv_pc = 1 / pc, over = trial * inv_pc;
-    const T q = Kokkos::sqrt(3 * second_invariant(s, mean - rise - misfit)) * inv_pc;
-    if (q * q * inv_slope2 + over * (over - 1) <= 0) return;
-    const CamClayReturn<T> to_surface{{least * inv_pc}, p * inv_pc, -dilatation, a, b, q, over,
-                                      shear * inv_pc,   inv_slope2};
-    const auto [l, x] = to_surface.solve();  // multiplier times Pc, plastic volume strain
-    const T less = rise - elastic.change(p, a * (-dilatation - x)),
-            softer = 6 * shear * inv_pc * l * inv_slope2;
-    const bool free = !(trial - less > 0);
-    const T from = mean_of(s), share = 1 / (1 + softer);
-    for (int k = 0; k < sym_size<Dim>; ++k)
-      s[k] = free ? T(0) : s[k] + (k < 3 ? less - softer * share * (s[k] - from) : -softer * share * s[k]);
-    add_with_rest(state[preconsolidation], state[preconsolidation_rest],
-                  pc * growth_of(Kokkos::fmin(T(4), Kokkos::fmax(T(-4), b * x))));
-    if (!(state[preconsolidation] > least)) state[preconsolidation] = least, state[preconsolidation_rest] = 0;
+    for (int k = 0; k < sym_size<Dim>; ++k) s[k] = select(takes_part, select(presses, next[k], R(0)), s[k]);
   }
 };
 

@@ -64,8 +64,8 @@ struct LinearElastic {
     return elastic_energy(stress, share * lambda, share * shear_modulus);
   }
   template <class R, int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& stress, LawState<R, 1>& state,
-                              const Increment<R, T, Dim>& by) const {
+  KOKKOS_FORCEINLINE_FUNCTION void update(SymTensor<R, Dim>& stress, LawState<R, 1>& state,
+                                          const Increment<R, T, Dim>& by) const {
     stress = rotated(stress, by.spin);
     if (young_gradient > 0) {
       const R share = state[stiffness];

@@ -50,4 +50,12 @@ constexpr bool has_model(ModelList<Models...>, int which) {
   return ((model_index_in<Models>(Materials{}) == which) || ...);
 }
 
+/// Whether a law is one of LightMaterials.
+template <class Law>
+constexpr bool is_light() {
+  return []<template <class> class... Models>(ModelList<Models...>) {
+    return (std::is_same_v<Law, Models<typename Law::real>> || ...);
+  }(LightMaterials{});
+}
+
 }  // namespace mpm

@@ -188,7 +188,7 @@ MPM_CALLED_FUNCTION Updated<Law, Dim> called_update(
 /// Stress turned with the material by the spin times dt: Q s Q^T with Q = (I - w/2)^-1 (I + w/2), which is a
 /// rotation for any w (Hughes & Winget 1980), so that the Jaumann rate keeps the invariants.
 template <class T>
-KOKKOS_INLINE_FUNCTION SymTensor<T, 2> rotated(const SymTensor<T, 2>& s, const Spin<T, 2>& w) {
+KOKKOS_FORCEINLINE_FUNCTION SymTensor<T, 2> rotated(const SymTensor<T, 2>& s, const Spin<T, 2>& w) {
   const T h = w.c[0] / 2, scale = 1 / (1 + h * h);
   const T cos_a = (1 - h * h) * scale, sin_a = 2 * h * scale;
   const T mean = (s[0] + s[1]) / 2, half = (s[0] - s[1]) / 2;
@@ -235,25 +235,35 @@ constexpr StateVariable rest_variable(const char* name, const char* unit) {
 }
 /// Adds to a sum. In single precision `rest` keeps what the sum has rounded off (Kahan 1965), so that a sum
 /// of many small increments does not stand still. Double precision needs no rests.
-template <class T>
-KOKKOS_INLINE_FUNCTION void add_with_rest(T& sum, T& rest, T increment) {
-  if constexpr (sizeof(T) > sizeof(float)) {
+template <class R>
+KOKKOS_INLINE_FUNCTION void add_with_rest(R& sum, R& rest, const R& increment) {
+  if constexpr (sizeof(RealOf<R>) > sizeof(float)) {
     sum += increment;
   } else {
-    const T whole = increment + rest, next = sum + whole;
+    const R whole = increment + rest, next = sum + whole;
     rest = whole - (next - sum);
     sum = next;
   }
 }
+/// The same where a condition holds.
+template <class R>
+KOKKOS_INLINE_FUNCTION void add_with_rest_if(const Truth<R>& condition, R& sum, R& rest, const R& increment) {
+  R next = sum, next_rest = rest;
+  add_with_rest(next, next_rest, increment);
+  sum = select(condition, next, sum);
+  if constexpr (sizeof(RealOf<R>) == sizeof(float)) rest = select(condition, next_rest, rest);
+}
 
 /// exp(x) - 1. Steps of a run are small, and there a few terms of the series have all digits.
-template <class T>
-KOKKOS_INLINE_FUNCTION T growth_of(T x) {
-  constexpr T k_small = T(0.01);  // the first term left out is x^6/5040 of the sum
-  if (Kokkos::fabs(x) < k_small)
-    return x * (1 + x * (T(1.0 / 2) +
-                         x * (T(1.0 / 6) + x * (T(1.0 / 24) + x * (T(1.0 / 120) + x * T(1.0 / 720))))));
-  return Kokkos::expm1(x);
+template <class R>
+KOKKOS_FORCEINLINE_FUNCTION R growth_of(const R& x) {
+  using T = RealOf<R>;
+  const auto small = Kokkos::fabs(x) < T(0.01);  // the first term left out is x^6/5040 of the sum
+  const R series =
+      x *
+      (1 + x * (T(1.0 / 2) + x * (T(1.0 / 6) + x * (T(1.0 / 24) + x * (T(1.0 / 120) + x * T(1.0 / 720))))));
+  if (!any_of(!small)) return series;
+  return select(small, series, Kokkos::expm1(x));
 }
 
 /// Mean stress (s_xx + s_yy + s_zz) / 3.

@@ -10,7 +10,6 @@ template <class T>
 struct MohrCoulomb : FrictionalSoil<T> {
   using Soil = FrictionalSoil<T>;
   static constexpr const char* k_name = "mohr_coulomb";
-  static constexpr bool k_scalar_update = true;
   using Soil::cohesion_of_particle;
   using Soil::plastic_strain;
   PyramidShape<T> shape;
@@ -36,25 +35,27 @@ struct MohrCoulomb : FrictionalSoil<T> {
   }
 
   /// The yield surface of a particle with this cohesion [Pa].
-  KOKKOS_FUNCTION PyramidSize<T> size_of(T c) const {
+  template <class R>
+  KOKKOS_FUNCTION PyramidSize<R> size_of(const R& c) const {
     const bool has_apex = apex_over_cohesion > 0, has_tension = this->tension >= 0;
-    const T sc = sc_over_cohesion * c, apex = apex_over_cohesion * c;
-    const bool at_apex = has_apex && !(has_tension && this->tension < apex);
-    const T cut_off = at_apex ? apex : this->tension;
+    const R sc = sc_over_cohesion * c, apex = apex_over_cohesion * c;
+    const R wanted = has_apex ? (has_tension ? R(this->tension) : apex) : R(k_no_tension);
+    const Truth<R> at_apex = wanted >= apex;
+    const R cut_off = select(at_apex, apex, R(this->tension));
     return {.sc = sc,
             .cut_off = cut_off,
-            .low = at_apex ? apex : shape.k * cut_off - sc,
+            .low = select(at_apex, apex, shape.k * cut_off - sc),
             .cuts = has_apex || has_tension,
             .apex = at_apex};
   }
 
-  template <int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<T, Dim>& s, LawState<T, 2>& state,
-                              const Increment<T, T, Dim>& by) const {
+  template <class R, int Dim>
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 2>& state,
+                              const Increment<R, T, Dim>& by) const {
     s = rotated(s, by.spin);
     add_elastic(s, by.strain, this->lambda, this->shear_modulus);
     state[plastic_strain] +=
-        return_stress(shape, size_of(state[cohesion_of_particle]), this->shear_modulus, s);
+        return_stress(shape, size_of(state[cohesion_of_particle]), R(this->shear_modulus), s);
   }
 };
 

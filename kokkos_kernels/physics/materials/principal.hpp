@@ -6,22 +6,22 @@
 namespace mpm {
 
 /// Three values in descending order, and the swaps that put them there.
-template <class T>
+template <class R>
 struct Sorted3 {
-  T value[3];
-  bool swapped[3];  // 0 and 1, then 1 and 2, then 0 and 1
+  R value[3];
+  Truth<R> swapped[3];  // 0 and 1, then 1 and 2, then 0 and 1
 };
 
-template <class T>
-KOKKOS_INLINE_FUNCTION void swap_if(bool condition, T& a, T& b) {
-  const T was = a;
-  a = condition ? b : a;
-  b = condition ? was : b;
+template <class R>
+KOKKOS_INLINE_FUNCTION void swap_if(const Truth<R>& condition, R& a, R& b) {
+  const R was = a;
+  a = select(condition, b, a);
+  b = select(condition, was, b);
 }
 
-template <class T>
-KOKKOS_INLINE_FUNCTION Sorted3<T> sorted_down(const T (&v)[3]) {
-  Sorted3<T> s{{v[0], v[1], v[2]}, {}};
+template <class R>
+KOKKOS_INLINE_FUNCTION Sorted3<R> sorted_down(const R (&v)[3]) {
+  Sorted3<R> s{{v[0], v[1], v[2]}, {}};
   s.swapped[0] = s.value[0] < s.value[1];
   swap_if(s.swapped[0], s.value[0], s.value[1]);
   s.swapped[1] = s.value[1] < s.value[2];
@@ -32,8 +32,8 @@ KOKKOS_INLINE_FUNCTION Sorted3<T> sorted_down(const T (&v)[3]) {
 }
 
 /// Values in the order of `s.value`, put back into the order before the sort.
-template <class T>
-KOKKOS_INLINE_FUNCTION void unsort(const Sorted3<T>& s, T (&v)[3]) {
+template <class R>
+KOKKOS_INLINE_FUNCTION void unsort(const Sorted3<R>& s, R (&v)[3]) {
   swap_if(s.swapped[2], v[0], v[1]);
   swap_if(s.swapped[1], v[1], v[2]);
   swap_if(s.swapped[0], v[0], v[1]);
@@ -42,50 +42,50 @@ KOKKOS_INLINE_FUNCTION void unsort(const Sorted3<T>& s, T (&v)[3]) {
 /// Principal values [Pa] of the deviator, not sorted, and their axes. Values without the mean stress keep the
 /// digits of the deviator where the mean is many times the strength. 2D: two in the plane, the larger first,
 /// then zz.
-template <class T, int Dim>
+template <class R, int Dim>
 struct Principal;
 
-template <class T>
-struct Principal<T, 2> {
-  T value[3];
-  T cos_2a, sin_2a;  // a: angle from the x axis to the axis of value[0]
+template <class R>
+struct Principal<R, 2> {
+  R value[3];
+  R cos_2a, sin_2a;  // a: angle from the x axis to the axis of value[0]
 };
-template <class T>
-struct Principal<T, 3> {
-  T value[3];
-  T axis[3][3];  // axis[i][k]: component i of the axis of value[k]
+template <class R>
+struct Principal<R, 3> {
+  R value[3];
+  R axis[3][3];  // axis[i][k]: component i of the axis of value[k]
 };
 
 /// Closed form.
-template <class T>
-KOKKOS_INLINE_FUNCTION Principal<T, 2> principal_of(const SymTensor<T, 2>& s, T) {
-  const T in_plane = ((s[0] - s[2]) + (s[1] - s[2])) * T(1.0 / 6), half = (s[0] - s[1]) / 2;
-  const T radius = Kokkos::sqrt(half * half + s[3] * s[3]);
-  const bool has_axes = radius > 0;
-  const T divisor = has_axes ? radius : T(1);
+template <class R>
+KOKKOS_INLINE_FUNCTION Principal<R, 2> principal_of(const SymTensor<R, 2>& s, R) {
+  const R in_plane = ((s[0] - s[2]) + (s[1] - s[2])) * RealOf<R>(1.0 / 6), half = (s[0] - s[1]) / 2;
+  const R radius = Kokkos::sqrt(half * half + s[3] * s[3]);
+  const auto has_axes = radius > 0;
+  const R divisor = select(has_axes, radius, R(1));
   return {{in_plane + radius, in_plane - radius, -2 * in_plane},
-          has_axes ? half / divisor : T(1),
+          select(has_axes, half / divisor, R(1)),
           s[3] / divisor};
 }
 
 /// One rotation of Jacobi's method in the plane of axes p and q, which takes a_pq to zero; r is the third
 /// axis. No division by a_pq: the tangent of the angle is 2 a_pq / (d + sqrt(d^2 + 4 a_pq^2)), d = a_qq -
 /// a_pp.
-template <int p, int q, class T>
-KOKKOS_INLINE_FUNCTION void jacobi_rotation(SymTensor<T, 3>& a, T (&axis)[3][3]) {
+template <int p, int q, class R>
+KOKKOS_INLINE_FUNCTION void jacobi_rotation(SymTensor<R, 3>& a, R (&axis)[3][3]) {
   constexpr int r = 3 - p - q, pq = sym_index<3>(p, q), rp = sym_index<3>(r, p), rq = sym_index<3>(r, q);
-  const T d = a[q] - a[p], twice = 2 * a[pq];
-  const T divisor = Kokkos::fabs(d) + Kokkos::sqrt(d * d + twice * twice);
-  const T t = divisor > 0 ? (d < 0 ? -twice : twice) / divisor : T(0);
-  const T c = 1 / Kokkos::sqrt(1 + t * t), s = t * c;
+  const R d = a[q] - a[p], twice = 2 * a[pq];
+  const R divisor = Kokkos::fabs(d) + Kokkos::sqrt(d * d + twice * twice);
+  const R t = select(divisor > 0, select(d < 0, -twice, twice) / divisor, R(0));
+  const R c = 1 / Kokkos::sqrt(1 + t * t), s = t * c;
   a[p] -= t * a[pq];
   a[q] += t * a[pq];
   a[pq] = 0;
-  const T a_rp = a[rp], a_rq = a[rq];
+  const R a_rp = a[rp], a_rq = a[rq];
   a[rp] = c * a_rp - s * a_rq;
   a[rq] = s * a_rp + c * a_rq;
   for (int i = 0; i < 3; ++i) {
-    const T v_p = axis[i][p], v_q = axis[i][q];
+    const R v_p = axis[i][p], v_q = axis[i][q];
     axis[i][p] = c * v_p - s * v_q;
     axis[i][q] = s * v_p + c * v_q;
   }
@@ -95,18 +95,18 @@ KOKKOS_INLINE_FUNCTION void jacobi_rotation(SymTensor<T, 3>& a, T (&axis)[3][3])
 /// are fixed in number, so that threads of a GPU stay together: of a million random tensors, three sweeps
 /// leave up to 4e-5 beside the diagonal, four 3e-20. A form with the arc cosine would lose half of the digits
 /// where two values are nearly equal.
-template <class T>
-KOKKOS_INLINE_FUNCTION Principal<T, 3> principal_of(const SymTensor<T, 3>& s, T mean) {
+template <class R>
+KOKKOS_INLINE_FUNCTION Principal<R, 3> principal_of(const SymTensor<R, 3>& s, R mean) {
   constexpr int k_sweeps = 4;
-  SymTensor<T, 3> a;
-  T largest = 0;
+  SymTensor<R, 3> a;
+  R largest = 0;
   for (int k = 0; k < 6; ++k) {
     a[k] = k < 3 ? s[k] - mean : s[k];
     largest = Kokkos::fmax(largest, Kokkos::fabs(a[k]));
   }
-  const T divisor = largest > 0 ? largest : T(1);
+  const R divisor = select(largest > 0, largest, R(1));
   for (int k = 0; k < 6; ++k) a[k] /= divisor;
-  Principal<T, 3> of{{}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Principal<R, 3> of{{}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   MPM_ROLLED
   for (int sweep = 0; sweep < k_sweeps; ++sweep) {
     jacobi_rotation<0, 1>(a, of.axis);
@@ -119,18 +119,18 @@ KOKKOS_INLINE_FUNCTION Principal<T, 3> principal_of(const SymTensor<T, 3>& s, T 
 
 /// Adds sum_k by[k] n_k n_k^T to s. Where two values are nearly equal their axes n_k are arbitrary, but then
 /// their corrections are nearly equal too, so that the sum is smooth.
-template <class T>
-KOKKOS_INLINE_FUNCTION void add_along_axes(SymTensor<T, 2>& s, const Principal<T, 2>& of, const T (&by)[3]) {
-  const T mean = (by[0] + by[1]) / 2, half = (by[0] - by[1]) / 2;
+template <class R>
+KOKKOS_INLINE_FUNCTION void add_along_axes(SymTensor<R, 2>& s, const Principal<R, 2>& of, const R (&by)[3]) {
+  const R mean = (by[0] + by[1]) / 2, half = (by[0] - by[1]) / 2;
   s[0] += mean + half * of.cos_2a;
   s[1] += mean - half * of.cos_2a;
   s[2] += by[2];
   s[3] += half * of.sin_2a;
 }
-template <class T>
-KOKKOS_INLINE_FUNCTION void add_along_axes(SymTensor<T, 3>& s, const Principal<T, 3>& of, const T (&by)[3]) {
+template <class R>
+KOKKOS_INLINE_FUNCTION void add_along_axes(SymTensor<R, 3>& s, const Principal<R, 3>& of, const R (&by)[3]) {
   for (int k = 0; k < 3; ++k) {
-    const T n[3] = {of.axis[0][k], of.axis[1][k], of.axis[2][k]};
+    const R n[3] = {of.axis[0][k], of.axis[1][k], of.axis[2][k]};
     for (int i = 0; i < 3; ++i)
       for (int j = i; j < 3; ++j) s[sym_index<3>(i, j)] += by[k] * n[i] * n[j];
   }

@@ -13,10 +13,11 @@ namespace mpm {
 template <class T>
 struct SofteningClay : Clay<T> {
   static constexpr const char* k_name = "softening_clay";
-  static constexpr bool k_scalar_update = true, k_called_update = true;
+  static constexpr bool k_called_update = true;
   static constexpr double k_most_decades = 9;  // that R takes of the rate: beyond is the noise of waves
   enum Surface : int { von_mises, tresca };
   T remoulded_ratio, xi95, xi95_cell, rate_factor, rate_reference, rate_time, surface;
+  T fall;  // -, what is left of the strength falls by exp(-fall xi); 0 where it does not
   PyramidShape<T> hexagon;
 
   static constexpr auto parameters() {
@@ -75,12 +76,14 @@ struct SofteningClay : Clay<T> {
   void prepare() {
     Clay<T>::prepare();
     hexagon = PyramidShape<T>::of(0, 0, this->poisson);
+    fall = remoulded_ratio < 1 ? 3 / xi95 : T(0);
   }
   /// Softening localises in bands as wide as a cell, so xi95 follows the cells where xi95_cell is given.
   void prepare_for(const RunFigures& run) {
     if (!(xi95_cell > 0)) return;
     xi95 *= static_cast<T>(xi95_cell / run.spacing);
     xi95_cell = static_cast<T>(run.spacing);
+    prepare();
   }
 
   enum : int { plastic_strain, strength, plastic_strain_rest, shear_rate };
@@ -130,16 +133,18 @@ struct SofteningClay : Clay<T> {
     return Clay<T>::stored_energy(stress, of_clay(state));
   }
 
-  template <int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<T, Dim>& s, State& state, const Increment<T, T, Dim>& by) const {
+  template <class R, int Dim>
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 4>& state,
+                              const Increment<R, T, Dim>& by) const {
     const auto& e = this->stiffness;
-    const T su_p = state[strength], shear_modulus = e.shear_modulus + e.shear_modulus_over_su * su_p;  // Pa
-    const T rapid = su_p * rate_effect(state, by);
+    const R su_p = state[strength], shear_modulus = e.shear_modulus + e.shear_modulus_over_su * su_p;  // Pa
+    const R rapid = su_p * rate_effect(state, by);
     s = rotated(s, by.spin);
-    add_elastic(s, by.strain, e.lambda + e.lambda_over_su * su_p, shear_modulus);
-    const T more = surface == T(tresca) ? return_to_hexagon(s, state, shear_modulus, rapid)
+    add_elastic(s, by.strain, R(e.lambda + e.lambda_over_su * su_p), shear_modulus);
+    const R more = surface == T(tresca) ? return_to_hexagon(s, state, shear_modulus, rapid)
                                         : return_to_circle(s, state, shear_modulus, rapid);
-    if (more > 0) add_with_rest(state[plastic_strain], state[plastic_strain_rest], more);
+    const auto yields = more > 0;
+    if (any_of(yields)) add_with_rest_if(yields, state[plastic_strain], state[plastic_strain_rest], more);
   }
 
  private:
@@ -147,8 +152,9 @@ struct SofteningClay : Clay<T> {
     return {{state[plastic_strain], state[strength]}};
   }
   /// S(xi) - d.
-  KOKKOS_INLINE_FUNCTION T what_is_left(T xi) const {
-    return remoulded_ratio < 1 ? (1 - remoulded_ratio) * Kokkos::exp(-3 * xi / xi95) : T(0);
+  template <class R>
+  KOKKOS_INLINE_FUNCTION R what_is_left(const R& xi) const {
+    return remoulded_ratio < 1 ? (1 - remoulded_ratio) * Kokkos::exp(-fall * xi) : R(0);
   }
 
   /// Soil of strength su0 [Pa] must not soften faster than it unloads: 3 su0 R (1-d)/xi95 < G.
@@ -166,50 +172,52 @@ struct SofteningClay : Clay<T> {
   }
 
   /// R of the step's rate of shear strain, sqrt(2 e' : e')/dt, which is smoothed where rate_time is given.
-  template <int Dim>
-  KOKKOS_INLINE_FUNCTION T rate_effect(State& state, const Increment<T, T, Dim>& by) const {
+  template <class R, int Dim>
+  KOKKOS_INLINE_FUNCTION R rate_effect(LawState<R, 4>& state, const Increment<R, T, Dim>& by) const {
     if (!(rate_factor > 0)) return 1;
-    T rate = 2 * Kokkos::sqrt(second_invariant(by.strain, mean_of(by.strain))) / by.dt;
+    R rate = 2 * Kokkos::sqrt(second_invariant(by.strain, mean_of(by.strain))) / by.dt;
     if (rate_time > 0)
       rate = state[shear_rate] -= Kokkos::expm1(-by.dt / rate_time) * (rate - state[shear_rate]);
-    const T decades = Kokkos::log10(Kokkos::fmax(rate, rate_reference) / rate_reference);
-    return 1 + rate_factor * Kokkos::fmin(T(k_most_decades), decades);
+    const R decades = Kokkos::log10(Kokkos::fmax(rate, R(rate_reference)) / rate_reference);
+    return 1 + rate_factor * Kokkos::fmin(R(k_most_decades), decades);
   }
 
   /// Returns a trial stress to sqrt(J2) = rapid S(xi + g), with the plastic shear strain g of the step: r - G
   /// g = rapid S(xi + g). Newton's method from g = 0 is monotone, since the soil softens less than it
   /// unloads.
-  template <int Dim>
-  KOKKOS_INLINE_FUNCTION T return_to_circle(SymTensor<T, Dim>& s, const State& state, T shear_modulus,
-                                            T rapid) const {
+  template <class R, int Dim>
+  KOKKOS_INLINE_FUNCTION R return_to_circle(SymTensor<R, Dim>& s, const LawState<R, 4>& state,
+                                            const R& shear_modulus, const R& rapid) const {
     constexpr int k_iterations = 5;
     // Relative change of g after which the iterations end: what is left is about its square.
     constexpr T k_last = sizeof(T) == sizeof(double) ? T(1e-7) : T(1e-3);
-    const T mean = mean_of(s), r = shear_stress_of(s, mean),
+    const R mean = mean_of(s), r = shear_stress_of(s, mean),
             left = rapid * what_is_left(state[plastic_strain]);
-    const T over = r - rapid * remoulded_ratio - left;
-    if (over <= 0) return 0;
-    const T fall = remoulded_ratio < 1 ? 3 / xi95 : T(0);
-    T g = over / (shear_modulus - fall * left);
+    const R over = r - rapid * remoulded_ratio - left;
+    const Truth<R> yields = !(over <= 0);
+    if (!any_of(yields)) return 0;
+    R g = over / (shear_modulus - fall * left);
+    Truth<R> goes_on = yields;
     for (int k = 1; k < k_iterations; ++k) {
-      const T softer = left * growth_of(-fall * g);  // less than 0
-      const T more = (over - shear_modulus * g - softer) / (shear_modulus - fall * (left + softer));
-      g += more;
-      if (more <= k_last * g) break;
+      const R softer = left * growth_of(-fall * g);  // less than 0
+      const R more = (over - shear_modulus * g - softer) / (shear_modulus - fall * (left + softer));
+      g = select(goes_on, g + more, g);
+      goes_on = goes_on & !(more <= k_last * g);
+      if (!any_of(goes_on)) break;
     }
-    const T share = Kokkos::fmin(T(1), shear_modulus * g / r);
+    const R share = select(yields, Kokkos::fmin(R(1), shear_modulus * g / r), R(0));
     for (int k = 0; k < sym_size<Dim>; ++k) s[k] -= share * (k < 3 ? s[k] - mean : s[k]);
-    return g;
+    return select(yields, g, R(0));
   }
 
   /// Returns a trial stress to Tresca's hexagon with the strength at the start of the step, an error of the
   /// order of the step.
-  template <int Dim>
-  KOKKOS_INLINE_FUNCTION T return_to_hexagon(SymTensor<T, Dim>& s, const State& state, T shear_modulus,
-                                             T rapid) const {
-    const T su_now = rapid * (remoulded_ratio + what_is_left(state[plastic_strain]));
-    const PyramidSize<T> size{
-        .sc = 2 * su_now, .cut_off = k_no_tension, .low = 0, .cuts = false, .apex = false};
+  template <class R, int Dim>
+  KOKKOS_INLINE_FUNCTION R return_to_hexagon(SymTensor<R, Dim>& s, const LawState<R, 4>& state,
+                                             const R& shear_modulus, const R& rapid) const {
+    const R su_now = rapid * (remoulded_ratio + what_is_left(state[plastic_strain]));
+    const PyramidSize<R> size{
+        .sc = 2 * su_now, .cut_off = T(k_no_tension), .low = T(0), .cuts = false, .apex = {}};
     return return_stress(hexagon, size, shear_modulus, s);
   }
 };

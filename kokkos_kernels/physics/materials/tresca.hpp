@@ -11,7 +11,6 @@ namespace mpm {
 template <class T>
 struct Tresca : Clay<T> {
   static constexpr const char* k_name = "tresca";
-  static constexpr bool k_scalar_update = true;
   using Clay<T>::plastic_strain;
   using Clay<T>::strength;
   T tension;  // Pa, or k_no_tension
@@ -43,15 +42,15 @@ struct Tresca : Clay<T> {
     return Clay<T>::check();
   }
 
-  template <int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<T, Dim>& s, LawState<T, 2>& state,
-                              const Increment<T, T, Dim>& by) const {
+  template <class R, int Dim>
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 2>& state,
+                              const Increment<R, T, Dim>& by) const {
     const auto& e = this->stiffness;
-    const T su_p = state[strength], shear_modulus = e.shear_modulus + e.shear_modulus_over_su * su_p;  // Pa
+    const R su_p = state[strength], shear_modulus = e.shear_modulus + e.shear_modulus_over_su * su_p;  // Pa
     s = rotated(s, by.spin);
-    add_elastic(s, by.strain, e.lambda + e.lambda_over_su * su_p, shear_modulus);
-    const PyramidSize<T> size{
-        .sc = 2 * su_p, .cut_off = tension, .low = tension - 2 * su_p, .cuts = tension >= 0, .apex = false};
+    add_elastic(s, by.strain, R(e.lambda + e.lambda_over_su * su_p), shear_modulus);
+    const PyramidSize<R> size{
+        .sc = 2 * su_p, .cut_off = tension, .low = tension - 2 * su_p, .cuts = tension >= 0, .apex = {}};
     state[plastic_strain] += return_stress(shape, size, shear_modulus, s);
   }
 };

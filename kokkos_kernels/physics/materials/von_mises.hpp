@@ -14,8 +14,8 @@ struct VonMises : Clay<T> {
   static constexpr auto parameters() { return Clay<T>::template clay_parameters<VonMises>(); }
 
   template <class R, int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 2>& state,
-                              const Increment<R, T, Dim>& by) const {
+  KOKKOS_FORCEINLINE_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 2>& state,
+                                          const Increment<R, T, Dim>& by) const {
     const typename Clay<T>::Stiffness e = this->stiffness;
     const R su_p = state[strength], shear_modulus = e.shear_modulus + e.shear_modulus_over_su * su_p;  // Pa
     s = rotated(s, by.spin);
