@@ -31,6 +31,11 @@ std::vector<std::string> Notices::report(const HistoryRow& row, const Config& co
                   "is kept there (column %s_limited); smaller cells or more particles a cell follow the soil "
                   "further",
                   body.limited, name.c_str()));
+    const long start = particles_.emplace(name, body.particles + body.lost_count).first->second;
+    const long more = body.particles + body.lost_count - start;
+    report(config.particle_domain == ParticleDomain::split && more > 0, name, " split",
+           formatted("%ld particles whose soil was stretched have been split (column %s_particles)", more,
+                     name.c_str()));
     report(body.lost_count > 0, name, " left",
            formatted("%ld particles of %.6g kg have left the run (columns %s_lost_mass, %s_lost_momentum, "
                      "%s_lost_energy)",

@@ -110,6 +110,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure* failure) {
     *failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
     failed = share(failure);
     if (control.lost > 0) note_lost(state_);
+    if (failed == PETSC_SUCCESS && failure->what.empty()) failed = split();
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = ranks_->rebuild(state_);
   };
   PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
@@ -155,6 +156,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
   }
   PetscCall(note_out_of_order(b, body));
   body->mass = m.mass, body->water_energy = m.water_energy, body->strays = m.alone, body->limited = m.limited;
+  body->particles = m.count;
   if (m.count == 0) PetscFunctionReturn(PETSC_SUCCESS);
   const long rank = m.count - m.count / 1000;  // of the 99.9th percentile, the nearest one above
   const Vec3& origin = config_.mesh.lower;
