@@ -1,10 +1,10 @@
 #pragma once
 // Domains of particles, and what is kept of those that follow the soil (-particle_domain stretch). Such a
 // domain begins as the square of its
-// lattice and deforms with the soil to a parallelogram (parallelepiped). What a particle keeps of it are three
-// times the second moments of its area about its centre, M = sum_k r_k r_k^T with r_k = F r_k0 the vectors
-// from the centre to the middles of the sides, a symmetric tensor [cells^2]. The shape functions take the box
-// along the axes of the mesh that has the same second moment along each axis, l_d = sqrt(M_dd).
+// lattice and deforms with the soil to a parallelogram (parallelepiped). What a particle keeps of it are
+// three times the second moments of its area about its centre, M = sum_k r_k r_k^T with r_k = F r_k0 the
+// vectors from the centre to the middles of the sides, a symmetric tensor [cells^2]. The shape functions take
+// the box along the axes of the mesh that has the same second moment along each axis, l_d = sqrt(M_dd).
 
 #include "base/half_length.hpp"
 #include "base/types.hpp"
@@ -13,12 +13,27 @@
 namespace mpm {
 
 /// Half lengths [cells] of the domain with these moments, `least` at least and k_most_half_length at most.
+/// Their root and quotient are of single precision, which costs a processor and a GPU a quarter; Newton's
+/// step then makes the inverse that of l in T, for the weights rely on it.
 template <class R, class T, int Dim>
-KOKKOS_INLINE_FUNCTION HalfLengths<R, Dim> half_lengths_of(const DomainMoments<R, Dim>& m, T least) {
+KOKKOS_FORCEINLINE_FUNCTION HalfLengths<R, Dim> half_lengths_of(const DomainMoments<R, Dim>& m, T least) {
+  constexpr T most = T(k_most_half_length * k_most_half_length);
   HalfLengths<R, Dim> half;
-  for (int d = 0; d < Dim; ++d)
-    half[d] = HalfLength<R>(Kokkos::fmin(T(k_most_half_length), Kokkos::fmax(least, Kokkos::sqrt(m[d]))));
+  for (int d = 0; d < Dim; ++d) {
+    const auto l = single_sqrt(Kokkos::fmin(most, Kokkos::fmax(least * least, m[d])));
+    half[d].l = to_real<R>(l);
+    half[d].inverse = to_real<R>(0.5f / l);
+    if constexpr (!std::is_same_v<T, float>) half[d].inverse *= T(2) - T(2) * half[d].l * half[d].inverse;
+  }
   return half;
+}
+
+/// Whether the half length along some axis is at its upper bound.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool is_longest(const DomainMoments<T, Dim>& m) {
+  bool longest = false;
+  for (int d = 0; d < Dim; ++d) longest = longest || m[d] > T(k_most_half_length * k_most_half_length);
+  return longest;
 }
 
 /// Moments of a domain that is a square (cube) of this half length [cells].

@@ -6,16 +6,19 @@
 
 namespace mpm {
 
-/// Brings a domain into the bounds within which a particle remembers how its soil was deformed: soil that flows
-/// deforms without end. Axis by axis the moments are scaled, M_ij <- s_i s_j M_ij, so that they stay those of a
-/// parallelogram. The bounds are far beyond those of the half lengths, so that soil that is compressed and
-/// springs back has the domain that it had. T: the type of the numbers in R.
+/// Brings a domain into the bounds within which a particle remembers how its soil was deformed: soil that
+/// flows deforms without end. Axis by axis the moments are scaled, M_ij <- s_i s_j M_ij, so that they stay
+/// those of a parallelogram. The bounds are far beyond those of the half lengths, so that soil that is
+/// compressed and springs back has the domain that it had. T: the type of the numbers in R.
 template <class T, class R, int Dim>
-KOKKOS_INLINE_FUNCTION void limit_domain(DomainMoments<R, Dim>& m) {
-  constexpr T k_least = T(0.01), k_most = T(4);  // cells
+KOKKOS_FORCEINLINE_FUNCTION void limit_domain(DomainMoments<R, Dim>& m) {
+  constexpr T k_least = T(0.01 * 0.01), k_most = T(4 * 4);  // cells2
+  auto inside = (m[0] >= k_least) & (m[0] <= k_most);
+  for (int d = 1; d < Dim; ++d) inside = inside & (m[d] >= k_least) & (m[d] <= k_most);
+  if (!any_of(!inside)) return;
   R scale[Dim];
   for (int d = 0; d < Dim; ++d) {
-    const R within = Kokkos::fmin(k_most * k_most, Kokkos::fmax(k_least * k_least, m[d]));
+    const R within = Kokkos::fmin(k_most, Kokkos::fmax(k_least, m[d]));
     scale[d] = Kokkos::sqrt(within / m[d]);
     m[d] = within;
   }
@@ -24,9 +27,10 @@ KOKKOS_INLINE_FUNCTION void limit_domain(DomainMoments<R, Dim>& m) {
 }
 
 /// Deforms a domain by a step, M <- G M G^T with G = exp(A) to second order and A = L dt, whose trace is that
-/// of the strain increment: its dilatation may be the mean of a cell (F-bar), as that of the particle's volume.
+/// of the strain increment: its dilatation may be the mean of a cell (F-bar), as that of the particle's
+/// volume.
 template <class R, class T, int Dim>
-KOKKOS_INLINE_FUNCTION void stretch_domain(DomainMoments<R, Dim>& m, const Increment<R, T, Dim>& by) {
+KOKKOS_FORCEINLINE_FUNCTION void stretch_domain(DomainMoments<R, Dim>& m, const Increment<R, T, Dim>& by) {
   R a[Dim][Dim], correction = 0;
   for (int d = 0; d < 3; ++d) correction += by.strain[d];
   for (int d = 0; d < Dim; ++d) correction -= by.dt * by.gradient[d][d];

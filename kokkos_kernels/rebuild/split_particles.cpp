@@ -5,6 +5,7 @@
 #include "physics/domain.hpp"
 #include "rebuild/migrate.hpp"
 #include "rebuild/rebuild.hpp"
+#include "rebuild/shift_particle.hpp"
 
 namespace mpm {
 namespace {
@@ -30,8 +31,7 @@ KOKKOS_INLINE_FUNCTION LongestAxis<Dim> longest_axis(const DomainMoments<T, Dim>
       for (int q = p + 1; q < Dim; ++q) {
         if (a[p][q] == 0) continue;
         const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-        const double t =
-            (theta < 0 ? -1 : 1) / (Kokkos::fabs(theta) + Kokkos::sqrt(theta * theta + 1));
+        const double t = (theta < 0 ? -1 : 1) / (Kokkos::fabs(theta) + Kokkos::sqrt(theta * theta + 1));
         const double c = 1 / Kokkos::sqrt(t * t + 1), s = t * c;
         for (int k = 0; k < Dim; ++k) {
           const double kp = a[k][p], kq = a[k][q];
@@ -64,41 +64,15 @@ struct IsSplit {
   decltype(Strays<Space>::alone) alone;
 
   KOKKOS_INLINE_FUNCTION bool operator()(int p) const {
-    constexpr double k_long = 0.4;     // cells
-    constexpr double k_longer = 1.2;   // times the half length at the start, where that is as long
-    constexpr double k_round_off = 1e-3;
     const int cell = soil.cell(p);
     if (address(p) < 0 || is_alone(alone, cell)) return false;
     const BodyProperties<T>& of = soil.bodies(soil.body(p));
     const double l = of.half_length.l;
-    const double filled = power(0.5 / l, Dim) * (1 + k_round_off);
-    if (begin(cell + 1) - begin(cell) > filled) return false;
+    if (begin(cell + 1) - begin(cell) > filled_by<Dim>(l) * (1 + k_round_off)) return false;
     if (soil.mass(p) < 2 * k_least_piece * double(of.mass) * (1 - k_round_off)) return false;
-    return longest_axis<T, Dim>(soil.domain(p)).half_length > Kokkos::fmax(k_long, k_longer * l);
+    return longest_axis<T, Dim>(soil.domain(p)).half_length > split_length(l);
   }
 };
-
-/// Brings a particle from the cell of `address` by `offset` [cells]. False, and nothing is changed, where that
-/// is outside the mesh.
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION bool shift(const Grid<T, Dim>& grid, const Vector<double, Dim>& offset, long& address,
-                                  Vector<T, Dim>& x) {
-  const long patch = address / Patch<Dim>::cells;
-  const Coord<Dim> from = grid.origin_of(patch % grid.patches_of_field()),
-                   in = coord_of<Dim>(static_cast<int>(address % Patch<Dim>::cells));
-  Coord<Dim> cell;
-  Vector<T, Dim> at;
-  for (int d = 0; d < Dim; ++d) {
-    const T moved = static_cast<T>(x[d] + offset[d]), whole = Kokkos::floor(moved);
-    cell[d] = from[d] + in[d] + static_cast<int>(whole);
-    at[d] = moved - whole;
-    if (at[d] >= 1) at[d] = 0, ++cell[d];  // -tiny + 1 rounds to 1
-  }
-  if (!grid.holds(cell)) return false;
-  address = grid.address_of(cell, grid.field_of(patch));
-  x = at;
-  return true;
-}
 
 /// Splits particle p; `other`, which is its copy, becomes the second half.
 template <class Space, class T, int Dim>
@@ -109,8 +83,8 @@ struct Split {
 
   KOKKOS_INLINE_FUNCTION void operator()(int p, int other) const {
     const LongestAxis<Dim> axis = longest_axis<T, Dim>(soil.domain(p));
-    // A domain longer than the shape functions see is that of soil which others filled up while it flowed: its
-    // halves stay near, and forget how long it was.
+    // A domain longer than the shape functions see is that of soil which others filled up while it flowed:
+    // its halves stay near, and forget how long it was.
     const double length = axis.half_length, half = Kokkos::fmin(length, k_most_half_length) / 2;
     Vector<double, Dim> offset, back;
     for (int d = 0; d < Dim; ++d) offset[d] = half * axis.direction[d];
@@ -200,9 +174,10 @@ void split_particles(State<Space, T, Dim>& s, const std::vector<Splitting>& spli
   s.space.fence("mpm::split_particles");
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                     \
-  template std::vector<Splitting> find_splittings(State<Space, T, Dim>&); \
-  template void split_particles(State<Space, T, Dim>&, const std::vector<Splitting>&, const std::vector<int>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                                \
+  template std::vector<Splitting> find_splittings(State<Space, T, Dim>&);             \
+  template void split_particles(State<Space, T, Dim>&, const std::vector<Splitting>&, \
+                                const std::vector<int>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -28,6 +28,7 @@ struct Sum {
     m.stored_energy += other.m.stored_energy;
     m.mass += other.m.mass, m.weight += other.m.weight, m.water_energy += other.m.water_energy;
     m.count += other.m.count, m.alone += other.m.alone, m.limited += other.m.limited;
+    m.stretched += other.m.stretched;
     return *this;
   }
 };
@@ -136,6 +137,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
           if (water.is_there()) own.m.water_energy += water_energy(soil, water, density, position, p);
           own.m.alone += is_alone(alone, soil.cell(p));
           own.m.limited += soil.volume(p) <= least || soil.volume(p) >= most;
+          if (soil.has_domain) own.m.stretched += is_longest(soil.domain(p));
           ++own.m.count;
         }
         sum += own;
@@ -146,8 +148,8 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
 }
 
 /// By how much the square of a particle's wave speed counts more for the time step, where its domain is so
-/// short or so long that a node of the rim is less stable than the Courant number allows for. A particle that was
-/// split counts as a lone one: its neighbours may be lighter or gone.
+/// short or so long that a node of the rim is less stable than the Courant number allows for. A particle that
+/// was split counts as a lone one: its neighbours may be lighter or gone.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION double rim_factor(const Soil<Space, T, Dim>& soil, int p, double rim_scale) {
   if (!soil.has_domain) return 1;
@@ -177,7 +179,8 @@ double fastest_wave(const State<Space, T, Dim>& s) {
         material.visit([&](const auto& law) {
           const double modulus =
               law.wave_modulus(stress, soil.state_of(law, p)) + double(material.pore_stiffness);
-          largest = Kokkos::fmax(largest, modulus * soil.volume(p) / of.mass * rim_factor(soil, p, rim_scale));
+          largest =
+              Kokkos::fmax(largest, modulus * soil.volume(p) / of.mass * rim_factor(soil, p, rim_scale));
         });
       },
       Kokkos::Max<double>(fastest));

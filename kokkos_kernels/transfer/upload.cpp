@@ -9,7 +9,7 @@
 #include "physics/pore_water.hpp"
 #include "physics/stretch_domain.hpp"
 #include "rebuild/batches.hpp"
-#include "rebuild/split_particles.hpp"
+#include "rebuild/shift_particle.hpp"
 #include "transfer/velocity_gradients.hpp"
 
 namespace mpm {
@@ -109,9 +109,8 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
     position.insert(position.end(), bodies[b].position.begin(), bodies[b].position.end());
   }
   soil.count = static_cast<int>(body_of.size());
-  soil.has_own_mass =
-      soil.splits ||
-      std::any_of(bodies.begin(), bodies.end(), [](const BodyInput& body) { return body.least_mass > 0; });
+  soil.has_own_mass = soil.splits || std::any_of(bodies.begin(), bodies.end(),
+                                                 [](const BodyInput& body) { return body.least_mass > 0; });
   name_columns(soil.history, materials, bodies);
   if (s.batches.in_use()) store_soil(s, soil.count, scratch_of_rigids<Space, T, Dim>(rigids));
   s.grid.fields = 1;

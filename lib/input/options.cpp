@@ -74,7 +74,8 @@ void check_batches(OptionReader& in, Config& config) {
   if (strategy == P2G::automatic) strategy = P2G::tile;
   if (strategy != P2G::tile) in.reject("device_memory_limit", "-p2g tile or auto: no other goes in batches");
   if (config.particle_domain == ParticleDomain::split)
-    in.reject("device_memory_limit", "-particle_domain fixed or stretch: batches have no room for more particles");
+    in.reject("device_memory_limit",
+              "-particle_domain fixed or stretch: batches have no room for more particles");
   if (config.velocity_update == VelocityUpdate::xpic || config.velocity_update == VelocityUpdate::apic)
     in.reject("device_memory_limit", "-velocity_update flip or pic: no other goes in batches");
 }
@@ -197,7 +198,8 @@ void read_physics(OptionReader& in, Config& config) {
   in.word({.name = "particle_domain",
            .meaning = "how the domains of particles follow the soil: fixed: not at all; stretch: each "
                       "particle has half lengths along the axes that follow its deformation, from 0.1 to 0.5 "
-                      "cells; split: that, and particles whose domains become too long are split"},
+                      "cells; split: that, and particles whose domains become too long are split, and those "
+                      "that crowd are merged again"},
           Words<ParticleDomain>{{"fixed", ParticleDomain::fixed},
                                 {"stretch", ParticleDomain::stretch},
                                 {"split", ParticleDomain::split}},

@@ -17,8 +17,8 @@ double bytes_of_point(Points_ points) {
   return bytes;
 }
 
-/// Function 3: place, body, velocity, stress, volume, domain and APIC's matrix of each particle; the sums of each
-/// node.
+/// Function 3: place, body, velocity, stress, volume, domain and APIC's matrix of each particle; the sums of
+/// each node.
 template <class Space, class T, int Dim>
 double bytes_to_nodes(const State<Space, T, Dim>& s) {
   const auto& p = s.soil.points;

@@ -248,7 +248,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
     locate(state_);
     control = read_control(state_);
     if (control.lost > 0) note_lost(state_);
-    if (control.fault_count == 0) failed = split();
+    if (control.fault_count == 0) failed = split_and_merge();
     if (control.fault_count == 0 && failed == PETSC_SUCCESS) sort_and_list(state_);
   };
   PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
@@ -285,7 +285,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   Failure unfit;
   PetscCallCXX(unfit.what = take_saved(state_, saved));
   double lost = 0;
-  for (const Lost& of_body : state_.strays.lost) lost += of_body.count;
+  for (const Lost& of_body : state_.strays.lost) lost += of_body.count + of_body.merged;
   if (state_.soil.points.splits) children_ = std::max(0L, saved.particles - total_);
   if (sum_over_ranks(state_.soil.points.count + lost) != ids() && unfit.what.empty())
     unfit.what = "the number of particles";
@@ -307,9 +307,10 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode TypedStepper<Space, T, Dim>::split() {
+PetscErrorCode TypedStepper<Space, T, Dim>::split_and_merge() {
   PetscFunctionBeginUser;
   if (!state_.soil.points.splits) PetscFunctionReturn(PETSC_SUCCESS);
+  merge_particles(state_);
   const std::vector<Splitting> own = find_splittings(state_);
   std::vector<int> all;  // ids of the particles of all ranks that are split
   for (const Splitting& splitting : own) all.push_back(splitting.id);
@@ -323,10 +324,12 @@ PetscErrorCode TypedStepper<Space, T, Dim>::split() {
     std::sort(all.begin(), all.end());
   }
   PetscCheck(ids() + static_cast<long>(all.size()) <= std::numeric_limits<int>::max(), comm_,
-             PETSC_ERR_ARG_OUTOFRANGE, "-particle_domain split: there are no numbers left for more particles");
+             PETSC_ERR_ARG_OUTOFRANGE,
+             "-particle_domain split: there are no numbers left for more particles");
   std::vector<int> children;  // the same ids whatever the ranks are
   for (const Splitting& splitting : own)
-    children.push_back(static_cast<int>(ids() + (std::lower_bound(all.begin(), all.end(), splitting.id) - all.begin())));
+    children.push_back(
+        static_cast<int>(ids() + (std::lower_bound(all.begin(), all.end(), splitting.id) - all.begin())));
   PetscCallCXX(split_particles(state_, own, children));
   children_ += static_cast<long>(all.size());
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -338,7 +341,8 @@ std::size_t TypedStepper<Space, T, Dim>::body_of(int id) const {
   const auto& soil = state_.soil.points;
   const auto held = Kokkos::make_pair(0, soil.count);
   const auto ids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.id, held));
-  const auto body = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.body, held));
+  const auto body =
+      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.body, held));
   for (int p = 0; p < soil.count; ++p)
     if (ids(p) == id) return body(p);
   return 0;

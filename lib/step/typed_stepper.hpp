@@ -10,9 +10,10 @@
 #include "functions/grid_velocity.hpp"
 #include "functions/wall_force.hpp"
 #include "parallel/kept_by_id.hpp"
+#include "rebuild/merge_particles.hpp"
+#include "rebuild/split_particles.hpp"
 #include "step/step.hpp"
 #include "step/stepper.hpp"
-#include "rebuild/split_particles.hpp"
 #include "transfer/download.hpp"
 #include "transfer/download_nodes.hpp"
 #include "transfer/measure.hpp"
@@ -60,8 +61,9 @@ class TypedStepper final : public Stepper {
   PetscErrorCode gather_strays(SavedState* saved) const;
   double sum_over_ranks(double own) const;
   PetscErrorCode keep_heights(const Model& model);
-  /// Splits the particles whose domains have become too long, where the run asks for it. Collective.
-  PetscErrorCode split();
+  /// Merges particles that crowd, and splits those whose domains have become too long, where the run asks for
+  /// it. Collective.
+  PetscErrorCode split_and_merge();
   /// Ids that have been given to particles of all ranks.
   long ids() const { return total_ + children_; }
   /// What a start from a checkpoint needs and a restart has already.

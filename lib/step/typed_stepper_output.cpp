@@ -136,11 +136,12 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
   for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
     const std::size_t from = soil.first[b], to = soil.first[b + 1];
     // Particles that were split have numbers of their own, whatever their body.
-    const long first = splits ? 0 : first_[b], last = splits ? ids() : b + 1 < first_.size() ? first_[b + 1] : total_;
+    const long first = splits ? 0 : first_[b], last = splits                  ? ids()
+                                                      : b + 1 < first_.size() ? first_[b + 1]
+                                                                              : total_;
     ParticleSnapshot body;
     body.name = config_.bodies[b].name;
-    for (std::size_t p = from; p < to && ranks_; ++p)
-      body.id.push_back(soil.id[p] - static_cast<int>(first));
+    for (std::size_t p = from; p < to && ranks_; ++p) body.id.push_back(soil.id[p] - static_cast<int>(first));
     body.position.assign(3 * (to - from), 0);
     body.velocity = body.grid_velocity = body.position;
     body.stress.assign(6 * (to - from), 0);
@@ -162,8 +163,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     if (state_.soil.points.has_domain) add_half_lengths<Dim>(soil, from, to, &body);
     body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
     body.reference_height.assign(height.begin() + from, height.begin() + to);
-    if (ranks_)
-      PetscCall(order_particles(comm_, last - first, &body));
+    if (ranks_) PetscCall(order_particles(comm_, last - first, &body));
     out->bodies.push_back(std::move(body));
   }
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.rigids);

@@ -5,7 +5,9 @@
 #include <set>
 
 #include "compare.hpp"
+#include "particle_sums.hpp"
 #include "physics/domain.hpp"
+#include "rebuild/shift_particle.hpp"
 #include "rebuild/split_particles.hpp"
 #include "transfer/save_state.hpp"
 
@@ -14,8 +16,8 @@ using namespace mpm::test;
 
 namespace {
 
-constexpr double k_dt = 1e-4;       // s
-constexpr double k_spacing = 0.1;   // m
+constexpr double k_dt = 1e-4;      // s
+constexpr double k_spacing = 0.1;  // m
 
 /// Two bodies with two particles a cell along an edge, of which every other one is missing; domains of all
 /// lengths and directions, some of which are long enough to split.
@@ -59,31 +61,11 @@ int split_all(S& s, int next_id) {
   return static_cast<int>(ids.size());
 }
 
-/// Sums over all particles: mass, volume, momentum, first moments, angular momentum, kinetic energy, and mass
-/// times stress and strength.
-template <int Dim>
-std::vector<double> sums_of(const SoilFields& soil) {
-  std::vector<double> sums(5 + 2 * Dim + sym_size<Dim> + 1);
-  for (std::size_t p = 0; p < soil.id.size(); ++p) {
-    const double m = soil.mass[p], *x = &soil.position[p * Dim], *v = &soil.velocity[p * Dim];
-    std::size_t n = 0;
-    sums[n++] += m, sums[n++] += soil.volume[p];
-    for (int d = 0; d < Dim; ++d) sums[n++] += m * v[d];
-    for (int d = 0; d < Dim; ++d) sums[n++] += m * x[d];
-    sums[n++] += m * (x[0] * v[1] - x[1] * v[0]);
-    for (int d = 0; d < Dim; ++d) sums[n] += m * v[d] * v[d] / 2;
-    ++n;
-    for (int k = 0; k < sym_size<Dim>; ++k) sums[n++] += soil.volume[p] * soil.stress[p * sym_size<Dim> + k];
-    sums[n++] += m * soil.history[VonMises<double>::strength][p];
-    sums[n++] += m;
-  }
-  return sums;
-}
-
 }  // namespace
 
-TEST_CASE("splitting keeps mass, momentum, angular momentum, energy, stress and state, and the moments of domains",
-          "[split_particles]") {
+TEST_CASE(
+    "splitting keeps mass, momentum, angular momentum, energy, stress and state, and the moments of domains",
+    "[split_particles]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
@@ -173,7 +155,8 @@ TEST_CASE("particles are split until they are an eighth, and not where cells are
   });
 }
 
-TEST_CASE("a run that has split particles goes on from a saved state with the same bits", "[split_particles]") {
+TEST_CASE("a run that has split particles goes on from a saved state with the same bits",
+          "[split_particles]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     const Cloud cloud = cloud_to_split<B::dim>(4);

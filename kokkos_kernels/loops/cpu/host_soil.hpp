@@ -30,7 +30,8 @@ struct HostSoil {
   bool has_boundary;
 
   explicit HostSoil(const State<Space, T, Dim>& s)
-      : soil(interpolation_of(s, s.soil.bins, SoilSource<Space, T, Dim, domain>{s.soil.points, s.grid.inv_spacing},
+      : soil(interpolation_of(s, s.soil.bins,
+                              SoilSource<Space, T, Dim, domain>{s.soil.points, s.grid.inv_spacing},
                               s.nodes.soil, s.space)),
         boundary(interpolation_of(
             s, s.soil.bins,
