@@ -31,6 +31,22 @@ std::vector<std::string> Notices::report(const HistoryRow& row, const Config& co
                   "is kept there (column %s_limited); smaller cells or more particles a cell follow the soil "
                   "further",
                   body.limited, name.c_str()));
+    const long ids = body.particles + body.lost_count + body.merged;
+    const long more = ids - particles_.emplace(name, ids).first->second;
+    report(config.particle_domain == ParticleDomain::split && more > 0, name, " split",
+           formatted("%ld particles whose soil was stretched have been split (column %s_particles)", more,
+                     name.c_str()));
+    report(
+        body.merged > 0, name, " merged",
+        formatted(
+            "%ld particles that crowded have been taken up by others (columns %s_merged, %s_merged_energy)",
+            body.merged, name.c_str(), name.c_str()));
+    report(config.particle_domain == ParticleDomain::stretch && 20 * body.stretched > body.particles, name,
+           " stretched",
+           formatted(
+               "the domains of %ld of %ld particles have come to half a cell and stretch no further (column "
+               "%s_stretched): gaps may open between them; -particle_domain split keeps them closed",
+               body.stretched, body.particles, name.c_str()));
     report(body.lost_count > 0, name, " left",
            formatted("%ld particles of %.6g kg have left the run (columns %s_lost_mass, %s_lost_momentum, "
                      "%s_lost_energy)",

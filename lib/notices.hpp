@@ -1,6 +1,7 @@
 #pragma once
 // What the log tells once: soil that is no longer as the rest of it.
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -17,7 +18,8 @@ class Notices {
   std::vector<std::string> report(const HistoryRow& row, const Config& config);
 
  private:
-  std::set<std::string> told_;  // what happened, to which body
+  std::set<std::string> told_;              // what happened, to which body
+  std::map<std::string, long> particles_;  // of each body, when its first row was seen
 };
 
 }  // namespace mpm

@@ -87,6 +87,7 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
   particles->own_parameter = std::move(table.own_parameter);
   if (config.velocity_update == VelocityUpdate::apic)
     particles->velocity_gradient = std::move(table.velocity_gradient);
+  if (config.particle_domain != ParticleDomain::fixed) particles->domain = std::move(table.domain);
   PetscCallCXX(take_masses(std::move(table), density, *particles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

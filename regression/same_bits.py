@@ -5,8 +5,8 @@
         [--dims 2,3] [--tree-before TREE] [CASE ...]
 
 Runs each case of the suite with both programs on the back end serial, and compares histories and frames bit by bit. --long
-takes the long cases too. --tree-before: the source tree of BEFORE, whose decks BEFORE then reads; cases that it lacks are left
-out. The exit status is 1 where anything differs, which is listed.
+takes the long cases too. --tree-before: the source tree of BEFORE, whose decks BEFORE then reads; cases and runs that it
+lacks are left out. The exit status is 1 where anything differs, which is listed.
 """
 import argparse
 import sys
@@ -61,7 +61,8 @@ def main():
         if case.is_long() and not given.long:
             continue
         for variant in case.variants(["serial"], given.precisions.split(",")):
-            for run in (run for run in case.runs if dim_of(case, run) in given.dims.split(",")):
+            both = [run for run in case.runs if run in former.runs]
+            for run in (run for run in both if dim_of(case, run) in given.dims.split(",")):
                 for strategy in given.strategies.split(","):
                     with tempfile.TemporaryDirectory(prefix="mpm_bits_") as folder:
                         found = compare(given, (former, case), run, variant, strategy, Path(folder))

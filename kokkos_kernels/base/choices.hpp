@@ -29,6 +29,15 @@ enum class Wall { roller, fixed, free };
 /// How particles take their velocity from the nodes (-velocity_update).
 enum class VelocityUpdate { flip, pic, xpic, apic };
 
+/// How the domains of particles follow the deformation of the soil (-particle_domain): not at all, by half
+/// lengths of their own along each axis, or so that particles whose domains become too long are split too.
+/// Kernels of a step know the first two.
+enum class ParticleDomain { fixed, stretch, split };
+/// Bounds of the half lengths [cells] of domains that stretch. Up to a half, a particle reaches three nodes
+/// along an axis, also where it has drifted by half a cell. The shorter a domain, the shorter the stable time
+/// step; where particles begin shorter than the least, they bound it.
+inline constexpr double k_least_half_length = 0.1, k_most_half_length = 0.5;
+
 /// What becomes of particles that are alone, or whose volume leaves its bounds (-stray_particles).
 enum class StrayRule { keep, remove, stop };
 

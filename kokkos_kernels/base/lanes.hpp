@@ -16,6 +16,8 @@
 #elif defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
 #define MPM_SHUFFLES
+/// Of a lambda: it is part of its caller, however many kernels a source has.
+#define MPM_INLINE_LAMBDA __attribute__((always_inline))
 #endif
 #endif
 #if defined(MPM_SHUFFLES) && defined(__AVX__)
@@ -57,6 +59,7 @@ struct VectorOf;
   struct VectorOf<T, W> {                                       \
     typedef T type __attribute__((vector_size(W * sizeof(T)))); \
   };
+MPM_VECTOR_OF(float, 2)
 MPM_VECTOR_OF(float, 4)
 MPM_VECTOR_OF(float, 8)
 MPM_VECTOR_OF(float, 16)
@@ -137,16 +140,14 @@ inline constexpr bool is_lanes = !std::is_same_v<R, RealOf<R>>;
 template <class R>
 using Truth = decltype(std::declval<R>() < std::declval<R>());
 
-namespace impl {
+/// Calls f with the constants 0 ... n - 1, so that loops over arrays of lanes leave them in registers.
 template <class F, int... k>
-KOKKOS_FORCEINLINE_FUNCTION void call_with(const F& f, std::integer_sequence<int, k...>) {
+KOKKOS_FORCEINLINE_FUNCTION void unrolled(F&& f, std::integer_sequence<int, k...>) {
   (f(std::integral_constant<int, k>{}), ...);
 }
-}  // namespace impl
-/// Calls f with the constants 0 ... n - 1, so that loops over arrays of lanes leave them in registers.
 template <int n, class F>
-KOKKOS_FORCEINLINE_FUNCTION void unrolled(const F& f) {
-  impl::call_with(f, std::make_integer_sequence<int, n>{});
+KOKKOS_FORCEINLINE_FUNCTION void unrolled(F&& f) {
+  unrolled(f, std::make_integer_sequence<int, n>{});
 }
 
 namespace impl {
@@ -157,7 +158,7 @@ KOKKOS_FORCEINLINE_FUNCTION V collect(const V (&a)[N], From, std::integer_sequen
   constexpr int W = sizeof...(l);
   constexpr int second = N > 1 ? 1 : 0;
   V got = __builtin_shufflevector(a[0], a[second], (From::of(l) < 2 * W ? From::of(l) : 0)...);
-  unrolled<(N > 2 ? N - 2 : 0)>([&](auto s) {
+  unrolled<(N > 2 ? N - 2 : 0)>([&](auto s) MPM_INLINE_LAMBDA {
     got = __builtin_shufflevector(got, a[s + 2], (From::of(l) / W == s + 2 ? W + From::of(l) % W : l)...);
   });
   return got;
@@ -179,6 +180,24 @@ KOKKOS_FORCEINLINE_FUNCTION V either(V a, std::integer_sequence<int, l...> lanes
     return either<half / 2>(a | __builtin_shufflevector(a, a, int((l + half) % sizeof...(l))...), lanes);
 }
 #endif
+}  // namespace impl
+
+namespace impl {
+/// Lanes as another real type.
+template <class To, class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION Lanes<To, W> converted(Lanes<T, W> a) {
+  if constexpr (std::is_same_v<To, T>) {
+    return a;
+  } else {
+#ifdef MPM_PLAIN_LANES
+    Lanes<To, W> to;
+    for (int l = 0; l < W; ++l) to.set(l, static_cast<To>(a[l]));
+    return to;
+#else
+    return Lanes<To, W>(__builtin_convertvector(a.v, typename VectorOf<To, W>::type));
+#endif
+  }
+}
 }  // namespace impl
 
 /// a where the condition holds, else b; for numbers and by lane.
@@ -274,8 +293,8 @@ template <int N, class T, int W>
 KOKKOS_FORCEINLINE_FUNCTION void load_groups(const T* from, Lanes<T, W> (&a)[N]) {
 #ifdef MPM_SHUFFLES
   typename Lanes<T, W>::Values parts[N];
-  unrolled<N>([&](auto k) { parts[k] = Lanes<T, W>::load(from + k * W).v; });
-  unrolled<N>([&](auto k) {
+  for (int k = 0; k < N; ++k) parts[k] = Lanes<T, W>::load(from + k * W).v;
+  unrolled<N>([&](auto k) MPM_INLINE_LAMBDA {
     a[k].v = impl::collect<N>(parts, impl::Apart<N, W, k>{}, std::make_integer_sequence<int, W>{});
   });
 #else
@@ -289,8 +308,8 @@ KOKKOS_FORCEINLINE_FUNCTION void store_groups(const Lanes<T, W> (&a)[N], T* to) 
 #ifdef MPM_SHUFFLES
   using Values = typename Lanes<T, W>::Values;
   Values values[N];
-  unrolled<N>([&](auto k) { values[k] = a[k].v; });
-  unrolled<N>([&](auto k) {
+  for (int k = 0; k < N; ++k) values[k] = a[k].v;
+  unrolled<N>([&](auto k) MPM_INLINE_LAMBDA {
     constexpr impl::Together<N, W, k> from{};
     Lanes<T, W>(impl::collect<N>(values, from, std::make_integer_sequence<int, W>{})).store(to + k * W);
   });
@@ -333,3 +352,23 @@ KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> sqrt(mpm::Lanes<T, W> a) {
 }
 
 }  // namespace Kokkos
+
+namespace mpm {
+
+/// Square root in single precision, and a number of single precision as R: numbers, or lanes of as many.
+KOKKOS_FORCEINLINE_FUNCTION float single_sqrt(double a) { return Kokkos::sqrt(static_cast<float>(a)); }
+KOKKOS_FORCEINLINE_FUNCTION float single_sqrt(float a) { return Kokkos::sqrt(a); }
+template <class T, int W>
+KOKKOS_FORCEINLINE_FUNCTION Lanes<float, W> single_sqrt(Lanes<T, W> a) {
+  return Kokkos::sqrt(impl::converted<float>(a));
+}
+template <class R>
+KOKKOS_FORCEINLINE_FUNCTION R to_real(float a) {
+  return R(a);
+}
+template <class R, int W>
+KOKKOS_FORCEINLINE_FUNCTION R to_real(Lanes<float, W> a) {
+  return impl::converted<typename R::real>(a);
+}
+
+}  // namespace mpm

@@ -81,6 +81,19 @@ struct Spin {
   T c[Dim == 2 ? 1 : 3];
 };
 
+/// Second moments of a particle's domain, as its independent components: 2D xx yy xy; 3D xx yy zz xy yz zx.
+template <class T, int Dim>
+struct alignas(group_alignment<T, Dim*(Dim + 1) / 2>) DomainMoments {
+  T c[Dim * (Dim + 1) / 2];
+  KOKKOS_INLINE_FUNCTION T& operator[](int k) { return c[k]; }
+  KOKKOS_INLINE_FUNCTION const T& operator[](int k) const { return c[k]; }
+};
+/// Place of component (i, j) in DomainMoments.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION constexpr int moment_index(int i, int j) {
+  return Dim == 2 && i != j ? 2 : sym_index<Dim>(i, j);
+}
+
 /// Vector with every component equal to a.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION Vector<T, Dim> filled(T a) {

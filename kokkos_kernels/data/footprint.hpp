@@ -11,6 +11,8 @@ namespace mpm {
 template <class T, int Dim>
 struct Footprint {
   static constexpr double grown = 17.0 / 16;  // ensure() leaves room
+  /// More where domains stretch.
+  static constexpr double domain = sizeof(DomainMoments<T, Dim>);
   /// columns: of the history of the laws.
   static constexpr double particle(int columns) {
     return 2 * sizeof(Vector<T, Dim>) + sizeof(SymTensor<T, Dim>) + (1 + columns) * sizeof(T) +

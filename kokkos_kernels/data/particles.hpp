@@ -26,7 +26,7 @@ struct Points {
 template <class T>
 struct BodyProperties {
   T mass;                     // kg, of one particle, where the particles have none of their own
-  HalfLength<T> half_length;  // cells, of one particle
+  HalfLength<T> half_length;  // cells, of one particle; where domains stretch, that at the start
   int material;               // index into Soil::materials
 };
 
@@ -54,10 +54,16 @@ struct Soil : Points<Space, T, Dim> {
   Kokkos::View<std::uint16_t*, Memory> body;        // index into bodies
   Kokkos::View<Matrix<T, Dim>*, Memory> affine;     // m/s a cell, C_p of APIC; of extent 0 without it
   Kokkos::View<T*, Memory> mass;                    // kg, in use where has_own_mass
+  Kokkos::View<DomainMoments<T, Dim>*, Memory> domain;  // cells2, in use where has_domain: physics/domain.hpp
+  /// Id of the particle of the start that this one is, or a part of; in use where particles split.
+  Kokkos::View<double*, Memory> ancestor;
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
   Kokkos::View<StoredMaterial<T>*, Memory> materials;
   bool has_own_mass = false;  // the particles of some body differ in mass; the same on all ranks
+  bool has_domain = false;    // the domains of the particles stretch with the soil
+  T least_half_length = 0;    // cells, of such a domain (k_least_half_length)
+  bool splits = false;        // particles with a domain that is too long are split; they have own masses
 
   /// Mass [kg] of particle p, which is of this body.
   KOKKOS_INLINE_FUNCTION T mass_of(int p, const BodyProperties<T>& of) const {
@@ -119,6 +125,8 @@ void for_each_field_of(F&& f, Soil_& s, Others&... others) {
   f("body", s.bodies.extent(0) > 1 ? Use::reads : Use::none, s.body, others.body...);
   if (s.affine.extent(0) > 0) f("affine", Use::none, s.affine, others.affine...);
   if (s.has_own_mass) f("mass", Use::reads, s.mass, others.mass...);
+  if (s.has_domain) f("domain", Use::changes, s.domain, others.domain...);
+  if (s.splits) f("ancestor", Use::none, s.ancestor, others.ancestor...);
 }
 template <class F, class RigidPoints_>
 requires requires(RigidPoints_& s) { s.reference_position; }

@@ -36,7 +36,9 @@ struct SavedImpulse {
   std::vector<double> values;  // N s, of each rigid [rigids M]
 };
 
-inline constexpr int k_lost = 7;
+/// Numbers that SavedState::lost has of a body, and places of the numbers of particles among them: those that
+/// have left, and those that others took up.
+inline constexpr int k_lost = 9, k_lost_left = 0, k_lost_merged = 6;
 
 struct SavedState {
   double bound = 0, increment = 0;  // cells, of Control; the largest of all ranks
@@ -46,7 +48,7 @@ struct SavedState {
       bounds;  // of each of several ranks: what Decomposition::save puts there; empty on one rank
   std::vector<long> owners;  // rank of each patch of the grid; empty on one rank
   SavedPoints soil;
-  long particles = 0;        // at the start, of all ranks: rows of those that have left have no address (-1)
+  long particles = 0;        // ids given, of all ranks: rows of particles that are gone have no address (-1)
   std::vector<double> lost;  // k_lost numbers a body: those of Lost, and Strays::put_back
   std::vector<long> alone;   // Grid::address_of the cells whose particles are alone
   int alone_known = 0;       // 1: `alone` holds; 0: the next step finds it

@@ -73,6 +73,7 @@ struct State {
   double f_bar_fraction = 0;      // -, the largest of all materials; each takes its share of it
   bool f_bar_by_material = false; // bodies differ in material
   bool keeps_stress = false;      // sorting brings no pressures together: at a start from another run
+  double rim_scale = 0;           // cells, of domains that stretch: by how much they slow the time step
   double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
   int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them
   StepPlan plan;                  // of the steps until the next rebuild

@@ -24,11 +24,17 @@ struct Water {
   KOKKOS_INLINE_FUNCTION double pressure(const Vector<double, Dim>& x) const {
     return density * gravity * Kokkos::fmax(0.0, depth(x));
   }
-  /// Share of a square particle of this half-length [m] that is below the level, its centre at x: exact where
-  /// gravity is along an axis.
-  KOKKOS_INLINE_FUNCTION double submerged_share(const Vector<double, Dim>& x, double half_length) const {
+  /// From the centre of a box of these half lengths [m] to its lowest point [m].
+  KOKKOS_INLINE_FUNCTION double reach(const Vector<double, Dim>& half_length) const {
     double reach = 0;
-    for (int d = 0; d < Dim; ++d) reach += half_length * Kokkos::fabs(down[d]);
+    for (int d = 0; d < Dim; ++d) reach += half_length[d] * Kokkos::fabs(down[d]);
+    return reach;
+  }
+  /// Share of a particle of these half lengths [m] that is below the level, its centre at x: exact where
+  /// gravity is along an axis.
+  KOKKOS_INLINE_FUNCTION double submerged_share(const Vector<double, Dim>& x,
+                                                const Vector<double, Dim>& half_length) const {
+    const double reach = this->reach(half_length);
     return Kokkos::fmin(1.0, Kokkos::fmax(0.0, (depth(x) / reach + 1) / 2));
   }
 };

@@ -8,11 +8,22 @@ namespace {
 /// A particle is alone where its nodes hold less than this many times its mass. What so few particles are
 /// held together by depends on where they are in a cell, and at most places there no time step of the soil is
 /// stable for them (docs/method.md, "Strays"). The nodes of a particle at the corner of a body hold at least
-/// n^Dim times its mass, n particles along a cell's edge.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION double alone_below(double half_length) {
+/// n^Dim times its mass, n particles along a cell's edge. in_cell: that number of particles, as many as fill
+/// a cell.
+KOKKOS_INLINE_FUNCTION double alone_below(double in_cell) {
   constexpr double k_share = 0.9, k_least = 1.5;
-  return Kokkos::fmax(k_least, k_share * power(0.5 / half_length, Dim));
+  return Kokkos::fmax(k_least, k_share * in_cell);
+}
+
+/// So many particles like p, which is of this body, fill a cell.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION double number_in_cell(const Soil<Space, T, Dim>& soil, int p,
+                                             const BodyProperties<T>& of) {
+  if (!soil.has_domain) return power(0.5 / double(of.half_length), Dim);
+  const HalfLengths<T, Dim> half = any_domain_of(soil, p);
+  double number = 1;
+  for (int d = 0; d < Dim; ++d) number *= 0.5 / double(half[d]);
+  return number;
 }
 
 /// Least weight along each axis with which a particle reaches a node here. Particles on a lattice are just at
@@ -28,7 +39,7 @@ struct MassInReach {
 
   KOKKOS_INLINE_FUNCTION T operator()(int p) const {
     T sum = 0;
-    with_weights(soil.coordinate(p), soil.bodies(soil.body(p)).half_length,
+    with_weights(soil.coordinate(p), any_domain_of(soil, p),
                  [&](const AxisWeights<T>(&a)[Dim]) {
                    const Stencil<Kind::geometry, T, Dim> stencil(places, soil.cell(p), a);
                    for_each_weight(a, [&](const Vector<int, Dim>& k, T, const Vector<T, Dim>&) {
@@ -63,7 +74,7 @@ void mark_strays(State<Space, T, Dim>& s, const Space& stream) {
         const int first = begin(cell), last = begin(cell + 1);
         for (int p = first; p < last; ++p) {
           const BodyProperties<T> of = soil.properties(p);
-          const double few = alone_below<Dim>(of.half_length);
+          const double few = alone_below(number_in_cell(soil, p, of));
           if (last - first > few || mass_in_reach(p) > few * of.mass) return;
         }
         if (first == last) return;

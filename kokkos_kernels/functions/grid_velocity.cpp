@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "loops/particle_to_node.hpp"
 
@@ -22,7 +21,7 @@ struct GridVelocity {
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> operator()(int p) const {
     using S = SoilTerms<Dim>;
     Vector<double, Dim> v = filled<double, Dim>(0);
-    for_each_node<Kind::motion>(points, points.bodies(points.body(p)).half_length, places, p,
+    for_each_node<Kind::motion>(points, any_domain_of(points, p), places, p,
                                 [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
                                   const double m_i = nodes(i, S::mass);
                                   if (!(m_i > 0)) return;  // a mass too small for T
@@ -52,7 +51,7 @@ double largest_grid_speed(const State<Space, T, Dim>& s, int body) {
 }
 
 template <class Space, class T, int Dim>
-std::vector<double> grid_velocities(const State<Space, T, Dim>& s) {
+std::vector<double> grid_velocities(const State<Space, T, Dim>& s, const std::vector<int>& order) {
   const GridVelocity<Space, T, Dim> velocity(s);
   const int count = s.soil.points.count;
   const Kokkos::View<Vector<double, Dim>*, typename Space::memory_space> values("mpm::grid_velocity", count);
@@ -60,21 +59,16 @@ std::vector<double> grid_velocities(const State<Space, T, Dim>& s) {
       "mpm::grid_velocities", Kokkos::RangePolicy<Space>(s.space, 0, count),
       KOKKOS_LAMBDA(int p) { values(p) = velocity(p); });
   const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), values);
-  const auto id = Kokkos::create_mirror_view_and_copy(
-      Kokkos::HostSpace(), Kokkos::subview(s.soil.points.id, Kokkos::make_pair(0, count)));
-  std::vector<int> by_id(count);
-  std::iota(by_id.begin(), by_id.end(), 0);
-  std::sort(by_id.begin(), by_id.end(), [&](int p, int q) { return id(p) < id(q); });
   std::vector<double> out;
   out.reserve(std::size_t(count) * Dim);
-  for (const int p : by_id)
+  for (const int p : order)
     for (int d = 0; d < Dim; ++d) out.push_back(host(p)[d]);
   return out;
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                  \
   template double largest_grid_speed(const State<Space, T, Dim>&, int); \
-  template std::vector<double> grid_velocities(const State<Space, T, Dim>&);
+  template std::vector<double> grid_velocities(const State<Space, T, Dim>&, const std::vector<int>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

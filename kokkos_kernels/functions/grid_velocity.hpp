@@ -18,8 +18,8 @@ namespace mpm {
 template <class Space, class T, int Dim>
 double largest_grid_speed(const State<Space, T, Dim>& s, int body);
 
-/// Velocity of every particle of this rank, by the nodes [m/s], in the order of id: [Dim N].
+/// Velocity of every particle of this rank, by the nodes [m/s], in this order of the particles: [Dim N].
 template <class Space, class T, int Dim>
-std::vector<double> grid_velocities(const State<Space, T, Dim>& s);
+std::vector<double> grid_velocities(const State<Space, T, Dim>& s, const std::vector<int>& order);
 
 }  // namespace mpm

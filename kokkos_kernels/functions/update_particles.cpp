@@ -7,9 +7,9 @@ namespace {
 template <class Space>
 using Slots = Kokkos::View<int*, typename Space::memory_space>;
 
-template <bool Sums, PatchKind kind, class Laws, class Space, class T, int Dim>
+template <bool Sums, PatchKind kind, class Laws, ParticleDomain domain, class Space, class T, int Dim>
 void launch_for(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
-  using Update = UpdateParticles<Space, T, Dim, Sums, kind, Laws>;
+  using Update = UpdateParticles<Space, T, Dim, Sums, kind, Laws, domain>;
   const int teams = part.last - part.first;
   if (teams == 0) return;
   Kokkos::parallel_for("mpm::update_particles",
@@ -18,19 +18,22 @@ void launch_for(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, c
                        update_of<Update>(s, dt, slots, part.first));
 }
 /// Launches the kernel of the one law that all soil has, if it has one of its own.
-template <bool Sums, PatchKind kind, template <class> class... Models, class Space, class T, int Dim>
+template <bool Sums, PatchKind kind, ParticleDomain domain, template <class> class... Models, class Space,
+          class T, int Dim>
 bool launch_heavy(ModelList<Models...>, State<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
                   const Part<Space>& part) {
   return ((s.law == model_index_in<Models>(Materials{}) &&
-           (launch_for<Sums, kind, ModelList<Models>>(s, dt, slots, part), true)) ||
+           (launch_for<Sums, kind, ModelList<Models>, domain>(s, dt, slots, part), true)) ||
           ...);
 }
 template <bool Sums, PatchKind kind, class Space, class T, int Dim>
 void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
-  if (light_kernels_do(s)) return launch_for<Sums, kind, LightMaterials>(s, dt, slots, part);
-  if constexpr (kind == PatchKind::common)
-    if (launch_heavy<Sums, kind>(HeavyMaterials{}, s, dt, slots, part)) return;
-  launch_for<Sums, kind, Materials>(s, dt, slots, part);
+  with_domain(s.soil.points, [&](auto domain) {
+    if (light_kernels_do(s)) return launch_for<Sums, kind, LightMaterials, domain()>(s, dt, slots, part);
+    if constexpr (kind == PatchKind::common)
+      if (launch_heavy<Sums, kind, domain()>(HeavyMaterials{}, s, dt, slots, part)) return;
+    launch_for<Sums, kind, Materials, domain()>(s, dt, slots, part);
+  });
 }
 
 /// The patches that are not common are few and take longer each. They are launched first, on a stream of
@@ -58,7 +61,7 @@ void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const
       if (sums) return update_on_device<true>(s, dt, part, aside);
     update_on_device<false>(s, dt, part, aside);
   } else {
-    move_on_host(s, update_scalars(s, dt), sums);
+    with_domain(s.soil.points, [&](auto domain) { move_on_host<domain()>(s, update_scalars(s, dt), sums); });
   }
 }
 

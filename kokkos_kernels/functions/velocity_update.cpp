@@ -4,8 +4,10 @@
 
 namespace mpm {
 
-template <class Space, class T, int Dim>
-void xpic_pass(State<Space, T, Dim>& s, int pass) {
+namespace {
+
+template <ParticleDomain domain, class Space, class T, int Dim>
+void xpic_pass_for(State<Space, T, Dim>& s, int pass) {
   using S = SoilTerms<Dim>;
   const auto soil = s.soil.points;
   const NodePlaces places(s.grid, s.patches);
@@ -19,7 +21,7 @@ void xpic_pass(State<Space, T, Dim>& s, int pass) {
       "mpm::xpic_pass", light(Kokkos::RangePolicy<Space>(s.space, 0, soil.count)), KOKKOS_LAMBDA(int p) {
         if (control().paused) return;
         Vector<T, Dim> r = first ? soil.velocity(p) : residual(p);
-        for_each_node<Kind::motion>(soil, soil.bodies(soil.body(p)).half_length, places, p,
+        for_each_node<Kind::motion>(soil, domain_of<domain>(soil, p, soil.bodies(soil.body(p))), places, p,
                                     [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
                                       const T m_i = sums(i, S::mass);
                                       if (!(m_i > 0)) return;  // a mass too small for T
@@ -35,8 +37,8 @@ void xpic_pass(State<Space, T, Dim>& s, int pass) {
       });
 }
 
-template <class Space, class T, int Dim>
-void take_affine(State<Space, T, Dim>& s) {
+template <ParticleDomain domain, class Space, class T, int Dim>
+void take_affine_for(State<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
   const NodePlaces places(s.grid, s.patches);
   const auto kinematics = s.nodes.kinematics;
@@ -46,7 +48,7 @@ void take_affine(State<Space, T, Dim>& s) {
         if (control().paused) return;
         Matrix<T, Dim> c{};
         Vector<T, Dim> spread{};  // D_p, diagonal because weights are products that reproduce linear fields
-        for_each_node<Kind::motion>(soil, soil.bodies(soil.body(p)).half_length, places, p,
+        for_each_node<Kind::motion>(soil, domain_of<domain>(soil, p, soil.bodies(soil.body(p))), places, p,
                                     [&](int i, T w, const Vector<T, Dim>&, auto&& offset, auto&& sign) {
                                       const Vector<T, Dim> r = offset();
                                       Vector<T, Dim> v;
@@ -61,6 +63,18 @@ void take_affine(State<Space, T, Dim>& s) {
           for (int e = 0; e < Dim; ++e) c(d, e) /= spread[e];
         soil.affine(p) = c;
       });
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void xpic_pass(State<Space, T, Dim>& s, int pass) {
+  with_domain(s.soil.points, [&](auto domain) { xpic_pass_for<domain()>(s, pass); });
+}
+
+template <class Space, class T, int Dim>
+void take_affine(State<Space, T, Dim>& s) {
+  with_domain(s.soil.points, [&](auto domain) { take_affine_for<domain()>(s); });
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                 \

@@ -34,12 +34,12 @@ namespace {
 /// What particles give the nodes at walls and beyond. A node at a wall is held against its internal force and
 /// weight. Of one beyond, the image's half of the soil takes the internal force, and the image gives as much
 /// back: twice that force passes the wall.
-template <class Space, class T, int Dim>
+template <class Space, class T, int Dim, ParticleDomain domain>
 struct PressOnWalls {
-  using Source = SoilSource<Space, T, Dim>;
+  using Source = SoilSource<Space, T, Dim, domain>;
   Source source;
   NodePlaces<Space, T, Dim> places;
-  DisplacedSource<Space, T, Dim> displaced;  // in use where there is water
+  DisplacedSource<Space, T, Dim, domain> displaced;  // in use where there is water
   Vector<double, Dim> g;
 
   struct Terms {
@@ -104,14 +104,17 @@ struct PressOnWalls {
 
 template <class Space, class T, int Dim>
 WallForces wall_forces(const State<Space, T, Dim>& s) {
-  PressOnWalls<Space, T, Dim> press{{s.soil.points, s.grid.inv_spacing},
-                                    {s.grid, s.patches},
-                                    {s.soil.points, s.water, s.density, s.patches.origin, s.spacing},
-                                    {}};
-  for (int d = 0; d < Dim; ++d) press.g[d] = s.gravity[d];
   ForceSum<Dim> sum;
-  Kokkos::parallel_reduce("mpm::wall_forces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
-                          press, Kokkos::Sum<ForceSum<Dim>>(sum));
+  with_domain(s.soil.points, [&](auto domain) {
+    PressOnWalls<Space, T, Dim, domain()> press{
+        {s.soil.points, s.grid.inv_spacing},
+        {s.grid, s.patches},
+        {s.soil.points, s.water, s.density, s.patches.origin, s.spacing},
+        {}};
+    for (int d = 0; d < Dim; ++d) press.g[d] = s.gravity[d];
+    Kokkos::parallel_reduce("mpm::wall_forces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+                            press, Kokkos::Sum<ForceSum<Dim>>(sum));
+  });
   WallForces forces{};
   for (int d = 0; d < Dim; ++d)
     for (int side = 0; side < 2; ++side)

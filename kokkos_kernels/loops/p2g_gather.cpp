@@ -3,11 +3,12 @@
 
 namespace mpm {
 
-/// Half length of a point [cells], soil or rigid.
-template <class Points_>
-KOKKOS_INLINE_FUNCTION auto half_length_of(const Points_& points, int p) {
+/// Half lengths of a point of a source [cells], soil or rigid.
+template <class Source>
+KOKKOS_INLINE_FUNCTION auto half_length_of(const Source& source, int p) {
+  const auto& points = source.points;
   if constexpr (requires { points.bodies; })
-    return points.bodies(points.body(p)).half_length;
+    return domain_of<Source::domain>(points, p, points.bodies(points.body(p)));
   else
     return points.half_length;
 }
@@ -78,11 +79,11 @@ struct GatherByNode {
     if (source.skips(cell / Patch<Dim>::cells)) return;
     const Coord<Dim> from = places.origin(cell / Patch<Dim>::cells), place = coord_of<Dim>(cell);
     Vector<T, Dim> x = source.points.coordinate(p), grad;
-    const auto half_length = half_length_of(source.points, p);
+    const auto half_length = half_length_of(source, p);
     T s[Dim], ds[Dim], w = 1;
     for (int d = 0; d < Dim; ++d) {
       x[d] += from[d] + place[d] - at[d];  // from the node
-      node_weight(x[d], half_length, s[d], ds[d]);
+      node_weight(x[d], half_length[d], s[d], ds[d]);
       w *= s[d];
     }
     if (!(w > 0)) return;  // the list holds what may come here till the next rebuild

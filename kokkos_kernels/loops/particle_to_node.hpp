@@ -149,11 +149,11 @@ struct Stencil {
 /// Calls f(node, w, grad, offset, sign) for every node of particle p: w [-] its weight, grad [1/cell] its
 /// gradient, offset() [cells] from the particle to it; sign(component) as Stencil::sign. Nodes of no weight
 /// are left alone, which keeps the blocks of one colour apart.
-template <Kind kind, class Points_, class Space, class T, int Dim, class F>
-KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, const HalfLength<T>& half_length,
+template <Kind kind, class Points_, class Domain, class Space, class T, int Dim, class F>
+KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, const Domain& domain,
                                           const NodePlaces<Space, T, Dim>& places, int p, F&& f) {
   const auto x = points.coordinate(p);
-  with_weights(x, half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+  with_weights(x, domain, [&](const AxisWeights<T>(&a)[Dim]) {
     const Stencil<kind, T, Dim> stencil(places, points.cell(p), a);
     for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
       if (!(w > 0)) return;

@@ -34,10 +34,10 @@ KOKKOS_INLINE_FUNCTION void for_each_of_window(const Team& team, const Neighbour
 }
 
 /// The weights along every axis of a particle that is near the cell where it was binned.
-template <class T, int Dim, class F>
-KOKKOS_INLINE_FUNCTION void with_weights_near(const Vector<T, Dim>& x, const HalfLength<T>& half, F&& f) {
+template <class T, int Dim, class Domain, class F>
+KOKKOS_INLINE_FUNCTION void with_weights_near(const Vector<T, Dim>& x, const Domain& domain, F&& f) {
   AxisWeights<T> a[Dim];
-  for (int d = 0; d < Dim; ++d) a[d] = axis_weights_near(x[d], half);
+  for (int d = 0; d < Dim; ++d) a[d] = axis_weights_near(x[d], domain[d]);
   f(a);
 }
 

@@ -6,6 +6,7 @@
 
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
+#include "physics/domain.hpp"
 #include "physics/pore_water.hpp"
 #include "physics/shape_gimp.hpp"
 #include "physics/walls.hpp"
@@ -18,30 +19,33 @@ namespace mpm {
 // component(value) is the direction of a value that is a component of a vector, -1 of a scalar; with `kind`
 // it tells the sign of its image in a wall.
 
-/// Numbers of a point that lie behind its half length, which the weights alone need: how many they are, and
+/// Numbers of a point that lie behind its half lengths, which the weights alone need: how many they are, and
 /// the first of them. T: the type of the numbers.
 template <class T, class Point>
-inline constexpr int k_point_numbers = sizeof(Point) / sizeof(T) - sizeof(HalfLength<T>) / sizeof(T);
+inline constexpr int k_domain_numbers = sizeof(std::declval<Point&>().half_length) / sizeof(T);
+template <class T, class Point>
+inline constexpr int k_point_numbers = sizeof(Point) / sizeof(T) - k_domain_numbers<T, Point>;
 template <class T, class Point>
 KOKKOS_INLINE_FUNCTION auto numbers_of(Point& q) {
   using Plain = std::remove_const_t<Point>;
   static_assert(std::is_trivially_copyable_v<Plain> && sizeof(Plain) % sizeof(T) == 0);
   if constexpr (std::is_standard_layout_v<Plain>) static_assert(offsetof(Plain, half_length) == 0);
   using Number = std::conditional_t<std::is_const_v<Point>, const T, T>;
-  return reinterpret_cast<Number*>(&q) + sizeof(HalfLength<T>) / sizeof(T);
+  return reinterpret_cast<Number*>(&q) + k_domain_numbers<T, Plain>;
 }
 
 /// Soil to nodes, Eqs (1), (2), (4): m_i = sum S m_p, p_i = sum S m_p v_p, f_i = - sum V_p sigma_p grad S.
 /// The weight, Eq. (5), is m_i g and is added at the node.
-template <class Space_, class T, int Dim>
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
 struct SoilSource {
   using Space = Space_;
   using real = T;
+  static constexpr ParticleDomain domain = domain_;
   static constexpr int dim = Dim, size = SoilTerms<Dim>::size;
   static constexpr Kind kind = Kind::motion;
   template <class R>
   struct PointOf {
-    HalfLength<R> half_length;
+    DomainOf<R, Dim, domain_> half_length;
     R mass, momentum[Dim];
     R stress_volume[Dim * (Dim + 1) / 2];  // - V_p sigma_p / d, components along the axes of the mesh
   };
@@ -55,13 +59,16 @@ struct SoilSource {
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    return point(points.properties(p), points.velocity(p), points.stress(p), points.volume(p));
+    const BodyProperties<T> of = points.properties(p);
+    return point(domain_of<domain_>(points, p, of), of.mass, points.velocity(p), points.stress(p),
+                 points.volume(p));
   }
   /// R: T, or lanes of it.
   template <class R>
-  KOKKOS_INLINE_FUNCTION PointOf<R> point(const BodyProperties<R>& body, const Vector<R, Dim>& v_p,
-                                          const SymTensor<R, Dim>& stress, R volume) const {
-    PointOf<R> q{body.half_length, body.mass, {}, {}};
+  KOKKOS_INLINE_FUNCTION PointOf<R> point(const DomainOf<R, Dim, domain_>& half_length, R mass,
+                                          const Vector<R, Dim>& v_p, const SymTensor<R, Dim>& stress,
+                                          R volume) const {
+    PointOf<R> q{half_length, mass, {}, {}};
     const R scale = -volume * inv_spacing;
     for (int d = 0; d < Dim; ++d) q.momentum[d] = q.mass * v_p[d];
     for (int k = 0; k < Dim * (Dim + 1) / 2; ++k)
@@ -83,9 +90,9 @@ struct SoilSource {
 };
 
 /// Soil to nodes by APIC (Jiang et al. 2015): as SoilSource, but p_i = sum S m_p (v_p + C_p (x_i - x_p)).
-template <class Space_, class T, int Dim>
-struct AffineSource : SoilSource<Space_, T, Dim> {
-  using Base = SoilSource<Space_, T, Dim>;
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
+struct AffineSource : SoilSource<Space_, T, Dim, domain_> {
+  using Base = SoilSource<Space_, T, Dim, domain_>;
   static constexpr bool takes_offset = true;
   struct Point : Base::Point {
     T affine[Dim * Dim];  // m_p C_p by rows, kg m/s a cell
@@ -108,14 +115,15 @@ struct AffineSource : SoilSource<Space_, T, Dim> {
 };
 
 /// Any velocity of the particles to nodes, as momentum: sum S m_p r_p. XPIC sends what is left of theirs.
-template <class Space_, class T, int Dim>
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
 struct ResidualSource {
   using Space = Space_;
   using real = T;
+  static constexpr ParticleDomain domain = domain_;
   static constexpr int dim = Dim, size = Dim;
   static constexpr Kind kind = Kind::motion;
   struct Point {
-    HalfLength<T> half_length;
+    DomainOf<T, Dim, domain_> half_length;
     T momentum[Dim];
   };
   Soil<Space, T, Dim> points;
@@ -124,7 +132,7 @@ struct ResidualSource {
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     const BodyProperties<T> body = points.properties(p);
-    Point q{body.half_length, {}};
+    Point q{domain_of<domain_>(points, p, body), {}};
     for (int d = 0; d < Dim; ++d) q.momentum[d] = body.mass * residual(p)[d];
     return q;
   }
@@ -137,14 +145,15 @@ struct ResidualSource {
 /// The soil's boundary at a node, sum grad S V_p: by Gauss' theorem the integral of S_i n over it, n out of
 /// the soil. Summed over the nodes along a face it is the face's area, however the face cuts the cells. And
 /// its volume there, sum S V_p.
-template <class Space_, class T, int Dim>
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
 struct BoundarySource {
   using Space = Space_;
   using real = T;
+  static constexpr ParticleDomain domain = domain_;
   static constexpr int dim = Dim, size = BoundaryTerms<Dim>::size;
   static constexpr Kind kind = Kind::geometry;
   struct Point {
-    HalfLength<T> half_length;
+    DomainOf<T, Dim, domain_> half_length;
     T area, volume;  // V_p / d, V_p
   };
   Soil<Space, T, Dim> points;
@@ -155,7 +164,7 @@ struct BoundarySource {
   KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return near_rigid(slot) == 0; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     const T volume = points.volume(p);
-    return {points.bodies(points.body(p)).half_length, volume * inv_spacing, volume};
+    return {domain_of<domain_>(points, p, points.bodies(points.body(p))), volume * inv_spacing, volume};
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
     return value < BoundaryTerms<Dim>::volume ? value : -1;
@@ -168,14 +177,15 @@ struct BoundarySource {
 };
 
 /// The soil's strength at a node, sum S V_p s_p, and its volume, sum S V_p.
-template <class Space_, class T, int Dim>
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
 struct StrengthSource {
   using Space = Space_;
   using real = T;
+  static constexpr ParticleDomain domain = domain_;
   static constexpr int dim = Dim, size = StrengthTerms::size;
   static constexpr Kind kind = Kind::geometry;
   struct Point {
-    HalfLength<T> half_length;
+    DomainOf<T, Dim, domain_> half_length;
     T strength, volume;  // V_p s_p, V_p
   };
   Soil<Space, T, Dim> points;
@@ -190,7 +200,7 @@ struct StrengthSource {
     material_in(points.materials(body.material)).visit([&](const auto& law) {
       strength = law.shear_strength(points.state_of(law, p));
     });
-    return {body.half_length, volume * strength, volume};
+    return {domain_of<domain_>(points, p, body), volume * strength, volume};
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
@@ -203,14 +213,15 @@ struct StrengthSource {
 /// The mass of the water that the soil displaces, sum S rho_w m_p / rho below the level [kg]. rho is the
 /// density that the soil began with: when its pores change their volume, water comes and goes, and the weight
 /// of the grains under water stays.
-template <class Space_, class T, int Dim>
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
 struct DisplacedSource {
   using Space = Space_;
   using real = T;
+  static constexpr ParticleDomain domain = domain_;
   static constexpr int dim = Dim, size = DisplacedTerms::size;
   static constexpr Kind kind = Kind::motion;
   struct Point {
-    HalfLength<T> half_length;
+    DomainOf<T, Dim, domain_> half_length;
     T mass;
   };
   Soil<Space, T, Dim> points;
@@ -227,8 +238,11 @@ struct DisplacedSource {
     Vector<double, Dim> x;
     for (int d = 0; d < Dim; ++d)
       x[d] = (double(from[d]) + in[d] + double(points.coordinate(p)[d])) * spacing;
-    const double share = water.submerged_share(x, double(body.half_length.l) * spacing);
-    return {body.half_length,
+    const auto half_length = domain_of<domain_>(points, p, body);
+    Vector<double, Dim> half;  // m
+    for (int d = 0; d < Dim; ++d) half[d] = double(half_length[d].l) * spacing;
+    const double share = water.submerged_share(x, half);
+    return {half_length,
             static_cast<T>(water.density * share * (double(body.mass) / density(points.body(p))))};
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
@@ -324,6 +338,20 @@ template <class Source>
 inline constexpr std::size_t window_bytes =
     sizeof(typename Source::real) * Source::size* Patch<Source::dim>::window;
 
+/// The sources of soil whose domains stretch.
+template <class Space, class T, int Dim>
+using StretchedSoilSource = SoilSource<Space, T, Dim, ParticleDomain::stretch>;
+template <class Space, class T, int Dim>
+using StretchedAffineSource = AffineSource<Space, T, Dim, ParticleDomain::stretch>;
+template <class Space, class T, int Dim>
+using StretchedResidualSource = ResidualSource<Space, T, Dim, ParticleDomain::stretch>;
+template <class Space, class T, int Dim>
+using StretchedBoundarySource = BoundarySource<Space, T, Dim, ParticleDomain::stretch>;
+template <class Space, class T, int Dim>
+using StretchedStrengthSource = StrengthSource<Space, T, Dim, ParticleDomain::stretch>;
+template <class Space, class T, int Dim>
+using StretchedDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::stretch>;
+
 /// Applies X(Source) to every source of a space, real type and dimension.
 #define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
   X(SoilSource, Space, T, Dim)                \
@@ -332,6 +360,12 @@ inline constexpr std::size_t window_bytes =
   X(BoundarySource, Space, T, Dim)            \
   X(StrengthSource, Space, T, Dim)            \
   X(DisplacedSource, Space, T, Dim)           \
-  X(RigidSource, Space, T, Dim)
+  X(RigidSource, Space, T, Dim)               \
+  X(StretchedSoilSource, Space, T, Dim)       \
+  X(StretchedAffineSource, Space, T, Dim)     \
+  X(StretchedResidualSource, Space, T, Dim)   \
+  X(StretchedBoundarySource, Space, T, Dim)   \
+  X(StretchedStrengthSource, Space, T, Dim)   \
+  X(StretchedDisplacedSource, Space, T, Dim)
 
 }  // namespace mpm

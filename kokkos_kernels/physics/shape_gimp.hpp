@@ -116,11 +116,11 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> offset_to(const Vector<T, Dim>& x, const A
   return r;
 }
 
-/// The weights of a particle along every axis. x [cells], half [cells] half length.
-template <class T, int Dim, class F>
-KOKKOS_INLINE_FUNCTION void with_weights(const Vector<T, Dim>& x, HalfLengthOf<T> half, F&& f) {
+/// The weights of a particle along every axis. x [cells], domain [cells] its half length, or half lengths.
+template <class T, int Dim, class Domain, class F>
+KOKKOS_INLINE_FUNCTION void with_weights(const Vector<T, Dim>& x, const Domain& domain, F&& f) {
   AxisWeights<T> a[Dim];
-  for (int d = 0; d < Dim; ++d) a[d] = axis_weights(x[d], half);
+  for (int d = 0; d < Dim; ++d) a[d] = axis_weights(x[d], domain[d]);
   f(a);
 }
 

@@ -38,9 +38,11 @@ double copy_out(const Space& space, const State<Space, T, Dim>& s, const SoilBat
 /// The batch that s.soil now is, to the nodes.
 template <class Space, class T, int Dim>
 void sum_batch(const State<Space, T, Dim>& s) {
-  using Source = SoilSource<Space, T, Dim>;
-  const Source source{s.soil.points, s.grid.inv_spacing};
-  particle_to_node(s.p2g.strategy, interpolation_of(s, s.soil.bins, source, s.nodes.soil, s.space));
+  with_domain(s.soil.points, [&](auto domain) {
+    using Source = SoilSource<Space, T, Dim, domain()>;
+    const Source source{s.soil.points, s.grid.inv_spacing};
+    particle_to_node(s.p2g.strategy, interpolation_of(s, s.soil.bins, source, s.nodes.soil, s.space));
+  });
 }
 
 }  // namespace

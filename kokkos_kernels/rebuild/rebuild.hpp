@@ -73,6 +73,10 @@ template <class T, int Dim>
 struct SortedPart<Matrix<T, Dim>> {
   using type = Vector<T, Dim>;
 };
+template <class T, int Dim>
+struct SortedPart<DomainMoments<T, Dim>> {
+  using type = std::conditional_t<Dim == 2, T, Vector<T, Dim>>;
+};
 template <class Value>
 using PartOf = typename SortedPart<Value>::type;
 

@@ -11,6 +11,14 @@
 namespace mpm {
 namespace {
 
+/// The half length [cells] that a point has until the next rebuild at most, along any axis.
+template <class Source>
+KOKKOS_INLINE_FUNCTION typename Source::real most_half_length(const Source& source, int p) {
+  if constexpr (requires { source.points.has_domain; })
+    if (source.points.has_domain) return typename Source::real(k_most_half_length);
+  return source.load(p).half_length[0];
+}
+
 /// Calls f(p) for every point that may come to reach node i before it has moved more than the margin.
 template <class Source, class Patches_, class Begin, class F>
 KOKKOS_INLINE_FUNCTION void for_each_near(const Source& source, const Patches_& patches, const Begin& begin,
@@ -25,7 +33,7 @@ KOKKOS_INLINE_FUNCTION void for_each_near(const Source& source, const Patches_& 
     const int cell = number_at<decltype(patches.neighbours), Dim>(patches.neighbours, slot, c);
     if (cell < 0) continue;
     for (int p = begin(cell); p < begin(cell + 1); ++p) {
-      const T reach = 1 + source.load(p).half_length + margin;
+      const T reach = 1 + most_half_length(source, p) + margin;
       bool near = true;
       for (int d = 0; d < Dim; ++d)
         near = near && Kokkos::fabs(source.points.coordinate(p)[d] + from[d]) <= reach;

@@ -3,7 +3,23 @@
 #include <algorithm>
 #include <numeric>
 
+#include "physics/domain.hpp"
+
 namespace mpm {
+
+template <class Space, class T, int Dim>
+std::vector<int> order_for_host(const State<Space, T, Dim>& s) {
+  const auto& soil = s.soil.points;
+  const auto held = Kokkos::make_pair(0, soil.count);
+  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.id, held));
+  const auto body = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.body, held));
+  std::vector<int> order(soil.count);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int p, int q) {
+    return body(p) != body(q) ? body(p) < body(q) : id(p) < id(q);
+  });
+  return order;
+}
 
 template <class Space, class T, int Dim>
 SoilFields download_soil(const State<Space, T, Dim>& s) {
@@ -14,11 +30,12 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
   };
   SoilFields fields;
   const auto id = host_of(soil.id);
-  fields.id.assign(id.data(), id.data() + soil.count);
-  std::vector<int> by_id(soil.count);  // particles in the order of id
-  std::iota(by_id.begin(), by_id.end(), 0);
-  std::sort(by_id.begin(), by_id.end(), [&](int p, int q) { return fields.id[p] < fields.id[q]; });
-  std::sort(fields.id.begin(), fields.id.end());
+  const std::vector<int> by_id = order_for_host(s);
+  for (const int p : by_id) fields.id.push_back(id(p));
+  const auto body = host_of(soil.body);
+  fields.first.assign(soil.bodies.extent(0) + 1, 0);
+  for (int p = 0; p < soil.count; ++p) ++fields.first[body(p) + 1];
+  std::partial_sum(fields.first.begin(), fields.first.end(), fields.first.begin());
 
   const auto spread = [&](const auto& view, int width, std::vector<double>& out, auto&& component) {
     const auto host = host_of(view);
@@ -39,6 +56,13 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
     spread(soil.mass, 1, fields.mass, whole);
   else
     spread(soil.body, 1, fields.mass, of_body);
+
+  const double spacing = s.spacing;
+  const auto half_length = [&](const auto& moments, int d) {
+    return double(half_lengths_of(moments, soil.least_half_length)[d]) * spacing;
+  };
+  if (soil.has_domain) spread(soil.domain, Dim, fields.half_length, half_length);
+  if (soil.splits) spread(soil.ancestor, 1, fields.ancestor, whole);
 
   const auto x_p = host_of(soil.coordinate);
   const auto cell = host_of(soil.cell);
@@ -81,6 +105,7 @@ std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s) {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                     \
+  template std::vector<int> order_for_host(const State<Space, T, Dim>&);                   \
   template SoilFields download_soil(const State<Space, T, Dim>&);                          \
   template std::vector<double> download_rigid_positions(const State<Space, T, Dim>&, int); \
   template std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>&);

@@ -8,15 +8,22 @@
 
 namespace mpm {
 
-/// Fields of the soil on the host, as wide as SymTensor and Vector are: on one rank in the order of creation,
-/// on several those of this rank's particles, in the order of `id`.
+/// Fields of the soil on the host, as wide as SymTensor and Vector are: those of this rank's particles, in the
+/// order of order_for_host. On one rank, where none was split, that is the order of creation.
 struct SoilFields {
-  std::vector<int> id;           // rising
+  std::vector<int> id;           // of the first body, rising, then of the second
+  std::vector<std::size_t> first;  // of each body, and the end of the last one
   std::vector<double> position;  // m from the mesh's lower corner
   std::vector<double> velocity, stress, volume;
   std::vector<std::vector<double>> history;  // of each column in use
   std::vector<double> mass;                  // kg
+  std::vector<double> half_length;           // m [Dim N], where domains stretch
+  std::vector<double> ancestor;              // ids, where particles split
 };
+/// The order in which particles come to the host: by body, and by id in a body.
+template <class Space, class T, int Dim>
+std::vector<int> order_for_host(const State<Space, T, Dim>& s);
+
 template <class Space, class T, int Dim>
 SoilFields download_soil(const State<Space, T, Dim>& s);
 

@@ -28,6 +28,7 @@ struct Sum {
     m.stored_energy += other.m.stored_energy;
     m.mass += other.m.mass, m.weight += other.m.weight, m.water_energy += other.m.water_energy;
     m.count += other.m.count, m.alone += other.m.alone, m.limited += other.m.limited;
+    m.stretched += other.m.stretched;
     return *this;
   }
 };
@@ -67,9 +68,10 @@ KOKKOS_INLINE_FUNCTION double water_energy(const Soil<Space, T, Dim>& soil, cons
   const BodyProperties<T> body = soil.properties(p);
   Vector<double, Dim> x;
   for (int d = 0; d < Dim; ++d) x[d] = position(p, d);
-  double reach = 0;
-  for (int d = 0; d < Dim; ++d)
-    reach += double(body.half_length.l) * position.spacing * Kokkos::fabs(water.down[d]);
+  const HalfLengths<T, Dim> half_length = any_domain_of(soil, p);
+  Vector<double, Dim> half;  // m
+  for (int d = 0; d < Dim; ++d) half[d] = double(half_length[d].l) * position.spacing;
+  const double reach = water.reach(half);
   const double depth = water.depth(x), in = Kokkos::fmax(0.0, Kokkos::fmin(2 * reach, depth + reach));
   const double sunk = in * in / (4 * reach) + Kokkos::fmax(0.0, depth - reach);  // m
   return water.density * water.gravity * sunk * double(body.mass) / density(soil.body(p));
@@ -135,6 +137,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
           if (water.is_there()) own.m.water_energy += water_energy(soil, water, density, position, p);
           own.m.alone += is_alone(alone, soil.cell(p));
           own.m.limited += soil.volume(p) <= least || soil.volume(p) >= most;
+          if (soil.has_domain) own.m.stretched += is_longest(soil.domain(p));
           ++own.m.count;
         }
         sum += own;
@@ -144,9 +147,27 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   return total.m;
 }
 
+/// By how much the square of a particle's wave speed counts more for the time step, where its domain is so
+/// short or so long that a node of the rim is less stable than the Courant number allows for. A particle that
+/// was split counts as a lone one: its neighbours may be lighter or gone.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION double rim_factor(const Soil<Space, T, Dim>& soil, int p, double rim_scale) {
+  if (!soil.has_domain) return 1;
+  const HalfLengths<T, Dim> half = any_domain_of(soil, p);
+  double sum = 0;
+  constexpr double k_whole = 0.75;  // of the mass of a particle that was not split
+  const bool piece = soil.splits && soil.mass(p) < k_whole * double(soil.bodies(soil.body(p)).mass);
+  for (int d = 0; d < Dim; ++d) {
+    const double l = half[d];
+    sum += piece ? 2 / l + 1 / (1 - l) : Kokkos::fmax(1 / l, 2 + 8 * l);
+  }
+  return Kokkos::fmax(1.0, rim_scale * sum);
+}
+
 template <class Space, class T, int Dim>
 double fastest_wave(const State<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
+  const double rim_scale = s.rim_scale;
   double fastest = 0;  // m2/s2
   Kokkos::parallel_reduce(
       "mpm::fastest_wave", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
@@ -158,7 +179,8 @@ double fastest_wave(const State<Space, T, Dim>& s) {
         material.visit([&](const auto& law) {
           const double modulus =
               law.wave_modulus(stress, soil.state_of(law, p)) + double(material.pore_stiffness);
-          largest = Kokkos::fmax(largest, modulus * soil.volume(p) / of.mass);
+          largest =
+              Kokkos::fmax(largest, modulus * soil.volume(p) / of.mass * rim_factor(soil, p, rim_scale));
         });
       },
       Kokkos::Max<double>(fastest));

@@ -17,6 +17,7 @@ struct BodyMeasure {
   double lower[3], upper[3], kinetic_energy, stored_energy, momentum[3], centre[3], mass, weight;
   double water_energy;
   long count, alone, limited;
+  long stretched;  // particles whose domain is at its upper bound along some axis
 };
 
 template <class Space, class T, int Dim>

@@ -89,8 +89,9 @@ void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
   const auto put_back = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.put_back);
   for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
     const Lost& lost = s.strays.lost[b];
-    const double numbers[k_lost] = {lost.count,       lost.mass,        lost.kinetic_energy, lost.momentum[0],
-                                    lost.momentum[1], lost.momentum[2], double(put_back(b))};
+    const double numbers[k_lost] = {lost.count,       lost.mass,          lost.kinetic_energy,
+                                    lost.momentum[0], lost.momentum[1],   lost.momentum[2],
+                                    lost.merged,      lost.merged_energy, double(put_back(b))};
     saved.lost.insert(saved.lost.end(), numbers, numbers + k_lost);
   }
   saved.alone_known = s.strays.known ? 1 : 0;
@@ -106,8 +107,9 @@ void restore_lost(State<Space, T, Dim>& s, const SavedState& saved) {
   const auto put_back = Kokkos::create_mirror_view(s.strays.put_back);
   for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
     const double* const numbers = &saved.lost[b * k_lost];
-    s.strays.lost[b] = {numbers[0], numbers[1], numbers[2], {numbers[3], numbers[4], numbers[5]}};
-    put_back(b) = static_cast<int>(numbers[6]);
+    s.strays.lost[b] = {numbers[0], numbers[1], numbers[2], {numbers[3], numbers[4], numbers[5]},
+                        numbers[6], numbers[7]};
+    put_back(b) = static_cast<int>(numbers[8]);
   }
   Kokkos::deep_copy(s.strays.put_back, put_back);
 }

@@ -7,7 +7,9 @@
 
 #include "physics/materials/any.hpp"
 #include "physics/pore_water.hpp"
+#include "physics/stretch_domain.hpp"
 #include "rebuild/batches.hpp"
+#include "rebuild/shift_particle.hpp"
 #include "transfer/velocity_gradients.hpp"
 
 namespace mpm {
@@ -107,8 +109,8 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
     position.insert(position.end(), bodies[b].position.begin(), bodies[b].position.end());
   }
   soil.count = static_cast<int>(body_of.size());
-  soil.has_own_mass =
-      std::any_of(bodies.begin(), bodies.end(), [](const BodyInput& body) { return body.least_mass > 0; });
+  soil.has_own_mass = soil.splits || std::any_of(bodies.begin(), bodies.end(),
+                                                 [](const BodyInput& body) { return body.least_mass > 0; });
   name_columns(soil.history, materials, bodies);
   if (s.batches.in_use()) store_soil(s, soil.count, scratch_of_rigids<Space, T, Dim>(rigids));
   s.grid.fields = 1;
@@ -166,6 +168,18 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       const BodyInput& body = bodies[body_of[p]];
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
+  if (soil.has_domain)
+    fill_view(soil.domain, "mpm::domain", soil.count, [&](int p) {
+      const BodyInput& body = bodies[body_of[p]];
+      constexpr int moments = Dim * (Dim + 1) / 2;
+      auto domain = square_domain<T, Dim>(static_cast<T>(body.half_length));
+      for (int k = 0; k < moments && !body.domain.empty(); ++k)
+        domain[k] = static_cast<T>(body.domain[std::size_t(in_body(p)) * moments + k]);
+      limit_domain<T>(domain);
+      return domain;
+    });
+  if (soil.splits)
+    fill_view(soil.ancestor, "mpm::ancestor", soil.count, [&](int p) { return double(id_of(p)); });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
     auto stored = store_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get(),
                                     materials[m].pore_stiffness);
@@ -302,6 +316,10 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
     smallest = std::min(smallest, body.most_volume > 0 ? body.least_volume : body.particle_volume);
     largest = std::max(largest, body.most_volume > 0 ? body.most_volume : body.particle_volume);
   }
+  double least_half_length = k_least_half_length;
+  for (const BodyInput& body : bodies) least_half_length = std::min(least_half_length, body.half_length);
+  s.soil.points.least_half_length = static_cast<T>(least_half_length);
+  if (s.soil.points.splits) smallest *= k_least_piece, s.mass_cut *= k_least_piece;
   s.strays.least_volume = k_least_volume * smallest, s.strays.most_volume = k_most_volume * largest;
   s.strays.lost.assign(bodies.size(), {});
   s.strays.put_back = decltype(s.strays.put_back)("mpm::put_back", bodies.size());

@@ -35,6 +35,8 @@ struct BodyInput {
   std::vector<double> volume;              // m3 [N], or empty where particle_volume holds for all
   std::vector<double> mass;                // kg [N], or empty where particle_mass holds for all
   std::vector<double> velocity_gradient;   // m/s a cell [Dim^2 N], or empty where the velocities tell it
+  std::vector<double> domain;              // cells2, moments of domains that stretch [Dim (Dim + 1) / 2 N], or
+                                           // empty where they are squares of the half length
   std::vector<int> id;                     // [N], or empty where they are counted from 0
   double particle_volume = 0;              // m3
   double least_volume = 0;                 // m3, of all ranks, as they were created; 0: that above

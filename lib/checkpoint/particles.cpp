@@ -169,6 +169,11 @@ std::string read_checkpoint_particles(const ParticleSource& source, const MeshCo
     table.velocity_gradient = body.read("affine", dim * dim);
     for (double& g : table.velocity_gradient) g *= mesh.spacing / there.spacing;
   }
+  if (const int moments = dim * (dim + 1) / 2; body.has("domain", moments)) {
+    table.domain = body.read("domain", moments);
+    const double scale = there.spacing / mesh.spacing;
+    for (double& moment : table.domain) moment *= scale * scale;
+  }
   table.origin = "checkpoint of step " + std::to_string(c.run.step) + ", " + text_of(c.run.time) + " s";
   return body.fault;
 }

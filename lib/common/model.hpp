@@ -28,6 +28,7 @@ struct BodyParticles {
   long total = 0;                        // of all ranks; 0: those above
   std::vector<int> id;                   // on several ranks: of each particle here, among those of all bodies
   std::vector<double> velocity_gradient;  // m/s a cell [dim^2 N], where the neighbours may be on other ranks
+  std::vector<double> domain;  // cells2, moments of domains that stretch [dim (dim + 1) / 2 N], or empty
 };
 
 /// Everything that a stepper starts from.

@@ -65,6 +65,10 @@ struct BodyRow {
   double lost_energy = 0;             // J, kinetic, that it had
   Vec3 lost_momentum{};               // kg m/s
   long strays = 0, limited = 0;       // particles that are alone; whose volume is at a bound
+  long particles = 0;                 // in the mesh
+  long stretched = 0;                 // whose domain is at its upper bound along some axis
+  long merged = 0;                    // that others took up, since the start
+  double merged_energy = 0;           // J, kinetic, that merging has taken since the start
   long put_back = 0, lost_count = 0;  // particles put back at walls, and lost, since the start
 };
 

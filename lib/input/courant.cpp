@@ -18,7 +18,16 @@ double viscous_share(const Config& config) {
   double most = 2;  // particles along a cell's edge, or as many as one alone counts for
   for (const BodyConfig& body : config.bodies)
     most = std::max(most, body.shape.particles_per_cell > 1 ? double(body.shape.particles_per_cell) : 3.0);
+  if (config.particle_domain != ParticleDomain::fixed)
+    most = std::max(most, 0.5 / k_least_half_length);  // as short as a domain may become
   return share * 2 / most;
+}
+
+/// Share of the limit that is left without F-bar. Measured (regression/reliability/courant.py): particles of
+/// a cell that dilate apart are stiffer.
+double share_by_f_bar(const Config& config) {
+  constexpr double k_without_f_bar = 0.94, k_has_f_bar = 0.5;
+  return f_bar_range(config).least < k_has_f_bar ? k_without_f_bar : 1;
 }
 
 }  // namespace
@@ -27,9 +36,7 @@ double largest_courant(const Config& config) {
   // Of g^2 / S along an axis: with one particle a cell its neighbours add nothing to the nodes of a thin
   // body, and the particle is at the worst place in its cell, 2 / l + 1 / (1 - l).
   constexpr double k_lone_cell = 6;
-  // Measured (regression/reliability/courant.py): particles of a cell that dilate apart are stiffer.
-  constexpr double k_without_f_bar = 0.94, k_has_f_bar = 0.5;
-  const double apart = f_bar_range(config).least < k_has_f_bar ? k_without_f_bar : 1;
+  const double apart = share_by_f_bar(config);
   double largest = k_largest_courant;
   for (const BodyConfig& body : config.bodies) {
     const int n = body.shape.particles_per_cell;
@@ -37,6 +44,11 @@ double largest_courant(const Config& config) {
     largest = std::min(largest, apart * 2 / std::sqrt(config.dim * along_axis * (1 + config.damping)));
   }
   return largest;
+}
+
+double rim_scale(const Config& config) {
+  const double half_of = largest_courant(config) / (2 * share_by_f_bar(config));
+  return half_of * half_of * (1 + config.damping);
 }
 
 double standard_courant(const Config& config) {

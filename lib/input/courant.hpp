@@ -13,6 +13,12 @@ namespace mpm {
 /// that. Local damping adds its share to forces that brake, and so divides the limit by sqrt(1 + damping).
 double largest_courant(const Config& config);
 
+/// Where domains stretch, a particle of half lengths l_d is stable up to c dt / d = 2 / sqrt(sum of A_d (1 +
+/// damping)), A_d = 1 / l_d, or 2 + 8 l_d beyond a quarter of a cell, where neighbours may be too far to add to
+/// a node (A = 6 of a lone particle at a half). This number times the sum of A_d is 1 where that is
+/// largest_courant: a wave that is faster by its root allows largest_courant.
+double rim_scale(const Config& config);
+
 /// The Courant number of a run whose user gives none: 0.5, or 95 % of the largest one if that is less.
 double standard_courant(const Config& config);
 

@@ -31,9 +31,11 @@ std::string beyond_bounds(const ParticleTable& table, const MeshConfig& mesh, in
     int components;
     double most;
   };
-  constexpr double k_largest_state = 1e12;  // whatever its unit
+  constexpr double k_largest_state = 1e12;   // whatever its unit
+  constexpr double k_largest_domain = 1e12;  // cells2
   std::vector<Field> fields = {{"velocity", table.velocity, dim, k_speed.highest},
                                {"velocity_gradient", table.velocity_gradient, dim * dim, k_speed.highest},
+                               {"domain", table.domain, dim * (dim + 1) / 2, k_largest_domain},
                                {"stress", table.stress, dim == 2 ? 4 : 6, k_stress.highest},
                                {"volume", table.volume, 1, 10 * cell},
                                {"mass", table.mass, 1, 10 * cell * k_density.highest},

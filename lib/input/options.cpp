@@ -73,6 +73,9 @@ void check_batches(OptionReader& in, Config& config) {
   P2G& strategy = config.p2g.strategy;
   if (strategy == P2G::automatic) strategy = P2G::tile;
   if (strategy != P2G::tile) in.reject("device_memory_limit", "-p2g tile or auto: no other goes in batches");
+  if (config.particle_domain == ParticleDomain::split)
+    in.reject("device_memory_limit",
+              "-particle_domain fixed or stretch: batches have no room for more particles");
   if (config.velocity_update == VelocityUpdate::xpic || config.velocity_update == VelocityUpdate::apic)
     in.reject("device_memory_limit", "-velocity_update flip or pic: no other goes in batches");
 }
@@ -192,6 +195,15 @@ void read_physics(OptionReader& in, Config& config) {
              .range = {.lowest = 0, .highest = 1, .open_highest = true}},
             config.damping);
   read_velocity_update(in, config);
+  in.word({.name = "particle_domain",
+           .meaning = "how the domains of particles follow the soil: fixed: not at all; stretch: each "
+                      "particle has half lengths along the axes that follow its deformation, from 0.1 to 0.5 "
+                      "cells; split: that, and particles whose domains become too long are split, and those "
+                      "that crowd are merged again"},
+          Words<ParticleDomain>{{"fixed", ParticleDomain::fixed},
+                                {"stretch", ParticleDomain::stretch},
+                                {"split", ParticleDomain::split}},
+          config.particle_domain);
   in.word(
       {.name = "stray_particles",
        .meaning =

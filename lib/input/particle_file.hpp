@@ -21,6 +21,7 @@ struct ParticleTable {
   std::vector<double> mass;               // kg [N]; empty: the material's density times the volume
   std::vector<double> reference_height;   // m, of the particle's creation [N]; empty: it is created now
   std::vector<double> velocity_gradient;  // m/s a cell of the mesh, C_p of APIC [dim^2 N]
+  std::vector<double> domain;             // cells2 of the mesh, moments of domains [dim (dim + 1) / 2 N]
   long put_inside = 0;  // particles that were less than half a cell outside the mesh, as a run may leave them
   std::string origin;   // "frame of step 12, 0.5 s"; empty for a file of the user's own
 };

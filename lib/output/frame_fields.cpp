@@ -31,6 +31,9 @@ const std::vector<Field>& frame_fields() {
           all.push_back({variable.parameter, variable.unit, 1, Of::bodies, nullptr});
     const Field last[] = {{"pore_pressure", "Pa", 1, Of::bodies, nullptr},
                           {k_excess_pore_pressure, "Pa", 1, Of::bodies, nullptr},
+                          {"half_length_x", "m", 1, Of::bodies, nullptr},
+                          {"half_length_y", "m", 1, Of::bodies, nullptr},
+                          {"half_length_z", "m", 1, Of::bodies, nullptr},
                           {"mass", "kg", 1, Of::bodies_and_nodes, &ParticleSnapshot::mass},
                           {"reference_height", "m", 1, Of::bodies, &ParticleSnapshot::reference_height},
                           {"number", "-", 1, Of::nodes, &ParticleSnapshot::number}};

@@ -50,6 +50,10 @@ std::string history_header(const Config& config) {
     for (const char* quantity : {"_mass", "_lost_mass", "_lost_energy"}) header += "," + body.name + quantity;
     append(header, body.name + "_lost_momentum_", config.dim);
     for (const char* number : {"_strays", "_limited", "_put_back"}) header += "," + body.name + number;
+    if (config.particle_domain != ParticleDomain::fixed) header += "," + body.name + "_stretched";
+    if (config.particle_domain == ParticleDomain::split)
+      for (const char* quantity : {"_particles", "_merged", "_merged_energy"})
+        header += "," + body.name + quantity;
   }
   for (const RigidConfig& rigid : config.rigids)
     for (const char* quantity : {"_", "_velocity_", "_force_"})
@@ -72,6 +76,10 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
       text += "," + text_of(value);
     append(text, body.lost_momentum, dim);
     for (const long number : {body.strays, body.limited, body.put_back}) text += "," + std::to_string(number);
+    if (config.particle_domain != ParticleDomain::fixed) text += "," + std::to_string(body.stretched);
+    if (config.particle_domain == ParticleDomain::split)
+      text += "," + std::to_string(body.particles) + "," + std::to_string(body.merged) + "," +
+              text_of(body.merged_energy);
   }
   for (const RigidRow& rigid : row.rigids)
     for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})

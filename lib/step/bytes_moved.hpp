@@ -17,8 +17,8 @@ double bytes_of_point(Points_ points) {
   return bytes;
 }
 
-/// Function 3: place, body, velocity, stress, volume and APIC's matrix of each particle; the sums of each
-/// node.
+/// Function 3: place, body, velocity, stress, volume, domain and APIC's matrix of each particle; the sums of
+/// each node.
 template <class Space, class T, int Dim>
 double bytes_to_nodes(const State<Space, T, Dim>& s) {
   const auto& p = s.soil.points;
@@ -26,6 +26,7 @@ double bytes_to_nodes(const State<Space, T, Dim>& s) {
   particle += sizeof(*p.velocity.data()) + sizeof(*p.stress.data()) + sizeof(*p.volume.data());
   if (s.affine) particle += sizeof(*p.affine.data());
   if (p.has_own_mass) particle += sizeof(*p.mass.data());
+  if (p.has_domain) particle += sizeof(*p.domain.data());
   return p.count * particle + s.patches.node_count() * double(sizeof(T) * SoilTerms<Dim>::size);
 }
 

@@ -47,14 +47,17 @@ template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& points, const Bins<Space>& bins,
                    const Space& space) {
   const P2G how = s.p2g.strategy;
-  if (s.affine)
-    interpolate<AffineSource<Space, T, Dim>>(s, how, bins, {{points, s.grid.inv_spacing}}, s.nodes.soil,
-                                             space);
-  else if (!s.summed.soil)
-    interpolate<SoilSource<Space, T, Dim>>(s, how, bins, {points, s.grid.inv_spacing}, s.nodes.soil, space);
-  if (s.soil_boundary && !s.summed.boundary)
-    interpolate<BoundarySource<Space, T, Dim>>(s, how, bins, {points, s.grid.inv_spacing, s.near_rigid},
-                                               s.nodes.boundary, space);
+  with_domain(points, [&](auto domain) {
+    if (s.affine)
+      interpolate<AffineSource<Space, T, Dim, domain()>>(s, how, bins, {{points, s.grid.inv_spacing}},
+                                                         s.nodes.soil, space);
+    else if (!s.summed.soil)
+      interpolate<SoilSource<Space, T, Dim, domain()>>(s, how, bins, {points, s.grid.inv_spacing},
+                                                       s.nodes.soil, space);
+    if (s.soil_boundary && !s.summed.boundary)
+      interpolate<BoundarySource<Space, T, Dim, domain()>>(
+          s, how, bins, {points, s.grid.inv_spacing, s.near_rigid}, s.nodes.boundary, space);
+  });
 }
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s, const Space& stream) {
@@ -72,9 +75,11 @@ void buoyancy_to_nodes(State<Space, T, Dim>& s) {
   if (!s.water.is_there()) return;
   if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.displaced, T(0));
   for_all_soil(s, [&](const auto& set) {
-    interpolate<DisplacedSource<Space, T, Dim>>(s, s.p2g.strategy, set.bins,
-                                                {set.points, s.water, s.density, s.patches.origin, s.spacing},
-                                                s.nodes.displaced);
+    with_domain(set.points, [&](auto domain) {
+      interpolate<DisplacedSource<Space, T, Dim, domain()>>(
+          s, s.p2g.strategy, set.bins, {set.points, s.water, s.density, s.patches.origin, s.spacing},
+          s.nodes.displaced);
+    });
   });
   add_buoyancy(s);
 }
@@ -85,8 +90,10 @@ PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T
   PetscFunctionBeginUser;
   if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.strength, T(0));
   for_all_soil(s, [&](const auto& set) {
-    interpolate<StrengthSource<Space, T, Dim>>(s, s.p2g.strategy, set.bins, {set.points, s.near_rigid},
-                                               s.nodes.strength);
+    with_domain(set.points, [&](auto domain) {
+      interpolate<StrengthSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, set.bins,
+                                                           {set.points, s.near_rigid}, s.nodes.strength);
+    });
   });
   if (ranks) PetscCall(ranks->add_strength(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -109,8 +116,10 @@ PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T
   for (int pass = 0; pass < s.xpic_order; ++pass) {
     if (pass > 0) {
       Kokkos::deep_copy(s.space, s.nodes.residual, T(0));
-      interpolate<ResidualSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins,
-                                                 {s.soil.points, residual_of(s)}, s.nodes.residual);
+      with_domain(s.soil.points, [&](auto domain) {
+        interpolate<ResidualSource<Space, T, Dim, domain()>>(
+            s, s.p2g.strategy, s.soil.bins, {s.soil.points, residual_of(s)}, s.nodes.residual);
+      });
       if (ranks) PetscCall(ranks->add_residual(s));
     }
     xpic_pass(s, pass);

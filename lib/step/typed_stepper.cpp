@@ -1,6 +1,7 @@
 #include "step/typed_stepper.hpp"
 #include "common/f_bar.hpp"
 #include "device/device_agrees.hpp"
+#include "input/courant.hpp"
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
@@ -78,6 +79,7 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   in.state = start_state<Dim>(config, law, in, particles);
   in.id = std::move(particles.id);
   in.velocity_gradient = std::move(particles.velocity_gradient);
+  in.domain = std::move(particles.domain);
   return in;
 }
 
@@ -89,7 +91,8 @@ double displaced_mass(const Config& config, const RigidInput& rigid) {
   for (std::size_t p = 0; p < rigid.position.size() / Dim && water.is_there(); ++p) {
     Vector<double, Dim> x;
     for (int d = 0; d < Dim; ++d) x[d] = rigid.position[p * Dim + d];
-    volume += rigid.particle_volume * water.submerged_share(x, rigid.half_length * config.mesh.spacing);
+    volume += rigid.particle_volume *
+              water.submerged_share(x, filled<double, Dim>(rigid.half_length * config.mesh.spacing));
   }
   return water.density * volume;
 }
@@ -159,6 +162,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;
   state_.affine = config_.velocity_update == VelocityUpdate::apic;
   state_.strays.rule = config_.stray_particles;
+  state_.soil.points.has_domain = config_.particle_domain != ParticleDomain::fixed;
+  state_.soil.points.splits = config_.particle_domain == ParticleDomain::split;
+  state_.rim_scale = rim_scale(config_);
   // On several ranks the pressure of a cell is averaged once all its particles are here.
   state_.f_bar_fraction = model.owners.empty() ? f_bar : 0;
   state_.keeps_stress = model.from_run;
@@ -248,13 +254,16 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
   const bool sampling = timers_.sampling();
   timers_.sample(true);
   Control control{};
+  PetscErrorCode failed = PETSC_SUCCESS;
   const auto work = [&] {
     locate(state_);
     control = read_control(state_);
     if (control.lost > 0) note_lost(state_);
-    if (control.fault_count == 0) sort_and_list(state_);
+    if (control.fault_count == 0) failed = split_and_merge();
+    if (control.fault_count == 0 && failed == PETSC_SUCCESS) sort_and_list(state_);
   };
   PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
+  PetscCall(failed);
   timers_.sample(sampling);
   *failure = control.fault_count > 0 ? describe(control.fault) : too_small();
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -266,7 +275,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   collect_soil(state_);
   PetscCallCXX(*saved = save_state(state_));
   PetscCall(save_for_starts(saved));
-  saved->particles = total_;
+  saved->particles = ids();
   if (ranks_) PetscCall(gather_strays(saved));
   if (ranks_) PetscCall(ranks_->save(saved));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -287,8 +296,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   Failure unfit;
   PetscCallCXX(unfit.what = take_saved(state_, saved));
   double lost = 0;
-  for (const Lost& of_body : state_.strays.lost) lost += of_body.count;
-  if (sum_over_ranks(state_.soil.points.count + lost) != total_ && unfit.what.empty())
+  for (const Lost& of_body : state_.strays.lost) lost += of_body.count + of_body.merged;
+  if (state_.soil.points.splits) children_ = std::max(0L, saved.particles - total_);
+  if (sum_over_ranks(state_.soil.points.count + lost) != ids() && unfit.what.empty())
     unfit.what = "the number of particles";
   PetscCall(share(&unfit));
   PetscCheck(unfit.what.empty(), comm_, PETSC_ERR_ARG_SIZ,
@@ -305,6 +315,48 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   PetscCheck(failure.what.empty(), PETSC_COMM_SELF, PETSC_ERR_FP, "The checkpoint's %s",
              failure.what.c_str());
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::split_and_merge() {
+  PetscFunctionBeginUser;
+  if (!state_.soil.points.splits) PetscFunctionReturn(PETSC_SUCCESS);
+  merge_particles(state_);
+  const std::vector<Splitting> own = find_splittings(state_);
+  std::vector<int> all;  // ids of the particles of all ranks that are split
+  for (const Splitting& splitting : own) all.push_back(splitting.id);
+  if (ranks_) {
+    const char* const bytes = reinterpret_cast<const char*>(all.data());
+    const std::vector<std::vector<char>> out(size_of(comm_), {bytes, bytes + all.size() * sizeof(int)});
+    std::vector<char> in;
+    PetscCall(exchange_records(comm_, sizeof(int), out, &in));
+    all.resize(in.size() / sizeof(int));
+    std::copy(in.begin(), in.end(), reinterpret_cast<char*>(all.data()));
+    std::sort(all.begin(), all.end());
+  }
+  PetscCheck(ids() + static_cast<long>(all.size()) <= std::numeric_limits<int>::max(), comm_,
+             PETSC_ERR_ARG_OUTOFRANGE,
+             "-particle_domain split: there are no numbers left for more particles");
+  std::vector<int> children;  // the same ids whatever the ranks are
+  for (const Splitting& splitting : own)
+    children.push_back(
+        static_cast<int>(ids() + (std::lower_bound(all.begin(), all.end(), splitting.id) - all.begin())));
+  PetscCallCXX(split_particles(state_, own, children));
+  children_ += static_cast<long>(all.size());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Index of the body of a particle that is on this rank; 0 where it is not.
+template <class Space, class T, int Dim>
+std::size_t TypedStepper<Space, T, Dim>::body_of(int id) const {
+  const auto& soil = state_.soil.points;
+  const auto held = Kokkos::make_pair(0, soil.count);
+  const auto ids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.id, held));
+  const auto body =
+      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.body, held));
+  for (int p = 0; p < soil.count; ++p)
+    if (ids(p) == id) return body(p);
+  return 0;
 }
 
 template <class Space, class T, int Dim>
@@ -333,9 +385,10 @@ Failure TypedStepper<Space, T, Dim>::describe(const Fault& fault) const {
   if (fault.particle < 0) {
     who = "rigid " + config_.rigids[-1 - fault.particle].name;
   } else {
-    std::size_t b = first_.size() - 1;
-    while (b > 0 && first_[b] > fault.particle) --b;
-    who = "particle " + std::to_string(fault.particle - first_[b]) + " of body " + config_.bodies[b].name;
+    std::size_t b = fault.particle < total_ ? first_.size() - 1 : body_of(fault.particle);
+    while (fault.particle < total_ && b > 0 && first_[b] > fault.particle) --b;
+    const long number = fault.particle < total_ ? fault.particle - first_[b] : fault.particle;
+    who = "particle " + std::to_string(number) + " of body " + config_.bodies[b].name;
     of_law = failure_of(model_index(config_.materials[config_.bodies[b].material].model));
   }
   char where[120];

@@ -10,6 +10,8 @@
 #include "functions/grid_velocity.hpp"
 #include "functions/wall_force.hpp"
 #include "parallel/kept_by_id.hpp"
+#include "rebuild/merge_particles.hpp"
+#include "rebuild/split_particles.hpp"
 #include "step/step.hpp"
 #include "step/stepper.hpp"
 #include "transfer/download.hpp"
@@ -37,7 +39,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode save(SavedState* saved) const override;
   PetscErrorCode restore(SavedState&& saved, long since_rebuild, bool* rebuilt) override;
   std::vector<FunctionTime> times() const override;
-  long particles() const override { return total_; }
+  long particles() const override { return total_ + children_; }
   int patches() const override { return static_cast<int>(sum_over_ranks(state_.patches.slots)); }
   std::size_t memory() const override;
   std::string strategy() const override;
@@ -45,6 +47,7 @@ class TypedStepper final : public Stepper {
 
  private:
   Failure describe(const Fault& fault) const;
+  std::size_t body_of(int id) const;
   /// Why the soil cannot go in batches, if it should and cannot.
   Failure too_small() const;
   /// What advance and rebuild are on several ranks.
@@ -58,6 +61,11 @@ class TypedStepper final : public Stepper {
   PetscErrorCode gather_strays(SavedState* saved) const;
   double sum_over_ranks(double own) const;
   PetscErrorCode keep_heights(const Model& model);
+  /// Merges particles that crowd, and splits those whose domains have become too long, where the run asks for
+  /// it. Collective.
+  PetscErrorCode split_and_merge();
+  /// Ids that have been given to particles of all ranks.
+  long ids() const { return total_ + children_; }
   /// What a start from a checkpoint needs and a restart has already.
   PetscErrorCode save_for_starts(SavedState* saved) const;
   void sample(bool on);
@@ -76,7 +84,8 @@ class TypedStepper final : public Stepper {
   double stepping_ = 0;        // s of wall time in advance
   double last_increment_ = std::numeric_limits<double>::infinity();  // cells, of all ranks, of the last batch
   std::vector<long> first_;                                          // id of the first particle of each body
-  long total_ = 0;                                                   // particles of all ranks
+  long total_ = 0;                                                   // particles of all ranks at the start
+  long children_ = 0;                                                // that splitting has added, on all ranks
   KeptById heights_;  // m, absolute, where each particle was created
 };
 

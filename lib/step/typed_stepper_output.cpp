@@ -108,27 +108,40 @@ void add_pore_pressures(const Config& config, const SoilFields& soil, int pore, 
   if (pore >= 0) body->state.push_back({k_excess_pore_pressure, std::move(excess)});
 }
 
+/// The half lengths of the particles [from, to), where domains stretch.
+template <int Dim>
+void add_half_lengths(const SoilFields& soil, std::size_t from, std::size_t to, ParticleSnapshot* body) {
+  static constexpr const char* names[] = {"half_length_x", "half_length_y", "half_length_z"};
+  for (int d = 0; d < Dim; ++d) {
+    StateField field{names[d], {}};
+    for (std::size_t p = from; p < to; ++p) field.values.push_back(soil.half_length[p * Dim + d]);
+    body->state.push_back(std::move(field));
+  }
+}
+
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
   PetscFunctionBeginUser;
   collect_soil(state_);
   const SoilFields soil = download_soil(state_);
   PetscCall(sum_soil());
-  const std::vector<double> grid_velocity = grid_velocities(state_);
+  const std::vector<double> grid_velocity = grid_velocities(state_, order_for_host(state_));
+  const bool splits = state_.soil.points.splits;
+  std::vector<long> created(soil.id.begin(), soil.id.end());
+  if (splits) created.assign(soil.ancestor.begin(), soil.ancestor.end());
   std::vector<double> height;
-  PetscCall(heights_.look_up({soil.id.begin(), soil.id.end()}, &height));
+  PetscCall(heights_.look_up(created, &height));
   out->dim = Dim;
   out->bodies.clear(), out->rigids.clear(), out->nodes.clear();
   for (std::size_t b = 0; b < config_.bodies.size(); ++b) {
-    const auto place_of = [&](long id) {
-      return std::lower_bound(soil.id.begin(), soil.id.end(), id) - soil.id.begin();
-    };
-    const std::size_t from = place_of(first_[b]),
-                      to = place_of(b + 1 < first_.size() ? first_[b + 1] : total_);
+    const std::size_t from = soil.first[b], to = soil.first[b + 1];
+    // Particles that were split have numbers of their own, whatever their body.
+    const long first = splits ? 0 : first_[b], last = splits                  ? ids()
+                                                      : b + 1 < first_.size() ? first_[b + 1]
+                                                                              : total_;
     ParticleSnapshot body;
     body.name = config_.bodies[b].name;
-    for (std::size_t p = from; p < to && ranks_; ++p)
-      body.id.push_back(soil.id[p] - static_cast<int>(first_[b]));
+    for (std::size_t p = from; p < to && ranks_; ++p) body.id.push_back(soil.id[p] - static_cast<int>(first));
     body.position.assign(3 * (to - from), 0);
     body.velocity = body.grid_velocity = body.position;
     body.stress.assign(6 * (to - from), 0);
@@ -147,10 +160,10 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     body.state = state_fields(variables, body.own_parameter, soil, from, to);
     if (has_pore_pressure(config_))  // of all bodies, so that pictures may show them
       add_pore_pressures<Dim>(config_, soil, state_.soil.points.history.pore, from, to, &body);
+    if (state_.soil.points.has_domain) add_half_lengths<Dim>(soil, from, to, &body);
     body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
     body.reference_height.assign(height.begin() + from, height.begin() + to);
-    if (ranks_)
-      PetscCall(order_particles(comm_, (b + 1 < first_.size() ? first_[b + 1] : total_) - first_[b], &body));
+    if (ranks_) PetscCall(order_particles(comm_, last - first, &body));
     out->bodies.push_back(std::move(body));
   }
   const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.rigids);
@@ -193,7 +206,10 @@ template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::save_for_starts(SavedState* saved) const {
   PetscFunctionBeginUser;
   SavedField height{"reference_height", 1, sizeof(double), {}};
-  PetscCall(heights_.look_up(saved->soil.id, &height.values));
+  std::vector<long> created = saved->soil.id;
+  for (const SavedField& field : saved->soil.fields)
+    if (field.name == "ancestor") created.assign(field.values.begin(), field.values.end());
+  PetscCall(heights_.look_up(created, &height.values));
   const auto& soil = state_.soil.points;
   if (!soil.has_own_mass) {  // else it is there
     const auto bodies = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), soil.bodies);

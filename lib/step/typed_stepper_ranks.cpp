@@ -110,6 +110,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure* failure) {
     *failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
     failed = share(failure);
     if (control.lost > 0) note_lost(state_);
+    if (failed == PETSC_SUCCESS && failure->what.empty()) failed = split_and_merge();
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = ranks_->rebuild(state_);
   };
   PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
@@ -147,7 +148,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
     reduce(&m.mass, 1, MPI_DOUBLE, MPI_SUM);
     reduce(&m.water_energy, 1, MPI_DOUBLE, MPI_SUM);
     reduce(&m.weight, 1, MPI_DOUBLE, MPI_SUM);
-    for (long* count : {&m.count, &m.alone, &m.limited}) reduce(count, 1, MPI_LONG, MPI_SUM);
+    for (long* count : {&m.count, &m.alone, &m.limited, &m.stretched}) reduce(count, 1, MPI_LONG, MPI_SUM);
     reduce(&speed, 1, MPI_DOUBLE, MPI_MAX);
     for (int d = 0; d < 3 && m.weight > 0; ++d) m.centre[d] /= m.weight;
     over.sum = [=](int* counts, int n) { reduce(counts, n, MPI_INT, MPI_SUM); };
@@ -155,6 +156,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
   }
   PetscCall(note_out_of_order(b, body));
   body->mass = m.mass, body->water_energy = m.water_energy, body->strays = m.alone, body->limited = m.limited;
+  body->particles = m.count, body->stretched = m.stretched;
   if (m.count == 0) PetscFunctionReturn(PETSC_SUCCESS);
   const long rank = m.count - m.count / 1000;  // of the 99.9th percentile, the nearest one above
   const Vec3& origin = config_.mesh.lower;
@@ -177,12 +179,14 @@ PetscErrorCode TypedStepper<Space, T, Dim>::note_out_of_order(int b, BodyRow* bo
   PetscFunctionBeginUser;
   const Lost& lost = state_.strays.lost[b];
   const auto put_back = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.strays.put_back);
-  double sums[7] = {lost.mass,        lost.kinetic_energy, lost.momentum[0], lost.momentum[1],
-                    lost.momentum[2], double(put_back(b)), lost.count};
-  if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, comm_));
+  double sums[9] = {lost.mass,        lost.kinetic_energy, lost.momentum[0],
+                    lost.momentum[1], lost.momentum[2],    double(put_back(b)),
+                    lost.count,       lost.merged,         lost.merged_energy};
+  if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 9, MPI_DOUBLE, MPI_SUM, comm_));
   body->lost_mass = sums[0], body->lost_energy = sums[1];
   for (int d = 0; d < 3; ++d) body->lost_momentum[d] = sums[2 + d];
   body->put_back = static_cast<long>(sums[5]), body->lost_count = static_cast<long>(sums[6]);
+  body->merged = static_cast<long>(sums[7]), body->merged_energy = sums[8];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

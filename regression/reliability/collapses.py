@@ -2,6 +2,7 @@
 """Clay that collapses, slides and strikes: every run reaches its end, and every kilogram is accounted for.
 
     collapses.py MPM [--count 200] [--seed 1] [--only K,...] [--jobs 2] [--keep FOLDER] [--precisions double,single] [--limit 300]
+                     [--particle_domain WORD]
 
 First the collapse of a column in nine variants, then --count random decks (collapse_decks.py) with all strengths, shapes,
 sides, velocity updates, strategies, back ends and one to four ranks. --only runs some of them: numbers of random decks, or
@@ -192,6 +193,7 @@ def report(number, deck, seconds, faults, arguments):
     for fault in faults:
         print(f"  {fault}")
     again = [sys.argv[0], arguments.program, "--seed", str(arguments.seed), "--only", key]
+    again += ["--particle_domain", arguments.particle_domain] if arguments.particle_domain else []
     print(f"  again: {shlex.join(again)}\n  OMP_NUM_THREADS={deck.threads}, {deck.ranks} ranks of")
     print("".join(f"    {line}\n" for line in deck.text().splitlines()), flush=True)
 
@@ -204,6 +206,8 @@ def chosen_decks(arguments):
     decks += [(k, random_deck(arguments.seed, k)) for k in numbers]
     known = arguments.precisions.split(",")
     for _, deck in decks:
+        if arguments.particle_domain:
+            deck.options["particle_domain"] = arguments.particle_domain
         if deck.options.get("precision", "double") not in known:
             deck.options["precision"] = known[0]
     return decks
@@ -220,6 +224,7 @@ def main():
     parser.add_argument("--keep", type=pathlib.Path, help="where folders of decks that fail are kept")
     parser.add_argument("--precisions", default="double,single", help="those that the program is built for")
     parser.add_argument("--limit", type=float, default=TIME_LIMIT, help="s that a run may take")
+    parser.add_argument("--particle_domain", help="of all runs, in lieu of the default")
     arguments = parser.parse_args()
     TIME_LIMIT = arguments.limit
     decks, kinds = chosen_decks(arguments), collections.Counter()

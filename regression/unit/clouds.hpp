@@ -73,6 +73,7 @@ struct Cloud {
   double flip_fraction = 1, damping = 0, f_bar_fraction = 0;
   int xpic_order = 0;
   bool affine = false;
+  bool stretch = false, split = false;  // the domains of particles; those that are too long
   double memory_limit = 0;  // bytes, for batches of the soil
 };
 
@@ -86,6 +87,8 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typenam
   s.flip_fraction = cloud.flip_fraction;
   s.xpic_order = cloud.xpic_order;
   s.affine = cloud.affine;
+  s.soil.points.has_domain = cloud.stretch;
+  s.soil.points.splits = cloud.split;
   s.damping = cloud.damping;
   s.f_bar_fraction = cloud.f_bar_fraction;
   s.batches.limit = cloud.memory_limit;
@@ -198,6 +201,23 @@ inline void give_own_masses(Cloud& cloud, int seed, double spread) {
       body.mass.push_back(common * (1 + spread * dice.uniform(-1, 1)));
     body.least_mass = *std::min_element(body.mass.begin(), body.mass.end());
   }
+}
+
+/// Gives each particle a domain of its own, of half lengths from 0.1 to 0.5 cells, and sheared.
+template <int Dim>
+void give_own_domains(Cloud& cloud, int seed) {
+  Dice dice{std::mt19937_64(seed)};
+  cloud.stretch = true;
+  for (BodyInput& body : cloud.bodies)
+    for (std::size_t p = 0; p < strength_of(body).size(); ++p) {
+      double half[Dim];
+      for (double& l : half) l = dice.below(4) == 0 ? (dice.below(2) ? 0.1 : 0.5) : dice.uniform(0.1, 0.5);
+      DomainMoments<double, Dim> m;
+      for (int i = 0; i < Dim; ++i)
+        for (int j = i; j < Dim; ++j)
+          m[moment_index<Dim>(i, j)] = half[i] * half[j] * (i == j ? 1 : dice.uniform(-0.4, 0.4));
+      body.domain.insert(body.domain.end(), m.c, m.c + Dim * (Dim + 1) / 2);
+    }
 }
 
 /// Bodies of 1 to 4 particles a cell edge: in the first and the last cells of the mesh, dense in the middle,

@@ -109,6 +109,11 @@ double component(const Matrix<T, Dim>& value, int k) {
   return value[k];
 }
 
+template <class T, int Dim>
+double component(const DomainMoments<T, Dim>& value, int k) {
+  return value[k];
+}
+
 /// A field of points by id.
 template <class Points_, class Field>
 Table by_id(const Points_& points, const Field& field) {

@@ -181,10 +181,11 @@ TEST_CASE("every field goes with its particle", "[bins]") {
     INFO(build.name());
     Cloud cloud = random_cloud<B::dim>(8);
     cloud.affine = true;
+    give_own_domains<B::dim>(cloud, 3);
     auto s = state_of<B>(cloud);
     mark_by_id(s);
     const auto soil = carried_fields(s.soil.points);
-    REQUIRE(soil.size() == 7);
+    REQUIRE(soil.size() == 8);
     // The order after an upload is already not that of creation: compare with the input.
     std::size_t id = 0, wrong = 0;
     for (std::size_t b = 0; b < cloud.bodies.size(); ++b)

@@ -86,7 +86,7 @@ Checkpoint some_checkpoint() {
   c.state.bound = 0.1, c.state.increment = 1.0 / 3, c.state.margin = 0.25, c.state.due_in = 2;
   c.state.soil = some_points(k_soil);
   c.state.particles = k_soil;
-  c.state.lost = {0, 1.5, 2.5, 3, 4, 5, 6};
+  c.state.lost = {0, 1.5, 2.5, 3, 4, 5, 0, 0.5, 6};
   c.state.alone_known = 1, c.state.alone = {17, 23};
   c.state.rigids = {{{1, 2, 0}, {3, 4, 0}, {5, 6, 0}, {7, 8, 0}},
                     {{-1, -2, 0}, {-3, -4, 0}, {-5, -6, 0}, {-7, -8, 0}}};

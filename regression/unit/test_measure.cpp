@@ -38,7 +38,7 @@ Cloud free_cloud(int seed) {
 template <class S>
 Table grid_velocity_table(S& s, int dim) {
   sum_present_soil(s);
-  return {dim, grid_velocities(s)};
+  return {dim, grid_velocities(s, order_for_host(s))};
 }
 
 }  // namespace

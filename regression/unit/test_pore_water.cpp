@@ -75,7 +75,7 @@ void put_at_rest(Cloud& cloud, const Water<Dim>& water, double top, int per_cell
   const auto weight = [&](double y) {
     Vector<double, Dim> x{};
     x[Dim - 1] = y;
-    return (body.density - water.density * water.submerged_share(x, h / 2)) * k_g * h;
+    return (body.density - water.density * water.submerged_share(x, filled<double, Dim>(h / 2))) * k_g * h;
   };
   body.stress.clear();
   for (std::size_t p = 0; p < body.position.size() / Dim; ++p) {
@@ -101,9 +101,9 @@ double displaced_by(const State<Space, T, Dim>& s) {
 
 TEST_CASE("a particle is submerged by its share below the level", "[pore_water]") {
   const auto water = water_at<2>(3);
-  CHECK(water.submerged_share({0, 2}, 0.5) == 1);
-  CHECK(water.submerged_share({0, 4}, 0.5) == 0);
-  CHECK(std::fabs(water.submerged_share({7, 3.2}, 0.5) - 0.3) < 1e-15);
+  CHECK(water.submerged_share({0, 2}, {0.5, 0.5}) == 1);
+  CHECK(water.submerged_share({0, 4}, {0.5, 0.5}) == 0);
+  CHECK(std::fabs(water.submerged_share({7, 3.2}, {0.5, 0.5}) - 0.3) < 1e-15);
   CHECK(water.pressure({1, 4}) == 0);
   CHECK(std::fabs(water.pressure({1, 1}) - 2000 * k_g) < 1e-9);
 }

@@ -50,7 +50,7 @@ Cloud share_of_cloud(const Cloud& whole, int rank, int ranks) {
       keep(body.velocity_gradient, Dim * Dim);
     }
     keep(body.position, Dim), keep(strength_of(body), 1), keep(body.particle_velocity, Dim);
-    keep(body.stress, sym_size<Dim>), keep(body.mass, 1);
+    keep(body.stress, sym_size<Dim>), keep(body.mass, 1), keep(body.domain, Dim * (Dim + 1) / 2);
   }
   return own;
 }
@@ -204,7 +204,7 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
   for_each_reference([&](auto build) {
     using B = decltype(build);
     for (const int kind :
-         {0, 1, 2, 3, 4}) {  // FLIP, XPIC, APIC, FLIP with own masses, in two velocity fields
+         {0, 1, 2, 3, 4, 5}) {  // FLIP, XPIC, APIC, FLIP with own masses, in two velocity fields, own domains
       Cloud cloud = random_cloud<B::dim>(3, Wall::roller);
       cloud.gravity = {0, -9.81, 0};
       keep_inside<B::dim>(cloud);
@@ -213,6 +213,7 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
       if (kind == 1) cloud.xpic_order = 3, cloud.flip_fraction = 0;
       if (kind == 2) cloud.affine = true, cloud.flip_fraction = 0;
       if (kind == 3) give_own_masses(cloud, 3, 0.6);
+      if (kind == 5) give_own_domains<B::dim>(cloud, 3);
       if (kind == 4)
         cloud.bodies[1].velocity_field = cloud.bodies[3].velocity_field = 1, cloud.rigids.clear();
       Pair<B> pair(cloud, {PartitionKind::metis, 1.0001, way.path, way.overlap}, 6, way.strategy);

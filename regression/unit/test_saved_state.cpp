@@ -77,7 +77,8 @@ TEST_CASE("a run from a saved state has the bits of the run that was saved", "[s
   for_each_build([&](auto build) {
     using B = decltype(build);
     for (const P2G how : k_strategies) {
-      const Cloud cloud = moving_cloud<B::dim>(5);
+      Cloud cloud = moving_cloud<B::dim>(5);
+      give_own_domains<B::dim>(cloud, 5);
       auto whole = state_of<B>(cloud, how);
       run_steps(whole, dt, 37);
       SavedState saved = save_state(whole);

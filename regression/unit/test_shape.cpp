@@ -80,7 +80,7 @@ std::vector<Sums<T, Dim>> sums_on(const std::vector<Vector<T, Dim>>& positions, 
       "test::sums", Kokkos::RangePolicy<Space>(0, positions.size()), KOKKOS_LAMBDA(int n) {
         Sums<T, Dim> sums{};
         sums.smallest = 1;
-        with_weights(x(n), l, [&](const AxisWeights<T>(&a)[Dim]) {
+        with_weights(x(n), HalfLength<T>(l), [&](const AxisWeights<T>(&a)[Dim]) {
           for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
             sums.weight += w;
             sums.smallest = Kokkos::fmin(sums.smallest, w);

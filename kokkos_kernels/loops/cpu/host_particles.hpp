@@ -6,12 +6,13 @@
 #include "loops/cpu/host_laws.hpp"
 #include "loops/cpu/host_window.hpp"
 #include "physics/advance.hpp"
+#include "physics/stretch_domain.hpp"
 #include "physics/walls.hpp"
 
 namespace mpm {
 
 /// Moves the particles of patches.
-template <class Space, class T, int Dim>
+template <class Space, class T, int Dim, ParticleDomain domain>
 struct HostParticles {
   static constexpr int W = native_lanes<T>, cells = Patch<Dim>::cells, window = Patch<Dim>::window;
   using R = Lanes<T, W>;
@@ -142,11 +143,12 @@ struct HostParticles {
       const int count = Kokkos::min(W, to - p), n = p - from;
       R x[Dim];
       load_field(soil.coordinate, p, count, x);
-      const HalfLength<R> half = bodies_of<R>(soil, p, count, stage.one_body).half_length;
+      const auto half =
+          domains_of<domain, R, Dim>(soil, p, count, bodies_of<R>(soil, p, count, stage.one_body));
       alignas(R) T weight[Dim][2][3][W], shift[W];
       R to_first = 0;
       for (int d = 0, step = 1; d < Dim; ++d, step *= Patch<Dim>::window_edge) {
-        const AxisWeights<R> a = axis_weights_near(x[d], half);
+        const AxisWeights<R> a = axis_weights_near(x[d], half[d]);
         for (int k = 0; k < 3; ++k) a.w[k].store(weight[d][0][k]), a.g[k].store(weight[d][1][k]);
         to_first += T(step) * (a.first + 1);
       }
@@ -219,7 +221,7 @@ struct HostParticles {
     for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
       law.material[l] = soil.bodies(soil.body(p + Kokkos::min(l, count - 1))).material;
     if (alone(slot) != 0) law.flies = which_are_alone(p, count), law.some_fly = any_of(law.flies > 0);
-    const R volume = q.volume, own = advance(q, law, t, R::load(stage.mean + n), by);
+    const R volume = q.volume, own = advance_block(q, law, t, R::load(stage.mean + n), p, count);
     if (law.some_fly) q.volume = select(law.flies > 0, volume, q.volume);
     if (stage.at_wall) put_back_on_walls(q, p, count, slot);
     store_field(q.x.c, soil.coordinate, p, count);
@@ -229,6 +231,25 @@ struct HostParticles {
     const bool limited = by.volume_is_fault && any_of(is_volume_limited(q, by));
     if (limited || any_of(!(is_finite(q) & (own <= 1)))) find_faults(q, own, p, count, slot);
     moved = Kokkos::fmax(moved, own);
+  }
+
+  /// advance(), and the domains where they stretch. A particle that flies freely keeps its own.
+  KOKKOS_FORCEINLINE_FUNCTION R advance_block(Particle<R, Dim>& q, const LawLanes<R, Space, T, Dim>& law,
+                                              const GridSample<R, Dim>& t, const R& mean, int p,
+                                              int count) const {
+    if constexpr (domain == ParticleDomain::fixed) {
+      return advance(q, law, t, mean, by);
+    } else {
+      DomainMoments<R, Dim> moments;
+      load_field(soil.domain, p, count, moments.c);
+      const auto was = moments;
+      const StretchingLaw<R, Dim, LawLanes<R, Space, T, Dim>> stretching{law, moments};
+      const R moved = advance(q, stretching, t, mean, by);
+      for (int k = 0; k < Dim * (Dim + 1) / 2 && law.some_fly; ++k)
+        moments[k] = select(law.flies > 0, was[k], moments[k]);
+      store_field(moments.c, soil.domain, p, count);
+      return moved;
+    }
   }
 
   // What few blocks need is in functions of its own, which take and return values, so that the others keep

@@ -20,19 +20,22 @@ struct SlotSums {
   KOKKOS_INLINE_FUNCTION T rigid(int r, int i, int n) const { return (*of_rigids)(r, i, n); }
 };
 
-template <class Space, class T, int Dim>
+/// domain: that of the particles, where they are summed.
+template <class Space, class T, int Dim, ParticleDomain domain = ParticleDomain::fixed>
 struct HostSoil {
-  HostSums<SoilSource<Space, T, Dim>> soil;
-  HostSums<BoundarySource<Space, T, Dim>> boundary;
+  HostSums<SoilSource<Space, T, Dim, domain>> soil;
+  HostSums<BoundarySource<Space, T, Dim, domain>> boundary;
   decltype(State<Space, T, Dim>::near_rigid) near_rigid;
   decltype(NodeSums<Space, T, Dim>::rigid) rigid;
   bool has_boundary;
 
   explicit HostSoil(const State<Space, T, Dim>& s)
-      : soil(interpolation_of(s, s.soil.bins, SoilSource<Space, T, Dim>{s.soil.points, s.grid.inv_spacing},
+      : soil(interpolation_of(s, s.soil.bins,
+                              SoilSource<Space, T, Dim, domain>{s.soil.points, s.grid.inv_spacing},
                               s.nodes.soil, s.space)),
         boundary(interpolation_of(
-            s, s.soil.bins, BoundarySource<Space, T, Dim>{s.soil.points, s.grid.inv_spacing, s.near_rigid},
+            s, s.soil.bins,
+            BoundarySource<Space, T, Dim, domain>{s.soil.points, s.grid.inv_spacing, s.near_rigid},
             s.nodes.boundary, s.space)),
         near_rigid(s.near_rigid),
         rigid(s.nodes.rigid),

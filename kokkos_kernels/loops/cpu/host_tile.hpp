@@ -20,6 +20,11 @@ struct HostTile {
   static constexpr int k_rows = 32 / sizeof(T) / k_row;  // rows that share a vector
   using Rows = Lanes<T, k_rows * k_row>;
   static constexpr bool k_offset = requires { Source::takes_offset; };
+  static constexpr ParticleDomain domain = [] {
+    if constexpr (requires { Source::domain; }) return Source::domain;
+    return ParticleDomain::fixed;
+  }();
+  using Domain = DomainOf<R, Dim, domain>;
 
   static constexpr int k_point = k_point_numbers<T, Point>;
   /// Whether the points of many particles are made at once.
@@ -93,11 +98,12 @@ struct HostTile {
   /// Puts `count` particles from p on to the stage from n on; their weights at once.
   KOKKOS_INLINE_FUNCTION void fill(int p, int count, bool one_body, Stage& stage, int n) const {
     const BodyProperties<R> body = bodies_of<R>(source.points, p, count, one_body);
-    put_points(p, count, body, stage, n);
+    const Domain half_length = domains_of<domain, R, Dim>(source.points, p, count, body);
+    put_points(p, count, body.mass, half_length, stage, n);
     R x[Dim];
     load_field(source.points.coordinate, p, count, x);
     for (int d = 0; d < Dim; ++d) {
-      const AxisWeights<R> a = axis_weights_near(x[d], body.half_length);
+      const AxisWeights<R> a = axis_weights_near(x[d], half_length[d]);
       put_weights(a.first, a.w, stage.weight[d][0][n]);
       put_weights(a.first, a.g, stage.weight[d][1][n]);
       if (k_offset)
@@ -105,18 +111,18 @@ struct HostTile {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void put_points(int p, int count, const BodyProperties<R>& body, Stage& stage,
-                                         int n) const {
+  KOKKOS_INLINE_FUNCTION void put_points(int p, int count, const R& common_mass, const Domain& half_length,
+                                         Stage& stage, int n) const {
     if constexpr (k_in_lanes) {
       const auto& soil = source.points;
       Vector<R, Dim> v;
       SymTensor<R, Dim> stress;
-      R volume[1], mass[1] = {body.mass};
+      R volume[1], mass[1] = {common_mass};
       load_field(soil.velocity, p, count, v.c);
       load_field(soil.stress, p, count, stress.c);
       load_field(soil.volume, p, count, volume);
       if (soil.has_own_mass) load_field(soil.mass, p, count, mass);
-      const auto point = source.point({mass[0], body.half_length, 0}, v, stress, volume[0]);
+      const auto point = source.point(half_length, mass[0], v, stress, volume[0]);
       const R* const value = numbers_of<R>(point);
       unrolled<k_point>([&](auto k) { value[k].store(stage.value[k] + n); });
     } else {

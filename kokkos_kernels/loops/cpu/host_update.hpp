@@ -9,14 +9,14 @@ namespace mpm {
 
 /// Moves the soil; if `sums`, it goes on to the windows, with its boundary, and to the nodes where they are
 /// not to take from these.
-template <class Space, class T, int Dim>
+template <ParticleDomain domain, class Space, class T, int Dim>
 void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by, bool sums) {
   const auto& bins = s.soil.bins;
-  const HostParticles<Space, T, Dim> particles{
+  const HostParticles<Space, T, Dim, domain> particles{
       s.soil.points, bins.begin,       s.patches.neighbours, s.patches.origin,  s.nodes.kinematics,
       s.control,     s.grid,           s.strays.alone,       s.strays.put_back, by,
       s.spacing,     dilatations_of(s)};
-  const HostSoil<Space, T, Dim> soil(s);
+  const HostSoil<Space, T, Dim, domain> soil(s);
   const bool gives = sums && !s.summed.in_windows;
   const Shared phases[] = {slots_held<Dim>(bins), gives ? slots_about<Dim>(bins, s.patches.slots) : Shared{}};
   for_each_shared("mpm::update_particles", s.space, phases, [&](int phase, int n) {

@@ -8,6 +8,7 @@
 #include "base/lanes.hpp"
 #include "data/patches.hpp"
 #include "loops/window.hpp"
+#include "physics/domain.hpp"
 #include "physics/shape_gimp.hpp"
 
 namespace mpm {
@@ -195,6 +196,19 @@ KOKKOS_FORCEINLINE_FUNCTION BodyProperties<R> bodies_of(const Points_& points, i
     all(points);
   }
   return body;
+}
+
+/// The domains of `count` points from p on, by lane; their bodies are those of bodies_of.
+template <ParticleDomain domain, class R, int Dim, class Points_>
+KOKKOS_FORCEINLINE_FUNCTION DomainOf<R, Dim, domain> domains_of(const Points_& points, int p, int count,
+                                                                const BodyProperties<R>& bodies) {
+  if constexpr (domain == ParticleDomain::fixed) {
+    return bodies.half_length;
+  } else {
+    DomainMoments<R, Dim> moments;
+    load_field(points.domain, p, count, moments.c);
+    return half_lengths_of(moments, points.least_half_length);
+  }
 }
 
 }  // namespace mpm

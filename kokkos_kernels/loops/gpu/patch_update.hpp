@@ -5,6 +5,7 @@
 #include "device/warp.hpp"
 #include "loops/gpu/tile.hpp"
 #include "physics/advance.hpp"
+#include "physics/stretch_domain.hpp"
 
 namespace mpm {
 
@@ -50,10 +51,11 @@ constexpr int teams_for(PatchKind kind, bool heavy) {
 /// step.
 /// teams: those that share a multiprocessor.
 template <class Space, class T, int Dim, bool Sums, PatchKind kind, class Laws,
+          ParticleDomain domain = ParticleDomain::fixed,
           int teams = teams_for<T, Dim>(kind, Laws::k_size == 1)>
 struct UpdateParticles {
-  using Source = SoilSource<Space, T, Dim>;
-  using Boundary = BoundarySource<Space, T, Dim>;
+  using Source = SoilSource<Space, T, Dim, domain>;
+  using Boundary = BoundarySource<Space, T, Dim, domain>;
   using Tile_ = Tile<Source, teams>;
   using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, teams>>;
   using Member = typename Team::member_type;
@@ -68,6 +70,7 @@ struct UpdateParticles {
     static constexpr std::size_t bytes() { return 0; }
   };
   using TileOrNothing = std::conditional_t<Sums, Tile_, Nothing>;
+  using Domain = DomainOf<T, Dim, domain>;
 
   Source source;
   Kokkos::View<int*, Memory> begin, slots;
@@ -170,6 +173,7 @@ struct UpdateParticles {
     for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
       prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
       prefetch(&soil.volume(p));
+      if constexpr (domain == ParticleDomain::stretch) prefetch(&soil.domain(p));
       if constexpr (Dim == 2) {  // the forms that spill least: scripts/law_registers
         for (int k = 0; k < most_state(Laws{}, true); ++k)
           if (k < soil.history.columns) prefetch(&soil.history.column[k](p));
@@ -192,7 +196,8 @@ struct UpdateParticles {
                                                  const KinematicValues<T, Dim>* nodes, T* mean) const {
     const auto& soil = source.points;
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), [&](int p) {
-      with_weights_near(soil.coordinate(p), soil.bodies(one_body ? 0 : soil.body(p)).half_length,
+      with_weights_near(soil.coordinate(p),
+                        domain_of<domain>(soil, p, soil.bodies(one_body ? 0 : soil.body(p))),
                         [&](const AxisWeights<T>(&a)[Dim]) {
                           dilatation(p) = dilatation_from_nodes<T, Dim>(nodes, coord_of<Dim>(soil.cell(p)), a,
                                                                         by.inv_spacing);
@@ -235,16 +240,26 @@ struct UpdateParticles {
                                                              const BodyProperties<T>& common,
                                                              T& moved) const {
     const auto& soil = source.points;
-    BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
+    const BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
     const int place = soil.cell(p) - slot * cells;
     const Coord<Dim> cell = coord_of<Dim>(place);
     Particle<T, Dim> q{soil.coordinate(p), soil.velocity(p), soil.stress(p), soil.volume(p)};
     const bool flies = kind != PatchKind::common && (lone >> place & 1) != 0;
     T own = 0;
-    with_weights_near(q.x, body.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-      own = advance(q, ParticleLaw<Space, T, Dim, Laws>{soil, p, body.material, law, flies},
-                    sample_nodes(nodes, cell, a, by.inv_spacing),
-                    by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by);
+    Domain half_length = domain_of<domain>(soil, p, body);
+    with_weights_near(q.x, half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+      const ParticleLaw<Space, T, Dim, Laws> of_particle{soil, p, body.material, law, flies};
+      const auto move = [&](const auto& changes) {
+        own = advance(q, changes, sample_nodes(nodes, cell, a, by.inv_spacing),
+                      by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by);
+      };
+      if constexpr (domain == ParticleDomain::fixed) {
+        move(of_particle);
+      } else {
+        DomainMoments<T, Dim> moments = soil.domain(p);
+        move(StretchingLaw<T, Dim, ParticleLaw<Space, T, Dim, Laws>>{of_particle, moments});
+        if (!flies) soil.domain(p) = moments, half_length = half_lengths_of(moments, soil.least_half_length);
+      }
     });
     if (flies) q.volume = soil.volume(p);
     soil.coordinate(p) = q.x;
@@ -260,8 +275,7 @@ struct UpdateParticles {
       report(control, fault, soil.id(p), position, Dim);
     }
     moved = Kokkos::fmax(moved, own);
-    body.mass = soil.mass_of(p, body);
-    return {q.x, source.point(body, q.v, q.stress, q.volume)};
+    return {q.x, source.point(half_length, soil.mass_of(p, body), q.v, q.stress, q.volume)};
   }
 
   /// Brings particle p, which may have passed a wall, back to it. In memory, where that takes few registers.

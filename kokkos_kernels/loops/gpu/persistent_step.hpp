@@ -34,7 +34,7 @@ template <class Space, class T, int Dim, bool WithNodes, class Laws>
 struct PersistentStep {
   static constexpr int threads = team_threads<Space>;
   static constexpr int k_teams = WithNodes ? 3 : teams_at_once<T, Dim>;  // that share a multiprocessor
-  using Update = UpdateParticles<Space, T, Dim, true, PatchKind::any, Laws, k_teams>;
+  using Update = UpdateParticles<Space, T, Dim, true, PatchKind::any, Laws, ParticleDomain::fixed, k_teams>;
   using NodeUpdate = UpdateNodes<Space, T, Dim>;
   using Member = typename Update::Member;
   using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_most_rigids>;

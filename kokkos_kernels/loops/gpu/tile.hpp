@@ -34,7 +34,7 @@ class Tile {
   // In 3D layer by layer of cells: a particle then reaches four layers of nodes, each with its own threads.
   static constexpr int k_lots = Dim == 3 ? edge : 1;
   static constexpr bool k_offset = requires { Source::takes_offset; };
-  static constexpr int k_point = sizeof(Point) / sizeof(T) - 2;  // without its half length
+  static constexpr int k_half = k_domain_numbers<T, Point>, k_point = k_point_numbers<T, Point>;
   static constexpr int k_values = 3 * Dim + k_point + (k_offset ? Dim : 0);
 
   // The stage keeps of an entry, in units that are read at once and lie apart: for each axis, the first one
@@ -124,13 +124,13 @@ class Tile {
   KOKKOS_INLINE_FUNCTION void put(int n, const Entry& entry) const {
     T value[k_units * k_unit] = {};
     for (int d = 0; d < Dim; ++d) {
-      const AxisWeights<T> a = axis_weights_near(entry.x[d], entry.point.half_length);
+      const AxisWeights<T> a = axis_weights_near(entry.x[d], entry.point.half_length[d]);
       T* const axis = value + 3 * (d == 0 ? Dim - 1 : d - 1);
       axis[0] = a.first == 0 ? -a.w[0] : a.w[0], axis[1] = a.w[2], axis[2] = a.g[2];
     }
-    T point[k_point + 2];
+    T point[k_point + k_half];
     memcpy(point, &entry.point, sizeof point);
-    for (int k = 0; k < k_point; ++k) value[3 * Dim + k] = point[k + 2];
+    for (int k = 0; k < k_point; ++k) value[3 * Dim + k] = point[k + k_half];
     for (int d = 0; d < Dim && k_offset; ++d) value[3 * Dim + k_point + d] = entry.x[d];
     for (int u = 0; u < k_units; ++u) {
       Unit unit;  // written at once
@@ -211,8 +211,8 @@ class Tile {
   template <int late>
   KOKKOS_INLINE_FUNCTION static void add_along(const T* value, const Vector<int, 3>& at, T w,
                                                const T (&grad)[Dim], T (&own)[k_reach][size]) {
-    T values[k_point + 2] = {};
-    for (int k = 0; k < k_point; ++k) values[k + 2] = value[3 * Dim + k];
+    T values[k_point + k_half] = {};
+    for (int k = 0; k < k_point; ++k) values[k + k_half] = value[3 * Dim + k];
     Point q;
     memcpy(&q, values, sizeof q);
     // What of each value goes with the weight along the row, and what with its derivative.

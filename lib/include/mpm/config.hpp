@@ -220,6 +220,7 @@ struct Config {
   VelocityUpdate velocity_update = VelocityUpdate::flip;
   int xpic_order = 2;         // -, m of XPIC(m), with xpic
   double flip_fraction = 1;   // -, fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic
+  ParticleDomain particle_domain = ParticleDomain::fixed;
   StrayRule stray_particles = StrayRule::keep;
   double f_bar_fraction = 0.98;  // -, fraction of the cell's mean in a particle's dilatation (F-bar)
   std::vector<MaterialConfig> materials;

@@ -1,0 +1,74 @@
+#pragma once
+// Domains of particles, and what is kept of those that follow the soil (-particle_domain stretch). Such a
+// domain begins as the square of its
+// lattice and deforms with the soil to a parallelogram (parallelepiped). What a particle keeps of it are
+// three times the second moments of its area about its centre, M = sum_k r_k r_k^T with r_k = F r_k0 the
+// vectors from the centre to the middles of the sides, a symmetric tensor [cells^2]. The shape functions take
+// the box along the axes of the mesh that has the same second moment along each axis, l_d = sqrt(M_dd).
+
+#include "base/half_length.hpp"
+#include "base/types.hpp"
+#include "data/particles.hpp"
+
+namespace mpm {
+
+/// Half lengths [cells] of the domain with these moments, `least` at least and k_most_half_length at most.
+/// Their root and quotient are of single precision, which costs a processor and a GPU a quarter; Newton's
+/// step then makes the inverse that of l in T, for the weights rely on it.
+template <class R, class T, int Dim>
+KOKKOS_FORCEINLINE_FUNCTION HalfLengths<R, Dim> half_lengths_of(const DomainMoments<R, Dim>& m, T least) {
+  constexpr T most = T(k_most_half_length * k_most_half_length);
+  HalfLengths<R, Dim> half;
+  for (int d = 0; d < Dim; ++d) {
+    const auto l = single_sqrt(Kokkos::fmin(most, Kokkos::fmax(least * least, m[d])));
+    half[d].l = to_real<R>(l);
+    half[d].inverse = to_real<R>(0.5f / l);
+    if constexpr (!std::is_same_v<T, float>) half[d].inverse *= T(2) - T(2) * half[d].l * half[d].inverse;
+  }
+  return half;
+}
+
+/// Whether the half length along some axis is at its upper bound.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool is_longest(const DomainMoments<T, Dim>& m) {
+  bool longest = false;
+  for (int d = 0; d < Dim; ++d) longest = longest || m[d] > T(k_most_half_length * k_most_half_length);
+  return longest;
+}
+
+/// Moments of a domain that is a square (cube) of this half length [cells].
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION DomainMoments<T, Dim> square_domain(T half_length) {
+  DomainMoments<T, Dim> m{};
+  for (int d = 0; d < Dim; ++d) m[d] = half_length * half_length;
+  return m;
+}
+
+/// The domain of particle p, which is of this body.
+template <ParticleDomain domain, class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION DomainOf<T, Dim, domain> domain_of(const Soil<Space, T, Dim>& soil, int p,
+                                                          const BodyProperties<T>& of) {
+  if constexpr (domain == ParticleDomain::fixed)
+    return of.half_length;
+  else
+    return half_lengths_of(soil.domain(p), soil.least_half_length);
+}
+/// The same where only the run knows whether domains stretch, for what is not done in every step.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION HalfLengths<T, Dim> any_domain_of(const Soil<Space, T, Dim>& soil, int p) {
+  if (soil.has_domain) return half_lengths_of(soil.domain(p), soil.least_half_length);
+  HalfLengths<T, Dim> half;
+  for (int d = 0; d < Dim; ++d) half[d] = soil.bodies(soil.body(p)).half_length;
+  return half;
+}
+
+/// Calls f(domain), the domain as std::integral_constant, by what the soil has.
+template <class Soil_, class F>
+void with_domain(const Soil_& soil, F&& f) {
+  if (soil.has_domain)
+    f(std::integral_constant<ParticleDomain, ParticleDomain::stretch>{});
+  else
+    f(std::integral_constant<ParticleDomain, ParticleDomain::fixed>{});
+}
+
+}  // namespace mpm

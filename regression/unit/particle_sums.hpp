@@ -1,0 +1,31 @@
+#pragma once
+// Sums over all particles that splitting and merging keep.
+
+#include <vector>
+
+#include "physics/materials/von_mises.hpp"
+#include "transfer/download.hpp"
+
+namespace mpm::test {
+
+/// Mass, volume, momentum, first moments of the mass, volume times stress, mass times strength: 3 + 2 Dim +
+/// sym_size<Dim> numbers; then angular momentum and kinetic energy, which merging changes.
+template <int Dim>
+std::vector<double> sums_of(const SoilFields& soil) {
+  constexpr int kept = 3 + 2 * Dim + sym_size<Dim>;
+  std::vector<double> sums(kept + 2);
+  for (std::size_t p = 0; p < soil.id.size(); ++p) {
+    const double m = soil.mass[p], *x = &soil.position[p * Dim], *v = &soil.velocity[p * Dim];
+    std::size_t n = 0;
+    sums[n++] += m, sums[n++] += soil.volume[p];
+    for (int d = 0; d < Dim; ++d) sums[n++] += m * v[d];
+    for (int d = 0; d < Dim; ++d) sums[n++] += m * x[d];
+    for (int k = 0; k < sym_size<Dim>; ++k) sums[n++] += soil.volume[p] * soil.stress[p * sym_size<Dim> + k];
+    sums[n++] += soil.volume[p] * soil.history[VonMises<double>::strength][p];
+    sums[n++] += m * (x[0] * v[1] - x[1] * v[0]);
+    for (int d = 0; d < Dim; ++d) sums[n] += m * v[d] * v[d] / 2;
+  }
+  return sums;
+}
+
+}  // namespace mpm::test
