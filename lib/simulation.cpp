@@ -74,7 +74,7 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     else
       steps = 1;
     Batch batch;
-    PetscCall(stepper->advance(steps, schedule.time_of(step), step_dt, &batch));
+    PetscCall(stepper->advance(schedule.range(step, steps), &batch));
     ++looks;
     const double took = batch.seconds;
     stepping += took;
@@ -163,9 +163,9 @@ PetscErrorCode Simulation::Body::write_frame() {
   if (!config.output.frames) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(frames.wait());  // the memory for one frame is enough
   Snapshot snapshot;
-  PetscCall(stepper->snapshot(&snapshot));
   snapshot.step = step;
   snapshot.time = schedule.time_of(step);
+  PetscCall(stepper->snapshot(&snapshot));
   PetscCall(frames.write(std::move(snapshot)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,6 +8,7 @@
 #include "common/checksum.hpp"
 #include "common/material_table.hpp"
 #include "common/text.hpp"
+#include "common/time_table.hpp"
 #include "input/shapes.hpp"
 
 namespace mpm {
@@ -95,17 +96,21 @@ std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>&
   for (const RigidConfig& rigid : config.rigids)
     for (const auto& [key, path] : files_of(rigid.shape))
       keep_contents("-" + rigid.name + key, path, "", kept);
+  for (const auto& [option, path] : table_files(config)) keep_contents(option, path, "", kept);
   return kept;
 }
 
 bool is_load(const std::string& name, const Config& config) {
   const std::string key = lower_case(name);
-  if (key == "gravity" || key == "damping") return true;
+  for (const char* name : {"gravity", "gravity_table", "gravity_table_interpolation", "damping"})
+    if (key == name) return true;
   for (int d = 0; d < config.dim; ++d)
     for (const char* side : {"min", "max"})
       if (key == std::string("mesh_") + "xyz"[d] + side) return true;
   for (const RigidConfig& rigid : config.rigids)
-    for (const char* of_rigid : {"_motion", "_velocity", "_force", "_density"})
+    for (const char* of_rigid : {"_motion", "_velocity", "_velocity_table", "_velocity_table_interpolation",
+                                 "_displacement_table", "_displacement_table_interpolation", "_force",
+                                 "_force_table", "_force_table_interpolation", "_density"})
       if (key == lower_case(rigid.name) + of_rigid) return true;
   return false;
 }

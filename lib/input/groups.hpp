@@ -55,8 +55,8 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
 /// Whether soil of a material has a strength, somewhere.
 bool has_strength(const MaterialConfig& material);
 
-/// The geometry and lattice of a body or rigid, where `body` says which. Whether all of it was sound. A file may
-/// list the particles of a body. The bodies before it have been read.
+/// The geometry and lattice of a body or rigid, where `body` says which. Whether all of it was sound. A file
+/// may list the particles of a body. The bodies before it have been read.
 bool read_shape(OptionReader& in, const std::string& name, const Config& config, bool body, Shape& shape);
 
 /// Checks that a sound shape lies in the mesh, or is cut by planes of symmetry, and holds a particle.
@@ -65,6 +65,15 @@ void check_shape(OptionReader& in, const std::string& name, const Shape& shape, 
 
 /// Checks that the shapes cut out of a body leave a particle.
 void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& config, const BodyConfig& body);
+
+/// NAME_table and NAME_table_interpolation, where NAME is the option `of`, a vector: its values in time till
+/// `end` [s]. has_constant: NAME itself is an option too, with the value `constant`, of which a table of one
+/// column gives factors. Returns whether the table is given.
+bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, double end,
+                const Vec3& constant, std::optional<TimeTable>& table);
+
+/// The motion of a rigid and what moves it; `end` [s]: of the run.
+void read_motion(OptionReader& in, int dim, double end, RigidConfig& rigid);
 
 /// Checks that a rigid does not move across a plane of symmetry that cuts it.
 void check_cut_motion(OptionReader& in, const MeshConfig& mesh, int dim, const RigidConfig& rigid);

@@ -147,47 +147,6 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
   if (sound_materials && in.errors() == errors) check_starts(in, *mesh, config, listed, body);
 }
 
-/// What moves a rigid: each motion takes its own options.
-void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
-  static const std::vector<std::pair<std::string, Motion>> motions = {
-      {"fixed", Motion::fixed}, {"prescribed", Motion::prescribed}, {"dynamic", Motion::dynamic}};
-  const auto errors = in.errors();
-  in.word({.name = rigid.name + "_motion",
-           .meaning = "none, by its velocity, or by its density, force and gravity"},
-          motions, rigid.motion);
-  if (in.errors() != errors) {
-    for (const char* key : {"velocity", "density", "force"}) in.ignore(rigid.name + "_" + key);
-    return;
-  }
-  const bool prescribed = rigid.motion == Motion::prescribed, dynamic = rigid.motion == Motion::dynamic;
-  const std::string why = rigid.name + "_motion is " + motions[static_cast<int>(rigid.motion)].first;
-  if (prescribed || dynamic || in.listing())
-    in.vector({.name = rigid.name + "_velocity",
-               .meaning = "prescribed: its velocity (required); dynamic: its initial velocity",
-               .unit = "m/s",
-               .range = k_speed,
-               .required = prescribed},
-              dim, rigid.velocity);
-  else
-    in.not_taken(rigid.name + "_velocity", why);
-  if (dynamic || in.listing()) {
-    in.number({.name = rigid.name + "_density",
-               .meaning = "dynamic: its density",
-               .unit = "kg/m3",
-               .range = k_density,
-               .required = true},
-              rigid.density);
-    in.vector({.name = rigid.name + "_force",
-               .meaning = "dynamic: external force on it, beside gravity",
-               .unit = "N",
-               .range = k_stress},
-              dim, rigid.force);
-  } else {
-    in.not_taken(rigid.name + "_density", why);
-    in.not_taken(rigid.name + "_force", why);
-  }
-}
-
 /// Whether the step knows the distance to the surface of a shape.
 bool has_distance(const Shape& shape) { return shape.kind != ShapeKind::stl; }
 
@@ -263,7 +222,7 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
   const bool sound = !in.listing() && read_shape(in, rigid.name, config, /*body*/ false, rigid.shape);
   if (sound && mesh) check_shape(in, rigid.name, rigid.shape, *mesh, dim);
   in.section("Each rigid NAME");
-  read_motion(in, dim, rigid);
+  read_motion(in, dim, config.time.end, rigid);
   if (sound && mesh) check_cut_motion(in, *mesh, dim, rigid);
   if (sound && mesh) check_in_water(in, config, rigid);
   rigid.has_shear_limit = in.number({.name = rigid.name + "_shear_limit",

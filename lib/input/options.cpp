@@ -7,6 +7,7 @@
 
 #include "checkpoint/changes.hpp"
 #include "common/text.hpp"
+#include "common/time_table.hpp"
 #include "input/courant.hpp"
 #include "input/groups.hpp"
 #include "input/reader.hpp"
@@ -183,8 +184,11 @@ void read_velocity_update(OptionReader& in, Config& config) {
 
 void read_physics(OptionReader& in, Config& config) {
   in.section("Physics");
-  in.vector({.name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2", .range = k_speed},
-            config.dim, config.gravity);
+  const Option gravity{
+      .name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2", .range = k_speed};
+  in.vector(gravity, config.dim, config.gravity);
+  read_timed(in, gravity, true, config.dim, config.time.end, config.gravity, config.gravity_table);
+  if (config.gravity_table) config.gravity = largest_of(*config.gravity_table);
   read_water(in, config);
   in.number({.name = "damping",
              .meaning = "local (non-viscous) damping factor",
@@ -280,8 +284,9 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
           output.restart);
   in.list_of(
       {.name = "restart_change",
-       .meaning = "what may differ from the checkpoint's run: gravity, damping, mesh_xmin and the other "
-                  "sides, and of rigids NAME_motion, NAME_velocity, NAME_force, NAME_density"},
+       .meaning =
+           "what may differ from the checkpoint's run: gravity, damping, mesh_xmin and the other "
+           "sides, of rigids NAME_motion, NAME_velocity, NAME_force, NAME_density, and the tables of these"},
       "names of options, as gravity,damping", output.restart_change);
   in.number(
       {.name = "wall_time_limit",
@@ -305,7 +310,7 @@ void check_restart_change(OptionReader& in, const Config& config) {
     if (!name.empty() && !is_load(name, config))
       return in.reject(option,
                        "names of options among gravity, damping, those of the mesh's sides and NAME_motion, "
-                       "NAME_velocity, NAME_force and NAME_density of rigids; " +
+                       "NAME_velocity, NAME_force and NAME_density of rigids, and their tables; " +
                            name + " is none");
 }
 

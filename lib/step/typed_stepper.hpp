@@ -26,7 +26,7 @@ class TypedStepper final : public Stepper {
   TypedStepper(const Config& config, MPI_Comm comm) : config_(config), comm_(comm) {}
 
   PetscErrorCode set_up(Model&& model, Failure* failure) override;
-  PetscErrorCode advance(long steps, double time, double dt, Batch* batch) override;
+  PetscErrorCode advance(const StepRange& steps, Batch* batch) override;
   PetscErrorCode rebuild(Failure* failure) override;
   PetscErrorCode measure(double interval, HistoryRow* row) override;
   PetscErrorCode fastest_wave(double* speed) override;
@@ -60,6 +60,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode keep_heights(const Model& model);
   /// What a start from a checkpoint needs and a restart has already.
   PetscErrorCode save_for_starts(SavedState* saved) const;
+  double velocity_of(std::size_t rigid, int d, double present, double time) const;
   void sample(bool on);
   long until_sample() const;
 

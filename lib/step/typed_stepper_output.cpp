@@ -5,6 +5,7 @@
 #include "common/text.hpp"
 #include "data/memory_of.hpp"
 #include "parallel/gather.hpp"
+#include "step/load_input.hpp"
 #include "step/typed_stepper.hpp"
 #include "step/water.hpp"
 
@@ -33,6 +34,8 @@ template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
   PetscFunctionBeginUser;
   row->bodies.clear(), row->rigids.clear();
+  for (int d = 0; d < Dim && config_.gravity_table; ++d)
+    state_.gravity[d] = gravity_at(config_, d, row->time);
   collect_soil(state_);
   PetscCall(sum_soil());
   for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
@@ -51,12 +54,20 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, impulse, Dim, MPI_DOUBLE, MPI_SUM, comm_));
     for (int d = 0; d < Dim; ++d) {
       rigid.displacement[d] = r.pose.displacement[d];
-      rigid.velocity[d] = r.velocity[d];
+      rigid.velocity[d] = velocity_of(row->rigids.size(), d, r.velocity[d], row->time);
       rigid.force[d] = interval > 0 ? impulse[d] / interval : 0;
     }
     row->rigids.push_back(rigid);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Component d of the velocity of rigid r [m/s]. `present`: on the device, that of the next step; a table
+/// tells that of the time.
+template <class Space, class T, int Dim>
+double TypedStepper<Space, T, Dim>::velocity_of(std::size_t r, int d, double present, double time) const {
+  const RigidConfig& rigid = config_.rigids[r];
+  return rigid.velocity_table || rigid.displacement_table ? velocity_at(rigid, d, time) : present;
 }
 
 template <class Space, class T, int Dim>
@@ -163,7 +174,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     for (std::size_t p = 0; p < position.size() / Dim; ++p)
       for (int d = 0; d < Dim; ++d) {
         rigid.position[3 * p + d] = position[p * Dim + d] + config_.mesh.lower[d];
-        rigid.velocity[3 * p + d] = rigids(r).velocity[d];
+        rigid.velocity[3 * p + d] = velocity_of(r, d, rigids(r).velocity[d], out->time);
       }
     out->rigids.push_back(std::move(rigid));
   }
