@@ -111,6 +111,19 @@ void check_particles(OptionReader& in, const BodyConfig& body, const Config& con
 void check_density(OptionReader& in, const BodyConfig& body, const Config& config,
                    const ParticleTable& table);
 
+/// -stages: the good names. The names of all options are reserved.
+std::vector<std::string> read_stage_names(OptionReader& in);
+/// What the stage of a reader owns; rigids and gravity have been read.
+void read_stage(OptionReader& in, Config& config);
+/// Checks the names of stages against those of materials, bodies and rigids.
+void check_stage_names(OptionReader& in, const Config& config);
+/// Checks that the options that the stage of a reader gives may change at a stage.
+void check_stage_changes(OptionReader& in, const Config& config);
+
+/// What is wrong with a name that is to begin options beside those that `known` has read or listed; empty
+/// where nothing is.
+std::string name_fault(const OptionReader& known, const std::string& name);
+
 /// Checks the values of PETSc's options that PETSc would find wrong only at the end of the run.
 void check_petsc_options(OptionReader& in);
 

@@ -247,6 +247,10 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
 
 }  // namespace
 
+std::string name_fault(const OptionReader& known, const std::string& name) {
+  return Names(known).fault(name);
+}
+
 void read_only_material(OptionReader& in, Config& config) {
   Names names(in);
   const auto materials =

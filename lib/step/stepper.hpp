@@ -61,6 +61,9 @@ class Stepper {
   /// Rows of the history at row->time; `interval` [s] is the time since the last call, over which the forces
   /// are a mean.
   virtual PetscErrorCode measure(double interval, HistoryRow* row) = 0;
+  /// Mean unbalanced force over mean weight of the nodes, at a time [s]; infinite where no node is free to
+  /// tell.
+  virtual PetscErrorCode unbalanced_ratio(double time, double* ratio) = 0;
   /// Speed of the fastest wave in the soil as it is now [m/s].
   virtual PetscErrorCode fastest_wave(double* speed) = 0;
   /// The frame at snapshot->time; on several ranks each has a range of the particles of a body.

@@ -209,7 +209,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(const StepRange& range, Batc
   const double dt = range.dt;
   long steps = range.count;
   state_.time = range.time;
-  begin_loads(state_, {range.origin, dt, range.first});
+  begin_loads(state_, {range.origin - config_.time.start, dt, range.first});
   if (ranks_) {
     PetscCall(advance_together(steps, dt, batch));
     PetscFunctionReturn(PETSC_SUCCESS);

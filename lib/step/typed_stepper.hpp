@@ -16,6 +16,7 @@
 #include "transfer/download_nodes.hpp"
 #include "transfer/measure.hpp"
 #include "transfer/save_state.hpp"
+#include "transfer/unbalanced.hpp"
 #include "transfer/upload.hpp"
 
 namespace mpm {
@@ -29,6 +30,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode advance(const StepRange& steps, Batch* batch) override;
   PetscErrorCode rebuild(Failure* failure) override;
   PetscErrorCode measure(double interval, HistoryRow* row) override;
+  PetscErrorCode unbalanced_ratio(double time, double* ratio) override;
   PetscErrorCode fastest_wave(double* speed) override;
   PetscErrorCode snapshot(Snapshot* snapshot) override;
   PetscErrorCode ownership(std::vector<OwnedPatch>* patches) override;
@@ -53,6 +55,7 @@ class TypedStepper final : public Stepper {
   /// The failure of the lowest rank that has one, on every rank.
   PetscErrorCode share(Failure* failure) const;
   PetscErrorCode sum_soil();
+  void set_gravity(double time);
   PetscErrorCode measure_body(int body, BodyRow* row);
   PetscErrorCode note_out_of_order(int body, BodyRow* row);
   PetscErrorCode gather_strays(SavedState* saved) const;

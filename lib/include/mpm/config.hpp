@@ -129,10 +129,26 @@ struct RigidConfig {
 inline constexpr double k_largest_courant = 0.6;
 
 struct TimeConfig {
-  double end = 0;              // s
+  double start = 0;            // s, at which the stage and with it the tables begin
+  double end = 0;              // s, of the run or the stage
   double courant = 0.5;        // -, Eq. 14
   std::optional<double> step;  // s, instead of the Courant number
   std::optional<long> max_steps;
+};
+
+/// What ends a stage of a run, before its time_end at the latest.
+enum class StageEnd { time, equilibrium, displacement };
+
+/// A stage of a run.
+struct StageConfig {
+  std::string name;  // empty: the run has no stages
+  int number = 0;    // from 1 on
+  StageEnd end = StageEnd::time;
+  double unbalanced_ratio = 1e-4;  // -, equilibrium: mean unbalanced force over mean weight of the nodes
+  int end_rigid = 0;               // displacement: index into Config::rigids
+  double end_displacement = 0;     // m, size of its displacement since the stage began
+  std::vector<int> remove;         // indices into Config::bodies: removed when it begins
+  bool reset = false;              // at its end velocities, displacements and plastic strains become zero
 };
 
 struct P2GConfig {
@@ -241,7 +257,10 @@ struct Config {
   std::vector<RigidConfig> rigids;
   OutputConfig output;
   ElementConfig element;
-  bool dry_run = false;  // tell what the run would take, and do not run
+  StageConfig stage;                // which stage these options are of
+  bool balance = false;             // the history tells the unbalanced ratio
+  std::vector<std::string> stages;  // names of all stages, in order; empty: the run has none
+  bool dry_run = false;             // tell what the run would take, and do not run
 };
 
 }  // namespace mpm
