@@ -219,7 +219,7 @@ PetscErrorCode Simulation::Body::set_up_stage(SavedState&& state) {
   bool rebuilt = false;
   PetscCall(stepper->restore(std::move(state), since_rebuild, &rebuilt));
   if (rebuilt) since_rebuild = 0;
-  watching = false, waves_at = -1, told_dt = 0;
+  watching = false, waves_at = -1, told_dt = 0, looks = 0;
   part = {.step = step, .stepping = stepping};
   part.wall = wall();
   PetscCall(follow_stiffness());

@@ -115,8 +115,6 @@ void check_density(OptionReader& in, const BodyConfig& body, const Config& confi
 std::vector<std::string> read_stage_names(OptionReader& in);
 /// What the stage of a reader owns; rigids and gravity have been read.
 void read_stage(OptionReader& in, Config& config);
-/// Checks the names of stages against those of materials, bodies and rigids.
-void check_stage_names(OptionReader& in, const Config& config);
 /// Checks that the options that the stage of a reader gives may change at a stage.
 void check_stage_changes(OptionReader& in, const Config& config);
 

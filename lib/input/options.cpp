@@ -350,7 +350,6 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   check_restart_change(in, config);
   if (!config.stages.empty() || in.listing()) {
     read_stage(in, config);
-    check_stage_names(in, config);
     check_stage_changes(in, config);
   }
   in.report_unknown();
@@ -410,8 +409,11 @@ PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& back
     PetscCallCXX(read_all(in, backends, "", config));
   } else if (!report.file_unread) {
     PetscCall(in.load(prefix, report));
+    const auto before = report.errors.size();
     std::vector<std::string> stages;
     PetscCallCXX(stages = read_stage_names(in));
+    if (report.errors.size() > before)
+      PetscFunctionReturn(PETSC_SUCCESS);  // they decide whose the others are
     if (stages.empty()) {
       PetscCallCXX(read_all(in, backends, report.options_file, config));
     } else {

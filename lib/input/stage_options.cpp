@@ -56,6 +56,21 @@ void read_removed(OptionReader& in, const Config& config, StageConfig& stage) {
   }
 }
 
+/// Whether one name is the other, or begins the options of the other.
+bool begins_alike(const std::string& one, const std::string& other) {
+  const std::string a = lower_case(one), b = lower_case(other);
+  return a == b || a.starts_with(b + "_") || b.starts_with(a + "_");
+}
+
+/// The name of a material, body or rigid whose options a stage of this name would take; empty where there is
+/// none.
+std::string named_so(const OptionReader& in, const std::string& stage) {
+  for (const char* list : {"materials", "bodies", "rigid_bodies"})
+    for (const std::string& name : split(in.given_text(list)))
+      if (!name.empty() && begins_alike(name, stage)) return name;
+  return "";
+}
+
 }  // namespace
 
 std::vector<std::string> read_stage_names(OptionReader& in) {
@@ -73,21 +88,32 @@ std::vector<std::string> read_stage_names(OptionReader& in) {
   list_all(all);
   std::vector<std::string> good;
   for (const std::string& name : stages) {
+    if (name.empty()) continue;  // reported
     const std::string fault = name_fault(all, name);
-    const bool twice = std::any_of(good.begin(), good.end(), [&](const std::string& other) {
-      const std::string a = lower_case(name), b = lower_case(other);
-      return a == b || a.starts_with(b + "_") || b.starts_with(a + "_");
-    });
+    const bool twice = std::any_of(good.begin(), good.end(),
+                                   [&](const std::string& other) { return begins_alike(name, other); });
     const bool begins = std::any_of(all.known().begin(), all.known().end(), [&](const std::string& known) {
       return lower_case(known).starts_with(lower_case(name) + "_");
     });
+    const std::string other = named_so(in, name);
     if (begins && fault.empty())
       in.reject(option.name, "names other than " + name + ", which begins other options");
+    else if (!other.empty())
+      in.reject(option.name,
+                "names that neither are those of materials, bodies and rigids nor begin as they do; " + name +
+                    " and " + other + " do not differ so");
     else if (!fault.empty() || twice)
       in.reject(option.name, twice ? "names that differ, of which none begins another: " + name : fault);
     else
       good.push_back(name);
   }
+  for (const std::string& former : in.replaced(option.name))  // the deck may still speak of them
+    for (const std::string& name : split(former)) {
+      const bool kept = std::any_of(good.begin(), good.end(), [&](const std::string& other) {
+        return lower_case(other) == lower_case(name);
+      });
+      if (!kept && name_fault(all, name).empty() && !in.is_left_out(name)) in.leave_out(option.name, name);
+    }
   for (const char* key : k_stage_keys)
     if (!good.empty() && in.given(key))
       in.not_taken(key, "it is an option of each stage, as -" + good[0] + "_" + key);
@@ -127,20 +153,6 @@ void read_stage(OptionReader& in, Config& config) {
        .meaning = "on: at the end of the stage velocities, displacements and plastic strains become zero, "
                   "as after a stage that finds the initial stress"},
       std::vector<std::pair<std::string, bool>>{{"off", false}, {"on", true}}, stage.reset);
-}
-
-void check_stage_names(OptionReader& in, const Config& config) {
-  const auto check = [&](const auto& things) {
-    for (const auto& thing : things)
-      for (const std::string& stage : config.stages) {
-        const std::string a = lower_case(thing.name), b = lower_case(stage);
-        if (a == b || a.starts_with(b + "_") || b.starts_with(a + "_"))
-          in.reject("stages",
-                    "names that neither are those of materials, bodies and rigids nor begin as they do; " +
-                        stage + " and " + thing.name + " do not differ so");
-      }
-  };
-  check(config.materials), check(config.bodies), check(config.rigids);
 }
 
 void check_stage_changes(OptionReader& in, const Config& config) {
