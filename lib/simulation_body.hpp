@@ -108,6 +108,7 @@ struct Simulation::Body {
   PetscErrorCode load_shape(const std::string& name, const Shape& shape, const std::vector<Shape>& cut_out,
                             LatticePart part, BodyParticles* particles);
   PetscErrorCode take_field(const BodyConfig& body, BodyParticles* particles);
+  PetscErrorCode take_level_ground(const BodyConfig& body, Model* model, BodyParticles* particles);
   PetscErrorCode load_file(const BodyConfig& body, BodyParticles* particles, bool* from_run);
   PetscErrorCode choose_strategy(const Model& model, const std::string& device);
   PetscErrorCode log_shape(const std::string& name, const Lattice& lattice, bool in_parts);

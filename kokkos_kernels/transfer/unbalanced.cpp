@@ -43,13 +43,13 @@ struct NodeForces {
     Coord<Dim> at = coord_of<Dim>(i);
     for (int d = 0; d < Dim; ++d) at[d] += origin(slot)[d];
     if (may_be_touched(slot, at)) return;
-    Vector<T, Dim> held;
-    for (int d = 0; d < Dim; ++d) held[d] = 1;
-    apply_walls(grid, sides_of(grid, at), held);
+    Vector<T, Dim> free;  // 0 where a wall holds a component
+    for (int d = 0; d < Dim; ++d) free[d] = 1;
+    apply_walls(grid, sides_of(grid, at), free);
     double force = 0, heavy = 0;
     for (int d = 0; d < Dim; ++d) {
-      const double f = held[d] * (double(soil(i, S::force + d)) + m_i * gravity[d]);
-      force += f * f, heavy += m_i * gravity[d] * m_i * gravity[d];
+      const double w = free[d] * m_i * gravity[d], f = free[d] * double(soil(i, S::force + d)) + w;
+      force += f * f, heavy += w * w;
     }
     unbalanced += Kokkos::sqrt(force), weight += Kokkos::sqrt(heavy);
   }

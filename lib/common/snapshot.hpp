@@ -80,11 +80,11 @@ struct RigidRow {
 struct HistoryRow {
   long step = 0;
   double time = 0, dt = 0, wall_time = 0;  // s
-  int stage = 0;                           // number of the stage, from 1 on; 0: the run has none
-  double unbalanced_ratio = 0;             // -, where some stage ends by equilibrium
   std::vector<BodyRow> bodies;
   std::vector<RigidRow> rigids;
   std::array<std::array<Vec3, 2>, 3> walls{};  // N, of the soil on each side of the mesh, now
+  int stage = 0;                               // number of the stage, from 1 on; 0: the run has none
+  double unbalanced_ratio = 0;                 // -, where some stage ends by equilibrium
 };
 
 }  // namespace mpm

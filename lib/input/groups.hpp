@@ -46,6 +46,10 @@ bool check_start(OptionReader& in, const std::string& body, const MaterialConfig
 std::string own_parameter_fault(const MaterialConfig& material, const std::string& key, double least,
                                 double largest);
 
+/// Checks the bodies whose stress is that of level ground, when all of them have been read, and notes their
+/// largest stress. The mesh, the shapes and the materials must be sound.
+void check_level_ground(OptionReader& in, const MeshConfig& mesh, Config& config);
+
 /// Checks the starts of the particles of a body of a sound material, by the lowest and highest point of its
 /// shape or by the file that lists them, and notes their largest pressure and own strength. Particles whose
 /// state a file gives go on as they are.

@@ -144,7 +144,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
     check_density(in, body, config, listed);
   }
   if (sound_materials && in.errors() == errors) check_body_field(in, *mesh, config, body);
-  if (sound_materials && in.errors() == errors) check_starts(in, *mesh, config, listed, body);
+  if (sound_materials && in.errors() == errors && !body.k0) check_starts(in, *mesh, config, listed, body);
 }
 
 /// Whether the step knows the distance to the surface of a shape.
@@ -292,6 +292,7 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
     config.rigids.emplace_back().name = name;
     read_rigid(in, mesh, config, config.rigids.back());
   }
+  if (sound_materials && in.errors() == errors) check_level_ground(in, *mesh, config);
   if (sound_materials) prepare_for_pressure(mesh->spacing, config);
   if (mesh && in.errors() == errors)
     for (const auto& body : config.bodies) check_cut_out(in, *mesh, config, body);

@@ -74,6 +74,7 @@ struct MaterialConfig {
   std::vector<std::string> texts{};      // values of the model's options that are texts, as it lists them
   std::shared_ptr<const void> object{};  // what the model made of its texts; most need none
   double pore_stiffness = 0;             // Pa, of the water in its pores, which does not flow; 0: they drain
+  std::optional<double> k0{};  // -, horizontal over vertical effective stress of level ground
   std::optional<double> f_bar_fraction{};  // -, as Config::f_bar_fraction, which holds where there is none
 };
 
@@ -86,6 +87,7 @@ struct BodyConfig {
   Sym6 stress{};                // Pa, initial, tension positive
   bool velocity_given = false;  // by the options: a file's do not count then
   bool stress_given = false;
+  bool k0 = false;  // its stress is that of level ground; `stress` is then that of its lowest particles
   /// Pa, largest mean stress in compression of its particles at the start.
   double largest_pressure = 0;
   std::string field;  // HDF5 file with a grid of the law's strength, from which its particles take theirs
