@@ -65,6 +65,17 @@ void share_node() {
   if (world > 0) setenv("KOKKOS_DISABLE_WARNINGS", "1", 0);
 }
 
+/// Kokkos::initialize ends the program itself after --kokkos-help; to MPI this must not look like a failure.
+void start_kokkos(int* argc, char** argv) {
+  static bool starts = false;
+  std::atexit([] {
+    if (starts) MPI_Finalize();
+  });
+  starts = true;
+  Kokkos::initialize(*argc, argv);
+  starts = false;
+}
+
 /// Whether Kokkos can start as every process is told to; the first that cannot says why.
 bool can_launch(int argc, char** argv) {
   const auto faults = launch_faults(argc, argv, gpu_count());
@@ -88,7 +99,7 @@ bool start_devices(int* argc, char** argv) {
 #ifdef KOKKOS_ENABLE_CUDA
   if (gpu_count() == 0) leave_cuda_out();
 #endif
-  Kokkos::initialize(*argc, argv);
+  start_kokkos(argc, argv);
   return true;
 }
 

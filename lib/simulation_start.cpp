@@ -30,6 +30,7 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
   PetscFunctionBeginUser;
   Body& b = *body_;
   silence_hdf5();
+  keep_hdf5_memory();
   b.comm = comm;
   b.report = arguments;
   PetscCall(read_options(prefix, available_backends(), b.config, b.report));

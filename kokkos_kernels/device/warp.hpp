@@ -14,9 +14,14 @@ KOKKOS_INLINE_FUNCTION float largest_of_warp(float value) {
   KOKKOS_IF_ON_HOST((return value;))
 }
 KOKKOS_INLINE_FUNCTION double largest_of_warp(double value) {
-  KOKKOS_IF_ON_DEVICE((for (int mask = k_warp / 2; mask > 0; mask /= 2) value =
-                           Kokkos::fmax(value, __shfl_xor_sync(0xffffffffu, value, mask));))
-  return value;
+  // Bit patterns of such numbers order like the numbers: the upper half decides, then the lower one.
+  KOKKOS_IF_ON_DEVICE(
+      (const unsigned upper = static_cast<unsigned>(__double2hiint(value)),
+       most = __reduce_max_sync(0xffffffffu, upper);
+       const unsigned lower = upper == most ? static_cast<unsigned>(__double2loint(value)) : 0u;
+       return __hiloint2double(static_cast<int>(most),
+                               static_cast<int>(__reduce_max_sync(0xffffffffu, lower)));))
+  KOKKOS_IF_ON_HOST((return value;))
 }
 
 /// The sum of the values of all lanes, in an order that is always the same.

@@ -114,7 +114,7 @@ void read_cut_out(OptionReader& in, const Listed& listed, BodyConfig& body) {
   }
 }
 
-/// sound_materials: no mistake was found in them.
+/// sound_materials: there are some, and no mistake was found in them.
 void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, const Listed& names,
                bool sound_materials, BodyConfig& body) {
   const auto errors = in.errors();
@@ -280,7 +280,8 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
   }
   auto errors = in.errors();
   for (const auto& name : materials) read_material(in, name, mesh, config, config.materials.emplace_back());
-  const bool sound_materials = mesh && in.errors() == errors && !in.listing();
+  const bool sound_materials =
+      mesh && !config.materials.empty() && in.errors() == errors && !in.listing();
   if (sound_materials)
     for (MaterialConfig& material : config.materials) prepare_material(material, mesh->spacing, 0);
   errors = in.errors();

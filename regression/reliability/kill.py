@@ -8,6 +8,7 @@ without a later one, and at most one interval may be lost; the end must be, bit 
 killed. As many runs are made as the kills take. On several ranks all are killed, and the launcher before them.
 """
 import argparse
+import contextlib
 import os
 import pathlib
 import random
@@ -43,7 +44,8 @@ def kill(process):
     children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     process.kill()
     for child in children:
-        os.kill(int(child), signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):  # it ended with its launcher
+            os.kill(int(child), signal.SIGKILL)
     process.communicate()
 
 
