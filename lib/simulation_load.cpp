@@ -53,7 +53,8 @@ PetscErrorCode Simulation::Body::take_level_ground(const BodyConfig& body, Model
   for (std::size_t p = 0; p < particles->position.size(); p += config.dim) {
     const double height = particles->position[p + config.dim - 1];
     const Sym6 stress = ground.stress(body, height, particles->spacing);
-    PetscCallCXX(particles->stress.insert(particles->stress.end(), stress.begin(), stress.begin() + components));
+    PetscCallCXX(
+        particles->stress.insert(particles->stress.end(), stress.begin(), stress.begin() + components));
   }
   model->from_run = true;  // a stress that F-bar would bring together in a cell is in equilibrium as it is
   PetscCall(log.print("body %s: stress of level ground, %.6g Pa vertical at its lowest particles, K0 %.4g",

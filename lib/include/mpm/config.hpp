@@ -74,7 +74,7 @@ struct MaterialConfig {
   std::vector<std::string> texts{};      // values of the model's options that are texts, as it lists them
   std::shared_ptr<const void> object{};  // what the model made of its texts; most need none
   double pore_stiffness = 0;             // Pa, of the water in its pores, which does not flow; 0: they drain
-  std::optional<double> k0{};  // -, horizontal over vertical effective stress of level ground
+  std::optional<double> k0{};            // -, horizontal over vertical effective stress of level ground
   std::optional<double> f_bar_fraction{};  // -, as Config::f_bar_fraction, which holds where there is none
 };
 
