@@ -47,9 +47,10 @@ void check_layers(OptionReader& in, const Config& config, const LevelGround& gro
     if (std::fabs(gap) <= slack) continue;
     const std::string upper = config.bodies[layers[k - 1].body].name,
                       lower = config.bodies[layers[k].body].name;
-    return in.reject(lower + "_stress",
-                     formatted("numbers, or k0 of layers one upon the other; %s %s by %.6g m", lower.c_str(),
-                               (gap > 0 ? "is below " : "goes into ") + upper, std::fabs(gap)));
+    return in.reject(
+        lower + "_stress",
+        formatted("numbers, or k0 of layers one upon the other; %s %s %s by %.6g m", lower.c_str(),
+                  gap > 0 ? "is below" : "goes into", upper.c_str(), std::fabs(gap)));
   }
 }
 
