@@ -54,6 +54,7 @@ class Deck:
             friction = draw.uniform(20, 40)
             words += [f"-m_{name}_cohesion", draw.choice([0, 1e3]), f"-m_{name}_friction_deg", friction]
             ratio = 1 - np.sin(np.radians(friction))
+            words += [f"-m_{name}_match", "compression"] if law == "drucker_prager" else []
         if law == "linear_elastic" and draw.random() < 0.5:
             ratio = draw.uniform(0.2, 1.5)
             words += [f"-m_{name}_k0", ratio]
