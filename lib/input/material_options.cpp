@@ -222,7 +222,7 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
              .meaning = "horizontal over vertical effective stress of bodies with the stress k0",
              .unit = "-",
              .range = {.lowest = 0, .highest = 10},
-             .standard = "1 - sin(friction), or nu/(1 - nu) without friction; required of cam_clay and umat"},
+             .standard = "1 - sin(friction), or nu/(1 - nu) without friction, none for cam_clay and umat"},
             material.k0);
   read_f_bar(in, config, material);
   if (in.listing()) {

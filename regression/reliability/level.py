@@ -29,6 +29,7 @@ class Deck:
         self.gravity = draw.choice([9.81, 10.0, 30.0])
         self.size = self.spacing / self.per_cell
         thickness = [draw.randint(1, 7 if dim == 2 else 4) * self.size for _ in range(draw.randint(1, 5))]
+        thickness[0] += 2 * self.spacing  # particles of a film thinner than a cell count as alone
         self.levels = np.concatenate([[0], np.cumsum(thickness)])
         top = self.spacing * np.ceil(self.levels[-1] / self.spacing + 1)
         plan = [1.0] if dim == 2 else [1.0, 0.5]
