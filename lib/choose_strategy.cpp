@@ -64,7 +64,7 @@ class Contestant {
       Failure failure;
       out_ = due_ && (stepper_->rebuild(&failure) != PETSC_SUCCESS || !failure.what.empty());
       if (out_) return PETSC_ERR_LIB;
-      const PetscErrorCode error = stepper_->advance(steps, 0, dt, batch);
+      const PetscErrorCode error = stepper_->advance({.count = steps, .dt = dt}, batch);
       due_ = batch->rebuild;
       spent += batch->seconds;
       out_ = error != PETSC_SUCCESS || !batch->failure.what.empty();

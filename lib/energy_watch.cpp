@@ -21,6 +21,15 @@ long lost_of(const HistoryRow& row) {
   return sum;
 }
 
+/// The most work [J] that gravity, of which a component is at most `gravity` [m/s2] in size, does on a body
+/// between two rows. It may turn between them, so that what the centre has moved does not tell it.
+double most_work(const BodyRow& now, const BodyRow& before, double interval, double gravity, int d) {
+  const double mass = std::max(now.mass, before.mass), gain = std::fabs(gravity) * interval;
+  if (mass == 0) return 0;
+  const double speed = std::max(std::fabs(now.momentum[d]), std::fabs(before.momentum[d])) / mass + gain;
+  return mass * gain * speed;
+}
+
 }  // namespace
 
 void EnergyWatch::begin(const HistoryRow& row, double wave_energy) {
@@ -36,7 +45,9 @@ void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
   const auto add = [&](double work) { available_ += work, passed_ += std::fabs(work); };
   const Vec3 gravity = gravity_on_soil(config);  // of other water the rows tell the energy
   for (std::size_t b = 0; b < row.bodies.size(); ++b) {
-    for (int d = 0; d < config.dim; ++d)
+    for (int d = 0; d < config.dim && config.gravity_table; ++d)
+      add(most_work(row.bodies[b], last_.bodies[b], row.time - last_.time, gravity[d], d));
+    for (int d = 0; d < config.dim && !config.gravity_table; ++d)
       add(row.bodies[b].mass * gravity[d] * (row.bodies[b].centre[d] - last_.bodies[b].centre[d]));
     add(last_.bodies[b].water_energy - row.bodies[b].water_energy);
   }

@@ -34,19 +34,31 @@ PetscErrorCode Simulation::run() {
   PetscCall(b.start());
   if (b.outcome == Outcome::bad_input) PetscFunctionReturn(PETSC_SUCCESS);
   if (b.on_first_step) b.on_first_step();
-  while (b.outcome == Outcome::finished && b.step < b.schedule.last_step()) {
-    PetscCall(b.follow_stiffness());
-    if (b.outcome != Outcome::finished) break;
-    PetscCall(b.advance_to(std::min(b.schedule.next_stop(b.step), b.next_stiffness_check())));
-    if (b.outcome != Outcome::finished) break;
-    if (b.schedule.row_in_turn(b.step)) PetscCall(b.write_row());
-    if (b.outcome != Outcome::finished) break;
-    if (b.schedule.frame_in_turn(b.step)) PetscCall(b.write_frame());
-    if (b.schedule.checkpoint_due(b.step)) PetscCall(b.write_checkpoint());
-    if (!b.stopped_by.empty() && b.step < b.schedule.last_step()) PetscCall(b.stop());
+  for (;;) {
+    PetscCall(b.run_stage());
+    if (b.outcome == Outcome::finished) PetscCall(b.end_stage());
+    if (b.outcome != Outcome::finished || !b.has_next_stage()) break;
+    PetscCall(b.next_stage());
   }
-  if (b.outcome == Outcome::finished) PetscCall(b.write_last_output());
   PetscCall(b.finish());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Steps to the end of the stage, or of a run without stages.
+PetscErrorCode Simulation::Body::run_stage() {
+  PetscFunctionBeginUser;
+  while (outcome == Outcome::finished && !stage_over && step < schedule.last_step()) {
+    PetscCall(follow_stiffness());
+    if (outcome != Outcome::finished) break;
+    PetscCall(advance_to(std::min(schedule.next_stop(step), next_stiffness_check())));
+    if (outcome != Outcome::finished) break;
+    if (schedule.row_in_turn(step)) PetscCall(write_row());
+    if (outcome != Outcome::finished) break;
+    if (schedule.frame_in_turn(step)) PetscCall(write_frame());
+    if (schedule.checkpoint_due(step)) PetscCall(write_checkpoint());
+    if (!stopped_by.empty() && ((step < schedule.last_step() && !stage_over) || has_next_stage()))
+      PetscCall(stop());
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -74,7 +86,7 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     else
       steps = 1;
     Batch batch;
-    PetscCall(stepper->advance(steps, schedule.time_of(step), step_dt, &batch));
+    PetscCall(stepper->advance(schedule.range(step, steps), &batch));
     ++looks;
     const double took = batch.seconds;
     stepping += took;
@@ -89,8 +101,8 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     if (batch.rebuild || (config.p2g.rebuild_interval && since_rebuild >= *config.p2g.rebuild_interval))
       PetscCall(rebuild(batch));
     if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(log.progress({step, schedule.time_of(step), 0, schedule.time_of(schedule.last_step()), stepping,
-                            double(step) * stepper->particles()}));
+    PetscCall(log.progress(
+        {step, schedule.time_of(step), 0, end_of_run(), stepping, double(step) * stepper->particles()}));
     bool stop = false;
     PetscCall(look_for_stop(&stop));
     if (stop) PetscFunctionReturn(PETSC_SUCCESS);
@@ -134,6 +146,11 @@ PetscErrorCode Simulation::Body::write_row() {
   row.wall_time = wall();
   PetscCall(stepper->measure(row.time - last_row_time, &row));
   last_row_time = row.time;
+  row.stage = config.stage.number;
+  if (config.balance) PetscCall(stepper->unbalanced_ratio(row.time, &row.unbalanced_ratio));
+  last_unbalanced = row.unbalanced_ratio;
+  for (std::size_t k = 0; k < rigid_zero.size(); ++k) row.rigids[k / 3].displacement[k % 3] -= rigid_zero[k];
+  look_for_end(row);
   PetscCall(watch(row));
   PetscCall(agree(comm, rank_of(comm) == 0 ? history.write(row) : PETSC_SUCCESS));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -163,9 +180,10 @@ PetscErrorCode Simulation::Body::write_frame() {
   if (!config.output.frames) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(frames.wait());  // the memory for one frame is enough
   Snapshot snapshot;
-  PetscCall(stepper->snapshot(&snapshot));
+  snapshot.stage = config.stage.name;
   snapshot.step = step;
   snapshot.time = schedule.time_of(step);
+  PetscCall(stepper->snapshot(&snapshot));
   PetscCall(frames.write(std::move(snapshot)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -193,11 +211,11 @@ PetscErrorCode Simulation::Body::write_partition() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What this part of the run came to. Where it did no step the stepper may not be set up, and is not asked.
-/// Collective.
+/// What this part of the run, or of its stage, came to. Where it did no step the stepper may not be set up,
+/// and is not asked. Collective.
 Performance Simulation::Body::performance() const {
-  Performance p{.stepping = stepping - began.stepping,
-                .steps = step - began.step,
+  Performance p{.stepping = stepping - part.stepping,
+                .steps = step - part.step,
                 .particles = stepper->particles(),
                 .looks = looks,
                 .rebuilds = rebuilds,
@@ -216,11 +234,11 @@ Performance Simulation::Body::performance() const {
                 .ranks = ranks(),
                 .threads = thread_count(config.backend),
                 .cores = usable_cores(),
-                .first_step = began.step,
+                .first_step = part.step,
                 .time = schedule.time_of(step)};
   if (p.steps == 0) return p;
   p.functions = stepper->times();
-  p.wall = wall() - began.wall;
+  p.wall = wall() - part.wall;
   p.memory = double(stepper->memory());
   p.between_ranks = stepper->rank_figures();
   return p;

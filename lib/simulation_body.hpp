@@ -72,6 +72,27 @@ struct Simulation::Body {
   bool watching = false;  // energy has begun
   Notices notices;
 
+  int stage = 0;                                // index into report.stages
+  Schedule::Begin stage_begin;                  // where it began
+  bool stage_over = false;                      // the event that ends it has come
+  double last_unbalanced = 0;                   // -, of the last row
+  RunState part;                                // where the present stepper began
+  std::vector<double> rigid_zero, rigid_begin;  // m, 3 a rigid: displacements that the history counts from,
+                                                // and those at which the stage began; empty: 0
+
+  // simulation_stages.cpp
+  void take_stage(int number);
+  PetscErrorCode check_stages();
+  PetscErrorCode take_restart_stage();
+  Config history_config() const;
+  void look_for_end(const HistoryRow& row);
+  std::string missed_end() const;
+  bool has_next_stage() const;
+  double end_of_run() const;
+  PetscErrorCode end_stage();
+  PetscErrorCode next_stage();
+  PetscErrorCode set_up_stage(SavedState&& state);
+
   // simulation_files.cpp
   void check_files();
   PetscErrorCode lock_folder();
@@ -87,11 +108,13 @@ struct Simulation::Body {
   PetscErrorCode load_shape(const std::string& name, const Shape& shape, const std::vector<Shape>& cut_out,
                             LatticePart part, BodyParticles* particles);
   PetscErrorCode take_field(const BodyConfig& body, BodyParticles* particles);
+  PetscErrorCode take_level_ground(const BodyConfig& body, Model* model, BodyParticles* particles);
   PetscErrorCode load_file(const BodyConfig& body, BodyParticles* particles, bool* from_run);
   PetscErrorCode choose_strategy(const Model& model, const std::string& device);
   PetscErrorCode log_shape(const std::string& name, const Lattice& lattice, bool in_parts);
   PetscErrorCode log_cuts(const std::string& name, const Shape& shape);
   PetscErrorCode fail(const std::string& what);
+  PetscErrorCode run_stage();
   PetscErrorCode advance_to(long target);
   PetscErrorCode rebuild(const Batch& batch);
   PetscErrorCode write_row();

@@ -55,8 +55,9 @@ PetscErrorCode Simulation::Body::read_restart() {
     PetscCall(read_checkpoint(comm, restart_file, *restart, &fault));
   }
   if (fault.empty()) {
-    const Comparison found = compare_options(*restart, options_to_keep(report.options, config), restart_file,
-                                             config.output.restart_change);
+    PetscCall(take_restart_stage());
+    const Comparison found = compare_options(*restart, options_to_keep(report.options, config), config,
+                                             restart_file, config.output.restart_change);
     report.errors = found.lines;
     if (!report.errors.empty()) PetscFunctionReturn(PETSC_SUCCESS);
     option_changes = found.changes;
@@ -137,7 +138,7 @@ void Simulation::Body::find_history() {
 PetscErrorCode Simulation::Body::resume() {
   PetscFunctionBeginUser;
   const std::string changes = changed_machine(*restart, description());
-  began = restart->run;
+  began = part = restart->run;
   step = began.step;
   last_row_time = began.last_row_time;
   stepping = began.stepping;
@@ -152,7 +153,8 @@ PetscErrorCode Simulation::Body::resume() {
   PetscCall(unfit);
   if (rebuilt) since_rebuild = 0;
   for (const std::string& line : passed_over) PetscCall(log.line(line));
-  PetscCall(log.print("goes on from %s: step %ld, time %.9g s", restart_file.c_str(), step, began.time));
+  PetscCall(log.print("goes on from %s: step %ld, time %.9g s%s", restart_file.c_str(), step, began.time,
+                      report.stages.empty() ? "" : (", in stage " + config.stage.name).c_str()));
   if (restart->version != k_version)
     PetscCall(log.print("it was written by version %s", restart->version.c_str()));
   for (const OptionChange& c : option_changes)
@@ -167,7 +169,7 @@ PetscErrorCode Simulation::Body::resume() {
   if (removed > 0) PetscCall(log.print("%d files that were not finished were removed", removed));
   if (history_rows.empty())
     PetscCall(log.line("there is no history.csv to go on with: a new one begins here"));
-  PetscCall(agree(comm, first ? history.open(config, history_rows) : PETSC_SUCCESS));
+  PetscCall(agree(comm, first ? history.open(history_config(), history_rows) : PETSC_SUCCESS));
   PetscCall(frames.resume(config, restart->frames, comm));
   restart.reset();
   history_rows.clear();
@@ -212,7 +214,13 @@ PetscErrorCode Simulation::Body::write_checkpoint() {
            .since_rebuild = since_rebuild,
            .rebuilds = rebuilds,
            .longest = longest,
-           .shortest = shortest};
+           .shortest = shortest,
+           .stage = stage,
+           .stage_step = stage_begin.step,
+           .stage_time = stage_begin.time,
+           .stage_over = stage_over ? 1 : 0,
+           .rigid_zero = rigid_zero,
+           .rigid_begin = rigid_begin};
   PetscCall(frames.settle());
   const bool first = rank_of(comm) == 0;
   PetscCall(agree(comm, first ? history.settle(&c.history) : PETSC_SUCCESS));

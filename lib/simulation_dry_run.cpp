@@ -45,7 +45,7 @@ PetscErrorCode Simulation::Body::time_steps(double* seconds) {
   double took = 0;  // of all ranks, so that they end alike
   for (long steps = k_first; done < std::min(k_most, schedule.last_whole_step()); steps *= 2) {
     Batch batch;
-    PetscCall(stepper->advance(std::min(steps, k_most - done), done * dt, dt, &batch));
+    PetscCall(stepper->advance(schedule.range(done, std::min(steps, k_most - done)), &batch));
     done += batch.steps;
     took = done == k_first ? 0 : took + batch.seconds;  // the very first load kernels
     if (!batch.failure.what.empty()) {

@@ -8,6 +8,7 @@
 
 #include "common/collectives.hpp"
 #include "common/text.hpp"
+#include "common/time_table.hpp"
 #include "input/shapes.hpp"
 #include "output/own_files.hpp"
 #include "simulation_body.hpp"
@@ -30,6 +31,7 @@ std::vector<Input> inputs_of(const Config& config, const InputReport& report) {
     if (!body.field.empty()) inputs.emplace_back("-" + body.name + "_field", body.field);
   }
   for (const RigidConfig& rigid : config.rigids) add_files(rigid.name, rigid.shape, inputs);
+  for (const auto& [option, file] : table_files(config)) inputs.emplace_back(option, file);
   if (!config.element.file.empty()) inputs.emplace_back("-element_path", config.element.file);
   return inputs;
 }

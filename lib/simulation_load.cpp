@@ -7,6 +7,7 @@
 #include "common/collectives.hpp"
 #include "input/field_file.hpp"
 #include "input/groups.hpp"
+#include "input/level_ground.hpp"
 #include "mesh/background.hpp"
 #include "parallel/distribute.hpp"
 #include "simulation_body.hpp"
@@ -43,6 +44,25 @@ PetscErrorCode Simulation::Body::take_field(const BodyConfig& body, BodyParticle
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// The stress of level ground, of each particle by its height.
+PetscErrorCode Simulation::Body::take_level_ground(const BodyConfig& body, Model* model,
+                                                   BodyParticles* particles) {
+  PetscFunctionBeginUser;
+  const LevelGround ground(config);
+  const int components = config.dim == 2 ? 4 : 6;
+  for (std::size_t p = 0; p < particles->position.size(); p += config.dim) {
+    const double height = particles->position[p + config.dim - 1];
+    const Sym6 stress = ground.stress(body, height, particles->spacing);
+    PetscCallCXX(
+        particles->stress.insert(particles->stress.end(), stress.begin(), stress.begin() + components));
+  }
+  model->from_run = true;  // a stress that F-bar would bring together in a cell is in equilibrium as it is
+  PetscCall(log.print("body %s: stress of level ground, %.6g Pa vertical at its lowest particles, K0 %.4g",
+                      body.name.c_str(), body.stress[config.dim - 1],
+                      k0_of(config.materials[body.material])));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /// Mesh and particles.
 PetscErrorCode Simulation::Body::load(Model* model) {
   PetscFunctionBeginUser;
@@ -57,6 +77,7 @@ PetscErrorCode Simulation::Body::load(Model* model) {
                                   {rank_of(comm), ranks()}, &particles));
     if (!listed) weigh(config.materials[body.material].density, particles);
     if (!body.field.empty()) PetscCall(take_field(body, &particles));
+    if (body.k0) PetscCall(take_level_ground(body, model, &particles));
   }
   for (const auto& rigid : config.rigids)
     PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, {}, &model->rigids.emplace_back()));

@@ -38,11 +38,14 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
     PetscCall(print_help(comm, b.report));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (!b.is_element()) PetscCall(b.check_mesh_run());
+  if (!b.report.stages.empty() && b.report.errors.empty())
+    PetscCall(b.check_stages());
+  else if (!b.is_element())
+    PetscCall(b.check_mesh_run());
   if (b.report.errors.empty() && rank_of(comm) == 0) PetscCallCXX(b.check_files());
   PetscCall(b.share_errors());
   if (!b.is_element()) PetscCall(b.check_places());
-  if (b.report.errors.empty())
+  if (b.report.errors.empty() && b.report.stages.empty())
     for (const std::string& warning : warnings_of(b.config, b.ranks())) b.report.warnings.push_back(warning);
   if (b.report.errors.empty() && !b.config.output.restart.empty()) {
     if (!b.config.dry_run) PetscCall(b.lock_folder());
@@ -180,9 +183,11 @@ PetscErrorCode Simulation::Body::start() {
   if (removed > 0)
     PetscCall(log.print("%d files of an earlier run were removed from %s", removed,
                         config.output.directory.c_str()));
-  PetscCall(log.line("options in force\n" + format_options(report.options)));
-  PetscCall(agree(
-      comm, first ? write_options_json(config.output.directory, k_version, report.options) : PETSC_SUCCESS));
+  std::vector<EffectiveOption> options = report.options;
+  options.insert(options.end(), report.stage_options.begin(), report.stage_options.end());
+  PetscCall(log.line("options in force\n" + format_options(options)));
+  PetscCall(
+      agree(comm, first ? write_options_json(config.output.directory, k_version, options) : PETSC_SUCCESS));
 
   const Backend backend = config.backend;
   const std::string processor = backend == Backend::cuda ? "" : processor_name();
@@ -227,7 +232,7 @@ PetscErrorCode Simulation::Body::start() {
     wall_start = seconds_now();
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(agree(comm, first ? history.open(config) : PETSC_SUCCESS));
+  PetscCall(agree(comm, first ? history.open(history_config()) : PETSC_SUCCESS));
   frames.open(config.output.directory, config.precision, {config.output.fields, config.output.compression},
               comm);
   wall_start = seconds_now();

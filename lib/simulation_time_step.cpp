@@ -40,7 +40,7 @@ PetscErrorCode Simulation::Body::choose_time_step() {
                   config.time.end, k_most_steps * dt, dt);
     report.errors.push_back(line);
   } else {
-    schedule = Schedule(config.time, config.output, dt);
+    schedule = Schedule(config.time, config.output, dt, stage_begin);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,6 +6,7 @@
 
 #include "common/f_bar.hpp"
 #include "common/text.hpp"
+#include "common/time_table.hpp"
 #include "input/groups.hpp"
 #include "input/shapes.hpp"
 #include "step/stepper.hpp"
@@ -29,7 +30,8 @@ void warn_of_gravity(const Config& config, Lines& lines) {
   if (!(config.gravity[up] > 0)) return;
   Vec3 down = config.gravity;
   down[up] = -down[up];
-  lines.push_back("warning: -gravity: given \"" + text_of(config.gravity, config.dim) +
+  const char* option = config.gravity_table ? "-gravity_table" : "-gravity";
+  lines.push_back(std::string("warning: ") + option + ": given \"" + text_of(config.gravity, config.dim) +
                   "\" points upward; the vertical axis is " + "xyz"[up] + ", so that weight is \"" +
                   text_of(down, config.dim) + "\"");
 }
@@ -123,6 +125,13 @@ void warn_of_thin(const Config& config, const RigidConfig& rigid, const Bounds& 
                   rigid.name.c_str(), across, cells, k_least));
 }
 
+/// The option that tells how a rigid moves, without its name.
+const char* option_of_motion(const RigidConfig& rigid) {
+  return rigid.displacement_table ? "displacement_table"
+         : rigid.velocity_table   ? "velocity_table"
+                                  : "velocity";
+}
+
 void warn_of_speed(const Config& config, const RigidConfig& rigid, Lines& lines) {
   constexpr double k_most = 0.01;
   if (rigid.motion != Motion::prescribed) return;
@@ -131,14 +140,15 @@ void warn_of_speed(const Config& config, const RigidConfig& rigid, Lines& lines)
   const double share = length_of(rigid.velocity) / slowest;
   if (share > k_most)
     lines.push_back(formatted(
-        "warning: -%s_velocity: %.4g m/s is %.2g %% of the speed of waves in the soil, %.4g m/s; above %g %% "
+        "warning: -%s_%s: %.4g m/s is %.2g %% of the speed of waves in the soil, %.4g m/s; above %g %% "
         "inertia adds to the resistance",
-        rigid.name.c_str(), length_of(rigid.velocity), 100 * share, slowest, 100 * k_most));
+        rigid.name.c_str(), option_of_motion(rigid), length_of(rigid.velocity), 100 * share, slowest,
+        100 * k_most));
 }
 
 /// Whether soil is where the rigid goes, along direction d, by the end of the run.
 bool penetrates(const Config& config, const RigidConfig& rigid, Bounds bounds, int d) {
-  const double way = rigid.velocity[d] * config.time.end, slack = 1e-6 * config.mesh.spacing;
+  const double way = travel(rigid, d, config.time.end), slack = 1e-6 * config.mesh.spacing;
   (way > 0 ? bounds.upper : bounds.lower)[d] += way;
   return std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& body) {
     const Bounds soil = bounds_of(body.shape, config.mesh, config.dim);

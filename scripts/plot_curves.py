@@ -40,6 +40,14 @@ def mark_time(axes, run, time, values):
         axes.axvline(np.interp(time, run.history["time"], values), color="0.6", lw=1, zorder=0, label=f"t = {time:.4g} s")
 
 
+def mark_stages(axes, run):
+    """Where a stage ends and the next one begins, on an axis of time."""
+    for name, time in run.stage_ends():
+        axes.axvline(time, color="0.6", lw=0.8, ls=":", zorder=0)
+        axes.annotate(f"end of {name}", (time, 1), xycoords=("data", "axes fraction"), rotation=90, va="top", ha="right",
+                      fontsize=8, color="0.4")
+
+
 # ---------------------------------------------------------------------------------------------- forces
 
 
@@ -118,6 +126,8 @@ def draw_force(axes, run, name, others):
         along = np.linalg.norm(each.columns(f"{name}_"), axis=1) if moves else each.history["time"]
         for component, colour, axis in zip(each.columns(f"{name}_force_").T / 1e3, COLOURS, "xyz"):
             axes.plot(along, component, style, color=colour, lw=1.2, label=f"{axis}, {run_label(each, others)}")
+    if not moves:
+        mark_stages(axes, run)
     axes.set(xlabel="displacement (m)" if moves else "time (s)", ylabel=f"force of the soil ({force_unit(run)})",
              title=name if moves else f"{name} (fixed)")
 
@@ -174,6 +184,7 @@ def draw_runout(run, others, time=None):
                           label=f"{label}: 99.9th percentile")
     draw_reference_runout(axes, run)
     mark_time(axes, run, time, run.history["time"])
+    mark_stages(axes, run)
     axes.set(xlabel="time (s)", ylabel="run-out (m)", title="run-out of the toe since the start", ylim=(0, None))
     axes.set_xlim(left=0)
     axes.grid(alpha=0.25)

@@ -7,7 +7,7 @@ import matplotlib
 import numpy as np
 
 from plot_curves import COLOURS, save
-from results import extent, read_frame
+from results import extent, read_frame, stage_of
 from runout import grid_velocity, profile, slides, time_of_frame
 
 matplotlib.use("Agg")
@@ -140,7 +140,8 @@ class Scene:
         self.time, groups = read_frame(frame)
         self.groups = {name: fields for name, fields in groups.items() if "position" in fields}
         self.bodies = [name for name, fields in self.groups.items() if len(fields["position"]) and self.is_body(name, fields)]
-        self.plane, self.where = [0, 1], f"t = {self.time:.4g} s"
+        stage = stage_of(frame)
+        self.plane, self.where = [0, 1], f"t = {self.time:.4g} s" + (f", stage {stage}" if stage else "")
         if self.bodies and self.dim == 3:
             self.cut_at(cut or Slice())
         elif cut is not None and self.dim == 2:

@@ -46,7 +46,15 @@ class Run:
         return min(self.frames, key=lambda path: abs(time_of(path) - time), default=None)
 
     def moving_rigids(self):
-        return [name for name in self.words("rigid_bodies") if self.text(f"{name}_motion", "fixed") != "fixed"]
+        stages = [f"{stage}_" for stage in self.words("stages")]
+        return [name for name in self.words("rigid_bodies")
+                if any(self.text(f"{stage}{name}_motion", "fixed") != "fixed" for stage in ["", *stages])]
+
+    def stage_ends(self):
+        """[(name, time)] of the stages but the last that the history holds: s, where the next one begins."""
+        numbers, names = self.history.get("stage", np.array([])), self.words("stages")
+        ends = np.flatnonzero(np.diff(numbers) > 0)
+        return [(names[int(numbers[k]) - 1], self.history["time"][k]) for k in ends]
 
 
 def read_options(folder):
@@ -70,6 +78,13 @@ def read_history(path):
         print(f"plot: {path} has no rows: no curve", file=sys.stderr)
         return {}
     return dict(zip(header, np.array(rows, dtype=float).T))
+
+
+def stage_of(path):
+    """Name of the stage in which a frame was written; empty where the run has none."""
+    with h5py.File(path) as file:
+        name = file.attrs.get("stage", "")
+        return name.decode() if isinstance(name, bytes) else str(name)
 
 
 def time_of(path):

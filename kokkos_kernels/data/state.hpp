@@ -9,6 +9,7 @@
 #include "data/split_patches.hpp"
 #include "data/step_plan.hpp"
 #include "data/strays.hpp"
+#include "data/timed_loads.hpp"
 
 namespace mpm {
 
@@ -63,21 +64,22 @@ struct State {
 
   double time = 0;                // s, before the steps that Control::steps counts
   double spacing = 0;             // m, edge of a cell, whatever T is
-  Vector<double, Dim> gravity{};  // m/s2
-  Water<Dim> water{};             // hydrostatic, in which the soil is submerged
+  Vector<double, Dim> gravity{};  // m/s2; where it follows a table, what measurements take
+  TimedLoads<Space, T, Dim> timed;
+  Water<Dim> water{};                     // hydrostatic, in which the soil is submerged
   Kokkos::View<double*, Memory> density;  // kg/m3, that the soil of each body begins with
-  double damping = 0;             // -
-  double flip_fraction = 1;       // -, what is not FLIP is PIC, or XPIC
-  int xpic_order = 0;             // m of XPIC(m), 0 without it
-  bool affine = false;            // APIC: Soil::affine is in use; flip_fraction is then 0
-  double f_bar_fraction = 0;      // -, the largest of all materials; each takes its share of it
-  bool f_bar_by_material = false; // bodies differ in material
-  bool keeps_stress = false;      // sorting brings no pressures together: at a start from another run
-  double rim_scale = 0;           // cells, of domains that stretch: by how much they slow the time step
-  double mass_cut = 0;            // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
-  int rebuild_late = 0;           // steps from the sign that a rebuild is due to it; 0: the host counts them
-  StepPlan plan;                  // of the steps until the next rebuild
-  Summed summed;                  // what the step before has summed already
+  double damping = 0;                     // -
+  double flip_fraction = 1;               // -, what is not FLIP is PIC, or XPIC
+  int xpic_order = 0;                     // m of XPIC(m), 0 without it
+  bool affine = false;                    // APIC: Soil::affine is in use; flip_fraction is then 0
+  double f_bar_fraction = 0;              // -, the largest of all materials; each takes its share of it
+  bool f_bar_by_material = false;         // bodies differ in material
+  bool keeps_stress = false;              // sorting brings no pressures together: at a start from another run
+  double rim_scale = 0;  // cells, of domains that stretch: by how much they slow the time step
+  double mass_cut = 0;   // kg, nodes below it are at rest (PHYSICS: relative to a particle's mass)
+  int rebuild_late = 0;  // steps from the sign that a rebuild is due to it; 0: the host counts them
+  StepPlan plan;         // of the steps until the next rebuild
+  Summed summed;         // what the step before has summed already
   bool forces_summed =
       false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them
   bool rigid_moves = false;     // some rigid is not fixed

@@ -86,6 +86,18 @@ void move_rigids(State<Space, T, Dim>& s, double dt, const Space& stream) {
 }
 
 template <class Space, class T, int Dim>
+void begin_loads(State<Space, T, Dim>& s, const LoadClock& clock) {
+  const LoadsOfStep<T, Dim> timed = s.timed.of_step();
+  if (timed.count == 0) return;
+  Rigid<Dim>* const rigids = s.rigids.data();
+  Kokkos::parallel_for(
+      "mpm::begin_loads", Kokkos::RangePolicy<Space>(s.space, 0, timed.count), KOKKOS_LAMBDA(int n) {
+        if (n == 0) *timed.clock = clock;
+        timed.set(n, clock, 0, rigids);
+      });
+}
+
+template <class Space, class T, int Dim>
 Control read_control(const State<Space, T, Dim>& s) {
   Control c;
   Kokkos::View<Control, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(&c);
@@ -106,6 +118,7 @@ void restart_count(State<Space, T, Dim>& s) {
   template void sum_forces(State<Space, T, Dim>&, const Space&);          \
   template void move_rigids(State<Space, T, Dim>&, double, const Space&); \
   template void move_rigid_points(State<Space, T, Dim>&, const Space&);   \
+  template void begin_loads(State<Space, T, Dim>&, const LoadClock&);     \
   template Control read_control(const State<Space, T, Dim>&);             \
   template void restart_count(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)

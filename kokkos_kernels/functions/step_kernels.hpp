@@ -82,6 +82,11 @@ void move_rigids(State<Space, T, Dim>& s, double dt) {
   move_rigids(s, dt, s.space);
 }
 
+/// Sets what follows tables in time for the next step, which is the first of the clock. move_rigids sets it
+/// for the steps after.
+template <class Space, class T, int Dim>
+void begin_loads(State<Space, T, Dim>& s, const LoadClock& clock);
+
 /// Coordinates of the rigids' points, where their mass gives a normal, from where the rigids are.
 template <class Space, class T, int Dim>
 void move_rigid_points(State<Space, T, Dim>& s, const Space& stream);

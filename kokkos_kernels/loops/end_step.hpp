@@ -1,6 +1,6 @@
 #pragma once
-// The end of a step: the rigid bodies move, the step is counted, and what any point can have moved is added
-// to the bound. A team does it.
+// The end of a step: the rigid bodies move, loads that follow tables take their values of the next step, the
+// step is counted, and what any point can have moved is added to the bound. A team does it.
 
 #include "base/serial_team.hpp"
 #include "data/state.hpp"
@@ -75,6 +75,7 @@ struct EndStep {
   Movements<Space> movements;
   Kokkos::View<double*, Memory> sums, forces;  // N: of each rigid, and what the slots' nodes leave
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
+  LoadsOfStep<T, Dim> timed;
   double dt, spacing, margin;
   int count, slots, late;  // rigids, slots that leave forces
   bool summed;             // the forces are in `sums` already
@@ -85,6 +86,7 @@ struct EndStep {
         sums(s.rigid_force),
         forces(s.slot_forces),
         rigids(s.rigids),
+        timed(s.timed.of_step()),
         dt(step),
         spacing(s.spacing),
         margin(s.p2g.margin),
@@ -121,6 +123,7 @@ struct EndStep {
       rigid.keep_in(rigids(r));
     }
     team.team_barrier();
+    set_timed(team, before.steps + 1);
     int paused = 0;
     once(team, [&] {
       double furthest = 0;  // cells
@@ -162,6 +165,15 @@ struct EndStep {
   }
 
  private:
+  /// Sets what follows tables for the step after so many.
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION void set_timed(const Team& team, int steps) const {
+    if (timed.count == 0) return;
+    MPM_ROLLED
+    for (int n = team.team_rank(); n < timed.count; n += team.team_size())
+      timed.set(n, *timed.clock, steps, rigids.data());
+    team.team_barrier();
+  }
   template <class Team>
   KOKKOS_INLINE_FUNCTION static void keep(const Team& team, double of_warp, double* part) {
     if (team.team_rank() % k_warp == 0) part[team.team_rank() / k_warp] = of_warp;

@@ -40,6 +40,7 @@ struct UpdateNodes {
   Kokkos::View<double*, typename Space::memory_space> forces;
   Kokkos::View<std::uint64_t*, typename Space::memory_space> owned_nodes;
   Vector<T, Dim> g;
+  const Vector<T, Dim>* timed_g;  // of the present step, where gravity follows a table; else null
   T dt, inv_dt, damping, mass_cut;
   double spacing;
   bool has_boundary, has_friction, has_mass_normals, clears;
@@ -82,15 +83,19 @@ struct UpdateNodes {
   /// Mass [kg] below which a node is at rest: so little that 1 / m_i might overflow.
   KOKKOS_INLINE_FUNCTION T at_rest() const { return T(1e-12) * mass_cut; }
 
+  /// Gravity in this step [m/s2].
+  KOKKOS_INLINE_FUNCTION Vector<T, Dim> gravity() const { return timed_g == nullptr ? g : *timed_g; }
+
   /// Velocities of a node before and after the step, without walls and contact, by number or by lane. inv_m:
   /// 1 / its mass
   template <class R>
   KOKKOS_FORCEINLINE_FUNCTION void accelerate(const R (&soil)[S::size], R inv_m, Vector<R, Dim>& v_old,
                                               Vector<R, Dim>& v) const {
+    const Vector<T, Dim> g_now = gravity();
     const R inv_m_force = select(soil[S::mass] > mass_cut, inv_m, R(0));  // on less mass it is round-off
     for (int d = 0; d < Dim; ++d) {
-      v_old[d] = soil[S::momentum + d] * inv_m;       // Eq. (6)
-      R a = soil[S::force + d] * inv_m_force + g[d];  // Eq. (8)
+      v_old[d] = soil[S::momentum + d] * inv_m;           // Eq. (6)
+      R a = soil[S::force + d] * inv_m_force + g_now[d];  // Eq. (8)
       a -= damping * Kokkos::fabs(a) * select(v_old[d] > 0, R(1), select(v_old[d] < 0, R(-1), R(0)));
       v[d] = v_old[d] + a * dt;  // Eq. (9)
     }
@@ -198,8 +203,9 @@ struct UpdateNodes {
     const T limit = shear_limit(rigid, node.i);
     if (limit < Kokkos::Experimental::infinity<T>::value)
       interface.shear_speed = limit * area * dt * node.inv_m;
+    const Vector<T, Dim> g_now = gravity();
     T pressing = 0;
-    for (int d = 0; d < Dim; ++d) pressing += (node.soil[S::force + d] * node.inv_m + g[d]) * n[d];
+    for (int d = 0; d < Dim; ++d) pressing += (node.soil[S::force + d] * node.inv_m + g_now[d]) * n[d];
     interface.pressing = pressing * dt;
     interface.separates = rigid.separates;
     // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
@@ -295,6 +301,7 @@ UpdateNodes<Space, T, Dim> node_update_of(const State<Space, T, Dim>& s, double 
                                     .forces = s.slot_forces,
                                     .owned_nodes = s.owned_nodes,
                                     .g = {},
+                                    .timed_g = s.timed.of_step().gravity,
                                     .dt = T(dt),
                                     .inv_dt = T(1 / dt),
                                     .damping = T(s.damping),

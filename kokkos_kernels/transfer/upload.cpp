@@ -326,7 +326,8 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.rigid_moves = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.shear_fraction = s.has_friction =
       false;
   for (const RigidInput& rigid : rigids) {
-    s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.velocity != std::array<double, 3>{};
+    s.rigid_moves =
+        s.rigid_moves || rigid.dynamic || rigid.timed || rigid.velocity != std::array<double, 3>{};
     s.rigid_dynamic = s.rigid_dynamic || rigid.dynamic;
     s.has_friction = s.has_friction || rigid.friction > 0;
     s.mass_normals = s.mass_normals || !rigid.surface_normal;

@@ -27,25 +27,25 @@ struct MaterialInput {
 
 /// Particles of one deformable body. Positions are from the mesh's lower corner, Dim components each.
 struct BodyInput {
-  std::vector<double> position;            // m [Dim N]
-  std::vector<double> stress;              // Pa, effective [sym_size N], or empty for none
+  std::vector<double> position;              // m [Dim N]
+  std::vector<double> stress;                // Pa, effective [sym_size N], or empty for none
   std::vector<double> excess_pore_pressure;  // Pa [N], or empty for none
-  std::vector<double> particle_velocity;   // m/s [Dim N], or empty where `velocity` holds for all
-  std::vector<std::vector<double>> state;  // of each state variable of the law [N], or empty for zero
-  std::vector<double> volume;              // m3 [N], or empty where particle_volume holds for all
-  std::vector<double> mass;                // kg [N], or empty where particle_mass holds for all
-  std::vector<double> velocity_gradient;   // m/s a cell [Dim^2 N], or empty where the velocities tell it
-  std::vector<double> domain;              // cells2, moments of domains that stretch [Dim (Dim + 1) / 2 N], or
-                                           // empty where they are squares of the half length
-  std::vector<int> id;                     // [N], or empty where they are counted from 0
-  double particle_volume = 0;              // m3
-  double least_volume = 0;                 // m3, of all ranks, as they were created; 0: that above
-  double most_volume = 0;                  // m3, likewise
-  double particle_mass = 0;                // kg; 0: density times particle_volume
-  double half_length = 0.25;               // cells
-  double density = 0;                      // kg/m3
-  double least_mass = 0;                   // kg, where they differ in mass, of all ranks; else 0
-  std::array<double, 3> velocity{};        // m/s
+  std::vector<double> particle_velocity;     // m/s [Dim N], or empty where `velocity` holds for all
+  std::vector<std::vector<double>> state;    // of each state variable of the law [N], or empty for zero
+  std::vector<double> volume;                // m3 [N], or empty where particle_volume holds for all
+  std::vector<double> mass;                  // kg [N], or empty where particle_mass holds for all
+  std::vector<double> velocity_gradient;     // m/s a cell [Dim^2 N], or empty where the velocities tell it
+  std::vector<double> domain;        // cells2, moments of domains that stretch [Dim (Dim + 1) / 2 N], or
+                                     // empty where they are squares of the half length
+  std::vector<int> id;               // [N], or empty where they are counted from 0
+  double particle_volume = 0;        // m3
+  double least_volume = 0;           // m3, of all ranks, as they were created; 0: that above
+  double most_volume = 0;            // m3, likewise
+  double particle_mass = 0;          // kg; 0: density times particle_volume
+  double half_length = 0.25;         // cells
+  double density = 0;                // kg/m3
+  double least_mass = 0;             // kg, where they differ in mass, of all ranks; else 0
+  std::array<double, 3> velocity{};  // m/s
   int material = 0;
   int velocity_field = 0;  // bodies of one field stick to one another, those of two do not feel each other
 };
@@ -71,6 +71,7 @@ struct RigidInput {
   std::array<double, 3> velocity{};  // m/s
   std::array<double, 3> force{};     // N, external and weight
   bool dynamic = false;
+  bool timed = false;          // its velocity follows a table
   std::array<bool, 3> held{};  // a plane of symmetry cuts it, across which it does not move
   double shear_limit = 0;      // Pa, infinite where only the friction limits
   double shear_fraction = -1;  // -, of the soil's strength instead of the limit; negative: none

@@ -27,6 +27,9 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
   archive.value("longest", c.run.longest), archive.value("shortest", c.run.shortest);
   archive.value("history_bytes", c.history.bytes), archive.value("history_crc", c.history.crc);
   archive.value("frames", c.frames);
+  archive.value("stage", c.run.stage), archive.value("stage_step", c.run.stage_step);
+  archive.value("stage_time", c.run.stage_time), archive.value("stage_over", c.run.stage_over);
+  archive.list("rigid_zero", c.run.rigid_zero), archive.list("rigid_begin", c.run.rigid_begin);
   archive.value("bound", c.state.bound), archive.value("increment", c.state.increment);
   archive.value("margin", c.state.margin), archive.value("due_in", c.state.due_in);
   archive.text("options", options);

@@ -5,39 +5,15 @@
 #include <iterator>
 #include <map>
 
+#include "checkpoint/change_rules.hpp"
 #include "common/checksum.hpp"
 #include "common/material_table.hpp"
 #include "common/text.hpp"
+#include "common/time_table.hpp"
 #include "input/shapes.hpp"
 
 namespace mpm {
 namespace {
-
-/// Options that say where, how long and with what output a run goes on, not what it computes.
-bool may_change(const std::string& name) {
-  constexpr const char* names[] = {"-backend",
-                                   "-precision",
-                                   "-device_memory_limit",
-                                   "-p2g",
-                                   "-rebuild_margin",
-                                   "-p2g_mosaic_cells",
-                                   "-p2g_rebuild_interval",
-                                   "-partition",
-                                   "-rebalance_threshold",
-                                   "-halo_path",
-                                   "-halo_overlap",
-                                   "-time_end",
-                                   "-time_max_steps",
-                                   "-history_interval",
-                                   "-checkpoint_interval",
-                                   "-restart",
-                                   "-restart_change",
-                                   "-wall_time_limit",
-                                   "-progress",
-                                   "-dry_run"};
-  return name.starts_with("-output_") ||
-         std::find(std::begin(names), std::end(names), name) != std::end(names);
-}
 
 /// The same text, or lists of the same numbers: 0.1 is .1.
 bool same_value(const std::string& a, const std::string& b) {
@@ -95,19 +71,8 @@ std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>&
   for (const RigidConfig& rigid : config.rigids)
     for (const auto& [key, path] : files_of(rigid.shape))
       keep_contents("-" + rigid.name + key, path, "", kept);
+  for (const auto& [option, path] : table_files(config)) keep_contents(option, path, "", kept);
   return kept;
-}
-
-bool is_load(const std::string& name, const Config& config) {
-  const std::string key = lower_case(name);
-  if (key == "gravity" || key == "damping") return true;
-  for (int d = 0; d < config.dim; ++d)
-    for (const char* side : {"min", "max"})
-      if (key == std::string("mesh_") + "xyz"[d] + side) return true;
-  for (const RigidConfig& rigid : config.rigids)
-    for (const char* of_rigid : {"_motion", "_velocity", "_force", "_density"})
-      if (key == lower_case(rigid.name) + of_rigid) return true;
-  return false;
 }
 
 /// Whether the default of an option follows other options, whose own changes are told.
@@ -117,11 +82,15 @@ bool follows_others(const std::string& name) {
 }
 
 Comparison compare_options(const Checkpoint& checkpoint, const std::vector<EffectiveOption>& now,
-                           const std::string& file, const std::vector<std::string>& allowed) {
+                           const Config& config, const std::string& file,
+                           const std::vector<std::string>& allowed) {
   std::map<std::string, const EffectiveOption*> then;
   for (const EffectiveOption& option : checkpoint.options) then[option.name] = &option;
   Comparison found;
   const std::string why = ", which holds in the run of " + file;
+  const auto may_change = [&](const std::string& name) {
+    return change_rule(name.substr(1), config).restart;
+  };
   const auto is_allowed = [&](const std::string& name) {
     const auto same = [&](const std::string& word) { return "-" + lower_case(word) == lower_case(name); };
     return std::any_of(allowed.begin(), allowed.end(), same);
@@ -150,11 +119,29 @@ Comparison compare_options(const Checkpoint& checkpoint, const std::vector<Effec
   return found;
 }
 
+std::vector<OptionChange> changes_between(const std::vector<EffectiveOption>& before,
+                                          const std::vector<EffectiveOption>& now) {
+  std::map<std::string, std::string> then;
+  for (const EffectiveOption& option : before) then[option.name] = option.value;
+  std::vector<OptionChange> changes;
+  for (const EffectiveOption& option : now) {
+    const auto place = then.find(option.name);
+    const std::string former = place == then.end() ? "none" : place->second;
+    if (!same_value(former, option.value)) changes.push_back({option.name, former, option.value});
+    if (place != then.end()) then.erase(place);
+  }
+  for (const auto& [name, value] : then)
+    if (value != "none") changes.push_back({name, value, "none"});
+  return changes;
+}
+
 void apply_changes(const std::vector<OptionChange>& changes, const Config& config, SavedState& state) {
   for (std::size_t r = 0; r < std::min(config.rigids.size(), state.rigids.size()); ++r) {
     const RigidConfig& rigid = config.rigids[r];
     const bool changed = std::any_of(changes.begin(), changes.end(), [&](const OptionChange& change) {
-      return change.name == "-" + rigid.name + "_motion" || change.name == "-" + rigid.name + "_velocity";
+      for (const char* key : {"_motion", "_velocity", "_velocity_table", "_displacement_table"})
+        if (lower_case(change.name) == "-" + lower_case(rigid.name) + key) return true;
+      return false;
     });
     if (changed) state.rigids[r].velocity = rigid.motion == Motion::fixed ? Vec3{} : rigid.velocity;
   }

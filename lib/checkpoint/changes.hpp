@@ -28,13 +28,16 @@ struct Comparison {
   std::vector<OptionChange> changes;  // those that -restart_change allows
 };
 
-/// Compares the options with those of the checkpoint; `file` is its name. Options of output, of the machine
-/// and of the end of the run may change, and those whose names (without dash) are in `allowed`.
+/// Compares the options of a configuration with those of the checkpoint; `file` is its name. What may change
+/// at any restart (change_rules.hpp) is not compared; options whose names (without dash) are in `allowed` may
+/// change too.
 Comparison compare_options(const Checkpoint& checkpoint, const std::vector<EffectiveOption>& now,
-                           const std::string& file, const std::vector<std::string>& allowed = {});
+                           const Config& config, const std::string& file,
+                           const std::vector<std::string>& allowed = {});
 
-/// Whether -restart_change takes the name of an option: of what loads the bodies and holds them.
-bool is_load(const std::string& name, const Config& config);
+/// What differs between the options in force before and now.
+std::vector<OptionChange> changes_between(const std::vector<EffectiveOption>& before,
+                                          const std::vector<EffectiveOption>& now);
 
 /// Gives rigids whose motion or velocity changed the velocity that the options now say.
 void apply_changes(const std::vector<OptionChange>& changes, const Config& config, SavedState& state);

@@ -24,6 +24,11 @@ struct RunState {
   double last_row_time = 0;       // s, simulated
   double wall = 0, stepping = 0;  // s since the first step; of it in steps
   long since_rebuild = 0, rebuilds = 0, longest = 0, shortest = 0;  // steps between rebuilds
+  long stage = 0, stage_step = 0;                                   // index of the stage, step at its begin
+  double stage_time = 0;                                            // s, simulated, at its begin
+  int stage_over = 0;                                               // 1: the event that ends it has come
+  std::vector<double> rigid_zero, rigid_begin;  // m, 3 a rigid: displacements that the history counts from,
+                                                // and those at the begin of the stage; empty: 0
 };
 
 /// The particles of one set of a checkpoint that a rank holds: `count` of `total`, from number `first` on.

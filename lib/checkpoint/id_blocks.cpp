@@ -1,6 +1,7 @@
 #include "checkpoint/id_blocks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace mpm {
@@ -101,6 +102,34 @@ PetscErrorCode bring_to_blocks(MPI_Comm comm, long total, long lost, SavedPoints
   for (SavedField& field : points.fields) put_in_order(points.id, *block, field.components, field.values);
   points.id.resize(block->count);
   std::iota(points.id.begin(), points.id.end(), block->first);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void leave_out_lost(SavedPoints& points) {
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < points.id.size(); ++p) {
+    if (points.address[p] == -1) continue;
+    points.id[kept] = points.id[p], points.address[kept] = points.address[p];
+    for (SavedField& field : points.fields) {
+      if (field.values.size() != points.id.size() * field.components) continue;
+      const auto row = field.values.begin() + static_cast<long>(p) * field.components;
+      std::copy_n(row, field.components, field.values.begin() + static_cast<long>(kept) * field.components);
+    }
+    ++kept;
+  }
+  if (kept == points.id.size()) return;
+  for (SavedField& field : points.fields) field.values.resize(kept * field.components);
+  points.id.resize(kept), points.address.resize(kept);
+}
+
+PetscErrorCode bring_together(MPI_Comm comm, SavedState* state) {
+  PetscFunctionBeginUser;
+  IdBlock block;
+  double lost = 0;
+  for (std::size_t k = 0; k < state->lost.size(); k += k_lost) lost += state->lost[k];
+  PetscCall(bring_to_blocks(comm, state->particles, std::lround(lost), state->soil, &block));
+  PetscCall(gather_impulse(comm, static_cast<int>(state->rigids.size()), state->impulse));
+  leave_out_lost(state->soil);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,6 +15,13 @@ IdBlock block_of(long total, int rank, int ranks);
 /// address -1. Collective.
 PetscErrorCode bring_to_blocks(MPI_Comm comm, long total, long lost, SavedPoints& points, IdBlock* block);
 
+/// Leaves out the rows of particles that have left the run.
+void leave_out_lost(SavedPoints& points);
+
+/// What a checkpoint of this state would give each rank: its block of the particles, and all impulses.
+/// Collective.
+PetscErrorCode bring_together(MPI_Comm comm, SavedState* state);
+
 /// Brings the impulses of all ranks together, in order of address, on every rank. A node that several ranks
 /// have is kept once, of the first. Collective.
 PetscErrorCode gather_impulse(MPI_Comm comm, int rigids, SavedImpulse& impulse);

@@ -62,23 +62,6 @@ class Reader {
   const std::string& fault() const { return fault_; }
 
  private:
-  /// Rows without an address are those of particles that have left the run.
-  static void leave_out_lost(SavedPoints& points) {
-    std::size_t kept = 0;
-    for (std::size_t p = 0; p < points.id.size(); ++p) {
-      if (points.address[p] == -1) continue;
-      points.id[kept] = points.id[p], points.address[kept] = points.address[p];
-      for (SavedField& field : points.fields) {
-        if (field.values.size() != points.id.size() * field.components) continue;
-        const auto row = field.values.begin() + static_cast<long>(p) * field.components;
-        std::copy_n(row, field.components, field.values.begin() + static_cast<long>(kept) * field.components);
-      }
-      ++kept;
-    }
-    if (kept == points.id.size()) return;
-    for (SavedField& field : points.fields) field.values.resize(kept * field.components);
-    points.id.resize(kept), points.address.resize(kept);
-  }
   bool check(hid_t result, const std::string& what) {
     if (result < 0 && fault_.empty()) fault_ = what;
     return fault_.empty();

@@ -47,7 +47,8 @@ struct Snapshot {
   double time = 0;  // s
   long step = 0;
   std::vector<ParticleSnapshot> bodies, rigids, nodes{};
-  int dim = 0;  // 0: not told
+  int dim = 0;          // 0: not told
+  std::string stage{};  // its name; empty: the run has none
 };
 
 /// One row of the history for one body.
@@ -86,6 +87,8 @@ struct HistoryRow {
   std::vector<BodyRow> bodies;
   std::vector<RigidRow> rigids;
   std::array<std::array<Vec3, 2>, 3> walls{};  // N, of the soil on each side of the mesh, now
+  int stage = 0;                               // number of the stage, from 1 on; 0: the run has none
+  double unbalanced_ratio = 0;                 // -, where some stage ends by equilibrium
 };
 
 }  // namespace mpm

@@ -46,6 +46,10 @@ bool check_start(OptionReader& in, const std::string& body, const MaterialConfig
 std::string own_parameter_fault(const MaterialConfig& material, const std::string& key, double least,
                                 double largest);
 
+/// Checks the bodies whose stress is that of level ground, when all of them have been read, and notes their
+/// largest stress. The mesh, the shapes and the materials must be sound.
+void check_level_ground(OptionReader& in, const MeshConfig& mesh, Config& config);
+
 /// Checks the starts of the particles of a body of a sound material, by the lowest and highest point of its
 /// shape or by the file that lists them, and notes their largest pressure and own strength. Particles whose
 /// state a file gives go on as they are.
@@ -55,8 +59,8 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
 /// Whether soil of a material has a strength, somewhere.
 bool has_strength(const MaterialConfig& material);
 
-/// The geometry and lattice of a body or rigid, where `body` says which. Whether all of it was sound. A file may
-/// list the particles of a body. The bodies before it have been read.
+/// The geometry and lattice of a body or rigid, where `body` says which. Whether all of it was sound. A file
+/// may list the particles of a body. The bodies before it have been read.
 bool read_shape(OptionReader& in, const std::string& name, const Config& config, bool body, Shape& shape);
 
 /// Checks that a sound shape lies in the mesh, or is cut by planes of symmetry, and holds a particle.
@@ -65,6 +69,15 @@ void check_shape(OptionReader& in, const std::string& name, const Shape& shape, 
 
 /// Checks that the shapes cut out of a body leave a particle.
 void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& config, const BodyConfig& body);
+
+/// NAME_table and NAME_table_interpolation, where NAME is the option `of`, a vector: its values in time till
+/// `end` [s]. has_constant: NAME itself is an option too, with the value `constant`, of which a table of one
+/// column gives factors. Returns whether the table is given.
+bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, double end,
+                const Vec3& constant, std::optional<TimeTable>& table);
+
+/// The motion of a rigid and what moves it; `end` [s]: of the run.
+void read_motion(OptionReader& in, int dim, double end, RigidConfig& rigid);
 
 /// Checks that a rigid does not move across a plane of symmetry that cuts it.
 void check_cut_motion(OptionReader& in, const MeshConfig& mesh, int dim, const RigidConfig& rigid);
@@ -101,6 +114,17 @@ void check_particles(OptionReader& in, const BodyConfig& body, const Config& con
 /// Checks that the masses of a file are those of the body's material, to a quarter.
 void check_density(OptionReader& in, const BodyConfig& body, const Config& config,
                    const ParticleTable& table);
+
+/// -stages: the good names. The names of all options are reserved.
+std::vector<std::string> read_stage_names(OptionReader& in);
+/// What the stage of a reader owns; rigids and gravity have been read.
+void read_stage(OptionReader& in, Config& config);
+/// Checks that the options that the stage of a reader gives may change at a stage.
+void check_stage_changes(OptionReader& in, const Config& config);
+
+/// What is wrong with a name that is to begin options beside those that `known` has read or listed; empty
+/// where nothing is.
+std::string name_fault(const OptionReader& known, const std::string& name);
 
 /// Checks the values of PETSc's options that PETSc would find wrong only at the end of the run.
 void check_petsc_options(OptionReader& in);

@@ -107,11 +107,21 @@ void read_start(OptionReader& in, int dim, BodyConfig& body) {
                                    .unit = "m/s",
                                    .range = k_speed},
                                   dim, body.velocity);
-  body.stress_given = in.tensor({.name = body.name + "_stress",
-                                 .meaning = "initial effective stress, tension positive" + from_file,
-                                 .unit = "Pa",
-                                 .range = k_stress},
-                                dim, body.stress);
+  const Option stress{.name = body.name + "_stress",
+                      .meaning = "initial effective stress, tension positive" + from_file +
+                                 ". k0: that of level ground under the weight of the body and of the bodies "
+                                 "with k0 above it",
+                      .unit = "Pa",
+                      .range = k_stress,
+                      .aside = ", or k0"};
+  if (in.given_text(stress.name) != "k0") {
+    body.stress_given = in.tensor(stress, dim, body.stress);
+    return;
+  }
+  std::string word;
+  in.text(stress, word);
+  body.stress_given = body.k0 = body.shape.kind != ShapeKind::particles;
+  if (!body.k0) in.reject(stress.name, "numbers where a file lists the particles");
 }
 
 }  // namespace mpm

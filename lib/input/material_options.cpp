@@ -218,6 +218,12 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
              .unit = "Pa",
              .range = {.lowest = 0, .highest = 1e12}},
             material.pore_stiffness);
+  in.number({.name = name + "_k0",
+             .meaning = "horizontal over vertical effective stress of bodies with the stress k0",
+             .unit = "-",
+             .range = {.lowest = 0, .highest = 10},
+             .standard = "1 - sin(friction), or nu/(1 - nu) without friction, none for cam_clay and umat"},
+            material.k0);
   read_f_bar(in, config, material);
   if (in.listing()) {
     for (const Model& model : models) {

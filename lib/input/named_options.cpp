@@ -144,48 +144,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
     check_density(in, body, config, listed);
   }
   if (sound_materials && in.errors() == errors) check_body_field(in, *mesh, config, body);
-  if (sound_materials && in.errors() == errors) check_starts(in, *mesh, config, listed, body);
-}
-
-/// What moves a rigid: each motion takes its own options.
-void read_motion(OptionReader& in, int dim, RigidConfig& rigid) {
-  static const std::vector<std::pair<std::string, Motion>> motions = {
-      {"fixed", Motion::fixed}, {"prescribed", Motion::prescribed}, {"dynamic", Motion::dynamic}};
-  const auto errors = in.errors();
-  in.word({.name = rigid.name + "_motion",
-           .meaning = "none, by its velocity, or by its density, force and gravity"},
-          motions, rigid.motion);
-  if (in.errors() != errors) {
-    for (const char* key : {"velocity", "density", "force"}) in.ignore(rigid.name + "_" + key);
-    return;
-  }
-  const bool prescribed = rigid.motion == Motion::prescribed, dynamic = rigid.motion == Motion::dynamic;
-  const std::string why = rigid.name + "_motion is " + motions[static_cast<int>(rigid.motion)].first;
-  if (prescribed || dynamic || in.listing())
-    in.vector({.name = rigid.name + "_velocity",
-               .meaning = "prescribed: its velocity (required); dynamic: its initial velocity",
-               .unit = "m/s",
-               .range = k_speed,
-               .required = prescribed},
-              dim, rigid.velocity);
-  else
-    in.not_taken(rigid.name + "_velocity", why);
-  if (dynamic || in.listing()) {
-    in.number({.name = rigid.name + "_density",
-               .meaning = "dynamic: its density",
-               .unit = "kg/m3",
-               .range = k_density,
-               .required = true},
-              rigid.density);
-    in.vector({.name = rigid.name + "_force",
-               .meaning = "dynamic: external force on it, beside gravity",
-               .unit = "N",
-               .range = k_stress},
-              dim, rigid.force);
-  } else {
-    in.not_taken(rigid.name + "_density", why);
-    in.not_taken(rigid.name + "_force", why);
-  }
+  if (sound_materials && in.errors() == errors && !body.k0) check_starts(in, *mesh, config, listed, body);
 }
 
 /// Whether the step knows the distance to the surface of a shape.
@@ -263,7 +222,7 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
   const bool sound = !in.listing() && read_shape(in, rigid.name, config, /*body*/ false, rigid.shape);
   if (sound && mesh) check_shape(in, rigid.name, rigid.shape, *mesh, dim);
   in.section("Each rigid NAME");
-  read_motion(in, dim, rigid);
+  read_motion(in, dim, config.time.end, rigid);
   if (sound && mesh) check_cut_motion(in, *mesh, dim, rigid);
   if (sound && mesh) check_in_water(in, config, rigid);
   rigid.has_shear_limit = in.number({.name = rigid.name + "_shear_limit",
@@ -287,6 +246,10 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
 }
 
 }  // namespace
+
+std::string name_fault(const OptionReader& known, const std::string& name) {
+  return Names(known).fault(name);
+}
 
 void read_only_material(OptionReader& in, Config& config) {
   Names names(in);
@@ -330,6 +293,7 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
     config.rigids.emplace_back().name = name;
     read_rigid(in, mesh, config, config.rigids.back());
   }
+  if (sound_materials && in.errors() == errors) check_level_ground(in, *mesh, config);
   if (sound_materials) prepare_for_pressure(mesh->spacing, config);
   if (mesh && in.errors() == errors)
     for (const auto& body : config.bodies) check_cut_out(in, *mesh, config, body);

@@ -5,8 +5,9 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "checkpoint/changes.hpp"
+#include "checkpoint/change_rules.hpp"
 #include "common/text.hpp"
+#include "common/time_table.hpp"
 #include "input/courant.hpp"
 #include "input/groups.hpp"
 #include "input/reader.hpp"
@@ -186,8 +187,11 @@ void read_velocity_update(OptionReader& in, Config& config) {
 
 void read_physics(OptionReader& in, Config& config) {
   in.section("Physics");
-  in.vector({.name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2", .range = k_speed},
-            config.dim, config.gravity);
+  const Option gravity{
+      .name = "gravity", .meaning = "acceleration of gravity", .unit = "m/s2", .range = k_speed};
+  in.vector(gravity, config.dim, config.gravity);
+  read_timed(in, gravity, true, config.dim, config.time.end, config.gravity, config.gravity_table);
+  if (config.gravity_table) config.gravity = largest_of(*config.gravity_table);
   read_water(in, config);
   in.number({.name = "damping",
              .meaning = "local (non-viscous) damping factor",
@@ -290,11 +294,9 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
   in.text({.name = "restart",
            .meaning = "checkpoint to go on from, or latest: the last sound one of the output folder"},
           output.restart);
-  in.list_of(
-      {.name = "restart_change",
-       .meaning = "what may differ from the checkpoint's run: gravity, damping, mesh_xmin and the other "
-                  "sides, and of rigids NAME_motion, NAME_velocity, NAME_force, NAME_density"},
-      "names of options, as gravity,damping", output.restart_change);
+  in.list_of({.name = "restart_change",
+              .meaning = "what may differ from the checkpoint's run, of the options that may change by it"},
+             "names of options, as gravity,damping", output.restart_change);
   in.number(
       {.name = "wall_time_limit",
        .meaning = "time on the clock after which the run writes a checkpoint and stops with exit status 75",
@@ -314,10 +316,10 @@ void check_restart_change(OptionReader& in, const Config& config) {
   const std::string option = "restart_change";
   if (!in.listing() && config.output.restart.empty()) return in.not_taken(option, "there is no -restart");
   for (const std::string& name : config.output.restart_change)
-    if (!name.empty() && !is_load(name, config))
+    if (!name.empty() && !change_rule(name, config).listed)
       return in.reject(option,
-                       "names of options among gravity, damping, those of the mesh's sides and NAME_motion, "
-                       "NAME_velocity, NAME_force and NAME_density of rigids; " +
+                       "names of options among gravity, damping, those of the mesh's sides, and of rigids "
+                       "their motion, loads and contact; " +
                            name + " is none");
 }
 
@@ -337,6 +339,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
       {.name = "dim", .meaning = "2 (plane strain) or 3", .unit = "-", .range = {.lowest = 2, .highest = 3}},
       config.dim);
   if (in.errors() != errors) return;  // it decides what all others take
+  if (in.listing()) read_stage_names(in);
   read_run(in, backends, config);
   if (read_element_file(in, config.element)) {
     read_element_run(in, backends, options_file, config);
@@ -357,7 +360,31 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
                               std::any_of(config.rigids.begin(), config.rigids.end(), named_nodes)))
     in.reject("output_nodes", "off where a body or rigid has the name nodes");
   check_restart_change(in, config);
+  if (!config.stages.empty() || in.listing()) {
+    read_stage(in, config);
+    check_stage_changes(in, config);
+  }
   in.report_unknown();
+}
+
+/// Every stage as a run of its own, by the options of the run with those of the stage in their place.
+void read_stages(OptionReader& in, const std::vector<Backend>& backends,
+                 const std::vector<std::string>& names, InputReport& report) {
+  for (const std::string& name : names) {
+    InputReport of_stage;
+    StageInput& input = report.stages.emplace_back();
+    input.config.stages = names;
+    input.config.stage = {.name = name, .number = static_cast<int>(report.stages.size())};
+    OptionReader reader = in.for_stage(name, names, of_stage);
+    read_all(reader, backends, report.options_file, input.config);
+    input.options = std::move(of_stage.options);
+    for (const std::string& key : reader.of_stage())
+      report.stage_options.push_back({"-" + name + "_" + key, reader.given_text(key), "", false});
+    for (auto [from, to] :
+         {std::pair{&of_stage.errors, &report.errors}, {&of_stage.warnings, &report.warnings}})
+      for (const std::string& line : *from)
+        if (std::find(to->begin(), to->end(), line) == to->end()) to->push_back(line);
+  }
 }
 
 PetscErrorCode print_lines(MPI_Comm comm, FILE* file, const std::string& text) {
@@ -394,7 +421,25 @@ PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& back
     PetscCallCXX(read_all(in, backends, "", config));
   } else if (!report.file_unread) {
     PetscCall(in.load(prefix, report));
-    PetscCallCXX(read_all(in, backends, report.options_file, config));
+    const auto before = report.errors.size();
+    std::vector<std::string> stages;
+    PetscCallCXX(stages = read_stage_names(in));
+    if (report.errors.size() > before)
+      PetscFunctionReturn(PETSC_SUCCESS);  // they decide whose the others are
+    if (stages.empty()) {
+      PetscCallCXX(read_all(in, backends, report.options_file, config));
+    } else {
+      const EffectiveOption list = report.options.back();
+      PetscCallCXX(read_stages(in, backends, stages, report));
+      const bool balance = std::any_of(
+          report.stages.begin(), report.stages.end(),
+          [](const StageInput& stage) { return stage.config.stage.end == StageEnd::equilibrium; });
+      for (StageInput& stage : report.stages)
+        stage.options.insert(stage.options.begin(), list), stage.config.balance = balance;
+      config = report.stages[0].config, report.options = report.stages[0].options;
+    }
+    if (!report.stages.empty() && !config.element.file.empty())
+      in.reject("stages", "nothing here: -element_path drives a single point");
     if (prefix == nullptr) PetscCallCXX(check_petsc_options(in));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

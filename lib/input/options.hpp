@@ -27,11 +27,19 @@ struct EffectiveOption {
   bool standard;      // the default holds
 };
 
+/// The input of a stage of a run.
+struct StageInput {
+  Config config;
+  std::vector<EffectiveOption> options;  // in force in the stage
+};
+
 /// What reading the input found.
 struct InputReport {
   std::vector<std::string> errors;    // each a whole line without its end: mpm: -NAME: given "...", takes ...
   std::vector<std::string> warnings;  // each a whole line without its end: warning: ..., mpm: note: ...
-  std::vector<EffectiveOption> options;  // in the order of reading; for the log
+  std::vector<EffectiveOption> options;        // in the order of reading; for the log
+  std::vector<EffectiveOption> stage_options;  // that stages give, as they are given: -push_gravity
+  std::vector<StageInput> stages;              // of a run that has stages, in order
   std::string help_text;           // every option, its unit, default and meaning (only where help was asked)
   std::string options_file;        // the last -options_file, empty where there was none or it was a pipe
   std::vector<std::string> files;  // every -options_file that was read, with those in files, in turn
@@ -56,8 +64,10 @@ void prepare_arguments(MPI_Comm comm, int* argc, char*** argv, InputReport& repo
 /// processes, and checks them, also against each other. `backends` are those compiled in, the slowest first;
 /// the last is the default. Appends to report.errors; config is valid only where that is empty at the end.
 /// Where report.help holds, fills report.help_text instead; where report.file_unread holds, reads nothing,
-/// since all that is in the file would seem to be missing. With a null prefix every option that is neither
-/// ours nor PETSc's is an error, so simulations that have a prefix must be read before the one that has none.
+/// since all that is in the file would seem to be missing. Where the run has stages, config and
+/// report.options are those of the first one, and report.stages has all. With a null prefix every option that
+/// is neither ours nor PETSc's is an error, so simulations that have a prefix must be read before the one
+/// that has none.
 PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& backends, Config& config,
                             InputReport& report);
 

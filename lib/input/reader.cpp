@@ -15,6 +15,13 @@ std::string takes_number(const Option& option) {
   return noun + unit + option.range.text() + option.aside;
 }
 
+/// An option's name in the help without that of its owner.
+std::string key_of(const std::string& name) {
+  for (const std::string owner : {"NAME_", "STAGE_"})
+    if (name.starts_with(owner)) return name.substr(owner.size());
+  return name;
+}
+
 std::string quoted(const std::string& text) { return "\"" + visible(text) + "\""; }
 
 }  // namespace
@@ -69,7 +76,30 @@ PetscErrorCode OptionReader::load(const char* prefix, InputReport& report) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+OptionReader OptionReader::for_stage(const std::string& stage, const std::vector<std::string>& stages,
+                                     InputReport& report) const {
+  OptionReader in = *this;
+  in.report_ = &report;
+  in.stage_ = stage + "_";
+  for (const std::string& other : stages) {
+    const std::string beginning = lower_case(other) + "_";
+    for (auto given = in.given_.lower_bound(beginning);
+         given != in.given_.end() && given->first.starts_with(beginning);)
+      given = in.given_.erase(given);
+  }
+  const std::string beginning = lower_case(in.stage_);
+  for (auto given = given_.lower_bound(beginning);
+       given != given_.end() && given->first.starts_with(beginning); ++given) {
+    in.given_.erase(given->first);
+    const std::string key = given->first.substr(beginning.size());
+    in.given_[key] = given->second;
+    in.of_stage_.insert(key);
+  }
+  return in;
+}
+
 std::string OptionReader::dashed(const std::string& name) const {
+  if (of_stage_.count(lower_case(name)) > 0) return "-" + prefix_ + stage_ + name;
   const auto former = former_.find(lower_case(prefix_ + name));
   return "-" + (former == former_.end() ? prefix_ + name : former->second);
 }
@@ -142,6 +172,10 @@ void OptionReader::warn_of_left_out() {
 }
 
 void OptionReader::section(const std::string& title) {
+  owner_ = title.starts_with("Material") || title.starts_with("Each material") ? Owner::material
+           : title.starts_with("Each rigid")                                   ? Owner::rigid
+           : title.starts_with("Each body")                                    ? Owner::body
+                                                                               : Owner::run;
   if (listing_) report_->help_text += "\n" + title + "\n";
 }
 
@@ -154,6 +188,8 @@ const std::string* OptionReader::find(const Option& option, const std::string& t
                                                            : standard;
     report_->help_text += "  -" + option.name + "\n      " + option.meaning + "\n      takes " + takes +
                           "; " + (option.required ? "required" : "default " + otherwise) + "\n";
+    const std::string changes = change_rule(owner_, key_of(option.name)).text();
+    if (!changes.empty()) report_->help_text += "      may change " + changes + "\n";
     return nullptr;
   }
   read_.insert(lower_case(option.name));
@@ -336,9 +372,11 @@ void OptionReader::report_unknown() {
     if (!option.unused || read_.count(name) || is_petsc_name(name)) continue;
     if (std::any_of(ignored_.begin(), ignored_.end(), begins_name)) continue;
     const auto meant = nearest(name, known);
-    report_->errors.push_back("mpm: " + dashed(option.name.substr(prefix_.size())) + ": given " +
-                              quoted(option.value) + ", takes nothing: no such option" +
-                              (meant ? ", the nearest is -" + prefix_ + *meant : "; -help lists all"));
+    const bool staged = of_stage_.count(name) > 0;
+    const std::string as_given = staged ? "-" + option.name : dashed(option.name.substr(prefix_.size()));
+    report_->errors.push_back(
+        "mpm: " + as_given + ": given " + quoted(option.value) + ", takes nothing: no such option" +
+        (meant ? ", the nearest is -" + prefix_ + (staged ? stage_ : "") + *meant : "; -help lists all"));
   }
 }
 

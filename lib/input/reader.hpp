@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "checkpoint/change_rules.hpp"
 #include "input/options.hpp"
 
 namespace mpm {
@@ -51,6 +52,12 @@ class OptionReader {
  public:
   /// Takes the options with this prefix (null for none) out of PETSc's database and marks them as used.
   PetscErrorCode load(const char* prefix, InputReport& report);
+  /// A reader of the same options for one of the stages of a run: what is given as -STAGE_NAME stands for
+  /// -NAME, and options of the other stages are left out. It reports to `report`.
+  OptionReader for_stage(const std::string& stage, const std::vector<std::string>& stages,
+                         InputReport& report) const;
+  /// The names, without those of the stage, that the stage gives.
+  const std::set<std::string>& of_stage() const { return of_stage_; }
   /// Reads nothing and writes the help text instead: every option is listed once.
   void list(InputReport& report);
   bool listing() const { return listing_; }
@@ -81,6 +88,8 @@ class OptionReader {
   bool word(const Option& option, const std::vector<std::pair<std::string, Enum>>& words, Enum& value);
 
   bool given(const std::string& name) const;
+  /// Whether something has asked for an option, by its lower-case name.
+  bool is_read(const std::string& name) const { return read_.count(name) > 0; }
   /// The text given, in lieu of a value.
   std::string given_text(const std::string& name) const;
   /// Reports the option, if given, as one that has no place here.
@@ -129,12 +138,15 @@ class OptionReader {
 
   std::string prefix_;
   bool listing_ = false;
+  Owner owner_ = Owner::run;  // of the options of this section of the help
   InputReport* report_ = nullptr;
   std::map<std::string, Given> given_;  // by lower-case name without prefix
   std::set<std::string> read_;
   std::vector<std::string> known_, ignored_;
-  std::multimap<std::string, std::string> replaced_;          // by lower-case name without prefix
-  std::map<std::string, std::string> former_;                 // names as given, by lower-case name
+  std::multimap<std::string, std::string> replaced_;  // by lower-case name without prefix
+  std::map<std::string, std::string> former_;         // names as given, by lower-case name
+  std::string stage_;               // of what this reader reads, with its underscore; empty: of the run
+  std::set<std::string> of_stage_;  // lower-case names that it gives
   std::map<std::string, std::vector<std::string>> left_out_;  // names by their list
 };
 

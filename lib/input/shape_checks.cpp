@@ -129,12 +129,4 @@ void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& confi
   if (!left) in.reject(option, "shapes that leave a particle of " + body.name);
 }
 
-void check_cut_motion(OptionReader& in, const MeshConfig& mesh, int dim, const RigidConfig& rigid) {
-  const Cuts cuts = cuts_of(rigid.shape, mesh, dim);
-  for (int d = 0; d < dim; ++d)
-    if ((cuts[d][0] || cuts[d][1]) && rigid.velocity[d] != 0)
-      return in.reject(rigid.name + "_velocity", std::string("0 in ") + "xyz"[d] +
-                                                     ", across the plane of symmetry that cuts the shape");
-}
-
 }  // namespace mpm

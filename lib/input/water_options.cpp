@@ -20,6 +20,8 @@ void read_water(OptionReader& in, Config& config) {
   const bool weightless = config.gravity == Vec3{};
   if (!in.listing() && config.water.level && weightless)
     in.reject("water_level", "a -gravity other than 0, which gives water its pressure");
+  if (!in.listing() && config.water.level && in.given("gravity_table"))
+    in.reject("water_level", "no -gravity_table: water at rest needs a constant -gravity");
   if (!in.listing() && config.water.level && config.device_memory_limit)
     in.reject("water_level", "no -device_memory_limit: submerged soil does not go in batches");
   if (config.water.level || in.listing())

@@ -176,6 +176,7 @@ PetscErrorCode write_groups(hid_t file, const std::string& path, const Snapshot&
   PetscCall(write_attribute(file, path, "time", H5T_NATIVE_DOUBLE, &snapshot.time));
   PetscCall(write_attribute(file, path, "step", H5T_NATIVE_LLONG, &step));
   if (dim > 0) PetscCall(write_attribute(file, path, "dim", H5T_NATIVE_LLONG, &dim));
+  if (!snapshot.stage.empty()) PetscCall(write_text(file, path, "stage", snapshot.stage));
   for (const ParticleSnapshot& body : snapshot.bodies)
     PetscCall(write_group(file, path, body, Of::bodies, precision, style, reserve));
   for (const ParticleSnapshot& rigid : snapshot.rigids)

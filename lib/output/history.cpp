@@ -61,6 +61,8 @@ std::string history_header(const Config& config) {
   for_each_wall(config, [&](int d, int side) {
     append(header, std::string("wall_") + k_axis[d] + (side == 0 ? "min" : "max") + "_force_", config.dim);
   });
+  if (!config.stages.empty()) header += ",stage";
+  if (config.balance) header += ",unbalanced_ratio";
   return header;
 }
 
@@ -85,6 +87,8 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
     for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})
       append(text, *vector, dim);
   for_each_wall(config, [&](int d, int side) { append(text, row.walls[d][side], dim); });
+  if (!config.stages.empty()) text += "," + std::to_string(row.stage);
+  if (config.balance) text += "," + text_of(row.unbalanced_ratio);
   return text;
 }
 

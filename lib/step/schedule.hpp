@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "mpm/config.hpp"
+#include "step/stepper.hpp"
 
 namespace mpm {
 
@@ -45,6 +46,13 @@ class Schedule {
   double step_size(long step) const { return step < whole_ ? dt_ : end_ - start_of(whole_); }
   /// Time after `step` steps [s].
   double time_of(long step) const { return step >= all_ ? end_ : start_of(step); }
+
+  /// `count` steps after `step` steps, which all have the length of the first.
+  StepRange range(long step, long count) const {
+    const bool whole = step < whole_;
+    return {count, time_of(step), step_size(step), whole ? begin_.time : start_of(whole_),
+            whole ? step - begin_.step : 0};
+  }
 
   bool row_due(long step) const { return step == last_ || due(step, output_.history_interval); }
   /// Whether a row or a frame is due though the run goes on after this step.

@@ -22,6 +22,15 @@ struct Failure {
   std::string what;  // a sentence: which particle, where, what happened; empty if all is well
 };
 
+/// Steps to do. Step k of them begins at origin + (first + k) dt: at the same bits for the tables in time,
+/// wherever a batch began.
+struct StepRange {
+  long count = 0;
+  double time = 0, dt = 0;  // s, before the first of them; length of each
+  double origin = 0;        // s
+  long first = 0;
+};
+
 /// What a batch of steps came to.
 struct Batch {
   long steps = 0;        // done
@@ -44,16 +53,20 @@ class Stepper {
   virtual ~Stepper() = default;
   /// Puts the particles on the device and orders them.
   virtual PetscErrorCode set_up(Model&& model, Failure* failure) = 0;
-  /// Does up to `steps` steps of dt [s] from a time [s] on, and fewer if a rebuild or a failure comes first,
-  /// or if the device turns out not to hold a launch of many.
-  virtual PetscErrorCode advance(long steps, double time, double dt, Batch* batch) = 0;
+  /// Does up to `steps.count` steps, and fewer if a rebuild or a failure comes first, or if the device turns
+  /// out not to hold a launch of many.
+  virtual PetscErrorCode advance(const StepRange& steps, Batch* batch) = 0;
   /// Bins, patches and lists anew.
   virtual PetscErrorCode rebuild(Failure* failure) = 0;
-  /// Rows of the history; `interval` [s] is the time since the last call, over which the forces are a mean.
+  /// Rows of the history at row->time; `interval` [s] is the time since the last call, over which the forces
+  /// are a mean.
   virtual PetscErrorCode measure(double interval, HistoryRow* row) = 0;
+  /// Mean unbalanced force over mean weight of the nodes, at a time [s]; infinite where no node is free to
+  /// tell.
+  virtual PetscErrorCode unbalanced_ratio(double time, double* ratio) = 0;
   /// Speed of the fastest wave in the soil as it is now [m/s].
   virtual PetscErrorCode fastest_wave(double* speed) = 0;
-  /// The frame; on several ranks each has a range of the particles of a body.
+  /// The frame at snapshot->time; on several ranks each has a range of the particles of a body.
   virtual PetscErrorCode snapshot(Snapshot* snapshot) = 0;
   /// Rows of partition.csv, on rank 0: the patches that hold particles, with these and their rank.
   virtual PetscErrorCode ownership(std::vector<OwnedPatch>* patches) = 0;

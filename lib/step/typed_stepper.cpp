@@ -6,6 +6,7 @@
 #include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
 #include "step/schedule.hpp"
+#include "step/load_input.hpp"
 #include "step/surface_input.hpp"
 #include "step/water.hpp"
 
@@ -97,6 +98,12 @@ double displaced_mass(const Config& config, const RigidInput& rigid) {
   return water.density * volume;
 }
 
+/// Mass of a rigid less that of the water it displaces [kg].
+double carried_mass(const Config& config, const RigidInput& in) {
+  const double mass = in.density * in.particle_volume * (in.position.size() / config.dim);
+  return mass - (config.dim == 2 ? displaced_mass<2>(config, in) : displaced_mass<3>(config, in));
+}
+
 RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParticles&& particles) {
   RigidInput in;
   in.position = std::move(particles.position);
@@ -105,9 +112,9 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
   in.dynamic = rigid.motion == Motion::dynamic;
   if (in.dynamic) in.density = rigid.density;
   if (rigid.motion != Motion::fixed) in.velocity = rigid.velocity;
-  const double mass = in.density * in.particle_volume * (in.position.size() / config.dim);
-  const double carried = config.dim == 2 ? displaced_mass<2>(config, in) : displaced_mass<3>(config, in);
-  for (int d = 0; d < 3; ++d) in.force[d] = rigid.force[d] + (mass - carried) * config.gravity[d];
+  const double carried = carried_mass(config, in);
+  for (int d = 0; d < 3; ++d) in.force[d] = rigid.force[d] + carried * config.gravity[d];
+  in.timed = rigid.velocity_table || rigid.displacement_table;
   const bool only_friction = rigid.friction && !rigid.has_shear_limit && !rigid.shear_fraction;
   in.shear_limit = only_friction ? std::numeric_limits<double>::infinity() : rigid.shear_limit;
   in.shear_fraction = rigid.shear_fraction.value_or(-1);
@@ -149,8 +156,11 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     bodies.push_back(body_input<Dim>(config_, config_.bodies[b], std::move(model.bodies[b])));
   std::vector<RigidInput> rigids;
-  for (std::size_t r = 0; r < model.rigids.size(); ++r)
+  std::vector<double> carried;
+  for (std::size_t r = 0; r < model.rigids.size(); ++r) {
     rigids.push_back(rigid_input(config_, config_.rigids[r], std::move(model.rigids[r])));
+    carried.push_back(carried_mass(config_, rigids.back()));
+  }
 
   state_.p2g = {config_.p2g.strategy, config_.p2g.margin, config_.p2g.mosaic_cells};
   for (int d = 0; d < Dim; ++d) state_.gravity[d] = gravity_on_soil(config_)[d];
@@ -169,6 +179,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.f_bar_fraction = model.owners.empty() ? f_bar : 0;
   state_.keeps_stress = model.from_run;
   Fault fault{};
+  PetscCallCXX(upload_loads(state_, load_input(config_, carried)));
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
   *failure = fault.kind == FaultKind::none ? too_small() : describe(fault);
   PetscCall(share(failure));
@@ -211,9 +222,12 @@ long TypedStepper<Space, T, Dim>::steps_to_rebuild(const Control& control, bool 
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode TypedStepper<Space, T, Dim>::advance(long steps, double time, double dt, Batch* batch) {
+PetscErrorCode TypedStepper<Space, T, Dim>::advance(const StepRange& range, Batch* batch) {
   PetscFunctionBeginUser;
-  state_.time = time;
+  const double dt = range.dt;
+  long steps = range.count;
+  state_.time = range.time;
+  begin_loads(state_, {range.origin - config_.time.start, dt, range.first});
   if (ranks_) {
     PetscCall(advance_together(steps, dt, batch));
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -18,6 +18,7 @@
 #include "transfer/download_nodes.hpp"
 #include "transfer/measure.hpp"
 #include "transfer/save_state.hpp"
+#include "transfer/unbalanced.hpp"
 #include "transfer/upload.hpp"
 
 namespace mpm {
@@ -28,9 +29,10 @@ class TypedStepper final : public Stepper {
   TypedStepper(const Config& config, MPI_Comm comm) : config_(config), comm_(comm) {}
 
   PetscErrorCode set_up(Model&& model, Failure* failure) override;
-  PetscErrorCode advance(long steps, double time, double dt, Batch* batch) override;
+  PetscErrorCode advance(const StepRange& steps, Batch* batch) override;
   PetscErrorCode rebuild(Failure* failure) override;
   PetscErrorCode measure(double interval, HistoryRow* row) override;
+  PetscErrorCode unbalanced_ratio(double time, double* ratio) override;
   PetscErrorCode fastest_wave(double* speed) override;
   PetscErrorCode snapshot(Snapshot* snapshot) override;
   PetscErrorCode ownership(std::vector<OwnedPatch>* patches) override;
@@ -56,6 +58,7 @@ class TypedStepper final : public Stepper {
   /// The failure of the lowest rank that has one, on every rank.
   PetscErrorCode share(Failure* failure) const;
   PetscErrorCode sum_soil();
+  void set_gravity(double time);
   PetscErrorCode measure_body(int body, BodyRow* row);
   PetscErrorCode note_out_of_order(int body, BodyRow* row);
   PetscErrorCode gather_strays(SavedState* saved) const;
@@ -68,6 +71,7 @@ class TypedStepper final : public Stepper {
   long ids() const { return total_ + children_; }
   /// What a start from a checkpoint needs and a restart has already.
   PetscErrorCode save_for_starts(SavedState* saved) const;
+  double velocity_of(std::size_t rigid, int d, double present, double time) const;
   void sample(bool on);
   long until_sample() const;
   long steps_to_rebuild(const Control& control, bool rebuilt);

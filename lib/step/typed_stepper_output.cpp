@@ -5,6 +5,7 @@
 #include "common/text.hpp"
 #include "data/memory_of.hpp"
 #include "parallel/gather.hpp"
+#include "step/load_input.hpp"
 #include "step/typed_stepper.hpp"
 #include "step/water.hpp"
 
@@ -33,6 +34,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow* row) {
   PetscFunctionBeginUser;
   row->bodies.clear(), row->rigids.clear();
+  set_gravity(row->time);
   collect_soil(state_);
   PetscCall(sum_soil());
   for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
@@ -51,12 +53,43 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, impulse, Dim, MPI_DOUBLE, MPI_SUM, comm_));
     for (int d = 0; d < Dim; ++d) {
       rigid.displacement[d] = r.pose.displacement[d];
-      rigid.velocity[d] = r.velocity[d];
+      rigid.velocity[d] = velocity_of(row->rigids.size(), d, r.velocity[d], row->time);
       rigid.force[d] = interval > 0 ? impulse[d] / interval : 0;
     }
     row->rigids.push_back(rigid);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Gravity at a time [s], where it follows a table, for what is measured.
+template <class Space, class T, int Dim>
+void TypedStepper<Space, T, Dim>::set_gravity(double time) {
+  for (int d = 0; d < Dim && config_.gravity_table; ++d)
+    state_.gravity[d] = gravity_at(config_, d, time - config_.time.start);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::unbalanced_ratio(double time, double* ratio) {
+  PetscFunctionBeginUser;
+  collect_soil(state_);
+  set_gravity(time);
+  sum_present_soil(state_);
+  buoyancy_to_nodes(state_);
+  if (ranks_) PetscCall(ranks_->add_present_soil(state_));
+  const UnbalancedForces own = unbalanced_forces(state_);
+  double sums[2] = {own.force, own.weight};
+  if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_));
+  *ratio = sums[1] > 0 ? sums[0] / sums[1] : std::numeric_limits<double>::infinity();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Component d of the velocity of rigid r [m/s]. `present`: on the device, that of the next step; a table
+/// tells that of the time.
+template <class Space, class T, int Dim>
+double TypedStepper<Space, T, Dim>::velocity_of(std::size_t r, int d, double present, double time) const {
+  const RigidConfig& rigid = config_.rigids[r];
+  return rigid.velocity_table || rigid.displacement_table ? velocity_at(rigid, d, time - config_.time.start)
+                                                          : present;
 }
 
 template <class Space, class T, int Dim>
@@ -176,7 +209,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     for (std::size_t p = 0; p < position.size() / Dim; ++p)
       for (int d = 0; d < Dim; ++d) {
         rigid.position[3 * p + d] = position[p * Dim + d] + config_.mesh.lower[d];
-        rigid.velocity[3 * p + d] = rigids(r).velocity[d];
+        rigid.velocity[3 * p + d] = velocity_of(r, d, rigids(r).velocity[d], out->time);
       }
     out->rigids.push_back(std::move(rigid));
   }
@@ -267,6 +300,7 @@ std::string TypedStepper<Space, T, Dim>::batches_report() const {
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                     \
   template PetscErrorCode TypedStepper<Space, T, Dim>::measure(double, HistoryRow*);       \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::unbalanced_ratio(double, double*);  \
   template PetscErrorCode TypedStepper<Space, T, Dim>::fastest_wave(double*);              \
   template PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot*);                \
   template PetscErrorCode TypedStepper<Space, T, Dim>::keep_heights(const Model&);         \

@@ -103,7 +103,7 @@ std::string read_file(const std::string& path) {
 void look_at(Checkpoint& c) {
   const Config config = some_config();
   (void)state_fault(c.state, config);
-  (void)compare_options(c, some_checkpoint().options, "FILE");
+  (void)compare_options(c, some_checkpoint().options, {}, "FILE");
 }
 
 /// Reads the file as -restart does; what is wrong with it.

@@ -325,7 +325,7 @@ TEST_CASE("particles of a checkpoint are those of its frame, by the body's name"
     Failure failure;
     REQUIRE(stepper->set_up(std::move(model), &failure) == PETSC_SUCCESS);
     Batch batch;
-    REQUIRE(stepper->advance(3, 0, 1e-3, &batch) == PETSC_SUCCESS);
+    REQUIRE(stepper->advance({.count = 3, .dt = 1e-3}, &batch) == PETSC_SUCCESS);
     Snapshot frame;
     Checkpoint c;
     REQUIRE(stepper->snapshot(&frame) == PETSC_SUCCESS);

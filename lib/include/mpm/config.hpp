@@ -19,6 +19,14 @@ using Sym6 = std::array<double, 6>;  // symmetric tensor: xx yy zz xy yz zx (in 
 /// Arithmetic of the fields (-precision).
 enum class Precision { double_, single };
 
+/// A quantity that changes in time: its values at points, straight between them, or smooth by 3 x^2 - 2 x^3.
+struct TimeTable {
+  std::vector<double> times;  // s, each after the one before
+  std::vector<Vec3> values;   // at these
+  bool smooth = false;
+  std::string file;  // CSV; empty where the option itself lists the points
+};
+
 /// The background mesh of square (cubic) cells.
 struct MeshConfig {
   Vec3 lower{}, upper{};                       // m, corners
@@ -34,8 +42,8 @@ class TriangleSurface;
 class HeightSurface;
 
 /// A region of space and the lattice of particles that fills it. The vertical axis is y in 2D and z in 3D. A
-/// box that is not turned, a disc, a cylinder and a cone may reach beyond sides of the mesh that are planes of
-/// symmetry (roller); only what is inside is filled.
+/// box that is not turned, a disc, a cylinder and a cone may reach beyond sides of the mesh that are planes
+/// of symmetry (roller); only what is inside is filled.
 struct Shape {
   ShapeKind kind = ShapeKind::box;
   Vec3 lower{}, upper{};                       // m, box, before it is turned
@@ -43,18 +51,18 @@ struct Shape {
   double angle = 0;                            // rad, box: turned about `lower`, from x to the vertical axis
   std::vector<std::array<double, 2>> polygon;  // m, vertices in order: x and the vertical coordinate
   std::array<double, 2> width{};               // m, polygon in 3D: the prism's lower and upper y
-  Vec3 centre{};          // m, disc (ball in 3D); cylinder: lower end of its vertical axis; cone: its tip
-  double radius = 0;      // m, disc, cylinder; cone: of its base
-  double height = 0;      // m, cylinder (with its tip), cone
-  double tip_height = 0;  // m, cylinder: of the cone that its lower end is; 0 where that is flat
-  bool tip_up = false;    // cone: its tip is its highest point, not its lowest
-  Vec3 point{}, normal{};                      // m, -, half_plane: on its face; outward, of length 1
+  Vec3 centre{};           // m, disc (ball in 3D); cylinder: lower end of its vertical axis; cone: its tip
+  double radius = 0;       // m, disc, cylinder; cone: of its base
+  double height = 0;       // m, cylinder (with its tip), cone
+  double tip_height = 0;   // m, cylinder: of the cone that its lower end is; 0 where that is flat
+  bool tip_up = false;     // cone: its tip is its highest point, not its lowest
+  Vec3 point{}, normal{};  // m, -, half_plane: on its face; outward, of length 1
   std::shared_ptr<const TriangleSurface> triangles;  // stl: closed
   std::shared_ptr<const HeightSurface> top, base;    // layer: what it is between
   std::string top_file, base_file;                   // layer: of its surfaces that are rasters
-  std::string file, file_body;                 // stl: its file; particles (of a body): the HDF5 file that
-                                               // lists them, and the body's name there
-  int particles_per_cell = 2;                  // in each direction
+  std::string file, file_body;  // stl: its file; particles (of a body): the HDF5 file that
+                                // lists them, and the body's name there
+  int particles_per_cell = 2;   // in each direction
   Fill fill = Fill::centre;
 };
 
@@ -66,6 +74,7 @@ struct MaterialConfig {
   std::vector<std::string> texts{};      // values of the model's options that are texts, as it lists them
   std::shared_ptr<const void> object{};  // what the model made of its texts; most need none
   double pore_stiffness = 0;             // Pa, of the water in its pores, which does not flow; 0: they drain
+  std::optional<double> k0{};            // -, horizontal over vertical effective stress of level ground
   std::optional<double> f_bar_fraction{};  // -, as Config::f_bar_fraction, which holds where there is none
 };
 
@@ -78,6 +87,7 @@ struct BodyConfig {
   Sym6 stress{};                // Pa, initial, tension positive
   bool velocity_given = false;  // by the options: a file's do not count then
   bool stress_given = false;
+  bool k0 = false;  // its stress is that of level ground; `stress` is then that of its lowest particles
   /// Pa, largest mean stress in compression of its particles at the start.
   double largest_pressure = 0;
   std::string field;  // HDF5 file with a grid of the law's strength, from which its particles take theirs
@@ -98,28 +108,49 @@ struct RigidConfig {
   std::string name;
   Shape shape;
   Motion motion = Motion::fixed;
-  Vec3 velocity{};                 // m/s: the velocity (prescribed) or the initial velocity (dynamic)
-  double density = 0;              // kg/m3 (dynamic)
-  Vec3 force{};                    // N, external (dynamic), beside gravity
-  double shear_limit = 0;          // Pa, largest shear stress of the interface; 0 is smooth
+  /// m/s: the velocity (prescribed) or the initial velocity (dynamic). Where a table tells it, its component
+  /// of largest size in the table.
+  Vec3 velocity{};
+  std::optional<TimeTable> velocity_table;      // m/s (prescribed)
+  std::optional<TimeTable> displacement_table;  // m, instead of a velocity: its changes count (prescribed)
+  double density = 0;                           // kg/m3 (dynamic)
+  Vec3 force{};                                 // N, external (dynamic), beside gravity
+  std::optional<TimeTable> force_table;         // N, instead of it
+  double shear_limit = 0;                       // Pa, largest shear stress of the interface; 0 is smooth
   std::optional<double> shear_fraction;  // -, the limit as a fraction of the soil's strength, instead of it
-  std::optional<double> friction;     // -, Coulomb coefficient
+  std::optional<double> friction;        // -, Coulomb coefficient
   ContactNormal contact_normal = ContactNormal::surface;
-  bool separates = true;         // the soil may part from it
+  bool separates = true;            // the soil may part from it
   bool contact_gap_scaling = true;  // the normal correction decreases with the gap (Geo-contact)
   double contact_gap_reach = 0.15;  // cells, gap at which it ends
   double contact_gap_exponent = 6;  // -
-  bool has_shear_limit = false;  // -NAME_shear_limit was given (it then bounds the friction too)
+  bool has_shear_limit = false;     // -NAME_shear_limit was given (it then bounds the friction too)
 };
 
 /// Courant numbers above this are known to be unstable (the energy of an elastic bar grows at 0.7).
 inline constexpr double k_largest_courant = 0.6;
 
 struct TimeConfig {
-  double end = 0;              // s
+  double start = 0;            // s, at which the stage and with it the tables begin
+  double end = 0;              // s, of the run or the stage
   double courant = 0.5;        // -, Eq. 14
   std::optional<double> step;  // s, instead of the Courant number
   std::optional<long> max_steps;
+};
+
+/// What ends a stage of a run, before its time_end at the latest.
+enum class StageEnd { time, equilibrium, displacement };
+
+/// A stage of a run.
+struct StageConfig {
+  std::string name;  // empty: the run has no stages
+  int number = 0;    // from 1 on
+  StageEnd end = StageEnd::time;
+  double unbalanced_ratio = 1e-4;  // -, equilibrium: mean unbalanced force over mean weight of the nodes
+  int end_rigid = 0;               // displacement: index into Config::rigids
+  double end_displacement = 0;     // m, size of its displacement since the stage began
+  std::vector<int> remove;         // indices into Config::bodies: removed when it begins
+  bool reset = false;              // at its end velocities, displacements and plastic strains become zero
 };
 
 struct P2GConfig {
@@ -185,7 +216,7 @@ struct ElementRow {
   long line = 0;  // of the file
   double dt = 1;  // s
   std::array<Drive, 6> drive{};
-  Sym6 value{};                             // -, tensor shear strains; Pa
+  Sym6 value{};                               // -, tensor shear strains; Pa
   std::vector<std::optional<double>> sums{};  // Pa or -, change of each sum; none where it is not governed
 };
 
@@ -213,7 +244,8 @@ struct Config {
   P2GConfig p2g;
   PartitionConfig partition;
   MeshConfig mesh;
-  Vec3 gravity{};  // m/s2
+  Vec3 gravity{};  // m/s2; where it follows a table, the largest of it
+  std::optional<TimeTable> gravity_table;
   WaterConfig water;
   TimeConfig time;
   double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
@@ -228,7 +260,10 @@ struct Config {
   std::vector<RigidConfig> rigids;
   OutputConfig output;
   ElementConfig element;
-  bool dry_run = false;  // tell what the run would take, and do not run
+  StageConfig stage;                // which stage these options are of
+  bool balance = false;             // the history tells the unbalanced ratio
+  std::vector<std::string> stages;  // names of all stages, in order; empty: the run has none
+  bool dry_run = false;             // tell what the run would take, and do not run
 };
 
 }  // namespace mpm

@@ -1,0 +1,84 @@
+#pragma once
+// Loads and motions that follow tables in time: gravity, and velocities and forces of rigid bodies. The end
+// of a step sets those of the next step on the device, so that one launch can do many steps.
+
+#include "base/spaces.hpp"
+#include "base/time_curve.hpp"
+#include "base/types.hpp"
+#include "data/nodes.hpp"
+
+namespace mpm {
+
+/// A number that is constant or the mean of a curve over the step.
+struct TimedNumber {
+  double constant;
+  int first, count;  // of the points; count 0: constant
+  int near;          // interval of the present step
+  CurveUse use;
+  bool smooth;
+
+  KOKKOS_INLINE_FUNCTION double mean(const CurvePoint* points, double t, double dt) {
+    if (count == 0) return constant;
+    return TimeCurve{points + first, count, smooth}.mean(use, t, dt, near);
+  }
+};
+
+enum class LoadTarget : int { gravity, velocity, force };
+
+/// A component of what follows a table: own + factor * gravity. Of a rigid's force the factor is the mass
+/// whose weight it carries [kg]; 0 elsewhere.
+struct TimedLoad {
+  LoadTarget target;
+  int rigid, component;
+  TimedNumber own, gravity;
+  double factor;
+};
+
+/// The times of steps: step k of those that Control::steps counts begins at origin + (first + k) dt. With the
+/// same origin, a step begins at the same bits wherever the host looked at the steps before.
+struct LoadClock {
+  double origin, dt;  // s
+  long first;
+};
+
+/// All of them, for kernels. `gravity`: of the present step, which kernels read in lieu of State::gravity;
+/// null where gravity follows no table.
+template <class T, int Dim>
+struct LoadsOfStep {
+  TimedLoad* loads;
+  const CurvePoint* points;
+  LoadClock* clock;
+  Vector<T, Dim>* gravity;
+  int count;
+
+  /// Sets load n for the step that follows `steps` steps of a clock.
+  KOKKOS_INLINE_FUNCTION void set(int n, const LoadClock& by, int steps, Rigid<Dim>* rigids) const {
+    TimedLoad& load = loads[n];
+    const double dt = by.dt, t = by.origin + double(by.first + steps) * dt;
+    const double own = load.own.mean(points, t, dt);
+    const int d = load.component;
+    if (load.target == LoadTarget::gravity)
+      (*gravity)[d] = static_cast<T>(own);
+    else if (load.target == LoadTarget::velocity)
+      rigids[load.rigid].velocity[d] = own;
+    else
+      rigids[load.rigid].force[d] = own + load.factor * load.gravity.mean(points, t, dt);
+  }
+};
+
+template <class Space, class T, int Dim>
+struct TimedLoads {
+  using Memory = typename Space::memory_space;
+  Kokkos::View<TimedLoad*, Memory> loads;
+  Kokkos::View<CurvePoint*, Memory> points;
+  Kokkos::View<LoadClock, Memory> clock;  // allocated with loads
+  Kokkos::View<Vector<T, Dim>, Memory> gravity;
+  bool moves_gravity = false;
+
+  int count() const { return static_cast<int>(loads.extent(0)); }
+  LoadsOfStep<T, Dim> of_step() const {
+    return {loads.data(), points.data(), clock.data(), moves_gravity ? gravity.data() : nullptr, count()};
+  }
+};
+
+}  // namespace mpm

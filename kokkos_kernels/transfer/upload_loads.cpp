@@ -1,0 +1,46 @@
+#include "transfer/upload_loads.hpp"
+
+#include <string>
+
+namespace mpm {
+namespace {
+
+template <class View, class Value>
+void fill_view(View& view, const std::string& label, const std::vector<Value>& values) {
+  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), values.size());
+  const auto host = Kokkos::create_mirror_view(view);
+  for (std::size_t n = 0; n < values.size(); ++n) host(n) = values[n];
+  Kokkos::deep_copy(view, host);
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads) {
+  s.timed = {};
+  if (loads.empty()) return;
+  std::vector<CurvePoint> points;
+  const auto number = [&](const NumberInput& in) {
+    const int first = static_cast<int>(points.size()), count = static_cast<int>(in.points.size());
+    points.insert(points.end(), in.points.begin(), in.points.end());
+    return TimedNumber{in.constant, first, count, -1, in.use, in.smooth};
+  };
+  std::vector<TimedLoad> timed;
+  for (const LoadInput& in : loads) {
+    s.timed.moves_gravity = s.timed.moves_gravity || in.target == LoadTarget::gravity;
+    timed.push_back({in.target, in.rigid, in.component, number(in.own), number(in.gravity), in.factor});
+  }
+  fill_view(s.timed.loads, "mpm::timed_loads", timed);
+  fill_view(s.timed.points, "mpm::timed_points", points);
+  s.timed.clock = decltype(s.timed.clock)("mpm::load_clock");
+  s.timed.gravity = decltype(s.timed.gravity)("mpm::timed_gravity");
+  const auto gravity = Kokkos::create_mirror_view(s.timed.gravity);
+  for (int d = 0; d < Dim; ++d) gravity()[d] = static_cast<T>(s.gravity[d]);
+  Kokkos::deep_copy(s.timed.gravity, gravity);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim) \
+  template void upload_loads(State<Space, T, Dim>&, const std::vector<LoadInput>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

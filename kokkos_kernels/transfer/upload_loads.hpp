@@ -1,0 +1,30 @@
+#pragma once
+// Loads that follow tables in time, from the host to a State.
+
+#include <vector>
+
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// A number that is constant, or the mean of a curve over each step.
+struct NumberInput {
+  double constant = 0;
+  std::vector<CurvePoint> points;  // empty: constant
+  CurveUse use = CurveUse::value;
+  bool smooth = false;
+};
+
+/// A component of what follows a table in time, as TimedLoad has it.
+struct LoadInput {
+  LoadTarget target = LoadTarget::gravity;
+  int rigid = 0, component = 0;
+  NumberInput own, gravity;
+  double factor = 0;
+};
+
+/// Puts the loads on the device; begin_loads sets their first values. s.gravity is that of the start.
+template <class Space, class T, int Dim>
+void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads);
+
+}  // namespace mpm

@@ -1,0 +1,63 @@
+#include "step/load_input.hpp"
+
+namespace mpm {
+namespace {
+
+std::vector<CurvePoint> points_of(const TimeTable& table, int d) {
+  std::vector<CurvePoint> points;
+  for (std::size_t k = 0; k < table.times.size(); ++k) points.push_back({table.times[k], table.values[k][d]});
+  return points;
+}
+
+/// Component d of a table, or a constant where there is none.
+NumberInput number_of(const std::optional<TimeTable>& table, double constant, int d,
+                      CurveUse use = CurveUse::value) {
+  NumberInput number{.constant = constant, .use = use};
+  if (table) number.points = points_of(*table, d), number.smooth = table->smooth;
+  return number;
+}
+
+TimeCurve curve_of(const std::vector<CurvePoint>& points, bool smooth) {
+  return {points.data(), static_cast<int>(points.size()), smooth};
+}
+
+}  // namespace
+
+std::vector<LoadInput> load_input(const Config& config, const std::vector<double>& carried) {
+  std::vector<LoadInput> loads;
+  const auto add = [&](LoadTarget target, int rigid, int d, NumberInput&& own, NumberInput&& gravity,
+                       double factor) {
+    loads.push_back({target, rigid, d, std::move(own), std::move(gravity), factor});
+  };
+  for (int d = 0; d < config.dim && config.gravity_table; ++d)
+    add(LoadTarget::gravity, 0, d, number_of(config.gravity_table, 0, d), {}, 0);
+  for (int r = 0; r < static_cast<int>(config.rigids.size()); ++r) {
+    const RigidConfig& rigid = config.rigids[r];
+    const bool weighs = rigid.motion == Motion::dynamic && (rigid.force_table || config.gravity_table);
+    for (int d = 0; d < config.dim; ++d) {
+      if (rigid.velocity_table) add(LoadTarget::velocity, r, d, number_of(rigid.velocity_table, 0, d), {}, 0);
+      if (rigid.displacement_table)
+        add(LoadTarget::velocity, r, d, number_of(rigid.displacement_table, 0, d, CurveUse::rate), {}, 0);
+      if (weighs)
+        add(LoadTarget::force, r, d, number_of(rigid.force_table, rigid.force[d], d),
+            number_of(config.gravity_table, config.gravity[d], d), carried[r]);
+    }
+  }
+  return loads;
+}
+
+double gravity_at(const Config& config, int d, double time) {
+  if (!config.gravity_table) return config.gravity[d];
+  const auto points = points_of(*config.gravity_table, d);
+  return curve_of(points, config.gravity_table->smooth).value(time);
+}
+
+double velocity_at(const RigidConfig& rigid, int d, double time) {
+  const auto& table = rigid.displacement_table ? rigid.displacement_table : rigid.velocity_table;
+  if (!table) return rigid.velocity[d];
+  const auto points = points_of(*table, d);
+  const TimeCurve curve = curve_of(points, table->smooth);
+  return rigid.displacement_table ? curve.rate(time) : curve.value(time);
+}
+
+}  // namespace mpm

@@ -1,0 +1,19 @@
+#pragma once
+// What follows tables in time, from the configuration to the kernels.
+
+#include <vector>
+
+#include "mpm/config.hpp"
+#include "transfer/upload_loads.hpp"
+
+namespace mpm {
+
+/// The loads of a run; carried[r]: the mass of rigid r whose weight its force includes [kg].
+std::vector<LoadInput> load_input(const Config& config, const std::vector<double>& carried);
+
+/// Component d of gravity [m/s2], and of the velocity [m/s] of a rigid whose motion is prescribed, at a time
+/// of the tables [s].
+double gravity_at(const Config& config, int d, double time);
+double velocity_at(const RigidConfig& rigid, int d, double time);
+
+}  // namespace mpm
