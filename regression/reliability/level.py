@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Random level ground with the stress k0: layers of several laws under a level of water must stay at rest.
 
-    level.py MPM [--count 50] [--seed 1] [--folder FOLDER] [--dims 2,3] [--precisions double,single]
+    level.py MPM [--count 50] [--seed 1] [--folder FOLDER] [--dims 2,3] [--precisions double,single] [--ranks 1,1,2,3]
 
 A deck has one to five layers, boxes or layers between levels, whose boundaries lie on edges of particles, with one to four particles a
 cell in each direction, a level of water anywhere or none, drained or undrained, on 1 to 3 ranks. In 200 steps no node may reach 1e-9 of the speed of the
@@ -108,6 +108,7 @@ def main():
     parser.add_argument("--folder")
     parser.add_argument("--dims", default="2,3")
     parser.add_argument("--precisions", default="double,single")
+    parser.add_argument("--ranks", default="1,1,2,3")
     given = parser.parse_args()
     base = pathlib.Path(given.folder or tempfile.mkdtemp(prefix="mpm_level_")).resolve()
     base.mkdir(parents=True, exist_ok=True)
@@ -116,7 +117,7 @@ def main():
     for number in range(given.count):
         draw = random.Random(1000 * given.seed + number)
         deck = Deck(draw, int(draw.choice(given.dims.split(","))))
-        precision, ranks = draw.choice(given.precisions.split(",")), draw.choice([1, 1, 2, 3])
+        precision, ranks = draw.choice(given.precisions.split(",")), int(draw.choice(given.ranks.split(",")))
         common = ["-backend", draw.choice(["serial", "openmp"]), "-precision", precision]
         prefix = ("mpirun", "-n", str(ranks), "--bind-to", "none") if ranks > 1 else ()
         try:
