@@ -37,7 +37,7 @@ LoadInput load_of(LoadTarget target, int rigid, int d, std::vector<CurvePoint> p
 template <int Dim>
 Cloud pressed_clay() {
   constexpr double h = 0.1;
-  const int width = Dim == 2 ? 14 : 8, depth = Dim == 2 ? 8 : 4;
+  const int width = Dim == 2 ? 14 : 10, depth = Dim == 2 ? 8 : 4;
   Cloud cloud;
   cloud.grid = grid_of<Dim>({width, depth + 6, 5}, h, Wall::roller);
   cloud.grid.walls[1] = {Wall::fixed, Wall::free};
