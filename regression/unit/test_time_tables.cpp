@@ -155,7 +155,10 @@ TEST_CASE("loads follow their tables on the device, however steps are launched",
       if (persistent && !can_persist(s)) {
         interpolate(s);
         s.summed = {true, s.soil_boundary, true};
-        if (!can_persist(s)) continue;  // in 3D a team may lack the memory
+        if (!can_persist(s)) {  // in 3D a team may lack the memory
+          states.pop_back();
+          continue;
+        }
       }
       upload_loads(s, loads_of_clay());
       timed_steps(s, dt, steps, most, persistent);
