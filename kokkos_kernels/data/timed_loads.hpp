@@ -34,6 +34,14 @@ struct TimedLoad {
   double factor;
 };
 
+/// What a load is on average from t over a step of dt [s]. Called, so that kernels that end a step need no
+/// registers for it.
+MPM_CALLED_FUNCTION inline double mean_of_load(TimedLoad& load, const CurvePoint* points, double t,
+                                               double dt) {
+  const double own = load.own.mean(points, t, dt);
+  return load.target == LoadTarget::force ? own + load.factor * load.gravity.mean(points, t, dt) : own;
+}
+
 /// The times of steps: step k of those that Control::steps counts begins at origin + (first + k) dt. With the
 /// same origin, a step begins at the same bits wherever the host looked at the steps before.
 struct LoadClock {
@@ -54,15 +62,14 @@ struct LoadsOfStep {
   /// Sets load n for the step that follows `steps` steps of a clock.
   KOKKOS_INLINE_FUNCTION void set(int n, const LoadClock& by, int steps, Rigid<Dim>* rigids) const {
     TimedLoad& load = loads[n];
-    const double dt = by.dt, t = by.origin + double(by.first + steps) * dt;
-    const double own = load.own.mean(points, t, dt);
+    const double value = mean_of_load(load, points, by.origin + double(by.first + steps) * by.dt, by.dt);
     const int d = load.component;
     if (load.target == LoadTarget::gravity)
-      (*gravity)[d] = static_cast<T>(own);
+      (*gravity)[d] = static_cast<T>(value);
     else if (load.target == LoadTarget::velocity)
-      rigids[load.rigid].velocity[d] = own;
+      rigids[load.rigid].velocity[d] = value;
     else
-      rigids[load.rigid].force[d] = own + load.factor * load.gravity.mean(points, t, dt);
+      rigids[load.rigid].force[d] = value;
   }
 };
 
