@@ -55,9 +55,7 @@ template <class Law, class R, class T, int Dim, int N, class Active, class Place
 KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stress, LawState<R, N>& state,
                                          const Increment<R, T, Dim>& by, const Active& active,
                                          [[maybe_unused]] const Place& place) {
-  if constexpr (is_light<Law>()) {
-    law.update(stress, state, by);  // inlined always
-  } else if constexpr (!goes_by_lane<Law>()) {
+  if constexpr (!goes_by_lane<Law>()) {
     if constexpr (std::is_same_v<Active, FirstLanes>)
       called_in_lanes(law, stress, state, by);
     else
@@ -200,7 +198,10 @@ struct LawLanes {
       if (Law::state()[k].used && carries(law, k)) load_field(soil.history.column[k], p, count, was[k]);
       state[k] = was[k];
     }
-    update_lanes(law, stress, state, by, active, [&](int l) { return place_of(l); });
+    if constexpr (is_light<Law>())
+      law.update(stress, state, by);  // a part of the caller
+    else
+      update_lanes(law, stress, state, by, active, [&](int l) { return place_of(l); });
     for (int k = 0; k < state.size && carries(law, k); ++k) {
       if (!changes_all<Law>() && !Law::state()[k].changes) continue;
       state[k] = kept(state[k], was[k]);
