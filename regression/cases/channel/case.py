@@ -13,6 +13,7 @@ from curves import last_frame
 from row import Row
 
 G, H, K = 100.0, 0.5, 10.0
+LONG = True
 YIELDS = "-fluid_model yield_stress_fluid -fluid_shear_modulus 2e4 -fluid_yield_stress 20 -fluid_consistency 10 -fluid_tension on"
 LAWS = {"newtonian": (0.0, 1.0, 0.02), "Bingham": (20.0, 1.0, 0.03), "Herschel-Bulkley": (20.0, 0.5, 0.03)}  # yield stress, n, tolerance
 RUNS = {"newtonian": "-fluid_model newtonian -fluid_viscosity 10 -time_end 0.5", "Bingham": YIELDS + " -time_end 0.8",

@@ -15,6 +15,7 @@ from curves import first_frame, last_frame, mesh_options, order
 from row import Row
 
 LOWER, HEIGHT = (0.3, -0.7), 50.0
+LONG = True
 CELLS = (10, 20, 40, 80)
 PRESSED = " -soil_young 1e5 -time_end 120 -output_interval 120"
 STRETCH = " -particle_domain stretch"

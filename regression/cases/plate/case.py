@@ -13,6 +13,7 @@ from curves import last_frame
 from row import Row
 
 U, NU = 0.1, 0.005
+LONG = True
 DISTANCES = (0.05, 0.1, 0.15)
 RUNS = {"d_20mm": "", "d_10mm": "-mesh_spacing 0.01"}
 
