@@ -23,7 +23,7 @@ def read_table():
             section = line[3:]
         elif line.startswith("| `-"):
             cells = [cell.strip() for cell in line.strip("|").split("|")]
-            if len(cells) == 4:  # the table of former names has fewer
+            if len(cells) > 3:  # the table of former names has fewer
                 table[cells[0].strip("`-")] = (section, cells[2])
     return table
 
