@@ -29,7 +29,7 @@ template <bool Sums, PatchKind kind, class Space, class T, int Dim>
 void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
   with_domain(s.soil.points, [&](auto domain) {
     if (light_kernels_do(s)) return launch_for<Sums, kind, LightMaterials, domain()>(s, dt, slots, part);
-    // Domains that stretch have no kernels of one heavy law: each takes a minute to compile.
+    // Domains that stretch have no kernels of one heavy law, which take long to compile.
     if constexpr (kind == PatchKind::common && domain() == ParticleDomain::fixed) {
       if (launch_heavy<Sums, kind>(HeavyMaterials{}, s, dt, slots, part)) return;
     }

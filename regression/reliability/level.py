@@ -7,16 +7,13 @@ A deck has one to five layers, boxes or layers between levels, whose boundaries 
 cell in each direction, a level of water anywhere or none, drained or undrained, on 1 to 3 ranks. In 200 steps no node may reach 1e-9 of the speed of the
 waves (1e-6 in single precision), and the stresses must be those of the formula at every particle.
 """
-import argparse
-import pathlib
-import random
 import sys
-import tempfile
 
 import h5py
 import numpy as np
 
 from folders import frames, fresh, rows, run
+from random_decks import draws_of, read_arguments
 
 
 def vector(values):
@@ -101,28 +98,18 @@ class Deck:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("binary")
-    parser.add_argument("--count", type=int, default=50)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--folder")
-    parser.add_argument("--dims", default="2,3")
-    parser.add_argument("--precisions", default="double,single")
-    parser.add_argument("--ranks", default="1,1,2,3")
-    given = parser.parse_args()
-    base = pathlib.Path(given.folder or tempfile.mkdtemp(prefix="mpm_level_")).resolve()
-    base.mkdir(parents=True, exist_ok=True)
+    given, base = read_arguments(__doc__, "level", ranks="1,1,2,3")
     empty = base / "empty.opts"
     empty.write_text("\n")
     for number in range(given.count):
-        draw = random.Random(1000 * given.seed + number)
+        draw = draws_of(given, number)
         deck = Deck(draw, int(draw.choice(given.dims.split(","))))
         precision, ranks = draw.choice(given.precisions.split(",")), int(draw.choice(given.ranks.split(",")))
         common = ["-backend", draw.choice(["serial", "openmp"]), "-precision", precision]
         prefix = ("mpirun", "-n", str(ranks), "--bind-to", "none") if ranks > 1 else ()
         try:
             folder = fresh(base / "run")
-            run(pathlib.Path(given.binary).absolute(), empty, folder, *deck.options, *common, prefix=prefix)
+            run(given.binary, empty, folder, *deck.options, *common, prefix=prefix)
             deck.check(folder, precision)
         except AssertionError as error:
             sys.exit(f"deck {number} of seed {given.seed}, {ranks} ranks: {str(error)[-1500:]}\n{' '.join([*deck.options, *common])}")

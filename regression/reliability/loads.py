@@ -8,15 +8,12 @@ straight or smooth, of components or of factors. The displacement of a driven bo
 at every row. A run that is cut in two by a checkpoint, and one in which a constant table takes the place of a constant, must give
 the same bits as the whole one; a run on two ranks the same to round-off.
 """
-import argparse
-import pathlib
-import random
 import sys
-import tempfile
 
 import numpy as np
 
 from folders import checkpoints, differences, frames, fresh, rows, run
+from random_decks import draws_of, read_arguments
 
 END = 0.2  # s
 
@@ -167,22 +164,13 @@ def check_constant(binary, empty, base, deck, common, whole, dim):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("binary")
-    parser.add_argument("--count", type=int, default=50)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--folder")
-    parser.add_argument("--dims", default="2,3")
-    parser.add_argument("--precisions", default="double,single")
-    given = parser.parse_args()
-    base = pathlib.Path(given.folder or tempfile.mkdtemp(prefix="mpm_loads_")).resolve()
-    base.mkdir(parents=True, exist_ok=True)
+    given, base = read_arguments(__doc__, "loads")
+    binary = given.binary
     empty = base / "empty.opts"
     empty.write_text("\n")
     listing = base / "failed.txt"
-    binary = pathlib.Path(given.binary).absolute()
     for number in range(given.count):
-        draw = random.Random(1000 * given.seed + number)
+        draw = draws_of(given, number)
         dim = int(draw.choice(given.dims.split(",")))
         deck = Deck(draw, base, dim)
         common = ["-backend", draw.choice(["serial", "openmp"]), "-precision", draw.choice(given.precisions.split(",")), "-p2g", "tile"]

@@ -8,16 +8,13 @@ loads, walls, contacts, damping and intervals of output, or removes a body. Chec
 checkpoint at any step; a first stage and a restart with -restart_change in the place of the second stage; stages that change
 nothing in the place of one run. On two ranks positions must be the same to round-off. Mass is lost by removal alone.
 """
-import argparse
-import pathlib
-import random
 import sys
-import tempfile
 
 import h5py
 import numpy as np
 
 from folders import checkpoints, contents, frames, fresh, rows, run
+from random_decks import draws_of, read_arguments
 
 DT, STEPS = 1e-3, (20, 60)  # s; least and most steps of a stage
 
@@ -181,19 +178,10 @@ class Checks:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("binary")
-    parser.add_argument("--count", type=int, default=50)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--folder")
-    parser.add_argument("--dims", default="2,3")
-    parser.add_argument("--precisions", default="double,single")
-    given = parser.parse_args()
-    base = pathlib.Path(given.folder or tempfile.mkdtemp(prefix="mpm_stages_")).resolve()
-    base.mkdir(parents=True, exist_ok=True)
-    checks = Checks(pathlib.Path(given.binary).absolute(), base)
+    given, base = read_arguments(__doc__, "stages")
+    checks = Checks(given.binary, base)
     for number in range(given.count):
-        draw = random.Random(1000 * given.seed + number)
+        draw = draws_of(given, number)
         deck = Deck(draw, int(draw.choice(given.dims.split(","))))
         precision = draw.choice(given.precisions.split(","))
         common = ["-backend", draw.choice(["serial", "openmp"]), "-precision", precision, "-p2g", "tile"]
