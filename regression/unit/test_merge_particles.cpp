@@ -5,11 +5,11 @@
 #include <map>
 
 #include "compare.hpp"
-#include "particle_sums.hpp"
 #include "physics/domain.hpp"
 #include "rebuild/merge_particles.hpp"
 #include "rebuild/shift_particle.hpp"
 #include "rebuild/split_particles.hpp"
+#include "split_soil.hpp"
 #include "transfer/save_state.hpp"
 
 using namespace mpm;
@@ -25,22 +25,13 @@ constexpr double k_spacing = 0.1;  // m
 template <int Dim>
 Cloud crowd(int seed) {
   Dice dice{std::mt19937_64(seed)};
-  Cloud cloud;
+  Cloud cloud = with_two_updates(seed);
   cloud.grid = grid_of<Dim>({12, 10, 6}, k_spacing, Wall::roller);
-  cloud.materials = clays();
-  cloud.gravity = {0, -10, -5};
-  cloud.affine = seed % 2 == 1;
-  cloud.flip_fraction = cloud.affine ? 0 : 1;
   for (const int material : {0, 1}) {
     const double from = material == 0 ? 1 : 5;
     cloud.bodies.push_back(
         body_of<Dim>(lattice<Dim>({from, 0, 1}, {from + 5, 6, 3}, 4, k_spacing), 2, k_spacing, material));
-    BodyInput& body = cloud.bodies.back();
-    for (std::size_t k = 0; k < body.position.size(); ++k)
-      body.particle_velocity.push_back(dice.uniform(-1, 1));
-    for (std::size_t k = 0; k < strength_of(body).size() * sym_size<Dim>; ++k)
-      body.stress.push_back(dice.uniform(-300, 300));
-    for (double& strength : strength_of(body)) strength = dice.uniform(1000, 3000);
+    give_own_state<Dim>(cloud.bodies.back(), dice);
   }
   cloud.stretch = cloud.split = true;
   return cloud;
