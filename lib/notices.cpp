@@ -80,6 +80,8 @@ void Notices::report_soil(const HistoryRow& row, const Config& config, std::vect
   for (const double energy : {e.kinetic, e.internal, e.gravity, e.rigids})
     passed_ = std::max(passed_, std::fabs(energy));
   constexpr double k_error = 0.05, k_update = 0.2;  // of the largest energy or work so far
+  constexpr long k_begun = 100;                     // steps, before which these are the work of few steps
+  if (row.step < k_begun) return;
   report(std::fabs(e.error) > k_error * passed_, " error",
          formatted("%.3g of %.3g J are missing in the energy balance (column energy_error): do not trust the "
                    "run; a smaller -time_courant or smaller cells may cure it",

@@ -37,8 +37,8 @@ TEST_CASE("gaps are cracks and holes, not the surface, nor where a rigid is", "[
   const Gaps hole = gaps_of({"....", "####", "#.##", "####"});
   CHECK(hole.empty == 1);
   CHECK(hole.filled == 11);
-  CHECK(gaps_of({".....", "#.###", "#####"}).empty == 0);                    // a notch
-  CHECK(gaps_of({".....", "##.##", "##.##", "##.##", "#####"}).empty == 2);  // a crack from above
+  CHECK(gaps_of({".....", ".....", "#.###", "#####"}).empty == 0);                    // a notch
+  CHECK(gaps_of({".....", ".....", "##.##", "##.##", "##.##", "#####"}).empty == 2);  // a crack from above
   CHECK(gaps_of({"##########", "######.###", "#####.####", "####.#####", "##########"}).empty == 3);
   CHECK(gaps_of({"##########", "###..#####", "###..#####", "##########"}).empty == 4);
   CHECK(gaps_of({"##########", "###...####", "###...####", "###...####", "##########"}).empty == 0);
