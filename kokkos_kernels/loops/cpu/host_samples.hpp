@@ -1,0 +1,74 @@
+#pragma once
+// What the particles of some cells take from the nodes, on a processor: written particle by particle, read by
+// lane.
+
+#include "base/lanes.hpp"
+#include "physics/advance.hpp"
+
+namespace mpm {
+
+/// The samples of up to `room` particles, in their order.
+template <class T, int Dim, int room>
+struct HostSamples {
+  static constexpr int W = native_lanes<T>, k_motion = NodeKinematics<Dim>::size;
+  using R = Lanes<T, W>;
+  static constexpr int k_node = k_motion <= 4 ? 4 : 8;  // values of a node, with a gap in 3D
+  using Node = Lanes<T, k_node>;
+  /// Whether the values of a particle lie together, and permutations turn them into lanes. The more values,
+  /// the more permutations: in 3D each value is stored where its lane reads it.
+  static constexpr bool k_together = Dim == 2;
+  static constexpr int k_pitch = room + W;  // not a power of two: values would drive each other out
+
+  using Together = T[k_pitch][4];
+  template <int values>
+  using Apart = T[values][k_pitch];
+  alignas(R) std::conditional_t<k_together, Together, Apart<k_motion>> kinematics;  // m/s, m/s2
+  alignas(R) std::conditional_t<k_together, Together, Apart<Dim * Dim>> gradient;  // 1/s, L_id at d * Dim + i
+
+  /// Particle n: the values of NodeKinematics, and their gradients along each axis [1/cell].
+  KOKKOS_FORCEINLINE_FUNCTION void put(int n, const Node& value, const Node (&slope)[Dim], T inv_spacing) {
+    if constexpr (k_together) {
+      value.store(kinematics[n]);
+      unrolled<Dim>([&](auto d) { (part_of<Dim, 0>(slope[d]) * inv_spacing).store(gradient[n] + d * Dim); });
+    } else {
+      for (int k = 0; k < k_motion; ++k) kinematics[k][n] = value[k];
+      for (int d = 0; d < Dim; ++d)
+        for (int i = 0; i < Dim; ++i) gradient[d * Dim + i][n] = slope[d][i] * inv_spacing;
+    }
+  }
+  /// The particles from n on, by lane.
+  KOKKOS_FORCEINLINE_FUNCTION GridSample<R, Dim> get(int n) const {
+    R motion[k_motion], by_axis[Dim * Dim];
+    if constexpr (k_together) {
+      load_groups(kinematics[n], motion);
+      load_groups(gradient[n], by_axis);
+    } else {
+      for (int k = 0; k < k_motion; ++k) motion[k] = R::load(kinematics[k] + n);
+      for (int k = 0; k < Dim * Dim; ++k) by_axis[k] = R::load(gradient[k] + n);
+    }
+    GridSample<R, Dim> t;
+    for (int k = 0; k < k_motion; ++k) t.kinematics[k] = motion[k];
+    for (int k = 0; k < Dim * Dim; ++k) t.gradient[k % Dim][k / Dim] = by_axis[k];
+    return t;
+  }
+  /// Their dilatation rates [1/s].
+  KOKKOS_FORCEINLINE_FUNCTION R rates(int n) const {
+    const GridSample<R, Dim> t = get(n);
+    R rate = 0;
+    for (int d = 0; d < Dim; ++d) rate += t.gradient[d][d];
+    return rate;
+  }
+  /// That of particle n.
+  T rate(int n) const {
+    T rate = 0;
+    for (int d = 0; d < Dim; ++d) {
+      if constexpr (k_together)
+        rate += gradient[n][d * (Dim + 1)];
+      else
+        rate += gradient[d * (Dim + 1)][n];
+    }
+    return rate;
+  }
+};
+
+}  // namespace mpm
