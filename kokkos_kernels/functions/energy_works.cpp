@@ -30,8 +30,7 @@ struct WorkAtNodes {
       const double carried =
           in_water && heavy ? -double(update.nodes.displaced(i, DisplacedTerms::mass)) * update.g[d] : 0;
       const double force = heavy ? double(update.nodes.soil(i, S::force + d)) : 0, weight = m_i * g[d];
-      const double damped =
-          -double(update.damping) * Kokkos::fabs(force + weight) * (v_old > 0 ? 1 : (v_old < 0 ? -1 : 0));
+      const double damped = -m_i * double(update.braking(T((force + weight) / m_i), T(v_old)));
       const double way = dt * (v_old + v) / 2;
       sum.internal += (force - carried) * way;
       sum.gravity += (weight + carried) * way;
