@@ -1,5 +1,8 @@
 #include "notices.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/text.hpp"
 
 namespace mpm {
@@ -57,7 +60,36 @@ std::vector<std::string> Notices::report(const HistoryRow& row, const Config& co
            "soil has come to the top of the mesh, which is a lid (" + lid +
                " is a roller by default): a higher mesh, or " + lid + " free, lets it go on");
   }
+  report_soil(row, config, &lines);
   return lines;
+}
+
+/// What the soil as a whole tells of the trust that it deserves.
+void Notices::report_soil(const HistoryRow& row, const Config& config, std::vector<std::string>* lines) {
+  const auto report = [&](bool happened, const char* what, const std::string& line) {
+    if (happened && told_.insert(what).second)
+      lines->push_back(formatted("step %ld, time %.6g s: ", row.step, row.time) + line);
+  };
+  constexpr double k_gaps = 0.01;  // of the cells that hold soil
+  report(row.empty_cells > k_gaps * row.filled_cells, " gaps",
+         formatted("%ld cells inside the soil hold no particle, and %ld hold some (column empty_cells): the "
+                   "soil comes apart; docs/flow.md tells which options keep it together",
+                   row.empty_cells, row.filled_cells));
+  if (!config.output.energy) return;
+  const EnergyRow& e = row.energy;
+  for (const double energy : {e.kinetic, e.internal, e.gravity, e.rigids})
+    passed_ = std::max(passed_, std::fabs(energy));
+  constexpr double k_error = 0.05, k_update = 0.2;  // of the largest energy or work so far
+  constexpr long k_begun = 100;                     // steps, before which these are the work of few steps
+  if (row.step < k_begun) return;
+  report(std::fabs(e.error) > k_error * passed_, " error",
+         formatted("%.3g of %.3g J are missing in the energy balance (column energy_error): do not trust the "
+                   "run; a smaller -time_courant or smaller cells may cure it",
+                   std::fabs(e.error), passed_));
+  report(-e.update > k_update * passed_, " update",
+         formatted("the velocity update has taken %.3g of %.3g J (column work_update), as a damping of the "
+                   "mesh: smaller cells take less; -velocity_update flip takes least and keeps noise",
+                   -e.update, passed_));
 }
 
 }  // namespace mpm

@@ -18,8 +18,11 @@ class Notices {
   std::vector<std::string> report(const HistoryRow& row, const Config& config);
 
  private:
-  std::set<std::string> told_;              // what happened, to which body
+  void report_soil(const HistoryRow& row, const Config& config, std::vector<std::string>* lines);
+
+  std::set<std::string> told_;             // what happened, to which body
   std::map<std::string, long> particles_;  // of each body, when its first row was seen
+  double passed_ = 0;                      // J, the largest energy or work so far
 };
 
 }  // namespace mpm

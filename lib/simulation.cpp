@@ -150,6 +150,7 @@ PetscErrorCode Simulation::Body::write_row() {
   if (config.balance) PetscCall(stepper->unbalanced_ratio(row.time, &row.unbalanced_ratio));
   last_unbalanced = row.unbalanced_ratio;
   for (std::size_t k = 0; k < rigid_zero.size(); ++k) row.rigids[k / 3].displacement[k % 3] -= rigid_zero[k];
+  last_energy = row.energy;
   look_for_end(row);
   PetscCall(watch(row));
   PetscCall(agree(comm, rank_of(comm) == 0 ? history.write(row) : PETSC_SUCCESS));
@@ -264,6 +265,7 @@ PetscErrorCode Simulation::Body::finish() {
   PetscCall(frames.settle());
   PetscCall(agree(comm, history.close()));
   if (outcome == Outcome::finished) PetscCall(agree(comm, forget_later()));
+  if (config.output.energy) PetscCall(log.line(format_energy(last_energy)));
   PetscCall(report_performance());
   PetscCall(log.print("%s after %ld steps at time %g s; results are in %s", word_of(outcome), step,
                       schedule.time_of(step), config.output.directory.c_str()));

@@ -75,6 +75,7 @@ struct Simulation::Body {
   int stage = 0;                                // index into report.stages
   Schedule::Begin stage_begin;                  // where it began
   bool stage_over = false;                      // the event that ends it has come
+  EnergyRow last_energy{};                      // of the last row
   double last_unbalanced = 0;                   // -, of the last row
   RunState part;                                // where the present stepper began
   std::vector<double> rigid_zero, rigid_begin;  // m, 3 a rigid: displacements that the history counts from,

@@ -59,7 +59,7 @@ class Scales:
                 "pore_pressure": self.stress, "excess_pore_pressure": self.stress, "plastic_strain": self.strain}.get(name, 0)
 
     def of_column(self, name):
-        if name.endswith("kinetic_energy"):
+        if name.endswith("kinetic_energy") or name.startswith(("energy_", "work_")):
             return self.momentum * self.velocity / 2
         if "momentum" in name:
             return self.momentum

@@ -40,6 +40,9 @@ struct SavedImpulse {
 /// have left, and those that others took up.
 inline constexpr int k_lost = 9, k_lost_left = 0, k_lost_merged = 6;
 
+/// Numbers of SavedState::energy.
+inline constexpr int k_saved_energy = 8;
+
 struct SavedState {
   double bound = 0, increment = 0;  // cells, of Control; the largest of all ranks
   double margin = 0;                // cells, that the bound was held against
@@ -54,6 +57,8 @@ struct SavedState {
   int alone_known = 0;       // 1: `alone` holds; 0: the next step finds it
   std::vector<SavedRigid> rigids;
   SavedImpulse impulse;
+  std::vector<double> energy;  // k_saved_energy numbers where the run has an energy balance: the works, and
+                               // kinetic and elastic energy at the start [J], of all ranks; else empty
 };
 
 }  // namespace mpm

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "data/energy_works.hpp"
 #include "data/nodes.hpp"
 #include "data/soil_batches.hpp"
 #include "data/split_patches.hpp"
@@ -88,6 +89,8 @@ struct State {
   bool soil_boundary = false;   // some contact needs the soil's boundary at the nodes
   bool shear_fraction = false;  // some contact needs the soil's strength at the nodes
   bool has_friction = false;    // some contact has Coulomb friction
+
+  EnergyWorks<Space, T, Dim> energy;  // in use where the run asks for an energy balance
 };
 
 /// Dilatation rates of particles [1/s].

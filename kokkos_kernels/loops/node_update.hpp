@@ -91,6 +91,13 @@ struct UpdateNodes {
   /// Gravity in this step [m/s2].
   KOKKOS_INLINE_FUNCTION Vector<T, Dim> gravity() const { return timed_g == nullptr ? g : *timed_g; }
 
+  /// What local damping takes of an acceleration a at the velocity v_old, by number or by lane.
+  template <class R>
+  KOKKOS_FORCEINLINE_FUNCTION R braking(R a, R v_old) const {
+    const R size = Kokkos::fabs(a), still = k_still<T> * dt * size;
+    return damping * size * select(v_old > still, R(1), select(v_old < -still, R(-1), R(0)));
+  }
+
   /// Velocities of a node before and after the step, without walls and contact, by number or by lane. inv_m:
   /// 1 / its mass
   template <class R>
@@ -101,8 +108,7 @@ struct UpdateNodes {
     for (int d = 0; d < Dim; ++d) {
       v_old[d] = soil[S::momentum + d] * inv_m;           // Eq. (6)
       R a = soil[S::force + d] * inv_m_force + g_now[d];  // Eq. (8)
-      const R size = Kokkos::fabs(a), still = k_still<T> * dt * size;
-      a -= damping * size * select(v_old[d] > still, R(1), select(v_old[d] < -still, R(-1), R(0)));
+      a -= braking(a, v_old[d]);
       v[d] = v_old[d] + a * dt;  // Eq. (9)
     }
   }

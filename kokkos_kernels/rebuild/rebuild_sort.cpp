@@ -343,6 +343,10 @@ void sort_and_list(State<Space, T, Dim>& s) {
         nodes + (s.nodes.rigid.extent(1) > 0 ? nodes / 16 : 0));
   if (s.mass_normals && s.plan.writes_sums)
     Kokkos::deep_copy(s.space, s.nodes.rigid, T(0));  // only those near rigids are written
+  if (s.energy.on) {
+    ensure(s.energy.stress, s.soil.points.count), ensure(s.energy.strain, s.soil.points.count);
+    ensure(s.energy.volume, s.soil.points.count);
+  }
   if (s.batches.in_use()) plan_batches(s);
   const auto control = s.control;
   Kokkos::parallel_for(

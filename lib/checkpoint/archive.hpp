@@ -48,6 +48,7 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
     (*vectors[k % k_motion / 3])[k % 3] = motion[k];
   }
   archive.value("particles", c.state.particles), archive.list("lost", c.state.lost);
+  archive.list("energy", c.state.energy);
   archive.value("alone_known", c.state.alone_known), archive.list("alone", c.state.alone);
   archive.list("bounds", c.state.bounds), archive.list("owners", c.state.owners);
   archive.list("impulse_address", c.state.impulse.address);

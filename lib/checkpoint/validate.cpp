@@ -73,6 +73,8 @@ std::string state_fault(const SavedState& state, const Config& config) {
     return "a checkpoint with a sound margin and due_in";
   if (state.lost.size() != config.bodies.size() * k_lost || state.particles < 0)
     return "a checkpoint with a sound account of what has left";
+  if (state.energy.size() != (config.output.energy ? k_saved_energy : 0))
+    return "a checkpoint with an energy balance where the run has one";
   for (const long address : state.alone)
     if (!in_mesh(address, config.mesh, config.dim, 0)) return "a checkpoint with a sound alone";
   const std::size_t rigids = config.rigids.size();
@@ -89,6 +91,8 @@ std::string state_fault(const SavedState& state, const Config& config) {
     for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse, &rigid.binned})
       if (!std::all_of(vector->begin(), vector->end(), finite)) return "a checkpoint with sound rigids";
   if (!std::all_of(state.lost.begin(), state.lost.end(), finite)) return "a checkpoint with a sound lost";
+  if (!std::all_of(state.energy.begin(), state.energy.end(), finite))
+    return "a checkpoint with a sound energy";
   if (!std::all_of(state.bounds.begin(), state.bounds.end(), finite)) return "a checkpoint with sound bounds";
   return points_fault(state.soil, config, "soil");
 }

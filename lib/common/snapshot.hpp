@@ -80,6 +80,22 @@ struct RigidRow {
   Vec3 force{};         // N, of the soil on it, mean over the interval since the last row
 };
 
+/// The energy balance of the soil: kinetic + internal + lost - start = gravity + rigids + contact + damping +
+/// update + error [J]. Works are those since the start.
+struct EnergyRow {
+  double kinetic = 0;     // of the particles
+  double internal = 0;    // work of the stress: elastic and dissipated
+  double elastic = 0;     // what the stress can give back
+  double dissipated = 0;  // internal less what the elastic energy has grown
+  double lost = 0;        // kinetic, of particles that left, and of merging
+  double gravity = 0;     // work of gravity, and of the water that carries soil
+  double rigids = 0;      // of the rigids on the soil
+  double contact = 0;     // of walls and contact beyond that: what friction and impact take
+  double damping = 0;     // of -damping
+  double update = 0;      // of the velocity update: the kinetic energy that it takes
+  double error = 0;       // what is missing
+};
+
 /// One row of history.csv.
 struct HistoryRow {
   long step = 0;
@@ -89,6 +105,8 @@ struct HistoryRow {
   std::array<std::array<Vec3, 2>, 3> walls{};  // N, of the soil on each side of the mesh, now
   int stage = 0;                               // number of the stage, from 1 on; 0: the run has none
   double unbalanced_ratio = 0;                 // -, where some stage ends by equilibrium
+  long filled_cells = 0, empty_cells = 0;      // cells that hold soil; gaps between them
+  EnergyRow energy{};                          // where the run asks for it
 };
 
 }  // namespace mpm

@@ -280,6 +280,9 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
              .range = k_positive,
              .standard = listing ? "a fiftieth of time_end" : ""},
             output.interval);
+  in.word({.name = "output_energy",
+           .meaning = "on: the history has an energy balance, which takes time in each step"},
+          Words<bool>{{"on", true}, {"off", false}}, output.energy);
   in.number({.name = "history_interval",
              .meaning = "time between rows of the history",
              .unit = "s",
@@ -353,6 +356,8 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   read_physics(in, config);
   check_batches(in, config);
   read_output(in, options_file, config.time.end, config.output);
+  if (config.output.energy && config.device_memory_limit)
+    in.reject("output_energy", "off where -device_memory_limit sends the soil in batches");
   read_named(in, sound ? &config.mesh : nullptr, config);
   limit_courant(in, config);
   const auto named_nodes = [](const auto& thing) { return thing.name == k_nodes; };

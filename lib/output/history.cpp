@@ -10,12 +10,26 @@
 
 #include "common/checksum.hpp"
 #include "common/numbers.hpp"
+#include "common/text.hpp"
 #include "output/files.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr const char* k_axis[3] = {"x", "y", "z"};
+
+/// The columns of the energy balance.
+struct EnergyColumn {
+  const char* name;
+  double EnergyRow::*value;
+};
+constexpr EnergyColumn k_energy_columns[] = {
+    {"energy_kinetic", &EnergyRow::kinetic}, {"energy_internal", &EnergyRow::internal},
+    {"energy_elastic", &EnergyRow::elastic}, {"energy_dissipated", &EnergyRow::dissipated},
+    {"energy_lost", &EnergyRow::lost},       {"work_gravity", &EnergyRow::gravity},
+    {"work_rigids", &EnergyRow::rigids},     {"work_contact", &EnergyRow::contact},
+    {"work_damping", &EnergyRow::damping},   {"work_update", &EnergyRow::update},
+    {"energy_error", &EnergyRow::error}};
 
 /// Appends ",a,b[,c]".
 void append(std::string& row, const Vec3& vector, int dim) {
@@ -61,6 +75,9 @@ std::string history_header(const Config& config) {
   for_each_wall(config, [&](int d, int side) {
     append(header, std::string("wall_") + k_axis[d] + (side == 0 ? "min" : "max") + "_force_", config.dim);
   });
+  header += ",empty_cells";
+  if (config.output.energy)
+    for (const EnergyColumn& column : k_energy_columns) header += std::string(",") + column.name;
   if (!config.stages.empty()) header += ",stage";
   if (config.balance) header += ",unbalanced_ratio";
   return header;
@@ -87,9 +104,20 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
     for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})
       append(text, *vector, dim);
   for_each_wall(config, [&](int d, int side) { append(text, row.walls[d][side], dim); });
+  text += "," + std::to_string(row.empty_cells);
+  if (config.output.energy)
+    for (const EnergyColumn& column : k_energy_columns) text += "," + text_of(row.energy.*column.value);
   if (!config.stages.empty()) text += "," + std::to_string(row.stage);
   if (config.balance) text += "," + text_of(row.unbalanced_ratio);
   return text;
+}
+
+std::string format_energy(const EnergyRow& e) {
+  return formatted(
+      "energy (J): kinetic %.4g, elastic %.4g, dissipated in the soil %.4g, lost with particles %.4g; work of "
+      "gravity %.4g, rigids %.4g, walls and contact %.4g, damping %.4g, velocity update %.4g; missing %.3g",
+      e.kinetic, e.elastic, e.dissipated, e.lost, e.gravity, e.rigids, e.contact, e.damping, e.update,
+      e.error);
 }
 
 HistoryMark mark_of(const std::string& path, long bytes, std::string* text) {

@@ -15,6 +15,9 @@ namespace mpm {
 /// each side of the mesh that is not free.
 std::string history_header(const Config& config);
 
+/// The energy balance as a line for the log.
+std::string format_energy(const EnergyRow& energy);
+
 /// A row in the same order, without a line end; enough digits to read the same numbers back.
 std::string format_history_row(const HistoryRow& row, const Config& config);
 

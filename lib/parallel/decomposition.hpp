@@ -94,6 +94,8 @@ class Decomposition {
   const Owners& owners() const { return owners_; }
   /// Whether the rigids' impulses are sums over all ranks already.
   bool forces_shared() const { return forces_shared_; }
+  /// Whether State::rigid_force is what this rank answers for: its own part, or on rank 0 that of all.
+  bool counts_forces() const { return !forces_shared_ || rank_ == 0; }
   WorkClock& clock() { return clock_; }
   /// The path of halo messages, in words.
   std::string halo_words(const State_& s) const;

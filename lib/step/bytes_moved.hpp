@@ -49,6 +49,17 @@ double bytes_to_particles(const State<Space, T, Dim>& s) {
   return p.count * particle + s.patches.node_count() * double(sizeof(T) * NodeKinematics<Dim>::size);
 }
 
+/// A third of what the energy balance moves in its three calls of a step: stress and volume before the step and
+/// the strain are written and read once, the motion of the nodes and their sums are read.
+template <class Space, class T, int Dim>
+double bytes_of_energy(const State<Space, T, Dim>& s) {
+  const auto& p = s.soil.points;
+  const double place = sizeof(*p.coordinate.data()) + sizeof(*p.cell.data()) + sizeof(*p.body.data());
+  const double particle = place + 6 * sizeof(SymTensor<T, Dim>) + 4 * sizeof(T);
+  const double node = sizeof(T) * (2 * NodeKinematics<Dim>::size + SoilTerms<Dim>::size);
+  return (p.count * particle + s.patches.node_count() * node) / 3;
+}
+
 /// Bytes that one call of a function must move.
 template <class Space, class T, int Dim>
 double bytes_of(StepPhase f, const State<Space, T, Dim>& s) {
@@ -70,6 +81,7 @@ double bytes_of(StepPhase f, const State<Space, T, Dim>& s) {
       return (ahead ? 2 : 1) * sums + s.patches.node_count() * double(sizeof(T) * NodeKinematics<Dim>::size);
     case StepPhase::particles: return bytes_to_particles(s) + (ahead ? soil_sums : 0);
     case StepPhase::rigids: return s.rigid_moves ? points * (place + home) : 0;
+    case StepPhase::energy: return bytes_of_energy(s);
     case StepPhase::persistent:
       return bytes_of(StepPhase::rigid_to_nodes, s) + bytes_of(StepPhase::nodes, s) +
              bytes_of(StepPhase::particles, s) + bytes_of(StepPhase::rigids, s);

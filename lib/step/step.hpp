@@ -6,6 +6,7 @@
 #include "functions/step_kernels.hpp"
 #include "functions/velocity_update.hpp"
 #include "loops/interpolation.hpp"
+#include "functions/energy_works.hpp"
 #include "parallel/decomposition.hpp"
 #include "rebuild/batches.hpp"
 #include "step/overlap_stream.hpp"
@@ -152,8 +153,12 @@ struct Step {
     if (ranks) PetscCall(ranks->add_soil(s));                        //   the sum over ranks
     PetscCall(complete_nodes(s.space));                              //   strength, particles that are alone
     PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt); }));  // 4 velocities, walls, contact
-    PetscCall(run(StepPhase::particles, [&] { return update_soil(); }));      // 5 stress, movement
+    if (s.energy.on) PetscCall(run(StepPhase::energy, [&] { add_node_works(s, dt); }));
+    PetscCall(run(StepPhase::particles, [&] { return update_soil(); }));  // 5 stress, movement
+    if (s.energy.on) PetscCall(run(StepPhase::energy, [&] { add_stress_work(s); }));
     PetscCall(run(StepPhase::rigids, [&] { return update_rigids(false); }));  // 6 move the rigid bodies
+    if (s.energy.on)
+      PetscCall(run(StepPhase::energy, [&] { add_rigid_work(s, !ranks || ranks->counts_forces()); }));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 

@@ -11,6 +11,7 @@ const char* name_of(StepPhase f) {
     case StepPhase::particles: return "stress update, movement";
     case StepPhase::rigids: return "move rigid bodies";
     case StepPhase::persistent: return "persistent steps";
+    case StepPhase::energy: return "works of the energy balance";
     default: return "rebuild bins and lists";
   }
 }

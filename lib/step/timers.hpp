@@ -10,10 +10,20 @@
 
 namespace mpm {
 
-/// The functions of a step, by the paper's names; and all functions of the persistent steps of a small
-/// problem together.
-enum class StepPhase { reset, rigid_to_nodes, soil_to_nodes, nodes, particles, rigids, persistent, rebuild };
-inline constexpr int k_functions = 8;
+/// The functions of a step, by the paper's names; all functions of the persistent steps of a small problem
+/// together; and the works of an energy balance.
+enum class StepPhase {
+  reset,
+  rigid_to_nodes,
+  soil_to_nodes,
+  nodes,
+  particles,
+  rigids,
+  persistent,
+  energy,
+  rebuild
+};
+inline constexpr int k_functions = 9;
 
 const char* name_of(StepPhase f);
 

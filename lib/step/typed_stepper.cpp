@@ -178,6 +178,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   // On several ranks the pressure of a cell is averaged once all its particles are here.
   state_.f_bar_fraction = model.owners.empty() ? f_bar : 0;
   state_.keeps_stress = model.from_run;
+  state_.energy.on = config_.output.energy;
   Fault fault{};
   PetscCallCXX(upload_loads(state_, load_input(config_, carried)));
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
@@ -189,6 +190,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
     PetscCallCXX(PetscCall(ranks_->start(comm_, config_.partition, model.owners, state_)));
   }
   state_.keeps_stress = false;
+  if (config_.output.energy && failure->what.empty()) PetscCallCXX(PetscCall(begin_energy()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -290,6 +292,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscCallCXX(*saved = save_state(state_));
   PetscCall(save_for_starts(saved));
   saved->particles = ids();
+  PetscCall(save_energy(saved));
   if (ranks_) PetscCall(gather_strays(saved));
   if (ranks_) PetscCall(ranks_->save(saved));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -309,6 +312,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   if (ranks_ && rank_of(comm_) > 0) std::fill(saved.lost.begin(), saved.lost.end(), 0);  // rank 0 has them
   Failure unfit;
   PetscCallCXX(unfit.what = take_saved(state_, saved));
+  restore_energy(saved);
   double lost = 0;
   for (const Lost& of_body : state_.strays.lost) lost += of_body.count + of_body.merged;
   if (state_.soil.points.splits) children_ = std::max(0L, saved.particles - total_);
@@ -378,7 +382,8 @@ std::vector<FunctionTime> TypedStepper<Space, T, Dim>::times() const {
   std::vector<FunctionTime> times;
   for (int n = 0; n < k_functions; ++n) {
     const StepPhase f = static_cast<StepPhase>(n);
-    if (f == StepPhase::persistent && timers_.calls(f) == 0) continue;
+    const bool seldom = f == StepPhase::persistent || f == StepPhase::energy;
+    if (seldom && timers_.calls(f) == 0) continue;
     double figures[2] = {timers_.seconds(f), timers_.calls(f) * bytes_of(f, state_)};
     if (ranks_) MPI_Allreduce(MPI_IN_PLACE, figures, 2, MPI_DOUBLE, MPI_MAX, comm_);
     times.push_back({name_of(f), timers_.calls(f), figures[0], figures[1]});

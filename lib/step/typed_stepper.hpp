@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/material_table.hpp"
+#include "functions/energy_works.hpp"
 #include "functions/grid_velocity.hpp"
 #include "functions/wall_force.hpp"
 #include "parallel/kept_by_id.hpp"
@@ -60,6 +61,11 @@ class TypedStepper final : public Stepper {
   PetscErrorCode sum_soil();
   void set_gravity(double time);
   PetscErrorCode measure_body(int body, BodyRow* row);
+  PetscErrorCode begin_energy();
+  PetscErrorCode measure_energy(HistoryRow* row);
+  PetscErrorCode count_cells(HistoryRow* row) const;
+  PetscErrorCode save_energy(SavedState* saved) const;
+  void restore_energy(const SavedState& saved);
   PetscErrorCode note_out_of_order(int body, BodyRow* row);
   PetscErrorCode gather_strays(SavedState* saved) const;
   double sum_over_ranks(double own) const;
@@ -90,6 +96,7 @@ class TypedStepper final : public Stepper {
   std::vector<long> first_;                                          // id of the first particle of each body
   long total_ = 0;                                                   // particles of all ranks at the start
   long children_ = 0;                                                // that splitting has added, on all ranks
+  double kinetic_at_start_ = 0, elastic_at_start_ = 0;  // J, of all ranks, where there is an energy balance
   KeptById heights_;  // m, absolute, where each particle was created
 };
 

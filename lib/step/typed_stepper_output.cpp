@@ -42,6 +42,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
     PetscCall(measure_body(b, &body));
     row->bodies.push_back(body);
   }
+  if (state_.energy.on) PetscCall(measure_energy(row));
+  PetscCall(count_cells(row));
   row->walls = wall_forces(state_);
   if (ranks_)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, row->walls[0][0].data(), 18, MPI_DOUBLE, MPI_SUM, comm_));

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "functions/energy_works.hpp"
 #include "functions/step_kernels.hpp"
 #include "physics/materials/any.hpp"
 #include "transfer/download.hpp"
@@ -74,6 +75,7 @@ struct Cloud {
   int xpic_order = 0;
   bool affine = false;
   bool stretch = false, split = false;  // the domains of particles; those that are too long
+  bool energy = false;                  // an energy balance
   double memory_limit = 0;  // bytes, for batches of the soil
 };
 
@@ -92,8 +94,10 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typenam
   s.damping = cloud.damping;
   s.f_bar_fraction = cloud.f_bar_fraction;
   s.batches.limit = cloud.memory_limit;
+  s.energy.on = cloud.energy;
   if (upload(s, cloud.grid, cloud.materials, cloud.bodies, cloud.rigids).kind != FaultKind::none)
     throw std::runtime_error("a particle of the test lies outside the mesh");
+  if (cloud.energy) begin_works(s);
   return s;
 }
 

@@ -1,5 +1,6 @@
 // Energy without a source, Courant numbers, and what the log tells once.
 
+#include <algorithm>
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
@@ -159,5 +160,34 @@ TEST_CASE("the log tells once what happens to soil for the first time", "[energy
   const auto lines = notices.report(row, config);
   REQUIRE(lines.size() == 2);
   CHECK(lines[1].find("-mesh_ymax") != std::string::npos);
+  CHECK(notices.report(row, config).empty());
+}
+
+TEST_CASE("the log tells once of gaps, of energy that is missing, and of what the velocity update damps",
+          "[energy_watch]") {
+  Config config = config_of_one_body();
+  config.output.energy = true;
+  Notices notices;
+  HistoryRow row = row_of(1, 100);
+  const auto told = [&](const std::string& what) {
+    const auto lines = notices.report(row, config);
+    return std::count_if(lines.begin(), lines.end(),
+                         [&](const std::string& line) { return line.find(what) != std::string::npos; });
+  };
+  row.step = 200;
+  row.filled_cells = 1000, row.empty_cells = 10;
+  row.energy.gravity = 100, row.energy.kinetic = 80, row.energy.error = -5, row.energy.update = -20;
+  CHECK(notices.report(row, config).empty());  // at the limits
+  row.empty_cells = 11;
+  CHECK(told("hold no particle") == 1);
+  CHECK(told("hold no particle") == 0);
+  row.energy.error = -5.1;
+  row.step = 50;
+  CHECK(told("energy_error") == 0);  // the works of few steps
+  row.step = 200;
+  CHECK(told("energy_error") == 1);
+  row.energy.update = -21;
+  CHECK(told("work_update") == 1);
+  row.energy.update = -50, row.energy.error = 50;
   CHECK(notices.report(row, config).empty());
 }

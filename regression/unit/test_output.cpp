@@ -98,6 +98,8 @@ HistoryRow some_row() {
   row.bodies[0].strays = 7, row.bodies[0].limited = 1, row.bodies[0].put_back = 2;
   row.walls[0][0] = {-3.25, 0, 0}, row.walls[1][1] = {0, -1e5, 0};
   row.rigids[0] = {{0, -0.02, 0}, {0, -0.1, 0}, {1.5, 8765.4321, 0}};
+  row.empty_cells = 6, row.filled_cells = 100;
+  row.energy.kinetic = 2.5, row.energy.error = -0.125;
   return row;
 }
 
@@ -206,7 +208,13 @@ TEST_CASE("the history's columns are those of the manual", "[output]") {
         "mass,soil_lost_mass,soil_lost_energy,soil_lost_momentum_x,soil_lost_momentum_y,soil_strays,soil_"
         "limited,soil_put_back,plate_x,plate_y,plate_velocity_x,plate_velocity_y,plate_force_x,plate_force_y,"
         "wall_xmin_force_x,wall_xmin_force_y,wall_xmax_force_x,wall_xmax_force_y,wall_ymin_force_x,wall_ymin_"
-        "force_y,wall_ymax_force_x,wall_ymax_force_y");
+        "force_y,wall_ymax_force_x,wall_ymax_force_y,empty_cells");
+  Config balanced = footing_like("", 2);
+  balanced.output.energy = true;
+  CHECK_THAT(history_header(balanced),
+             ContainsSubstring(",empty_cells,energy_kinetic,energy_internal,energy_elastic,energy_dissipated,"
+                               "energy_lost,work_gravity,work_rigids,work_contact,work_damping,work_update,"
+                               "energy_error"));
   CHECK_THAT(history_header(footing_like("", 3)),
              ContainsSubstring("soil_ymax,soil_zmin,soil_zmax,soil_kinetic_energy"));
   CHECK_THAT(history_header(footing_like("", 3)),
@@ -220,13 +228,20 @@ TEST_CASE("a row of the history reads back to the same numbers", "[output]") {
   const HistoryRow row = some_row();
   const auto words = split(format_history_row(row, footing_like("", 2)), ',');
   const double expected[] = {
-      12,  row.time, row.dt, row.wall_time, 0,     3,     -1e-300, 4.1,  2.0 / 7, 1e-17, -0.25, 2.9, 4,
-      1.5, 2.1,      0.7,    900.25,        3.5,   0.125, 0.1,     -0.2, 7,       1,     2,     0,   -0.02,
-      0,   -0.1,     1.5,    8765.4321,     -3.25, 0,     0,       0,    0,       0,     0,     -1e5};
+      12,  row.time, row.dt, row.wall_time, 0,     3,     -1e-300, 4.1,  2.0 / 7, 1e-17, -0.25, 2.9,  4,
+      1.5, 2.1,      0.7,    900.25,        3.5,   0.125, 0.1,     -0.2, 7,       1,     2,     0,    -0.02,
+      0,   -0.1,     1.5,    8765.4321,     -3.25, 0,     0,       0,    0,       0,     0,     -1e5, 6};
   REQUIRE(words.size() == std::size(expected));
   for (size_t k = 0; k < words.size(); ++k) CHECK(std::strtod(words[k].c_str(), nullptr) == expected[k]);
   CHECK(split(format_history_row(row, footing_like("", 3)), ',').size() ==
         split(history_header(footing_like("", 3)), ',').size());
+  Config balanced = footing_like("", 2);
+  balanced.output.energy = true;
+  const auto with_energy = split(format_history_row(row, balanced), ',');
+  REQUIRE(with_energy.size() == words.size() + 11);
+  CHECK(with_energy.size() == split(history_header(balanced), ',').size());
+  CHECK(with_energy[words.size()] == "2.5");
+  CHECK(with_energy.back() == "-0.125");
 }
 
 TEST_CASE("history.csv holds its header and whole rows, whatever the disk does", "[output]") {

@@ -184,6 +184,7 @@ struct OutputConfig {
   std::vector<std::string> fields;  // of the frames, beside the position; empty for all
   int compression = 0;              // of the frames, level of HDF5's deflate filter
   bool nodes = false;               // frames hold the nodes' mass and velocity too
+  bool energy = false;              // the history has an energy balance
   double interval = 0;              // s between frames
   double history_interval = 0;      // s between rows of the history
   Progress progress = Progress::automatic;

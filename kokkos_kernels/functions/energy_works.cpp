@@ -1,0 +1,198 @@
+#include "functions/energy_works.hpp"
+
+#include "loops/node_update.hpp"
+#include "physics/cell_mean.hpp"
+
+namespace mpm {
+namespace {
+
+/// The works at node i. The forces are those of UpdateNodes::accelerate; what is missing of the acceleration
+/// that the node has is of walls and contact.
+template <class Space, class T, int Dim>
+struct WorkAtNodes {
+  using S = SoilTerms<Dim>;
+  static constexpr int cells = Patch<Dim>::cells;
+  UpdateNodes<Space, T, Dim> update;
+  ControlView<Space> control;
+  bool in_water;
+  double dt;
+
+  KOKKOS_INLINE_FUNCTION void operator()(int i, NodeWorks& sum) const {
+    const auto& owned = update.owned_nodes;
+    if (control().paused || (owned.extent(0) > 0 && (owned(i / cells) >> (i % cells) & 1) == 0)) return;
+    const double m_i = update.nodes.soil(i, S::mass);
+    if (!(m_i > update.at_rest())) return;
+    const bool heavy = m_i > update.mass_cut;
+    const Vector<T, Dim> g = update.gravity();
+    for (int d = 0; d < Dim; ++d) {
+      const double v_old = update.nodes.soil(i, S::momentum + d) / m_i,
+                   v = update.nodes.kinematics(i, NodeKinematics<Dim>::velocity + d);
+      const double carried =
+          in_water && heavy ? -double(update.nodes.displaced(i, DisplacedTerms::mass)) * update.g[d] : 0;
+      const double force = heavy ? double(update.nodes.soil(i, S::force + d)) : 0, weight = m_i * g[d];
+      const double damped = -m_i * double(update.braking(T((force + weight) / m_i), T(v_old)));
+      const double way = dt * (v_old + v) / 2;
+      sum.internal += (force - carried) * way;
+      sum.gravity += (weight + carried) * way;
+      sum.damping += damped * way;
+      sum.boundary += (m_i * (v - v_old) / dt - force - weight - damped) * way;
+    }
+  }
+};
+
+/// Strain of the particles of a cell in the step, as advance() makes it of the nodes' velocities.
+template <class Space, class T, int Dim>
+struct StrainOfCells {
+  Soil<Space, T, Dim> soil;
+  NodePlaces<Space, T, Dim> places;
+  decltype(Nodes<Space, T, Dim>::kinematics) kinematics;
+  decltype(Bins<Space>::begin) begin;
+  EnergyWorks<Space, T, Dim> works;
+  ControlView<Space> control;
+  T dt, f_bar;
+  bool by_material;
+
+  KOKKOS_INLINE_FUNCTION void operator()(int cell) const {
+    if (control().paused) return;
+    const int first = begin(cell), last = begin(cell + 1);
+    CellMean<T> mean;
+    for (int p = first; p < last; ++p) {
+      works.stress(p) = soil.stress(p), works.volume(p) = soil.volume(p);
+      works.strain(p) = strain_of(p);
+      mean.add(soil.volume(p), soil.volume(p) * trace(p));
+    }
+    if (!(f_bar > 0)) return;
+    if (by_material)
+      return average_by_material(
+          soil, first, last, [&](int p) { return soil.volume(p) * trace(p); },
+          [&](int p, T of_cell) {
+            dilate(p, mean_for(soil.materials(soil.material_of(p)).f_bar_share, of_cell, trace(p)));
+          });
+    for (int p = first; p < last; ++p) dilate(p, mean.value());
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION T trace(int p) const {
+    T sum = 0;
+    for (int d = 0; d < Dim; ++d) sum += works.strain(p)[d];
+    return sum;
+  }
+  KOKKOS_INLINE_FUNCTION void dilate(int p, T to) const {
+    const T correction = f_bar * (to - trace(p)) / 3;
+    for (int d = 0; d < 3; ++d) works.strain(p)[d] += correction;
+  }
+  KOKKOS_INLINE_FUNCTION SymTensor<T, Dim> strain_of(int p) const {
+    SymTensor<T, Dim> strain{};
+    const T half = dt * places.grid.inv_spacing / 2;
+    for_each_node<Kind::motion>(soil, any_domain_of(soil, p), places, p,
+                                [&](int i, T, const Vector<T, Dim>& grad, auto&&, auto&& sign) {
+                                  for (int d = 0; d < Dim; ++d) {
+                                    const T v = sign(d) * kinematics(i, NodeKinematics<Dim>::velocity + d);
+                                    for (int e = 0; e < Dim; ++e)
+                                      strain[sym_index<Dim>(d, e)] += (d == e ? 2 : 1) * half * v * grad[e];
+                                  }
+                                });
+    return strain;
+  }
+};
+
+}  // namespace
+}  // namespace mpm
+
+namespace Kokkos {
+template <>
+struct reduction_identity<mpm::NodeWorks> {
+  KOKKOS_FORCEINLINE_FUNCTION static mpm::NodeWorks sum() { return {}; }
+};
+}  // namespace Kokkos
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+void begin_works(State<Space, T, Dim>& s) {
+  s.energy.on = true;
+  s.energy.work = decltype(s.energy.work)("mpm::energy.work", Work::count);
+  s.energy.of_nodes = decltype(s.energy.of_nodes)("mpm::energy.of_nodes");
+  s.energy.of_stress = decltype(s.energy.of_stress)("mpm::energy.of_stress");
+  s.energy.rigid_at = decltype(s.energy.rigid_at)("mpm::energy.rigid_at", s.rigid_points.size());
+}
+
+template <class Space, class T, int Dim>
+void add_node_works(State<Space, T, Dim>& s, double dt) {
+  const auto& works = s.energy;
+  const Kokkos::RangePolicy<Space> nodes(s.space, 0, s.patches.node_count());
+  const auto sum = works.of_nodes;
+  Kokkos::parallel_reduce(
+      "mpm::node_works", nodes,
+      WorkAtNodes<Space, T, Dim>{node_update_of(s, dt), s.control, s.water.is_there(), dt},
+      Kokkos::Sum<NodeWorks, typename Space::memory_space>(sum));
+  const auto work = works.work;
+  const auto rigid_at = works.rigid_at;
+  const auto rigids = s.rigids;
+  const int rigid_count = static_cast<int>(s.rigid_points.size());
+  Kokkos::parallel_for(
+      "mpm::add_node_works", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
+        work(Work::internal) += sum().internal, work(Work::gravity) += sum().gravity;
+        work(Work::damping) += sum().damping, work(Work::boundary) += sum().boundary;
+        for (int r = 0; r < rigid_count; ++r) rigid_at(r) = rigids(r).pose.displacement;
+      });
+  Kokkos::parallel_for("mpm::strain_of_cells", nodes,
+                       StrainOfCells<Space, T, Dim>{s.soil.points,
+                                                    {s.grid, s.patches},
+                                                    s.nodes.kinematics,
+                                                    s.soil.bins.begin,
+                                                    works,
+                                                    s.control,
+                                                    T(dt),
+                                                    T(s.f_bar_fraction),
+                                                    s.f_bar_by_material});
+}
+
+template <class Space, class T, int Dim>
+void add_stress_work(State<Space, T, Dim>& s) {
+  const auto works = s.energy;
+  const auto soil = s.soil.points;
+  const auto control = s.control;
+  const auto alone = s.strays.alone;
+  const auto sum = works.of_stress;
+  Kokkos::parallel_reduce(
+      "mpm::stress_work", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
+      KOKKOS_LAMBDA(int p, double& work) {
+        if (control().paused || is_alone(alone, soil.cell(p))) return;
+        double density = 0;  // J/m3
+        for (int k = 0; k < sym_size<Dim>; ++k)
+          density += (k < 3 ? 0.5 : 1.0) * (double(works.stress(p)[k]) + double(soil.stress(p)[k])) *
+                     double(works.strain(p)[k]);
+        work += density * (double(works.volume(p)) + double(soil.volume(p))) / 2;
+      },
+      Kokkos::Sum<double, typename Space::memory_space>(sum));
+  const auto work = s.energy.work;
+  Kokkos::parallel_for(
+      "mpm::add_stress_work", Kokkos::RangePolicy<Space>(s.space, 0, 1),
+      KOKKOS_LAMBDA(int) { work(Work::stress) += sum(); });
+}
+
+template <class Space, class T, int Dim>
+void add_rigid_work(State<Space, T, Dim>& s, bool counts) {
+  const int count = static_cast<int>(s.rigid_points.size());
+  if (count == 0 || !counts) return;
+  const auto work = s.energy.work;
+  const auto before = s.energy.rigid_at;
+  const auto rigids = s.rigids;
+  const auto force = s.rigid_force;
+  Kokkos::parallel_for(
+      "mpm::add_rigid_work", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
+        for (int r = 0; r < count; ++r)
+          for (int d = 0; d < Dim; ++d)
+            work(Work::rigids) -= force(r * Dim + d) * (rigids(r).pose.displacement[d] - before(r)[d]);
+      });
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                         \
+  template void begin_works(State<Space, T, Dim>&);            \
+  template void add_node_works(State<Space, T, Dim>&, double); \
+  template void add_stress_work(State<Space, T, Dim>&);        \
+  template void add_rigid_work(State<Space, T, Dim>&, bool);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

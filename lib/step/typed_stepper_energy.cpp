@@ -1,0 +1,95 @@
+// What the stepper tells of the soil as a whole: its energy balance, and cells without soil inside it.
+
+#include <algorithm>
+
+#include "common/collectives.hpp"
+#include "step/gaps.hpp"
+#include "step/typed_stepper.hpp"
+#include "transfer/filled_cells.hpp"
+
+namespace mpm {
+
+/// The works begin at zero, and the energies that they start from are those of the soil as it is.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::begin_energy() {
+  PetscFunctionBeginUser;
+  begin_works(state_);
+  double energies[2] = {};  // J: kinetic, elastic
+  for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
+    const BodyMeasure m = mpm::measure(state_, b);
+    energies[0] += m.kinetic_energy, energies[1] += m.stored_energy;
+  }
+  if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energies, 2, MPI_DOUBLE, MPI_SUM, comm_));
+  kinetic_at_start_ = energies[0], elastic_at_start_ = energies[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Under the rows of the bodies.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::measure_energy(HistoryRow* row) {
+  PetscFunctionBeginUser;
+  SavedState now;
+  PetscCall(save_energy(&now));
+  const std::vector<double>& works = now.energy;
+  EnergyRow& e = row->energy = {};
+  for (const BodyRow& body : row->bodies) {
+    e.kinetic += body.kinetic_energy, e.elastic += body.stored_energy;
+    e.lost += body.lost_energy + body.merged_energy;
+  }
+  e.internal = works[Work::stress];
+  e.dissipated = e.internal - (e.elastic - elastic_at_start_);
+  e.gravity = works[Work::gravity], e.damping = works[Work::damping];
+  e.rigids = works[Work::rigids], e.contact = works[Work::boundary] - e.rigids;
+  const double of_nodes = works[Work::internal] + e.gravity + e.damping + works[Work::boundary];
+  e.update = e.kinetic + e.lost - kinetic_at_start_ - of_nodes;
+  e.error = e.internal + works[Work::internal];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The works of all ranks, and the energies at the start.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::save_energy(SavedState* saved) const {
+  PetscFunctionBeginUser;
+  saved->energy.clear();
+  if (!state_.energy.on) PetscFunctionReturn(PETSC_SUCCESS);
+  static_assert(k_saved_energy == Work::count + 2);
+  const auto works = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.energy.work);
+  saved->energy.assign(works.data(), works.data() + Work::count);
+  if (ranks_)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, saved->energy.data(), Work::count, MPI_DOUBLE, MPI_SUM, comm_));
+  saved->energy.insert(saved->energy.end(), {kinetic_at_start_, elastic_at_start_});
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Rank 0 takes the works of all.
+template <class Space, class T, int Dim>
+void TypedStepper<Space, T, Dim>::restore_energy(const SavedState& saved) {
+  if (!state_.energy.on || saved.energy.size() != k_saved_energy) return;
+  const auto works = Kokkos::create_mirror_view(state_.energy.work);
+  for (int k = 0; k < Work::count; ++k) works(k) = ranks_ && rank_of(comm_) > 0 ? 0 : saved.energy[k];
+  Kokkos::deep_copy(state_.energy.work, works);
+  kinetic_at_start_ = saved.energy[Work::count], elastic_at_start_ = saved.energy[Work::count + 1];
+}
+
+/// Cells that hold soil, and gaps between them.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::count_cells(HistoryRow* row) const {
+  PetscFunctionBeginUser;
+  std::vector<FilledPatch> patches = filled_cells(state_);
+  if (ranks_) PetscCall(gather_patches(comm_, &patches));
+  std::array<int, 3> cells{1, 1, 1};
+  for (int d = 0; d < Dim; ++d) cells[d] = config_.mesh.cells[d];
+  const Gaps gaps = count_gaps<Dim>(patches, cells);
+  row->filled_cells = gaps.filled, row->empty_cells = gaps.empty;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                                 \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::begin_energy();                 \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::measure_energy(HistoryRow*);    \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::save_energy(SavedState*) const; \
+  template void TypedStepper<Space, T, Dim>::restore_energy(const SavedState&);        \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::count_cells(HistoryRow*) const;
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm
