@@ -27,7 +27,7 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add(s.boundary_windows.sums), add(s.strength_windows.sums);
   for (const auto* more : {&s.next_sums, &s.last_sums})
     add(more->soil), add(more->boundary), add(more->rigid);
-  add(s.batches.room), add(s.batches.slots), add(s.timed.loads), add(s.timed.points);
+  add(s.batches.room), add(s.batches.slots), add(s.timed.loads), add(s.timed.points), add(s.sides.nodes);
   return bytes;
 }
 

@@ -179,6 +179,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.f_bar_fraction = model.owners.empty() ? f_bar : 0;
   state_.keeps_stress = model.from_run;
   Fault fault{};
+  PetscCallCXX(set_up_sides(&grid));
   PetscCallCXX(upload_loads(state_, load_input(config_, carried)));
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
   *failure = fault.kind == FaultKind::none ? too_small() : describe(fault);
@@ -227,6 +228,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(const StepRange& range, Batc
   const double dt = range.dt;
   long steps = range.count;
   state_.time = range.time;
+  PetscCall(begin_sides());
   begin_loads(state_, {range.origin - config_.time.start, dt, range.first});
   if (ranks_) {
     PetscCall(advance_together(steps, dt, batch));
@@ -292,6 +294,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   saved->particles = ids();
   if (ranks_) PetscCall(gather_strays(saved));
   if (ranks_) PetscCall(ranks_->save(saved));
+  PetscCall(save_sides(&saved->sides));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -324,6 +327,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
     PetscCallCXX(list_saved(state_));
     PetscCallCXX(finish_saved(state_, saved));
   }
+  PetscCallCXX(restore_sides(saved.sides));
   Failure failure = too_small();
   if (*rebuilt && failure.what.empty()) PetscCall(rebuild(&failure));
   PetscCheck(failure.what.empty(), PETSC_COMM_SELF, PETSC_ERR_FP, "The checkpoint's %s",
