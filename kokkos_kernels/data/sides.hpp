@@ -8,17 +8,9 @@
 #include "base/spaces.hpp"
 #include "base/types.hpp"
 #include "data/patches.hpp"
+#include "data/side_terms.hpp"
 
 namespace mpm {
-
-/// What a node of such a side keeps from step to step: the normal impulse that friction has not used [N s], the
-/// normal and the tangential dashpot [kg/s], the static reaction [N], and, since the host last took them, the
-/// impulse [N s] and the work [J] of the side on the soil.
-template <int Dim>
-struct SideTerms {
-  static constexpr int stock = 0, dashpot = 1, reaction = 3, impulse = 3 + Dim, work = 3 + 2 * Dim,
-                       size = 4 + 2 * Dim;
-};
 
 /// A side of the mesh. Its nodes have rows of a table: number `first` + sum of step[d] (at[d] + 1).
 template <int Dim>
@@ -39,14 +31,6 @@ struct Side {
   }
 };
 
-/// Rows of the table of a side normal to direction d: of its nodes, and of those beyond the sides around it.
-template <class Cells>
-int side_rows(const Cells& cells, int dim, int d) {
-  int rows = 1;
-  for (int k = 0; k < dim; ++k) rows *= k == d ? 1 : cells[k] + 3;
-  return rows;
-}
-
 template <class Space, int Dim>
 struct Sides {
   using Memory = typename Space::memory_space;
@@ -54,9 +38,10 @@ struct Sides {
   Kokkos::View<Side<Dim>*, Memory> all;  // [2 d + side]; allocated where one acts
   Kokkos::View<double* [SideTerms<Dim>::size], Kokkos::LayoutRight, Memory> nodes;  // by Side::row
   std::array<Side<Dim>, 2 * Dim> host{};  // as the run began
-  std::array<double, 2 * Dim> dashpot_factor{};
+  std::array<double, 2 * Dim> dashpot_factor{}, spring_length{};  // -, m (0: no springs)
   unsigned unknown = 0;  // absorbing sides whose dashpots and reactions are not known yet
-  std::array<unsigned, 2 * Dim> held{};  // bit k: component k that the side held before it absorbed
+  std::array<unsigned, 2 * Dim> held{};      // bit k: component k that the side held before it absorbed
+  std::array<unsigned, 2 * Dim> mirrored{};  // bit k: component k that then turned round in a mirror
   bool in_use() const { return mask != 0; }
 };
 

@@ -27,13 +27,17 @@ KOKKOS_INLINE_FUNCTION void add_reactions(const ActingSides<Dim>& acting, const 
 }
 
 /// Implicit dashpots (Lysmer and Kuhlemeyer 1969) between the node and what moves with the side's velocity:
-/// m (v' - v) = -c dt (v' - V).
+/// m (v' - v) = -c dt (v' - V) - s dt u', where springs s hold the drift u' = u + dt (v' - V).
 template <int Dim>
-KOKKOS_INLINE_FUNCTION void absorb(const Side<Dim>& side, int d, const SideNode<Dim>& node,
-                                   const double* kept, double* v) {
+KOKKOS_INLINE_FUNCTION void absorb(const Side<Dim>& side, int d, const SideNode<Dim>& node, double* kept,
+                                   double* v) {
+  using S = SideTerms<Dim>;
   for (int k = 0; k < Dim; ++k) {
-    const double a = kept[SideTerms<Dim>::dashpot + (k == d ? 0 : 1)] * node.dt / node.mass;
-    v[k] = (v[k] + a * side.velocity[k]) / (1 + a);
+    const int along = k == d ? 0 : 1;
+    const double pull = kept[S::spring + along] * node.dt / node.mass,
+                 a = kept[S::dashpot + along] * node.dt / node.mass + pull * node.dt;
+    v[k] = (v[k] + a * side.velocity[k] - pull * kept[S::drift + k]) / (1 + a);
+    kept[S::drift + k] += node.dt * (v[k] - side.velocity[k]);
   }
 }
 

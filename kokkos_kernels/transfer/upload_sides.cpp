@@ -29,9 +29,9 @@ void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vec
     }
     rows += side_rows(grid.cells, Dim, in.direction);
     s.sides.mask |= 1u << n;
-    s.sides.dashpot_factor[n] = in.dashpot_factor;
+    s.sides.dashpot_factor[n] = in.dashpot_factor, s.sides.spring_length[n] = in.spring_length;
     if (side.kind == Wall::absorbing) s.sides.unknown |= 1u << n;
-    s.sides.held[n] = 1u << in.direction;
+    s.sides.held[n] = s.sides.mirrored[n] = 1u << in.direction;
   }
   s.sides.all = decltype(s.sides.all)("mpm::sides", 2 * Dim);
   const auto host = Kokkos::create_mirror_view(s.sides.all);
@@ -97,7 +97,7 @@ std::vector<double> side_table(const State<Space, T, Dim>& s, bool own, bool fir
   const std::vector<char> owned = own_rows(s);
   for (std::size_t row = 0; row < owned.size(); ++row) {
     double* const of = &values[row * S::size];
-    if (!owned[row]) of[S::stock] = 0;
+    for (int k = 0; k < S::dashpot && !owned[row]; ++k) of[k] = 0;
     for (int k = S::dashpot; k < S::impulse && !first; ++k) of[k] = 0;
   }
   return values;

@@ -18,6 +18,7 @@ struct SideInput {
   double friction = 0;               // -
   double shear_limit = 0;            // Pa, infinite where there is none
   double dashpot_factor = 1;         // -, absorbing
+  double spring_length = 0;          // m, absorbing; 0: no springs
 };
 
 /// Sets up the sides of `grid` that act; density [kg/m3]: of the lightest soil.
@@ -34,7 +35,7 @@ template <class Space, class T, int Dim>
 SideWork take_side_work(const State<Space, T, Dim>& s);
 
 /// The table of the sides' nodes, row by row (SideTerms). own: of several ranks' tables, the sum is that of
-/// all: the stock is left to the rank that answers for the node, and what all ranks know alike to the first.
+/// all: what changes in a step is left to the rank that answers for the node, what all know alike to the first.
 template <class Space, class T, int Dim>
 std::vector<double> side_table(const State<Space, T, Dim>& s, bool own, bool first);
 /// Puts a table back; first: with the impulses and works in it, which only one of several ranks may keep.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "checkpoint/changes.hpp"
-#include "data/sides.hpp"
+#include "data/side_terms.hpp"
 #include "mesh/background.hpp"
 #include "parallel/global_bound.hpp"
 

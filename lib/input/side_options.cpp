@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-constexpr const char* k_keys[] = {"_friction", "_shear_limit", "_dashpot_factor", "_velocity", "_velocity_table",
+constexpr const char* k_keys[] = {"_friction", "_shear_limit", "_dashpot_factor", "_spring_length", "_velocity", "_velocity_table",
                                   "_velocity_table_interpolation"};
 
 void read_friction(OptionReader& in, const std::string& name, SideConfig& side) {
@@ -34,6 +34,12 @@ void read_absorbing(OptionReader& in, const std::string& name, SideConfig& side)
              .unit = "-",
              .range = {.lowest = 0, .highest = 1e3}},
             side.dashpot_factor);
+  in.number({.name = name + "_spring_length",
+             .meaning = "absorbing: length L of springs rho c^2 / L beside the dashpots, against drift",
+             .unit = "m",
+             .range = {.lowest = 0, .highest = 1e9, .open_lowest = true},
+             .standard = "no springs"},
+            side.spring_length);
 }
 
 void read_velocity(OptionReader& in, const std::string& name, int dim, double end, SideConfig& side) {

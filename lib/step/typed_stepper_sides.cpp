@@ -23,7 +23,7 @@ void TypedStepper<Space, T, Dim>::set_up_sides(GridInput* grid) {
       if (!of.velocity_table) in.velocity = of.velocity;
       in.friction = of.friction;
       in.shear_limit = of.shear_limit.value_or(std::numeric_limits<double>::infinity());
-      in.dashpot_factor = of.dashpot_factor;
+      in.dashpot_factor = of.dashpot_factor, in.spring_length = of.spring_length.value_or(0);
       sides.push_back(in);
     }
   double density = std::numeric_limits<double>::max();
@@ -104,6 +104,7 @@ void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides& saved) {
     const Wall then = static_cast<Wall>(saved.kinds[n]), now = state_.grid.wall[n / 2][n % 2];
     const std::size_t count = std::size_t(size) * side_rows(config_.mesh.cells, Dim, n / 2);
     state_.sides.held[n] = then == Wall::free ? 0u : then == Wall::roller ? 1u << (n / 2) : k_all;
+    state_.sides.mirrored[n] = is_mirror(then) ? state_.sides.held[n] : 0u;
     if (is_acting(then) && then == now) {
       std::copy_n(saved.values.begin() + static_cast<long>(from), count,
                   table.begin() + std::size_t(size) * state_.sides.host[n].first);

@@ -32,6 +32,7 @@ struct SideConfig {
   double friction = 0;                      // - (friction)
   std::optional<double> shear_limit;        // Pa (friction)
   double dashpot_factor = 1;                // - (absorbing)
+  std::optional<double> spring_length;      // m (absorbing)
   Vec3 velocity{};                          // m/s; where a table tells it, its components of largest size
   std::optional<TimeTable> velocity_table;  // m/s
   bool moves = false;
