@@ -51,6 +51,7 @@ void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
       add(row.bodies[b].mass * gravity[d] * (row.bodies[b].centre[d] - last_.bodies[b].centre[d]));
     add(last_.bodies[b].water_energy - row.bodies[b].water_energy);
   }
+  add(row.side_work);
   for (std::size_t r = 0; r < row.rigids.size(); ++r)
     for (int d = 0; d < config.dim; ++d)
       add(std::fabs(row.rigids[r].force[d] *
@@ -71,7 +72,7 @@ std::string EnergyWatch::check(const HistoryRow& row, const Config& config) {
   if (!(now > available_ + k_slack * passed_ + least_)) return {};
   return formatted(
       "the kinetic energy has grown to %.4g J, and only %.4g J of it have a source (the energy at the start, "
-      "gravity, water, rigids): the time step is not stable for this soil; take a smaller -time_courant",
+      "gravity, water, rigids, sides of the mesh): the time step is not stable for this soil; take a smaller -time_courant",
       now, available_);
 }
 

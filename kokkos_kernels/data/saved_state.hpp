@@ -36,6 +36,12 @@ struct SavedImpulse {
   std::vector<double> values;  // N s, of each rigid [rigids M]
 };
 
+/// The table of the nodes on sides of the mesh that act (data/sides.hpp), of all ranks.
+struct SavedSides {
+  std::vector<long> kinds;  // Wall, [2 direction + 1 for the upper side]: 0 to 2 are the words of -mesh_xmin
+  std::vector<double> values;  // [rows][SideTerms::size], the sides in this order
+};
+
 /// Numbers that SavedState::lost has of a body, and places of the numbers of particles among them: those that
 /// have left, and those that others took up.
 inline constexpr int k_lost = 9, k_lost_left = 0, k_lost_merged = 6;
@@ -59,6 +65,7 @@ struct SavedState {
   SavedImpulse impulse;
   std::vector<double> energy;  // k_saved_energy numbers where the run has an energy balance: the works, and
                                // kinetic and elastic energy at the start [J], of all ranks; else empty
+  SavedSides sides;
 };
 
 }  // namespace mpm

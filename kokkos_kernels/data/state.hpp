@@ -6,6 +6,7 @@
 
 #include "data/energy_works.hpp"
 #include "data/nodes.hpp"
+#include "data/sides.hpp"
 #include "data/soil_batches.hpp"
 #include "data/split_patches.hpp"
 #include "data/step_plan.hpp"
@@ -67,6 +68,7 @@ struct State {
   double spacing = 0;             // m, edge of a cell, whatever T is
   Vector<double, Dim> gravity{};  // m/s2; where it follows a table, what measurements take
   TimedLoads<Space, T, Dim> timed;
+  Sides<Space, Dim> sides;                // of the mesh, that act on the soil
   Water<Dim> water{};                     // hydrostatic, in which the soil is submerged
   Kokkos::View<double*, Memory> density;  // kg/m3, that the soil of each body begins with
   double damping = 0;                     // -

@@ -1,11 +1,13 @@
 #pragma once
-// Loads and motions that follow tables in time: gravity, and velocities and forces of rigid bodies. The end
+// Loads and motions that follow tables in time: gravity, velocities of sides, and velocities and forces of rigid
+// bodies. The end
 // of a step sets those of the next step on the device, so that one launch can do many steps.
 
 #include "base/spaces.hpp"
 #include "base/time_curve.hpp"
 #include "base/types.hpp"
 #include "data/nodes.hpp"
+#include "data/sides.hpp"
 
 namespace mpm {
 
@@ -23,13 +25,13 @@ struct TimedNumber {
   }
 };
 
-enum class LoadTarget : int { gravity, velocity, force };
+enum class LoadTarget : int { gravity, velocity, force, side };
 
 /// A component of what follows a table: own + factor * gravity. Of a rigid's force the factor is the mass
 /// whose weight it carries [kg]; 0 elsewhere.
 struct TimedLoad {
   LoadTarget target;
-  int rigid, component;
+  int rigid, component;  // of a side, 2 direction + 1 for the upper one stands for the rigid
   TimedNumber own, gravity;
   double factor;
 };
@@ -57,6 +59,7 @@ struct LoadsOfStep {
   const CurvePoint* points;
   LoadClock* clock;
   Vector<T, Dim>* gravity;
+  Side<Dim>* sides;
   int count;
 
   /// Sets load n for the step that follows `steps` steps of a clock.
@@ -68,6 +71,8 @@ struct LoadsOfStep {
       (*gravity)[d] = static_cast<T>(value);
     else if (load.target == LoadTarget::velocity)
       rigids[load.rigid].velocity[d] = value;
+    else if (load.target == LoadTarget::side)
+      sides[load.rigid].velocity[d] = value;
     else
       rigids[load.rigid].force[d] = value;
   }
@@ -80,11 +85,13 @@ struct TimedLoads {
   Kokkos::View<CurvePoint*, Memory> points;
   Kokkos::View<LoadClock, Memory> clock;  // allocated with loads
   Kokkos::View<Vector<T, Dim>, Memory> gravity;
-  bool moves_gravity = false;
+  Kokkos::View<Side<Dim>*, Memory> sides;  // State::sides
+  bool moves_gravity = false, moves_sides = false;
 
   int count() const { return static_cast<int>(loads.extent(0)); }
   LoadsOfStep<T, Dim> of_step() const {
-    return {loads.data(), points.data(), clock.data(), moves_gravity ? gravity.data() : nullptr, count()};
+    return {loads.data(), points.data(), clock.data(), moves_gravity ? gravity.data() : nullptr, sides.data(),
+            count()};
   }
 };
 

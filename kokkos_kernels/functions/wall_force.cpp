@@ -59,7 +59,7 @@ struct PressOnWalls {
     if (at > 0 && at < places.grid.cells[d]) return -1;
     const int side = at > 0;
     const Wall wall = places.grid.wall[d][side];
-    return wall == Wall::fixed || (wall == Wall::roller && k == d) ? side : -1;
+    return wall == Wall::fixed || (wall == Wall::roller && k == d) ? side : -1;  // others: side_forces
   }
   KOKKOS_INLINE_FUNCTION void operator()(int p, ForceSum<Dim>& sum) const {
     if (!is_near(p)) return;

@@ -8,6 +8,7 @@
 #include "loops/particle_to_node.hpp"
 #include "loops/window.hpp"
 #include "physics/contact.hpp"
+#include "physics/sides.hpp"
 #include "physics/surface.hpp"
 
 namespace mpm {
@@ -46,6 +47,7 @@ struct UpdateNodes {
   Kokkos::View<std::uint64_t*, typename Space::memory_space> owned_nodes;
   Vector<T, Dim> g;
   const Vector<T, Dim>* timed_g;  // of the present step, where gravity follows a table; else null
+  ActingSides<Dim> acting_sides;
   T dt, inv_dt, damping, mass_cut;
   double spacing;
   bool has_boundary, has_friction, has_mass_normals, clears;
@@ -143,13 +145,17 @@ struct UpdateNodes {
       nodes.impulse(r, i) *= k_memory<T>;
     if (m_i > at_rest()) {
       node.inv_m = 1 / m_i;
-      accelerate(node.soil, node.inv_m, v_old, v);
       node.sides = sides_of(places.grid, at);
+      const unsigned acting = node.sides & acting_sides.mask;
+      if (acting != 0) add_reactions(acting_sides, side_node(node, acting), &node.soil[S::force]);
+      accelerate(node.soil, node.inv_m, v_old, v);
       apply_walls(places.grid, node.sides, v);
+      if (acting != 0) v = by_sides(acting_sides, side_node(node, acting), v_old, v, true);
       const int touching = near && m_i > mass_cut ? static_cast<int>(rigids.extent(0)) : 0;
       MPM_ROLLED
       for (int r = 0; r < touching; ++r)
         touch(sums, node, bodies[r], r, v, force == nullptr ? force : force + r * Dim * cells);
+      if (acting != 0 && touching > 0) v = by_sides(acting_sides, side_node(node, acting), v_old, v, false);
       apply_walls(places.grid, node.sides, v);
     }
     KinematicValues<T, Dim> kinematics;
@@ -159,6 +165,12 @@ struct UpdateNodes {
           (v[d] - v_old[d]) * inv_dt;  // feels contact and walls
     }
     return kinematics;
+  }
+
+  /// A node on sides that act.
+  KOKKOS_INLINE_FUNCTION SideNode<Dim> side_node(const Node& node, unsigned acting) const {
+    const bool counts = owned_nodes.extent(0) == 0 || (owned_nodes(node.i / cells) >> (node.i % cells) & 1) != 0;
+    return {node.at, acting, double(node.soil[S::mass]), double(dt), counts};
   }
 
   /// The nodes of a slot far from every rigid.
@@ -314,6 +326,7 @@ UpdateNodes<Space, T, Dim> node_update_of(const State<Space, T, Dim>& s, double 
                                     .owned_nodes = s.owned_nodes,
                                     .g = {},
                                     .timed_g = s.timed.of_step().gravity,
+                                    .acting_sides = acting(s.sides),
                                     .dt = T(dt),
                                     .inv_dt = T(1 / dt),
                                     .damping = T(s.damping),

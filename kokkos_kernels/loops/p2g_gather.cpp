@@ -53,9 +53,8 @@ struct GatherByNode {
   KOKKOS_INLINE_FUNCTION bool image_of(int d, int own, int which, int& at) const {
     const auto& grid = places.grid;
     if (image_along(grid, d, own) != own) return false;
-    at = which == 0 ? own : which == 1 ? -own : 2 * grid.cells[d] - own;
-    const bool next = which == 1 ? own == 1 : own == grid.cells[d] - 1;
-    return which == 0 || (next && grid.wall[d][which - 1] != Wall::free);
+    at = which == 0 ? own : which == 1 ? -1 : grid.cells[d] + 1;
+    return which == 0 || (at != own && image_along(grid, d, at) == own);
   }
 
   /// What the particles in the list of a node at `at` give, with the signs of its image. False if there are

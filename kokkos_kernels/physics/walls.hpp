@@ -2,7 +2,8 @@
 // The sides of the mesh. A roller is a plane of symmetry; a fixed side is one with the opposite sign of what
 // moves along it. Beyond it the soil goes on as its mirror image, so that the row of nodes beyond has no sums
 // and no motion of its own: what particles give it goes to its image inside, and what they take from it is
-// its image's, with the signs of this file. A free side has nodes beyond as any other.
+// its image's, with the signs of this file. A free side has nodes beyond as any other. Beyond a side that acts
+// (data/sides.hpp) the soil moves as the node on the side, which is the image of the node beyond.
 
 #include <type_traits>
 
@@ -41,8 +42,9 @@ KOKKOS_INLINE_FUNCTION void apply_walls(const Grid<T, Dim>& grid, unsigned sides
 /// Coordinate along direction d of the image inside of a node that lies beyond a wall; else its own.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION int image_along(const Grid<T, Dim>& grid, int d, int at) {
-  if (at < 0 && grid.wall[d][0] != Wall::free) return -at;
-  if (at > grid.cells[d] && grid.wall[d][1] != Wall::free) return 2 * grid.cells[d] - at;
+  if (at < 0 && grid.wall[d][0] != Wall::free) return is_mirror(grid.wall[d][0]) ? -at : 0;
+  if (at > grid.cells[d] && grid.wall[d][1] != Wall::free)
+    return is_mirror(grid.wall[d][1]) ? 2 * grid.cells[d] - at : grid.cells[d];
   return at;
 }
 
@@ -59,7 +61,7 @@ KOKKOS_INLINE_FUNCTION T image_sign(const Grid<T, Dim>& grid, int d, int at, int
   if (k < 0 || (at > 0 && at < grid.cells[d])) return 1;
   const Wall wall = grid.wall[d][at > 0];
   const bool turns = k == d || (kind == Kind::motion && k >= 0 && wall == Wall::fixed);
-  if (wall == Wall::free || !turns) return 1;
+  if (!is_mirror(wall) || !turns) return 1;
   const bool beyond = at < 0 || at > grid.cells[d];
   return beyond ? T(-1) : (kind == Kind::motion ? T(0) : T(1));
 }
@@ -110,6 +112,7 @@ KOKKOS_INLINE_FUNCTION bool is_beyond_walls(const Grid<T, Dim>& grid, const Coor
 }
 
 /// Brings a particle that has passed walls back to them, at rest against them; false if it has passed none.
+/// One that has passed a side that acts keeps its velocity and does not count: such a side may move.
 /// cell(d): the cell along direction d from whose lower corner x [cells] is measured; v [m/s]. One that lies
 /// on a wall may be beyond it by round-off, which changes no velocity. The loops stay loops: where x and v
 /// are in memory they take few registers of a kernel that seldom comes here.
@@ -127,7 +130,7 @@ KOKKOS_INLINE_FUNCTION bool put_on_walls(const Grid<T, Dim>& grid, const Cell& c
     const T beyond = side == 0 ? wall - x[d] : x[d] - wall;
     if (grid.wall[d][side] == Wall::free || (side == 0 ? !(beyond > 0) : !(beyond >= 0))) continue;
     x[d] = side == 0 ? wall : wall * within;
-    if (!(beyond > k_round_off)) continue;
+    if (!(beyond > k_round_off) || is_acting(grid.wall[d][side])) continue;
     MPM_ROLLED
     for (int k = 0; k < Dim; ++k)
       if (k == d || grid.wall[d][side] == Wall::fixed) v[k] = 0;
@@ -174,7 +177,8 @@ struct WindowImages {
     bool outside = false;
     for (int d = 0, step = 1; d < Dim; ++d, step *= across) {
       const int at = origin[d] + c[d], image = image_along(grid, d, at), to = image - origin[d] + 1;
-      if (image != at) turns ^= (at > 0 ? grid.wall[d][1] : grid.wall[d][0]) == Wall::fixed ? all : 1 << d;
+      const Wall wall = at > 0 ? grid.wall[d][1] : grid.wall[d][0];
+      if (image != at && is_mirror(wall)) turns ^= wall == Wall::fixed ? all : 1 << d;
       outside |= to < 0 || to >= across;
       place += to * step;
     }
@@ -209,7 +213,7 @@ KOKKOS_INLINE_FUNCTION void turn_sums(const Team& team, const WindowImages<T, Di
     unrolled<4>([&](auto row) {  // the nodes beyond and at the lower wall, at and beyond the upper one
       const int at = row < 2 ? row - 1 : images.grid.cells[d] + row - 2, place = at - images.origin[d] + 1;
       const Wall wall = images.grid.wall[d][row / 2];
-      if (wall == Wall::free || place < 0 || place >= across) return;
+      if (!is_mirror(wall) || place < 0 || place >= across) return;
       const T normal = row == 0 || row == 3 ? T(-1) : (kind == Kind::motion ? T(0) : T(1));
       const T along = kind == Kind::motion && wall == Wall::fixed ? normal : T(1);
       Kokkos::parallel_for(Kokkos::TeamThreadRange(team, plane), [&](int n) {

@@ -46,6 +46,9 @@ struct NodeForces {
     Vector<T, Dim> free;  // 0 where a wall holds a component
     for (int d = 0; d < Dim; ++d) free[d] = 1;
     apply_walls(grid, sides_of(grid, at), free);
+    for (int d = 0; d < Dim; ++d)
+      for (int side = 0; side < 2; ++side)  // what such a side holds is not known before its step
+        if ((sides_of(grid, at) >> (2 * d + side) & 1u) && is_acting(grid.wall[d][side])) return;
     double force = 0, heavy = 0;
     for (int d = 0; d < Dim; ++d) {
       const double w = free[d] * m_i * gravity[d], f = free[d] * double(soil(i, S::force + d)) + w;

@@ -28,8 +28,10 @@ void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads) 
   std::vector<TimedLoad> timed;
   for (const LoadInput& in : loads) {
     s.timed.moves_gravity = s.timed.moves_gravity || in.target == LoadTarget::gravity;
+    s.timed.moves_sides = s.timed.moves_sides || in.target == LoadTarget::side;
     timed.push_back({in.target, in.rigid, in.component, number(in.own), number(in.gravity), in.factor});
   }
+  s.timed.sides = s.sides.all;
   fill_view(s.timed.loads, "mpm::timed_loads", timed);
   fill_view(s.timed.points, "mpm::timed_points", points);
   s.timed.clock = decltype(s.timed.clock)("mpm::load_clock");

@@ -53,6 +53,7 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
   archive.list("bounds", c.state.bounds), archive.list("owners", c.state.owners);
   archive.list("impulse_address", c.state.impulse.address);
   archive.list("impulse", c.state.impulse.values);
+  archive.list("side_kinds", c.state.sides.kinds), archive.list("side_nodes", c.state.sides.values);
 }
 
 /// Options in force as text: a line each of name, value, unit and whether the default holds, by tabulators.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "checkpoint/changes.hpp"
+#include "data/side_terms.hpp"
 #include "mesh/background.hpp"
 #include "parallel/global_bound.hpp"
 
@@ -63,6 +64,21 @@ std::string points_fault(const SavedPoints& points, const Config& config, const 
   return "";
 }
 
+/// Whether the table of sides has a row for each node of those that act.
+bool sound_sides(const SavedSides& sides, const Config& config) {
+  if (sides.kinds.empty()) return sides.values.empty();  // no run has written it
+  if (sides.kinds.size() != 2 * static_cast<std::size_t>(config.dim)) return false;
+  std::size_t rows = 0;
+  for (std::size_t n = 0; n < sides.kinds.size(); ++n) {
+    if (sides.kinds[n] < 0 || sides.kinds[n] > static_cast<long>(Wall::driven)) return false;
+    const bool acts = is_acting(static_cast<Wall>(sides.kinds[n]));
+    if (acts) rows += side_rows(config.mesh.cells, config.dim, static_cast<int>(n / 2));
+  }
+  const std::size_t terms = config.dim == 2 ? SideTerms<2>::size : SideTerms<3>::size;
+  return sides.values.size() == rows * terms &&
+         std::all_of(sides.values.begin(), sides.values.end(), [](double x) { return std::isfinite(x); });
+}
+
 }  // namespace
 
 std::string state_fault(const SavedState& state, const Config& config) {
@@ -87,6 +103,7 @@ std::string state_fault(const SavedState& state, const Config& config) {
   const auto finite = [](double x) { return std::isfinite(x); };
   if (!std::all_of(state.impulse.values.begin(), state.impulse.values.end(), finite))
     return "a checkpoint with a sound impulse";
+  if (!sound_sides(state.sides, config)) return "a checkpoint with sound side_kinds and side_nodes";
   for (const SavedRigid& rigid : state.rigids)
     for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse, &rigid.binned})
       if (!std::all_of(vector->begin(), vector->end(), finite)) return "a checkpoint with sound rigids";

@@ -1,5 +1,7 @@
 #include "common/material_table.hpp"
 
+#include <cmath>
+
 namespace mpm {
 
 int model_index(const std::string& name) {
@@ -18,6 +20,15 @@ std::string own_parameter(const std::vector<StateVariable>& variables) {
   for (const StateVariable& variable : variables)
     if (variable.parameter != nullptr) return variable.parameter;
   return "";
+}
+
+std::optional<double> shear_wave_ratio(const MaterialConfig& material) {
+  const int index = model_index(material.model);
+  if (index < 0) return {};
+  const double nu = parameter_of(index, material.parameters, "poisson"),
+               modulus = parameter_of(index, material.parameters, "shear_modulus");  // in lieu of the ratio
+  if (std::isnan(nu) || modulus > 0) return {};
+  return std::sqrt((1 - 2 * nu) / (2 - 2 * nu));
 }
 
 std::vector<StateVariable> state_variables(const MaterialConfig& material) {

@@ -40,6 +40,10 @@ inline std::vector<std::pair<std::string, const TimeTable*>> tables_of(const Con
     if (table) tables.emplace_back(option, &*table);
   };
   add("-gravity_table", config.gravity_table);
+  for (int d = 0; d < config.dim; ++d)
+    for (int side = 0; side < 2; ++side)
+      add(std::string("-mesh_") + "xyz"[d] + (side == 0 ? "min" : "max") + "_velocity_table",
+          config.mesh.sides[d][side].velocity_table);
   for (const RigidConfig& rigid : config.rigids) {
     add("-" + rigid.name + "_velocity_table", rigid.velocity_table);
     add("-" + rigid.name + "_displacement_table", rigid.displacement_table);

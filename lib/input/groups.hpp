@@ -14,6 +14,11 @@ namespace mpm {
 /// -mesh_*. Whether the mesh is sound, so that shapes can be checked against it.
 bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh);
 
+/// What sides of the mesh take beside their kind: friction, dashpots, velocities. After the time.
+void read_sides(OptionReader& in, Config& config);
+/// Rejects absorbing sides where a material does not tell the speed of its shear waves.
+void check_absorbing(OptionReader& in, const Config& config);
+
 /// The options of one material of a run: its density, its model and the model's own tables of parameters and
 /// texts. A null mesh is unsound.
 void read_material(OptionReader& in, const std::string& name, const MeshConfig* mesh, const Config& config,

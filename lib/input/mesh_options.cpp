@@ -11,7 +11,11 @@ constexpr double k_most_cells = 1 << 30;  // in a direction, so that cells and n
 
 void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
   static const std::vector<std::pair<std::string, Wall>> words = {
-      {"roller", Wall::roller}, {"fixed", Wall::fixed}, {"free", Wall::free}};
+      {"roller", Wall::roller},
+      {"fixed", Wall::fixed},
+      {"free", Wall::free},
+      {"friction", Wall::friction},
+      {"absorbing", Wall::absorbing}};
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
       const std::string name = std::string("mesh_") + "xyz"[d] + (side == 0 ? "min" : "max");
@@ -20,7 +24,8 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
         continue;
       }
       in.word({.name = name,
-               .meaning = "what holds at that side: no normal velocity, no velocity at all, nothing"},
+               .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no normal "
+                          "velocity and friction along it; dashpots that absorb waves"},
               words, mesh.walls[d][side]);
     }
 }

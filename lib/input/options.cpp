@@ -354,11 +354,13 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   const bool sound = read_mesh(in, config.dim, config.mesh);
   read_time(in, config.time);
   read_physics(in, config);
+  read_sides(in, config);
   check_batches(in, config);
   read_output(in, options_file, config.time.end, config.output);
   if (config.output.energy && config.device_memory_limit)
     in.reject("output_energy", "off where -device_memory_limit sends the soil in batches");
   read_named(in, sound ? &config.mesh : nullptr, config);
+  if (sound) check_absorbing(in, config);
   limit_courant(in, config);
   const auto named_nodes = [](const auto& thing) { return thing.name == k_nodes; };
   if (config.output.nodes && (std::any_of(config.bodies.begin(), config.bodies.end(), named_nodes) ||

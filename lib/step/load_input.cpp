@@ -31,6 +31,10 @@ std::vector<LoadInput> load_input(const Config& config, const std::vector<double
   };
   for (int d = 0; d < config.dim && config.gravity_table; ++d)
     add(LoadTarget::gravity, 0, d, number_of(config.gravity_table, 0, d), {}, 0);
+  for (int n = 0; n < 2 * config.dim; ++n)
+    for (int d = 0; d < config.dim; ++d)
+      if (const auto& table = config.mesh.sides[n / 2][n % 2].velocity_table)
+        add(LoadTarget::side, n, d, number_of(table, 0, d), {}, 0);
   for (int r = 0; r < static_cast<int>(config.rigids.size()); ++r) {
     const RigidConfig& rigid = config.rigids[r];
     const bool weighs = rigid.motion == Motion::dynamic && (rigid.force_table || config.gravity_table);

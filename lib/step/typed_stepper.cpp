@@ -180,6 +180,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.keeps_stress = model.from_run;
   state_.energy.on = config_.output.energy;
   Fault fault{};
+  PetscCallCXX(set_up_sides(&grid));
   PetscCallCXX(upload_loads(state_, load_input(config_, carried)));
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
   *failure = fault.kind == FaultKind::none ? too_small() : describe(fault);
@@ -229,6 +230,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(const StepRange& range, Batc
   const double dt = range.dt;
   long steps = range.count;
   state_.time = range.time;
+  PetscCall(begin_sides());
   begin_loads(state_, {range.origin - config_.time.start, dt, range.first});
   if (ranks_) {
     PetscCall(advance_together(steps, dt, batch));
@@ -295,6 +297,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscCall(save_energy(saved));
   if (ranks_) PetscCall(gather_strays(saved));
   if (ranks_) PetscCall(ranks_->save(saved));
+  PetscCall(save_sides(&saved->sides));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -328,6 +331,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
     PetscCallCXX(list_saved(state_));
     PetscCallCXX(finish_saved(state_, saved));
   }
+  PetscCallCXX(restore_sides(saved.sides));
   Failure failure = too_small();
   if (*rebuilt && failure.what.empty()) PetscCall(rebuild(&failure));
   PetscCheck(failure.what.empty(), PETSC_COMM_SELF, PETSC_ERR_FP, "The checkpoint's %s",

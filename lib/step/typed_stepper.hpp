@@ -20,6 +20,7 @@
 #include "transfer/measure.hpp"
 #include "transfer/save_state.hpp"
 #include "transfer/unbalanced.hpp"
+#include "transfer/upload_sides.hpp"
 #include "transfer/upload.hpp"
 
 namespace mpm {
@@ -59,6 +60,14 @@ class TypedStepper final : public Stepper {
   /// The failure of the lowest rank that has one, on every rank.
   PetscErrorCode share(Failure* failure) const;
   PetscErrorCode sum_soil();
+  /// What sides of the mesh that act need: at the start, before steps, for a row, around a rebuild on several
+  /// ranks, and for checkpoints.
+  void set_up_sides(GridInput* grid);
+  PetscErrorCode begin_sides();
+  PetscErrorCode measure_sides(double interval, HistoryRow* row);
+  PetscErrorCode gather_sides(std::vector<double>* table) const;
+  PetscErrorCode save_sides(SavedSides* saved) const;
+  void restore_sides(const SavedSides& saved);
   void set_gravity(double time);
   PetscErrorCode measure_body(int body, BodyRow* row);
   PetscErrorCode begin_energy();

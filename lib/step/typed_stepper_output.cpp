@@ -47,6 +47,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
   row->walls = wall_forces(state_);
   if (ranks_)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, row->walls[0][0].data(), 18, MPI_DOUBLE, MPI_SUM, comm_));
+  PetscCall(measure_sides(interval, row));
   for (const Rigid<Dim>& r : take_rigids(state_)) {
     RigidRow rigid;
     double impulse[Dim];

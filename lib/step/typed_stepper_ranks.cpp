@@ -104,6 +104,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure* failure) {
   const bool sampling = timers_.sampling();
   timers_.sample(true);
   PetscErrorCode failed = PETSC_SUCCESS;
+  std::vector<double> sides;  // of all ranks: other ranks may come to reach their nodes
+  PetscCall(gather_sides(&sides));
   const auto work = [&] {
     locate(state_);
     const Control control = read_control(state_);
@@ -115,6 +117,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure* failure) {
   };
   PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
   PetscCall(failed);
+  if (!sides.empty()) PetscCallCXX(put_side_table(state_, sides, rank_of(comm_) == 0));
   timers_.sample(sampling);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -153,6 +153,15 @@ std::vector<StateVariable> state_variables(int which, const std::vector<double>&
   return state_variables(make_material<double>(which, parameters));
 }
 
+double parameter_of(int which, const std::vector<double>& parameters, const std::string& key) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  make_material<double>(which, parameters).visit([&](const auto& law) {
+    for (const auto& parameter : law.parameters())
+      if (key == parameter.key) value = law.*parameter.member;
+  });
+  return value;
+}
+
 double largest_time_step(const AnyMaterial<double>& material, double spacing, double density, int dim) {
   double step = std::numeric_limits<double>::infinity();
   material.visit([&](const auto& law) {

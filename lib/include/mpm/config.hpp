@@ -27,12 +27,24 @@ struct TimeTable {
   std::string file;  // CSV; empty where the option itself lists the points
 };
 
+/// What a side of the mesh takes beside its kind.
+struct SideConfig {
+  double friction = 0;                      // - (friction)
+  std::optional<double> shear_limit;        // Pa (friction)
+  double dashpot_factor = 1;                // - (absorbing)
+  std::optional<double> spring_length;      // m (absorbing)
+  Vec3 velocity{};                          // m/s; where a table tells it, its components of largest size
+  std::optional<TimeTable> velocity_table;  // m/s
+  bool moves = false;
+};
+
 /// The background mesh of square (cubic) cells.
 struct MeshConfig {
   Vec3 lower{}, upper{};                       // m, corners
   double spacing = 0;                          // m, edge of a cell
   std::array<int, 3> cells{};                  // whole cells in each direction (third is 1 in 2D)
   std::array<std::array<Wall, 2>, 3> walls{};  // [direction][0 lower, 1 upper side]; default roller
+  std::array<std::array<SideConfig, 2>, 3> sides{};
 };
 
 enum class ShapeKind { box, polygon, disc, cylinder, cone, half_plane, stl, layer, particles };

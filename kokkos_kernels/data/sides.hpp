@@ -1,0 +1,63 @@
+#pragma once
+// Sides of the mesh that act on the soil by more than a mirror (Wall::friction, absorbing, driven). Beyond such
+// a side the soil moves as the node on it does; physics/sides.hpp says what the node does.
+
+#include <array>
+
+#include "base/choices.hpp"
+#include "base/spaces.hpp"
+#include "base/types.hpp"
+#include "data/patches.hpp"
+#include "data/side_terms.hpp"
+
+namespace mpm {
+
+/// A side of the mesh. Its nodes have rows of a table: number `first` + sum of step[d] (at[d] + 1).
+template <int Dim>
+struct Side {
+  Wall kind = Wall::roller;
+  bool holds_all = false;        // driven: no component is free
+  Vector<double, Dim> velocity;  // m/s, of the present step
+  double friction = 0;           // -
+  double shear_limit = 0;        // Pa, infinite where there is none
+  double unit_mass = 0;          // kg, of a node whose cells are full: its area is that of a cell's face
+  double face = 0;               // m2 (m in 2D)
+  int first = 0, step[Dim] = {};
+
+  KOKKOS_INLINE_FUNCTION int row(const Coord<Dim>& at) const {
+    int row = first;
+    for (int d = 0; d < Dim; ++d) row += step[d] * (at[d] + 1);
+    return row;
+  }
+};
+
+template <class Space, int Dim>
+struct Sides {
+  using Memory = typename Space::memory_space;
+  unsigned mask = 0;                 // those that act: bit 2 d + side, as sides_of
+  Kokkos::View<Side<Dim>*, Memory> all;  // [2 d + side]; allocated where one acts
+  Kokkos::View<double* [SideTerms<Dim>::size], Kokkos::LayoutRight, Memory> nodes;  // by Side::row
+  std::array<Side<Dim>, 2 * Dim> host{};  // as the run began
+  std::array<double, 2 * Dim> dashpot_factor{}, spring_length{};  // -, m (0: no springs)
+  unsigned unknown = 0;  // absorbing sides whose dashpots and reactions are not known yet
+  std::array<unsigned, 2 * Dim> held{};      // bit k: component k that the side held before it absorbed
+  std::array<unsigned, 2 * Dim> mirrored{};  // bit k: component k that then turned round in a mirror
+  bool in_use() const { return mask != 0; }
+};
+
+/// All of them, for kernels.
+template <int Dim>
+struct ActingSides {
+  unsigned mask;
+  const Side<Dim>* all;
+  double* nodes;
+  KOKKOS_INLINE_FUNCTION double* node(int side, const Coord<Dim>& at) const {
+    return nodes + all[side].row(at) * SideTerms<Dim>::size;
+  }
+};
+template <class Space, int Dim>
+ActingSides<Dim> acting(const Sides<Space, Dim>& s) {
+  return {s.mask, s.all.data(), s.nodes.data()};
+}
+
+}  // namespace mpm

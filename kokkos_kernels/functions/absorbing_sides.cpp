@@ -1,0 +1,217 @@
+#include "functions/absorbing_sides.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "loops/particle_to_node.hpp"
+#include "physics/materials/any.hpp"
+
+namespace mpm {
+namespace {
+
+// Sums are whole numbers, which have the same value in any order of particles, threads and ranks.
+constexpr double k_resolution = 1e12;  // of the largest term of one particle
+constexpr int k_sums = 5;              // mass times speed of P and of S waves, volume, area, mass
+
+/// What particles give the nodes of absorbing sides.
+template <class Space, class T, int Dim>
+struct GiveSides {
+  using Memory = typename Space::memory_space;
+  using Sum = Kokkos::View<long long* [k_sums], Kokkos::LayoutRight, Memory>;
+  Soil<Space, T, Dim> soil;
+  NodePlaces<Space, T, Dim> places;
+  ActingSides<Dim> acting;
+  unsigned sides;
+  Kokkos::View<double*, Memory> shear_ratio;
+  Sum sums;
+  double unit[k_sums];
+
+  /// Mass times wave speeds [kg m/s], volume [m3] and mass [kg] of a particle, and its stress times volume over
+  /// the edge of a cell [N], about the largest force that it gives a node.
+  static constexpr int k_terms = 5;
+  KOKKOS_INLINE_FUNCTION void terms_of(int p, double (&terms)[k_terms]) const {
+    const auto of = soil.properties(p);
+    const AnyMaterial<T>& material = material_in(soil.materials(of.material));
+    SymTensor<T, Dim> stress = soil.stress(p);
+    add_isotropic(stress, soil.excess_pore_pressure(material, p));
+    double modulus = 0;
+    material.visit([&](const auto& law) { modulus = law.wave_modulus(stress, soil.state_of(law, p)); });
+    const double volume = soil.volume(p), mass = of.mass;
+    terms[0] = Kokkos::sqrt((modulus + double(material.pore_stiffness)) * volume * mass);
+    terms[1] = shear_ratio(of.material) * Kokkos::sqrt(modulus * volume * mass);
+    terms[2] = volume, terms[3] = mass, terms[4] = 0;
+    for (int k = 0; k < sym_size<Dim>; ++k) terms[4] = Kokkos::fmax(terms[4], Kokkos::fabs(double(stress[k])));
+    terms[4] *= volume * places.grid.inv_spacing;
+  }
+  KOKKOS_INLINE_FUNCTION void operator()(int p) const {
+    const int cell = soil.cell(p);
+    const Coord<Dim> first = in_mesh(places.origin(cell / Patch<Dim>::cells), coord_of<Dim>(cell));
+    bool near = false;
+    for (int d = 0; d < Dim; ++d) near |= first[d] < 2 || first[d] >= places.grid.cells[d] - 2;
+    if (!near) return;
+    double terms[k_terms];
+    terms_of(p, terms);
+    with_weights(soil.coordinate(p), any_domain_of(soil, p), [&](const AxisWeights<T>(&a)[Dim]) {
+      for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const Vector<T, Dim>& grad) {
+        Coord<Dim> at;
+        for (int d = 0; d < Dim; ++d) at[d] = image_along(places.grid, d, first[d] + a[d].first + step[d]);
+        const unsigned on = sides_of(places.grid, at) & sides;
+        for (int n = 0; n < 2 * Dim; ++n) {
+          if (!(on >> n & 1u)) continue;
+          const int row = acting.all[n].row(at);
+          const double area = terms[2] * grad[n / 2] * (n % 2 == 0 ? -1 : 1);
+          add(row, 0, w * terms[0]), add(row, 1, w * terms[1]), add(row, 2, w * terms[2]), add(row, 3, area);
+          add(row, 4, w * terms[3]);
+        }
+      });
+    });
+  }
+  KOKKOS_INLINE_FUNCTION void add(int row, int k, double value) const {
+    Kokkos::atomic_add(&sums(row, k), static_cast<long long>(Kokkos::round(value / unit[k])));
+  }
+};
+
+/// Forces that particles give the nodes beyond the sides, as whole numbers.
+template <class Space, class T, int Dim, ParticleDomain domain>
+struct GiveBeyond {
+  using Source = SoilSource<Space, T, Dim, domain>;
+  Source source;
+  GiveSides<Space, T, Dim> sides;
+  Kokkos::View<long long* [Dim], Kokkos::LayoutRight, typename Space::memory_space> sums;
+  double unit;  // N
+
+  KOKKOS_INLINE_FUNCTION void operator()(int p) const {
+    const auto& grid = sides.places.grid;
+    const int cell = source.points.cell(p);
+    const Coord<Dim> first = in_mesh(sides.places.origin(cell / Patch<Dim>::cells), coord_of<Dim>(cell));
+    bool near = false;
+    for (int d = 0; d < Dim; ++d) near |= first[d] < 1 || first[d] >= grid.cells[d] - 1;
+    if (!near) return;
+    const typename Source::Point q = source.load(p);
+    with_weights(source.points.coordinate(p), q.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+      for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const Vector<T, Dim>& grad) {
+        T force[Dim] = {};
+        give<Source>(
+            q, w, grad, [] { return 0; },
+            [&](int value, T v) {
+              if (value >= SoilTerms<Dim>::force) force[value - SoilTerms<Dim>::force] += v;
+            });
+        Coord<Dim> at, image;
+        for (int d = 0; d < Dim; ++d) {
+          at[d] = first[d] + a[d].first + step[d];
+          image[d] = image_along(grid, d, at[d]);
+        }
+        const unsigned on = sides_of(grid, at) & sides.sides;
+        for (int n = 0; n < 2 * Dim; ++n)
+          if ((on >> n & 1u) && image[n / 2] != at[n / 2])
+            for (int k = 0; k < Dim; ++k)
+              Kokkos::atomic_add(&sums(sides.acting.all[n].row(image), k),
+                                 static_cast<long long>(Kokkos::round(double(force[k]) / unit)));
+      });
+    });
+  }
+};
+
+/// The force on each node of the sides that they have held till now, with the opposite sign.
+template <class Space, class T, int Dim>
+void set_reactions(State<Space, T, Dim>& s) {
+  using S = SoilTerms<Dim>;
+  const auto grid = s.grid;
+  const auto origin = s.patches.origin;
+  const auto soil = s.nodes.soil;
+  const auto gravity = s.gravity;
+  const ActingSides<Dim> sides = acting(s.sides);
+  const unsigned unknown = s.sides.unknown;
+  Kokkos::Array<unsigned, 2 * Dim> held;
+  for (int n = 0; n < 2 * Dim; ++n) held[n] = s.sides.held[n];
+  Kokkos::parallel_for(
+      "mpm::set_reactions", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
+      KOKKOS_LAMBDA(int i) {
+        Coord<Dim> at = coord_of<Dim>(i);
+        for (int d = 0; d < Dim; ++d) at[d] += origin(i / Patch<Dim>::cells)[d];
+        const unsigned on = sides_of(grid, at) & unknown;
+        if (on == 0 || !(soil(i, S::mass) > 0)) return;
+        unsigned taken = 0;  // components: where sides meet, the first one carries
+        for (int n = 0; n < 2 * Dim; ++n) {
+          if (!(on >> n & 1u)) continue;
+          double* const kept = sides.node(n, at);
+          for (int k = 0; k < Dim; ++k) {
+            const bool carries = (held[n] & ~taken) >> k & 1u;
+            const double force = double(soil(i, S::force + k)) + double(soil(i, S::mass)) * gravity[k];
+            kept[SideTerms<Dim>::reaction + k] = carries ? -force : 0.0;
+          }
+          taken |= held[n];
+        }
+      });
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_ratio, const SideRanks& ranks) {
+  using Give = GiveSides<Space, T, Dim>;
+  using S = SideTerms<Dim>;
+  const unsigned sides = s.sides.unknown;
+  if (sides == 0) return;
+  Kokkos::View<double*, typename Space::memory_space> ratio("mpm::shear_ratio", shear_ratio.size());
+  const auto ratio_host = Kokkos::create_mirror_view(ratio);
+  for (std::size_t m = 0; m < shear_ratio.size(); ++m) ratio_host(m) = shear_ratio[m];
+  Kokkos::deep_copy(ratio, ratio_host);
+  Give give{s.soil.points, {s.grid, s.patches}, acting(s.sides), sides, ratio, {}, {}};
+  give.sums = typename Give::Sum("mpm::side_sums", s.sides.nodes.extent(0));
+  double unit[Give::k_terms];  // of whole numbers
+  const Kokkos::RangePolicy<Space> range(s.space, 0, s.soil.points.count);
+  for (int k = 0; k < Give::k_terms; ++k) {
+    double largest = 0;
+    Kokkos::parallel_reduce(
+        "mpm::largest_of_sides", range,
+        KOKKOS_LAMBDA(int p, double& most) {
+          double terms[Give::k_terms];
+          give.terms_of(p, terms);
+          most = Kokkos::fmax(most, terms[k]);
+        },
+        Kokkos::Max<double>(largest));
+    ranks.largest(&largest);
+    unit[k] = std::max(largest, 1e-300) / k_resolution;
+  }
+  give.unit[0] = give.unit[1] = unit[0], give.unit[2] = give.unit[3] = unit[2], give.unit[4] = unit[3];
+  Kokkos::parallel_for("mpm::give_sides", range, give);
+  Kokkos::View<long long* [Dim], Kokkos::LayoutRight, typename Space::memory_space> beyond(
+      "mpm::beyond_sides", s.sides.nodes.extent(0));
+  with_domain(s.soil.points, [&](auto domain) {
+    const GiveBeyond<Space, T, Dim, domain()> forces{
+        {s.soil.points, s.grid.inv_spacing}, give, beyond, unit[4]};
+    Kokkos::parallel_for("mpm::give_beyond_sides", range, forces);
+  });
+  set_reactions(s);
+  s.space.fence("mpm::begin_absorbing");
+  const auto sums = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), give.sums);
+  ranks.sum(sums.data(), static_cast<int>(sums.size()));
+  const auto mirrored = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), beyond);
+  ranks.sum(mirrored.data(), static_cast<int>(mirrored.size()));
+  const auto table = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.sides.nodes);
+  for (int n = 0; n < 2 * Dim; ++n) {
+    if (!(sides >> n & 1u)) continue;
+    const int first = s.sides.host[n].first;
+    for (int row = first; row < first + side_rows(s.grid.cells, Dim, n / 2); ++row) {
+      const double volume = sums(row, 2) * give.unit[2], area = sums(row, 3) * give.unit[3] / s.spacing;
+      for (int k = 0; k < 2 && volume > 0; ++k) {
+        const double impedance = sums(row, k) * give.unit[k] / volume;  // kg/m2/s
+        const double density = sums(row, 4) * give.unit[4] / volume, length = s.sides.spring_length[n];
+        table(row, S::dashpot + k) = s.sides.dashpot_factor[n] * std::max(0.0, area) * impedance;
+        if (length > 0) table(row, S::spring + k) = std::max(0.0, area) * impedance * impedance / density / length;
+      }
+      // A mirror gives the force on the nodes beyond back, so that twice that force has passed the side.
+      for (int k = 0; k < Dim; ++k)
+        if (s.sides.mirrored[n] >> k & 1u) table(row, S::reaction + k) -= mirrored(row, k) * unit[4];
+    }
+  }
+  Kokkos::deep_copy(s.sides.nodes, table);
+  s.sides.unknown = 0;
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim) \
+  template void begin_absorbing(State<Space, T, Dim>&, const std::vector<double>&, const SideRanks&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

@@ -1,0 +1,104 @@
+#pragma once
+// What sides of the mesh with friction, dashpots or a motion of their own do to a node on them (docs/boundaries.md).
+
+#include "data/sides.hpp"
+#include "physics/contact.hpp"
+
+namespace mpm {
+
+/// A node on such sides in a step.
+template <int Dim>
+struct SideNode {
+  Coord<Dim> at;
+  unsigned sides;  // the acting ones that it lies on
+  double mass, dt;  // kg, s
+  bool counts;  // this rank answers for it
+};
+
+/// The static reaction of absorbing sides, to the force on a node [N].
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void add_reactions(const ActingSides<Dim>& acting, const SideNode<Dim>& node,
+                                          T* force) {
+  for (int side = 0; side < 2 * Dim; ++side) {
+    if (!(node.sides >> side & 1u) || acting.all[side].kind != Wall::absorbing) continue;
+    const double* const kept = acting.node(side, node.at);
+    for (int k = 0; k < Dim; ++k) force[k] += static_cast<T>(kept[SideTerms<Dim>::reaction + k]);
+  }
+}
+
+/// Implicit dashpots (Lysmer and Kuhlemeyer 1969) between the node and what moves with the side's velocity:
+/// m (v' - v) = -c dt (v' - V) - s dt u', where springs s hold the drift u' = u + dt (v' - V).
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void absorb(const Side<Dim>& side, int d, const SideNode<Dim>& node, double* kept,
+                                   double* v) {
+  using S = SideTerms<Dim>;
+  for (int k = 0; k < Dim; ++k) {
+    const int along = k == d ? 0 : 1;
+    const double pull = kept[S::spring + along] * node.dt / node.mass,
+                 a = kept[S::dashpot + along] * node.dt / node.mass + pull * node.dt;
+    v[k] = (v[k] + a * side.velocity[k] - pull * kept[S::drift + k]) / (1 + a);
+    kept[S::drift + k] += node.dt * (v[k] - side.velocity[k]);
+  }
+}
+
+/// A roller with Coulomb friction, as contact_correction() has it: the friction of a step is at most a
+/// fraction of the normal impulse of this step and of what earlier ones have left. The side also pulls, as a
+/// roller does; a pull uses the stock up.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void rub(const Side<Dim>& side, int d, bool upper, const SideNode<Dim>& node,
+                                double* kept, double* v) {
+  double& stock = kept[SideTerms<Dim>::stock];
+  const double approach = (v[d] - side.velocity[d]) * (upper ? 1 : -1);
+  stock = Kokkos::fmax(0.0, double(k_memory<T>) * stock + node.mass * approach);
+  v[d] = side.velocity[d];
+  double squares = 0;
+  for (int k = 0; k < Dim; ++k)
+    if (k != d) squares += (v[k] - side.velocity[k]) * (v[k] - side.velocity[k]);
+  const double speed = Kokkos::sqrt(squares), stops = node.mass * speed;  // N s
+  const double area = side.face * Kokkos::fmin(1.0, node.mass / side.unit_mass);
+  const double most = Kokkos::fmin(side.friction * stock, side.shear_limit * area * node.dt);
+  const double used = Kokkos::fmin(stops, most), left = stops > 0 ? 1 - used / stops : 1;
+  if (side.friction > 0) stock -= used / side.friction;
+  for (int k = 0; k < Dim; ++k)
+    if (k != d) v[k] = side.velocity[k] + left * (v[k] - side.velocity[k]);
+}
+
+/// Components that a side prescribes.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void drive(const Side<Dim>& side, int d, double* v) {
+  if (side.kind == Wall::absorbing) return;
+  for (int k = 0; k < Dim; ++k)
+    if (k == d || side.holds_all) v[k] = side.velocity[k];
+}
+
+/// What the acting sides make of the velocity v of a node, which was v_old before the step. meets: dashpots
+/// and friction too; else, behind a contact, only what sides prescribe. Where sides meet, those that
+/// prescribe more come later.
+template <class T, int Dim>
+MPM_CALLED_FUNCTION Vector<T, Dim> by_sides(ActingSides<Dim> acting, SideNode<Dim> node,
+                                            Vector<T, Dim> v_old, Vector<T, Dim> v_now, bool meets) {
+  using S = SideTerms<Dim>;
+  constexpr Wall k_order[] = {Wall::absorbing, Wall::friction, Wall::driven};
+  double v[Dim], before[Dim];
+  for (int k = 0; k < Dim; ++k) v[k] = v_now[k];
+  for (const Wall kind : k_order)
+    for (int n = 0; n < 2 * Dim; ++n) {
+      if (!(node.sides >> n & 1u) || acting.all[n].kind != kind) continue;
+      const Side<Dim>& side = acting.all[n];
+      double* const kept = acting.node(n, node.at);
+      for (int k = 0; k < Dim; ++k) before[k] = v[k];
+      if (meets && kind == Wall::absorbing) absorb(side, n / 2, node, kept, v);
+      if (meets && kind == Wall::friction) rub<T>(side, n / 2, n % 2 == 1, node, kept, v);
+      drive(side, n / 2, v);
+      for (int k = 0; k < Dim && node.counts; ++k) {
+        const double carried = meets ? node.dt * kept[S::reaction + k] : 0;
+        const double impulse = node.mass * (v[k] - before[k]) + carried;
+        kept[S::impulse + k] += impulse;
+        kept[S::work] += impulse * (double(v_old[k]) + v[k]) / 2;
+      }
+    }
+  for (int k = 0; k < Dim; ++k) v_now[k] = static_cast<T>(v[k]);
+  return v_now;
+}
+
+}  // namespace mpm

@@ -1,0 +1,122 @@
+#include "transfer/upload_sides.hpp"
+
+#include <cmath>
+
+#include "physics/walls.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<SideInput>& sides,
+                  double density) {
+  s.sides = {};
+  if (sides.empty()) return;
+  int rows = 0;
+  for (const SideInput& in : sides) {
+    const int n = 2 * in.direction + in.side;
+    Side<Dim>& side = s.sides.host[n];
+    side.kind = grid.walls[in.direction][in.side];
+    side.holds_all = in.holds_all;
+    for (int d = 0; d < Dim; ++d) side.velocity[d] = in.velocity[d];
+    side.friction = in.friction, side.shear_limit = in.shear_limit;
+    side.face = std::pow(grid.spacing, Dim - 1);
+    side.unit_mass = density * side.face * grid.spacing / 2;
+    side.first = rows;
+    for (int d = 0, step = 1; d < Dim; ++d) {
+      if (d == in.direction) continue;
+      side.step[d] = step;
+      step *= grid.cells[d] + 3;
+    }
+    rows += side_rows(grid.cells, Dim, in.direction);
+    s.sides.mask |= 1u << n;
+    s.sides.dashpot_factor[n] = in.dashpot_factor, s.sides.spring_length[n] = in.spring_length;
+    if (side.kind == Wall::absorbing) s.sides.unknown |= 1u << n;
+    s.sides.held[n] = s.sides.mirrored[n] = 1u << in.direction;
+  }
+  s.sides.all = decltype(s.sides.all)("mpm::sides", 2 * Dim);
+  const auto host = Kokkos::create_mirror_view(s.sides.all);
+  for (int n = 0; n < 2 * Dim; ++n) host(n) = s.sides.host[n];
+  Kokkos::deep_copy(s.sides.all, host);
+  s.sides.nodes = decltype(s.sides.nodes)("mpm::side_nodes", rows);
+}
+
+template <class Space, class T, int Dim>
+SideWork take_side_work(const State<Space, T, Dim>& s) {
+  using S = SideTerms<Dim>;
+  SideWork done;
+  if (!s.sides.in_use()) return done;
+  s.space.fence("mpm::take_side_work");
+  const auto table = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.sides.nodes);
+  for (int n = 0; n < 2 * Dim; ++n) {
+    if (!(s.sides.mask >> n & 1u)) continue;
+    const int first = s.sides.host[n].first;
+    for (int row = first; row < first + side_rows(s.grid.cells, Dim, n / 2); ++row) {
+      for (int k = 0; k < Dim; ++k) done.impulse[n / 2][n % 2][k] -= table(row, S::impulse + k);
+      done.work += table(row, S::work);
+      for (int k = 0; k < Dim; ++k) table(row, S::impulse + k) = 0;
+      table(row, S::work) = 0;
+    }
+  }
+  Kokkos::deep_copy(s.sides.nodes, table);
+  return done;
+}
+
+namespace {
+
+/// Which rows belong to nodes that this rank answers for.
+template <class Space, class T, int Dim>
+std::vector<char> own_rows(const State<Space, T, Dim>& s) {
+  std::vector<char> own(s.sides.nodes.extent(0), s.owned_nodes.extent(0) == 0);
+  const auto owned = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.owned_nodes);
+  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
+  for (int i = 0; owned.extent(0) > 0 && i < s.patches.node_count(); ++i) {
+    if (!(owned(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1)) continue;
+    Coord<Dim> at = coord_of<Dim>(i);
+    bool inside = true;
+    for (int d = 0; d < Dim; ++d) {
+      at[d] += origin(i / Patch<Dim>::cells)[d];
+      inside = inside && at[d] >= -1 && at[d] <= s.grid.cells[d] + 1;
+    }
+    const unsigned sides = sides_of(s.grid, at) & s.sides.mask;
+    for (int n = 0; n < 2 * Dim && inside; ++n)
+      if (sides >> n & 1u) own[s.sides.host[n].row(at)] = 1;
+  }
+  return own;
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+std::vector<double> side_table(const State<Space, T, Dim>& s, bool own, bool first) {
+  using S = SideTerms<Dim>;
+  if (!s.sides.in_use()) return {};
+  s.space.fence("mpm::side_table");
+  const auto table = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.sides.nodes);
+  std::vector<double> values(table.data(), table.data() + table.size());
+  if (!own) return values;
+  const std::vector<char> owned = own_rows(s);
+  for (std::size_t row = 0; row < owned.size(); ++row) {
+    double* const of = &values[row * S::size];
+    for (int k = 0; k < S::dashpot && !owned[row]; ++k) of[k] = 0;
+    for (int k = S::dashpot; k < S::impulse && !first; ++k) of[k] = 0;
+  }
+  return values;
+}
+
+template <class Space, class T, int Dim>
+void put_side_table(State<Space, T, Dim>& s, std::vector<double> values, bool first) {
+  using S = SideTerms<Dim>;
+  const auto table = Kokkos::create_mirror_view(s.sides.nodes);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    table.data()[k] = static_cast<int>(k % S::size) >= S::impulse && !first ? 0 : values[k];
+  Kokkos::deep_copy(s.sides.nodes, table);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                        \
+  template void upload_sides(State<Space, T, Dim>&, const GridInput&, const std::vector<SideInput>&, double); \
+  template SideWork take_side_work(const State<Space, T, Dim>&);                                              \
+  template std::vector<double> side_table(const State<Space, T, Dim>&, bool, bool);                           \
+  template void put_side_table(State<Space, T, Dim>&, std::vector<double>, bool);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

@@ -1,0 +1,45 @@
+#pragma once
+// Sides of the mesh that act on the soil: from the host to a State, and what they have done back.
+
+#include <array>
+#include <vector>
+
+#include "data/state.hpp"
+#include "functions/wall_force.hpp"
+#include "transfer/upload.hpp"
+
+namespace mpm {
+
+/// A side that acts; the others are left out.
+struct SideInput {
+  int direction = 0, side = 0;  // 0 lower, 1 upper
+  bool holds_all = false;       // driven: fixed, not roller
+  std::array<double, 3> velocity{};  // m/s, where no table tells it
+  double friction = 0;               // -
+  double shear_limit = 0;            // Pa, infinite where there is none
+  double dashpot_factor = 1;         // -, absorbing
+  double spring_length = 0;          // m, absorbing; 0: no springs
+};
+
+/// Sets up the sides of `grid` that act; density [kg/m3]: of the lightest soil.
+template <class Space, class T, int Dim>
+void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<SideInput>& sides,
+                  double density);
+
+/// What the acting sides have done since the host last took it, of the nodes that this rank answers for.
+struct SideWork {
+  WallForces impulse{};  // N s, of the soil on each side
+  double work = 0;       // J, of the sides on the soil
+};
+template <class Space, class T, int Dim>
+SideWork take_side_work(const State<Space, T, Dim>& s);
+
+/// The table of the sides' nodes, row by row (SideTerms). own: of several ranks' tables, the sum is that of
+/// all: what changes in a step is left to the rank that answers for the node, what all know alike to the first.
+template <class Space, class T, int Dim>
+std::vector<double> side_table(const State<Space, T, Dim>& s, bool own, bool first);
+/// Puts a table back; first: with the impulses and works in it, which only one of several ranks may keep.
+template <class Space, class T, int Dim>
+void put_side_table(State<Space, T, Dim>& s, std::vector<double> table, bool first);
+
+}  // namespace mpm

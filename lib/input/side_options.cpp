@@ -1,0 +1,109 @@
+// What sides of the mesh take beside their kind.
+
+#include <algorithm>
+
+#include "common/material_table.hpp"
+#include "common/text.hpp"
+#include "common/time_table.hpp"
+#include "input/groups.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr const char* k_keys[] = {"_friction", "_shear_limit", "_dashpot_factor", "_spring_length", "_velocity", "_velocity_table",
+                                  "_velocity_table_interpolation"};
+
+void read_friction(OptionReader& in, const std::string& name, SideConfig& side) {
+  in.number({.name = name + "_friction",
+             .meaning = "friction: coefficient of friction, tan of the angle",
+             .unit = "-",
+             .range = {.lowest = 0, .highest = 1e3},
+             .required = true},
+            side.friction);
+  in.number({.name = name + "_shear_limit",
+             .meaning = "friction: largest shear stress along the side",
+             .unit = "Pa",
+             .range = {.lowest = 0, .highest = 1e15},
+             .standard = "none"},
+            side.shear_limit);
+}
+
+void read_absorbing(OptionReader& in, const std::string& name, SideConfig& side) {
+  in.number({.name = name + "_dashpot_factor",
+             .meaning = "absorbing: factor of the dashpots rho c",
+             .unit = "-",
+             .range = {.lowest = 0, .highest = 1e3}},
+            side.dashpot_factor);
+  in.number({.name = name + "_spring_length",
+             .meaning = "absorbing: length L of springs rho c^2 / L beside the dashpots, against drift",
+             .unit = "m",
+             .range = {.lowest = 0, .highest = 1e9, .open_lowest = true},
+             .standard = "no springs"},
+            side.spring_length);
+}
+
+void read_velocity(OptionReader& in, const std::string& name, int dim, double end, SideConfig& side) {
+  const Option velocity{.name = name + "_velocity",
+                        .meaning = "velocity of the side, which stays where it is; absorbing: of what the "
+                                   "dashpots hold on to",
+                        .unit = "m/s",
+                        .range = k_speed};
+  in.vector(velocity, dim, side.velocity);
+  read_timed(in, velocity, true, dim, end, side.velocity, side.velocity_table);
+  if (side.velocity_table) side.velocity = largest_of(*side.velocity_table);
+  side.moves = side.velocity != Vec3{};
+}
+
+/// A roller leaves the velocity along it to the soil.
+void check_roller(OptionReader& in, const std::string& name, int dim, int d, const SideConfig& side) {
+  for (int k = 0; k < dim; ++k)
+    if (k != d && side.velocity[k] != 0)
+      return in.reject(name + (side.velocity_table ? "_velocity_table" : "_velocity"),
+                       std::string("0 but in ") + "xyz"[d] + ", for -" + name +
+                           " is roller, which leaves the velocity along it free");
+}
+
+void read_side(OptionReader& in, const Config& config, int d, int side, SideConfig& to) {
+  const std::string name = std::string("mesh_") + "xyz"[d] + (side == 0 ? "min" : "max");
+  const Wall kind = config.mesh.walls[d][side];
+  const auto known = in.known().size();
+  if (kind == Wall::friction || in.listing()) read_friction(in, name, to);
+  if (kind == Wall::absorbing || in.listing()) read_absorbing(in, name, to);
+  if (kind != Wall::free || in.listing()) read_velocity(in, name, config.dim, config.time.end, to);
+  if (in.listing()) return;
+  static constexpr const char* k_words[] = {"roller", "fixed", "free", "friction", "absorbing"};
+  const auto& all = in.known();
+  for (const char* key : k_keys)
+    if (std::find(all.begin() + static_cast<long>(known), all.end(), name + key) == all.end())
+      in.not_taken(name + key, "-" + name + " is " + k_words[static_cast<int>(kind)]);
+  if (kind == Wall::roller) check_roller(in, name, config.dim, d, to);
+}
+
+}  // namespace
+
+void read_sides(OptionReader& in, Config& config) {
+  in.section("Sides of the mesh");
+  for (int d = 0; d < 3; ++d)
+    for (int side = 0; side < 2; ++side)
+      if (d < config.dim || in.listing()) {
+        read_side(in, config, d, side, config.mesh.sides[d][side]);
+      } else {
+        for (const char* key : k_keys)
+          in.not_taken(std::string("mesh_z") + (side == 0 ? "min" : "max") + key,
+                       "a mesh in 2D has no such side");
+      }
+}
+
+void check_absorbing(OptionReader& in, const Config& config) {
+  for (int d = 0; d < config.dim; ++d)
+    for (int side = 0; side < 2; ++side) {
+      if (config.mesh.walls[d][side] != Wall::absorbing) continue;
+      for (const MaterialConfig& material : config.materials)
+        if (!shear_wave_ratio(material))
+          return in.reject(std::string("mesh_") + "xyz"[d] + (side == 0 ? "min" : "max"),
+                           "another kind of side where material " + material.name +
+                               " has no Poisson's ratio, which tells the speed of its shear waves");
+    }
+}
+
+}  // namespace mpm

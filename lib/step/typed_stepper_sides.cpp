@@ -1,0 +1,127 @@
+// Sides of the mesh that act on the soil, between configuration, state and checkpoints.
+
+#include <algorithm>
+
+#include "common/collectives.hpp"
+#include "common/material_table.hpp"
+#include "functions/absorbing_sides.hpp"
+#include "step/typed_stepper.hpp"
+
+namespace mpm {
+
+/// Puts the sides that act on the device. A roller or fixed side that moves becomes a driven one in `grid`.
+template <class Space, class T, int Dim>
+void TypedStepper<Space, T, Dim>::set_up_sides(GridInput* grid) {
+  std::vector<SideInput> sides;
+  for (int d = 0; d < Dim; ++d)
+    for (int side = 0; side < 2; ++side) {
+      Wall& kind = grid->walls[d][side];
+      const SideConfig& of = config_.mesh.sides[d][side];
+      SideInput in{.direction = d, .side = side, .holds_all = kind == Wall::fixed};
+      if (is_mirror(kind) && of.moves) kind = Wall::driven;
+      if (!is_acting(kind)) continue;
+      if (!of.velocity_table) in.velocity = of.velocity;
+      in.friction = of.friction;
+      in.shear_limit = of.shear_limit.value_or(std::numeric_limits<double>::infinity());
+      in.dashpot_factor = of.dashpot_factor, in.spring_length = of.spring_length.value_or(0);
+      sides.push_back(in);
+    }
+  double density = std::numeric_limits<double>::max();
+  for (const MaterialConfig& material : config_.materials) density = std::min(density, material.density);
+  upload_sides(state_, *grid, sides, density);
+}
+
+/// Absorbing sides take their dashpots and reactions from the soil as it is before the first step.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::begin_sides() {
+  PetscFunctionBeginUser;
+  if (state_.sides.unknown == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  collect_soil(state_);
+  PetscCall(sum_soil());
+  std::vector<double> ratios;
+  for (const MaterialConfig& material : config_.materials)
+    ratios.push_back(shear_wave_ratio(material).value_or(0));
+  SideRanks together;
+  PetscErrorCode failed = PETSC_SUCCESS;
+  if (ranks_) {
+    together.sum = [&](long long* values, int count) {
+      failed = MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_LONG_LONG, MPI_SUM, comm_);
+    };
+    together.largest = [&](double* value) {
+      failed = MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE, MPI_MAX, comm_);
+    };
+  }
+  PetscCallCXX(begin_absorbing(state_, ratios, together));
+  PetscCallMPI(failed);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Mean forces on the sides that act, and their work, since the last row.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::measure_sides(double interval, HistoryRow* row) {
+  PetscFunctionBeginUser;
+  if (!state_.sides.in_use()) PetscFunctionReturn(PETSC_SUCCESS);
+  SideWork done = take_side_work(state_);
+  if (ranks_) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, done.impulse[0][0].data(), 18, MPI_DOUBLE, MPI_SUM, comm_));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &done.work, 1, MPI_DOUBLE, MPI_SUM, comm_));
+  }
+  row->side_work = done.work;
+  for (int n = 0; n < 2 * Dim && interval > 0; ++n)
+    for (int k = 0; k < Dim; ++k) row->walls[n / 2][n % 2][k] += done.impulse[n / 2][n % 2][k] / interval;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The table of the sides' nodes, of all ranks.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::gather_sides(std::vector<double>* table) const {
+  PetscFunctionBeginUser;
+  *table = side_table(state_, ranks_ != nullptr, rank_of(comm_) == 0);
+  if (ranks_ && !table->empty())
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, table->data(), static_cast<int>(table->size()), MPI_DOUBLE, MPI_SUM,
+                               comm_));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::save_sides(SavedSides* saved) const {
+  PetscFunctionBeginUser;
+  for (int n = 0; n < 2 * Dim; ++n) saved->kinds.push_back(static_cast<long>(state_.grid.wall[n / 2][n % 2]));
+  PetscCall(gather_sides(&saved->values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Sides of the same kind go on with what they have kept. One that begins to absorb goes on to carry what it
+/// has held till now.
+template <class Space, class T, int Dim>
+void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides& saved) {
+  if (saved.kinds.empty()) return;
+  constexpr unsigned k_all = (1u << Dim) - 1;
+  constexpr int size = SideTerms<Dim>::size;
+  std::vector<double> table = side_table(state_, false, true);
+  std::size_t from = 0;
+  for (int n = 0; n < 2 * Dim; ++n) {
+    const Wall then = static_cast<Wall>(saved.kinds[n]), now = state_.grid.wall[n / 2][n % 2];
+    const std::size_t count = std::size_t(size) * side_rows(config_.mesh.cells, Dim, n / 2);
+    state_.sides.held[n] = then == Wall::free ? 0u : then == Wall::roller ? 1u << (n / 2) : k_all;
+    state_.sides.mirrored[n] = is_mirror(then) ? state_.sides.held[n] : 0u;
+    if (is_acting(then) && then == now) {
+      std::copy_n(saved.values.begin() + static_cast<long>(from), count,
+                  table.begin() + std::size_t(size) * state_.sides.host[n].first);
+      state_.sides.unknown &= ~(1u << n);
+    }
+    if (is_acting(then)) from += count;
+  }
+  if (state_.sides.in_use()) put_side_table(state_, table, rank_of(comm_) == 0);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                \
+  template void TypedStepper<Space, T, Dim>::set_up_sides(GridInput*);                                \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::begin_sides();                                 \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::measure_sides(double, HistoryRow*);            \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::gather_sides(std::vector<double>*) const;      \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::save_sides(SavedSides*) const;                 \
+  template void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

@@ -1,0 +1,65 @@
+"""Absorbing side
+
+A pulse runs along a bar to an absorbing side, whose dashpots have the factor $a$ (`-mesh_xmax_dashpot_factor`). The reflected
+pulse has the velocity $R = (1 - a)/(1 + a)$ times that of the first one, and so the momentum of the bar is $R$ times as large. Level ground that starts with the stress of its weight must stay at rest between absorbing sides, which carry
+the static stress, and so must a bank that has come to rest between rollers, when its sides begin to absorb.
+"""
+
+import numpy as np
+
+import particles
+from row import Row
+
+SPACING, CELLS, CENTRE = 0.25, 60, 35
+DENSITY, SPEED, PEAK = 2000.0, 100.0, 0.01
+FACTORS = {"0.5": 20, "1": 20, "2": 20, "1, short pulse": 10}
+GROUND = ("-mesh_upper 4,4 -mesh_ymin absorbing -mesh_xmin absorbing -mesh_ymax free -elastic_poisson 0.3 -gravity 0,-10"
+          " -time_courant 0.4")
+LEVEL = GROUND + " -bar_shape box -bar_lower 0,0 -bar_upper 4,3 -bar_stress k0 -time_end 4 -history_interval 0.1"
+BANK = (GROUND + " -bar_shape polygon -bar_polygon 0,0,4,0,4,1.5,2.5,1.5,1.5,3,0,3 -stages rest,shake -rest_end equilibrium -rest_damping 0.6 -rest_unbalanced_ratio 1e-7 -rest_time_end 5"
+        " -rest_mesh_xmin roller -rest_mesh_xmax roller -rest_mesh_ymin fixed -rest_reset on -shake_time_end 4 -history_interval 0.05")
+
+
+def options(name):
+    factor = name.split(",")[0]
+    return f"-bar_file {{start}} -mesh_xmax_dashpot_factor {factor}"
+
+
+RUNS = {name.replace(", ", "_").replace(" ", "_"): options(name) for name in FACTORS} | {"level": LEVEL, "bank": BANK}
+
+
+def prepare(run, path, options):
+    lengths = {name.replace(", ", "_").replace(" ", "_"): cells for name, cells in FACTORS.items()}
+    if run not in lengths:
+        return
+    position = particles.lattice((0, 0), (CELLS * SPACING, SPACING), SPACING / 2)
+    x = (position[:, 0] / SPACING - CENTRE) / lengths[run]
+    pulse = np.where(abs(x) < 0.5, np.cos(np.pi * x) ** 2, 0.0)
+    velocity, stress = np.zeros_like(position), np.zeros((len(position), 6))
+    velocity[:, 0] = PEAK * pulse
+    stress[:, 0] = -DENSITY * SPEED * PEAK * pulse
+    particles.write(path, "bar", position, SPACING / 2, velocity=velocity, stress=stress)
+
+
+def check(runs):
+    for name in FACTORS:
+        run = runs[name.replace(", ", "_").replace(" ", "_")].history
+        factor = float(name.split(",")[0])
+        exact, tolerance = (1 - factor) / (1 + factor), 0.03 if "short" in name else 0.01
+        momentum, speed = run["bar_momentum_x"], run["bar_grid_velocity"]
+        yield Row(f"R by the momentum, a = {name}", momentum[-1] / momentum[0], exact, tolerance, "linear wave equation")
+        yield Row(f"R by the largest velocity, a = {name}", speed[-1] / speed[0], abs(exact), tolerance, "linear wave equation")
+    for name in ("level", "bank"):
+        run = runs[name].history
+        late = slice(0, None) if name == "level" else run["stage"] == 2
+        place = np.column_stack([run["bar_centre_x"], run["bar_centre_y"]])[late]
+        moved = np.abs(place - place[0]).max()
+        yield Row(f"{name}: movement of the centre in 4 s (m)", moved, 0, 1e-5 if name == "bank" else 1e-6, "at rest")
+
+
+def draw(axes, runs):
+    for name in FACTORS:
+        run = runs[name.replace(", ", "_").replace(" ", "_")].history
+        axes.plot(run["time"], run["bar_momentum_x"] / run["bar_momentum_x"][0], label=f"a = {name}")
+    axes.set(xlabel="time (s)", ylabel="momentum over that at the start")
+    axes.legend()

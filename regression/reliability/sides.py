@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""Random sides of the mesh: friction, dashpots, velocities in time.
+
+    sides.py MPM [--count 50] [--seed 1] [--folder FOLDER] [--dims 2,3] [--precisions double,single]
+
+A deck has soil in a mesh whose sides, but the top, are of random kinds that act on the soil, under gravity that may be inclined. At every row the momentum of
+the soil must be what gravity and the forces on the sides have made of it.
+A run that is cut in two by a checkpoint must give the same bits as the whole one; a run on two ranks the same to
+round-off. Some decks have two stages, in which the kinds differ.
+"""
+import sys
+
+import numpy as np
+
+from folders import checkpoints, differences, fresh, rows, run
+from random_decks import draws_of, read_arguments
+
+END = 0.15  # s
+
+
+def vector(values):
+    return ",".join(repr(float(x)) for x in values)
+
+
+def side_options(draw, name, axis, dim, prefix=""):
+    kind = draw.choice(["friction", "friction", "absorbing", "absorbing", "fixed", "roller"])
+    options = [f"-{prefix}mesh_{name}", kind]
+    if kind == "friction":
+        options += [f"-{prefix}mesh_{name}_friction", draw.choice(["0", "0.3", "2"])]
+        options += draw.choice([[], [f"-{prefix}mesh_{name}_shear_limit", "500"]])
+    if kind == "absorbing":
+        options += draw.choice([[], [f"-{prefix}mesh_{name}_dashpot_factor", "0.4"]])
+        options += draw.choice([[], [f"-{prefix}mesh_{name}_spring_length", "20"]])
+    free = [True] * dim if kind != "roller" else [k == axis for k in range(dim)]
+    size = [0.02 if k == axis else 0.2 for k in range(dim)]
+    speed = lambda: [draw.uniform(-s, s) if f else 0.0 for f, s in zip(free, size)]  # noqa: E731
+    if draw.random() < 0.5:
+        points = [":".join(repr(float(x)) for x in (t, *speed())) for t in (0, draw.uniform(0.01, 0.14), 9)]
+        options += [f"-{prefix}mesh_{name}_velocity_table", ",".join(points)]
+        options += draw.choice([[], [f"-{prefix}mesh_{name}_velocity_table_interpolation", "smooth"]])
+    elif kind in ("fixed", "roller") or draw.random() < 0.4:
+        options += [f"-{prefix}mesh_{name}_velocity", vector(speed())]
+    return options
+
+
+def make_deck(draw, dim):
+    """Options, and whether there are two stages."""
+    across = [2.0, 3.0] if dim == 2 else [2.0, 1.0, 2.0]
+    filled = [*across[:-1], draw.choice([0.5, 1.0, 1.13])]
+    gravity = [draw.uniform(-3, 3) for _ in range(dim - 1)] + [-9.81]
+    options = (f"-dim {dim} -mesh_lower {vector([0] * dim)} -mesh_upper {vector(across)} -mesh_spacing 0.25 -materials clay "
+               f"-clay_model {draw.choice(['von_mises -clay_su 3000', 'linear_elastic'])} -clay_density 1500 -clay_young 1e6 -clay_poisson 0.3 "
+               f"-bodies soil -soil_material clay -soil_shape box -soil_lower {vector([0] * dim)} -soil_upper {vector(filled)} "
+               f"-gravity {vector(gravity)} -velocity_update {draw.choice(['flip', 'apic', 'xpic'])} -mesh_{'xyz'[dim - 1]}max free "
+               f"-time_courant {draw.choice(['0.2', '0.33'])} -history_interval 0.003 -output_interval 0.1").split()
+    staged = draw.random() < 0.3
+    names = [(f"{'xyz'[d]}{side}", d) for d in range(dim) for side in ("min", "max") if (d, side) != (dim - 1, "max")]
+    for name, axis in names:
+        for prefix in ("first_", "second_") if staged else ("",):
+            options += side_options(draw, name, axis, dim, prefix)
+    options += ["-stages", "first,second", "-time_end", str(END / 2)] if staged else ["-time_end", str(END)]
+    return options, np.array(gravity), staged
+
+
+def check_momentum(folder, gravity, dim, precision):
+    lines = rows(folder)
+    values = {name: np.array([float(line[k]) for line in lines[1:]]) for k, name in enumerate(lines[0])}
+    t = values["time"]
+    once = np.concatenate([[True], np.diff(t) > 0])
+    scale = values["soil_mass"][0] * (np.abs(gravity).max() * t[-1] + 0.2)
+    sides = [name[:-len("_force_x")] for name in lines[0] if name.startswith("wall_") and name.endswith("_force_x")]
+    for d in range(dim):
+        axis = "xyz"[d]
+        force = sum(values[f"{side}_force_{axis}"] for side in sides)
+        gained = np.cumsum(np.where(once[1:], np.diff(t), 0) * (values["soil_mass"][1:] * gravity[d] - force[1:]))
+        error = np.abs(values[f"soil_momentum_{axis}"][1:] - values[f"soil_momentum_{axis}"][0] - gained).max() / scale
+        assert error < (1e-10 if precision == "double" else 1e-4), f"the momentum along {axis} is {error:.3g} off"
+
+
+def check_cut(binary, empty, base, options, whole, draw):
+    cut = fresh(base / "cut")
+    step = int(rows(whole)[-1][0])
+    at = draw.randint(1, step - 1)
+    run(binary, empty, cut, *options, "-time_max_steps", at, "-checkpoint_interval", 1e3)
+    run(binary, empty, cut, *options, "-restart", checkpoints(cut)[-1])
+    mine, theirs = rows(cut), rows(whole)
+    kept = [line for line in mine if line in theirs]
+    assert kept == theirs, f"cut at step {at} of {step}: {len(theirs) - len(kept)} rows differ"
+    assert not [f for f in differences(cut, whole) if "history" not in f], f"cut at step {at} of {step}: frames differ"
+
+
+def main():
+    given, base = read_arguments(__doc__, "sides")
+    binary = given.binary
+    empty = base / "empty.opts"
+    empty.write_text("\n")
+    listing = base / "failed.txt"
+    for number in range(given.count):
+        draw = draws_of(given, number)
+        dim = int(draw.choice(given.dims.split(",")))
+        options, gravity, staged = make_deck(draw, dim)
+        precision = draw.choice(given.precisions.split(","))
+        options += ["-backend", draw.choice(["serial", "openmp"]), "-precision", precision,
+                    "-p2g", draw.choice(["tile", "gather"])]
+        try:
+            whole = fresh(base / "whole")
+            run(binary, empty, whole, *options)
+            check_momentum(whole, gravity, dim, precision)
+            check_cut(binary, empty, base, options, whole, draw)
+            if draw.random() < 0.4:
+                pair = fresh(base / "pair")
+                run(binary, empty, pair, *options, prefix=("mpirun", "-n", "2", "--bind-to", "none"))
+                check_momentum(pair, gravity, dim, precision)
+        except AssertionError as error:
+            listing.write_text(f"{error}\n\n{' '.join(map(str, options))}\n")
+            sys.exit(f"deck {number} of seed {given.seed}: {str(error)[-1500:]}\nits options are in {listing}")
+    print(f"{given.count} decks: gravity and the forces on the sides make the momentum; cut runs give the same bits")
+
+
+main()
