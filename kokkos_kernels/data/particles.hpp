@@ -64,6 +64,8 @@ struct Soil : Points<Space, T, Dim> {
   bool has_domain = false;    // the domains of the particles stretch with the soil
   T least_half_length = 0;    // cells, of such a domain (k_least_half_length)
   bool splits = false;        // particles with a domain that is too long are split; they have own masses
+  bool rings = false;         // the particles are rings about the axis of revolution, as their masses
+  const Coord<Dim>* patch_origin = nullptr;  // of them: lower cell of each slot (Patches::origin)
 
   /// Mass [kg] of particle p, which is of this body.
   KOKKOS_INLINE_FUNCTION T mass_of(int p, const BodyProperties<T>& of) const {

@@ -73,6 +73,7 @@ struct Cloud {
   double flip_fraction = 1, damping = 0, f_bar_fraction = 0;
   int xpic_order = 0;
   bool affine = false;
+  bool rings = false;                   // the particles are rings about x = 0
   bool stretch = false, split = false;  // the domains of particles; those that are too long
   double memory_limit = 0;  // bytes, for batches of the soil
 };
@@ -89,6 +90,7 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typenam
   s.affine = cloud.affine;
   s.soil.points.has_domain = cloud.stretch;
   s.soil.points.splits = cloud.split;
+  s.soil.points.rings = cloud.rings;
   s.damping = cloud.damping;
   s.f_bar_fraction = cloud.f_bar_fraction;
   s.batches.limit = cloud.memory_limit;

@@ -1,6 +1,7 @@
 #pragma once
 // Every input of a run as plain structs, validated, in SI units. In 2D (plane strain) every force and mass is
-// per metre of width and the third component of a vector is zero and unused.
+// per metre of width, or of the whole revolution where the geometry is axisymmetric, and the third component of a
+// vector is zero and unused.
 
 #include <array>
 #include <memory>
@@ -238,6 +239,7 @@ inline constexpr double k_gib = 1024.0 * 1024 * 1024;  // bytes
 /// Everything that a run needs to know.
 struct Config {
   int dim = 2;
+  Geometry geometry = Geometry::plane_strain;  // in 2D
   Backend backend = Backend::serial;
   Precision precision = Precision::double_;
   std::optional<double> device_memory_limit;  // GiB, of the run on its device: more soil goes in batches
