@@ -8,7 +8,8 @@ void read_geometry_of(OptionReader& in, Config& config) {
            .meaning = "of what the 2D mesh is a section: plane_strain: of a body without end along z; "
                       "axisymmetric: of a body of revolution, x its radius and y its axis. Forces, masses, "
                       "momenta and energies are then those of the whole revolution"},
-          Words<Geometry>{{"plane_strain", Geometry::plane_strain}, {"axisymmetric", Geometry::axisymmetric}},
+          std::vector<std::pair<std::string, Geometry>>{{"plane_strain", Geometry::plane_strain},
+                                                        {"axisymmetric", Geometry::axisymmetric}},
           config.geometry);
 }
 
