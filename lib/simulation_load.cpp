@@ -22,7 +22,8 @@ static void weigh(double density, BodyParticles& particles) {
   particles.least_mass = density * particles.least_volume;
 }
 
-/// Volumes and masses of particles that are rings. The bounds of their volumes remain those of their sections.
+/// Volumes and masses of particles that are rings. The bounds of their volumes remain those of their
+/// sections.
 static PetscErrorCode revolve(MPI_Comm comm, const Config& config, double density, BodyParticles* particles) {
   PetscFunctionBeginUser;
   if (config.geometry != Geometry::axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
@@ -88,6 +89,10 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   BackgroundMesh mesh;
   PetscCall(mesh.create(comm, config.mesh, config.dim));
   model->patches = mesh.patches_with_ring();
+  if (config.geometry == Geometry::axisymmetric)
+    PetscCall(log.print(
+        "axisymmetric: x is the radius and y the axis; masses, forces and energies are those of the "
+        "whole revolution"));
   for (const auto& body : config.bodies) {
     const bool listed = body.shape.kind == ShapeKind::particles;
     BodyParticles& particles = model->bodies.emplace_back();

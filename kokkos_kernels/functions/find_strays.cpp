@@ -51,18 +51,17 @@ struct MassInReach {
   KOKKOS_INLINE_FUNCTION T operator()(int p) const {
     T sum = 0;
     with_any_domain(soil, p, [&](const auto& domain) {
-      with_weights(soil.coordinate(p), domain,
-                 [&](const auto& a) {
-                   const Stencil<Kind::geometry, T, Dim> stencil(places, soil.cell(p), a);
-                   for_each_weight(a, [&](const Vector<int, Dim>& k, T, const auto&) {
-                     bool own = true;
-                     for (int d = 0; d < Dim; ++d) {
-                       const bool beyond = stencil.normal[d][k[d]] < 0;
-                       own = own && a[d].w[k[d]] > T(k_reached) && !beyond;
-                     }
-                     if (own) sum += nodes(stencil.node(places.neighbours, k), SoilTerms<Dim>::mass);
-                   });
-                 });
+      with_weights(soil.coordinate(p), domain, [&](const auto& a) {
+        const Stencil<Kind::geometry, T, Dim> stencil(places, soil.cell(p), a);
+        for_each_weight(a, [&](const Vector<int, Dim>& k, T, const auto&) {
+          bool own = true;
+          for (int d = 0; d < Dim; ++d) {
+            const bool beyond = stencil.normal[d][k[d]] < 0;
+            own = own && a[d].w[k[d]] > T(k_reached) && !beyond;
+          }
+          if (own) sum += nodes(stencil.node(places.neighbours, k), SoilTerms<Dim>::mass);
+        });
+      });
     });
     return sum;
   }

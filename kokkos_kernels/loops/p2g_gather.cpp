@@ -85,7 +85,8 @@ struct GatherByNode {
     Vector<T, k_slopes_of<Source>> grad;
     const T w = single_node_weight(x, domain, grad);
     if (!(w > 0)) return;  // the list holds what may come here till the next rebuild
-    give<Source>(source.load(p), w, grad, [&] { return offset_from(x, domain); }, add);
+    give<Source>(
+        source.load(p), w, grad, [&] { return offset_from(x, domain); }, add);
   }
 };
 

@@ -170,12 +170,11 @@ KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const NodePlaces
                                           int p, Add&& add) {
   if (source.skips(source.points.cell(p) / Patch<Dim>::cells)) return;
   const typename Source::Point q = source.load(p);
-  for_each_node<Source::kind>(source.points, q.half_length, places, p,
-                              [&](int i, T w, const auto& grad, auto&& offset, auto&& sign) {
-                                give<Source>(q, w, grad, offset, [&](int value, T v) {
-                                  add(i, value, sign(Source::component(value)) * v);
-                                });
-                              });
+  for_each_node<Source::kind>(
+      source.points, q.half_length, places, p, [&](int i, T w, const auto& grad, auto&& offset, auto&& sign) {
+        give<Source>(q, w, grad, offset,
+                     [&](int value, T v) { add(i, value, sign(Source::component(value)) * v); });
+      });
 }
 
 }  // namespace mpm

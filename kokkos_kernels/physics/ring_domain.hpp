@@ -58,13 +58,13 @@ KOKKOS_INLINE_FUNCTION RadialWeights<T> radial_weights_from(FirstNode<T> first, 
   return a;
 }
 
-/// The weights of a particle of which `part` is revolved, at any place. axis: RingDomain::axis_x.
+/// The weights along the radius of a particle at any x.
 template <class T>
 KOKKOS_INLINE_FUNCTION RadialWeights<T> radial_weights(T x, const RingDomain<T>& ring) {
   const RadialPart<T> part = radial_part(x, ring);
   const T low = Kokkos::floor(part.centre - part.half.l);
-  RadialWeights<T> a = radial_weights_from<T>(static_cast<int>(low), part.centre - low, part.half,
-                                              part.centre - ring.axis_x);
+  RadialWeights<T> a =
+      radial_weights_from<T>(static_cast<int>(low), part.centre - low, part.half, part.centre - ring.axis_x);
   a.centroid = radial_centroid(part, ring);
   return a;
 }
@@ -175,8 +175,7 @@ KOKKOS_INLINE_FUNCTION T revolved_length([[maybe_unused]] T x, const Domain& dom
 }
 /// What the bounds of volumes hold for, of particle p: its volume [m3], of a ring its section times 1 m.
 template <class Space, class T, int Dim>
-KOKKOS_INLINE_FUNCTION T bounded_volume(const Soil<Space, T, Dim>& soil, int p,
-                                        [[maybe_unused]] T spacing) {
+KOKKOS_INLINE_FUNCTION T bounded_volume(const Soil<Space, T, Dim>& soil, int p, [[maybe_unused]] T spacing) {
   if constexpr (Dim == 2)
     if (soil.rings) {
       const RingDomain<T> ring{{}, axis_of<T>(soil, soil.cell(p))};

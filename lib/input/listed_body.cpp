@@ -26,7 +26,8 @@ bool will_be_removed(const std::string& file, const std::string& folder) {
 /// What the numbers of a file must be for the arithmetic to have room; empty where they are.
 std::string beyond_bounds(const ParticleTable& table, const Config& config, const MeshConfig& mesh) {
   const int dim = config.dim;
-  const double cell = std::pow(mesh.spacing, dim) * revolved_length(config, mesh.upper[0]), far = k_coordinate.highest;
+  const double cell = std::pow(mesh.spacing, dim) * revolved_length(config, mesh.upper[0]),
+               far = k_coordinate.highest;
   struct Field {
     const char* name;
     const std::vector<double>& values;

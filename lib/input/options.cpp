@@ -336,9 +336,11 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
               Config& config) {
   const auto errors = in.errors();
   in.section("Run");
-  in.integer(
-      {.name = "dim", .meaning = "2 (plane strain, or axisymmetric by -geometry) or 3", .unit = "-", .range = {.lowest = 2, .highest = 3}},
-      config.dim);
+  in.integer({.name = "dim",
+              .meaning = "2 (plane strain, or axisymmetric by -geometry) or 3",
+              .unit = "-",
+              .range = {.lowest = 2, .highest = 3}},
+             config.dim);
   read_geometry_of(in, config);
   if (in.errors() != errors) return;  // they decide what all others take
   if (in.listing()) read_stage_names(in);

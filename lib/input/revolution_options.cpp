@@ -23,9 +23,16 @@ void check_revolution(OptionReader& in, const Config& config) {
   if (config.gravity[0] != 0)
     in.reject(config.gravity_table ? "gravity_table" : "gravity",
               "0 along x" + where + ": gravity acts along the axis");
+  for (const RigidConfig& rigid : config.rigids) {
+    if (rigid.motion != Motion::dynamic) continue;
+    const std::string takes = "0 along x" + where + ": forces move a body of revolution along the axis alone";
+    if (rigid.velocity[0] != 0) in.reject(rigid.name + "_velocity", takes);
+    if (rigid.force[0] != 0) in.reject(rigid.name + "_force", takes);
+  }
   for (const MaterialConfig& material : config.materials)
     if (material.model == "umat")
-      in.reject(material.name + "_model", "a law other than umat" + where + ": no hoop gradient is passed to it");
+      in.reject(material.name + "_model",
+                "a law other than umat" + where + ": no hoop gradient is passed to it");
   if (config.particle_domain != ParticleDomain::fixed) in.reject("particle_domain", "fixed" + where);
 }
 

@@ -6,8 +6,8 @@
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
-#include "step/schedule.hpp"
 #include "step/load_input.hpp"
+#include "step/schedule.hpp"
 #include "step/surface_input.hpp"
 #include "step/water.hpp"
 

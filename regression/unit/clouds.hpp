@@ -75,7 +75,7 @@ struct Cloud {
   bool affine = false;
   bool rings = false;                   // the particles are rings about x = 0
   bool stretch = false, split = false;  // the domains of particles; those that are too long
-  double memory_limit = 0;  // bytes, for batches of the soil
+  double memory_limit = 0;              // bytes, for batches of the soil
 };
 
 template <class B>

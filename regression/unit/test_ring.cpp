@@ -17,7 +17,8 @@ struct Means {
   double s = 0, g = 0, t = 0;
 };
 Means quadrature(double low, double high, double node) {
-  constexpr double k_place[] = {-0.7745966692414834, 0, 0.7745966692414834}, k_weight[] = {5. / 9, 8. / 9, 5. / 9};
+  constexpr double k_place[] = {-0.7745966692414834, 0, 0.7745966692414834},
+                   k_weight[] = {5. / 9, 8. / 9, 5. / 9};
   Means sum;
   double measure = 0;
   for (double from = low; from < high;) {
@@ -234,11 +235,14 @@ TEST_CASE("velocities c r and c' z strain all rings alike, to the axis", "[ring]
       const double half = spacing / n / 2;
       for (std::size_t p = 0; p < body.position.size(); p += 2) {
         const double r = body.position[p], centroid = r + half * half / (3 * r);
-        for (const double v : {across * centroid, along * body.position[p + 1]}) body.particle_velocity.push_back(v);
+        for (const double v : {across * centroid, along * body.position[p + 1]})
+          body.particle_velocity.push_back(v);
         for (const double g : {across, 0.0, 0.0, along}) body.velocity_gradient.push_back(g * spacing);
       }
-      const double lame = 1.5e6 * 0.49 / (1.49 * 0.02), shear = 1.5e6 / (2 * 1.49), trace = 2 * across + along;
-      const double in_plane = dt * (lame * trace + 2 * shear * across), up = dt * (lame * trace + 2 * shear * along);
+      const double lame = 1.5e6 * 0.49 / (1.49 * 0.02), shear = 1.5e6 / (2 * 1.49),
+                   trace = 2 * across + along;
+      const double in_plane = dt * (lame * trace + 2 * shear * across),
+                   up = dt * (lame * trace + 2 * shear * along);
       for (const P2G how : k_strategies) {
         auto s = state_of<B>(cloud, how);
         one_step(s, dt);

@@ -193,8 +193,7 @@ struct HostParticles {
         value, gradient);
     for (int k = 0; k < k_motion; ++k) stage.kinematics[k][n] = value[0][k];
     for (int i = 0; i < Dim; ++i)
-      for (int d = 0; d < slopes; ++d)
-        stage.gradient[i * slopes + d][n] = gradient[0][d][i] * by.inv_spacing;
+      for (int d = 0; d < slopes; ++d) stage.gradient[i * slopes + d][n] = gradient[0][d][i] * by.inv_spacing;
   }
 
   /// Places in Stage::gradient of the rates whose sum is the dilatation's: dv_d/dx_d, of rings also v_r / r.

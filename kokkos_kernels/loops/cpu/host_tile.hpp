@@ -37,10 +37,10 @@ struct HostTile {
   /// Particles on their way to the nodes.
   static constexpr bool k_rings = domain == ParticleDomain::ring;
   struct alignas(R) Stage {
-    T weight[Dim][2][k_room][k_row];  // -, 1/cell: of the nodes -1 to 2 of the cell, and their slopes
+    T weight[Dim][2][k_room][k_row];      // -, 1/cell: of the nodes -1 to 2 of the cell, and their slopes
     T hoop[k_rings ? k_room : 1][k_row];  // 1/cell: RadialWeights::t
-    T value[k_point][k_room + W];     // of the point, each apart, without its half length
-    Vector<T, Dim> x[k_room];         // cells
+    T value[k_point][k_room + W];         // of the point, each apart, without its half length
+    Vector<T, Dim> x[k_room];             // cells
   };
 
   Source source;

@@ -196,12 +196,12 @@ struct UpdateParticles {
                                                  const KinematicValues<T, Dim>* nodes, T* mean) const {
     const auto& soil = source.points;
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), [&](int p) {
-      with_weights_near(soil.coordinate(p),
-                        domain_of<domain>(soil, p, soil.bodies(one_body ? 0 : soil.body(p))),
-                        [&](const auto& a) {
-                          dilatation(p) = dilatation_from_nodes<domain, T, Dim>(
-                              nodes, coord_of<Dim>(soil.cell(p)), a, by.inv_spacing);
-                        });
+      with_weights_near(
+          soil.coordinate(p), domain_of<domain>(soil, p, soil.bodies(one_body ? 0 : soil.body(p))),
+          [&](const auto& a) {
+            dilatation(p) =
+                dilatation_from_nodes<domain, T, Dim>(nodes, coord_of<Dim>(soil.cell(p)), a, by.inv_spacing);
+          });
     });
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
@@ -250,9 +250,9 @@ struct UpdateParticles {
     with_weights_near(q.x, half_length, [&](const auto& a) {
       const ParticleLaw<Space, T, Dim, Laws> of_particle{soil, p, body.material, law, flies};
       const auto move = [&](const auto& changes) {
-        own = advance(q, changes, sample_nodes<domain, T, Dim>(nodes, cell, a, by.inv_spacing),
-                      by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by,
-                      step_domain<domain>(soil, p));
+        own =
+            advance(q, changes, sample_nodes<domain, T, Dim>(nodes, cell, a, by.inv_spacing),
+                    by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by, step_domain<domain>(soil, p));
       };
       if constexpr (domain != ParticleDomain::stretch) {
         move(of_particle);

@@ -240,14 +240,14 @@ class Tile {
     });
     for (int k = 0; k < 3; ++k) {
       Weight s = weight(value + 3 * (Dim - 1), k);
-      if constexpr (k_rings) s.g = k == 0 ? value[3 * Dim] : k == 2 ? s.g : -(value[3 * Dim] + value[3 * Dim - 1]);
+      if constexpr (k_rings)
+        s.g = k == 0 ? value[3 * Dim] : k == 2 ? s.g : -(value[3 * Dim] + value[3 * Dim - 1]);
       unrolled<size>([&](auto v) {
         constexpr int first = first_taken<Source>(v);
         if constexpr (first == k_slopes_of<Source> || first_taken<Source>(v, 1) < Dim)
           own[k + late][v] += s.w * along[v];
         if constexpr (first == 0) own[k + late][v] += s.g * slope[v];
-        if constexpr (k_rings && Source::takes(v, Dim))
-          own[k + late][v] += value[3 * Dim + 1 + k] * hoop[v];
+        if constexpr (k_rings && Source::takes(v, Dim)) own[k + late][v] += value[3 * Dim + 1 + k] * hoop[v];
       });
       if constexpr (k_offset) {
         Vector<T, Dim> offset;
