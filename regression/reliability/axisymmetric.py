@@ -117,13 +117,16 @@ def check_rings(deck, folder, exact):
         assert error < (1e-10 if exact else 1e-4), f"the momentum of the fall is {error:.3g} off"
 
 
-def check_same(one, other, exact):
-    """Histories of two runs, relative to the largest value of each column."""
+def check_same(deck, one, other, exact):
+    """Histories of two runs, relative to the largest value of each column; forces also to a thousandth of the weight."""
     a, b = table(one), table(other)
+    weight = 9.81 * sum(a[f"{name}_mass"][0] for name in deck.densities)
     for name in a:
         if name.endswith(("_strays", "_limited", "_put_back")):
             continue
         scale = max(np.abs(a[name]).max(), 1e-9)
+        if "_force_" in name:
+            scale = max(scale, 1e-3 * weight)
         if name.endswith(("_x", "_y")):  # of a vector
             scale = max(scale, *(np.abs(a[name[:-1] + axis]).max() for axis in "xy"))
         count = min(len(a[name]), len(b[name]))
@@ -149,7 +152,7 @@ def main():
             run(given.binary, empty, other, *options, *how, prefix=prefix, environment={"OMP_NUM_THREADS": "2" if ranks == 1 else "1"})
             check_rings(deck, other, exact)
             if exact:
-                check_same(plain, other, exact)
+                check_same(deck, plain, other, exact)
             if ranks == 1 and "openmp" not in how and "atomic" not in how:
                 run(given.binary, empty, again, *options, *how, "-time_max_steps", 30)
                 run(given.binary, empty, again, *options, *how, "-restart", checkpoints(again)[-1])
