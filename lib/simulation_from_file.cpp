@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/revolution.hpp"
 #include "common/text.hpp"
 #include "input/groups.hpp"
 #include "simulation_body.hpp"
@@ -15,7 +16,7 @@ bool all_equal(const std::vector<double>& x) {
 }
 
 /// Masses and volumes: one figure for all particles where they are the same.
-void take_masses(ParticleTable&& table, double density, BodyParticles& particles) {
+void take_masses(ParticleTable&& table, const Config& config, double density, BodyParticles& particles) {
   particles.particle_volume = table.volume.front();
   const bool has_mass = !table.mass.empty();
   if (!has_mass)
@@ -24,8 +25,8 @@ void take_masses(ParticleTable&& table, double density, BodyParticles& particles
   // What a file of the user's own tells may be anything; what a run left has changed since it was created.
   const bool from_run = !table.origin.empty();
   for (std::size_t p = 0; p < table.volume.size(); ++p)
-    for (const double volume :
-         {table.mass[p] / density, from_run ? table.mass[p] / density : table.volume[p]}) {
+    for (double volume : {table.mass[p] / density, from_run ? table.mass[p] / density : table.volume[p]}) {
+      volume /= revolved_length(config, table.position[p * config.dim]);
       particles.least_volume = particles.most_volume > 0 ? std::min(particles.least_volume, volume) : volume;
       particles.most_volume = std::max(particles.most_volume, volume);
     }
@@ -73,12 +74,12 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
   const double volume = sum(table.volume), mass = mean_density(table, density) * volume;
   const std::string origin =
       table.origin.empty() ? "" : " (body " + body.shape.file_body + ", " + table.origin + ")";
-  PetscCall(log.line(formatted("body %s: %ld particles of %s%s stand for %.6g %s, %.9g kg", body.name.c_str(),
-                               static_cast<long>(table.volume.size()), body.shape.file.c_str(),
-                               origin.c_str(), volume, config.dim == 2 ? "m2" : "m3", mass) +
-                     missing(table, body, source.parameter)));
+  PetscCall(log.line(
+      formatted("body %s: %ld particles of %s%s stand for %.6g %s, %.9g kg", body.name.c_str(),
+                static_cast<long>(table.volume.size()), body.shape.file.c_str(), origin.c_str(), volume,
+                config.dim == 2 && config.geometry == Geometry::plane_strain ? "m2" : "m3", mass) +
+      missing(table, body, source.parameter)));
   *from_run = *from_run || !table.origin.empty();
-  particles->position = std::move(table.position);
   particles->spacing = config.mesh.spacing / body.shape.particles_per_cell;
   particles->velocity = std::move(table.velocity);
   particles->stress = std::move(table.stress);
@@ -88,7 +89,8 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
   if (config.velocity_update == VelocityUpdate::apic)
     particles->velocity_gradient = std::move(table.velocity_gradient);
   if (config.particle_domain != ParticleDomain::fixed) particles->domain = std::move(table.domain);
-  PetscCallCXX(take_masses(std::move(table), density, *particles));
+  particles->position = table.position;
+  PetscCallCXX(take_masses(std::move(table), config, density, *particles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/collectives.hpp"
+#include "common/revolution.hpp"
 #include "input/field_file.hpp"
 #include "input/groups.hpp"
 #include "input/level_ground.hpp"
@@ -19,6 +20,25 @@ static void weigh(double density, BodyParticles& particles) {
   if (particles.most_volume == 0) return;
   for (const double volume : particles.volume) particles.mass.push_back(density * volume);
   particles.least_mass = density * particles.least_volume;
+}
+
+/// Volumes and masses of particles that are rings. The bounds of their volumes remain those of their
+/// sections.
+static PetscErrorCode revolve(MPI_Comm comm, const Config& config, double density, BodyParticles* particles) {
+  PetscFunctionBeginUser;
+  if (config.geometry != Geometry::axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
+  BodyParticles& all = *particles;
+  if (all.most_volume == 0) all.least_volume = all.most_volume = all.particle_volume;
+  all.volume.resize(all.position.size() / config.dim, all.particle_volume);
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t p = 0; p < all.volume.size(); ++p) {
+    all.volume[p] *= revolved_length(config, all.position[p * config.dim]);
+    all.mass.push_back(density * all.volume[p]);
+    least = std::min(least, all.mass[p]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, comm));
+  all.least_mass = least;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// Each particle's own strength, from a field that was checked with the options.
@@ -69,13 +89,19 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   BackgroundMesh mesh;
   PetscCall(mesh.create(comm, config.mesh, config.dim));
   model->patches = mesh.patches_with_ring();
+  if (config.geometry == Geometry::axisymmetric)
+    PetscCall(log.print(
+        "axisymmetric: x is the radius and y the axis; masses, forces and energies are those of the "
+        "whole revolution"));
   for (const auto& body : config.bodies) {
     const bool listed = body.shape.kind == ShapeKind::particles;
     BodyParticles& particles = model->bodies.emplace_back();
     PetscCall(listed ? load_file(body, &particles, &model->from_run)
                      : load_shape("body " + body.name, body.shape, cut_out_of(config, body),
                                   {rank_of(comm), ranks()}, &particles));
-    if (!listed) weigh(config.materials[body.material].density, particles);
+    const double density = config.materials[body.material].density;
+    if (!listed && config.geometry == Geometry::plane_strain) weigh(density, particles);
+    if (!listed) PetscCall(revolve(comm, config, density, &particles));
     if (!body.field.empty()) PetscCall(take_field(body, &particles));
     if (body.k0) PetscCall(take_level_ground(body, model, &particles));
   }
@@ -143,7 +169,9 @@ PetscErrorCode Simulation::Body::log_shape(const std::string& name, const Lattic
   if (in_parts) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_LONG, MPI_SUM, comm));
   if (in_parts) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, volumes, 2, MPI_DOUBLE, MPI_SUM, comm));
   const auto [count, cut_out] = counts;
-  const char* unit = config.dim == 2 ? "m2" : "m3";
+  const char* unit = config.dim == 3                             ? "m3"
+                     : config.geometry == Geometry::axisymmetric ? "m2 of the section"
+                                                                 : "m2";
   PetscCall(log.print("%s: %ld particles stand for %.6g %s, the shape has %.6g %s", name.c_str(), count,
                       volumes[0], unit, lattice.shape_volume, unit));
   if (cut_out > 0)

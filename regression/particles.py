@@ -12,13 +12,13 @@ def lattice(lower, upper, spacing):
 
 
 def write(path, body, position, spacing, **fields):
-    """Writes particles of volume spacing^dim at `position` [N, dim], m. Fields: velocity [N, dim], m/s;
+    """Writes particles, of volume spacing^dim unless `volume` [N], m3, is given, at `position` [N, dim], m. Fields: velocity [N, dim], m/s;
     stress [N, 6] (xx yy zz xy yz zx), Pa; plastic_strain [N]. Vectors are filled up with zeros to 3 components."""
     count, dim = position.shape
     with h5py.File(path, "w") as file:
         group = file.create_group(body)
         group["position"] = with_zeros(position)
-        group["volume"] = np.full(count, spacing**dim)
+        group["volume"] = fields.pop("volume", np.full(count, spacing**dim))
         for name, values in fields.items():
             group[name] = with_zeros(values) if name == "velocity" else values
 

@@ -113,6 +113,12 @@ def area_across(run, name, axis):
     return upper - lower, upper - lower
 
 
+def area_revolved(run, name):
+    """(diameter [m], area [m2]) of a body of revolution across its axis."""
+    inner, outer = extent(run, name)
+    return 2 * outer, np.pi * (outer ** 2 - inner ** 2)
+
+
 def factor(run, name):
     """The Factor of a rigid that is pushed straight along an axis into clay, or None. The strength is that at its underside
     where it goes down or up, at its middle where it goes sideways."""
@@ -121,11 +127,12 @@ def factor(run, name):
         return None
     axis = int(np.flatnonzero(velocity)[0])
     vertical = axis == len(velocity) - 1
-    across = area_across(run, name, axis)
+    revolved = run.text("geometry", "plane_strain") == "axisymmetric"
+    across = area_revolved(run, name) if revolved and vertical else None if revolved else area_across(run, name, axis)
     strength = across and strength_at(run, levels(run, name)[0] if vertical else np.mean(levels(run, name)))
     if not strength:
         return None
-    half = vertical and is_half_model(run, name)
+    half = vertical and not revolved and is_half_model(run, name)
     return Factor(axis, float(np.sign(velocity[axis])), (2 if half else 1) * across[0], strength, across[1], half,
                   is_footing(run, name))
 

@@ -153,7 +153,8 @@ def footing(run, name):
     velocity = run.numbers(f"{name}_velocity", [0, 0])
     strength = strength_below(run, name)
     vertical = run.text(f"{name}_motion") == "prescribed" and velocity[0] == 0 and velocity[1] < 0
-    if run.text("dim", "2") != "2" or not vertical or strength == 0:
+    plane = run.text("dim", "2") == "2" and run.text("geometry", "plane_strain") == "plane_strain"
+    if not plane or not vertical or strength == 0:
         return None
     left, right = extent(run, name)
     return (2 if is_half_model(run, name) else 1) * (right - left), strength * (right - left)

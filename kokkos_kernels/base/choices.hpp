@@ -34,10 +34,14 @@ constexpr bool is_acting(Wall wall) { return wall > Wall::free; }
 /// How particles take their velocity from the nodes (-velocity_update).
 enum class VelocityUpdate { flip, pic, xpic, apic };
 
+/// What a 2D run is a section of (-geometry): of a body without end along z, or of a body of revolution about
+/// the axis x = 0.
+enum class Geometry { plane_strain, axisymmetric };
+
 /// How the domains of particles follow the deformation of the soil (-particle_domain): not at all, by half
 /// lengths of their own along each axis, or so that particles whose domains become too long are split too.
-/// Kernels of a step know the first two.
-enum class ParticleDomain { fixed, stretch, split };
+/// Kernels of a step know the first two, and `ring`: fixed, and revolved about the axis (Geometry).
+enum class ParticleDomain { fixed, stretch, split, ring };
 /// Bounds of the half lengths [cells] of domains that stretch. Up to a half, a particle reaches three nodes
 /// along an axis, also where it has drifted by half a cell. The shorter a domain, the shorter the stable time
 /// step; where particles begin shorter than the least, they bound it.

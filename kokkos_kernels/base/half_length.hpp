@@ -30,8 +30,26 @@ struct HalfLengths {
   KOKKOS_INLINE_FUNCTION const HalfLength<T>& operator[](int d) const { return axis[d]; }
 };
 
-/// What a particle's domain is: the same along all axes and for the whole body, or its own along each axis.
+/// A square that is revolved about the axis: its half length [cells], and the axis as a coordinate in the
+/// frame of the particle's cell [cells].
+template <class T>
+struct RingDomain {
+  HalfLength<T> half;
+  T axis_x;
+  /// Along any axis, where it does not meet the axis of revolution.
+  KOKKOS_INLINE_FUNCTION const HalfLength<T>& operator[](int) const { return half; }
+};
+
+/// What a particle's domain is: the same along all axes and for the whole body, its own along each axis, or a
+/// ring.
 template <class T, int Dim, ParticleDomain domain>
-using DomainOf = std::conditional_t<domain == ParticleDomain::fixed, HalfLength<T>, HalfLengths<T, Dim>>;
+using DomainOf = std::conditional_t<
+    domain == ParticleDomain::fixed, HalfLength<T>,
+    std::conditional_t<domain == ParticleDomain::ring, RingDomain<T>, HalfLengths<T, Dim>>>;
+
+/// Weighted sums of nodal values that a particle takes: the derivatives along the axes, and of a ring the
+/// mean of the values over the radius, which is the last.
+template <int Dim, ParticleDomain domain>
+inline constexpr int k_slopes = domain == ParticleDomain::ring ? Dim + 1 : Dim;
 
 }  // namespace mpm

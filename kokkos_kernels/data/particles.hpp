@@ -47,13 +47,13 @@ struct History {
 template <class Space, class T, int Dim>
 struct Soil : Points<Space, T, Dim> {
   using Memory = typename Space::memory_space;
-  Kokkos::View<Vector<T, Dim>*, Memory> velocity;   // m/s
-  Kokkos::View<SymTensor<T, Dim>*, Memory> stress;  // Pa, Cauchy, tension positive
-  Kokkos::View<T*, Memory> volume;                  // m3, current
-  History<Space, T> history;                        // state variables of the laws
-  Kokkos::View<std::uint16_t*, Memory> body;        // index into bodies
-  Kokkos::View<Matrix<T, Dim>*, Memory> affine;     // m/s a cell, C_p of APIC; of extent 0 without it
-  Kokkos::View<T*, Memory> mass;                    // kg, in use where has_own_mass
+  Kokkos::View<Vector<T, Dim>*, Memory> velocity;       // m/s
+  Kokkos::View<SymTensor<T, Dim>*, Memory> stress;      // Pa, Cauchy, tension positive
+  Kokkos::View<T*, Memory> volume;                      // m3, current
+  History<Space, T> history;                            // state variables of the laws
+  Kokkos::View<std::uint16_t*, Memory> body;            // index into bodies
+  Kokkos::View<Matrix<T, Dim>*, Memory> affine;         // m/s a cell, C_p of APIC; of extent 0 without it
+  Kokkos::View<T*, Memory> mass;                        // kg, in use where has_own_mass
   Kokkos::View<DomainMoments<T, Dim>*, Memory> domain;  // cells2, in use where has_domain: physics/domain.hpp
   /// Id of the particle of the start that this one is, or a part of; in use where particles split.
   Kokkos::View<double*, Memory> ancestor;
@@ -64,6 +64,8 @@ struct Soil : Points<Space, T, Dim> {
   bool has_domain = false;    // the domains of the particles stretch with the soil
   T least_half_length = 0;    // cells, of such a domain (k_least_half_length)
   bool splits = false;        // particles with a domain that is too long are split; they have own masses
+  bool rings = false;         // the particles are rings about the axis of revolution, as their masses
+  const Coord<Dim>* patch_origin = nullptr;  // of them: lower cell of each slot (Patches::origin)
 
   /// Mass [kg] of particle p, which is of this body.
   KOKKOS_INLINE_FUNCTION T mass_of(int p, const BodyProperties<T>& of) const {

@@ -26,6 +26,17 @@ KOKKOS_INLINE_FUNCTION double number_in_cell(const Soil<Space, T, Dim>& soil, in
   return number;
 }
 
+/// Mass of particles one cell closer to the axis than p, of its own: that of rings grows with the radius.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION double inner_share(const Soil<Space, T, Dim>& soil, int p) {
+  if constexpr (Dim == 2)
+    if (soil.rings) {
+      const double radius = double(soil.coordinate(p)[0]) - axis_of<double>(soil, soil.cell(p));
+      return Kokkos::fmax(0.0, radius - 1) / radius;
+    }
+  return 1;
+}
+
 /// Least weight along each axis with which a particle reaches a node here. Particles on a lattice are just at
 /// the end of their reach of many nodes, where round-off decides whether the weight is zero.
 constexpr double k_reached = 1e-6;
@@ -39,18 +50,19 @@ struct MassInReach {
 
   KOKKOS_INLINE_FUNCTION T operator()(int p) const {
     T sum = 0;
-    with_weights(soil.coordinate(p), any_domain_of(soil, p),
-                 [&](const AxisWeights<T>(&a)[Dim]) {
-                   const Stencil<Kind::geometry, T, Dim> stencil(places, soil.cell(p), a);
-                   for_each_weight(a, [&](const Vector<int, Dim>& k, T, const Vector<T, Dim>&) {
-                     bool own = true;
-                     for (int d = 0; d < Dim; ++d) {
-                       const bool beyond = stencil.normal[d][k[d]] < 0;
-                       own = own && a[d].w[k[d]] > T(k_reached) && !beyond;
-                     }
-                     if (own) sum += nodes(stencil.node(places.neighbours, k), SoilTerms<Dim>::mass);
-                   });
-                 });
+    with_any_domain(soil, p, [&](const auto& domain) {
+      with_weights(soil.coordinate(p), domain, [&](const auto& a) {
+        const Stencil<Kind::geometry, T, Dim> stencil(places, soil.cell(p), a);
+        for_each_weight(a, [&](const Vector<int, Dim>& k, T, const auto&) {
+          bool own = true;
+          for (int d = 0; d < Dim; ++d) {
+            const bool beyond = stencil.normal[d][k[d]] < 0;
+            own = own && a[d].w[k[d]] > T(k_reached) && !beyond;
+          }
+          if (own) sum += nodes(stencil.node(places.neighbours, k), SoilTerms<Dim>::mass);
+        });
+      });
+    });
     return sum;
   }
 };
@@ -75,7 +87,7 @@ void mark_strays(State<Space, T, Dim>& s, const Space& stream) {
         for (int p = first; p < last; ++p) {
           const BodyProperties<T> of = soil.properties(p);
           const double few = alone_below(number_in_cell(soil, p, of));
-          if (last - first > few || mass_in_reach(p) > few * of.mass) return;
+          if (last - first > few || mass_in_reach(p) > few * inner_share(soil, p) * of.mass) return;
         }
         if (first == last) return;
         Kokkos::atomic_or(&alone(cell / cells), std::uint64_t(1) << (cell % cells));

@@ -21,13 +21,15 @@ struct GridVelocity {
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> operator()(int p) const {
     using S = SoilTerms<Dim>;
     Vector<double, Dim> v = filled<double, Dim>(0);
-    for_each_node<Kind::motion>(points, any_domain_of(points, p), places, p,
-                                [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
-                                  const double m_i = nodes(i, S::mass);
-                                  if (!(m_i > 0)) return;  // a mass too small for T
-                                  for (int d = 0; d < Dim; ++d)
-                                    v[d] += w * sign(d) * (nodes(i, S::momentum + d) / m_i);
-                                });
+    with_any_domain(points, p, [&](const auto& domain) {
+      for_each_node<Kind::motion>(points, domain, places, p,
+                                  [&](int i, T w, const auto&, auto&&, auto&& sign) {
+                                    const double m_i = nodes(i, S::mass);
+                                    if (!(m_i > 0)) return;  // a mass too small for T
+                                    for (int d = 0; d < Dim; ++d)
+                                      v[d] += w * sign(d) * (nodes(i, S::momentum + d) / m_i);
+                                  });
+    });
     return v;
   }
 };

@@ -16,20 +16,19 @@ StepPlan plan_step(const State<Space, T, Dim>& s) {
   StepPlan plan;
   // XPIC and APIC ask for the nodal sums again. Submerged soil also gives the nodes the water it displaces.
   // The energy balance looks at the sums between functions 4 and 5.
-  plan.sums_ahead =
-      fit && tile && s.xpic_order == 0 && !s.affine && !s.water.is_there() && !s.energy.on;
+  plan.sums_ahead = fit && tile && s.xpic_order == 0 && !s.affine && !s.water.is_there() && !s.energy.on;
   plan.writes_sums = has_windows(s.space) && tile && !batches;
   // Patches far from rigids need few registers: where they are many, they go faster with a launch of their
   // own. What follows a table is set where the rigids move, so that no node may be updated meanwhile.
-  plan.nodes_apart =
-      is_device<Space> && !few && !s.rigid_points.empty() && s.near_count > 0 && !s.timed.moves_gravity &&
-      !s.timed.moves_sides;
+  plan.nodes_apart = is_device<Space> && !few && !s.rigid_points.empty() && s.near_count > 0 &&
+                     !s.timed.moves_gravity && !s.timed.moves_sides;
   if (batches)
     plan.form = StepForm::out_of_core;
   else if (plan.sums_ahead)
     plan.form = StepForm::fused;
   if constexpr (is_device<Space>)
-    if (plan.form == StepForm::fused && few && one_rank && s.soil.points.count > 0 && ends_in_launch(s))
+    if (plan.form == StepForm::fused && few && one_rank && !s.soil.points.rings && s.soil.points.count > 0 &&
+        ends_in_launch(s))
       plan.form = StepForm::persistent;
   return plan;
 }

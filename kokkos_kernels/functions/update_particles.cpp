@@ -28,12 +28,17 @@ bool launch_heavy(ModelList<Models...>, State<Space, T, Dim>& s, double dt, cons
 template <bool Sums, PatchKind kind, class Space, class T, int Dim>
 void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
   with_domain(s.soil.points, [&](auto domain) {
-    if (light_kernels_do(s)) return launch_for<Sums, kind, LightMaterials, domain()>(s, dt, slots, part);
-    // Domains that stretch have no kernels of one heavy law, which take long to compile.
-    if constexpr (kind == PatchKind::common && domain() == ParticleDomain::fixed) {
-      if (launch_heavy<Sums, kind>(HeavyMaterials{}, s, dt, slots, part)) return;
+    // Rings have one kernel, for all patches and laws.
+    if constexpr (domain() == ParticleDomain::ring) {
+      launch_for<Sums, PatchKind::any, Materials, domain()>(s, dt, slots, part);
+    } else {
+      if (light_kernels_do(s)) return launch_for<Sums, kind, LightMaterials, domain()>(s, dt, slots, part);
+      // Domains that stretch have no kernels of one heavy law, which take long to compile.
+      if constexpr (kind == PatchKind::common && domain() == ParticleDomain::fixed) {
+        if (launch_heavy<Sums, kind>(HeavyMaterials{}, s, dt, slots, part)) return;
+      }
+      launch_for<Sums, kind, Materials, domain()>(s, dt, slots, part);
     }
-    launch_for<Sums, kind, Materials, domain()>(s, dt, slots, part);
   });
 }
 

@@ -22,7 +22,7 @@ void xpic_pass_for(State<Space, T, Dim>& s, int pass) {
         if (control().paused) return;
         Vector<T, Dim> r = first ? soil.velocity(p) : residual(p);
         for_each_node<Kind::motion>(soil, domain_of<domain>(soil, p, soil.bodies(soil.body(p))), places, p,
-                                    [&](int i, T w, const Vector<T, Dim>&, auto&&, auto&& sign) {
+                                    [&](int i, T w, const auto&, auto&&, auto&& sign) {
                                       const T m_i = sums(i, S::mass);
                                       if (!(m_i > 0)) return;  // a mass too small for T
                                       for (int d = 0; d < Dim; ++d)
@@ -49,7 +49,7 @@ void take_affine_for(State<Space, T, Dim>& s) {
         Matrix<T, Dim> c{};
         Vector<T, Dim> spread{};  // D_p, diagonal because weights are products that reproduce linear fields
         for_each_node<Kind::motion>(soil, domain_of<domain>(soil, p, soil.bodies(soil.body(p))), places, p,
-                                    [&](int i, T w, const Vector<T, Dim>&, auto&& offset, auto&& sign) {
+                                    [&](int i, T w, const auto&, auto&& offset, auto&& sign) {
                                       const Vector<T, Dim> r = offset();
                                       Vector<T, Dim> v;
                                       for (int d = 0; d < Dim; ++d)

@@ -65,10 +65,10 @@ struct PressOnWalls {
     if (!is_near(p)) return;
     const typename Source::Point q = source.load(p);
     const T carried = displaced.water.is_there() ? displaced.load(p).mass : T(0);
-    with_weights(source.points.coordinate(p), q.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+    with_weights(source.points.coordinate(p), q.half_length, [&](const auto& a) {
       const int cell = source.points.cell(p);
       const Coord<Dim> first = in_mesh(places.origin(cell / Patch<Dim>::cells), coord_of<Dim>(cell));
-      for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const Vector<T, Dim>& grad) {
+      for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const auto& grad) {
         Coord<Dim> node;
         for (int d = 0; d < Dim; ++d) node[d] = first[d] + a[d].first + step[d];
         if (!(w > 0)) return;
@@ -80,8 +80,8 @@ struct PressOnWalls {
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION static Terms share_of(const typename Source::Point& q, T w,
-                                               const Vector<T, Dim>& grad) {
+  template <class Gradient>
+  KOKKOS_INLINE_FUNCTION static Terms share_of(const typename Source::Point& q, T w, const Gradient& grad) {
     Terms terms{};
     give<Source>(
         q, w, grad, [] { return 0; }, [&](int value, T v) { terms.value[value] += v; });

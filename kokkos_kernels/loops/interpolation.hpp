@@ -12,9 +12,11 @@ Interpolation<Source> interpolation_of(const State<Space, T, Dim>& s, const Bins
                                        const Source& source, const NodeField<Space, T, Source::size>& out,
                                        const Space& stream) {
   constexpr bool boundary = std::is_same_v<Source, BoundarySource<Space, T, Dim>> ||
-                            std::is_same_v<Source, StretchedBoundarySource<Space, T, Dim>>;
+                            std::is_same_v<Source, StretchedBoundarySource<Space, T, Dim>> ||
+                            std::is_same_v<Source, RingBoundarySource<Space, T, Dim>>;
   constexpr bool strength = std::is_same_v<Source, StrengthSource<Space, T, Dim>> ||
-                            std::is_same_v<Source, StretchedStrengthSource<Space, T, Dim>>;
+                            std::is_same_v<Source, StretchedStrengthSource<Space, T, Dim>> ||
+                            std::is_same_v<Source, RingStrengthSource<Space, T, Dim>>;
   constexpr bool rigid = std::is_same_v<Source, RigidSource<Space, T, Dim>>;
   Interpolation<Source> it{stream, s.grid, s.patches, bins, source, out, s.control, s.p2g.mosaic_cells};
   it.windows = boundary ? s.boundary_windows : strength ? s.strength_windows : bins.windows;

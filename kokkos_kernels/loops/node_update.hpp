@@ -50,7 +50,7 @@ struct UpdateNodes {
   ActingSides<Dim> acting_sides;
   T dt, inv_dt, damping, mass_cut;
   double spacing;
-  bool has_boundary, has_friction, has_mass_normals, clears;
+  bool has_boundary, has_friction, has_mass_normals, clears, rings;
 
   /// The nodes of a slot, number n of those near a rigid, under their sums. Leaves the force on each rigid
   /// [N] in `forces`, summed in an order that is always the same. force: [values][cells]
@@ -264,8 +264,14 @@ struct UpdateNodes {
     return rigid.pose.to_body([&](int d) { return places.grid.coordinate_within(d, at[d], spacing); });
   }
 
-  /// Area of a cell's face [m^2; m in 2D].
-  KOKKOS_INLINE_FUNCTION T face() const { return power(places.grid.spacing, Dim - 1); }
+  /// Area of a cell's face [m^2; m in 2D] at a node; where the soil is revolved, of the ring [m^2].
+  KOKKOS_INLINE_FUNCTION T face(const Coord<Dim>& at) const {
+    T area = power(places.grid.spacing, Dim - 1);
+    constexpr T k_on_axis = T(1.0 / 6);  // cells, of a node on the axis: the integral of N r dr
+    if constexpr (Dim == 2)
+      if (rings) area *= T(2 * Kokkos::numbers::pi) * Kokkos::fmax(T(at[0]), k_on_axis) * places.grid.spacing;
+    return area;
+  }
 
   /// Inward unit normal from the rigid's mass gradient; false where it is out of touch. given: RigidTerms.
   KOKKOS_INLINE_FUNCTION bool mass_normal(const Rigid<Dim>& rigid, const T* given, unsigned sides,
@@ -301,7 +307,7 @@ struct UpdateNodes {
       }
       reaches = distance <= reach * spacing;
       const T length = Kokkos::sqrt(dot(boundary, boundary));
-      if (!reaches || !(against > -k_facing * length && length > k_bounds * face())) break;
+      if (!reaches || !(against > -k_facing * length && length > k_bounds * face(at))) break;
       for (int d = 0; d < Dim; ++d) x[d] -= spacing * boundary[d] / length;
     }
     return reaches;
@@ -335,7 +341,8 @@ UpdateNodes<Space, T, Dim> node_update_of(const State<Space, T, Dim>& s, double 
                                     .has_boundary = s.soil_boundary,
                                     .has_friction = s.has_friction,
                                     .has_mass_normals = s.mass_normals,
-                                    .clears = s.plan.sums_ahead && !s.plan.writes_sums};
+                                    .clears = s.plan.sums_ahead && !s.plan.writes_sums,
+                                    .rings = s.soil.points.rings};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   return update;
 }

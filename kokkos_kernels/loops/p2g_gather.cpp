@@ -77,25 +77,15 @@ struct GatherByNode {
     const int cell = source.points.cell(p);
     if (source.skips(cell / Patch<Dim>::cells)) return;
     const Coord<Dim> from = places.origin(cell / Patch<Dim>::cells), place = coord_of<Dim>(cell);
-    Vector<T, Dim> x = source.points.coordinate(p), grad;
-    const auto half_length = half_length_of(source, p);
-    T s[Dim], ds[Dim], w = 1;
-    for (int d = 0; d < Dim; ++d) {
-      x[d] += from[d] + place[d] - at[d];  // from the node
-      node_weight(x[d], half_length[d], s[d], ds[d]);
-      w *= s[d];
-    }
+    Vector<T, Dim> x = source.points.coordinate(p);
+    for (int d = 0; d < Dim; ++d) x[d] += from[d] + place[d] - at[d];  // from the node
+    auto domain = half_length_of(source, p);
+    if constexpr (requires { domain.axis_x; }) domain.axis_x = -at[0];
+    Vector<T, k_slopes_of<Source>> grad;
+    const T w = single_node_weight(x, domain, grad);
     if (!(w > 0)) return;  // the list holds what may come here till the next rebuild
-    for (int d = 0; d < Dim; ++d) {
-      grad[d] = ds[d];
-      for (int e = 0; e < Dim; ++e) grad[d] *= e == d ? T(1) : s[e];
-    }
-    const auto offset = [&] {
-      Vector<T, Dim> r;
-      for (int d = 0; d < Dim; ++d) r[d] = -x[d];
-      return r;
-    };
-    give<Source>(source.load(p), w, grad, offset, add);
+    give<Source>(
+        source.load(p), w, grad, [&] { return offset_from(x, domain); }, add);
   }
 };
 

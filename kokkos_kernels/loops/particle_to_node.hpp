@@ -112,9 +112,9 @@ struct Stencil {
   T normal[Dim][3];                        // factor of the component along the axis, as image_sign
   T tangential[k_turns_all ? Dim : 1][3];  // factor of the others, where it may be another than 1
 
-  template <class Space>
-  KOKKOS_INLINE_FUNCTION Stencil(const NodePlaces<Space, T, Dim>& places, int cell,
-                                 const AxisWeights<T> (&a)[Dim])
+  /// a: the weights along each axis.
+  template <class Space, class Weights>
+  KOKKOS_INLINE_FUNCTION Stencil(const NodePlaces<Space, T, Dim>& places, int cell, const Weights& a)
       : slot(cell / Patch<Dim>::cells) {
     const Coord<Dim> c = coord_of<Dim>(cell), from = places.origin(slot);
     for (int d = 0, step = 1; d < Dim; ++d, step *= 3)
@@ -153,9 +153,9 @@ template <Kind kind, class Points_, class Domain, class Space, class T, int Dim,
 KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, const Domain& domain,
                                           const NodePlaces<Space, T, Dim>& places, int p, F&& f) {
   const auto x = points.coordinate(p);
-  with_weights(x, domain, [&](const AxisWeights<T>(&a)[Dim]) {
+  with_weights(x, domain, [&](const auto& a) {
     const Stencil<kind, T, Dim> stencil(places, points.cell(p), a);
-    for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const Vector<T, Dim>& grad) {
+    for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const auto& grad) {
       if (!(w > 0)) return;
       f(
           stencil.node(places.neighbours, k), w, grad, [&] { return offset_to(x, a, k); },
@@ -170,12 +170,11 @@ KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const NodePlaces
                                           int p, Add&& add) {
   if (source.skips(source.points.cell(p) / Patch<Dim>::cells)) return;
   const typename Source::Point q = source.load(p);
-  for_each_node<Source::kind>(source.points, q.half_length, places, p,
-                              [&](int i, T w, const Vector<T, Dim>& grad, auto&& offset, auto&& sign) {
-                                give<Source>(q, w, grad, offset, [&](int value, T v) {
-                                  add(i, value, sign(Source::component(value)) * v);
-                                });
-                              });
+  for_each_node<Source::kind>(
+      source.points, q.half_length, places, p, [&](int i, T w, const auto& grad, auto&& offset, auto&& sign) {
+        give<Source>(q, w, grad, offset,
+                     [&](int value, T v) { add(i, value, sign(Source::component(value)) * v); });
+      });
 }
 
 }  // namespace mpm

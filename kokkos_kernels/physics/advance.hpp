@@ -10,20 +10,32 @@
 #include "physics/cell_mean.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/pore_water.hpp"
+#include "physics/ring_domain.hpp"
 
 namespace mpm {
 
+/// What the step of particle p asks of its domain.
+template <ParticleDomain domain, class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION auto step_domain([[maybe_unused]] const Soil<Space, T, Dim>& soil,
+                                        [[maybe_unused]] int p) {
+  if constexpr (domain == ParticleDomain::ring)
+    return domain_of<domain>(soil, p, soil.bodies(soil.body(p)));
+  else
+    return PlaneDomain{};
+}
+
 /// What a particle samples of the nodes.
-template <class T, int Dim>
+template <class T, int Dim, int Slopes = Dim>
 struct GridSample {
   T kinematics[NodeKinematics<Dim>::size];  // m/s, m/s2
-  T gradient[Dim][Dim];                     // 1/s, L_ij = dv_i/dx_j
+  T gradient[Dim][Slopes];                  // 1/s, L_ij = dv_i/dx_j, and of rings sum v_i T S
 };
 
 /// Strain increment (symmetric part of L dt, tensor shear strains) and spin increment (skew part) of a
-/// velocity gradient L [1/s].
-template <class R, class T, int Dim>
-KOKKOS_INLINE_FUNCTION Increment<R, T, Dim> increment_of(const R (&L)[Dim][Dim], T dt, const Clock& clock) {
+/// velocity gradient L [1/s]. That of a ring also has the hoop's, the last of its first row.
+template <class R, class T, int Dim, int Slopes>
+KOKKOS_INLINE_FUNCTION Increment<R, T, Dim> increment_of(const R (&L)[Dim][Slopes], T dt,
+                                                         const Clock& clock) {
   Increment<R, T, Dim> by;
   by.dt = dt, by.clock = clock;
   for (int k = 0; k < sym_size<Dim>; ++k) by.strain[k] = 0;
@@ -31,6 +43,7 @@ KOKKOS_INLINE_FUNCTION Increment<R, T, Dim> increment_of(const R (&L)[Dim][Dim],
     for (int j = 0; j < Dim; ++j) by.gradient[i][j] = L[i][j];
   for (int i = 0; i < Dim; ++i)
     for (int j = i; j < Dim; ++j) by.strain[sym_index<Dim>(i, j)] = dt * (L[i][j] + L[j][i]) / 2;
+  if constexpr (Slopes > Dim) by.strain[2] = dt * L[0][Dim];
   by.spin.c[0] = dt * (L[0][1] - L[1][0]) / 2;
   if constexpr (Dim == 3) {
     by.spin.c[1] = dt * (L[1][2] - L[2][1]) / 2;
@@ -105,15 +118,28 @@ struct ParticleLaw {
   }
 };
 
+/// A bound of the volume of a particle [m3], which of a ring is one of its section.
+template <class R, class T, int Dim, class Domain>
+KOKKOS_INLINE_FUNCTION auto volume_bound(T bound, [[maybe_unused]] const Particle<R, Dim>& q,
+                                         [[maybe_unused]] const Domain& domain,
+                                         [[maybe_unused]] const UpdateScalars<T>& by) {
+  if constexpr (std::is_same_v<Domain, RingDomain<R>>)
+    return bound * revolved_length(q.x[0], domain, R(1 / by.inv_spacing));
+  else
+    return bound;
+}
+
 /// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The fraction f_bar of
 /// its dilatation is that of its cell, `mean_dilatation` [1/s], or what mean_for() makes of it. law(stress,
-/// increment) changes the stress. Returns the largest component of the particle's movement [cells].
-template <class R, class T, int Dim, class Law>
-KOKKOS_FORCEINLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law, const GridSample<R, Dim>& t,
-                                      R mean_dilatation, const UpdateScalars<T>& by) {
+/// increment) changes the stress. domain: PlaneDomain, or RingDomain before the step. Returns the largest
+/// component of the particle's movement [cells].
+template <class R, class T, int Dim, int Slopes, class Law, class Domain>
+KOKKOS_FORCEINLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law,
+                                      const GridSample<R, Dim, Slopes>& t, R mean_dilatation,
+                                      const UpdateScalars<T>& by, const Domain& domain) {
   Increment<R, T, Dim> increment = increment_of(t.gradient, by.dt, by.clock);
   R trace = 0;
-  for (int d = 0; d < Dim; ++d) trace += increment.strain[d];
+  for (int d = 0; d < Slopes; ++d) trace += increment.strain[d];
   const R correction = by.f_bar * (by.dt * mean_dilatation - trace);
   for (int d = 0; d < 3; ++d) increment.strain[d] += correction * T(1.0 / 3);
   trace += correction;
@@ -121,16 +147,22 @@ KOKKOS_FORCEINLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law, const
 
   // exp(trace) to second order: no drift in rotation
   q.volume *= (2 + trace) / (2 - trace);
-  q.volume = Kokkos::fmin(by.most_volume, Kokkos::fmax(by.least_volume, q.volume));
+  [[maybe_unused]] const R x_before = q.x[0];
   R moved = 0;
   for (int d = 0; d < Dim; ++d) {
     const R v_i = t.kinematics[NodeKinematics<Dim>::velocity + d],
             a_i = t.kinematics[NodeKinematics<Dim>::acceleration + d];
     q.v[d] = by.flip * (q.v[d] + by.dt * a_i) + by.pic * v_i;
-    const R movement = by.dt * v_i * by.inv_spacing;
+    R movement;
+    if constexpr (Slopes > Dim)
+      movement = by.dt * ring_velocity(x_before, domain, d, t.gradient[d][Dim]);
+    else
+      movement = by.dt * v_i * by.inv_spacing;
     q.x[d] += movement;
     moved = Kokkos::fmax(moved, Kokkos::fabs(movement));
   }
+  q.volume = Kokkos::fmin(volume_bound(by.most_volume, q, domain, by),
+                          Kokkos::fmax(volume_bound(by.least_volume, q, domain, by), q.volume));
   return moved;
 }
 
@@ -144,9 +176,11 @@ KOKKOS_INLINE_FUNCTION auto is_finite(const Particle<R, Dim>& q) {
 }
 
 /// Whether the volume of a particle is at a bound; by lane where R is lanes.
-template <class R, class T, int Dim>
-KOKKOS_INLINE_FUNCTION auto is_volume_limited(const Particle<R, Dim>& q, const UpdateScalars<T>& by) {
-  return !((q.volume > by.least_volume) & (q.volume < by.most_volume));
+template <class R, class T, int Dim, class Domain>
+KOKKOS_INLINE_FUNCTION auto is_volume_limited(const Particle<R, Dim>& q, const UpdateScalars<T>& by,
+                                              const Domain& domain) {
+  return !((q.volume > volume_bound(by.least_volume, q, domain, by)) &
+           (q.volume < volume_bound(by.most_volume, q, domain, by)));
 }
 
 /// Whether the law of particle p, one of the list Laws, calls the particle's state a failure. Its stress is
@@ -163,21 +197,22 @@ KOKKOS_INLINE_FUNCTION bool has_failed(const Soil<Space, T, Dim>& soil, int p) {
 
 /// What is wrong with a particle that moved by `moved` [cells] in the step: not finite, a volume that the run
 /// does not allow, or so fast that the computation cannot be trusted.
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION FaultKind fault_of(const Particle<T, Dim>& q, T moved, const UpdateScalars<T>& by) {
+template <class T, int Dim, class Domain>
+KOKKOS_INLINE_FUNCTION FaultKind fault_of(const Particle<T, Dim>& q, T moved, const UpdateScalars<T>& by,
+                                          const Domain& domain) {
   if (!is_finite(q)) return FaultKind::not_finite;
-  if (by.volume_is_fault && is_volume_limited(q, by)) return FaultKind::volume;
+  if (by.volume_is_fault && is_volume_limited(q, by, domain)) return FaultKind::volume;
   return moved <= 1 ? FaultKind::none : FaultKind::too_fast;
 }
 
 /// Reports what is wrong with particle p after a step, if anything is. q: the particle, which moved by
 /// `moved` [cells]; origin: lower corner of its patch [cells].
-template <class Space, class T, int Dim>
+template <ParticleDomain domain, class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION void report_fault(const ControlView<Space>& control, const Soil<Space, T, Dim>& soil,
                                          int p, const Particle<T, Dim>& q, T moved,
                                          const UpdateScalars<T>& by, const Coord<Dim>& origin,
                                          double spacing) {
-  FaultKind fault = fault_of(q, moved, by);
+  FaultKind fault = fault_of(q, moved, by, step_domain<domain>(soil, p));
   if (fault == FaultKind::none) return;
   if (fault == FaultKind::not_finite && has_failed(soil, p)) fault = FaultKind::law;
   const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));

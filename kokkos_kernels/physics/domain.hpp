@@ -44,12 +44,21 @@ KOKKOS_INLINE_FUNCTION DomainMoments<T, Dim> square_domain(T half_length) {
   return m;
 }
 
+/// The axis of revolution in the frame of a cell [cells].
+template <class T, class Soil_>
+KOKKOS_INLINE_FUNCTION T axis_of(const Soil_& soil, int cell) {
+  constexpr int cells = Patch<2>::cells;
+  return -static_cast<T>(soil.patch_origin[cell / cells][0] + coord_of<2>(cell)[0]);
+}
+
 /// The domain of particle p, which is of this body.
 template <ParticleDomain domain, class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION DomainOf<T, Dim, domain> domain_of(const Soil<Space, T, Dim>& soil, int p,
                                                           const BodyProperties<T>& of) {
   if constexpr (domain == ParticleDomain::fixed)
     return of.half_length;
+  else if constexpr (domain == ParticleDomain::ring)
+    return {of.half_length, axis_of<T>(soil, soil.cell(p))};
   else
     return half_lengths_of(soil.domain(p), soil.least_half_length);
 }
@@ -62,9 +71,19 @@ KOKKOS_INLINE_FUNCTION HalfLengths<T, Dim> any_domain_of(const Soil<Space, T, Di
   return half;
 }
 
+/// Calls f(domain of particle p), likewise.
+template <class Space, class T, int Dim, class F>
+KOKKOS_INLINE_FUNCTION void with_any_domain(const Soil<Space, T, Dim>& soil, int p, F&& f) {
+  if constexpr (Dim == 2)
+    if (soil.rings) return f(domain_of<ParticleDomain::ring>(soil, p, soil.bodies(soil.body(p))));
+  f(any_domain_of(soil, p));
+}
+
 /// Calls f(domain), the domain as std::integral_constant, by what the soil has.
-template <class Soil_, class F>
-void with_domain(const Soil_& soil, F&& f) {
+template <class Space, class T, int Dim, class F>
+void with_domain(const Soil<Space, T, Dim>& soil, F&& f) {
+  if constexpr (Dim == 2)
+    if (soil.rings) return f(std::integral_constant<ParticleDomain, ParticleDomain::ring>{});
   if (soil.has_domain)
     f(std::integral_constant<ParticleDomain, ParticleDomain::stretch>{});
   else

@@ -8,6 +8,7 @@
 #include "data/particles.hpp"
 #include "physics/domain.hpp"
 #include "physics/pore_water.hpp"
+#include "physics/ring_domain.hpp"
 #include "physics/shape_gimp.hpp"
 #include "physics/walls.hpp"
 
@@ -16,6 +17,7 @@ namespace mpm {
 // A Point holds what a particle gives, as plain T, so that a strategy may keep it value by value. Each value
 // of a node's term goes with the weight, or with components of its gradient, which takes(value, d) tells:
 //   S factor(q, value)   or   sum over d of dS/dx_d slope(q, value, d)
+// Where the particles are rings, d goes up to Dim, and the last one stands for the hoop weight T S.
 // component(value) is the direction of a value that is a component of a vector, -1 of a scalar; with `kind`
 // it tells the sign of its image in a wall.
 
@@ -43,16 +45,18 @@ struct SoilSource {
   static constexpr ParticleDomain domain = domain_;
   static constexpr int dim = Dim, size = SoilTerms<Dim>::size;
   static constexpr Kind kind = Kind::motion;
+  static constexpr bool rings = domain_ == ParticleDomain::ring;
+  static constexpr int k_stresses = Dim * (Dim + 1) / 2 + rings;
   template <class R>
   struct PointOf {
     DomainOf<R, Dim, domain_> half_length;
     R mass, momentum[Dim];
-    R stress_volume[Dim * (Dim + 1) / 2];  // - V_p sigma_p / d, components along the axes of the mesh
+    R stress_volume[k_stresses];  // - V_p sigma_p / d, components along the axes of the mesh, then the hoop's
   };
   using Point = PointOf<T>;
-  /// Place of component (i, j) in stress_volume: that of SymTensor, without zz in plane strain.
+  /// Place of component (i, j) in stress_volume: that of SymTensor, with zz, the hoop stress, last.
   KOKKOS_INLINE_FUNCTION static constexpr int place(int i, int j) {
-    return Dim == 2 && i != j ? 2 : sym_index<Dim>(i, j);
+    return j == Dim ? 3 : Dim == 2 && i != j ? 2 : sym_index<Dim>(i, j);
   }
   Soil<Space, T, Dim> points;
   T inv_spacing;
@@ -73,13 +77,14 @@ struct SoilSource {
     for (int d = 0; d < Dim; ++d) q.momentum[d] = q.mass * v_p[d];
     for (int k = 0; k < Dim * (Dim + 1) / 2; ++k)
       q.stress_volume[k] = scale * stress[k < Dim ? k : k + 3 - Dim];
+    if constexpr (rings) q.stress_volume[3] = scale * stress[2];
     return q;
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
     return value == SoilTerms<Dim>::mass ? -1 : (value - SoilTerms<Dim>::momentum) % Dim;
   }
-  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int) {
-    return value >= SoilTerms<Dim>::force;
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
+    return value >= SoilTerms<Dim>::force && (d < Dim || value == SoilTerms<Dim>::force);
   }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
     return value == SoilTerms<Dim>::mass ? q.mass : q.momentum[value - SoilTerms<Dim>::momentum];
@@ -142,9 +147,9 @@ struct ResidualSource {
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
-/// The soil's boundary at a node, sum grad S V_p: by Gauss' theorem the integral of S_i n over it, n out of
-/// the soil. Summed over the nodes along a face it is the face's area, however the face cuts the cells. And
-/// its volume there, sum S V_p.
+/// The soil's boundary at a node, sum grad S V_p, of rings with T S V_p in the radial component: by Gauss'
+/// theorem the integral of S_i n over it, n out of the soil. Summed over the nodes along a face it is the
+/// face's area, however the face cuts the cells. And its volume there, sum S V_p.
 template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
 struct BoundarySource {
   using Space = Space_;
@@ -170,7 +175,7 @@ struct BoundarySource {
     return value < BoundaryTerms<Dim>::volume ? value : -1;
   }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
-    return value == BoundaryTerms<Dim>::area + d;
+    return value == BoundaryTerms<Dim>::area + d || (d == Dim && value == BoundaryTerms<Dim>::area);
   }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.volume; }
   KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.area; }
@@ -292,25 +297,33 @@ struct RigidSource {
   KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.mass; }
 };
 
-/// The first component of the gradient, from d on, that goes into a value of the term; Source::dim if none.
+/// Components of the gradient that a source's particles have.
+template <class Source>
+inline constexpr int k_slopes_of = [] {
+  if constexpr (requires { Source::domain; }) return k_slopes<Source::dim, Source::domain>;
+  return Source::dim;
+}();
+
+/// The first component of the gradient, from d on, that goes into a value of the term; k_slopes_of if none.
 template <class Source>
 KOKKOS_INLINE_FUNCTION constexpr int first_taken(int value, int d = 0) {
-  while (d < Source::dim && !Source::takes(value, d)) ++d;
+  while (d < k_slopes_of<Source> && !Source::takes(value, d)) ++d;
   return d;
 }
 
 /// The term of a node with weight w and its gradient `grad` [1/cell], by add(value, term). offset() [cells]
 /// from the particle to the node is asked for where the source takes one.
-template <class Source, class W, int Dim, class Offset, class Add>
-KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, W w, const Vector<W, Dim>& grad,
+template <class Source, class W, int Slopes, class Offset, class Add>
+KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, W w, const Vector<W, Slopes>& grad,
                                  [[maybe_unused]] Offset&& offset, Add&& add) {
+  static_assert(Slopes == k_slopes_of<Source>);
   unrolled<Source::size>([&](auto value) {
     constexpr int first = first_taken<Source>(value);
-    if constexpr (first == Dim) {
+    if constexpr (first == Slopes) {
       add(value, w * Source::factor(q, value));
     } else {
       W term = grad[first] * Source::slope(q, value, first);
-      unrolled<Dim>([&](auto d) {
+      unrolled<Slopes>([&](auto d) {
         if constexpr (d > first && Source::takes(value, d)) term += grad[d] * Source::slope(q, value, d);
       });
       add(value, term);
@@ -352,6 +365,28 @@ using StretchedStrengthSource = StrengthSource<Space, T, Dim, ParticleDomain::st
 template <class Space, class T, int Dim>
 using StretchedDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::stretch>;
 
+/// The sources of soil that is revolved about the axis.
+template <class Space, class T, int Dim>
+using RingSoilSource = SoilSource<Space, T, Dim, ParticleDomain::ring>;
+template <class Space, class T, int Dim>
+using RingAffineSource = AffineSource<Space, T, Dim, ParticleDomain::ring>;
+template <class Space, class T, int Dim>
+using RingResidualSource = ResidualSource<Space, T, Dim, ParticleDomain::ring>;
+template <class Space, class T, int Dim>
+using RingBoundarySource = BoundarySource<Space, T, Dim, ParticleDomain::ring>;
+template <class Space, class T, int Dim>
+using RingStrengthSource = StrengthSource<Space, T, Dim, ParticleDomain::ring>;
+template <class Space, class T, int Dim>
+using RingDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::ring>;
+#define MPM_FOR_EACH_RING_SOURCE_2(X, Space, T) \
+  X(RingSoilSource, Space, T, 2)                \
+  X(RingAffineSource, Space, T, 2)              \
+  X(RingResidualSource, Space, T, 2)            \
+  X(RingBoundarySource, Space, T, 2)            \
+  X(RingStrengthSource, Space, T, 2)            \
+  X(RingDisplacedSource, Space, T, 2)
+#define MPM_FOR_EACH_RING_SOURCE_3(X, Space, T)
+
 /// Applies X(Source) to every source of a space, real type and dimension.
 #define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
   X(SoilSource, Space, T, Dim)                \
@@ -366,6 +401,7 @@ using StretchedDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::
   X(StretchedResidualSource, Space, T, Dim)   \
   X(StretchedBoundarySource, Space, T, Dim)   \
   X(StretchedStrengthSource, Space, T, Dim)   \
-  X(StretchedDisplacedSource, Space, T, Dim)
+  X(StretchedDisplacedSource, Space, T, Dim)  \
+  MPM_FOR_EACH_RING_SOURCE_##Dim(X, Space, T)
 
 }  // namespace mpm

@@ -136,4 +136,28 @@ KOKKOS_INLINE_FUNCTION void node_weight(T r, HalfLengthOf<T> half, T& s, T& ds) 
   ds = r < 0 ? -slope : slope;
 }
 
+/// Weight [-] of one node and its gradient [1/cell].
+///   x [cells] particle minus node;  domain [cells] half length, or half lengths
+template <class T, int Dim, class Domain>
+KOKKOS_INLINE_FUNCTION T single_node_weight(const Vector<T, Dim>& x, const Domain& domain,
+                                            Vector<T, Dim>& grad) {
+  T s[Dim], ds[Dim], w = 1;
+  for (int d = 0; d < Dim; ++d) {
+    node_weight(x[d], domain[d], s[d], ds[d]);
+    w *= s[d];
+  }
+  for (int d = 0; d < Dim; ++d) {
+    grad[d] = ds[d];
+    for (int e = 0; e < Dim; ++e) grad[d] *= e == d ? T(1) : s[e];
+  }
+  return w;
+}
+/// From the particle to that node [cells], as offset_to.
+template <class T, int Dim, class Domain>
+KOKKOS_INLINE_FUNCTION Vector<T, Dim> offset_from(const Vector<T, Dim>& x, const Domain&) {
+  Vector<T, Dim> r;
+  for (int d = 0; d < Dim; ++d) r[d] = -x[d];
+  return r;
+}
+
 }  // namespace mpm

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "physics/ring_domain.hpp"
 #include "physics/walls.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
@@ -129,6 +130,7 @@ void locate(State<Space, T, Dim>& s) {
   const auto alone = s.strays.alone;
   const auto put_back = s.strays.put_back;
   const bool removes = s.strays.rule == StrayRule::remove;
+  const double spacing = s.spacing;
   const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
   Kokkos::parallel_for(
       "mpm::locate_soil", Kokkos::RangePolicy<Space>(s.space, 0, soil.count), KOKKOS_LAMBDA(int p) {
@@ -144,7 +146,8 @@ void locate(State<Space, T, Dim>& s) {
           x[d] -= whole;
           if (x[d] >= 1) x[d] = 0, ++c[d];  // -tiny + 1 rounds to 1
         }
-        bool leaves = removes && (is_alone(alone, cell) || soil.volume(p) <= least || soil.volume(p) >= most);
+        const T size = bounded_volume(soil, p, T(spacing));
+        bool leaves = removes && (is_alone(alone, cell) || size <= least || size >= most);
         leaves = leaves || !grid.holds(c);
         soil.coordinate(p) = x;
         address(p) = leaves ? -1 : grid.address_of(c, grid.field_of(number(cell / Patch<Dim>::cells)));
@@ -201,6 +204,7 @@ void activate_patches(State<Space, T, Dim>& s) {
           neighbours(slot, k) = other < 0 ? -1 : slot_of(other);
         }
       });
+  if (s.soil.points.rings) s.soil.points.patch_origin = origin.data();
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                \

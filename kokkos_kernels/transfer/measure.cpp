@@ -136,7 +136,8 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
           own.m.stored_energy += double(soil.volume(p)) * stored_energy(soil, common.material, p);
           if (water.is_there()) own.m.water_energy += water_energy(soil, water, density, position, p);
           own.m.alone += is_alone(alone, soil.cell(p));
-          own.m.limited += soil.volume(p) <= least || soil.volume(p) >= most;
+          const T size = bounded_volume(soil, p, T(position.spacing));
+          own.m.limited += size <= least || size >= most;
           if (soil.has_domain) own.m.stretched += is_longest(soil.domain(p));
           ++own.m.count;
         }

@@ -66,6 +66,7 @@ Surface<Dim> surface_of(const SurfaceInput& in);
 struct RigidInput {
   std::vector<double> position;      // m [Dim N]
   double particle_volume = 0;        // m3
+  double revolved_volume = 0;        // m3, of the rigid where it is revolved about the axis; else 0
   double half_length = 0.125;        // cells
   double density = 1;                // kg/m3
   std::array<double, 3> velocity{};  // m/s

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "common/material_table.hpp"
+#include "common/revolution.hpp"
 #include "common/text.hpp"
 #include "input/groups.hpp"
 #include "output/own_files.hpp"
@@ -23,8 +24,10 @@ bool will_be_removed(const std::string& file, const std::string& folder) {
 }
 
 /// What the numbers of a file must be for the arithmetic to have room; empty where they are.
-std::string beyond_bounds(const ParticleTable& table, const MeshConfig& mesh, int dim) {
-  const double cell = std::pow(mesh.spacing, dim), far = k_coordinate.highest;
+std::string beyond_bounds(const ParticleTable& table, const Config& config, const MeshConfig& mesh) {
+  const int dim = config.dim;
+  const double cell = std::pow(mesh.spacing, dim) * revolved_length(config, mesh.upper[0]),
+               far = k_coordinate.highest;
   struct Field {
     const char* name;
     const std::vector<double>& values;
@@ -76,7 +79,7 @@ void check_particles(OptionReader& in, const BodyConfig& body, const Config& con
                                  config.output.directory);
   const ParticleSource source = source_of(body, config);
   std::string fault = read_particles(source, mesh, config.dim, table);
-  if (fault.empty()) fault = beyond_bounds(table, mesh, config.dim);
+  if (fault.empty()) fault = beyond_bounds(table, config, mesh);
   if (const auto& own = table.own_parameter; fault.empty() && !own.empty())
     fault = own_parameter_fault(config.materials[body.material], source.parameter,
                                 *std::min_element(own.begin(), own.end()),

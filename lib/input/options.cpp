@@ -11,6 +11,7 @@
 #include "input/courant.hpp"
 #include "input/groups.hpp"
 #include "input/reader.hpp"
+#include "input/revolution_options.hpp"
 #include "output/frame_fields.hpp"
 
 namespace mpm {
@@ -338,10 +339,13 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
               Config& config) {
   const auto errors = in.errors();
   in.section("Run");
-  in.integer(
-      {.name = "dim", .meaning = "2 (plane strain) or 3", .unit = "-", .range = {.lowest = 2, .highest = 3}},
-      config.dim);
-  if (in.errors() != errors) return;  // it decides what all others take
+  in.integer({.name = "dim",
+              .meaning = "2 (plane strain, or axisymmetric by -geometry) or 3",
+              .unit = "-",
+              .range = {.lowest = 2, .highest = 3}},
+             config.dim);
+  read_geometry_of(in, config);
+  if (in.errors() != errors) return;  // they decide what all others take
   if (in.listing()) read_stage_names(in);
   read_run(in, backends, config);
   if (read_element_file(in, config.element)) {
@@ -361,6 +365,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
     in.reject("output_energy", "off where -device_memory_limit sends the soil in batches");
   read_named(in, sound ? &config.mesh : nullptr, config);
   if (sound) check_absorbing(in, config);
+  check_revolution(in, config);
   limit_courant(in, config);
   const auto named_nodes = [](const auto& thing) { return thing.name == k_nodes; };
   if (config.output.nodes && (std::any_of(config.bodies.begin(), config.bodies.end(), named_nodes) ||

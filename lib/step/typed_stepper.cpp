@@ -1,12 +1,13 @@
 #include "step/typed_stepper.hpp"
 #include "common/f_bar.hpp"
+#include "common/revolution.hpp"
 #include "device/device_agrees.hpp"
 #include "input/courant.hpp"
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
-#include "step/schedule.hpp"
 #include "step/load_input.hpp"
+#include "step/schedule.hpp"
 #include "step/surface_input.hpp"
 #include "step/water.hpp"
 
@@ -92,7 +93,7 @@ double displaced_mass(const Config& config, const RigidInput& rigid) {
   for (std::size_t p = 0; p < rigid.position.size() / Dim && water.is_there(); ++p) {
     Vector<double, Dim> x;
     for (int d = 0; d < Dim; ++d) x[d] = rigid.position[p * Dim + d];
-    volume += rigid.particle_volume *
+    volume += rigid.particle_volume * revolved_length(config, x[0]) *
               water.submerged_share(x, filled<double, Dim>(rigid.half_length * config.mesh.spacing));
   }
   return water.density * volume;
@@ -100,7 +101,9 @@ double displaced_mass(const Config& config, const RigidInput& rigid) {
 
 /// Mass of a rigid less that of the water it displaces [kg].
 double carried_mass(const Config& config, const RigidInput& in) {
-  const double mass = in.density * in.particle_volume * (in.position.size() / config.dim);
+  const double mass = config.geometry == Geometry::axisymmetric
+                          ? in.density * in.revolved_volume
+                          : in.density * in.particle_volume * (in.position.size() / config.dim);
   return mass - (config.dim == 2 ? displaced_mass<2>(config, in) : displaced_mass<3>(config, in));
 }
 
@@ -108,6 +111,9 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
   RigidInput in;
   in.position = std::move(particles.position);
   in.particle_volume = particles.particle_volume;
+  if (config.geometry == Geometry::axisymmetric)
+    for (std::size_t p = 0; p < in.position.size(); p += config.dim)
+      in.revolved_volume += in.particle_volume * revolved_length(config, in.position[p]);
   in.half_length = particles.spacing / config.mesh.spacing / 2;
   in.dynamic = rigid.motion == Motion::dynamic;
   if (in.dynamic) in.density = rigid.density;
@@ -121,6 +127,7 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
   in.friction = rigid.friction.value_or(-1);
   const Cuts cuts = cuts_of(rigid.shape, config.mesh, config.dim);
   for (int d = 0; d < config.dim; ++d) in.held[d] = cuts[d][0] || cuts[d][1];
+  if (config.geometry == Geometry::axisymmetric) in.held[0] = true;
   in.surface = surface_input(rigid.shape, config.mesh, config.dim);
   in.surface_normal = rigid.contact_normal == ContactNormal::surface;
   in.separates = rigid.separates;
@@ -173,6 +180,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.affine = config_.velocity_update == VelocityUpdate::apic;
   state_.strays.rule = config_.stray_particles;
   state_.soil.points.has_domain = config_.particle_domain != ParticleDomain::fixed;
+  state_.soil.points.rings = config_.geometry == Geometry::axisymmetric;
   state_.soil.points.splits = config_.particle_domain == ParticleDomain::split;
   state_.rim_scale = rim_scale(config_);
   // On several ranks the pressure of a cell is averaged once all its particles are here.

@@ -74,9 +74,10 @@ struct Cloud {
   double flip_fraction = 1, damping = 0, f_bar_fraction = 0;
   int xpic_order = 0;
   bool affine = false;
+  bool rings = false;                   // the particles are rings about x = 0
   bool stretch = false, split = false;  // the domains of particles; those that are too long
   bool energy = false;                  // an energy balance
-  double memory_limit = 0;  // bytes, for batches of the soil
+  double memory_limit = 0;              // bytes, for batches of the soil
 };
 
 template <class B>
@@ -91,6 +92,7 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typenam
   s.affine = cloud.affine;
   s.soil.points.has_domain = cloud.stretch;
   s.soil.points.splits = cloud.split;
+  s.soil.points.rings = cloud.rings;
   s.damping = cloud.damping;
   s.f_bar_fraction = cloud.f_bar_fraction;
   s.batches.limit = cloud.memory_limit;

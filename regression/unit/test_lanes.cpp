@@ -96,7 +96,7 @@ std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
                                                                 -1, false};
     UpdateScalars<T> own = by;
     own.f_bar *= soil.materials(soil.material_of(p)).f_bar_share;
-    advance(q, law, taken[p], static_cast<T>(mean_for(p).sum / mean_for(p).volume), own);
+    advance(q, law, taken[p], static_cast<T>(mean_for(p).sum / mean_for(p).volume), own, PlaneDomain{});
     const int id = soil.id(p);
     for (int d = 0; d < Dim; ++d) fields[0].value[id * Dim + d] = q.x[d];
     for (int d = 0; d < Dim; ++d) fields[1].value[id * Dim + d] = q.v[d];

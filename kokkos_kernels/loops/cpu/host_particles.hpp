@@ -17,9 +17,10 @@ template <class Space, class T, int Dim, ParticleDomain domain>
 struct HostParticles {
   static constexpr int W = native_lanes<T>, cells = Patch<Dim>::cells, window = Patch<Dim>::window;
   using R = Lanes<T, W>;
-  static constexpr int k_motion = NodeKinematics<Dim>::size;
+  static constexpr int k_motion = NodeKinematics<Dim>::size, slopes = k_slopes<Dim, domain>;
+  static constexpr bool rings = domain == ParticleDomain::ring;
   static constexpr int k_room = 2048 / sizeof(T);  // particles on the stage, which the cache holds
-  using Samples = HostSamples<T, Dim, k_room>;
+  using Samples = HostSamples<T, Dim, k_room, slopes>;
   static constexpr int k_node = Samples::k_node;
   using Node = typename Samples::Node;
   /// What the particles of some cells take from the nodes, in their order.
@@ -144,22 +145,32 @@ struct HostParticles {
     BodyProperties<R> body = body_of<R>(soil, from);
     for (int p = from; p < to; p += W) {
       const int count = Kokkos::min(W, to - p), n = p - from;
-      R x[Dim];
-      load_field(soil.coordinate, p, count, x);
+      Vector<R, Dim> x;
+      load_field(soil.coordinate, p, count, x.c);
       if (!stage.one_body) body = bodies_of<R>(soil, p, count);
       const auto half = domains_of<domain, R, Dim>(soil, p, count, body);
-      alignas(R) T weight[Dim][2][3][W], shift[W];
+      alignas(R) T weight[Dim][2][3][W], shift[W], hoop[rings ? 3 : 1][W];
       R to_first = 0;
-      for (int d = 0, step = 1; d < Dim; ++d, step *= Patch<Dim>::window_edge) {
-        const AxisWeights<R> a = axis_weights_near(x[d], half[d]);
-        for (int k = 0; k < 3; ++k) a.w[k].store(weight[d][0][k]), a.g[k].store(weight[d][1][k]);
-        to_first += T(step) * (a.first + 1);
-      }
+      with_weights_near(x, half, [&](const auto& a) {
+        for (int d = 0, step = 1; d < Dim; ++d, step *= Patch<Dim>::window_edge) {
+          for (int k = 0; k < 3; ++k) a[d].w[k].store(weight[d][0][k]), a[d].g[k].store(weight[d][1][k]);
+          to_first += T(step) * (a[d].first + 1);
+        }
+        if constexpr (rings)
+          for (int k = 0; k < 3; ++k) a.r.t[k].store(hoop[k]);
+      });
       to_first.store(shift);
       for (int l = 0; l < W; ++l) {  // also those that only fill the lanes
-        AxisWeights<T> a[Dim];
-        for (int d = 0; d < Dim; ++d)
-          for (int k = 0; k < 3; ++k) a[d].w[k] = weight[d][0][k][l], a[d].g[k] = weight[d][1][k][l];
+        std::conditional_t<rings, RingWeights<T>, AxisWeights<T>[Dim]> a;
+        const auto set = [&](AxisWeights<T>& axis, int d) {
+          for (int k = 0; k < 3; ++k) axis.w[k] = weight[d][0][k][l], axis.g[k] = weight[d][1][k][l];
+        };
+        if constexpr (rings) {
+          set(a.r, 0), set(a.z, 1);
+          for (int k = 0; k < 3; ++k) a.r.t[k] = hoop[k][l];
+        } else {
+          for (int d = 0; d < Dim; ++d) set(a[d], d);
+        }
         take_one(nodes[stage.base[n + Kokkos::min(l, count - 1)] + static_cast<int>(shift[l])], a, n + l,
                  stage);
       }
@@ -167,11 +178,11 @@ struct HostParticles {
   }
 
   /// Particle n of the stage, with the weights `a`; first: the lowest node that it reaches.
-  KOKKOS_INLINE_FUNCTION void take_one(const T* first, const AxisWeights<T> (&a)[Dim], int n,
-                                       Stage& stage) const {
+  template <class Weights>
+  KOKKOS_INLINE_FUNCTION void take_one(const T* first, const Weights& a, int n, Stage& stage) const {
     constexpr int across = Patch<Dim>::window_edge;
-    Node value[1] = {T(0)}, gradient[1][Dim] = {};
-    for (int d = 0; d < Dim; ++d) gradient[0][d] = T(0);
+    Node value[1] = {T(0)}, gradient[1][slopes] = {};
+    for (int d = 0; d < slopes; ++d) gradient[0][d] = T(0);
     interpolate_by_lines(
         a,
         [&](const Vector<int, Dim>& k) {
@@ -211,7 +222,7 @@ struct HostParticles {
     load_field(soil.velocity, p, count, q.v.c);
     load_field(soil.stress, p, count, q.stress.c);
     load_field(soil.volume, p, count, q.volume);
-    const GridSample<R, Dim> t = stage.samples.get(n);
+    const GridSample<R, Dim, slopes> t = stage.samples.get(n);
     LawLanes<R, Space, T, Dim> law{.soil = soil, .p = p, .count = count, .one_law = stage.one_body};
     law.corner = origin(slot), law.spacing = spacing;
     for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
@@ -224,23 +235,31 @@ struct HostParticles {
     store_field(q.v.c, soil.velocity, p, count);
     store_field(q.stress.c, soil.stress, p, count);
     store_field(q.volume, soil.volume, p, count);
-    const bool limited = by.volume_is_fault && any_of(is_volume_limited(q, by));
+    const bool limited = by.volume_is_fault && any_of(is_volume_limited(q, by, domain_at(p, count)));
     if (limited || any_of(!(is_finite(q) & (own <= 1)))) find_faults(q, own, p, count, slot);
     moved = Kokkos::fmax(moved, own);
   }
 
+  /// What advance() asks of the domains of a block's particles.
+  KOKKOS_FORCEINLINE_FUNCTION auto domain_at([[maybe_unused]] int p, [[maybe_unused]] int count) const {
+    if constexpr (rings)
+      return domains_of<domain, R, Dim>(soil, p, count, bodies_of<R>(soil, p, count, false));
+    else
+      return PlaneDomain{};
+  }
+
   /// advance(), and the domains where they stretch. A particle that flies freely keeps its own.
   KOKKOS_FORCEINLINE_FUNCTION R advance_block(Particle<R, Dim>& q, const LawLanes<R, Space, T, Dim>& law,
-                                              const GridSample<R, Dim>& t, const R& mean, int p,
+                                              const GridSample<R, Dim, slopes>& t, const R& mean, int p,
                                               int count) const {
-    if constexpr (domain == ParticleDomain::fixed) {
-      return advance(q, law, t, mean, by);
+    if constexpr (domain != ParticleDomain::stretch) {
+      return advance(q, law, t, mean, by, domain_at(p, count));
     } else {
       DomainMoments<R, Dim> moments;
       load_field(soil.domain, p, count, moments.c);
       const auto was = moments;
       const StretchingLaw<R, Dim, LawLanes<R, Space, T, Dim>> stretching{law, moments};
-      const R moved = advance(q, stretching, t, mean, by);
+      const R moved = advance(q, stretching, t, mean, by, domain_at(p, count));
       for (int k = 0; k < Dim * (Dim + 1) / 2 && law.some_fly; ++k)
         moments[k] = select(law.flies > 0, was[k], moments[k]);
       store_field(moments.c, soil.domain, p, count);
@@ -284,7 +303,7 @@ struct HostParticles {
       for (int d = 0; d < Dim; ++d) q.x[d] = block.x[d][l], q.v[d] = block.v[d][l];
       q.volume = block.volume[l];
       for (int k = 0; k < sym_size<Dim>; ++k) q.stress[k] = block.stress[k][l];
-      report_fault(control, soil, p + l, q, moved[l], by, origin(slot), spacing);
+      report_fault<domain>(control, soil, p + l, q, moved[l], by, origin(slot), spacing);
     }
   }
 };

@@ -35,10 +35,12 @@ struct HostTile {
   }();
   static constexpr int k_room = 1024 / sizeof(T);  // particles on the stage, which the cache holds
   /// Particles on their way to the nodes.
+  static constexpr bool k_rings = domain == ParticleDomain::ring;
   struct alignas(R) Stage {
-    T weight[Dim][2][k_room][k_row];  // -, 1/cell: of the nodes -1 to 2 of the cell, and their slopes
-    T value[k_point][k_room + W];     // of the point, each apart, without its half length
-    Vector<T, Dim> x[k_room];         // cells
+    T weight[Dim][2][k_room][k_row];      // -, 1/cell: of the nodes -1 to 2 of the cell, and their slopes
+    T hoop[k_rings ? k_room : 1][k_row];  // 1/cell: RadialWeights::t
+    T value[k_point][k_room + W];         // of the point, each apart, without its half length
+    Vector<T, Dim> x[k_room];             // cells
   };
 
   Source source;
@@ -105,15 +107,20 @@ struct HostTile {
                                    int n) const {
     const Domain half_length = domains_of<domain, R, Dim>(source.points, p, count, body);
     put_points(p, count, body.mass, half_length, stage, n);
-    R x[Dim];
-    load_field(source.points.coordinate, p, count, x);
-    for (int d = 0; d < Dim; ++d) {
-      const AxisWeights<R> a = axis_weights_near(x[d], half_length[d]);
-      put_weights(a.first, a.w, stage.weight[d][0][n]);
-      put_weights(a.first, a.g, stage.weight[d][1][n]);
-      if (k_offset)
-        for (int l = 0; l < count; ++l) stage.x[n + l][d] = x[d][l];
-    }
+    Vector<R, Dim> x;
+    load_field(source.points.coordinate, p, count, x.c);
+    with_weights_near(x, half_length, [&](const auto& a) {
+      for (int d = 0; d < Dim; ++d) {
+        put_weights(a[d].first, a[d].w, stage.weight[d][0][n]);
+        put_weights(a[d].first, a[d].g, stage.weight[d][1][n]);
+      }
+      if constexpr (k_rings) {
+        put_weights(a.r.first, a.r.t, stage.hoop[n]);
+        x[0] = a.r.centroid;
+      }
+    });
+    for (int d = 0; d < Dim && k_offset; ++d)
+      for (int l = 0; l < count; ++l) stage.x[n + l][d] = x[d][l];
   }
 
   KOKKOS_INLINE_FUNCTION void put_points(int p, int count, const R& common_mass, const Domain& half_length,
@@ -176,11 +183,14 @@ struct HostTile {
                                                 Rows (&own)[k_row / k_rows][size]) const {
     const Rows w_x = repeated<Rows::k_count>(Row::load(stage.weight[0][0][e])),
                g_x = repeated<Rows::k_count>(Row::load(stage.weight[0][1][e]));
+    [[maybe_unused]] Rows t_x;
+    if constexpr (k_rings) t_x = repeated<Rows::k_count>(Row::load(stage.hoop[e]));
     const Point q = point(stage, e);
     unrolled<k_row / k_rows>([&](auto part) {
       constexpr int j = part * k_rows;
       Rows w = along_y<j>(stage.weight[1][0][e]), g_y = along_y<j>(stage.weight[1][1][e]);
-      Vector<Rows, Dim> grad;
+      Vector<Rows, k_slopes_of<Source>> grad;
+      if constexpr (k_rings) grad[2] = w * t_x;
       if constexpr (Dim == 3) {
         grad[2] = w * stage.weight[2][1][e][k] * w_x;
         w *= stage.weight[2][0][e][k], g_y *= stage.weight[2][0][e][k];

@@ -9,6 +9,7 @@
 #include "data/patches.hpp"
 #include "loops/window.hpp"
 #include "physics/domain.hpp"
+#include "physics/ring_domain.hpp"
 #include "physics/shape_gimp.hpp"
 
 namespace mpm {
@@ -210,6 +211,11 @@ KOKKOS_FORCEINLINE_FUNCTION DomainOf<R, Dim, domain> domains_of(const Points_& p
                                                                 const BodyProperties<R>& bodies) {
   if constexpr (domain == ParticleDomain::fixed) {
     return bodies.half_length;
+  } else if constexpr (domain == ParticleDomain::ring) {
+    RingDomain<R> ring{bodies.half_length, R(0)};
+    for (int l = 0; l < R::k_count; ++l)
+      ring.axis_x.set(l, axis_of<typename R::real>(points, points.cell(p + Kokkos::min(l, count - 1))));
+    return ring;
   } else {
     DomainMoments<R, Dim> moments;
     load_field(points.domain, p, count, moments.c);

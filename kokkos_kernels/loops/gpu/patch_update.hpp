@@ -9,27 +9,27 @@
 
 namespace mpm {
 
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION GridSample<T, Dim> sample_nodes(const KinematicValues<T, Dim>* window,
-                                                       const Coord<Dim>& cell, const AxisWeights<T> (&a)[Dim],
-                                                       T inv_spacing) {
-  GridSample<T, Dim> t{};
+template <ParticleDomain domain, class T, int Dim, class Weights>
+KOKKOS_INLINE_FUNCTION GridSample<T, Dim, k_slopes<Dim, domain>> sample_nodes(
+    const KinematicValues<T, Dim>* window, const Coord<Dim>& cell, const Weights& a, T inv_spacing) {
+  GridSample<T, Dim, k_slopes<Dim, domain>> t{};
   interpolate_by_lines(
       a, [&](const Vector<int, Dim>& k) { return window[window_place(cell, a, k)]; }, t.kinematics,
       t.gradient);
   for (int d = 0; d < Dim; ++d)
-    for (int e = 0; e < Dim; ++e) t.gradient[d][e] *= inv_spacing;
+    for (int e = 0; e < k_slopes<Dim, domain>; ++e) t.gradient[d][e] *= inv_spacing;
   return t;
 }
 
-/// The dilatation rate alone, sum v_i . grad S_ip [1/s].
-template <class T, int Dim>
+/// The dilatation rate alone, sum v_i . grad S_ip [1/s], of rings with that of the hoop.
+template <ParticleDomain domain, class T, int Dim, class Weights>
 KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const KinematicValues<T, Dim>* window, const Coord<Dim>& cell,
-                                               const AxisWeights<T> (&a)[Dim], T inv_spacing) {
+                                               const Weights& a, T inv_spacing) {
   T sum = 0;
-  for_each_weight(a, [&](const Vector<int, Dim>& k, T, const Vector<T, Dim>& grad) {
+  for_each_weight(a, [&](const Vector<int, Dim>& k, T, const auto& grad) {
     const KinematicValues<T, Dim> node = window[window_place(cell, a, k)];
     for (int d = 0; d < Dim; ++d) sum += node[NodeKinematics<Dim>::velocity + d] * grad[d];
+    if constexpr (domain == ParticleDomain::ring) sum += node[NodeKinematics<Dim>::velocity] * grad[Dim];
   });
   return sum * inv_spacing;
 }
@@ -196,12 +196,12 @@ struct UpdateParticles {
                                                  const KinematicValues<T, Dim>* nodes, T* mean) const {
     const auto& soil = source.points;
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), [&](int p) {
-      with_weights_near(soil.coordinate(p),
-                        domain_of<domain>(soil, p, soil.bodies(one_body ? 0 : soil.body(p))),
-                        [&](const AxisWeights<T>(&a)[Dim]) {
-                          dilatation(p) = dilatation_from_nodes<T, Dim>(nodes, coord_of<Dim>(soil.cell(p)), a,
-                                                                        by.inv_spacing);
-                        });
+      with_weights_near(
+          soil.coordinate(p), domain_of<domain>(soil, p, soil.bodies(one_body ? 0 : soil.body(p))),
+          [&](const auto& a) {
+            dilatation(p) =
+                dilatation_from_nodes<domain, T, Dim>(nodes, coord_of<Dim>(soil.cell(p)), a, by.inv_spacing);
+          });
     });
     team.team_barrier();
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
@@ -247,13 +247,14 @@ struct UpdateParticles {
     const bool flies = kind != PatchKind::common && (lone >> place & 1) != 0;
     T own = 0;
     Domain half_length = domain_of<domain>(soil, p, body);
-    with_weights_near(q.x, half_length, [&](const AxisWeights<T>(&a)[Dim]) {
+    with_weights_near(q.x, half_length, [&](const auto& a) {
       const ParticleLaw<Space, T, Dim, Laws> of_particle{soil, p, body.material, law, flies};
       const auto move = [&](const auto& changes) {
-        own = advance(q, changes, sample_nodes(nodes, cell, a, by.inv_spacing),
-                      by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by);
+        own =
+            advance(q, changes, sample_nodes<domain, T, Dim>(nodes, cell, a, by.inv_spacing),
+                    by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by, step_domain<domain>(soil, p));
       };
-      if constexpr (domain == ParticleDomain::fixed) {
+      if constexpr (domain != ParticleDomain::stretch) {
         move(of_particle);
       } else {
         DomainMoments<T, Dim> moments = soil.domain(p);
@@ -267,7 +268,7 @@ struct UpdateParticles {
     if constexpr (kind != PatchKind::common) put_back_particle(images, slot, place, p, q);
     soil.volume(p) = q.volume;
     soil.stress(p) = q.stress;
-    FaultKind fault = fault_of(q, own, by);
+    FaultKind fault = fault_of(q, own, by, step_domain<domain>(soil, p));
     if (fault != FaultKind::none) {
       if (fault == FaultKind::not_finite && has_failed<Laws>(soil, p)) fault = FaultKind::law;
       double position[3] = {};

@@ -35,11 +35,14 @@ class Tile {
   static constexpr int k_lots = Dim == 3 ? edge : 1;
   static constexpr bool k_offset = requires { Source::takes_offset; };
   static constexpr int k_half = k_domain_numbers<T, Point>, k_point = k_point_numbers<T, Point>;
-  static constexpr int k_values = 3 * Dim + k_point + (k_offset ? Dim : 0);
+  static constexpr bool k_rings = k_slopes_of<Source> > Dim;
+  static constexpr int k_weights = 3 * Dim + (k_rings ? 4 : 0);
+  static constexpr int k_values = k_weights + k_point + (k_offset ? Dim : 0);
 
   // The stage keeps of an entry, in units that are read at once and lie apart: for each axis, the first one
   // last, the weight of the first node and that of the last, with the derivative of the last, of which the
-  // others follow; the point; x where the source asks for it. The sign of the first weight tells where the
+  // others follow; of rings also the derivative of the first and the hoop weights; the point; x where the
+  // source asks for it. The sign of the first weight tells where the
   // first node is: it is negative for node 0 of the cell, and positive for node -1.
   static constexpr int k_unit = 16 / sizeof(T), k_units = (k_values + k_unit - 1) / k_unit;
   struct alignas(16) Unit {
@@ -123,15 +126,23 @@ class Tile {
  private:
   KOKKOS_INLINE_FUNCTION void put(int n, const Entry& entry) const {
     T value[k_units * k_unit] = {};
-    for (int d = 0; d < Dim; ++d) {
-      const AxisWeights<T> a = axis_weights_near(entry.x[d], entry.point.half_length[d]);
-      T* const axis = value + 3 * (d == 0 ? Dim - 1 : d - 1);
-      axis[0] = a.first == 0 ? -a.w[0] : a.w[0], axis[1] = a.w[2], axis[2] = a.g[2];
-    }
+    Vector<T, Dim> x = entry.x;
+    with_weights_near(entry.x, entry.point.half_length, [&](const auto& all) {
+      for (int d = 0; d < Dim; ++d) {
+        const AxisWeights<T>& a = all[d];
+        T* const axis = value + 3 * (d == 0 ? Dim - 1 : d - 1);
+        axis[0] = a.first == 0 ? -a.w[0] : a.w[0], axis[1] = a.w[2], axis[2] = a.g[2];
+      }
+      if constexpr (k_rings) {
+        value[3 * Dim] = all.r.g[0];
+        for (int k = 0; k < 3; ++k) value[3 * Dim + 1 + k] = all.r.t[k];
+        x[0] = all.r.centroid;
+      }
+    });
     T point[k_point + k_half];
     memcpy(point, &entry.point, sizeof point);
-    for (int k = 0; k < k_point; ++k) value[3 * Dim + k] = point[k + k_half];
-    for (int d = 0; d < Dim && k_offset; ++d) value[3 * Dim + k_point + d] = entry.x[d];
+    for (int k = 0; k < k_point; ++k) value[k_weights + k] = point[k + k_half];
+    for (int d = 0; d < Dim && k_offset; ++d) value[k_weights + k_point + d] = x[d];
     for (int u = 0; u < k_units; ++u) {
       Unit unit;  // written at once
       for (int k = 0; k < k_unit; ++k) unit.c[k] = value[u * k_unit + k];
@@ -189,7 +200,7 @@ class Tile {
       const Unit unit = entry[u * pitch];
       for (int k = 0; k < k_unit; ++k) value[u * k_unit + k] = unit.c[k];
     };
-    constexpr int few = (3 * Dim + k_unit - 1) / k_unit;  // units that hold the weights
+    constexpr int few = (k_weights + k_unit - 1) / k_unit;  // units that hold the weights
     for (int u = 0; u < few; ++u) fetch(u);
     Weight s[Dim];  // along the second axis on
     for (int d = 1; d < Dim; ++d) {
@@ -212,30 +223,36 @@ class Tile {
   KOKKOS_INLINE_FUNCTION static void add_along(const T* value, const Vector<int, 3>& at, T w,
                                                const T (&grad)[Dim], T (&own)[k_reach][size]) {
     T values[k_point + k_half] = {};
-    for (int k = 0; k < k_point; ++k) values[k + k_half] = value[3 * Dim + k];
+    for (int k = 0; k < k_point; ++k) values[k + k_half] = value[k_weights + k];
     Point q;
     memcpy(&q, values, sizeof q);
     // What of each value goes with the weight along the row, and what with its derivative.
     T along[size] = {}, slope[size] = {};
+    [[maybe_unused]] T hoop[k_rings ? size : 1] = {};
     unrolled<size>([&](auto v) {
       constexpr int first = first_taken<Source>(v);
-      if constexpr (first == Dim) along[v] = w * Source::factor(q, v);
+      if constexpr (first == k_slopes_of<Source>) along[v] = w * Source::factor(q, v);
       if constexpr (first == 0) slope[v] = w * Source::slope(q, v, 0);
+      if constexpr (k_rings && Source::takes(v, Dim)) hoop[v] = w * Source::slope(q, v, Dim);
       unrolled<Dim>([&](auto d) {
         if constexpr (d > 0 && Source::takes(v, d)) along[v] += grad[d] * Source::slope(q, v, d);
       });
     });
     for (int k = 0; k < 3; ++k) {
-      const Weight s = weight(value + 3 * (Dim - 1), k);
+      Weight s = weight(value + 3 * (Dim - 1), k);
+      if constexpr (k_rings)
+        s.g = k == 0 ? value[3 * Dim] : k == 2 ? s.g : -(value[3 * Dim] + value[3 * Dim - 1]);
       unrolled<size>([&](auto v) {
         constexpr int first = first_taken<Source>(v);
-        if constexpr (first == Dim || first_taken<Source>(v, 1) < Dim) own[k + late][v] += s.w * along[v];
+        if constexpr (first == k_slopes_of<Source> || first_taken<Source>(v, 1) < Dim)
+          own[k + late][v] += s.w * along[v];
         if constexpr (first == 0) own[k + late][v] += s.g * slope[v];
+        if constexpr (k_rings && Source::takes(v, Dim)) own[k + late][v] += value[3 * Dim + 1 + k] * hoop[v];
       });
       if constexpr (k_offset) {
         Vector<T, Dim> offset;
         for (int d = 0; d < Dim; ++d)
-          offset[d] = (d == 0 ? k + late : at[d]) - 1 - value[3 * Dim + k_point + d];
+          offset[d] = (d == 0 ? k + late : at[d]) - 1 - value[k_weights + k_point + d];
         Source::give_more(q, s.w * w, offset, [&](int v, T more) { own[k + late][v] += more; });
       }
     }

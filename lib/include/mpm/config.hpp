@@ -1,6 +1,7 @@
 #pragma once
 // Every input of a run as plain structs, validated, in SI units. In 2D (plane strain) every force and mass is
-// per metre of width and the third component of a vector is zero and unused.
+// per metre of width, or of the whole revolution where the geometry is axisymmetric, and the third component
+// of a vector is zero and unused.
 
 #include <array>
 #include <memory>
@@ -251,6 +252,7 @@ inline constexpr double k_gib = 1024.0 * 1024 * 1024;  // bytes
 /// Everything that a run needs to know.
 struct Config {
   int dim = 2;
+  Geometry geometry = Geometry::plane_strain;  // in 2D
   Backend backend = Backend::serial;
   Precision precision = Precision::double_;
   std::optional<double> device_memory_limit;  // GiB, of the run on its device: more soil goes in batches
@@ -263,8 +265,8 @@ struct Config {
   TimeConfig time;
   double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
   VelocityUpdate velocity_update = VelocityUpdate::flip;
-  int xpic_order = 2;         // -, m of XPIC(m), with xpic
-  double flip_fraction = 1;   // -, fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic
+  int xpic_order = 2;        // -, m of XPIC(m), with xpic
+  double flip_fraction = 1;  // -, fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic
   ParticleDomain particle_domain = ParticleDomain::fixed;
   StrayRule stray_particles = StrayRule::keep;
   double f_bar_fraction = 0.98;  // -, fraction of the cell's mean in a particle's dilatation (F-bar)

@@ -1,0 +1,13 @@
+#pragma once
+// Bodies of revolution: -geometry axisymmetric.
+
+#include "input/reader.hpp"
+
+namespace mpm {
+
+/// -geometry.
+void read_geometry_of(OptionReader& in, Config& config);
+/// What mesh, gravity and particles must be where the geometry is axisymmetric. After all of them.
+void check_revolution(OptionReader& in, const Config& config);
+
+}  // namespace mpm
