@@ -26,8 +26,8 @@ struct GiveSides {
   Sum sums;
   double unit[k_sums];
 
-  /// Mass times wave speeds [kg m/s], volume [m3] and mass [kg] of a particle, and its stress times volume over
-  /// the edge of a cell [N], about the largest force that it gives a node.
+  /// Mass times wave speeds [kg m/s], volume [m3] and mass [kg] of a particle, and its stress times volume
+  /// over the edge of a cell [N], about the largest force that it gives a node.
   static constexpr int k_terms = 5;
   KOKKOS_INLINE_FUNCTION void terms_of(int p, double (&terms)[k_terms]) const {
     const auto of = soil.properties(p);
@@ -40,7 +40,8 @@ struct GiveSides {
     terms[0] = Kokkos::sqrt((modulus + double(material.pore_stiffness)) * volume * mass);
     terms[1] = shear_ratio(of.material) * Kokkos::sqrt(modulus * volume * mass);
     terms[2] = volume, terms[3] = mass, terms[4] = 0;
-    for (int k = 0; k < sym_size<Dim>; ++k) terms[4] = Kokkos::fmax(terms[4], Kokkos::fabs(double(stress[k])));
+    for (int k = 0; k < sym_size<Dim>; ++k)
+      terms[4] = Kokkos::fmax(terms[4], Kokkos::fabs(double(stress[k])));
     terms[4] *= volume * places.grid.inv_spacing;
   }
   KOKKOS_INLINE_FUNCTION void operator()(int p) const {
@@ -51,8 +52,9 @@ struct GiveSides {
     if (!near) return;
     double terms[k_terms];
     terms_of(p, terms);
-    with_weights(soil.coordinate(p), any_domain_of(soil, p), [&](const AxisWeights<T>(&a)[Dim]) {
-      for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const Vector<T, Dim>& grad) {
+    // No side absorbs in a run of rings (check_revolution).
+    with_weights(soil.coordinate(p), any_domain_of(soil, p), [&](const auto& a) {
+      for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const auto& grad) {
         Coord<Dim> at;
         for (int d = 0; d < Dim; ++d) at[d] = image_along(places.grid, d, first[d] + a[d].first + step[d]);
         const unsigned on = sides_of(places.grid, at) & sides;
@@ -88,8 +90,8 @@ struct GiveBeyond {
     for (int d = 0; d < Dim; ++d) near |= first[d] < 1 || first[d] >= grid.cells[d] - 1;
     if (!near) return;
     const typename Source::Point q = source.load(p);
-    with_weights(source.points.coordinate(p), q.half_length, [&](const AxisWeights<T>(&a)[Dim]) {
-      for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const Vector<T, Dim>& grad) {
+    with_weights(source.points.coordinate(p), q.half_length, [&](const auto& a) {
+      for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const auto& grad) {
         T force[Dim] = {};
         give<Source>(
             q, w, grad, [] { return 0; },
@@ -148,7 +150,8 @@ void set_reactions(State<Space, T, Dim>& s) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_ratio, const SideRanks& ranks) {
+void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_ratio,
+                     const SideRanks& ranks) {
   using Give = GiveSides<Space, T, Dim>;
   using S = SideTerms<Dim>;
   const unsigned sides = s.sides.unknown;
@@ -199,7 +202,8 @@ void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_r
         const double impedance = sums(row, k) * give.unit[k] / volume;  // kg/m2/s
         const double density = sums(row, 4) * give.unit[4] / volume, length = s.sides.spring_length[n];
         table(row, S::dashpot + k) = s.sides.dashpot_factor[n] * std::max(0.0, area) * impedance;
-        if (length > 0) table(row, S::spring + k) = std::max(0.0, area) * impedance * impedance / density / length;
+        if (length > 0)
+          table(row, S::spring + k) = std::max(0.0, area) * impedance * impedance / density / length;
       }
       // A mirror gives the force on the nodes beyond back, so that twice that force has passed the side.
       for (int k = 0; k < Dim; ++k)

@@ -74,7 +74,7 @@ struct StrainOfCells {
  private:
   KOKKOS_INLINE_FUNCTION T trace(int p) const {
     T sum = 0;
-    for (int d = 0; d < Dim; ++d) sum += works.strain(p)[d];
+    for (int d = 0; d < 3; ++d) sum += works.strain(p)[d];
     return sum;
   }
   KOKKOS_INLINE_FUNCTION void dilate(int p, T to) const {
@@ -84,14 +84,19 @@ struct StrainOfCells {
   KOKKOS_INLINE_FUNCTION SymTensor<T, Dim> strain_of(int p) const {
     SymTensor<T, Dim> strain{};
     const T half = dt * places.grid.inv_spacing / 2;
-    for_each_node<Kind::motion>(soil, any_domain_of(soil, p), places, p,
-                                [&](int i, T, const Vector<T, Dim>& grad, auto&&, auto&& sign) {
-                                  for (int d = 0; d < Dim; ++d) {
-                                    const T v = sign(d) * kinematics(i, NodeKinematics<Dim>::velocity + d);
-                                    for (int e = 0; e < Dim; ++e)
-                                      strain[sym_index<Dim>(d, e)] += (d == e ? 2 : 1) * half * v * grad[e];
-                                  }
-                                });
+    with_any_domain(soil, p, [&](const auto& domain) {
+      constexpr bool ring = std::is_same_v<std::decay_t<decltype(domain)>, RingDomain<T>>;
+      for_each_node<Kind::motion>(soil, domain, places, p,
+                                  [&](int i, T, const auto& grad, auto&&, auto&& sign) {
+                                    for (int d = 0; d < Dim; ++d) {
+                                      const T v = sign(d) * kinematics(i, NodeKinematics<Dim>::velocity + d);
+                                      for (int e = 0; e < Dim; ++e)
+                                        strain[sym_index<Dim>(d, e)] += (d == e ? 2 : 1) * half * v * grad[e];
+                                      if constexpr (ring)
+                                        if (d == 0) strain[2] += 2 * half * v * grad[Dim];  // of the hoop
+                                    }
+                                  });
+    });
     return strain;
   }
 };

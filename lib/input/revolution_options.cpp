@@ -20,6 +20,14 @@ void check_revolution(OptionReader& in, const Config& config) {
     in.reject("mesh_lower", "0 as its first number" + where + ": x is the radius, and the axis is at x = 0");
   if (config.mesh.walls[0][0] != Wall::roller)
     in.reject("mesh_xmin", "roller" + where + ": that side is the axis");
+  for (int n = 0; n < 4; ++n) {
+    const SideConfig& side = config.mesh.sides[n / 2][n % 2];
+    const std::string name = std::string("mesh_") + "xy"[n / 2] + (n % 2 == 0 ? "min" : "max");
+    if (side.moves)
+      in.reject(name + (side.velocity_table ? "_velocity_table" : "_velocity"), "0" + where);
+    else if (is_acting(config.mesh.walls[n / 2][n % 2]))
+      in.reject(name, "roller, fixed or free" + where);
+  }
   if (config.gravity[0] != 0)
     in.reject(config.gravity_table ? "gravity_table" : "gravity",
               "0 along x" + where + ": gravity acts along the axis");
