@@ -243,7 +243,7 @@ struct HostParticles {
   /// What advance() asks of the domains of a block's particles.
   KOKKOS_FORCEINLINE_FUNCTION auto domain_at([[maybe_unused]] int p, [[maybe_unused]] int count) const {
     if constexpr (rings)
-      return domains_of<domain, R, Dim>(soil, p, count, bodies_of<R>(soil, p, count, false));
+      return domains_of<domain, R, Dim>(soil, p, count, bodies_of<R>(soil, p, count));
     else
       return PlaneDomain{};
   }
