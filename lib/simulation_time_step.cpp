@@ -16,6 +16,14 @@ constexpr long k_follow_every =
 constexpr double k_growth = 1.1;  // largest growth of the step from one measure to the next
 constexpr double k_told = 0.2;    // least change of the step that the log tells
 
+/// Why a fixed time step is no longer stable. speed [m/s]: that of the fastest wave, which counts for more
+/// where a particle's domain is short.
+std::string what_shortens_the_step(const Config& config, double speed) {
+  if (config.particle_domain != ParticleDomain::fixed)
+    return "domains of particles have become shorter, or the soil stiffer";
+  return formatted("the soil has become stiffer, with waves of %.4g m/s", speed);
+}
+
 }  // namespace
 
 /// The step from the Courant number (Eq. 14), or the user's where it is stable.
@@ -62,10 +70,9 @@ PetscErrorCode Simulation::Body::follow_stiffness() {
   const double largest = step_of(limits, largest_courant(config), config);
   if (config.time.step) {
     if (dt > largest * (1 + k_round_off))
-      PetscCall(
-          fail(formatted("-time_step: given \"%g\", takes at most %.6g s now that the soil has become "
-                         "stiffer, with waves of %.4g m/s; leave it out, and the step follows the soil",
-                         *config.time.step, largest, speed)));
+      PetscCall(fail(formatted("-time_step: given \"%g\", takes at most %.6g s now that %s; leave it out, "
+                               "and the step follows the soil",
+                               *config.time.step, largest, what_shortens_the_step(config, speed).c_str())));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   const double wanted = step_of(limits, config.time.courant, config);

@@ -45,7 +45,8 @@ auto light(const Policy& policy) {
 #define MPM_FOR_EACH_REAL_DIM(X, Space) MPM_FOR_EACH_DIM(X, Space, double) MPM_FOR_EACH_DIM(X, Space, float)
 #endif
 
-#ifdef KOKKOS_ENABLE_OPENMP
+#if defined(KOKKOS_ENABLE_OPENMP) && !defined(MPM_NO_OPENMP)
+#define MPM_WITH_OPENMP
 #define MPM_FOR_OPENMP(X) MPM_FOR_EACH_REAL_DIM(X, Kokkos::OpenMP)
 #else
 #define MPM_FOR_OPENMP(X)

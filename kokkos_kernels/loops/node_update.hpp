@@ -27,6 +27,11 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
   for (int r = 0; r < rigids; ++r) clear(&nodes.rigid(r, slot * cells, 0), cells * RigidTerms<Dim>::size);
 }
 
+/// A node's velocity over its change in a step below which local damping leaves it alone: that small it is
+/// round-off, whose sign differs with the order of sums.
+template <class T>
+inline constexpr T k_still = T(1e-6);
+
 /// The node's part of the step.
 template <class Space, class T, int Dim>
 struct UpdateNodes {
@@ -96,7 +101,8 @@ struct UpdateNodes {
     for (int d = 0; d < Dim; ++d) {
       v_old[d] = soil[S::momentum + d] * inv_m;           // Eq. (6)
       R a = soil[S::force + d] * inv_m_force + g_now[d];  // Eq. (8)
-      a -= damping * Kokkos::fabs(a) * select(v_old[d] > 0, R(1), select(v_old[d] < 0, R(-1), R(0)));
+      const R size = Kokkos::fabs(a), still = k_still<T> * dt * size;
+      a -= damping * size * select(v_old[d] > still, R(1), select(v_old[d] < -still, R(-1), R(0)));
       v[d] = v_old[d] + a * dt;  // Eq. (9)
     }
   }

@@ -11,7 +11,7 @@ namespace mpm {
 std::vector<Backend> available_backends() {
   return {
       Backend::serial,
-#ifdef KOKKOS_ENABLE_OPENMP
+#ifdef MPM_WITH_OPENMP
       Backend::openmp,
 #endif
 #ifdef KOKKOS_ENABLE_CUDA

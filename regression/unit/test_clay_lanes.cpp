@@ -94,7 +94,7 @@ void check_lanes(const Values& values, double pressure, double largest, const Ha
   }
   INFO(Law<T>::k_name << " " << Dim << "D, lanes " << Lanes::W << ", strains to " << largest);
   CHECK(apart < (sizeof(T) == sizeof(double) ? 1e-9 : 2e-3));
-  CHECK(happened > k_blocks / 10);
+  CHECK(happened > k_blocks * Lanes::W / 100);
   CHECK(happened < k_blocks * Lanes::W * 99 / 100);
 }
 

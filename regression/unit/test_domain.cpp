@@ -270,11 +270,12 @@ TEST_CASE("every strategy gives the nodal fields of the plain loop, whatever the
       CHECK(largest_difference(fields(state_of<Reference<Dim>>(fixed)), expected) > 1e-3);  // they matter
       for_each_build([&](auto build) {
         using B = decltype(build);
-        if constexpr (B::dim == Dim)
+        if constexpr (B::dim == Dim) {
           for (P2G how : k_strategies) {
             INFO(build.name() << ' ' << word_of(how) << " margin " << margin);
             CHECK(largest_difference(fields(state_of<B>(cloud, how)), expected) < B::of(1e-12, 1e-5));
           }
+        }
       });
     }
   });

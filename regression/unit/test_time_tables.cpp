@@ -172,8 +172,13 @@ TEST_CASE("loads follow their tables on the device, however steps are launched",
       CHECK((rigids(0).impulse[1] > 0 && rigids(1).impulse[1] > 0));  // the soil resists
     }
     const auto expected = soil_fields(states[0]);
-    CHECK(soil_fields(states[1]) == expected);
-    CHECK(soil_fields(states[2]) == expected);
+    for (const int n : {1, 2}) {
+      const auto fields = soil_fields(states[n]);
+      if constexpr (is_device<typename B::Space>)  // the points of rigids come in any order
+        CHECK(largest_difference(fields, expected) < B::of(1e-9, 1e-3));
+      else
+        CHECK(fields == expected);
+    }
     if (states.size() > 3) CHECK(largest_difference(soil_fields(states[3]), expected) < B::of(1e-9, 1e-3));
   });
 }

@@ -4,6 +4,7 @@
 
 #include "data/state.hpp"
 #include "loops/cpu/host_laws.hpp"
+#include "loops/cpu/host_samples.hpp"
 #include "loops/cpu/host_window.hpp"
 #include "physics/advance.hpp"
 #include "physics/stretch_domain.hpp"
@@ -18,17 +19,17 @@ struct HostParticles {
   using R = Lanes<T, W>;
   static constexpr int k_motion = NodeKinematics<Dim>::size, slopes = k_slopes<Dim, domain>;
   static constexpr bool rings = domain == ParticleDomain::ring;
-  static constexpr int k_node = k_motion <= 4 ? 4 : 8;  // values of a node, with a gap in 3D
-  using Node = Lanes<T, k_node>;
   static constexpr int k_room = 2048 / sizeof(T);  // particles on the stage, which the cache holds
-  static constexpr int k_pitch = k_room + W;       // not a power of two: values would drive each other out
-  /// What the particles of some cells take from the nodes, in their order, each value apart.
+  using Samples = HostSamples<T, Dim, k_room, slopes>;
+  static constexpr int k_node = Samples::k_node;
+  using Node = typename Samples::Node;
+  /// What the particles of some cells take from the nodes, in their order.
   struct alignas(R) Stage {
-    T kinematics[k_motion][k_pitch], gradient[Dim * slopes][k_pitch];  // m/s, m/s2; 1/s
-    T mean[k_pitch];    // 1/s, dilatation rate of the particle's cell; first the particle's term of it
-    int base[k_pitch];  // window_base of its cell
-    bool one_body;      // all particles of the patch
-    bool at_wall;       // the patch
+    Samples samples;
+    T mean[k_room + W];    // 1/s, dilatation rate of the particle's cell; first the particle's term of it
+    int base[k_room + W];  // window_base of its cell
+    bool one_body;         // all particles of the patch
+    bool at_wall;          // the patch
   };
 
   Soil<Space, T, Dim> soil;
@@ -140,12 +141,14 @@ struct HostParticles {
   /// The particles [from, to) take from the nodes; the weights of many at once, then the values of a node at
   /// once.
   void take(Window nodes, int from, int to, Stage& stage) const {
+    if (from == to) return;
+    BodyProperties<R> body = body_of<R>(soil, from);
     for (int p = from; p < to; p += W) {
       const int count = Kokkos::min(W, to - p), n = p - from;
       Vector<R, Dim> x;
       load_field(soil.coordinate, p, count, x.c);
-      const auto half =
-          domains_of<domain, R, Dim>(soil, p, count, bodies_of<R>(soil, p, count, stage.one_body));
+      if (!stage.one_body) body = bodies_of<R>(soil, p, count);
+      const auto half = domains_of<domain, R, Dim>(soil, p, count, body);
       alignas(R) T weight[Dim][2][3][W], shift[W], hoop[rings ? 3 : 1][W];
       R to_first = 0;
       with_weights_near(x, half, [&](const auto& a) {
@@ -191,27 +194,20 @@ struct HostParticles {
           return node;
         },
         value, gradient);
-    for (int k = 0; k < k_motion; ++k) stage.kinematics[k][n] = value[0][k];
-    for (int i = 0; i < Dim; ++i)
-      for (int d = 0; d < slopes; ++d) stage.gradient[i * slopes + d][n] = gradient[0][d][i] * by.inv_spacing;
+    stage.samples.put(n, value[0], gradient[0], by.inv_spacing, by.f_bar > 0);
   }
 
-  /// Places in Stage::gradient of the rates whose sum is the dilatation's: dv_d/dx_d, of rings also v_r / r.
-  static constexpr int k_stretch[3] = {0, slopes + 1, rings ? 2 : 2 * slopes + 2};
   /// Volume times dilatation rate of the particles [from, to) [m3/s], all of the stage, to stage.mean.
   void weigh_dilatation(int from, int to, Stage& stage) const {
     for (int p = from; p < to; p += W) {
-      R volume, rate = 0;
+      R volume;
       load_field(soil.volume, p, Kokkos::min(W, to - p), volume);
-      for (int d = 0; d < slopes; ++d) rate += R::load(stage.gradient[k_stretch[d]] + (p - from));
-      (rate * volume).store(stage.mean + (p - from));
+      (R::load(stage.samples.rate + (p - from)) * volume).store(stage.mean + (p - from));
     }
   }
   /// mean_for() of particle p, n on the stage.
   T mean_of(int p, T of_cell, const Stage& stage, int n) const {
-    T own = 0;
-    for (int d = 0; d < slopes; ++d) own += stage.gradient[k_stretch[d]][n];
-    return mean_for(soil.materials(soil.material_of(p)).f_bar_share, of_cell, own);
+    return mean_for(soil.materials(soil.material_of(p)).f_bar_share, of_cell, stage.samples.rate[n]);
   }
   /// Adds the dilatation rates of the particles [first, last). from: the first particle of the stage.
   void add_dilatation(int first, int last, const Stage& stage, int from, CellMean<T>& dilatation) const {
@@ -226,10 +222,7 @@ struct HostParticles {
     load_field(soil.velocity, p, count, q.v.c);
     load_field(soil.stress, p, count, q.stress.c);
     load_field(soil.volume, p, count, q.volume);
-    GridSample<R, Dim, slopes> t;
-    for (int k = 0; k < k_motion; ++k) t.kinematics[k] = R::load(stage.kinematics[k] + n);
-    for (int k = 0; k < Dim * slopes; ++k)
-      t.gradient[k / slopes][k % slopes] = R::load(stage.gradient[k] + n);
+    const GridSample<R, Dim, slopes> t = stage.samples.get(n);
     LawLanes<R, Space, T, Dim> law{.soil = soil, .p = p, .count = count, .one_law = stage.one_body};
     law.corner = origin(slot), law.spacing = spacing;
     for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
@@ -250,7 +243,7 @@ struct HostParticles {
   /// What advance() asks of the domains of a block's particles.
   KOKKOS_FORCEINLINE_FUNCTION auto domain_at([[maybe_unused]] int p, [[maybe_unused]] int count) const {
     if constexpr (rings)
-      return domains_of<domain, R, Dim>(soil, p, count, bodies_of<R>(soil, p, count, false));
+      return domains_of<domain, R, Dim>(soil, p, count, bodies_of<R>(soil, p, count));
     else
       return PlaneDomain{};
   }

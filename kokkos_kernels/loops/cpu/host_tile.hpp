@@ -69,7 +69,12 @@ struct HostTile {
     int c = 0;
     for (int from = begin(slot * cells); from < to; from += k_room) {
       const int end = Kokkos::min(from + k_room, to);
-      for (int p = from; p < end; p += W) fill(p, Kokkos::min(W, end - p), one_body, stage, p - from);
+      BodyProperties<R> body = body_of<R>(source.points, from);
+      for (int p = from; p < end; p += W) {
+        const int count = Kokkos::min(W, end - p);
+        if (!one_body) body = bodies_of<R>(source.points, p, count);
+        fill(p, count, body, stage, p - from);
+      }
       for (;; ++c) {  // a cell may go on in the next lot
         const int first = Kokkos::max(begin(slot * cells + c), from), next = begin(slot * cells + c + 1);
         if (first < Kokkos::min(next, end))
@@ -98,8 +103,8 @@ struct HostTile {
   }
 
   /// Puts `count` particles from p on to the stage from n on; their weights at once.
-  KOKKOS_INLINE_FUNCTION void fill(int p, int count, bool one_body, Stage& stage, int n) const {
-    const BodyProperties<R> body = bodies_of<R>(source.points, p, count, one_body);
+  KOKKOS_INLINE_FUNCTION void fill(int p, int count, const BodyProperties<R>& body, Stage& stage,
+                                   int n) const {
     const Domain half_length = domains_of<domain, R, Dim>(source.points, p, count, body);
     put_points(p, count, body.mass, half_length, stage, n);
     Vector<R, Dim> x;

@@ -177,29 +177,35 @@ bool of_one_body(const Points_& points, int from, int to) {
   return others == 0;
 }
 
-/// The properties of the bodies of `count` points from p on, by lane, without the material and without own
-/// masses. same: all points are of one body.
+/// The properties of the body of point p, in all lanes; without the material and without own masses.
 template <class R, class Points_>
-KOKKOS_FORCEINLINE_FUNCTION BodyProperties<R> bodies_of(const Points_& points, int p, int count, bool same) {
-  BodyProperties<R> body;
-  const auto put = [&](int l, const auto& of) {
-    body.mass.set(l, of.mass);
-    body.half_length.l.set(l, of.half_length.l), body.half_length.inverse.set(l, of.half_length.inverse);
-  };
-  const auto all = [&](const auto& of) {
+KOKKOS_FORCEINLINE_FUNCTION BodyProperties<R> body_of(const Points_& points, int p) {
+  const auto in_all_lanes = [](const auto& of) {
+    BodyProperties<R> body;
     body.mass = of.mass;
     body.half_length.l = of.half_length.l, body.half_length.inverse = of.half_length.inverse;
+    return body;
   };
-  if constexpr (requires { points.body; }) {
-    all(points.bodies(points.body(p)));
-    for (int l = 1; l < count && !same; ++l) put(l, points.bodies(points.body(p + l)));
-  } else {
-    all(points);
-  }
+  if constexpr (requires { points.body; })
+    return in_all_lanes(points.bodies(points.body(p)));
+  else
+    return in_all_lanes(points);
+}
+/// Those of the bodies of `count` points from p on, by lane. A function that is called: where all points of a
+/// patch are of one body, nobody needs it.
+template <class R, class Points_>
+[[gnu::noinline]] KOKKOS_FUNCTION BodyProperties<R> bodies_of(const Points_& points, int p, int count) {
+  BodyProperties<R> body = body_of<R>(points, p);
+  if constexpr (requires { points.body; })
+    for (int l = 1; l < count; ++l) {
+      const auto& of = points.bodies(points.body(p + l));
+      body.mass.set(l, of.mass);
+      body.half_length.l.set(l, of.half_length.l), body.half_length.inverse.set(l, of.half_length.inverse);
+    }
   return body;
 }
 
-/// The domains of `count` points from p on, by lane; their bodies are those of bodies_of.
+/// The domains of `count` points from p on, by lane; `bodies` has their properties.
 template <ParticleDomain domain, class R, int Dim, class Points_>
 KOKKOS_FORCEINLINE_FUNCTION DomainOf<R, Dim, domain> domains_of(const Points_& points, int p, int count,
                                                                 const BodyProperties<R>& bodies) {
