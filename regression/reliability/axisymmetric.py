@@ -51,7 +51,7 @@ class Deck:
             base = self.add(draw, name, law, base)
         self.options += ["-bodies", ",".join(names), "-materials", ",".join(f"m_{name}" for name in names)]
         if self.kind == "pushed":
-            self.push(draw, base)
+            self.push(draw, base, {"von_mises", "tresca"} & set(laws))
 
     def add(self, draw, name, law, base):
         density = draw.uniform(800, 2200)
@@ -76,7 +76,7 @@ class Deck:
         self.options += words.split()
         return np.ceil(top / SPACING) * SPACING
 
-    def push(self, draw, base):
+    def push(self, draw, base, clays):
         self.options += ["-rigid_bodies", "tool"]
         kind = draw.choice(["plate", "ball", "weight"])
         if kind == "ball":
@@ -87,7 +87,8 @@ class Deck:
             self.options += "-tool_motion dynamic -tool_density 1500 -tool_force 0,-500 -tool_velocity 0,-0.5".split()
         else:
             self.options += "-tool_motion prescribed -tool_velocity 0,-1".split()
-        self.options += draw.choice([[], ["-tool_shear_limit", "1000"], ["-tool_friction", "0.3"], ["-tool_shear_fraction", "0.5"]])
+        self.options += draw.choice([[], ["-tool_shear_limit", "1000"], ["-tool_friction", "0.3"],
+                                     ["-tool_shear_fraction", "0.5"] if clays else []])
 
 
 def table(folder):
