@@ -43,20 +43,21 @@ KOKKOS_INLINE_FUNCTION void absorb(const Side<Dim>& side, int d, const SideNode<
 
 /// A roller with Coulomb friction, as contact_correction() has it: the friction of a step is at most a
 /// fraction of the normal impulse of this step and of what earlier ones have left. The side also pulls, as a
-/// roller does; a pull uses the stock up.
+/// roller does. A pull reduces the stock, also below zero, so that a normal impulse that rings about its mean
+/// allows no more friction than the mean does.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION void rub(const Side<Dim>& side, int d, bool upper, const SideNode<Dim>& node,
                                 double* kept, double* v) {
   double& stock = kept[SideTerms<Dim>::stock];
   const double approach = (v[d] - side.velocity[d]) * (upper ? 1 : -1);
-  stock = Kokkos::fmax(0.0, double(k_memory<T>) * stock + node.mass * approach);
+  stock = double(k_memory<T>) * stock + node.mass * approach;
   v[d] = side.velocity[d];
   double squares = 0;
   for (int k = 0; k < Dim; ++k)
     if (k != d) squares += (v[k] - side.velocity[k]) * (v[k] - side.velocity[k]);
   const double speed = Kokkos::sqrt(squares), stops = node.mass * speed;  // N s
   const double area = side.face * Kokkos::fmin(1.0, node.mass / side.unit_mass);
-  const double most = Kokkos::fmin(side.friction * stock, side.shear_limit * area * node.dt);
+  const double most = Kokkos::fmin(side.friction * Kokkos::fmax(0.0, stock), side.shear_limit * area * node.dt);
   const double used = Kokkos::fmin(stops, most), left = stops > 0 ? 1 - used / stops : 1;
   if (side.friction > 0) stock -= used / side.friction;
   for (int k = 0; k < Dim; ++k)
