@@ -17,9 +17,9 @@ inline constexpr int k_most_patches = 1000;
 inline constexpr long k_most_steps =
     1000;  // of one launch: a device that also shows pictures must not wait long
 
-template <bool WithNodes, class Laws, class Space, class T, int Dim>
+template <bool WithNodes, class Laws, ParticleDomain domain, class Space, class T, int Dim>
 auto step_of(const State<Space, T, Dim>& s, double dt, int steps) {
-  using Functor = PersistentStep<Space, T, Dim, WithNodes, Laws>;
+  using Functor = PersistentStep<Space, T, Dim, WithNodes, Laws, domain>;
   Functor f{update_of<typename Functor::Update>(s, dt, s.soil.bins.active_slots, 0),
             node_update_of(s, dt),
             {s, dt},
@@ -47,12 +47,23 @@ void launch_functor(const Space& space, int slots, const Functor& f) {
       light(team.set_scratch_size(0, Kokkos::PerTeam(f.bytes(f.nodes.value_count) + k_scratch_slack))), f);
 }
 
+/// Calls f(laws, domain) with the choice of a persistent step for this soil, and returns what f returns;
+/// false where there is none: domains that stretch have one for light laws alone, since each takes long to
+/// compile.
+template <class Space, class T, int Dim, class F>
+bool with_choice(const State<Space, T, Dim>& s, F&& f) {
+  constexpr std::integral_constant<ParticleDomain, ParticleDomain::fixed> fixed;
+  constexpr std::integral_constant<ParticleDomain, ParticleDomain::stretch> stretch;
+  if (s.soil.points.has_domain) return light_kernels_do(s) && f(LightMaterials{}, stretch);
+  return light_kernels_do(s) ? f(LightMaterials{}, fixed) : f(Materials{}, fixed);
+}
+
 template <bool WithNodes, class Space, class T, int Dim>
 void launch(const State<Space, T, Dim>& s, int slots, double dt, int steps) {
-  if (light_kernels_do(s))
-    launch_functor(s.space, slots, step_of<WithNodes, LightMaterials>(s, dt, steps));
-  else
-    launch_functor(s.space, slots, step_of<WithNodes, Materials>(s, dt, steps));
+  with_choice(s, [&](auto laws, auto domain) {
+    launch_functor(s.space, slots, step_of<WithNodes, decltype(laws), domain()>(s, dt, steps));
+    return true;
+  });
 }
 
 /// Makes sure that the sums of the next and of the last step have room, and that the next one's are zero.
@@ -76,13 +87,15 @@ void prepare_sums(State<Space, T, Dim>& s) {
 /// Whether a launch of this kind has room for its rigids.
 template <bool WithNodes, class Space, class T, int Dim>
 bool has_room(const State<Space, T, Dim>& s) {
-  using Step = PersistentStep<Space, T, Dim, WithNodes, Materials>;
   int with_points = 0;
   for (const auto& set : s.rigid_points) with_points += !set.points.surface_normal;
   const int values = Dim * static_cast<int>(s.rigid_points.size());
-  const std::size_t parts = EndStep<Space, T, Dim>(s, 0).room(Step::threads) * sizeof(double);
-  return with_points <= k_most_rigids && parts <= Step::Update::bytes() &&
-         Step::bytes(values) <= k_team_bytes<Space> - k_scratch_slack - 8 * (Step::threads + 2);
+  return with_choice(s, [&](auto laws, auto domain) {
+    using Step = PersistentStep<Space, T, Dim, WithNodes, decltype(laws), domain()>;
+    const std::size_t parts = EndStep<Space, T, Dim>(s, 0).room(Step::threads) * sizeof(double);
+    return with_points <= k_most_rigids && parts <= Step::Update::bytes() &&
+           Step::bytes(values) <= k_team_bytes<Space> - k_scratch_slack - 8 * (Step::threads + 2);
+  });
 }
 
 }  // namespace persistent

@@ -28,8 +28,7 @@ StepPlan plan_step(const State<Space, T, Dim>& s) {
   else if (plan.sums_ahead)
     plan.form = StepForm::fused;
   if constexpr (is_device<Space>)
-    if (plan.form == StepForm::fused && few && one_rank && !s.soil.points.has_domain &&
-        s.soil.points.count > 0 && ends_in_launch(s))
+    if (plan.form == StepForm::fused && few && one_rank && s.soil.points.count > 0 && ends_in_launch(s))
       plan.form = StepForm::persistent;
   return plan;
 }

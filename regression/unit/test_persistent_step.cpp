@@ -123,6 +123,32 @@ TEST_CASE("a step in one launch is the step function by function, across rebuild
   });
 }
 
+TEST_CASE("domains stretch in one launch as function by function, and heavy laws have no such launch",
+          "[persistent_step]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    Cloud cloud = two_rigids<B::dim>(true, false);
+    cloud.stretch = true;
+    auto one = state_of<B>(cloud, P2G::tile), two = state_of<B>(cloud, P2G::tile);
+    interpolate(one);
+    one.summed = {true, one.soil_boundary, true};
+    INFO(B::name());
+    one.light_laws = false;
+    CHECK_FALSE(can_persist(one));
+    one.light_laws = true;
+    CHECK((can_persist(one) || B::dim == 3));
+    if (!can_persist(one)) return;
+    const auto begin = by_id(one.soil.points, one.soil.points.domain);
+    const int steps = 60, rebuilds = steps_in_launches(one, 2e-4, steps, 7);
+    CHECK(rebuilds > 1);
+    CHECK(steps_by_function(two, 2e-4, steps) == rebuilds);
+    CHECK(largest_difference(soil_fields(one), soil_fields(two)) < B::of(1e-10, 1e-3));
+    const auto ours = by_id(one.soil.points, one.soil.points.domain);
+    CHECK(largest_difference({ours}, {by_id(two.soil.points, two.soil.points.domain)}) < B::of(1e-10, 1e-3));
+    CHECK(largest_difference({ours}, {begin}) > 1e-3);  // they have stretched
+  });
+}
+
 TEST_CASE("steps in one launch and function by function take turns", "[persistent_step]") {
   for_each_build([](auto build) {
     using B = decltype(build);

@@ -183,7 +183,7 @@ struct HostParticles {
           return node;
         },
         value, gradient);
-    stage.samples.put(n, value[0], gradient[0], by.inv_spacing);
+    stage.samples.put(n, value[0], gradient[0], by.inv_spacing, by.f_bar > 0);
   }
 
   /// Volume times dilatation rate of the particles [from, to) [m3/s], all of the stage, to stage.mean.
@@ -191,12 +191,12 @@ struct HostParticles {
     for (int p = from; p < to; p += W) {
       R volume;
       load_field(soil.volume, p, Kokkos::min(W, to - p), volume);
-      (stage.samples.rates(p - from) * volume).store(stage.mean + (p - from));
+      (R::load(stage.samples.rate + (p - from)) * volume).store(stage.mean + (p - from));
     }
   }
   /// mean_for() of particle p, n on the stage.
   T mean_of(int p, T of_cell, const Stage& stage, int n) const {
-    return mean_for(soil.materials(soil.material_of(p)).f_bar_share, of_cell, stage.samples.rate(n));
+    return mean_for(soil.materials(soil.material_of(p)).f_bar_share, of_cell, stage.samples.rate[n]);
   }
   /// Adds the dilatation rates of the particles [first, last). from: the first particle of the stage.
   void add_dilatation(int first, int last, const Stage& stage, int from, CellMean<T>& dilatation) const {

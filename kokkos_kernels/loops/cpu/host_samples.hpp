@@ -25,8 +25,12 @@ struct HostSamples {
   alignas(R) std::conditional_t<k_together, Together, Apart<k_motion>> kinematics;  // m/s, m/s2
   alignas(R) std::conditional_t<k_together, Together, Apart<Dim * Dim>> gradient;  // 1/s, L_id at d * Dim + i
 
-  /// Particle n: the values of NodeKinematics, and their gradients along each axis [1/cell].
-  KOKKOS_FORCEINLINE_FUNCTION void put(int n, const Node& value, const Node (&slope)[Dim], T inv_spacing) {
+  alignas(R) T rate[k_pitch];  // 1/s, of dilatation
+
+  /// Particle n: the values of NodeKinematics, and their gradients along each axis [1/cell]. with_rate: the
+  /// rate of dilatation is asked for.
+  KOKKOS_FORCEINLINE_FUNCTION void put(int n, const Node& value, const Node (&slope)[Dim], T inv_spacing,
+                                       bool with_rate) {
     if constexpr (k_together) {
       value.store(kinematics[n]);
       unrolled<Dim>([&](auto d) { (part_of<Dim, 0>(slope[d]) * inv_spacing).store(gradient[n] + d * Dim); });
@@ -35,6 +39,10 @@ struct HostSamples {
       for (int d = 0; d < Dim; ++d)
         for (int i = 0; i < Dim; ++i) gradient[d * Dim + i][n] = slope[d][i] * inv_spacing;
     }
+    if (!with_rate) return;
+    T sum = 0;
+    for (int d = 0; d < Dim; ++d) sum += slope[d][d];
+    rate[n] = sum * inv_spacing;
   }
   /// The particles from n on, by lane.
   KOKKOS_FORCEINLINE_FUNCTION GridSample<R, Dim> get(int n) const {
@@ -50,24 +58,6 @@ struct HostSamples {
     for (int k = 0; k < k_motion; ++k) t.kinematics[k] = motion[k];
     for (int k = 0; k < Dim * Dim; ++k) t.gradient[k % Dim][k / Dim] = by_axis[k];
     return t;
-  }
-  /// Their dilatation rates [1/s].
-  KOKKOS_FORCEINLINE_FUNCTION R rates(int n) const {
-    const GridSample<R, Dim> t = get(n);
-    R rate = 0;
-    for (int d = 0; d < Dim; ++d) rate += t.gradient[d][d];
-    return rate;
-  }
-  /// That of particle n.
-  T rate(int n) const {
-    T rate = 0;
-    for (int d = 0; d < Dim; ++d) {
-      if constexpr (k_together)
-        rate += gradient[n][d * (Dim + 1)];
-      else
-        rate += gradient[d * (Dim + 1)][n];
-    }
-    return rate;
   }
 };
 

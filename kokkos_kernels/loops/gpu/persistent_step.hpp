@@ -30,11 +30,11 @@ inline constexpr int k_patience = 20'000;
 /// that all teams are co-resident on the device. If some teams have not begun when the others have finished
 /// the first step, the launch ends with that step. The last team decides this. The part of the last team goes
 /// to the team that begins first, so that it is never one of those that have not begun.
-template <class Space, class T, int Dim, bool WithNodes, class Laws>
+template <class Space, class T, int Dim, bool WithNodes, class Laws, ParticleDomain domain>
 struct PersistentStep {
   static constexpr int threads = team_threads<Space>;
   static constexpr int k_teams = WithNodes ? 3 : teams_at_once<T, Dim>;  // that share a multiprocessor
-  using Update = UpdateParticles<Space, T, Dim, true, PatchKind::any, Laws, ParticleDomain::fixed, k_teams>;
+  using Update = UpdateParticles<Space, T, Dim, true, PatchKind::any, Laws, domain, k_teams>;
   using NodeUpdate = UpdateNodes<Space, T, Dim>;
   using Member = typename Update::Member;
   using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_most_rigids>;
