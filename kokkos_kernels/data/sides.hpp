@@ -1,6 +1,6 @@
 #pragma once
-// Sides of the mesh that act on the soil by more than a mirror (Wall::friction, absorbing, driven). Beyond such
-// a side the soil moves as the node on it does; physics/sides.hpp says what the node does.
+// Sides of the mesh that act on the soil by more than a mirror (Wall::friction, absorbing, driven). Beyond
+// such a side the soil moves as the node on it does; physics/sides.hpp says what the node does.
 
 #include <array>
 
@@ -34,12 +34,12 @@ struct Side {
 template <class Space, int Dim>
 struct Sides {
   using Memory = typename Space::memory_space;
-  unsigned mask = 0;                 // those that act: bit 2 d + side, as sides_of
+  unsigned mask = 0;                     // those that act: bit 2 d + side, as sides_of
   Kokkos::View<Side<Dim>*, Memory> all;  // [2 d + side]; allocated where one acts
-  Kokkos::View<double* [SideTerms<Dim>::size], Kokkos::LayoutRight, Memory> nodes;  // by Side::row
-  std::array<Side<Dim>, 2 * Dim> host{};  // as the run began
-  std::array<double, 2 * Dim> dashpot_factor{}, spring_length{};  // -, m (0: no springs)
-  unsigned unknown = 0;  // absorbing sides whose dashpots and reactions are not known yet
+  Kokkos::View<double * [SideTerms<Dim>::size], Kokkos::LayoutRight, Memory> nodes;  // by Side::row
+  std::array<Side<Dim>, 2 * Dim> host{};                                             // as the run began
+  std::array<double, 2 * Dim> dashpot_factor{}, spring_length{};                     // -, m (0: no springs)
+  unsigned unknown = 0;                      // absorbing sides whose dashpots and reactions are not known yet
   std::array<unsigned, 2 * Dim> held{};      // bit k: component k that the side held before it absorbed
   std::array<unsigned, 2 * Dim> mirrored{};  // bit k: component k that then turned round in a mirror
   bool in_use() const { return mask != 0; }

@@ -1,7 +1,7 @@
 #pragma once
-// Loads and motions that follow tables in time: gravity, velocities of sides, and velocities and forces of rigid
-// bodies. The end
-// of a step sets those of the next step on the device, so that one launch can do many steps.
+// Loads and motions that follow tables in time: gravity, velocities of sides, and velocities and forces of
+// rigid bodies. The end of a step sets those of the next step on the device, so that one launch can do many
+// steps.
 
 #include "base/spaces.hpp"
 #include "base/time_curve.hpp"
@@ -90,8 +90,8 @@ struct TimedLoads {
 
   int count() const { return static_cast<int>(loads.extent(0)); }
   LoadsOfStep<T, Dim> of_step() const {
-    return {loads.data(), points.data(), clock.data(), moves_gravity ? gravity.data() : nullptr, sides.data(),
-            count()};
+    return {loads.data(), points.data(), clock.data(), moves_gravity ? gravity.data() : nullptr,
+            sides.data(), count()};
   }
 };
 

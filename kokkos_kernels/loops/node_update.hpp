@@ -169,7 +169,8 @@ struct UpdateNodes {
 
   /// A node on sides that act.
   KOKKOS_INLINE_FUNCTION SideNode<Dim> side_node(const Node& node, unsigned acting) const {
-    const bool counts = owned_nodes.extent(0) == 0 || (owned_nodes(node.i / cells) >> (node.i % cells) & 1) != 0;
+    const bool counts =
+        owned_nodes.extent(0) == 0 || (owned_nodes(node.i / cells) >> (node.i % cells) & 1) != 0;
     return {node.at, acting, double(node.soil[S::mass]), double(dt), counts};
   }
 

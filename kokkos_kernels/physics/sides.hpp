@@ -1,5 +1,6 @@
 #pragma once
-// What sides of the mesh with friction, dashpots or a motion of their own do to a node on them (docs/boundaries.md).
+// What sides of the mesh with friction, dashpots or a motion of their own do to a node on them
+// (docs/boundaries.md).
 
 #include "data/sides.hpp"
 #include "physics/contact.hpp"
@@ -10,9 +11,9 @@ namespace mpm {
 template <int Dim>
 struct SideNode {
   Coord<Dim> at;
-  unsigned sides;  // the acting ones that it lies on
+  unsigned sides;   // the acting ones that it lies on
   double mass, dt;  // kg, s
-  bool counts;  // this rank answers for it
+  bool counts;      // this rank answers for it
 };
 
 /// The static reaction of absorbing sides, to the force on a node [N].
@@ -57,7 +58,8 @@ KOKKOS_INLINE_FUNCTION void rub(const Side<Dim>& side, int d, bool upper, const 
     if (k != d) squares += (v[k] - side.velocity[k]) * (v[k] - side.velocity[k]);
   const double speed = Kokkos::sqrt(squares), stops = node.mass * speed;  // N s
   const double area = side.face * Kokkos::fmin(1.0, node.mass / side.unit_mass);
-  const double most = Kokkos::fmin(side.friction * Kokkos::fmax(0.0, stock), side.shear_limit * area * node.dt);
+  const double most =
+      Kokkos::fmin(side.friction * Kokkos::fmax(0.0, stock), side.shear_limit * area * node.dt);
   const double used = Kokkos::fmin(stops, most), left = stops > 0 ? 1 - used / stops : 1;
   if (side.friction > 0) stock -= used / side.friction;
   for (int k = 0; k < Dim; ++k)
@@ -76,8 +78,8 @@ KOKKOS_INLINE_FUNCTION void drive(const Side<Dim>& side, int d, double* v) {
 /// and friction too; else, behind a contact, only what sides prescribe. Where sides meet, those that
 /// prescribe more come later.
 template <class T, int Dim>
-MPM_CALLED_FUNCTION Vector<T, Dim> by_sides(ActingSides<Dim> acting, SideNode<Dim> node,
-                                            Vector<T, Dim> v_old, Vector<T, Dim> v_now, bool meets) {
+MPM_CALLED_FUNCTION Vector<T, Dim> by_sides(ActingSides<Dim> acting, SideNode<Dim> node, Vector<T, Dim> v_old,
+                                            Vector<T, Dim> v_now, bool meets) {
   using S = SideTerms<Dim>;
   constexpr Wall k_order[] = {Wall::absorbing, Wall::friction, Wall::driven};
   double v[Dim], before[Dim];

@@ -2,8 +2,8 @@
 // The sides of the mesh. A roller is a plane of symmetry; a fixed side is one with the opposite sign of what
 // moves along it. Beyond it the soil goes on as its mirror image, so that the row of nodes beyond has no sums
 // and no motion of its own: what particles give it goes to its image inside, and what they take from it is
-// its image's, with the signs of this file. A free side has nodes beyond as any other. Beyond a side that acts
-// (data/sides.hpp) the soil moves as the node on the side, which is the image of the node beyond.
+// its image's, with the signs of this file. A free side has nodes beyond as any other. Beyond a side that
+// acts (data/sides.hpp) the soil moves as the node on the side, which is the image of the node beyond.
 
 #include <type_traits>
 

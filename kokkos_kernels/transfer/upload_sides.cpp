@@ -112,10 +112,11 @@ void put_side_table(State<Space, T, Dim>& s, std::vector<double> values, bool fi
   Kokkos::deep_copy(s.sides.nodes, table);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                        \
-  template void upload_sides(State<Space, T, Dim>&, const GridInput&, const std::vector<SideInput>&, double); \
-  template SideWork take_side_work(const State<Space, T, Dim>&);                                              \
-  template std::vector<double> side_table(const State<Space, T, Dim>&, bool, bool);                           \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                               \
+  template void upload_sides(State<Space, T, Dim>&, const GridInput&, const std::vector<SideInput>&, \
+                             double);                                                                \
+  template SideWork take_side_work(const State<Space, T, Dim>&);                                     \
+  template std::vector<double> side_table(const State<Space, T, Dim>&, bool, bool);                  \
   template void put_side_table(State<Space, T, Dim>&, std::vector<double>, bool);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -12,8 +12,8 @@ namespace mpm {
 
 /// A side that acts; the others are left out.
 struct SideInput {
-  int direction = 0, side = 0;  // 0 lower, 1 upper
-  bool holds_all = false;       // driven: fixed, not roller
+  int direction = 0, side = 0;       // 0 lower, 1 upper
+  bool holds_all = false;            // driven: fixed, not roller
   std::array<double, 3> velocity{};  // m/s, where no table tells it
   double friction = 0;               // -
   double shear_limit = 0;            // Pa, infinite where there is none
@@ -35,7 +35,8 @@ template <class Space, class T, int Dim>
 SideWork take_side_work(const State<Space, T, Dim>& s);
 
 /// The table of the sides' nodes, row by row (SideTerms). own: of several ranks' tables, the sum is that of
-/// all: what changes in a step is left to the rank that answers for the node, what all know alike to the first.
+/// all: what changes in a step is left to the rank that answers for the node, what all know alike to the
+/// first.
 template <class Space, class T, int Dim>
 std::vector<double> side_table(const State<Space, T, Dim>& s, bool own, bool first);
 /// Puts a table back; first: with the impulses and works in it, which only one of several ranks may keep.

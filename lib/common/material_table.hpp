@@ -23,8 +23,8 @@ std::string own_parameter(const std::vector<StateVariable>& variables);
 /// The state variables that the particles of a material carry; none where there is no such law.
 std::vector<StateVariable> state_variables(const MaterialConfig& material);
 
-/// Speed of shear waves over that of pressure waves in the drained material, by its Poisson's ratio; none where
-/// its law has no such parameter or does not use it.
+/// Speed of shear waves over that of pressure waves in the drained material, by its Poisson's ratio; none
+/// where its law has no such parameter or does not use it.
 std::optional<double> shear_wave_ratio(const MaterialConfig& material);
 
 }  // namespace mpm

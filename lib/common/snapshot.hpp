@@ -103,7 +103,7 @@ struct HistoryRow {
   std::vector<BodyRow> bodies;
   std::vector<RigidRow> rigids;
   std::array<std::array<Vec3, 2>, 3> walls{};  // N, of the soil on each side of the mesh
-  double side_work = 0;  // J, of sides that act on the soil, since the last row
+  double side_work = 0;                        // J, of sides that act on the soil, since the last row
   int stage = 0;                               // number of the stage, from 1 on; 0: the run has none
   double unbalanced_ratio = 0;                 // -, where some stage ends by equilibrium
   long filled_cells = 0, empty_cells = 0;      // cells that hold soil; gaps between them

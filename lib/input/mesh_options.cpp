@@ -10,12 +10,11 @@ constexpr double k_furthest = 4e9;        // cells from the origin: round-off is
 constexpr double k_most_cells = 1 << 30;  // in a direction, so that cells and nodes count in an int
 
 void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
-  static const std::vector<std::pair<std::string, Wall>> words = {
-      {"roller", Wall::roller},
-      {"fixed", Wall::fixed},
-      {"free", Wall::free},
-      {"friction", Wall::friction},
-      {"absorbing", Wall::absorbing}};
+  static const std::vector<std::pair<std::string, Wall>> words = {{"roller", Wall::roller},
+                                                                  {"fixed", Wall::fixed},
+                                                                  {"free", Wall::free},
+                                                                  {"friction", Wall::friction},
+                                                                  {"absorbing", Wall::absorbing}};
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
       const std::string name = std::string("mesh_") + "xyz"[d] + (side == 0 ? "min" : "max");
@@ -23,10 +22,11 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
         in.not_taken(name, "a mesh in 2D has no such side");
         continue;
       }
-      in.word({.name = name,
-               .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no normal "
-                          "velocity and friction along it; dashpots that absorb waves"},
-              words, mesh.walls[d][side]);
+      in.word(
+          {.name = name,
+           .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no normal "
+                      "velocity and friction along it; dashpots that absorb waves"},
+          words, mesh.walls[d][side]);
     }
 }
 

@@ -35,8 +35,7 @@ std::string placing_option(const Shape& shape, const std::string& name, int dim,
 /// Whether the side is a plane of symmetry that leaves the half of a disc, a ball or what turns about an axis
 /// on which its centre is.
 bool is_cut_well(const Shape& shape, const MeshConfig& mesh, int dim, int d, int side) {
-  if (!may_be_cut(shape) || mesh.walls[d][side] != Wall::roller || mesh.sides[d][side].moves)
-    return false;
+  if (!may_be_cut(shape) || mesh.walls[d][side] != Wall::roller || mesh.sides[d][side].moves) return false;
   const bool along_axis = shape.kind != ShapeKind::disc && d == dim - 1;
   if (!is_round(shape) || along_axis) return true;
   const double slack = 1e-9 * mesh.spacing;

@@ -10,7 +10,12 @@
 namespace mpm {
 namespace {
 
-constexpr const char* k_keys[] = {"_friction", "_shear_limit", "_dashpot_factor", "_spring_length", "_velocity", "_velocity_table",
+constexpr const char* k_keys[] = {"_friction",
+                                  "_shear_limit",
+                                  "_dashpot_factor",
+                                  "_spring_length",
+                                  "_velocity",
+                                  "_velocity_table",
                                   "_velocity_table_interpolation"};
 
 void read_friction(OptionReader& in, const std::string& name, SideConfig& side) {
@@ -44,8 +49,9 @@ void read_absorbing(OptionReader& in, const std::string& name, SideConfig& side)
 
 void read_velocity(OptionReader& in, const std::string& name, int dim, double end, SideConfig& side) {
   const Option velocity{.name = name + "_velocity",
-                        .meaning = "velocity of the side, which stays where it is; absorbing: of what the "
-                                   "dashpots hold on to",
+                        .meaning =
+                            "velocity of the side, which stays where it is; absorbing: of what the "
+                            "dashpots hold on to",
                         .unit = "m/s",
                         .range = k_speed};
   in.vector(velocity, dim, side.velocity);

@@ -49,8 +49,8 @@ double bytes_to_particles(const State<Space, T, Dim>& s) {
   return p.count * particle + s.patches.node_count() * double(sizeof(T) * NodeKinematics<Dim>::size);
 }
 
-/// A third of what the energy balance moves in its three calls of a step: stress and volume before the step and
-/// the strain are written and read once, the motion of the nodes and their sums are read.
+/// A third of what the energy balance moves in its three calls of a step: stress and volume before the step
+/// and the strain are written and read once, the motion of the nodes and their sums are read.
 template <class Space, class T, int Dim>
 double bytes_of_energy(const State<Space, T, Dim>& s) {
   const auto& p = s.soil.points;

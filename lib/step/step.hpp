@@ -1,12 +1,12 @@
 #pragma once
 // One time step, in the paper's words.
 
+#include "functions/energy_works.hpp"
 #include "functions/find_strays.hpp"
 #include "functions/split_patches.hpp"
 #include "functions/step_kernels.hpp"
 #include "functions/velocity_update.hpp"
 #include "loops/interpolation.hpp"
-#include "functions/energy_works.hpp"
 #include "parallel/decomposition.hpp"
 #include "rebuild/batches.hpp"
 #include "step/overlap_stream.hpp"

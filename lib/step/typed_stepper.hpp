@@ -20,8 +20,8 @@
 #include "transfer/measure.hpp"
 #include "transfer/save_state.hpp"
 #include "transfer/unbalanced.hpp"
-#include "transfer/upload_sides.hpp"
 #include "transfer/upload.hpp"
+#include "transfer/upload_sides.hpp"
 
 namespace mpm {
 
@@ -106,7 +106,7 @@ class TypedStepper final : public Stepper {
   long total_ = 0;                                                   // particles of all ranks at the start
   long children_ = 0;                                                // that splitting has added, on all ranks
   double kinetic_at_start_ = 0, elastic_at_start_ = 0;  // J, of all ranks, where there is an energy balance
-  KeptById heights_;  // m, absolute, where each particle was created
+  KeptById heights_;                                    // m, absolute, where each particle was created
 };
 
 }  // namespace mpm

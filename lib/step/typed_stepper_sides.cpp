@@ -78,8 +78,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::gather_sides(std::vector<double>* ta
   PetscFunctionBeginUser;
   *table = side_table(state_, ranks_ != nullptr, rank_of(comm_) == 0);
   if (ranks_ && !table->empty())
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, table->data(), static_cast<int>(table->size()), MPI_DOUBLE, MPI_SUM,
-                               comm_));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, table->data(), static_cast<int>(table->size()), MPI_DOUBLE,
+                               MPI_SUM, comm_));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -115,12 +115,12 @@ void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides& saved) {
   if (state_.sides.in_use()) put_side_table(state_, table, rank_of(comm_) == 0);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                \
-  template void TypedStepper<Space, T, Dim>::set_up_sides(GridInput*);                                \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::begin_sides();                                 \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::measure_sides(double, HistoryRow*);            \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::gather_sides(std::vector<double>*) const;      \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::save_sides(SavedSides*) const;                 \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                           \
+  template void TypedStepper<Space, T, Dim>::set_up_sides(GridInput*);                           \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::begin_sides();                            \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::measure_sides(double, HistoryRow*);       \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::gather_sides(std::vector<double>*) const; \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::save_sides(SavedSides*) const;            \
   template void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -31,8 +31,9 @@ Cloud corner(int seed) {
 }
 
 std::vector<SideInput> sides_of_corner(int dim) {
-  std::vector<SideInput> sides = {{.direction = 0, .velocity = {0, 0.3, 0}, .friction = 0.4, .shear_limit = 1e9},
-                                  {.direction = 1, .holds_all = true, .velocity = {0.2, -0.1, 0.1}}};
+  std::vector<SideInput> sides = {
+      {.direction = 0, .velocity = {0, 0.3, 0}, .friction = 0.4, .shear_limit = 1e9},
+      {.direction = 1, .holds_all = true, .velocity = {0.2, -0.1, 0.1}}};
   if (dim == 3) sides.push_back({.direction = 2});
   return sides;
 }
@@ -129,7 +130,8 @@ TEST_CASE("each node of the sides has a row of its own", "[sides]") {
   });
 }
 
-TEST_CASE("beyond sides that act nodes hold nothing, and the nodes on them all that particles give", "[sides]") {
+TEST_CASE("beyond sides that act nodes hold nothing, and the nodes on them all that particles give",
+          "[sides]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
@@ -233,14 +235,17 @@ TEST_CASE("an absorbing side takes rho c A and the static force from the soil at
     begin_absorbing(s, {1 / std::sqrt(3.0)}, {});
     const double c = std::sqrt(1.2e7 / k_density), face = std::pow(k_edge, Dim - 1);
     const auto table = side_table(s, false, true);
-    const auto of = [&](Coord<Dim> at, int k) { return table[s.sides.host[0].row(at) * SideTerms<Dim>::size + k]; };
+    const auto of = [&](Coord<Dim> at, int k) {
+      return table[s.sides.host[0].row(at) * SideTerms<Dim>::size + k];
+    };
     Coord<Dim> middle, edge;
     for (int d = 0; d < Dim; ++d) middle[d] = edge[d] = d == 0 ? 0 : 2;
     edge[1] = 0;
     for (const auto& [at, area] : {std::pair{middle, face}, std::pair{edge, face / 2}}) {
-      CHECK(std::fabs(of(at, SideTerms<Dim>::dashpot) / (0.5 * k_density * c * area) - 1) < B::of(1e-10, 1e-5));
-      CHECK(std::fabs(of(at, SideTerms<Dim>::dashpot + 1) * std::sqrt(3.0) / (0.5 * k_density * c * area) - 1) <
+      CHECK(std::fabs(of(at, SideTerms<Dim>::dashpot) / (0.5 * k_density * c * area) - 1) <
             B::of(1e-10, 1e-5));
+      CHECK(std::fabs(of(at, SideTerms<Dim>::dashpot + 1) * std::sqrt(3.0) / (0.5 * k_density * c * area) -
+                      1) < B::of(1e-10, 1e-5));
       CHECK(std::fabs(of(at, SideTerms<Dim>::reaction) / (4000 * area) - 1) < B::of(1e-10, 1e-5));
     }
     CHECK(s.sides.unknown == 0);

@@ -41,7 +41,8 @@ std::vector<StateVariable> state_variables(int which);
 /// The state variables that the particles of a material of this model and these parameters carry.
 std::vector<StateVariable> state_variables(int which, const std::vector<double>& parameters);
 
-/// The value of the parameter with this key of a material with these parameters; NaN where its model has none.
+/// The value of the parameter with this key of a material with these parameters; NaN where its model has
+/// none.
 double parameter_of(int which, const std::vector<double>& parameters, const std::string& key);
 
 }  // namespace mpm
