@@ -51,7 +51,7 @@ KOKKOS_INLINE_FUNCTION void rub(const Side<Dim>& side, int d, bool upper, const 
                                 double* kept, double* v) {
   double& stock = kept[SideTerms<Dim>::stock];
   const double approach = (v[d] - side.velocity[d]) * (upper ? 1 : -1);
-  stock = double(k_memory<T>) * stock + node.mass * approach;
+  stock = (stock > 0 ? double(k_memory<T>) : 1) * stock + node.mass * approach;
   v[d] = side.velocity[d];
   double squares = 0;
   for (int k = 0; k < Dim; ++k)
