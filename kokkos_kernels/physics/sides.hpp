@@ -42,24 +42,27 @@ KOKKOS_INLINE_FUNCTION void absorb(const Side<Dim>& side, int d, const SideNode<
   }
 }
 
-/// A roller with Coulomb friction, as contact_correction() has it: the friction of a step is at most a
-/// fraction of the normal impulse of this step and of what earlier ones have left. The side also pulls, as a
-/// roller does. A pull reduces the stock, also below zero, so that a normal impulse that rings about its mean
-/// allows no more friction than the mean does.
+/// Nothing moves into the side.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void hold_back(const Side<Dim>& side, int d, bool upper, double* v) {
+  v[d] = upper ? Kokkos::fmin(v[d], side.velocity[d]) : Kokkos::fmax(v[d], side.velocity[d]);
+}
+
+/// Coulomb friction, as contact_correction() has it: the friction of a step is at most a fraction of the
+/// normal impulse of this step and of what earlier ones have left. The side does not pull.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION void rub(const Side<Dim>& side, int d, bool upper, const SideNode<Dim>& node,
                                 double* kept, double* v) {
   double& stock = kept[SideTerms<Dim>::stock];
   const double approach = (v[d] - side.velocity[d]) * (upper ? 1 : -1);
-  stock = (stock > 0 ? double(k_memory<T>) : 1) * stock + node.mass * approach;
-  v[d] = side.velocity[d];
+  stock = double(k_memory<T>) * stock + node.mass * Kokkos::fmax(0.0, approach);
+  hold_back(side, d, upper, v);
   double squares = 0;
   for (int k = 0; k < Dim; ++k)
     if (k != d) squares += (v[k] - side.velocity[k]) * (v[k] - side.velocity[k]);
   const double speed = Kokkos::sqrt(squares), stops = node.mass * speed;  // N s
   const double area = side.face * Kokkos::fmin(1.0, node.mass / side.unit_mass);
-  const double most =
-      Kokkos::fmin(side.friction * Kokkos::fmax(0.0, stock), side.shear_limit * area * node.dt);
+  const double most = Kokkos::fmin(side.friction * stock, side.shear_limit * area * node.dt);
   const double used = Kokkos::fmin(stops, most), left = stops > 0 ? 1 - used / stops : 1;
   if (side.friction > 0) stock -= used / side.friction;
   for (int k = 0; k < Dim; ++k)
@@ -68,8 +71,9 @@ KOKKOS_INLINE_FUNCTION void rub(const Side<Dim>& side, int d, bool upper, const 
 
 /// Components that a side prescribes.
 template <int Dim>
-KOKKOS_INLINE_FUNCTION void drive(const Side<Dim>& side, int d, double* v) {
+KOKKOS_INLINE_FUNCTION void drive(const Side<Dim>& side, int d, bool upper, double* v) {
   if (side.kind == Wall::absorbing) return;
+  if (side.kind == Wall::friction) return hold_back(side, d, upper, v);
   for (int k = 0; k < Dim; ++k)
     if (k == d || side.holds_all) v[k] = side.velocity[k];
 }
@@ -92,7 +96,7 @@ MPM_CALLED_FUNCTION Vector<T, Dim> by_sides(ActingSides<Dim> acting, SideNode<Di
       for (int k = 0; k < Dim; ++k) before[k] = v[k];
       if (meets && kind == Wall::absorbing) absorb(side, n / 2, node, kept, v);
       if (meets && kind == Wall::friction) rub<T>(side, n / 2, n % 2 == 1, node, kept, v);
-      drive(side, n / 2, v);
+      drive(side, n / 2, n % 2 == 1, v);
       for (int k = 0; k < Dim && node.counts; ++k) {
         const double carried = meets ? node.dt * kept[S::reaction + k] : 0;
         const double impulse = node.mass * (v[k] - before[k]) + carried;

@@ -149,7 +149,7 @@ TEST_CASE("gravity does m g h on a block that falls freely, and a rigid the forc
     cloud.gravity = {0, -10, 0};
     auto s = state_of<B>(cloud, P2G::tile);
     const BodyMeasure before = measure(s, 0);
-    run_steps(s, 1e-3, 100);
+    run_steps(s, 4e-4, 250);
     const BodyMeasure now = measure(s, 0);
     const double fell = before.centre[1] - now.centre[1];
     INFO(B::name());
