@@ -24,8 +24,8 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
       }
       in.word(
           {.name = name,
-           .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no normal "
-                      "velocity and friction along it; dashpots that absorb waves"},
+           .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no velocity "
+                      "into it, and friction along it; dashpots that absorb waves"},
           words, mesh.walls[d][side]);
     }
 }

@@ -16,7 +16,7 @@ FACTORS = {"0.5": 20, "1": 20, "2": 20, "1, short pulse": 10}
 GROUND = ("-mesh_upper 4,4 -mesh_ymin absorbing -mesh_xmin absorbing -mesh_ymax free -elastic_poisson 0.3 -gravity 0,-10"
           " -time_courant 0.4")
 LEVEL = GROUND + " -bar_shape box -bar_lower 0,0 -bar_upper 4,3 -bar_stress k0 -time_end 4 -history_interval 0.1"
-BANK = (GROUND + " -bar_shape polygon -bar_polygon 0,0,4,0,4,1.5,2.5,1.5,1.5,3,0,3 -stages rest,shake -rest_end equilibrium -rest_damping 0.6 -rest_unbalanced_ratio 1e-7 -rest_time_end 5"
+BANK = (GROUND + " -bar_shape polygon -bar_polygon 0,0,4,0,4,1.5,2.5,1.5,1.5,3,0,3 -stages rest,shake -rest_end equilibrium -rest_damping 0.6 -rest_unbalanced_ratio 3e-7 -rest_time_end 5"
         " -rest_mesh_xmin roller -rest_mesh_xmax roller -rest_mesh_ymin fixed -rest_reset on -shake_time_end 4 -history_interval 0.05")
 
 
