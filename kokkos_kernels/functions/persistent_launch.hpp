@@ -21,7 +21,7 @@ template <bool WithNodes, class Laws, ParticleDomain domain, class Space, class 
 auto step_of(const State<Space, T, Dim>& s, double dt, int steps) {
   using Functor = PersistentStep<Space, T, Dim, WithNodes, Laws, domain>;
   Functor f{update_of<typename Functor::Update>(s, dt, s.soil.bins.active_slots, 0),
-            node_update_of(s, dt),
+            node_update_of<false>(s, dt),
             {s, dt},
             {},
             0,

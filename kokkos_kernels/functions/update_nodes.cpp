@@ -24,12 +24,12 @@ namespace {
 template <class Space, int Dim>
 using NodeTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, 12>>;
 
-template <class Space, class T, int Dim>
+template <bool acts, class Space, class T, int Dim>
 void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stream) {
   using Team = NodeTeam<Space, Dim>;
   using Member = typename Team::member_type;
-  using Update = UpdateNodes<Space, T, Dim>;
-  const Update update = node_update_of(s, dt);
+  using Update = UpdateNodes<Space, T, Dim, acts>;
+  const Update update = node_update_of<acts>(s, dt);
   const int room = update.value_count * Update::cells, values = update.value_count;
   const auto near = s.near_rigid, near_slots = s.near_slots;
   const auto control = s.control;
@@ -71,7 +71,8 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stre
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt, const Space& stream) {
   if constexpr (is_device<Space>)
-    update_nodes_by_teams(s, dt, stream);
+    s.sides.in_use() ? update_nodes_by_teams<true>(s, dt, stream)
+                     : update_nodes_by_teams<false>(s, dt, stream);
   else
     update_nodes_on_host(s, dt);
 }

@@ -33,8 +33,9 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
 template <class T>
 inline constexpr T k_still = T(1e-6);
 
-/// The node's part of the step.
-template <class Space, class T, int Dim>
+/// The node's part of the step. acts: some side of the mesh acts (data/sides.hpp); kernels without that take
+/// fewer registers of a GPU.
+template <class Space, class T, int Dim, bool acts = true>
 struct UpdateNodes {
   using S = SoilTerms<Dim>;
   static constexpr int cells = Patch<Dim>::cells;
@@ -47,7 +48,8 @@ struct UpdateNodes {
   Kokkos::View<std::uint64_t*, typename Space::memory_space> owned_nodes;
   Vector<T, Dim> g;
   const Vector<T, Dim>* timed_g;  // of the present step, where gravity follows a table; else null
-  ActingSides<Dim> acting_sides;
+  struct NoSides {};
+  std::conditional_t<acts, ActingSides<Dim>, NoSides> acting_sides;
   T dt, inv_dt, damping, mass_cut;
   double spacing;
   bool has_boundary, has_friction, has_mass_normals, clears, rings;
@@ -146,16 +148,21 @@ struct UpdateNodes {
     if (m_i > at_rest()) {
       node.inv_m = 1 / m_i;
       node.sides = sides_of(places.grid, at);
-      const unsigned acting = node.sides & acting_sides.mask;
-      if (acting != 0) add_reactions(acting_sides, side_node(node, acting), &node.soil[S::force]);
+      [[maybe_unused]] unsigned acting = 0;
+      if constexpr (acts) {
+        acting = node.sides & acting_sides.mask;
+        if (acting != 0) add_reactions(acting_sides, side_node(node, acting), &node.soil[S::force]);
+      }
       accelerate(node.soil, node.inv_m, v_old, v);
       apply_walls(places.grid, node.sides, v);
-      if (acting != 0) v = by_sides(acting_sides, side_node(node, acting), v_old, v, true);
+      if constexpr (acts)
+        if (acting != 0) v = by_sides(acting_sides, side_node(node, acting), v_old, v, true);
       const int touching = near && m_i > mass_cut ? static_cast<int>(rigids.extent(0)) : 0;
       MPM_ROLLED
       for (int r = 0; r < touching; ++r)
         touch(sums, node, bodies[r], r, v, force == nullptr ? force : force + r * Dim * cells);
-      if (acting != 0 && touching > 0) v = by_sides(acting_sides, side_node(node, acting), v_old, v, false);
+      if constexpr (acts)
+        if (acting != 0 && touching > 0) v = by_sides(acting_sides, side_node(node, acting), v_old, v, false);
       apply_walls(places.grid, node.sides, v);
     }
     KinematicValues<T, Dim> kinematics;
@@ -322,29 +329,30 @@ struct UpdateNodes {
   }
 };
 
-template <class Space, class T, int Dim>
-UpdateNodes<Space, T, Dim> node_update_of(const State<Space, T, Dim>& s, double dt) {
-  UpdateNodes<Space, T, Dim> update{.value_count = Dim * static_cast<int>(s.rigid_points.size()),
-                                    .places = {s.grid, s.patches},
-                                    .nodes = s.nodes,
-                                    .rigids = s.rigids,
-                                    .vertices = s.vertices,
-                                    .forces = s.slot_forces,
-                                    .owned_nodes = s.owned_nodes,
-                                    .g = {},
-                                    .timed_g = s.timed.of_step().gravity,
-                                    .acting_sides = acting(s.sides),
-                                    .dt = T(dt),
-                                    .inv_dt = T(1 / dt),
-                                    .damping = T(s.damping),
-                                    .mass_cut = T(s.mass_cut),
-                                    .spacing = s.spacing,
-                                    .has_boundary = s.soil_boundary,
-                                    .has_friction = s.has_friction,
-                                    .has_mass_normals = s.mass_normals,
-                                    .clears = s.plan.sums_ahead && !s.plan.writes_sums,
-                                    .rings = s.soil.points.rings};
+template <bool acts = true, class Space, class T, int Dim>
+UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, double dt) {
+  UpdateNodes<Space, T, Dim, acts> update{.value_count = Dim * static_cast<int>(s.rigid_points.size()),
+                                          .places = {s.grid, s.patches},
+                                          .nodes = s.nodes,
+                                          .rigids = s.rigids,
+                                          .vertices = s.vertices,
+                                          .forces = s.slot_forces,
+                                          .owned_nodes = s.owned_nodes,
+                                          .g = {},
+                                          .timed_g = s.timed.of_step().gravity,
+                                          .acting_sides = {},
+                                          .dt = T(dt),
+                                          .inv_dt = T(1 / dt),
+                                          .damping = T(s.damping),
+                                          .mass_cut = T(s.mass_cut),
+                                          .spacing = s.spacing,
+                                          .has_boundary = s.soil_boundary,
+                                          .has_friction = s.has_friction,
+                                          .has_mass_normals = s.mass_normals,
+                                          .clears = s.plan.sums_ahead && !s.plan.writes_sums,
+                                          .rings = s.soil.points.rings};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
+  if constexpr (acts) update.acting_sides = acting(s.sides);
   return update;
 }
 

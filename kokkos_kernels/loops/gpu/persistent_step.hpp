@@ -35,7 +35,7 @@ struct PersistentStep {
   static constexpr int threads = team_threads<Space>;
   static constexpr int k_teams = WithNodes ? 3 : teams_at_once<T, Dim>;  // that share a multiprocessor
   using Update = UpdateParticles<Space, T, Dim, true, PatchKind::any, Laws, domain, k_teams>;
-  using NodeUpdate = UpdateNodes<Space, T, Dim>;
+  using NodeUpdate = UpdateNodes<Space, T, Dim, false>;
   using Member = typename Update::Member;
   using Rigids = Kokkos::Array<RigidSource<Space, T, Dim>, k_most_rigids>;
   using Sums = NodeSums<Space, T, Dim>;
