@@ -18,7 +18,7 @@ IN_3D = (" -dim 3 -mesh_lower 0,0,0 -mesh_upper 4.5,0.8,1 -gravity 4.145885118,0
          " -mesh_zmax free")
 SIDES = {"friction 0.35": "friction 0.35", "friction 0.6": "friction 0.6",
          "shear limit 2 kPa": "friction 1 -mesh_ymin_shear_limit 2000"}
-BELT = f"friction 0.2 -mesh_ymin_velocity_table 0:0:0,1:{DRIVE!r}:0"
+BELT = f"friction 0.2 -mesh_ymin_velocity_table 0:0:0,1:{float(DRIVE)!r}:0"
 RUNS = {f"{name} {dim}".replace(" ", "_"): "-block_file {start}" + more + f" -mesh_{side}_" + option.replace("mesh_ymin", f"mesh_{side}")
         for name, option in SIDES.items() for dim, side, more in (("2D", "ymin", ""), ("3D", "zmin", IN_3D))}
 RUNS["belt_2D"] = "-block_file {start} -mesh_ymin_" + BELT
