@@ -6,6 +6,7 @@
 
 #include "common/collectives.hpp"
 #include "common/revolution.hpp"
+#include "common/text.hpp"
 #include "input/field_file.hpp"
 #include "input/groups.hpp"
 #include "input/level_ground.hpp"
@@ -152,8 +153,7 @@ PetscErrorCode Simulation::Body::log_cuts(const std::string& name, const Shape& 
   std::string sides;
   for (int d = 0; d < config.dim; ++d)
     for (int side = 0; side < 2; ++side)
-      if (cuts[d][side])
-        sides += std::string(sides.empty() ? "" : ", ") + "-mesh_" + "xyz"[d] + (side == 0 ? "min" : "max");
+      if (cuts[d][side]) sides += std::string(sides.empty() ? "-" : ", -") + side_option(d, side);
   if (!sides.empty())
     PetscCall(
         log.print("%s: cut by the plane of symmetry at %s; masses and forces are those of the part inside",

@@ -189,7 +189,7 @@ void warn_of_walls(const Config& config, const RigidConfig& rigid, const Bounds&
       const double away = std::abs((side == 0 ? config.mesh.lower : config.mesh.upper)[d] - middle) / width;
       if (at[side] || !is_wall(config, d, side) || away >= nearest) continue;
       nearest = away, width_there = width;
-      where = std::string("mesh_") + "xyz"[d] + (side == 0 ? "min" : "max");
+      where = side_option(d, side);
     }
   }
   if (!where.empty())

@@ -11,7 +11,10 @@ namespace {
 
 // Sums are whole numbers, which have the same value in any order of particles, threads and ranks.
 constexpr double k_resolution = 1e12;  // of the largest term of one particle
-constexpr int k_sums = 5;              // mass times speed of P and of S waves, volume, area, mass
+
+/// What the nodes of absorbing sides sum: mass times the speed of pressure and of shear waves [kg m/s],
+/// volume [m3], volume times the normal gradient of the weight [m3/cell], mass [kg].
+enum SideSum { k_pressure_waves, k_shear_waves, k_volume, k_area, k_mass, k_sums };
 
 /// What particles give the nodes of absorbing sides.
 template <class Space, class T, int Dim>
@@ -26,10 +29,8 @@ struct GiveSides {
   Sum sums;
   double unit[k_sums];
 
-  /// Mass times wave speeds [kg m/s], volume [m3] and mass [kg] of a particle, and its stress times volume
-  /// over the edge of a cell [N], about the largest force that it gives a node.
-  static constexpr int k_terms = 5;
-  KOKKOS_INLINE_FUNCTION void terms_of(int p, double (&terms)[k_terms]) const {
+  /// What a particle gives, without its weight at the node.
+  KOKKOS_INLINE_FUNCTION void terms_of(int p, double (&terms)[k_sums]) const {
     const auto of = soil.properties(p);
     const AnyMaterial<T>& material = material_in(soil.materials(of.material));
     SymTensor<T, Dim> stress = soil.stress(p);
@@ -37,12 +38,19 @@ struct GiveSides {
     double modulus = 0;
     material.visit([&](const auto& law) { modulus = law.wave_modulus(stress, soil.state_of(law, p)); });
     const double volume = soil.volume(p), mass = of.mass;
-    terms[0] = Kokkos::sqrt((modulus + double(material.pore_stiffness)) * volume * mass);
-    terms[1] = shear_ratio(of.material) * Kokkos::sqrt(modulus * volume * mass);
-    terms[2] = volume, terms[3] = mass, terms[4] = 0;
-    for (int k = 0; k < sym_size<Dim>; ++k)
-      terms[4] = Kokkos::fmax(terms[4], Kokkos::fabs(double(stress[k])));
-    terms[4] *= volume * places.grid.inv_spacing;
+    terms[k_pressure_waves] = Kokkos::sqrt((modulus + double(material.pore_stiffness)) * volume * mass);
+    terms[k_shear_waves] = shear_ratio(of.material) * Kokkos::sqrt(modulus * volume * mass);
+    terms[k_volume] = terms[k_area] = volume, terms[k_mass] = mass;
+  }
+  /// About the largest force that a particle gives a node [N]: its stress times volume over the edge of a
+  /// cell.
+  KOKKOS_INLINE_FUNCTION double force_of(int p) const {
+    SymTensor<T, Dim> stress = soil.stress(p);
+    add_isotropic(stress,
+                  soil.excess_pore_pressure(material_in(soil.materials(soil.properties(p).material)), p));
+    double largest = 0;
+    for (int k = 0; k < sym_size<Dim>; ++k) largest = Kokkos::fmax(largest, Kokkos::fabs(double(stress[k])));
+    return largest * soil.volume(p) * places.grid.inv_spacing;
   }
   KOKKOS_INLINE_FUNCTION void operator()(int p) const {
     const int cell = soil.cell(p);
@@ -50,7 +58,7 @@ struct GiveSides {
     bool near = false;
     for (int d = 0; d < Dim; ++d) near |= first[d] < 2 || first[d] >= places.grid.cells[d] - 2;
     if (!near) return;
-    double terms[k_terms];
+    double terms[k_sums];
     terms_of(p, terms);
     // No side absorbs in a run of rings (check_revolution).
     with_weights(soil.coordinate(p), any_domain_of(soil, p), [&](const auto& a) {
@@ -61,15 +69,26 @@ struct GiveSides {
         for (int n = 0; n < 2 * Dim; ++n) {
           if (!(on >> n & 1u)) continue;
           const int row = acting.all[n].row(at);
-          const double area = terms[2] * grad[n / 2] * (n % 2 == 0 ? -1 : 1);
-          add(row, 0, w * terms[0]), add(row, 1, w * terms[1]), add(row, 2, w * terms[2]), add(row, 3, area);
-          add(row, 4, w * terms[3]);
+          const double normal = grad[n / 2] * (n % 2 == 0 ? -1 : 1);
+          for (int k = 0; k < k_sums; ++k) add(row, k, (k == k_area ? normal : double(w)) * terms[k]);
         }
       });
     });
   }
   KOKKOS_INLINE_FUNCTION void add(int row, int k, double value) const {
     Kokkos::atomic_add(&sums(row, k), static_cast<long long>(Kokkos::round(value / unit[k])));
+  }
+};
+
+/// The largest of one of the terms of all particles; of their forces for k = k_sums.
+template <class Space, class T, int Dim>
+struct LargestTerm {
+  GiveSides<Space, T, Dim> give;
+  int k;
+  KOKKOS_INLINE_FUNCTION void operator()(int p, double& largest) const {
+    double terms[k_sums];
+    give.terms_of(p, terms);
+    largest = Kokkos::fmax(largest, k < k_sums ? terms[k] : give.force_of(p));
   }
 };
 
@@ -162,28 +181,22 @@ void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_r
   Kokkos::deep_copy(ratio, ratio_host);
   Give give{s.soil.points, {s.grid, s.patches}, acting(s.sides), sides, ratio, {}, {}};
   give.sums = typename Give::Sum("mpm::side_sums", s.sides.nodes.extent(0));
-  double unit[Give::k_terms];  // of whole numbers
   const Kokkos::RangePolicy<Space> range(s.space, 0, s.soil.points.count);
-  for (int k = 0; k < Give::k_terms; ++k) {
+  const auto unit_of = [&](int k) {  // of the whole numbers
     double largest = 0;
-    Kokkos::parallel_reduce(
-        "mpm::largest_of_sides", range,
-        KOKKOS_LAMBDA(int p, double& most) {
-          double terms[Give::k_terms];
-          give.terms_of(p, terms);
-          most = Kokkos::fmax(most, terms[k]);
-        },
-        Kokkos::Max<double>(largest));
+    Kokkos::parallel_reduce("mpm::largest_of_sides", range, LargestTerm<Space, T, Dim>{give, k},
+                            Kokkos::Max<double>(largest));
     ranks.largest(&largest);
-    unit[k] = std::max(largest, 1e-300) / k_resolution;
-  }
-  give.unit[0] = give.unit[1] = unit[0], give.unit[2] = give.unit[3] = unit[2], give.unit[4] = unit[3];
+    return std::max(largest, 1e-300) / k_resolution;
+  };
+  for (int k = 0; k < k_sums; ++k) give.unit[k] = unit_of(k);
+  const double unit_force = unit_of(k_sums);
   Kokkos::parallel_for("mpm::give_sides", range, give);
   Kokkos::View<long long* [Dim], Kokkos::LayoutRight, typename Space::memory_space> beyond(
       "mpm::beyond_sides", s.sides.nodes.extent(0));
   with_domain(s.soil.points, [&](auto domain) {
     const GiveBeyond<Space, T, Dim, domain()> forces{
-        {s.soil.points, s.grid.inv_spacing}, give, beyond, unit[4]};
+        {s.soil.points, s.grid.inv_spacing}, give, beyond, unit_force};
     Kokkos::parallel_for("mpm::give_beyond_sides", range, forces);
   });
   set_reactions(s);
@@ -197,17 +210,18 @@ void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_r
     if (!(sides >> n & 1u)) continue;
     const int first = s.sides.host[n].first;
     for (int row = first; row < first + side_rows(s.grid.cells, Dim, n / 2); ++row) {
-      const double volume = sums(row, 2) * give.unit[2], area = sums(row, 3) * give.unit[3] / s.spacing;
+      const auto sum_of = [&](int k) { return sums(row, k) * give.unit[k]; };
+      const double volume = sum_of(k_volume), area = sum_of(k_area) / s.spacing;
       for (int k = 0; k < 2 && volume > 0; ++k) {
-        const double impedance = sums(row, k) * give.unit[k] / volume;  // kg/m2/s
-        const double density = sums(row, 4) * give.unit[4] / volume, length = s.sides.spring_length[n];
+        const double impedance = sum_of(k == 0 ? k_pressure_waves : k_shear_waves) / volume;  // kg/m2/s
+        const double density = sum_of(k_mass) / volume, length = s.sides.spring_length[n];
         table(row, S::dashpot + k) = s.sides.dashpot_factor[n] * std::max(0.0, area) * impedance;
         if (length > 0)
           table(row, S::spring + k) = std::max(0.0, area) * impedance * impedance / density / length;
       }
       // A mirror gives the force on the nodes beyond back, so that twice that force has passed the side.
       for (int k = 0; k < Dim; ++k)
-        if (s.sides.mirrored[n] >> k & 1u) table(row, S::reaction + k) -= mirrored(row, k) * unit[4];
+        if (s.sides.mirrored[n] >> k & 1u) table(row, S::reaction + k) -= mirrored(row, k) * unit_force;
     }
   }
   Kokkos::deep_copy(s.sides.nodes, table);

@@ -42,17 +42,17 @@ KOKKOS_INLINE_FUNCTION void absorb(const Side<Dim>& side, int d, const SideNode<
   }
 }
 
-/// Nothing moves into the side.
+/// Takes the velocity into the side; the side does not pull.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION void hold_back(const Side<Dim>& side, int d, bool upper, double* v) {
   v[d] = upper ? Kokkos::fmin(v[d], side.velocity[d]) : Kokkos::fmax(v[d], side.velocity[d]);
 }
 
 /// Coulomb friction, as contact_correction() has it: the friction of a step is at most a fraction of the
-/// normal impulse of this step and of what earlier ones have left. The side does not pull.
+/// normal impulse of this step and of what earlier ones have left.
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION void rub(const Side<Dim>& side, int d, bool upper, const SideNode<Dim>& node,
-                                double* kept, double* v) {
+KOKKOS_INLINE_FUNCTION void apply_friction(const Side<Dim>& side, int d, bool upper,
+                                           const SideNode<Dim>& node, double* kept, double* v) {
   double& stock = kept[SideTerms<Dim>::stock];
   const double approach = (v[d] - side.velocity[d]) * (upper ? 1 : -1);
   stock = double(k_memory<T>) * stock + node.mass * Kokkos::fmax(0.0, approach);
@@ -71,7 +71,7 @@ KOKKOS_INLINE_FUNCTION void rub(const Side<Dim>& side, int d, bool upper, const 
 
 /// Components that a side prescribes.
 template <int Dim>
-KOKKOS_INLINE_FUNCTION void drive(const Side<Dim>& side, int d, bool upper, double* v) {
+KOKKOS_INLINE_FUNCTION void prescribe(const Side<Dim>& side, int d, bool upper, double* v) {
   if (side.kind == Wall::absorbing) return;
   if (side.kind == Wall::friction) return hold_back(side, d, upper, v);
   for (int k = 0; k < Dim; ++k)
@@ -95,8 +95,8 @@ MPM_CALLED_FUNCTION Vector<T, Dim> by_sides(ActingSides<Dim> acting, SideNode<Di
       double* const kept = acting.node(n, node.at);
       for (int k = 0; k < Dim; ++k) before[k] = v[k];
       if (meets && kind == Wall::absorbing) absorb(side, n / 2, node, kept, v);
-      if (meets && kind == Wall::friction) rub<T>(side, n / 2, n % 2 == 1, node, kept, v);
-      drive(side, n / 2, n % 2 == 1, v);
+      if (meets && kind == Wall::friction) apply_friction<T>(side, n / 2, n % 2 == 1, node, kept, v);
+      prescribe(side, n / 2, n % 2 == 1, v);
       for (int k = 0; k < Dim && node.counts; ++k) {
         const double carried = meets ? node.dt * kept[S::reaction + k] : 0;
         const double impulse = node.mass * (v[k] - before[k]) + carried;

@@ -76,6 +76,10 @@ std::string one_of(const std::vector<std::string>& words) {
   return join({words.begin(), words.end() - 1}, ", ") + " or " + words.back();
 }
 
+std::string side_option(int d, int side) {
+  return std::string("mesh_") + "xyz"[d] + (side == 0 ? "min" : "max");
+}
+
 std::string lower_case(std::string_view text) {
   std::string lower(text);
   for (char& c : lower)

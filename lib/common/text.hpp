@@ -38,6 +38,9 @@ std::string printable(std::string_view text);
 /// "a, b or c".
 std::string one_of(const std::vector<std::string>& words);
 
+/// The option of a side of the mesh, mesh_xmin ... mesh_zmax. d: direction; side: 0 lower, 1 upper.
+std::string side_option(int d, int side);
+
 /// ASCII lower case: PETSc's options know no case.
 std::string lower_case(std::string_view text);
 

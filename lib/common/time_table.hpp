@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/text.hpp"
 #include "mpm/config.hpp"
 
 namespace mpm {
@@ -42,8 +43,7 @@ inline std::vector<std::pair<std::string, const TimeTable*>> tables_of(const Con
   add("-gravity_table", config.gravity_table);
   for (int d = 0; d < config.dim; ++d)
     for (int side = 0; side < 2; ++side)
-      add(std::string("-mesh_") + "xyz"[d] + (side == 0 ? "min" : "max") + "_velocity_table",
-          config.mesh.sides[d][side].velocity_table);
+      add("-" + side_option(d, side) + "_velocity_table", config.mesh.sides[d][side].velocity_table);
   for (const RigidConfig& rigid : config.rigids) {
     add("-" + rigid.name + "_velocity_table", rigid.velocity_table);
     add("-" + rigid.name + "_displacement_table", rigid.displacement_table);

@@ -17,7 +17,7 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
                                                                   {"absorbing", Wall::absorbing}};
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
-      const std::string name = std::string("mesh_") + "xyz"[d] + (side == 0 ? "min" : "max");
+      const std::string name = side_option(d, side);
       if (d >= dim && !in.listing()) {
         in.not_taken(name, "a mesh in 2D has no such side");
         continue;

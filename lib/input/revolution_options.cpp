@@ -1,5 +1,7 @@
 #include "input/revolution_options.hpp"
 
+#include "common/text.hpp"
+
 namespace mpm {
 
 void read_geometry_of(OptionReader& in, Config& config) {
@@ -22,7 +24,7 @@ void check_revolution(OptionReader& in, const Config& config) {
     in.reject("mesh_xmin", "roller" + where + ": that side is the axis");
   for (int n = 0; n < 4; ++n) {
     const SideConfig& side = config.mesh.sides[n / 2][n % 2];
-    const std::string name = std::string("mesh_") + "xy"[n / 2] + (n % 2 == 0 ? "min" : "max");
+    const std::string name = side_option(n / 2, n % 2);
     if (side.moves)
       in.reject(name + (side.velocity_table ? "_velocity_table" : "_velocity"), "0" + where);
     else if (is_acting(config.mesh.walls[n / 2][n % 2]))

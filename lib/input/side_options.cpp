@@ -70,7 +70,7 @@ void check_roller(OptionReader& in, const std::string& name, int dim, int d, con
 }
 
 void read_side(OptionReader& in, const Config& config, int d, int side, SideConfig& to) {
-  const std::string name = std::string("mesh_") + "xyz"[d] + (side == 0 ? "min" : "max");
+  const std::string name = side_option(d, side);
   const Wall kind = config.mesh.walls[d][side];
   const auto known = in.known().size();
   if (kind == Wall::friction || in.listing()) read_friction(in, name, to);
@@ -95,8 +95,7 @@ void read_sides(OptionReader& in, Config& config) {
         read_side(in, config, d, side, config.mesh.sides[d][side]);
       } else {
         for (const char* key : k_keys)
-          in.not_taken(std::string("mesh_z") + (side == 0 ? "min" : "max") + key,
-                       "a mesh in 2D has no such side");
+          in.not_taken(side_option(d, side) + key, "a mesh in 2D has no such side");
       }
 }
 
@@ -104,9 +103,11 @@ void check_absorbing(OptionReader& in, const Config& config) {
   for (int d = 0; d < config.dim; ++d)
     for (int side = 0; side < 2; ++side) {
       if (config.mesh.walls[d][side] != Wall::absorbing) continue;
+      if (config.water.level)
+        in.reject(side_option(d, side), "another kind of side where -water_level is given");
       for (const MaterialConfig& material : config.materials)
         if (!shear_wave_ratio(material))
-          return in.reject(std::string("mesh_") + "xyz"[d] + (side == 0 ? "min" : "max"),
+          return in.reject(side_option(d, side),
                            "another kind of side where material " + material.name +
                                " has no Poisson's ratio, which tells the speed of its shear waves");
     }

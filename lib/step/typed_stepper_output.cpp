@@ -304,6 +304,7 @@ std::string TypedStepper<Space, T, Dim>::batches_report() const {
 #define MPM_INSTANTIATE(Space, T, Dim)                                                     \
   template PetscErrorCode TypedStepper<Space, T, Dim>::measure(double, HistoryRow*);       \
   template PetscErrorCode TypedStepper<Space, T, Dim>::unbalanced_ratio(double, double*);  \
+  template void TypedStepper<Space, T, Dim>::set_gravity(double);                          \
   template PetscErrorCode TypedStepper<Space, T, Dim>::fastest_wave(double*);              \
   template PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot*);                \
   template PetscErrorCode TypedStepper<Space, T, Dim>::keep_heights(const Model&);         \

@@ -36,6 +36,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::begin_sides() {
   PetscFunctionBeginUser;
   if (state_.sides.unknown == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  set_gravity(state_.time);
   collect_soil(state_);
   PetscCall(sum_soil());
   std::vector<double> ratios;

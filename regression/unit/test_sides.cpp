@@ -71,7 +71,7 @@ TEST_CASE("friction of a side takes no more than its share of the normal impulse
       const SideNode<3> node{{4, 0, 3}, 4, dice.uniform(0.1, 2), 1e-3, true};
       double v[3] = {dice.uniform(-1, 1), dice.uniform(-1, 1), dice.uniform(-1, 1)}, old[3];
       std::copy_n(v, 3, old);
-      rub<double>(side, 1, false, node, kept, v);
+      apply_friction<double>(side, 1, false, node, kept, v);
       CHECK(v[1] == std::max(old[1], side.velocity[1]));  // it does not pull
       normal += node.mass * std::max(0.0, -old[1]);
       const double slip[2] = {old[0] - side.velocity[0], old[2] - side.velocity[2]},
@@ -90,7 +90,7 @@ TEST_CASE("the shear limit of a side bounds the shear impulse of a step by its a
   double kept[SideTerms<3>::size] = {};
   double v[3] = {5, -10, -0.2};
   const SideNode<3> node{{4, 0, 3}, 4, 2.0, 1e-2, true};  // half of a full node
-  rub<double>(side, 1, false, node, kept, v);
+  apply_friction<double>(side, 1, false, node, kept, v);
   CHECK(std::fabs(node.mass * (5 - v[0]) - 30 * 0.25 * 1e-2) < 1e-14);
 }
 
