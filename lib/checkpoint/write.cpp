@@ -56,11 +56,11 @@ class Writer {
       rows(path + "/" + field.name, type, H5T_NATIVE_DOUBLE, field.components, block, field.values.data());
     }
   }
-  const std::string& fault() const { return fault_; }
+  const Hdf5Fault& fault() const { return fault_; }
 
  private:
   void check(hid_t result, const std::string& what) {
-    if (result < 0 && fault_.empty()) fault_ = what;
+    if (result < 0 && fault_.what.empty()) fault_ = hdf5_fault(what);
   }
   void attribute(const char* name, hid_t type, hid_t memory, const void* x) {
     Handle space(H5Screate(H5S_SCALAR), H5Sclose);
@@ -111,11 +111,11 @@ class Writer {
 
   hid_t file_;
   SharedRows* shared_;
-  std::string fault_;
+  Hdf5Fault fault_;
 };
 
 /// All items, to a file that is open.
-std::string write_items(hid_t file, Checkpoint& checkpoint, IdBlock& soil, SharedRows* shared = nullptr) {
+Hdf5Fault write_items(hid_t file, Checkpoint& checkpoint, IdBlock& soil, SharedRows* shared = nullptr) {
   Writer writer(file, shared);
   std::string options = text_of_options(checkpoint.options);
   go_through(writer, checkpoint, options, soil);
@@ -132,16 +132,14 @@ PetscErrorCode write_alone(const std::string& path, Checkpoint& checkpoint, IdBl
     Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_fapl_core(access.id, k_growth, /*backing_store*/ false);
     Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id), H5Fclose);
-    PetscCheck(file.id >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at creation of %s", path.c_str());
-    const std::string fault = write_items(file.id, checkpoint, soil);
-    PetscCheck(fault.empty(), PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s of %s", fault.c_str(),
-               path.c_str());
+    if (file.id < 0) PetscCall(check_hdf5(hdf5_fault("creation"), path));
+    PetscCall(check_hdf5(write_items(file.id, checkpoint, soil), path));
     checkpoint.state = {};
-    const bool flushed = H5Fflush(file.id, H5F_SCOPE_GLOBAL) >= 0;
-    const ssize_t size = flushed ? H5Fget_file_image(file.id, nullptr, 0) : -1;
+    const ssize_t size =
+        H5Fflush(file.id, H5F_SCOPE_GLOBAL) >= 0 ? H5Fget_file_image(file.id, nullptr, 0) : -1;
     if (size > 0) image.resize(static_cast<size_t>(size));
-    PetscCheck(size > 0 && H5Fget_file_image(file.id, image.data(), image.size()) == size, PETSC_COMM_SELF,
-               PETSC_ERR_LIB, "HDF5 failed at the image of %s", path.c_str());
+    if (size <= 0 || H5Fget_file_image(file.id, image.data(), image.size()) != size)
+      PetscCall(check_hdf5(hdf5_fault("the image"), path));
   }
   PetscCall(replace_sealed(path, image));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -155,10 +153,8 @@ PetscErrorCode lay_out(const std::string& path, Checkpoint& checkpoint, IdBlock&
   PetscCall(open_layout(&name, layout));
   Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   ::unlink(name.c_str());
-  PetscCheck(file.id >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at creation of %s", path.c_str());
-  const std::string fault = write_items(file.id, checkpoint, soil, shared);
-  PetscCheck(fault.empty(), PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s of %s", fault.c_str(),
-             path.c_str());
+  if (file.id < 0) PetscCall(check_hdf5(hdf5_fault("creation"), path));
+  PetscCall(check_hdf5(write_items(file.id, checkpoint, soil, shared), path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

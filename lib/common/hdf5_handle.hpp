@@ -1,7 +1,10 @@
 #pragma once
-// HDF5 identifiers that release themselves, and silence.
+// HDF5 identifiers that release themselves, its faults, and silence.
 
 #include <hdf5.h>
+#include <petscsys.h>
+
+#include <string>
 
 namespace mpm {
 
@@ -23,6 +26,20 @@ inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 /// Has HDF5 hold from now on what its cache of metadata takes for two files (0.5 MB each), as many as are open
 /// at once: HDF5 (1.10) crashes where it cannot have that memory for a new file.
 void keep_hdf5_memory();
+
+/// What made HDF5's last call fail.
+struct Hdf5Fault {
+  std::string what;     // empty: nothing failed
+  std::string cause;    // in HDF5's words
+  bool memory = false;  // it asked for memory that it did not get
+};
+
+/// The fault of the call that failed just now in this thread, before any other call of HDF5; `what` names the
+/// part of the file.
+Hdf5Fault hdf5_fault(const std::string& what);
+
+/// A fault is an error that names the file; one of memory is PETSC_ERR_MEM.
+PetscErrorCode check_hdf5(const Hdf5Fault& fault, const std::string& path);
 
 /// HDF5 prints nothing in this scope: what fails is told by who looks at the results.
 class Quiet {

@@ -16,7 +16,7 @@ constexpr long k_piece = 1 << 16;  // rows, at most
 /// Every HDF5 call passes here: a negative result is an error that names the file.
 PetscErrorCode check(hid_t result, const std::string& path, const char* what) {
   PetscFunctionBeginUser;
-  PetscCheck(result >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s of %s", what, path.c_str());
+  if (result < 0) PetscCall(check_hdf5(hdf5_fault(what), path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
