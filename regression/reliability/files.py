@@ -321,7 +321,7 @@ class Checks:
                        "-checkpoint_interval", 4e-4)
             self.go(fresh(self.base / "allocation"), *options, environment={**setting, "INJECT_COUNT": str(count)}, prefix=prefix)
             calls = count.stat().st_size // (2 if prefix else 1)
-            for after in sorted(self.chance.sample(range(calls), (3 if prefix else 8) if self.short else (30 if prefix else 150))):
+            for after in sorted(self.chance.sample(range(calls), (2 if prefix else 4) if self.short else (30 if prefix else 150))):
                 folder = fresh(self.base / "allocation")
                 done = self.go(folder, *options, status=None, environment={**setting, "INJECT_AFTER": str(after)}, prefix=prefix)
                 told = [line for line in done.stderr.splitlines() if line.startswith("mpm: ")]
