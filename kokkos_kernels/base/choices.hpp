@@ -24,8 +24,8 @@ constexpr const char* word_of(P2G how) {
 
 /// What holds at one side of the mesh (-mesh_xmin ...): roller, no velocity normal to the side; fixed, no
 /// velocity; free, nothing; friction, a roller with friction along it; absorbing, dashpots; periodic, the
-/// opposite side. Kernels know a roller or fixed side that moves as driven, and periodic sides as free ones of
-/// a mesh with a period (Grid). Checkpoints hold these numbers.
+/// opposite side. Kernels know a roller or fixed side that moves as driven, and periodic sides as free ones
+/// of a mesh with a period (Grid). Checkpoints hold these numbers.
 enum class Wall { periodic = -1, roller, fixed, free, friction, absorbing, driven };
 /// Whether the soil goes on beyond a side as its mirror image; beyond sides that act, it moves as the side's
 /// nodes do.

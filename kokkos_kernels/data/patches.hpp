@@ -121,7 +121,7 @@ template <class Space, int Dim>
 struct Patches {
   using Memory = typename Space::memory_space;
   int slots = 0;
-  Coord<Dim> turn{};  // directions as slots count them, the one with the fewest patches first
+  Coord<Dim> turn{};   // directions as slots count them, the one with the fewest patches first
   bool wraps = false;  // patches at periodic sides are neighbours: the slots round one need not rise
   Kokkos::View<int*, Memory> slot_of;        // by Grid::patch_of; -1 where not active
   Kokkos::View<int*, Memory> number;         // of the patch of a slot, Grid::patch_of

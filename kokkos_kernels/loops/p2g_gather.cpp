@@ -73,8 +73,8 @@ struct GatherByNode {
     return last > first;
   }
 
-  /// From the node to the cell of a particle that may come to reach it, two cells below it to one above, along
-  /// direction d; `way` leads there in the mesh.
+  /// From the node to the cell of a particle that may come to reach it, two cells below it to one above,
+  /// along direction d; `way` leads there in the mesh.
   KOKKOS_INLINE_FUNCTION int from_node(int d, int way) const {
     if constexpr (Periodic) {
       if (way < -2) return way + places.grid.period[d];

@@ -83,8 +83,8 @@ struct MergeInCell {
     const Coord<Dim> from = cell_of(grid, address(p)), to = cell_of(grid, address(q));
     Vector<double, Dim> way;
     for (int d = 0; d < Dim; ++d)
-      way[d] = grid.shortest(
-          d, to[d] - from[d] + (double(soil.coordinate(q)[d]) - double(soil.coordinate(p)[d])));
+      way[d] =
+          grid.shortest(d, to[d] - from[d] + (double(soil.coordinate(q)[d]) - double(soil.coordinate(p)[d])));
     return way;
   }
   /// The moments of both domains about their centre of mass.

@@ -66,7 +66,8 @@ KOKKOS_INLINE_FUNCTION bool shift(const Grid<T, Dim>& grid, const Vector<double,
 
 /// Puts particle p where shift() has brought it.
 template <class Soil_, class Address, class T, int Dim>
-KOKKOS_INLINE_FUNCTION void put(const Soil_& soil, const Address& address, int p, const Placed<T, Dim>& place) {
+KOKKOS_INLINE_FUNCTION void put(const Soil_& soil, const Address& address, int p,
+                                const Placed<T, Dim>& place) {
   address(p) = place.address;
   soil.coordinate(p) = place.x;
   for (int d = 0; d < Dim && soil.has_periods; ++d) soil.periods(p)[d] += place.passed[d];

@@ -39,8 +39,8 @@ template <class Space, class T, int Dim>
 struct Positions {
   Soil<Space, T, Dim> soil;
   Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  double spacing;      // m
-  Coord<Dim> period;   // Grid::period
+  double spacing;     // m
+  Coord<Dim> period;  // Grid::period
 
   KOKKOS_INLINE_FUNCTION double operator()(int p, int d) const {
     const double cells = in_cells(p, d);

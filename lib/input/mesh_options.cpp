@@ -11,12 +11,9 @@ constexpr double k_furthest = 4e9;        // cells from the origin: round-off is
 constexpr double k_most_cells = 1 << 30;  // in a direction, so that cells and nodes count in an int
 
 void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
-  static const std::vector<std::pair<std::string, Wall>> words = {{"roller", Wall::roller},
-                                                                  {"fixed", Wall::fixed},
-                                                                  {"free", Wall::free},
-                                                                  {"friction", Wall::friction},
-                                                                  {"absorbing", Wall::absorbing},
-                                                                  {"periodic", Wall::periodic}};
+  static const std::vector<std::pair<std::string, Wall>> words = {
+      {"roller", Wall::roller},     {"fixed", Wall::fixed},         {"free", Wall::free},
+      {"friction", Wall::friction}, {"absorbing", Wall::absorbing}, {"periodic", Wall::periodic}};
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
       const std::string name = side_option(d, side);
@@ -44,9 +41,9 @@ bool check_periodic(OptionReader& in, int dim, const MeshConfig& mesh) {
       in.reject(side_option(d, is[0] ? 1 : 0), "periodic, as -" + side_option(d, is[0] ? 0 : 1) + " is");
     } else if (is[0] && rest != 0) {
       const std::string fewer = cells > edge ? std::to_string(cells - rest) + " or " : "";
-      in.reject(side_option(d, 0), "periodic in a mesh of a multiple of " + std::to_string(edge) +
-                                       " cells along " + "xyz"[d] + ": of " + fewer +
-                                       std::to_string(cells - rest + edge) + ", not " + std::to_string(cells));
+      in.reject(side_option(d, 0),
+                "periodic in a mesh of a multiple of " + std::to_string(edge) + " cells along " + "xyz"[d] +
+                    ": of " + fewer + std::to_string(cells - rest + edge) + ", not " + std::to_string(cells));
     } else {
       continue;
     }

@@ -46,14 +46,15 @@ void check_rigid(OptionReader& in, const Config& config, const RigidConfig& rigi
     return;
   }
   if (!moving.empty())
-    return in.reject(moving, std::string(rigid.motion == Motion::dynamic ? "fixed, or prescribed without motion"
-                                                                         : "no motion") +
-                                 along + " of a rigid that has ends there" + where);
+    return in.reject(
+        moving,
+        std::string(rigid.motion == Motion::dynamic ? "fixed, or prescribed without motion" : "no motion") +
+            along + " of a rigid that has ends there" + where);
   const Bounds bounds = bounds_of(rigid.shape, mesh, config.dim);
   const double least = (k_reach - k_slack) * mesh.spacing;
   if (bounds.lower[d] - mesh.lower[d] < least || mesh.upper[d] - bounds.upper[d] < least)
-    in.reject(rigid.name + "_shape", "a box, half plane, level layer or prism that goes through the mesh" + along +
-                                         ", or a shape 2 cells away from the sides" + where);
+    in.reject(rigid.name + "_shape", "a box, half plane, level layer or prism that goes through the mesh" +
+                                         along + ", or a shape 2 cells away from the sides" + where);
 }
 
 }  // namespace
@@ -75,8 +76,9 @@ void check_periodic(OptionReader& in, const Config& config) {
 void check_periodic_kept(OptionReader& in, int dim, const MeshConfig& first, const MeshConfig& mesh) {
   for (int d = 0; d < dim; ++d)
     if (is_periodic(first, d) != is_periodic(mesh, d))
-      in.reject(side_option(d, 0), is_periodic(first, d) ? "periodic, as in the first stage"
-                                                         : "a kind of side other than periodic, as in the first stage");
+      in.reject(side_option(d, 0), is_periodic(first, d)
+                                       ? "periodic, as in the first stage"
+                                       : "a kind of side other than periodic, as in the first stage");
 }
 
 }  // namespace mpm

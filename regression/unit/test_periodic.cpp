@@ -26,7 +26,8 @@ struct Shape {
   std::array<int, 2> patches;
   bool both;
 };
-constexpr Shape k_shapes[] = {{{1, 1}, true}, {{2, 1}, true}, {{3, 2}, true}, {{1, 2}, false}, {{4, 1}, false}};
+constexpr Shape k_shapes[] = {
+    {{1, 1}, true}, {{2, 1}, true}, {{3, 2}, true}, {{1, 2}, false}, {{4, 1}, false}};
 
 /// Random soil with a mean velocity that takes it through periodic sides, shifted by whole cells.
 template <int Dim>
