@@ -2,6 +2,7 @@
 """Random soil in periodic meshes: it moves alike wherever the mesh begins.
 
     periodic.py MPM [--count 50] [--seed 1] [--folder FOLDER] [--dims 2,3] [--precisions double,single]
+                    [--backends serial,openmp]
 
 A deck has boxes of soil with random velocities in a mesh that is periodic along one axis or several, with random sides along
 the others, of one to three patches. A second run has the soil shifted by whole cells round the periods, another strategy and
@@ -24,7 +25,7 @@ RESOLUTION = 2.0**-12  # cells, so that a shift rounds nothing, in single precis
 LAWS = {"linear_elastic": f"-clay_young {YOUNG} -clay_poisson 0.3", "von_mises": f"-clay_young {YOUNG} -clay_poisson 0.3 -clay_su 2000",
         "mohr_coulomb": f"-clay_young {YOUNG} -clay_poisson 0.3 -clay_cohesion 500 -clay_friction_deg 30",
         "newtonian": "-clay_bulk_modulus 1e6 -clay_viscosity 20"}
-TOLERANCE = {"double": 1e-7, "single": 0.1}  # of the largest value; yield and friction amplify round-off
+TOLERANCE = {"double": 1e-9, "single": 0.1}  # of the largest value; yield and friction amplify round-off
 
 
 def vector(values):
@@ -46,7 +47,7 @@ class Deck:
             gravity[up] = -9.81
         self.gravity = np.array(gravity)
         upper = [x + n * SPACING for x, n in zip(self.lower, self.cells)]
-        self.acts = False  # something along a periodic axis, beside gravity
+        self.acts = self.has_acting_sides = False  # something along a periodic axis beside gravity; sides with a memory
         self.options = (f"-dim {dim} -mesh_lower {vector(self.lower)} -mesh_upper {vector(upper)} -mesh_spacing {SPACING} "
                         f"-gravity {vector(gravity)} -materials clay -clay_model {self.law} -clay_density {DENSITY} {LAWS[self.law]} "
                         f"-bodies soil -soil_material clay -soil_shape particles -time_courant 0.3 "
@@ -68,7 +69,8 @@ class Deck:
             return ["-" + name, "periodic"]
         kinds = ["roller", "roller", "fixed", "free", "friction"] + (["absorbing"] if self.law != "newtonian" else [])
         kind = self.draw.choice(kinds)
-        self.acts = self.acts or kind not in ("roller",)
+        self.acts = self.acts or kind != "roller"
+        self.has_acting_sides = self.has_acting_sides or kind in ("friction", "absorbing")
         return ["-" + name, kind] + ([f"-{name}_friction", "0.3"] if kind == "friction" else [])
 
     def add_base(self, up):
@@ -173,7 +175,7 @@ def check_cut(binary, empty, base, options, whole, draw, prefix):
 
 
 def main():
-    given, base = read_arguments(__doc__, "periodic")
+    given, base = read_arguments(__doc__, "periodic", backends="serial,openmp")
     binary = given.binary
     empty = base / "empty.opts"
     empty.write_text("\n")
@@ -187,10 +189,11 @@ def main():
         shift = [draw.randrange(n) if p else 0 for n, p in zip(deck.cells, deck.periodic)]
         paths = [base / "start.h5", base / "shifted.h5"]
         deck.write(paths[0], [0] * deck.dim), deck.write(paths[1], shift)
-        ranks = draw.randint(1, 4)
+        # What friction and dashpots keep of a node stays on the rank that had it, so several ranks agree less well.
+        ranks = 1 if deck.has_acting_sides else draw.randint(1, 4)
         common = deck.options + ["-precision", precision, "-time_end", "0.25", "-output_interval", "0.125", "-history_interval", "0.01"]
-        first = common + ["-soil_file", paths[0], "-backend", "serial", "-p2g", draw.choice(strategies)]
-        second = common + ["-soil_file", paths[1], "-backend", draw.choice(["serial", "openmp"]), "-p2g", draw.choice(["gather", "tile", "mosaic", "sequential"]),
+        first = common + ["-soil_file", paths[0], "-backend", given.backends.split(",")[0], "-p2g", draw.choice(strategies)]
+        second = common + ["-soil_file", paths[1], "-backend", draw.choice(given.backends.split(",")), "-p2g", draw.choice(["gather", "tile", "mosaic", "sequential"]),
                            "-partition", draw.choice(["box", "metis"])]
         prefix = ("mpirun", "-n", str(ranks), "--bind-to", "none") if ranks > 1 else ()
         try:
