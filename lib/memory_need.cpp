@@ -37,6 +37,7 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   columns += undrained;  // the excess pore pressure
   double a_particle = Footprint<T, Dim>::particle(columns);
   if (config.particle_domain != ParticleDomain::fixed) a_particle += Footprint<T, Dim>::domain;
+  if (is_periodic(config.mesh)) a_particle += Footprint<T, Dim>::periods;
   if (config.output.energy) a_particle += Footprint<T, Dim>::energy;
   if (config.p2g.strategy == P2G::gather) {
     // a particle is in the lists of the nodes that it may reach before the margin is used up

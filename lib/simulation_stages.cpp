@@ -105,7 +105,7 @@ Config Simulation::Body::history_config() const {
   for (const StageInput& input : report.stages)
     for (int d = 0; d < 3; ++d)
       for (int side = 0; side < 2; ++side)
-        if (input.config.mesh.walls[d][side] != Wall::free) all.mesh.walls[d][side] = Wall::roller;
+        if (!is_open(input.config.mesh.walls[d][side])) all.mesh.walls[d][side] = Wall::roller;
   return all;
 }
 

@@ -23,13 +23,16 @@ constexpr const char* word_of(P2G how) {
 }
 
 /// What holds at one side of the mesh (-mesh_xmin ...): roller, no velocity normal to the side; fixed, no
-/// velocity; free, nothing; friction, a roller with friction along it; absorbing, dashpots. Kernels know a
-/// roller or fixed side that moves as driven.
-enum class Wall { roller, fixed, free, friction, absorbing, driven };
+/// velocity; free, nothing; friction, a roller with friction along it; absorbing, dashpots; periodic, the
+/// opposite side. Kernels know a roller or fixed side that moves as driven, and periodic sides as free ones
+/// of a mesh with a period (Grid). Checkpoints hold these numbers.
+enum class Wall { periodic = -1, roller, fixed, free, friction, absorbing, driven };
 /// Whether the soil goes on beyond a side as its mirror image; beyond sides that act, it moves as the side's
 /// nodes do.
 constexpr bool is_mirror(Wall wall) { return wall == Wall::roller || wall == Wall::fixed; }
 constexpr bool is_acting(Wall wall) { return wall > Wall::free; }
+/// Whether a side gives the soil no force.
+constexpr bool is_open(Wall wall) { return wall == Wall::free || wall == Wall::periodic; }
 
 /// How particles take their velocity from the nodes (-velocity_update).
 enum class VelocityUpdate { flip, pic, xpic, apic };

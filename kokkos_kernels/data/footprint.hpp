@@ -13,6 +13,8 @@ struct Footprint {
   static constexpr double grown = 17.0 / 16;  // ensure() leaves room
   /// More where domains stretch.
   static constexpr double domain = sizeof(DomainMoments<T, Dim>);
+  /// More where the mesh is periodic.
+  static constexpr double periods = sizeof(Vector<T, Dim>);
   /// More for an energy balance.
   static constexpr double energy = grown * (2 * sizeof(SymTensor<T, Dim>) + sizeof(T));
   /// columns: of the history of the laws.

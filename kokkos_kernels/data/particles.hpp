@@ -57,6 +57,9 @@ struct Soil : Points<Space, T, Dim> {
   Kokkos::View<DomainMoments<T, Dim>*, Memory> domain;  // cells2, in use where has_domain: physics/domain.hpp
   /// Id of the particle of the start that this one is, or a part of; in use where particles split.
   Kokkos::View<double*, Memory> ancestor;
+  /// How often a particle has passed the upper side of each direction less the lower one; in use where the
+  /// mesh is periodic.
+  Kokkos::View<Vector<T, Dim>*, Memory> periods;
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
   Kokkos::View<StoredMaterial<T>*, Memory> materials;
@@ -64,6 +67,7 @@ struct Soil : Points<Space, T, Dim> {
   bool has_domain = false;    // the domains of the particles stretch with the soil
   T least_half_length = 0;    // cells, of such a domain (k_least_half_length)
   bool splits = false;        // particles with a domain that is too long are split; they have own masses
+  bool has_periods = false;   // the mesh is periodic along some direction
   bool rings = false;         // the particles are rings about the axis of revolution, as their masses
   const Coord<Dim>* patch_origin = nullptr;  // of them: lower cell of each slot (Patches::origin)
 
@@ -129,6 +133,7 @@ void for_each_field_of(F&& f, Soil_& s, Others&... others) {
   if (s.has_own_mass) f("mass", Use::reads, s.mass, others.mass...);
   if (s.has_domain) f("domain", Use::changes, s.domain, others.domain...);
   if (s.splits) f("ancestor", Use::none, s.ancestor, others.ancestor...);
+  if (s.has_periods) f("periods", Use::none, s.periods, others.periods...);
 }
 template <class F, class RigidPoints_>
 requires requires(RigidPoints_& s) { s.reference_position; }

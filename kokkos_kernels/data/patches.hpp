@@ -52,11 +52,30 @@ struct Grid {
   Coord<Dim> patches;      // of a velocity field, with the ring outside
   int fields = 1;          // velocity fields
   Wall wall[Dim][2];       // lower and upper side of each direction
+  /// Cells after which the mesh repeats itself along a direction with periodic sides: all of them, a multiple
+  /// of Patch::edge, so that a patch at one side is the neighbour of that at the other. Else 0.
+  Coord<Dim> period{};
 
   /// Coordinate d of a node [m from the mesh's lower corner], of one beyond the mesh that of the nearest
   /// within: bodies go on beyond the mesh. exact: the spacing in double precision [m].
   KOKKOS_INLINE_FUNCTION double coordinate_within(int d, int node, double exact) const {
     return Kokkos::max(0, Kokkos::min(node, cells[d])) * exact;
+  }
+  /// The cell (node, patch) within the mesh that is one at `at` along d, of those at most a period beyond the
+  /// mesh; where the direction is not periodic: `at`.
+  KOKKOS_INLINE_FUNCTION int in_period(int d, int at) const {
+    return at < 0 ? at + period[d] : at >= cells[d] ? at - period[d] : at;
+  }
+  /// The shortest of the ways [cells] along d that lead as one of them does, round the period.
+  template <class Way>
+  KOKKOS_INLINE_FUNCTION Way shortest(int d, Way way) const {
+    if (2 * way > period[d]) return way - period[d];
+    return 2 * way < -period[d] ? way + period[d] : way;
+  }
+  KOKKOS_INLINE_FUNCTION bool is_periodic() const {
+    bool is = false;
+    for (int d = 0; d < Dim; ++d) is |= period[d] > 0;
+    return is;
   }
   KOKKOS_INLINE_FUNCTION bool holds(const Coord<Dim>& cell) const {
     for (int d = 0; d < Dim; ++d)
@@ -102,7 +121,8 @@ template <class Space, int Dim>
 struct Patches {
   using Memory = typename Space::memory_space;
   int slots = 0;
-  Coord<Dim> turn{};  // directions as slots count them, the one with the fewest patches first
+  Coord<Dim> turn{};   // directions as slots count them, the one with the fewest patches first
+  bool wraps = false;  // patches at periodic sides are neighbours: the slots round one need not rise
   Kokkos::View<int*, Memory> slot_of;        // by Grid::patch_of; -1 where not active
   Kokkos::View<int*, Memory> number;         // of the patch of a slot, Grid::patch_of
   Kokkos::View<Coord<Dim>*, Memory> origin;  // lower cell of a slot

@@ -64,7 +64,8 @@ struct GiveSides {
     with_weights(soil.coordinate(p), any_domain_of(soil, p), [&](const auto& a) {
       for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const auto& grad) {
         Coord<Dim> at;
-        for (int d = 0; d < Dim; ++d) at[d] = image_along(places.grid, d, first[d] + a[d].first + step[d]);
+        for (int d = 0; d < Dim; ++d)
+          at[d] = places.grid.in_period(d, image_along(places.grid, d, first[d] + a[d].first + step[d]));
         const unsigned on = sides_of(places.grid, at) & sides;
         for (int n = 0; n < 2 * Dim; ++n) {
           if (!(on >> n & 1u)) continue;
@@ -119,7 +120,7 @@ struct GiveBeyond {
             });
         Coord<Dim> at, image;
         for (int d = 0; d < Dim; ++d) {
-          at[d] = first[d] + a[d].first + step[d];
+          at[d] = grid.in_period(d, first[d] + a[d].first + step[d]);
           image[d] = image_along(grid, d, at[d]);
         }
         const unsigned on = sides_of(grid, at) & sides.sides;

@@ -13,8 +13,9 @@ KOKKOS_INLINE_FUNCTION auto half_length_of(const Source& source, int p) {
     return points.half_length;
 }
 
-/// Sums the terms of the particles in the list of a node, and in those of its images beyond walls.
-template <class Source>
+/// Sums the terms of the particles in the list of a node, and in those of its images beyond walls. Periodic:
+/// the node may lie beyond a periodic side of its particles.
+template <class Source, bool Periodic>
 struct GatherByNode {
   using T = typename Source::real;
   using Memory = typename Source::Space::memory_space;
@@ -72,13 +73,23 @@ struct GatherByNode {
     return last > first;
   }
 
+  /// From the node to the cell of a particle that may come to reach it, two cells below it to one above,
+  /// along direction d; `way` leads there in the mesh.
+  KOKKOS_INLINE_FUNCTION int from_node(int d, int way) const {
+    if constexpr (Periodic) {
+      if (way < -2) return way + places.grid.period[d];
+      if (way > 1) return way - places.grid.period[d];
+    }
+    return way;
+  }
+
   template <class Add>
   KOKKOS_INLINE_FUNCTION void add_point(int p, const Coord<Dim>& at, const Add& add) const {
     const int cell = source.points.cell(p);
     if (source.skips(cell / Patch<Dim>::cells)) return;
     const Coord<Dim> from = places.origin(cell / Patch<Dim>::cells), place = coord_of<Dim>(cell);
     Vector<T, Dim> x = source.points.coordinate(p);
-    for (int d = 0; d < Dim; ++d) x[d] += from[d] + place[d] - at[d];  // from the node
+    for (int d = 0; d < Dim; ++d) x[d] += from_node(d, from[d] + place[d] - at[d]);
     auto domain = half_length_of(source, p);
     if constexpr (requires { domain.axis_x; }) domain.axis_x = -at[0];
     Vector<T, k_slopes_of<Source>> grad;
@@ -89,8 +100,8 @@ struct GatherByNode {
   }
 };
 
-template <class Source>
-void gather_by_node(const Interpolation<Source>& it) {
+template <bool Periodic, class Source>
+void gather(const Interpolation<Source>& it) {
   // Neighbouring nodes ask for the same particles, and the caches of a GPU hold those of so many threads
   // only.
   constexpr int k_share_of_threads = 40;  // %
@@ -98,8 +109,16 @@ void gather_by_node(const Interpolation<Source>& it) {
   Kokkos::parallel_for(
       "mpm::gather_by_node",
       light(Kokkos::Experimental::prefer(nodes, Kokkos::Experimental::DesiredOccupancy(k_share_of_threads))),
-      GatherByNode<Source>{
+      GatherByNode<Source, Periodic>{
           it.source, {it.grid, it.patches}, it.bins.list_begin, it.bins.list, it.out, it.control});
+}
+
+template <class Source>
+void gather_by_node(const Interpolation<Source>& it) {
+  if (it.grid.is_periodic())
+    gather<true>(it);
+  else
+    gather<false>(it);
 }
 
 #define MPM_STRATEGY gather_by_node

@@ -63,10 +63,18 @@ void particle_to_node(P2G how, const Interpolation<Source>& it) {
   }
 }
 
-/// Number of blocks of `edge` cells along direction d.
+/// Number of blocks of `edge` cells along direction d. Round a period there are as many blocks of one colour
+/// as of the other, of `edge` cells or some more; or there is one.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION int blocks_along(const Grid<T, Dim>& grid, int d, int edge) {
-  return (grid.cells[d] + edge - 1) / edge;
+  if (grid.period[d] == 0) return (grid.cells[d] + edge - 1) / edge;
+  return Kokkos::max(1, grid.cells[d] / (2 * edge) * 2);
+}
+/// First cell of block b of so many along direction d.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION int begin_of_block(const Grid<T, Dim>& grid, int d, int edge, int b, int along) {
+  if (grid.period[d] == 0) return Kokkos::min(b * edge, grid.cells[d]);
+  return static_cast<int>(long(b) * grid.cells[d] / along);
 }
 
 /// Calls f(cell, field) for every cell of the mosaic's block number b; blocks are numbered first direction
@@ -76,8 +84,9 @@ KOKKOS_INLINE_FUNCTION void for_each_cell_of_block(const Grid<T, Dim>& grid, lon
   Coord<Dim> low{}, high{};
   for (int d = 0; d < Dim; ++d) {
     const int along = blocks_along(grid, d, edge);
-    low[d] = static_cast<int>(b % along) * edge;
-    high[d] = Kokkos::min(low[d] + edge, grid.cells[d]);
+    const int block = static_cast<int>(b % along);
+    low[d] = begin_of_block(grid, d, edge, block, along);
+    high[d] = begin_of_block(grid, d, edge, block + 1, along);
     b /= along;
   }
   Coord<Dim> c = low;

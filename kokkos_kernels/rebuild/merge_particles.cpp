@@ -83,7 +83,8 @@ struct MergeInCell {
     const Coord<Dim> from = cell_of(grid, address(p)), to = cell_of(grid, address(q));
     Vector<double, Dim> way;
     for (int d = 0; d < Dim; ++d)
-      way[d] = to[d] - from[d] + (double(soil.coordinate(q)[d]) - double(soil.coordinate(p)[d]));
+      way[d] =
+          grid.shortest(d, to[d] - from[d] + (double(soil.coordinate(q)[d]) - double(soil.coordinate(p)[d])));
     return way;
   }
   /// The moments of both domains about their centre of mass.
@@ -118,10 +119,8 @@ struct MergeInCell {
     const DomainMoments<double, Dim> m = common_domain(p, q);
     Vector<double, Dim> way = between(p, q);
     for (int d = 0; d < Dim; ++d) way[d] *= b;
-    long to = address(p);
-    Vector<T, Dim> x = soil.coordinate(p);
-    if (shift(grid, way, to, x))
-      address(p) = to, soil.coordinate(p) = x;  // both are in the mesh, and so is this
+    Placed<T, Dim> middle{address(p), soil.coordinate(p)};
+    if (shift(grid, way, middle)) put(soil, address, p, middle);  // both are in the mesh, and so is this
     double square = 0;
     Vector<T, Dim> v;
     for (int d = 0; d < Dim; ++d) {

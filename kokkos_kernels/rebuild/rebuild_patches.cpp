@@ -12,15 +12,23 @@ namespace mpm {
 namespace {
 
 /// Number in the whole grid of the k-th patch round the one of a field with lower cell `at`, -1 where there
-/// is none.
+/// is none. Round one at a periodic side are those at the opposite one.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION long patch_around(const Grid<T, Dim>& grid, Coord<Dim> at, int field, int k) {
   for (int d = 0; d < Dim; ++d, k /= 3) {
-    at[d] += (k % 3 - 1) * Patch<Dim>::edge;
+    at[d] = grid.in_period(d, at[d] + (k % 3 - 1) * Patch<Dim>::edge);
     const int patch = (at[d] >> Patch<Dim>::log_edge) + 1;
     if (patch < 0 || patch >= grid.patches[d]) return -1;
   }
   return grid.patch_of(at, field);
+}
+
+/// Whether a patch lies beyond a periodic side, where another one stands for it.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool is_beyond_period(const Grid<T, Dim>& grid, const Coord<Dim>& at) {
+  bool beyond = false;
+  for (int d = 0; d < Dim; ++d) beyond |= grid.in_period(d, at[d]) != at[d];
+  return beyond;
 }
 
 /// The directions, that with the fewest patches first.
@@ -110,6 +118,7 @@ void locate_rigids(State<Space, T, Dim>& s) {
             c[d] = static_cast<int>(Kokkos::floor(x[d]));
             x_p(p)[d] = static_cast<T>(x[d] - Kokkos::floor(x[d]));
             position[d] = x[d] * spacing;
+            if (grid.period[d] > 0) c[d] = grid.in_period(d, c[d] % grid.period[d]);
           }
           if (!grid.holds(c))
             return report(control, FaultKind::outside, -1 - static_cast<int>(r), position, Dim);
@@ -145,6 +154,10 @@ void locate(State<Space, T, Dim>& s) {
           c[d] += from[d] + static_cast<int>(whole);
           x[d] -= whole;
           if (x[d] >= 1) x[d] = 0, ++c[d];  // -tiny + 1 rounds to 1
+          const int passed = c[d] - grid.in_period(d, c[d]);
+          if (passed == 0) continue;
+          soil.periods(p)[d] += passed > 0 ? 1 : -1;
+          c[d] -= passed;
         }
         const T size = bounded_volume(soil, p, T(spacing));
         bool leaves = removes && (is_alone(alone, cell) || size <= least || size >= most);
@@ -171,13 +184,15 @@ void activate_patches(State<Space, T, Dim>& s) {
   for (const auto& set : s.rigid_points) mark_rigid(s, set, marks);
 
   const Coord<Dim> turn = patches.turn = shortest_first(grid);
+  patches.wraps = grid.is_periodic();
   Kokkos::parallel_scan(
       "mpm::number_patches", Range(s.space, 0, patch_count),
       KOKKOS_LAMBDA(int n, int& slot, bool last) {
         const int field = grid.field_of(n);
         const Coord<Dim> at = origin_in_turn(grid, turn, n - field * grid.patches_of_field());
         bool active = false;
-        for (int k = 0; k < Patch<Dim>::neighbours && !active; ++k) {
+        const int around = is_beyond_period(grid, at) ? 0 : Patch<Dim>::neighbours;
+        for (int k = 0; k < around && !active; ++k) {
           const long other = patch_around(grid, at, field, k);
           active = other >= 0 && marks(other) != 0;
         }

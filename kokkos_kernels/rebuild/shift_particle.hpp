@@ -34,23 +34,43 @@ KOKKOS_INLINE_FUNCTION Coord<Dim> cell_of(const Grid<T, Dim>& grid, long address
   return cell;
 }
 
-/// Brings a particle from the cell of `address` by `offset` [cells]. False, and nothing is changed, where
-/// that is outside the mesh.
+/// Where a particle is between locate() and the sort.
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION bool shift(const Grid<T, Dim>& grid, const Vector<double, Dim>& offset, long& address,
-                                  Vector<T, Dim>& x) {
-  Coord<Dim> cell = cell_of(grid, address);
+struct Placed {
+  long address;         // Grid::address_of its cell
+  Vector<T, Dim> x;     // cells, in the cell
+  Coord<Dim> passed{};  // periodic sides, since: upper ones less lower ones
+};
+
+/// Brings a particle by `offset` [cells], less than one. False, and nothing is changed, where that is outside
+/// the mesh.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool shift(const Grid<T, Dim>& grid, const Vector<double, Dim>& offset,
+                                  Placed<T, Dim>& place) {
+  Coord<Dim> cell = cell_of(grid, place.address), passed{};
   Vector<T, Dim> at;
   for (int d = 0; d < Dim; ++d) {
-    const T moved = static_cast<T>(x[d] + offset[d]), whole = Kokkos::floor(moved);
+    const T moved = static_cast<T>(place.x[d] + offset[d]), whole = Kokkos::floor(moved);
     cell[d] += static_cast<int>(whole);
     at[d] = moved - whole;
     if (at[d] >= 1) at[d] = 0, ++cell[d];  // -tiny + 1 rounds to 1
+    const int inside = grid.in_period(d, cell[d]);
+    passed[d] = cell[d] > inside ? 1 : cell[d] < inside ? -1 : 0;
+    cell[d] = inside;
   }
   if (!grid.holds(cell)) return false;
-  address = grid.address_of(cell, grid.field_of(address / Patch<Dim>::cells));
-  x = at;
+  const int field = grid.field_of(place.address / Patch<Dim>::cells);
+  place = {grid.address_of(cell, field), at, passed};
   return true;
+}
+
+/// Puts particle p where shift() has brought it.
+template <class Soil_, class Address, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void put(const Soil_& soil, const Address& address, int p,
+                                const Placed<T, Dim>& place) {
+  address(p) = place.address;
+  soil.coordinate(p) = place.x;
+  for (int d = 0; d < Dim && soil.has_periods; ++d) soil.periods(p)[d] += place.passed[d];
 }
 
 }  // namespace mpm

@@ -100,11 +100,9 @@ struct Split {
     constexpr int k_tries = 4;
     for (int n = 0; n < k_tries; ++n) {
       for (int d = 0; d < Dim; ++d) back[d] = -offset[d];
-      long here = address(p), there = address(p);
-      Vector<T, Dim> x = soil.coordinate(p), y = x;
-      if (shift(grid, offset, there, y) && shift(grid, back, here, x)) {
-        soil.coordinate(p) = x, soil.coordinate(other) = y;
-        address(p) = here, address(other) = there;
+      Placed<T, Dim> here{address(p), soil.coordinate(p)}, there = here;
+      if (shift(grid, offset, there) && shift(grid, back, here)) {
+        put(soil, address, p, here), put(soil, address, other, there);
         return;
       }
       for (int d = 0; d < Dim; ++d) offset[d] /= 2;

@@ -64,14 +64,23 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
   if (soil.has_domain) spread(soil.domain, Dim, fields.half_length, half_length);
   if (soil.splits) spread(soil.ancestor, 1, fields.ancestor, whole);
 
+  if (soil.has_periods) spread(soil.periods, Dim, fields.periods, part);
+
   const auto x_p = host_of(soil.coordinate);
   const auto cell = host_of(soil.cell);
   const auto origin = Kokkos::create_mirror_view_and_copy(
       Kokkos::HostSpace(), Kokkos::subview(s.patches.origin, Kokkos::make_pair(0, s.patches.slots)));
   for (const int p : by_id) {
     const Coord<Dim> from = origin(cell(p) / Patch<Dim>::cells), in = coord_of<Dim>(cell(p));
-    for (int d = 0; d < Dim; ++d)
-      fields.position.push_back((double(from[d] + in[d]) + double(x_p(p)[d])) * s.spacing);
+    for (int d = 0; d < Dim; ++d) {
+      double cells = double(from[d] + in[d]) + double(x_p(p)[d]);
+      if (const int period = s.grid.period[d]; period > 0 && (cells < 0 || cells >= period)) {
+        const int way = cells < 0 ? 1 : -1;  // back into the mesh
+        cells += way * period;
+        fields.periods[fields.position.size()] -= way;
+      }
+      fields.position.push_back(cells * s.spacing);
+    }
   }
   return fields;
 }

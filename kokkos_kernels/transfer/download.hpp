@@ -19,6 +19,7 @@ struct SoilFields {
   std::vector<double> mass;                  // kg
   std::vector<double> half_length;           // m [Dim N], where domains stretch
   std::vector<double> ancestor;              // ids, where particles split
+  std::vector<double> periods;               // [Dim N], Soil::periods of these positions
 };
 /// The order in which particles come to the host: by body, and by id in a body.
 template <class Space, class T, int Dim>

@@ -33,17 +33,29 @@ struct Sum {
   }
 };
 
-/// Where particles are, m from the mesh's lower corner.
+/// Where particles are, m from the mesh's lower corner. Those that have passed a periodic side since the last
+/// rebuild are within the mesh again.
 template <class Space, class T, int Dim>
 struct Positions {
   Soil<Space, T, Dim> soil;
   Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  double spacing;  // m
+  double spacing;     // m
+  Coord<Dim> period;  // Grid::period
 
   KOKKOS_INLINE_FUNCTION double operator()(int p, int d) const {
+    const double cells = in_cells(p, d);
+    return (cells + (cells < 0 ? period[d] : cells >= period[d] ? -period[d] : 0)) * spacing;
+  }
+  /// Where it would be had it passed no periodic side.
+  KOKKOS_INLINE_FUNCTION double on_its_way(int p, int d) const {
+    const double passed = soil.has_periods ? double(soil.periods(p)[d]) * period[d] : 0;
+    return (in_cells(p, d) + passed) * spacing;
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION double in_cells(int p, int d) const {
     const int cell = soil.cell(p);
-    return (double(origin(cell / Patch<Dim>::cells)[d]) + coord_of<Dim>(cell)[d] + soil.coordinate(p)[d]) *
-           spacing;
+    return double(origin(cell / Patch<Dim>::cells)[d]) + coord_of<Dim>(cell)[d] + soil.coordinate(p)[d];
   }
 };
 
@@ -108,7 +120,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   // adds pair by pair.
   constexpr int together = is_device<Space> ? 1 : 256;
   const auto soil = s.soil.points;
-  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
+  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing, s.grid.period};
   const int count = soil.count;
   const auto alone = s.strays.alone;
   const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
@@ -129,7 +141,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
             own.m.lower[d] = Kokkos::fmin(own.m.lower[d], x);
             own.m.upper[d] = Kokkos::fmax(own.m.upper[d], x);
             own.m.momentum[d] += mass * v;
-            own.m.centre[d] += weight * x;
+            own.m.centre[d] += weight * position.on_its_way(p, d);
             own.m.kinetic_energy += mass * v * v / 2;
           }
           own.m.mass += mass, own.m.weight += weight;
@@ -192,7 +204,7 @@ template <class Space, class T, int Dim>
 double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
                          const OverRanks& over) {
   const auto soil = s.soil.points;
-  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
+  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing, s.grid.period};
   const Ruler ruler(m.lower[d], m.upper[d]);
   const Kokkos::RangePolicy<Space> range(s.space, 0, soil.count);
   const Kokkos::View<int*, typename Space::memory_space> counts("mpm::ranked_coordinate", 1 << Ruler::digit);

@@ -26,7 +26,7 @@ void fill_view(View& view, const std::string& label, int count, Get&& get) {
 }
 
 /// Cell and coordinate in it of positions [m from the mesh's lower corner]; those outside the mesh are a
-/// fault. field_of(p): velocity field of point p.
+/// fault, but on a periodic side, which is the opposite one. field_of(p): velocity field of point p.
 template <class Space, class T, int Dim, class Points_, class Field>
 void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<double>& position,
                   const Field& field_of, ParticleSet<Space, Points_>& set, Fault& fault) {
@@ -40,6 +40,7 @@ void place_points(const Grid<T, Dim>& grid, double spacing, const std::vector<do
       c[d] = static_cast<int>(std::floor(x));
       coordinate[p][d] = static_cast<T>(x - c[d]);
       if (coordinate[p][d] >= 1) coordinate[p][d] = 0, ++c[d];  // 1 - tiny rounds to 1 in T
+      c[d] = grid.in_period(d, c[d]);
     }
     if (!grid.holds(c) && fault.kind == FaultKind::none) {
       fault.kind = FaultKind::outside;
@@ -178,6 +179,8 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       limit_domain<T>(domain);
       return domain;
     });
+  if (soil.has_periods)
+    fill_view(soil.periods, "mpm::periods", soil.count, [](int) { return filled<T, Dim>(0); });
   if (soil.splits)
     fill_view(soil.ancestor, "mpm::ancestor", soil.count, [&](int p) { return double(id_of(p)); });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
@@ -203,6 +206,8 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
 template <class Space, class T, int Dim>
 void upload_affine(State<Space, T, Dim>& s, const std::vector<BodyInput>& bodies) {
   std::vector<double> gradient;
+  std::array<int, 3> period{};
+  for (int d = 0; d < Dim; ++d) period[d] = s.grid.period[d];
   for (const BodyInput& body : bodies) {
     std::vector<double> cells = body.position;
     for (double& x : cells) x /= s.spacing;
@@ -211,7 +216,8 @@ void upload_affine(State<Space, T, Dim>& s, const std::vector<BodyInput>& bodies
     else if (body.particle_velocity.empty())
       gradient.resize(gradient.size() + cells.size() * Dim);
     else
-      for (const double g : velocity_gradients(cells, body.particle_velocity, Dim)) gradient.push_back(g);
+      for (const double g : velocity_gradients(cells, body.particle_velocity, Dim, period))
+        gradient.push_back(g);
   }
   fill_view(s.soil.points.affine, "mpm::affine", s.soil.points.count, [&](int p) {
     Matrix<T, Dim> c;
@@ -305,8 +311,11 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   for (int d = 0; d < Dim; ++d) {
     s.grid.cells[d] = grid.cells[d];
     s.grid.patches[d] = grid.patches[d];
-    for (int side = 0; side < 2; ++side) s.grid.wall[d][side] = grid.walls[d][side];
+    const bool periodic = grid.walls[d][0] == Wall::periodic;
+    s.grid.period[d] = periodic ? grid.cells[d] : 0;
+    for (int side = 0; side < 2; ++side) s.grid.wall[d][side] = periodic ? Wall::free : grid.walls[d][side];
   }
+  s.soil.points.has_periods = s.grid.is_periodic();
   s.spacing = grid.spacing;
   Fault fault{};
   s.mass_cut = std::numeric_limits<double>::max();

@@ -40,8 +40,16 @@ Square solve(Square M, Square R, int dim) {
 }  // namespace
 
 std::vector<double> velocity_gradients(const std::vector<double>& position,
-                                       const std::vector<double>& velocity, int dim) {
+                                       const std::vector<double>& velocity, int dim,
+                                       const std::array<int, 3>& period) {
   const std::size_t count = position.size() / dim;
+  const auto in_period = [&](int d, int at) {
+    return period[d] == 0 || (at >= 0 && at < period[d]) ? at : at < 0 ? at + period[d] : at - period[d];
+  };
+  const auto way = [&](std::size_t p, std::size_t q, int d) {
+    const double to = position[q * dim + d] - position[p * dim + d];
+    return period[d] == 0 ? to : to - period[d] * std::round(to / period[d]);
+  };
   const auto cell_of = [&](std::size_t p) {
     Cell c{};
     for (int d = 0; d < dim; ++d) c[d] = static_cast<int>(std::floor(position[p * dim + d]));
@@ -56,14 +64,14 @@ std::vector<double> velocity_gradients(const std::vector<double>& position,
     Square M{}, R{};
     const Cell own = cell_of(p);
     for (int n = 0; n < (dim == 3 ? 27 : 9); ++n) {
-      const auto found =
-          in.find({own[0] + n % 3 - 1, own[1] + n / 3 % 3 - 1, own[2] + (dim == 3 ? n / 9 - 1 : 0)});
+      const auto found = in.find({in_period(0, own[0] + n % 3 - 1), in_period(1, own[1] + n / 3 % 3 - 1),
+                                  in_period(2, own[2] + (dim == 3 ? n / 9 - 1 : 0))});
       if (found == in.end()) continue;
       for (const std::size_t q : found->second)
         for (int e = 0; e < dim; ++e) {
-          const double r = position[q * dim + e] - position[p * dim + e];
+          const double r = way(p, q, e);
           for (int d = 0; d < dim; ++d) {
-            M[d][e] += (position[q * dim + d] - position[p * dim + d]) * r;
+            M[d][e] += way(p, q, d) * r;
             R[d][e] += (velocity[q * dim + d] - velocity[p * dim + d]) * r;
           }
         }

@@ -102,8 +102,10 @@ Comparison compare_options(const Checkpoint& checkpoint, const std::vector<Effec
     if (may_change(option.name) || (former == nullptr && option.standard)) continue;
     if (former != nullptr && same_value(former->value, option.value)) continue;
     if (former != nullptr && former->standard && option.standard && follows_others(option.name)) continue;
-    if (is_allowed(option.name))
-      found.changes.push_back({option.name, former == nullptr ? "none" : former->value, option.value});
+    const std::string before = former == nullptr ? "none" : former->value;
+    const bool turns_periodic = before == "periodic" || option.value == "periodic";  // a side stays so
+    if (is_allowed(option.name) && !turns_periodic)
+      found.changes.push_back({option.name, before, option.value});
     else
       found.lines.push_back("mpm: " + option.name + ": " + (option.standard ? "default" : "given") + " \"" +
                             option.value + "\", takes " +

@@ -18,6 +18,11 @@ bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh);
 void read_sides(OptionReader& in, Config& config);
 /// Rejects absorbing sides where a material does not tell the speed of its shear waves.
 void check_absorbing(OptionReader& in, const Config& config);
+/// Checks what a periodic mesh takes: weight of water across it alone, and rigids that do not end beside its
+/// periodic sides.
+void check_periodic(OptionReader& in, const Config& config);
+/// Checks that the sides that are periodic are those of another stage.
+void check_periodic_kept(OptionReader& in, int dim, const MeshConfig& first, const MeshConfig& mesh);
 
 /// The options of one material of a run: its density, its model and the model's own tables of parameters and
 /// texts. A null mesh is unsound.

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "base/patch_edge.hpp"
 #include "common/text.hpp"
 #include "input/groups.hpp"
 
@@ -10,11 +11,9 @@ constexpr double k_furthest = 4e9;        // cells from the origin: round-off is
 constexpr double k_most_cells = 1 << 30;  // in a direction, so that cells and nodes count in an int
 
 void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
-  static const std::vector<std::pair<std::string, Wall>> words = {{"roller", Wall::roller},
-                                                                  {"fixed", Wall::fixed},
-                                                                  {"free", Wall::free},
-                                                                  {"friction", Wall::friction},
-                                                                  {"absorbing", Wall::absorbing}};
+  static const std::vector<std::pair<std::string, Wall>> words = {
+      {"roller", Wall::roller},     {"fixed", Wall::fixed},         {"free", Wall::free},
+      {"friction", Wall::friction}, {"absorbing", Wall::absorbing}, {"periodic", Wall::periodic}};
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
       const std::string name = side_option(d, side);
@@ -25,9 +24,32 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
       in.word(
           {.name = name,
            .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no velocity "
-                      "into it, and friction along it; dashpots that absorb waves"},
+                      "into it, and friction along it; dashpots that absorb waves; the opposite side, which "
+                      "is periodic too"},
           words, mesh.walls[d][side]);
     }
+}
+
+/// Periodic sides come in pairs, whole patches apart.
+bool check_periodic(OptionReader& in, int dim, const MeshConfig& mesh) {
+  const int edge = patch_edge(dim);
+  bool sound = true;
+  for (int d = 0; d < dim; ++d) {
+    const bool is[2] = {mesh.walls[d][0] == Wall::periodic, mesh.walls[d][1] == Wall::periodic};
+    const int cells = mesh.cells[d], rest = cells % edge;
+    if (is[0] != is[1]) {
+      in.reject(side_option(d, is[0] ? 1 : 0), "periodic, as -" + side_option(d, is[0] ? 0 : 1) + " is");
+    } else if (is[0] && rest != 0) {
+      const std::string fewer = cells > edge ? std::to_string(cells - rest) + " or " : "";
+      in.reject(side_option(d, 0),
+                "periodic in a mesh of a multiple of " + std::to_string(edge) + " cells along " + "xyz"[d] +
+                    ": of " + fewer + std::to_string(cells - rest + edge) + ", not " + std::to_string(cells));
+    } else {
+      continue;
+    }
+    sound = false;
+  }
+  return sound;
 }
 
 bool count_cells(OptionReader& in, int dim, MeshConfig& mesh) {
@@ -85,7 +107,7 @@ bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh) {
             mesh.spacing);
   const bool sound = !in.listing() && in.errors() == errors && count_cells(in, dim, mesh);
   read_walls(in, dim, mesh);
-  return sound;
+  return sound && check_periodic(in, dim, mesh);
 }
 
 }  // namespace mpm

@@ -365,6 +365,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
     in.reject("output_energy", "off where -device_memory_limit sends the soil in batches");
   read_named(in, sound ? &config.mesh : nullptr, config);
   if (sound) check_absorbing(in, config);
+  if (sound && in.errors() == errors) check_periodic(in, config);
   check_revolution(in, config);
   limit_courant(in, config);
   const auto named_nodes = [](const auto& thing) { return thing.name == k_nodes; };
@@ -389,6 +390,7 @@ void read_stages(OptionReader& in, const std::vector<Backend>& backends,
     input.config.stage = {.name = name, .number = static_cast<int>(report.stages.size())};
     OptionReader reader = in.for_stage(name, names, of_stage);
     read_all(reader, backends, report.options_file, input.config);
+    check_periodic_kept(reader, input.config.dim, report.stages.front().config.mesh, input.config.mesh);
     input.options = std::move(of_stage.options);
     for (const std::string& key : reader.of_stage())
       report.stage_options.push_back({"-" + name + "_" + key, reader.given_text(key), "", false});

@@ -104,7 +104,8 @@ bool read_attribute(hid_t file, const char* name, hid_t type, Number* number) {
 }
 
 /// Between two rebuilds of its lists a run may have a particle up to half a cell outside the mesh, which the
-/// next one puts back to a wall or lets go. Such particles come to the side of the mesh; how many did.
+/// next one puts back to a wall or lets go. Such particles come to the side of the mesh; how many did. Those
+/// that have passed a periodic side come to where they are within the mesh.
 long put_inside(const MeshConfig& mesh, int dim, std::vector<double>& position) {
   constexpr double k_furthest = 0.5, k_inside = 1e-6;  // cells; inside in single precision too
   long count = 0;
@@ -115,6 +116,11 @@ long put_inside(const MeshConfig& mesh, int dim, std::vector<double>& position) 
       const double cells = (x - mesh.lower[d]) / mesh.spacing, last = mesh.cells[d] - k_inside;
       if (cells >= 0 && std::floor(cells) < mesh.cells[d]) continue;
       if (cells < -k_furthest || cells > mesh.cells[d] + k_furthest) continue;
+      if (is_periodic(mesh, d)) {
+        x += (cells < 0 ? 1 : -1) * (mesh.upper[d] - mesh.lower[d]);
+        x = std::clamp(x, mesh.lower[d], mesh.lower[d] + last * mesh.spacing);
+        continue;
+      }
       x = mesh.lower[d] + (cells < 0 ? k_inside : last) * mesh.spacing;
       moved = true;
     }

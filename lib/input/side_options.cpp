@@ -75,13 +75,13 @@ void read_side(OptionReader& in, const Config& config, int d, int side, SideConf
   const auto known = in.known().size();
   if (kind == Wall::friction || in.listing()) read_friction(in, name, to);
   if (kind == Wall::absorbing || in.listing()) read_absorbing(in, name, to);
-  if (kind != Wall::free || in.listing()) read_velocity(in, name, config.dim, config.time.end, to);
+  if (!is_open(kind) || in.listing()) read_velocity(in, name, config.dim, config.time.end, to);
   if (in.listing()) return;
-  static constexpr const char* k_words[] = {"roller", "fixed", "free", "friction", "absorbing"};
+  const std::string word = in.given_text(name);
   const auto& all = in.known();
   for (const char* key : k_keys)
     if (std::find(all.begin() + static_cast<long>(known), all.end(), name + key) == all.end())
-      in.not_taken(name + key, "-" + name + " is " + k_words[static_cast<int>(kind)]);
+      in.not_taken(name + key, "-" + name + " is " + (word.empty() ? "roller" : lower_case(word)));
   if (kind == Wall::roller) check_roller(in, name, config.dim, d, to);
 }
 

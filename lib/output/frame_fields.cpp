@@ -34,6 +34,9 @@ const std::vector<Field>& frame_fields() {
                           {"half_length_x", "m", 1, Of::bodies, nullptr},
                           {"half_length_y", "m", 1, Of::bodies, nullptr},
                           {"half_length_z", "m", 1, Of::bodies, nullptr},
+                          {"periods_x", "-", 1, Of::bodies, nullptr},
+                          {"periods_y", "-", 1, Of::bodies, nullptr},
+                          {"periods_z", "-", 1, Of::bodies, nullptr},
                           {"mass", "kg", 1, Of::bodies_and_nodes, &ParticleSnapshot::mass},
                           {"reference_height", "m", 1, Of::bodies, &ParticleSnapshot::reference_height},
                           {"number", "-", 1, Of::nodes, &ParticleSnapshot::number}};

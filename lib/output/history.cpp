@@ -46,7 +46,7 @@ template <class F>
 void for_each_wall(const Config& config, F&& f) {
   for (int d = 0; d < config.dim; ++d)
     for (int side = 0; side < 2; ++side)
-      if (config.mesh.walls[d][side] != Wall::free) f(d, side);
+      if (!is_open(config.mesh.walls[d][side])) f(d, side);
 }
 
 }  // namespace

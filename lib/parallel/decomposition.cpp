@@ -28,7 +28,8 @@ PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm comm, const Partitio
   owners_ = owners;
   clock_ = WorkClock(is_device<Space>);
   grid_.dim = Dim;
-  for (int d = 0; d < Dim; ++d) grid_.patches[d] = s.grid.patches[d];
+  for (int d = 0; d < Dim; ++d)
+    grid_.patches[d] = s.grid.patches[d], grid_.periodic[d] = s.grid.period[d] > 0;
   grid_.fields = s.grid.fields;
   seen_ = decltype(seen_)("mpm::seen");
   PetscCall(transport_.start(comm, config.halo_path));

@@ -116,7 +116,10 @@ void take_gradients(const Config& config, BodyParticles& body) {
   if (!body.velocity_gradient.empty()) return;  // a checkpoint tells them
   std::vector<double> cells = body.position;
   for (double& x : cells) x /= config.mesh.spacing;
-  body.velocity_gradient = velocity_gradients(cells, body.velocity, config.dim);
+  std::array<int, 3> period{};
+  for (int d = 0; d < config.dim; ++d)
+    if (is_periodic(config.mesh, d)) period[d] = config.mesh.cells[d];
+  body.velocity_gradient = velocity_gradients(cells, body.velocity, config.dim, period);
 }
 
 }  // namespace
@@ -125,7 +128,8 @@ PetscErrorCode distribute(MPI_Comm comm, const Config& config, const BackgroundM
   PetscFunctionBeginUser;
   const int dim = config.dim;
   const double spacing = config.mesh.spacing;
-  const PatchGrid grid{dim, model->patches};
+  PatchGrid grid{dim, model->patches};
+  for (int d = 0; d < dim; ++d) grid.periodic[d] = is_periodic(config.mesh, d);
   for (BodyParticles& body : model->bodies) body.total = static_cast<long>(body.position.size()) / dim;
   if (size_of(comm) == 1) PetscFunctionReturn(PETSC_SUCCESS);
 

@@ -36,10 +36,10 @@ class Planner {
   Planner(const PatchGrid& grid, const Owners& owners, const std::vector<std::uint8_t>& occupied, int own)
       : grid_(grid), owners_(owners), occupied_(occupied), own_(own) {
     for (int k = 0; k < 27; ++k) masks_[k] = reached_from({k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}, grid.dim);
-    const long inside = grid.number({1, 1, grid.dim == 3 ? 1 : 0});
-    grid.for_each_around(inside, [&](long other, const std::array<int, 3>& offset) {
-      around_.push_back({other - inside, mask_of(offset)});
-    });
+    const int deep = grid.dim == 3;
+    for (int z = -deep; z <= deep; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) around_.push_back({grid.number({x, y, z}), mask_of({x, y, z})});
   }
 
   /// Adds a slot of patch n.
@@ -75,11 +75,14 @@ class Planner {
     return masks_[(offset[2] + 1) * 9 + (offset[1] + 1) * 3 + offset[0] + 1];
   }
 
-  /// Whether all patches round n are in the grid.
+  /// Whether all patches round n are in the grid, and where their numbers tell.
   bool inside(long n) const {
     const std::array<int, 3> at = grid_.place(grid_.in_first_field(n));
     bool in = true;
-    for (int d = 0; d < grid_.dim; ++d) in = in && at[d] > 0 && at[d] < grid_.patches[d] - 1;
+    for (int d = 0; d < grid_.dim; ++d) {
+      const int ring = grid_.periodic[d] ? 1 : 0;  // at a periodic side, patches round n are far away
+      in = in && at[d] > ring && at[d] < grid_.patches[d] - 1 - ring;
+    }
     return in;
   }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <queue>
 
@@ -42,11 +43,14 @@ Graph graph_of(const PatchGrid& grid, const Loads& loads) {
   graph.begin = {0};
   for (const long n : graph.patch) {
     graph.weight.push_back(std::max<idx_t>(1, static_cast<idx_t>(std::lround(scale * loads[n]))));
+    std::map<long, idx_t> shared;  // with each patch round n, which may be there several times
     grid.for_each_around(n, [&](long other, const std::array<int, 3>& offset) {
-      if (other == n || vertex[other] < 0) return;
-      graph.neighbour.push_back(vertex[other]);
-      graph.shared_nodes.push_back(shared_nodes(offset, grid.dim));
+      if (other != n && vertex[other] >= 0) shared[other] += shared_nodes(offset, grid.dim);
     });
+    for (const auto& [other, nodes] : shared) {
+      graph.neighbour.push_back(vertex[other]);
+      graph.shared_nodes.push_back(nodes);
+    }
     graph.begin.push_back(static_cast<idx_t>(graph.neighbour.size()));
   }
   return graph;
@@ -131,6 +135,8 @@ void spread(const PatchGrid& grid, Owners& owners) {
       front.push(other);
     });
   }
+  for (std::size_t n = 0; n < owners.size(); ++n)  // beyond periodic sides
+    if (owners[n] < 0) owners[n] = owners[grid.number(grid.in_period(grid.place(static_cast<long>(n))))];
 }
 
 }  // namespace

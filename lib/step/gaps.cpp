@@ -16,7 +16,9 @@ enum class Holds { nothing, soil, rigid, outside };
 template <int Dim>
 class CellTable {
  public:
-  CellTable(const std::vector<FilledPatch>& patches, const std::array<int, 3>& cells) {
+  CellTable(const std::vector<FilledPatch>& patches, const std::array<int, 3>& cells,
+            const std::array<bool, 3>& periodic) {
+    for (int d = 0; d < Dim; ++d) grid_.period[d] = periodic[d] ? cells[d] : 0;
     for (int d = 0; d < Dim; ++d) grid_.cells[d] = cells[d];
     for (int d = 0; d < Dim; ++d) grid_.patches[d] = (cells[d] + Patch<Dim>::edge - 1) / Patch<Dim>::edge + 2;
     for (const FilledPatch& patch : patches) {
@@ -41,7 +43,8 @@ class CellTable {
   }
 
  private:
-  Holds at(const Coord<Dim>& c) const {
+  Holds at(Coord<Dim> c) const {
+    for (int d = 0; d < Dim; ++d) c[d] = grid_.in_period(d, c[d]);
     if (!grid_.holds(c)) return Holds::outside;
     const auto found = table_.find(grid_.patch_of(c));
     if (found == table_.end()) return Holds::nothing;
@@ -86,8 +89,9 @@ class CellTable {
 }  // namespace
 
 template <int Dim>
-Gaps count_gaps(const std::vector<FilledPatch>& patches, const std::array<int, 3>& cells) {
-  return CellTable<Dim>(patches, cells).count();
+Gaps count_gaps(const std::vector<FilledPatch>& patches, const std::array<int, 3>& cells,
+                const std::array<bool, 3>& periodic) {
+  return CellTable<Dim>(patches, cells, periodic).count();
 }
 
 PetscErrorCode gather_patches(MPI_Comm comm, std::vector<FilledPatch>* patches) {
@@ -102,7 +106,9 @@ PetscErrorCode gather_patches(MPI_Comm comm, std::vector<FilledPatch>* patches) 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-template Gaps count_gaps<2>(const std::vector<FilledPatch>&, const std::array<int, 3>&);
-template Gaps count_gaps<3>(const std::vector<FilledPatch>&, const std::array<int, 3>&);
+template Gaps count_gaps<2>(const std::vector<FilledPatch>&, const std::array<int, 3>&,
+                            const std::array<bool, 3>&);
+template Gaps count_gaps<3>(const std::vector<FilledPatch>&, const std::array<int, 3>&,
+                            const std::array<bool, 3>&);
 
 }  // namespace mpm

@@ -78,8 +78,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::count_cells(HistoryRow* row) const {
   std::vector<FilledPatch> patches = filled_cells(state_);
   if (ranks_) PetscCall(gather_patches(comm_, &patches));
   std::array<int, 3> cells{1, 1, 1};
-  for (int d = 0; d < Dim; ++d) cells[d] = config_.mesh.cells[d];
-  const Gaps gaps = count_gaps<Dim>(patches, cells);
+  std::array<bool, 3> periodic{};
+  for (int d = 0; d < Dim; ++d) cells[d] = config_.mesh.cells[d], periodic[d] = is_periodic(config_.mesh, d);
+  const Gaps gaps = count_gaps<Dim>(patches, cells, periodic);
   row->filled_cells = gaps.filled, row->empty_cells = gaps.empty;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -155,6 +155,19 @@ void add_half_lengths(const SoilFields& soil, std::size_t from, std::size_t to, 
   }
 }
 
+/// Along periodic directions, how many lengths of the mesh the particles [from, to) have gone beyond it.
+template <int Dim>
+void add_periods(const MeshConfig& mesh, const SoilFields& soil, std::size_t from, std::size_t to,
+                 ParticleSnapshot* body) {
+  static constexpr const char* names[] = {"periods_x", "periods_y", "periods_z"};
+  for (int d = 0; d < Dim; ++d) {
+    if (!is_periodic(mesh, d)) continue;
+    StateField field{names[d], {}};
+    for (std::size_t p = from; p < to; ++p) field.values.push_back(soil.periods[p * Dim + d]);
+    body->state.push_back(std::move(field));
+  }
+}
+
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
   PetscFunctionBeginUser;
@@ -196,6 +209,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     body.state = state_fields(variables, body.own_parameter, soil, from, to);
     if (has_pore_pressure(config_))  // of all bodies, so that pictures may show them
       add_pore_pressures<Dim>(config_, soil, state_.soil.points.history.pore, from, to, &body);
+    add_periods<Dim>(config_.mesh, soil, from, to, &body);
     if (state_.soil.points.has_domain) add_half_lengths<Dim>(soil, from, to, &body);
     body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
     body.reference_height.assign(height.begin() + from, height.begin() + to);

@@ -1,6 +1,7 @@
 #pragma once
 // The strategy `tile` on a processor: how the sums of the patches come to the nodes.
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -50,6 +51,19 @@ struct NodesOfWindows {
     const int last = last_around<Dim>(patches.neighbours, slot);
     if (const Window* const from = last < 0 ? nullptr : window_of(last)) fetch(from, sizeof *from);
   }
+  using Places = std::array<int, Patch<Dim>::neighbours>;
+  /// The places in Patches::neighbours as those there would give to the nodes of a slot one by one. Round a
+  /// period that is as their slots rise, and as the nodes lie in the window of a patch that is several of its
+  /// neighbours; `room` is for these.
+  const Places& places_around(int slot, Places& room) const {
+    if (!patches.wraps) return in_order;
+    room = in_order;
+    std::sort(room.begin(), room.end(), [&](int a, int b) {
+      const int one = patches.neighbours(slot, a), other = patches.neighbours(slot, b);
+      return one != other ? one < other : a > b;
+    });
+    return room;
+  }
   /// What the nodes of a slot have.
   void load(int slot, Rows& sums) const {
     for (int r = 0; r < rows; ++r) load_groups(&out(slot * Patch<Dim>::cells + r * edge, 0), sums[r]);
@@ -68,7 +82,8 @@ struct NodesOfWindows {
       for (auto& row : sums)
         for (Row& sum : row) sum = T(0);
     bool some = false;
-    for (const int place : in_order) {
+    Places room;
+    for (const int place : places_around(slot, room)) {
       const int other = patches.neighbours(slot, place);
       const Window* const window = other < 0 ? nullptr : window_of(other);
       if (!window) continue;

@@ -48,6 +48,13 @@ struct MeshConfig {
   std::array<std::array<SideConfig, 2>, 3> sides{};
 };
 
+/// Whether the mesh repeats itself along a direction.
+inline bool is_periodic(const MeshConfig& mesh, int d) { return mesh.walls[d][0] == Wall::periodic; }
+/// Whether it does along some direction.
+inline bool is_periodic(const MeshConfig& mesh) {
+  return is_periodic(mesh, 0) || is_periodic(mesh, 1) || is_periodic(mesh, 2);
+}
+
 enum class ShapeKind { box, polygon, disc, cylinder, cone, half_plane, stl, layer, particles };
 enum class Fill { centre, cell, cut };
 
