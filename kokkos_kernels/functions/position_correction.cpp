@@ -10,26 +10,45 @@ namespace {
 constexpr double k_flowed = 0.1;           // -, plastic shear strain from which on soil counts as flowing
 constexpr double k_most_diffusion = 0.15;  // -, explicit diffusion of the density stays smooth below
 constexpr double k_surface = 0.8;          // -, a node that is filled less may be at a free surface
+constexpr double k_outside = 0.15;         // -, more of f - a^2/2 is not that of a node beyond a surface
+constexpr double k_most_gap = 0.2;         // -, that counts
 constexpr double k_near_rigid = 1.5;       // cells, from its surface: its nodes are not full of soil
 constexpr double k_reached = 1e-6;         // -, weight below which round-off tells whether a node is reached
 
-/// Volume at a node of a mesh full of soil [cells]: half of it for each wall that the node lies on.
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION T full_volume(const Grid<T, Dim>& grid, const Coord<Dim>& node) {
-  T share = 1;
-  for (int d = 0; d < Dim; ++d) {
-    if (node[d] == 0 && grid.wall[d][0] != Wall::free) share /= 2;
-    if (node[d] == grid.cells[d] && grid.wall[d][1] != Wall::free) share /= 2;
+/// How full a node is, from what particles give it. Beyond a wall the soil goes on as its mirror image.
+template <class Space, class T, int Dim>
+struct CompareVolumes {
+  using B = BoundaryTerms<Dim>;
+  Grid<T, Dim> grid;
+  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
+  Fill<Space, T, Dim> fill;
+  T per_volume, per_area;  // 1/m3, 1/m2
+
+  KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+    const Coord<Dim> node = in_mesh(origin(i / Patch<Dim>::cells), coord_of<Dim>(i));
+    T images = 1, square = 0;
+    bool at_wall[Dim];
+    for (int d = 0; d < Dim; ++d) {
+      at_wall[d] = (node[d] == 0 && grid.wall[d][0] != Wall::free) ||
+                   (node[d] == grid.cells[d] && grid.wall[d][1] != Wall::free);
+      if (at_wall[d]) images *= 2;
+    }
+    for (int d = 0; d < Dim; ++d) {
+      const T a = at_wall[d] ? T(0) : images * per_area * fill(i, B::area + d);
+      square += a * a;
+    }
+    const T f = images * per_volume * fill(i, B::volume), of_surface = square / 2;
+    fill(i, FillTerms<Dim>::filled) = f;
+    fill(i, FillTerms<Dim>::excess) =
+        f - of_surface < T(k_outside) ? T(0) : Kokkos::fmax(T(-k_most_gap), f - 1 + of_surface);
   }
-  return share;
-}
+};
 
 /// What a particle sees of the nodes.
 template <class T, int Dim>
 struct Surroundings {
   T lowest = 1;               // least share of a node that is filled
-  Vector<T, Dim> apart{};     // sum (f_i - 1) grad S, 1/cell
-  Vector<T, Dim> crowded{};   // the same of nodes with f_i > 1
+  Vector<T, Dim> crowded{};   // sum e_i grad S, 1/cell: to where particles crowd
   Vector<T, Dim> inward{};    // sum f_i grad S: away from a free surface
   Matrix<T, Dim> gradient{};  // of the nodes' velocity, m/s a cell
 };
@@ -38,7 +57,7 @@ template <class Space, class T, int Dim>
 struct FindShift {
   Soil<Space, T, Dim> soil;
   NodePlaces<Space, T, Dim> places;
-  NodeField<Space, T, Dim> filled;
+  Fill<Space, T, Dim> fill;
   NodeField<Space, T, SoilTerms<Dim>::size> sums;
   CorrectionVectors<Space, T, Dim> shares, shifts;
   decltype(PositionCorrection<Space>::flow_column) flow_column;
@@ -52,9 +71,9 @@ struct FindShift {
     shares(p) = shifts(p) = Vector<T, Dim>{};
     if (!flows(p) || is_near_rigid(p)) return;
     const Surroundings<T, Dim> near = look_around(p);
-    const T diffusion = static_cast<T>(
-        Kokkos::fmin(k_most_diffusion, rate * shear_rate(near.gradient) / spacing * elapsed));
-    Vector<T, Dim> shift = near.lowest < T(k_surface) ? along_surface(near) : near.apart;
+    const T diffusion =
+        static_cast<T>(Kokkos::fmin(k_most_diffusion, rate * shear_rate(near.gradient) / spacing * elapsed));
+    Vector<T, Dim> shift = near.lowest < T(k_surface) ? along_surface(near) : near.crowded;
     for (int d = 0; d < Dim; ++d) shift[d] *= -diffusion;
     limit(p, shift);
     shifts(p) = shift;
@@ -87,11 +106,10 @@ struct FindShift {
     Surroundings<T, Dim> near;
     for_each_node<Kind::motion>(
         soil, any_domain_of(soil, p), places, p, [&](int i, T w, const auto& grad, auto&&, auto&& sign) {
-          const T f = filled(i, 0), m_i = sums(i, S::mass);
+          const T f = fill(i, FillTerms<Dim>::filled), m_i = sums(i, S::mass);
           if (w > T(k_reached)) near.lowest = Kokkos::fmin(near.lowest, f);
           for (int e = 0; e < Dim; ++e) {
-            near.apart[e] += (f - 1) * grad[e];
-            near.crowded[e] += Kokkos::fmax(T(0), f - 1) * grad[e];
+            near.crowded[e] += fill(i, FillTerms<Dim>::excess) * grad[e];
             near.inward[e] += f * grad[e];
           }
           if (!(m_i > 0)) return;  // a mass too small for T
@@ -196,35 +214,21 @@ struct reduction_identity<mpm::Added> {
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void begin_correction(State<Space, T, Dim>& s) {
-  ensure(s.scratch, 2 * sizeof(Vector<T, Dim>) * s.soil.points.count);
-  const auto volume = s.soil.points.volume;
-  const auto shares = shares_of(s);
+void compare_volumes(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill) {
+  const double area = power(s.spacing, Dim - 1);
   Kokkos::parallel_for(
-      "mpm::begin_correction", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
-      KOKKOS_LAMBDA(int p) {
-        shares(p) = Vector<T, Dim>{};
-        shares(p)[0] = volume(p);
-      });
+      "mpm::compare_volumes", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
+      CompareVolumes<Space, T, Dim>{s.grid, s.patches.origin, fill, static_cast<T>(1 / (area * s.spacing)),
+                                    static_cast<T>(1 / area)});
 }
 
 template <class Space, class T, int Dim>
-void find_shifts(State<Space, T, Dim>& s, double elapsed) {
-  constexpr int cells = Patch<Dim>::cells;
-  const auto filled = s.nodes.shares;
-  const auto origin = s.patches.origin;
-  const auto grid = s.grid;
-  const T in_cells = static_cast<T>(1 / power(s.spacing, Dim));
-  Kokkos::parallel_for(
-      "mpm::filled_nodes", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
-      KOKKOS_LAMBDA(int i) {
-        const Coord<Dim> node = in_mesh(origin(i / cells), coord_of<Dim>(i));
-        filled(i, 0) *= in_cells / full_volume(grid, node);
-      });
+void find_shifts(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill, double elapsed) {
+  ensure(s.scratch, 2 * sizeof(Vector<T, Dim>) * s.soil.points.count);
   Kokkos::parallel_for("mpm::find_shifts", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
                        FindShift<Space, T, Dim>{s.soil.points,
                                                 {s.grid, s.patches},
-                                                filled,
+                                                fill,
                                                 s.nodes.soil,
                                                 shares_of(s),
                                                 shifts_of(s),
@@ -242,8 +246,7 @@ template <class Space, class T, int Dim>
 void apply_shifts(State<Space, T, Dim>& s) {
   for (int b = 0; b < static_cast<int>(s.strays.lost.size()); ++b) {
     Added added;
-    Kokkos::parallel_reduce("mpm::apply_shifts",
-                            Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+    Kokkos::parallel_reduce("mpm::apply_shifts", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
                             ApplyShift<Space, T, Dim>{s.soil.points,
                                                       {s.grid, s.patches},
                                                       s.nodes.shares,
@@ -258,9 +261,9 @@ void apply_shifts(State<Space, T, Dim>& s) {
   }
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                     \
-  template void begin_correction(State<Space, T, Dim>&);   \
-  template void find_shifts(State<Space, T, Dim>&, double); \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                  \
+  template void compare_volumes(State<Space, T, Dim>&, const Fill<Space, T, Dim>&);     \
+  template void find_shifts(State<Space, T, Dim>&, const Fill<Space, T, Dim>&, double); \
   template void apply_shifts(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -110,10 +110,10 @@ PetscErrorCode Decomposition<Space, T, Dim>::add_residual(State_& s) {
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode Decomposition<Space, T, Dim>::add_shares(State_& s) {
+PetscErrorCode Decomposition<Space, T, Dim>::add_nodes(State_& s, T* values, int size) {
   PetscFunctionBeginUser;
   Fields fields;
-  fields.add(s.nodes.shares.data(), Dim);
+  fields.add(values, size);
   clock_.go_on();
   PetscCall(add(s.space, fields, false));
   clock_.stop();
@@ -217,7 +217,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::forget() {
   template void Decomposition<Space, T, Dim>::note_bound(const State<Space, T, Dim>&, const Space&);   \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_soil(State<Space, T, Dim>&, const Space&); \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_residual(State<Space, T, Dim>&);           \
-  template PetscErrorCode Decomposition<Space, T, Dim>::add_shares(State<Space, T, Dim>&);             \
+  template PetscErrorCode Decomposition<Space, T, Dim>::add_nodes(State<Space, T, Dim>&, T*, int);     \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_strength(State<Space, T, Dim>&);           \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_present_soil(State<Space, T, Dim>&);       \
   template Part<Space> Decomposition<Space, T, Dim>::border(const State<Space, T, Dim>&);              \

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "physics/materials/any.hpp"
+#include "step/correct_positions.hpp"
 #include "step/typed_stepper.hpp"
 
 namespace mpm {
@@ -14,18 +15,6 @@ int flow_column(const MaterialConfig& material) {
   for (std::size_t k = 0; k < variables.size(); ++k)
     if (std::string(variables[k].name) == "plastic_strain") return static_cast<int>(k);
   return material.model == "newtonian" ? Flow::always : Flow::never;
-}
-
-/// The particles' shares to the nodes, of this rank.
-template <class Space, class T, int Dim>
-void shares_to_nodes(State<Space, T, Dim>& s) {
-  Kokkos::deep_copy(s.space, s.nodes.shares, T(0));
-  if (s.soil.points.has_domain)
-    interpolate<StretchedShareSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins,
-                                                     {s.soil.points, shares_of(s)}, s.nodes.shares);
-  else
-    interpolate<ShareSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, {s.soil.points, shares_of(s)},
-                                            s.nodes.shares);
 }
 
 }  // namespace
@@ -48,20 +37,12 @@ void TypedStepper<Space, T, Dim>::set_up_correction() {
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::correct_positions(double elapsed) {
   PetscFunctionBeginUser;
-  if (!state_.correction.on) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(sum_soil());
-  begin_correction(state_);
-  shares_to_nodes(state_);
-  if (ranks_) PetscCall(ranks_->add_shares(state_));
-  find_shifts(state_, elapsed);
-  shares_to_nodes(state_);
-  if (ranks_) PetscCall(ranks_->add_shares(state_));
-  apply_shifts(state_);
+  PetscCallCXX(PetscCall(mpm::correct_positions(state_, elapsed, ranks_.get())));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                              \
-  template void TypedStepper<Space, T, Dim>::set_up_correction();   \
+#define MPM_INSTANTIATE(Space, T, Dim)                            \
+  template void TypedStepper<Space, T, Dim>::set_up_correction(); \
   template PetscErrorCode TypedStepper<Space, T, Dim>::correct_positions(double);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
