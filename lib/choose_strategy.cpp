@@ -62,7 +62,7 @@ class Contestant {
     if (out_) return;
     const auto seconds = time_of_steps([&](long steps, Batch* batch) -> PetscErrorCode {
       Failure failure;
-      out_ = due_ && (stepper_->rebuild(&failure) != PETSC_SUCCESS || !failure.what.empty());
+      out_ = due_ && (stepper_->rebuild(0, &failure) != PETSC_SUCCESS || !failure.what.empty());
       if (out_) return PETSC_ERR_LIB;
       const PetscErrorCode error = stepper_->advance({.count = steps, .dt = dt}, batch);
       due_ = batch->rebuild;

@@ -39,6 +39,7 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   if (config.particle_domain != ParticleDomain::fixed) a_particle += Footprint<T, Dim>::domain;
   if (is_periodic(config.mesh)) a_particle += Footprint<T, Dim>::periods;
   if (config.output.energy) a_particle += Footprint<T, Dim>::energy;
+  if (config.position_correction) a_particle += Footprint<T, Dim>::correction;
   if (config.p2g.strategy == P2G::gather) {
     // a particle is in the lists of the nodes that it may reach before the margin is used up
     const double reach = 2 * (1.25 + config.p2g.margin);
@@ -46,6 +47,7 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   }
   const double soil = need.particles * a_particle;
   need.nodes = k_ring * cells * Footprint<T, Dim>::node;
+  if (config.position_correction) need.nodes += k_ring * cells * Footprint<T, Dim>::shares;
   if (config.backend == Backend::openmp && chosen(config.p2g.strategy, config.backend) == P2G::tile)
     need.nodes += cells * Footprint<T, Dim>::window;
   need.all_ranks = need.rigids * Footprint<T, Dim>::rigid_point + need.patches * Footprint<T, Dim>::patch;

@@ -126,10 +126,11 @@ PetscErrorCode Simulation::Body::rebuild(const Batch& batch) {
   shortest = rebuilds == 0 ? since_rebuild : std::min(shortest, since_rebuild);
   longest = std::max(longest, since_rebuild);
   ++rebuilds;
+  const double elapsed = schedule.time_of(step) - schedule.time_of(step - since_rebuild);
   since_rebuild = 0;
   Failure failure;
   const double before = seconds_now();
-  PetscCall(stepper->rebuild(&failure));
+  PetscCall(stepper->rebuild(elapsed, &failure));
   stepping += seconds_now() - before;
   if (const std::string news = stepper->drain_log(); !news.empty())
     PetscCall(log.print("step %ld: %s", step, news.c_str()));

@@ -54,7 +54,7 @@ PetscErrorCode Simulation::Body::time_steps(double* seconds) {
       break;
     }
     Failure failure;
-    if (batch.rebuild) PetscCall(stepper->rebuild(&failure));
+    if (batch.rebuild) PetscCall(stepper->rebuild(0, &failure));
     if (!failure.what.empty() || batch.steps == 0 || took > k_enough) break;
   }
   *seconds = done > k_first ? took / (done - k_first) : 0;

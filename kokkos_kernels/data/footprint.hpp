@@ -17,6 +17,9 @@ struct Footprint {
   static constexpr double periods = sizeof(Vector<T, Dim>);
   /// More for an energy balance.
   static constexpr double energy = grown * (2 * sizeof(SymTensor<T, Dim>) + sizeof(T));
+  /// More for the position correction: of a particle, which sorts in half of it, and of a node.
+  static constexpr double correction = grown * sizeof(Vector<T, Dim>);
+  static constexpr double shares = grown * sizeof(T) * Dim;
   /// columns: of the history of the laws.
   static constexpr double particle(int columns) {
     return 2 * sizeof(Vector<T, Dim>) + sizeof(SymTensor<T, Dim>) + (1 + columns) * sizeof(T) +

@@ -44,7 +44,7 @@ struct SavedSides {
 
 /// Numbers that SavedState::lost has of a body, and places of the numbers of particles among them: those that
 /// have left, and those that others took up.
-inline constexpr int k_lost = 9, k_lost_left = 0, k_lost_merged = 6;
+inline constexpr int k_lost = 11, k_lost_left = 0, k_lost_merged = 6;
 
 /// Numbers of SavedState::energy.
 inline constexpr int k_saved_energy = 8;

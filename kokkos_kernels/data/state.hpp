@@ -6,6 +6,7 @@
 
 #include "data/energy_works.hpp"
 #include "data/nodes.hpp"
+#include "data/position_correction.hpp"
 #include "data/sides.hpp"
 #include "data/soil_batches.hpp"
 #include "data/split_patches.hpp"
@@ -20,6 +21,7 @@ struct P2GPlan {
   P2G strategy = P2G::automatic;
   double margin = 0.5;  // cells
   int mosaic_cells = 3;
+  double reserve = 0;  // cells, that the position correction may move particles beyond the margin
 };
 
 /// Which nodal fields hold the sums of what they are of, as it is now.
@@ -93,6 +95,7 @@ struct State {
   bool has_friction = false;    // some contact has Coulomb friction
 
   EnergyWorks<Space, T, Dim> energy;  // in use where the run asks for an energy balance
+  PositionCorrection<Space> correction;
 };
 
 /// Dilatation rates of particles [1/s].

@@ -14,6 +14,7 @@ struct Lost {
   double count = 0, mass = 0, kinetic_energy = 0;  // -, kg, J
   double momentum[3] = {};                         // kg m/s
   double merged = 0, merged_energy = 0;            // particles that others took up; J, of the motion of both
+  double corrected = 0, raised = 0;  // J, kinetic and of height: what the position correction has added
 };
 
 /// Least and most volume of a particle, of that of the smallest and largest particle at the start. A particle

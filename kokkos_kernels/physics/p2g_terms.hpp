@@ -147,6 +147,34 @@ struct ResidualSource {
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
+/// Any Dim values of the particles to nodes, each a scalar: sum S q_p. Walls turn none of them, so that their
+/// sum over the nodes is that over the particles.
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
+struct ShareSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr ParticleDomain domain = domain_;
+  static constexpr int dim = Dim, size = Dim;
+  static constexpr Kind kind = Kind::geometry;
+  struct Point {
+    DomainOf<T, Dim, domain_> half_length;
+    T value[Dim];
+  };
+  Soil<Space, T, Dim> points;
+  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> values;
+
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    Point q{domain_of<domain_>(points, p, points.bodies(points.body(p))), {}};
+    for (int d = 0; d < Dim; ++d) q.value[d] = values(p)[d];
+    return q;
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.value[value]; }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
+};
+
 /// The soil's boundary at a node, sum grad S V_p, of rings with T S V_p in the radial component: by Gauss'
 /// theorem the integral of S_i n over it, n out of the soil. Summed over the nodes along a face it is the
 /// face's area, however the face cuts the cells. And its volume there, sum S V_p.
@@ -359,6 +387,8 @@ using StretchedAffineSource = AffineSource<Space, T, Dim, ParticleDomain::stretc
 template <class Space, class T, int Dim>
 using StretchedResidualSource = ResidualSource<Space, T, Dim, ParticleDomain::stretch>;
 template <class Space, class T, int Dim>
+using StretchedShareSource = ShareSource<Space, T, Dim, ParticleDomain::stretch>;
+template <class Space, class T, int Dim>
 using StretchedBoundarySource = BoundarySource<Space, T, Dim, ParticleDomain::stretch>;
 template <class Space, class T, int Dim>
 using StretchedStrengthSource = StrengthSource<Space, T, Dim, ParticleDomain::stretch>;
@@ -392,6 +422,7 @@ using RingDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::ring>
   X(SoilSource, Space, T, Dim)                \
   X(AffineSource, Space, T, Dim)              \
   X(ResidualSource, Space, T, Dim)            \
+  X(ShareSource, Space, T, Dim)               \
   X(BoundarySource, Space, T, Dim)            \
   X(StrengthSource, Space, T, Dim)            \
   X(DisplacedSource, Space, T, Dim)           \
@@ -399,6 +430,7 @@ using RingDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::ring>
   X(StretchedSoilSource, Space, T, Dim)       \
   X(StretchedAffineSource, Space, T, Dim)     \
   X(StretchedResidualSource, Space, T, Dim)   \
+  X(StretchedShareSource, Space, T, Dim)      \
   X(StretchedBoundarySource, Space, T, Dim)   \
   X(StretchedStrengthSource, Space, T, Dim)   \
   X(StretchedDisplacedSource, Space, T, Dim)  \

@@ -205,7 +205,7 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
   const auto rigids = s.rigids;
   const auto vertices = s.vertices;
   const auto grid = s.grid;
-  const double spacing = s.spacing, far = far_from_patch<Dim>(s.p2g.margin) * spacing;
+  const double spacing = s.spacing, far = far_from_patch<Dim>(s.p2g.margin + s.p2g.reserve) * spacing;
   const int slots = s.patches.slots;
   Kokkos::deep_copy(s.space, near, 0);
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
@@ -334,6 +334,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   ensure(s.nodes.soil, nodes);
   ensure(s.nodes.kinematics, nodes);
   if (s.xpic_order > 0) ensure(s.nodes.residual, nodes);
+  if (s.correction.on) ensure(s.nodes.shares, nodes);
   if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
   if (s.shear_fraction) ensure(s.nodes.strength, nodes);
   if (s.water.is_there()) ensure(s.nodes.displaced, nodes);

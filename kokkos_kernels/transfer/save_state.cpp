@@ -91,7 +91,8 @@ void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
     const Lost& lost = s.strays.lost[b];
     const double numbers[k_lost] = {lost.count,       lost.mass,          lost.kinetic_energy,
                                     lost.momentum[0], lost.momentum[1],   lost.momentum[2],
-                                    lost.merged,      lost.merged_energy, double(put_back(b))};
+                                    lost.merged,      lost.merged_energy, double(put_back(b)),
+                                    lost.corrected,   lost.raised};
     saved.lost.insert(saved.lost.end(), numbers, numbers + k_lost);
   }
   saved.alone_known = s.strays.known ? 1 : 0;
@@ -108,7 +109,7 @@ void restore_lost(State<Space, T, Dim>& s, const SavedState& saved) {
   for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
     const double* const numbers = &saved.lost[b * k_lost];
     s.strays.lost[b] = {numbers[0], numbers[1], numbers[2], {numbers[3], numbers[4], numbers[5]},
-                        numbers[6], numbers[7]};
+                        numbers[6], numbers[7], numbers[9],  numbers[10]};
     put_back(b) = static_cast<int>(numbers[8]);
   }
   Kokkos::deep_copy(s.strays.put_back, put_back);

@@ -53,6 +53,8 @@ constexpr Row k_rules[] = {
     {Owner::run, "flip_fraction", k_stage},
     {Owner::run, "f_bar_fraction", k_stage},
     {Owner::run, "stray_particles", k_stage},
+    {Owner::run, "position_correction", k_stage},
+    {Owner::run, "position_correction_rate", k_stage},
     // What loads the soil and holds it.
     {Owner::run, "gravity", k_load},
     {Owner::run, "gravity_table", k_load},

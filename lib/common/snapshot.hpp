@@ -70,6 +70,7 @@ struct BodyRow {
   long stretched = 0;                 // whose domain is at its upper bound along some axis
   long merged = 0;                    // that others took up, since the start
   double merged_energy = 0;           // J, kinetic, that merging has taken since the start
+  double corrected = 0, raised = 0;   // J, kinetic and of height, that the position correction has added
   long put_back = 0, lost_count = 0;  // particles put back at walls, and lost, since the start
 };
 

@@ -80,6 +80,8 @@ void check_batches(OptionReader& in, Config& config) {
               "-particle_domain fixed or stretch: batches have no room for more particles");
   if (config.velocity_update == VelocityUpdate::xpic || config.velocity_update == VelocityUpdate::apic)
     in.reject("device_memory_limit", "-velocity_update flip or pic: no other goes in batches");
+  if (config.position_correction)
+    in.reject("device_memory_limit", "-position_correction none: batches are not corrected");
 }
 
 void read_partition(OptionReader& in, PartitionConfig& partition) {
@@ -186,6 +188,22 @@ void read_velocity_update(OptionReader& in, Config& config) {
     in.not_taken("xpic_order", "-velocity_update is not xpic");
 }
 
+void read_position_correction(OptionReader& in, Config& config) {
+  in.word({.name = "position_correction",
+           .meaning = "delta: particles of soil that flows move a little, by less than 0.05 cells at each "
+                      "rebuild, from where they crowd to where they leave gaps"},
+          Words<bool>{{"none", false}, {"delta", true}}, config.position_correction);
+  if (config.position_correction || in.listing())
+    in.number({.name = "position_correction_rate",
+               .meaning = "how fast the density of particles diffuses: diffusion number, in cells, for a unit "
+                          "of shear strain",
+               .unit = "-",
+               .range = {.lowest = 0, .highest = 100, .open_lowest = true}},
+              config.position_correction_rate);
+  else
+    in.not_taken("position_correction_rate", "-position_correction is none");
+}
+
 void read_physics(OptionReader& in, Config& config) {
   in.section("Physics");
   const Option gravity{
@@ -209,6 +227,7 @@ void read_physics(OptionReader& in, Config& config) {
                                 {"stretch", ParticleDomain::stretch},
                                 {"split", ParticleDomain::split}},
           config.particle_domain);
+  read_position_correction(in, config);
   in.word(
       {.name = "stray_particles",
        .meaning =

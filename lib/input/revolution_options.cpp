@@ -44,6 +44,7 @@ void check_revolution(OptionReader& in, const Config& config) {
       in.reject(material.name + "_model",
                 "a law other than umat" + where + ": no hoop gradient is passed to it");
   if (config.particle_domain != ParticleDomain::fixed) in.reject("particle_domain", "fixed" + where);
+  if (config.position_correction) in.reject("position_correction", "none" + where);
 }
 
 }  // namespace mpm

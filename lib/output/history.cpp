@@ -68,6 +68,8 @@ std::string history_header(const Config& config) {
     if (config.particle_domain == ParticleDomain::split)
       for (const char* quantity : {"_particles", "_merged", "_merged_energy"})
         header += "," + body.name + quantity;
+    if (config.position_correction)
+      for (const char* energy : {"_corrected_energy", "_raised_energy"}) header += "," + body.name + energy;
   }
   for (const RigidConfig& rigid : config.rigids)
     for (const char* quantity : {"_", "_velocity_", "_force_"})
@@ -99,6 +101,7 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
     if (config.particle_domain == ParticleDomain::split)
       text += "," + std::to_string(body.particles) + "," + std::to_string(body.merged) + "," +
               text_of(body.merged_energy);
+    if (config.position_correction) text += "," + text_of(body.corrected) + "," + text_of(body.raised);
   }
   for (const RigidRow& rigid : row.rigids)
     for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})

@@ -65,6 +65,8 @@ class Decomposition {
   bool sent_ahead() const { return ahead_ != Ahead::nothing; }
   /// The sum over ranks of the nodal values of the residual of an XPIC pass.
   PetscErrorCode add_residual(State_& s);
+  /// The sum over ranks of any values of the nodes, `size` a node, between two steps.
+  PetscErrorCode add_nodes(State_& s, T* values, int size);
   /// The sum over ranks of the soil's strength, at nodes near rigids.
   PetscErrorCode add_strength(State_& s);
   /// The sum over ranks of the soil after sum_present_soil, for measures between two steps.

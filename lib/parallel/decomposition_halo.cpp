@@ -110,6 +110,17 @@ PetscErrorCode Decomposition<Space, T, Dim>::add_residual(State_& s) {
 }
 
 template <class Space, class T, int Dim>
+PetscErrorCode Decomposition<Space, T, Dim>::add_nodes(State_& s, T* values, int size) {
+  PetscFunctionBeginUser;
+  Fields fields;
+  fields.add(values, size);
+  clock_.go_on();
+  PetscCall(add(s.space, fields, false));
+  clock_.stop();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::add_strength(State_& s) {
   PetscFunctionBeginUser;
   Fields fields;
@@ -206,6 +217,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::forget() {
   template void Decomposition<Space, T, Dim>::note_bound(const State<Space, T, Dim>&, const Space&);   \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_soil(State<Space, T, Dim>&, const Space&); \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_residual(State<Space, T, Dim>&);           \
+  template PetscErrorCode Decomposition<Space, T, Dim>::add_nodes(State<Space, T, Dim>&, T*, int);     \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_strength(State<Space, T, Dim>&);           \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_present_soil(State<Space, T, Dim>&);       \
   template Part<Space> Decomposition<Space, T, Dim>::border(const State<Space, T, Dim>&);              \

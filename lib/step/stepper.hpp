@@ -56,8 +56,8 @@ class Stepper {
   /// Does up to `steps.count` steps, and fewer if a rebuild or a failure comes first, or if the device turns
   /// out not to hold a launch of many.
   virtual PetscErrorCode advance(const StepRange& steps, Batch* batch) = 0;
-  /// Bins, patches and lists anew.
-  virtual PetscErrorCode rebuild(Failure* failure) = 0;
+  /// Bins, patches and lists anew, and the correction of positions. elapsed: time since the last rebuild [s].
+  virtual PetscErrorCode rebuild(double elapsed, Failure* failure) = 0;
   /// Rows of the history at row->time; `interval` [s] is the time since the last call, over which the forces
   /// are a mean.
   virtual PetscErrorCode measure(double interval, HistoryRow* row) = 0;

@@ -169,7 +169,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
     carried.push_back(carried_mass(config_, rigids.back()));
   }
 
-  state_.p2g = {config_.p2g.strategy, config_.p2g.margin, config_.p2g.mosaic_cells};
+  set_up_correction();
+  state_.p2g.strategy = config_.p2g.strategy, state_.p2g.margin = config_.p2g.margin;
+  state_.p2g.mosaic_cells = config_.p2g.mosaic_cells;
   for (int d = 0; d < Dim; ++d) state_.gravity[d] = gravity_on_soil(config_)[d];
   state_.water = water_of_kernels<Dim>(config_);
   if (model.owners.empty() && !config_.p2g.rebuild_interval) state_.rebuild_late = GlobalBound::k_late;
@@ -271,10 +273,10 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(const StepRange& range, Batc
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
+PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(double elapsed, Failure* failure) {
   PetscFunctionBeginUser;
   if (ranks_) {
-    PetscCall(rebuild_together(failure));
+    PetscCall(rebuild_together(elapsed, failure));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   const bool sampling = timers_.sampling();
@@ -286,7 +288,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(Failure* failure) {
     control = read_control(state_);
     if (control.lost > 0) note_lost(state_);
     if (control.fault_count == 0) failed = split_and_merge();
-    if (control.fault_count == 0 && failed == PETSC_SUCCESS) sort_and_list(state_);
+    if (control.fault_count > 0 || failed != PETSC_SUCCESS) return;
+    sort_and_list(state_);
+    failed = correct_positions(elapsed);
   };
   PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
   PetscCall(failed);
@@ -341,7 +345,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   }
   PetscCallCXX(restore_sides(saved.sides));
   Failure failure = too_small();
-  if (*rebuilt && failure.what.empty()) PetscCall(rebuild(&failure));
+  if (*rebuilt && failure.what.empty()) PetscCall(rebuild(0, &failure));
   PetscCheck(failure.what.empty(), PETSC_COMM_SELF, PETSC_ERR_FP, "The checkpoint's %s",
              failure.what.c_str());
   PetscFunctionReturn(PETSC_SUCCESS);

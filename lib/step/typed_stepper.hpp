@@ -9,6 +9,7 @@
 #include "common/material_table.hpp"
 #include "functions/energy_works.hpp"
 #include "functions/grid_velocity.hpp"
+#include "functions/position_correction.hpp"
 #include "functions/wall_force.hpp"
 #include "parallel/kept_by_id.hpp"
 #include "rebuild/merge_particles.hpp"
@@ -32,7 +33,7 @@ class TypedStepper final : public Stepper {
 
   PetscErrorCode set_up(Model&& model, Failure* failure) override;
   PetscErrorCode advance(const StepRange& steps, Batch* batch) override;
-  PetscErrorCode rebuild(Failure* failure) override;
+  PetscErrorCode rebuild(double elapsed, Failure* failure) override;
   PetscErrorCode measure(double interval, HistoryRow* row) override;
   PetscErrorCode unbalanced_ratio(double time, double* ratio) override;
   PetscErrorCode fastest_wave(double* speed) override;
@@ -56,7 +57,7 @@ class TypedStepper final : public Stepper {
   Failure too_small() const;
   /// What advance and rebuild are on several ranks.
   PetscErrorCode advance_together(long steps, double dt, Batch* batch);
-  PetscErrorCode rebuild_together(Failure* failure);
+  PetscErrorCode rebuild_together(double elapsed, Failure* failure);
   /// The failure of the lowest rank that has one, on every rank.
   PetscErrorCode share(Failure* failure) const;
   PetscErrorCode sum_soil();
@@ -82,6 +83,10 @@ class TypedStepper final : public Stepper {
   /// Merges particles that crowd, and splits those whose domains have become too long, where the run asks for
   /// it. Collective.
   PetscErrorCode split_and_merge();
+  void set_up_correction();
+  /// Moves particles to an even density, where the run asks for it, after lists were made. elapsed: time
+  /// since the correction before [s]. Collective.
+  PetscErrorCode correct_positions(double elapsed);
   /// Ids that have been given to particles of all ranks.
   long ids() const { return total_ + children_; }
   /// What a start from a checkpoint needs and a restart has already.

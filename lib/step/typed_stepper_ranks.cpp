@@ -99,7 +99,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure* failure) {
+PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(double elapsed, Failure* failure) {
   PetscFunctionBeginUser;
   const bool sampling = timers_.sampling();
   timers_.sample(true);
@@ -114,6 +114,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure* failure) {
     if (control.lost > 0) note_lost(state_);
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = split_and_merge();
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = ranks_->rebuild(state_);
+    if (failed == PETSC_SUCCESS && failure->what.empty()) failed = correct_positions(elapsed);
   };
   PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
   PetscCall(failed);
@@ -182,14 +183,16 @@ PetscErrorCode TypedStepper<Space, T, Dim>::note_out_of_order(int b, BodyRow* bo
   PetscFunctionBeginUser;
   const Lost& lost = state_.strays.lost[b];
   const auto put_back = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.strays.put_back);
-  double sums[9] = {lost.mass,        lost.kinetic_energy, lost.momentum[0],
+  double sums[11] = {lost.mass,        lost.kinetic_energy, lost.momentum[0],
                     lost.momentum[1], lost.momentum[2],    double(put_back(b)),
-                    lost.count,       lost.merged,         lost.merged_energy};
-  if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 9, MPI_DOUBLE, MPI_SUM, comm_));
+                    lost.count,       lost.merged,         lost.merged_energy,
+                    lost.corrected,   lost.raised};
+  if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 11, MPI_DOUBLE, MPI_SUM, comm_));
   body->lost_mass = sums[0], body->lost_energy = sums[1];
   for (int d = 0; d < 3; ++d) body->lost_momentum[d] = sums[2 + d];
   body->put_back = static_cast<long>(sums[5]), body->lost_count = static_cast<long>(sums[6]);
   body->merged = static_cast<long>(sums[7]), body->merged_energy = sums[8];
+  body->corrected = sums[9], body->raised = sums[10];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -261,7 +264,7 @@ std::optional<RankFigures> TypedStepper<Space, T, Dim>::rank_figures() const {
   template double TypedStepper<Space, T, Dim>::sum_over_ranks(double) const;                   \
   template std::size_t TypedStepper<Space, T, Dim>::memory() const;                            \
   template PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long, double, Batch*); \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(Failure*);             \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(double, Failure*);     \
   template PetscErrorCode TypedStepper<Space, T, Dim>::sum_soil();                             \
   template PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int, BodyRow*);            \
   template PetscErrorCode TypedStepper<Space, T, Dim>::note_out_of_order(int, BodyRow*);       \

@@ -62,18 +62,18 @@ def make_deck(draw, dim):
     return options, np.array(gravity), staged
 
 
-def check_momentum(folder, gravity, dim, precision):
+def check_momentum(folder, gravity, dim, precision, body="soil"):
     lines = rows(folder)
     values = {name: np.array([float(line[k]) for line in lines[1:]]) for k, name in enumerate(lines[0])}
     t = values["time"]
     once = np.concatenate([[True], np.diff(t) > 0])
-    scale = values["soil_mass"][0] * (np.abs(gravity).max() * t[-1] + 0.2)
+    scale = values[f"{body}_mass"][0] * (np.abs(gravity).max() * t[-1] + 0.2)
     sides = [name[:-len("_force_x")] for name in lines[0] if name.startswith("wall_") and name.endswith("_force_x")]
     for d in range(dim):
         axis = "xyz"[d]
         force = sum(values[f"{side}_force_{axis}"] for side in sides)
-        gained = np.cumsum(np.where(once[1:], np.diff(t), 0) * (values["soil_mass"][1:] * gravity[d] - force[1:]))
-        error = np.abs(values[f"soil_momentum_{axis}"][1:] - values[f"soil_momentum_{axis}"][0] - gained).max() / scale
+        gained = np.cumsum(np.where(once[1:], np.diff(t), 0) * (values[f"{body}_mass"][1:] * gravity[d] - force[1:]))
+        error = np.abs(values[f"{body}_momentum_{axis}"][1:] - values[f"{body}_momentum_{axis}"][0] - gained).max() / scale
         assert error < (1e-10 if precision == "double" else 1e-4), f"the momentum along {axis} is {error:.3g} off"
 
 
@@ -117,4 +117,5 @@ def main():
     print(f"{given.count} decks: gravity and the forces on the sides make the momentum; cut runs give the same bits")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -275,6 +275,8 @@ struct Config {
   int xpic_order = 2;        // -, m of XPIC(m), with xpic
   double flip_fraction = 1;  // -, fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic
   ParticleDomain particle_domain = ParticleDomain::fixed;
+  bool position_correction = false;     // particles of soil that flows are brought to an even density
+  double position_correction_rate = 20; // -, diffusion number of the density a unit of shear strain
   StrayRule stray_particles = StrayRule::keep;
   double f_bar_fraction = 0.98;  // -, fraction of the cell's mean in a particle's dilatation (F-bar)
   std::vector<MaterialConfig> materials;
