@@ -3,6 +3,7 @@
 #include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
 #include "physics/pore_water.hpp"
+#include "transfer/positions.hpp"
 
 namespace mpm {
 namespace {
@@ -30,20 +31,6 @@ struct Sum {
     m.count += other.m.count, m.alone += other.m.alone, m.limited += other.m.limited;
     m.stretched += other.m.stretched;
     return *this;
-  }
-};
-
-/// Where particles are, m from the mesh's lower corner.
-template <class Space, class T, int Dim>
-struct Positions {
-  Soil<Space, T, Dim> soil;
-  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  double spacing;  // m
-
-  KOKKOS_INLINE_FUNCTION double operator()(int p, int d) const {
-    const int cell = soil.cell(p);
-    return (double(origin(cell / Patch<Dim>::cells)[d]) + coord_of<Dim>(cell)[d] + soil.coordinate(p)[d]) *
-           spacing;
   }
 };
 
@@ -108,7 +95,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   // adds pair by pair.
   constexpr int together = is_device<Space> ? 1 : 256;
   const auto soil = s.soil.points;
-  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
+  const auto position = positions_of(s);
   const int count = soil.count;
   const auto alone = s.strays.alone;
   const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
@@ -192,7 +179,7 @@ template <class Space, class T, int Dim>
 double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
                          const OverRanks& over) {
   const auto soil = s.soil.points;
-  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing};
+  const auto position = positions_of(s);
   const Ruler ruler(m.lower[d], m.upper[d]);
   const Kokkos::RangePolicy<Space> range(s.space, 0, soil.count);
   const Kokkos::View<int*, typename Space::memory_space> counts("mpm::ranked_coordinate", 1 << Ruler::digit);
