@@ -191,8 +191,8 @@ PetscErrorCode Simulation::Body::write_frame() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// The row, the frame and the look for rasters at the end that a longer run would not have: a checkpoint comes
-/// before them.
+/// The row, the frame and the look for rasters at the end that a longer run would not have: a checkpoint
+/// comes before them.
 PetscErrorCode Simulation::Body::write_last_output() {
   PetscFunctionBeginUser;
   if (step == 0) PetscFunctionReturn(PETSC_SUCCESS);

@@ -48,8 +48,8 @@ PetscErrorCode Simulation::Body::write_rasters() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What is wrong with what probes and rasters know in the checkpoint of a restart, as the end of "takes ..."; empty
-/// if nothing.
+/// What is wrong with what probes and rasters know in the checkpoint of a restart, as the end of "takes ...";
+/// empty if nothing.
 std::string Simulation::Body::probes_fault() const {
   const ProbeState& state = restart->probes;
   const std::size_t count = config.probes.size();
@@ -73,7 +73,8 @@ PetscErrorCode Simulation::Body::reset_probes() {
   std::size_t column = 0;
   for (std::size_t n = 0; n < config.probes.size(); ++n) {
     if (config.probes[n].kind == ProbeKind::particle && std::isfinite(values[column]))
-      for (int d = 0; d < config.dim; ++d) probes.start[3 * n + d] = values[column + d] - config.mesh.lower[d];
+      for (int d = 0; d < config.dim; ++d)
+        probes.start[3 * n + d] = values[column + d] - config.mesh.lower[d];
     column += columns_of(config.probes[n], config).size();
   }
   PetscFunctionReturn(PETSC_SUCCESS);

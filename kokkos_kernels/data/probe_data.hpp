@@ -34,10 +34,10 @@ struct SectionPlane {
 
 /// What is beyond a plane and what passes it, towards growing coordinates.
 struct SectionSum {
-  double mass = 0;                     // kg, beyond
-  double initial_volume = 0;           // m3, of that mass by the density that its soil began with
-  double mass_flux = 0;                // kg/s
-  double volume_flux = 0;              // m3/s, by the present volumes
+  double mass = 0;                        // kg, beyond
+  double initial_volume = 0;              // m3, of that mass by the density that its soil began with
+  double mass_flux = 0;                   // kg/s
+  double volume_flux = 0;                 // m3/s, by the present volumes
   std::array<double, 3> momentum_flux{};  // N, carried by what passes
 };
 

@@ -48,9 +48,9 @@ struct AddColumns {
   /// Quanta of depth that 1 m3 is in a column.
   KOKKOS_INLINE_FUNCTION double quanta(int column) const {
     const double from = lower[0] + column * cell;
-    const double area = axes == 2              ? cell * cell
+    const double area = axes == 2             ? cell * cell
                         : position.soil.rings ? Kokkos::numbers::pi * cell * (2 * from + cell)
-                                               : cell;
+                                              : cell;
     return 1 / (k_depth_quantum * position.spacing * area);
   }
 

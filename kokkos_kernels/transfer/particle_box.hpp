@@ -28,8 +28,8 @@ KOKKOS_INLINE_FUNCTION ParticleBox<Dim> box_of(const Positions<Space, T, Dim>& p
   return box;
 }
 
-/// Share of the volume of an interval [low, high] along an axis that is in [from, to]; `ring`: along the radius,
-/// where volumes grow with it.
+/// Share of the volume of an interval [low, high] along an axis that is in [from, to]; `ring`: along the
+/// radius, where volumes grow with it.
 KOKKOS_INLINE_FUNCTION double share_between(double low, double high, double from, double to, bool ring) {
   const double a = Kokkos::fmax(low, from), b = Kokkos::fmin(high, to);
   if (!(b > a)) return 0;

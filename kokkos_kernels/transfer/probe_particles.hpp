@@ -19,9 +19,9 @@ struct NearestParticle {
   int id;
 };
 
-/// The particle of these bodies (empty: of all) nearest to a place [m from the mesh's lower corner]; of equally
-/// near ones that with the lowest id. `least` makes the square of its
-/// distance the least of all ranks.
+/// The particle of these bodies (empty: of all) nearest to a place [m from the mesh's lower corner]; of
+/// equally near ones that with the lowest id. `least` makes the square of its distance the least of all
+/// ranks.
 template <class Space, class T, int Dim>
 NearestParticle nearest_particle(const State<Space, T, Dim>& s, const std::array<double, 3>& place,
                                  const std::vector<int>& bodies,

@@ -18,8 +18,8 @@ struct Passing {
   }
 };
 
-/// Adds particle p: what of it is beyond the plane, and what passes, as a mean over a strip of one cell around the
-/// plane: at the plane itself particles come and go one by one.
+/// Adds particle p: what of it is beyond the plane, and what passes, as a mean over a strip of one cell
+/// around the plane: at the plane itself particles come and go one by one.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION void add(const Positions<Space, T, Dim>& position, int p, int axis, double place,
                                 Passing<Dim>& sum) {
@@ -33,8 +33,8 @@ KOKKOS_INLINE_FUNCTION void add(const Positions<Space, T, Dim>& position, int p,
   sum.mass += low >= place ? mass : mass * share_between(low, high, place, high, ring);
   if (low >= place + half) return;
   // share of the particle in a unit of length of the strip [1/m], times the velocity
-  const double rate =
-      share_between(low, high, place - half, place + half, ring) / (2 * half) * double(soil.velocity(p)[axis]);
+  const double rate = share_between(low, high, place - half, place + half, ring) / (2 * half) *
+                      double(soil.velocity(p)[axis]);
   sum.mass_flux += mass * rate, sum.volume_flux += double(soil.volume(p)) * rate;
   for (int d = 0; d < Dim; ++d) sum.momentum_flux[d] += mass * rate * double(soil.velocity(p)[d]);
 }
@@ -129,10 +129,10 @@ void add_lost_beyond(const State<Space, T, Dim>& s, const std::vector<SectionPla
   }
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                  \
-  template SectionSum section_sum(const State<Space, T, Dim>&, const SectionPlane&);                    \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                   \
+  template SectionSum section_sum(const State<Space, T, Dim>&, const SectionPlane&);                     \
   template BeyondMask<Space> beyond_mask(const State<Space, T, Dim>&, const std::vector<SectionPlane>&); \
-  template void add_lost_beyond(const State<Space, T, Dim>&, const std::vector<SectionPlane>&,          \
+  template void add_lost_beyond(const State<Space, T, Dim>&, const std::vector<SectionPlane>&,           \
                                 const BeyondMask<Space>&, std::vector<SectionSum>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

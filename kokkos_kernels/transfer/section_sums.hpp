@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// Sums over the particles of this rank. Of a particle whose domain a plane cuts, the part beyond counts. What
-/// passes is a mean over a strip of one cell around the plane.
+/// Sums over the particles of this rank. Of a particle whose domain a plane cuts, the part beyond counts.
+/// What passes is a mean over a strip of one cell around the plane.
 template <class Space, class T, int Dim>
 SectionSum section_sum(const State<Space, T, Dim>& s, const SectionPlane& plane);
 
@@ -17,8 +17,8 @@ using BeyondMask = Kokkos::View<std::uint64_t*, typename Space::memory_space>;
 template <class Space, class T, int Dim>
 BeyondMask<Space> beyond_mask(const State<Space, T, Dim>& s, const std::vector<SectionPlane>& planes);
 
-/// Adds to `lost`, by plane, mass and initial volume of the particles that locate() has found to leave the run,
-/// as `beyond` had them before it.
+/// Adds to `lost`, by plane, mass and initial volume of the particles that locate() has found to leave the
+/// run, as `beyond` had them before it.
 template <class Space, class T, int Dim>
 void add_lost_beyond(const State<Space, T, Dim>& s, const std::vector<SectionPlane>& planes,
                      const BeyondMask<Space>& beyond, std::vector<SectionSum>& lost);

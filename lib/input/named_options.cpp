@@ -33,7 +33,8 @@ struct Names {
     if (!is_name(name)) return "names of letters, digits and _ that begin with a letter, as sand,clay";
     if (reserved.count(key) || is_petsc_name(key + "_"))
       return "names other than " + name + ", which begins other options";
-    if (used.count(key)) return "names that no other material, body, rigid or probe has; " + name + " is taken";
+    if (used.count(key))
+      return "names that no other material, body, rigid or probe has; " + name + " is taken";
     return "";
   }
 };
@@ -282,8 +283,7 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
   }
   auto errors = in.errors();
   for (const auto& name : materials) read_material(in, name, mesh, config, config.materials.emplace_back());
-  const bool sound_materials =
-      mesh && !config.materials.empty() && in.errors() == errors && !in.listing();
+  const bool sound_materials = mesh && !config.materials.empty() && in.errors() == errors && !in.listing();
   if (sound_materials)
     for (MaterialConfig& material : config.materials) prepare_material(material, mesh->spacing, 0);
   errors = in.errors();

@@ -30,49 +30,54 @@ void read_bodies(OptionReader& in, const Option& option, const Config& config, s
 
 /// -NAME_at of a probe, which has `count` coordinates from `first` on: within the mesh.
 void read_place(OptionReader& in, const MeshConfig* mesh, int first, int count, ProbeConfig& probe) {
-  static constexpr const char* k_forms[] = {"x", "x,y", "x,y,z"};
-  const Option option{.name = probe.name + "_at",
-                      .meaning = "place: of a point or particle all coordinates; of a gauge those along the ground, x or x,y; of a "
-                                 "section the one along its axis",
-                      .unit = "m",
-                      .range = k_coordinate,
-                      .required = true};
+  const Option option{
+      .name = probe.name + "_at",
+      .meaning =
+          "place: of a point or particle all coordinates; of a gauge those along the ground, x or x,y; of a "
+          "section the one along its axis",
+      .unit = "m",
+      .range = k_coordinate,
+      .required = true};
   if (in.listing()) {
     in.numbers(option, "x,y", "x,y,z", std::span(probe.at).first(2));
     return;
   }
-  const std::span<double> place = std::span(probe.at).subspan(first, count);
-  if (!in.numbers(option, k_forms[count - 1], "", place) || !mesh) return;
+  const bool given = count == 1 ? in.number(option, probe.at[first]) : in.vector(option, count, probe.at);
+  if (!given || !mesh) return;
   for (int d = first; d < first + count; ++d)
     if (!(probe.at[d] >= mesh->lower[d] && probe.at[d] <= mesh->upper[d]))
-      return in.reject(option.name,
-                       formatted("a place in the mesh, whose %c is from %g to %g", "xyz"[d], mesh->lower[d],
-                                 mesh->upper[d]));
+      return in.reject(option.name, formatted("a place in the mesh, whose %c is from %g to %g", "xyz"[d],
+                                              mesh -> lower[d], mesh -> upper[d]));
 }
 
 void read_axis(OptionReader& in, int dim, ProbeConfig& probe) {
   const std::vector<std::string> axes = dim == 2 && !in.listing() ? std::vector<std::string>{"x", "y"}
                                                                   : std::vector<std::string>{"x", "y", "z"};
-  in.word({.name = probe.name + "_axis", .meaning = "section: axis that it is normal to", .required = true}, axes,
-          probe.axis);
+  in.word({.name = probe.name + "_axis",
+           .meaning = "section: axis that it is normal to",
+           .required = !in.listing(),
+           .standard = in.listing() ? "required with section" : ""},
+          axes, probe.axis);
 }
 
 void read_width(OptionReader& in, const MeshConfig* mesh, ProbeConfig& probe) {
   if (mesh) probe.width = mesh->spacing;
-  in.number({.name = probe.name + "_width",
-             .meaning = "gauge: width of the strip (the square in 3D) over which it is a mean; 0: of the line itself",
-             .unit = "m",
-             .range = {.lowest = 0, .highest = 1e9},
-             .standard = in.listing() || !mesh ? "mesh_spacing" : ""},
-            probe.width);
+  in.number(
+      {.name = probe.name + "_width",
+       .meaning =
+           "gauge: width of the strip (the square in 3D) over which it is a mean; 0: of the line itself",
+       .unit = "m",
+       .range = {.lowest = 0, .highest = 1e9},
+       .standard = in.listing() || !mesh ? "mesh_spacing" : ""},
+      probe.width);
 }
 
 /// Checks that a section leaves mesh on both sides.
 void check_section(OptionReader& in, const MeshConfig& mesh, const ProbeConfig& probe) {
   const int d = probe.axis;
   if (probe.at[d] > mesh.lower[d] && probe.at[d] < mesh.upper[d]) return;
-  in.reject(probe.name + "_at", formatted("a place between the sides of the mesh, whose %c is from %g to %g", "xyz"[d],
-                                          mesh.lower[d], mesh.upper[d]));
+  in.reject(probe.name + "_at", formatted("a place between the sides of the mesh, whose %c is from %g to %g",
+                                          "xyz"[d], mesh.lower[d], mesh.upper[d]));
 }
 
 /// The columns of the rasters are counted by int.
@@ -81,7 +86,8 @@ void check_columns(OptionReader& in, const MeshConfig& mesh, int dim, double spa
   double columns = 1;
   for (int d = 0; d + 1 < dim; ++d) columns *= std::ceil((mesh.upper[d] - mesh.lower[d]) / spacing);
   if (columns > k_most)
-    in.reject("raster_spacing", formatted("a length in m that gives at most %.0f columns; this gives %.4g", k_most, columns));
+    in.reject("raster_spacing",
+              formatted("a length in m that gives at most %.0f columns; this gives %.4g", k_most, columns));
 }
 
 }  // namespace
@@ -90,8 +96,10 @@ void read_probe(OptionReader& in, const MeshConfig* mesh, const Config& config, 
   in.section("Each probe NAME");
   const auto errors = in.errors();
   in.word({.name = probe.name + "_kind",
-           .meaning = "point: velocity, stress and pressure at a place; particle: the same of the particle that is nearest to it at the "
-                      "start, and where it moves; gauge: depth and speed of the soil on a vertical line; section: what passes a plane "
+           .meaning = "point: velocity, stress and pressure at a place; particle: the same of the particle "
+                      "that is nearest to it at the "
+                      "start, and where it moves; gauge: depth and speed of the soil on a vertical line; "
+                      "section: what passes a plane "
                       "normal to an axis",
            .required = true},
           std::vector<std::pair<std::string, ProbeKind>>{{"point", ProbeKind::point},
@@ -111,16 +119,18 @@ void read_probe(OptionReader& in, const MeshConfig* mesh, const Config& config, 
   if (gauge || in.listing()) read_width(in, mesh, probe);
   if (!section) in.not_taken(probe.name + "_axis", "-" + probe.name + "_kind is not section");
   if (!gauge) in.not_taken(probe.name + "_width", "-" + probe.name + "_kind is not gauge");
-  read_bodies(in, {.name = probe.name + "_bodies", .meaning = "bodies that count for the probe", .standard = "all"}, config,
-              probe.bodies);
+  read_bodies(
+      in, {.name = probe.name + "_bodies", .meaning = "bodies that count for the probe", .standard = "all"},
+      config, probe.bodies);
 }
 
 void check_probes(OptionReader& in, const Config& config) {
-  const auto sections = std::count_if(config.probes.begin(), config.probes.end(), [](const ProbeConfig& probe) {
-    return probe.kind == ProbeKind::section;
-  });
+  const auto sections =
+      std::count_if(config.probes.begin(), config.probes.end(),
+                    [](const ProbeConfig& probe) { return probe.kind == ProbeKind::section; });
   if (sections > static_cast<long>(k_most_sections))
-    in.reject("probes", formatted("at most %zu sections; these are %ld", k_most_sections, static_cast<long>(sections)));
+    in.reject("probes",
+              formatted("at most %zu sections; these are %ld", k_most_sections, static_cast<long>(sections)));
 }
 
 void read_rasters(OptionReader& in, const MeshConfig* mesh, Config& config) {
@@ -128,7 +138,8 @@ void read_rasters(OptionReader& in, const MeshConfig* mesh, Config& config) {
   in.section("Rasters of what passed");
   const bool listing = in.listing();
   in.word({.name = "output_rasters",
-           .meaning = "on: at the end of the run rasters of the greatest depth and speed of the soil, of its time of arrival and of the "
+           .meaning = "on: at the end of the run rasters of the greatest depth and speed of the soil, of its "
+                      "time of arrival and of the "
                       "depth at the end: ESRI ASCII grids in 3D, rasters.csv along x in 2D"},
           std::vector<std::pair<std::string, bool>>{{"on", true}, {"off", false}}, rasters.on);
   if (!rasters.on && !listing) {
@@ -153,19 +164,21 @@ void read_rasters(OptionReader& in, const MeshConfig* mesh, Config& config) {
              .standard = listing ? "history_interval" : ""},
             interval);
   if (rasters.on) config.output.raster_interval = interval;
-  in.number({.name = "raster_threshold_depth",
-             .meaning = "depth above which soil has arrived; less does not count for the greatest speed either",
-             .unit = "m",
-             .range = k_positive,
-             .standard = listing ? "a tenth of mesh_spacing" : ""},
-            rasters.threshold_depth);
+  in.number(
+      {.name = "raster_threshold_depth",
+       .meaning = "depth above which soil has arrived; less does not count for the greatest speed either",
+       .unit = "m",
+       .range = k_positive,
+       .standard = listing ? "a tenth of mesh_spacing" : ""},
+      rasters.threshold_depth);
   in.number({.name = "raster_threshold_speed",
              .meaning = "speed that soil must exceed too for its arrival, as where it lies at rest at first",
              .unit = "m/s",
              .range = k_not_negative},
             rasters.threshold_speed);
   in.vector({.name = "raster_origin",
-             .meaning = "what is added to the coordinates in the files, as the origin that scripts/terrain took away; the last "
+             .meaning = "what is added to the coordinates in the files, as the origin that scripts/terrain "
+                        "took away; the last "
                         "component is not used",
              .unit = "m",
              .range = k_coordinate},
@@ -174,7 +187,9 @@ void read_rasters(OptionReader& in, const MeshConfig* mesh, Config& config) {
 
 void read_raster_bodies(OptionReader& in, const Config& config, RasterConfig& rasters) {
   if (rasters.on || in.listing())
-    read_bodies(in, {.name = "raster_bodies", .meaning = "bodies that count for the rasters", .standard = "all"}, config, rasters.bodies);
+    read_bodies(in,
+                {.name = "raster_bodies", .meaning = "bodies that count for the rasters", .standard = "all"},
+                config, rasters.bodies);
 }
 
 }  // namespace mpm

@@ -1,6 +1,6 @@
 #pragma once
-// A weighted fit of linear functions to values at points around a place (moving least squares), for their values
-// at the place itself.
+// A weighted fit of linear functions to values at points around a place (moving least squares), for their
+// values at the place itself.
 
 #include <array>
 #include <vector>

@@ -54,9 +54,10 @@ double bell(double r) {
   return a < 1 ? (1 - a) * (1 - a) * (1 + 2 * a) : 0;
 }
 
-/// A point: fields that are linear between the particles are exact. There is soil within half a cell, or half a
-/// domain, of the middle of a particle.
-void add_point(std::vector<double>& values, const Config& config, const ProbeConfig& probe, const Taken& taken) {
+/// A point: fields that are linear between the particles are exact. There is soil within half a cell, or half
+/// a domain, of the middle of a particle.
+void add_point(std::vector<double>& values, const Config& config, const ProbeConfig& probe,
+               const Taken& taken) {
   constexpr int k_fields = 7;  // stress, pore pressure
   const double h = config.mesh.spacing;
   LinearFit motion(config.dim, 3), stress(config.dim, k_fields);
@@ -71,8 +72,8 @@ void add_point(std::vector<double>& values, const Config& config, const ProbeCon
       near = near && std::fabs(r[d]) <= std::max(0.5, p.half_length[d] / h) + 1e-9;
     }
     soil = soil || near;
-    const double fields[k_fields] = {p.stress[0], p.stress[1], p.stress[2], p.stress[3],
-                              p.stress[4], p.stress[5], taken.pore_pressure[n]};
+    const double fields[k_fields] = {p.stress[0], p.stress[1], p.stress[2],           p.stress[3],
+                                     p.stress[4], p.stress[5], taken.pore_pressure[n]};
     motion.add(weight * p.mass, r, p.velocity);
     stress.add(weight * p.volume, r, fields);
   }
@@ -81,8 +82,8 @@ void add_point(std::vector<double>& values, const Config& config, const ProbeCon
   add_state(values, config, v, s, s[6]);
 }
 
-/// A particle that is followed: itself, or where it was merged into another one the part of it with the lowest
-/// number.
+/// A particle that is followed: itself, or where it was merged into another one the part of it with the
+/// lowest number.
 void add_particle(std::vector<double>& values, const Config& config, const ProbeConfig& probe, long id,
                   std::span<const double> start, const Taken& taken) {
   if (taken.particles.empty()) return add_none(values, columns_of(probe, config).size());
@@ -95,28 +96,33 @@ void add_particle(std::vector<double>& values, const Config& config, const Probe
   add_state(values, config, p.velocity, p.stress, taken.pore_pressure[n]);
 }
 
-/// Share of a particle in the strip of a gauge over the measure of the strip [1/m, 1/m2]: times the volume it is
-/// the depth that the particle adds.
+/// Share of a particle in the strip of a gauge over the measure of the strip [1/m, 1/m2]: times the volume it
+/// is the depth that the particle adds.
 double share_in_strip(const Config& config, const ProbeConfig& probe, const ProbeParticle& p) {
   double share = 1;
   for (int d = 0; d + 1 < config.dim; ++d) {
     const bool ring = config.geometry == Geometry::axisymmetric;
     const double l = p.half_length[d], at = probe.at[d] - config.mesh.lower[d];
     const double low = ring ? std::max(0.0, p.position[d] - l) : p.position[d] - l, high = low + 2 * l;
-    const double from = ring ? std::max(0.0, at - probe.width / 2) : at - probe.width / 2, to = at + probe.width / 2;
-    const auto measure = [&](double a, double b) { return (b - a) * (ring ? std::numbers::pi * (a + b) : 1.0); };
+    const double from = ring ? std::max(0.0, at - probe.width / 2) : at - probe.width / 2,
+                 to = at + probe.width / 2;
+    const auto measure = [&](double a, double b) {
+      return (b - a) * (ring ? std::numbers::pi * (a + b) : 1.0);
+    };
     if (probe.width == 0)  // the line itself: a strip that is thin
       share *= low <= at && at < high ? 1 / measure(low, high) : 0.0;
     else
-      share *= std::max(0.0, std::min(high, to) - std::max(low, from)) <= 0
-                   ? 0.0
-                   : measure(std::max(low, from), std::min(high, to)) / measure(low, high) / measure(from, to);
+      share *=
+          std::max(0.0, std::min(high, to) - std::max(low, from)) <= 0
+              ? 0.0
+              : measure(std::max(low, from), std::min(high, to)) / measure(low, high) / measure(from, to);
   }
   return share;
 }
 
 /// A gauge: depth, upper and lower edge of the soil, greatest speed, mean velocity over the depth.
-void add_gauge(std::vector<double>& values, const Config& config, const ProbeConfig& probe, const Taken& taken) {
+void add_gauge(std::vector<double>& values, const Config& config, const ProbeConfig& probe,
+               const Taken& taken) {
   const int up = config.dim - 1;
   double depth = 0, top = -HUGE_VAL, base = HUGE_VAL, speed = 0, mass = 0, momentum[3] = {};
   for (const ProbeParticle& p : taken.particles) {
@@ -135,7 +141,8 @@ void add_gauge(std::vector<double>& values, const Config& config, const ProbeCon
 }
 
 void add_section(std::vector<double>& values, int dim, const SectionSum& sum, const double* zero) {
-  for (const double value : {sum.mass_flux, sum.volume_flux, sum.mass - zero[0], sum.initial_volume - zero[1]})
+  for (const double value :
+       {sum.mass_flux, sum.volume_flux, sum.mass - zero[0], sum.initial_volume - zero[1]})
     values.push_back(value);
   for (int d = 0; d < dim; ++d) values.push_back(sum.momentum_flux[d]);
 }
@@ -153,7 +160,8 @@ std::vector<std::string> columns_of(const ProbeConfig& probe, const Config& conf
       add_state(columns, name, config);
       break;
     case ProbeKind::gauge:
-      for (const char* quantity : {"_depth", "_surface", "_base", "_speed"}) columns.push_back(name + quantity);
+      for (const char* quantity : {"_depth", "_surface", "_base", "_speed"})
+        columns.push_back(name + quantity);
       add_vector(columns, name + "_mean_velocity_", config.dim);
       break;
     case ProbeKind::section:
@@ -175,7 +183,8 @@ std::vector<ProbeRegion> regions_of(const Config& config, const ProbeState& stat
     for (int d = 0; d < config.dim; ++d) region.centre[d] = probe.at[d] - config.mesh.lower[d];
     if (probe.kind == ProbeKind::point) region.reach.fill(k_reach * config.mesh.spacing);
     if (probe.kind == ProbeKind::particle)
-      region.id = state.followed[n] >= 0 ? static_cast<int>(state.followed[n]) : std::numeric_limits<int>::max();
+      region.id =
+          state.followed[n] >= 0 ? static_cast<int>(state.followed[n]) : std::numeric_limits<int>::max();
     if (probe.kind == ProbeKind::gauge) {
       region.box = true;
       for (int d = 0; d + 1 < config.dim; ++d) region.reach[d] = probe.width / 2;
@@ -209,7 +218,8 @@ std::vector<double> probe_values(const Config& config, const ProbeState& state,
     switch (probe.kind) {
       case ProbeKind::point: add_point(values, config, probe, taken); break;
       case ProbeKind::particle:
-        add_particle(values, config, probe, state.followed[n], std::span(state.start).subspan(3 * n, 3), taken);
+        add_particle(values, config, probe, state.followed[n], std::span(state.start).subspan(3 * n, 3),
+                     taken);
         break;
       case ProbeKind::gauge: add_gauge(values, config, probe, taken); break;
       case ProbeKind::section:

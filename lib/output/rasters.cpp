@@ -21,7 +21,8 @@ std::string ascii_grid(const ColumnGrid& grid, const Config& config, const std::
   for (int j = grid.cells[1] - 1; j >= 0; --j)
     for (int i = 0; i < grid.cells[0]; ++i) {
       const double value = values[static_cast<std::size_t>(j) * grid.cells[0] + i];
-      text += (value == k_never ? k_no_data : formatted("%.9g", value)) + (i + 1 < grid.cells[0] ? " " : "\n");
+      text +=
+          (value == k_never ? k_no_data : formatted("%.9g", value)) + (i + 1 < grid.cells[0] ? " " : "\n");
     }
   return text;
 }
@@ -46,7 +47,8 @@ RasterBytes raster_bytes(const Config& config) {
 
 void Rasters::begin(const Config& config) {
   const auto count = static_cast<std::size_t>(column_grid(config).count());
-  most_depth.assign(count, 0), most_speed.assign(count, 0), arrival.assign(count, k_never), depth.assign(count, 0);
+  most_depth.assign(count, 0), most_speed.assign(count, 0), arrival.assign(count, k_never),
+      depth.assign(count, 0);
 }
 
 void Rasters::look(const Config& config, const std::vector<long>& sums) {
@@ -64,7 +66,8 @@ void Rasters::update(const Config& config, double time, const std::vector<long>&
     most_depth[n] = std::max(most_depth[n], depth[n]);
     if (!(depth[n] > options.threshold_depth)) continue;
     double square = 0;  // of the sum of velocities
-    for (std::size_t d = 1; d < width; ++d) square += double(sums[n * width + d]) * double(sums[n * width + d]);
+    for (std::size_t d = 1; d < width; ++d)
+      square += double(sums[n * width + d]) * double(sums[n * width + d]);
     const double speed = std::sqrt(square) / double(sums[n * width]);
     most_speed[n] = std::max(most_speed[n], speed);
     const bool fast = !options.threshold_speed || speed > *options.threshold_speed;
@@ -76,8 +79,10 @@ PetscErrorCode Rasters::write(const Config& config, const std::string& folder) c
   PetscFunctionBeginUser;
   const ColumnGrid grid = column_grid(config);
   if (config.dim == 3) {
-    for (const auto& [name, values] :
-         {std::pair{"max_depth", &most_depth}, {"max_speed", &most_speed}, {"arrival_time", &arrival}, {"final_depth", &depth}})
+    for (const auto& [name, values] : {std::pair{"max_depth", &most_depth},
+                                       {"max_speed", &most_speed},
+                                       {"arrival_time", &arrival},
+                                       {"final_depth", &depth}})
       PetscCall(replace_file(folder + "/raster_" + name + ".asc", ascii_grid(grid, config, *values)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -94,8 +99,8 @@ PetscErrorCode Rasters::write(const Config& config, const std::string& folder) c
 bool are_sound(const Rasters& rasters, const Config& config) {
   const std::size_t count = config.rasters.on ? static_cast<std::size_t>(column_grid(config).count()) : 0;
   for (const auto* values : {&rasters.most_depth, &rasters.most_speed, &rasters.arrival})
-    if (values->size() != count ||
-        !std::all_of(values->begin(), values->end(), [](double x) { return std::isfinite(x) && x >= k_never; }))
+    if (values->size() != count || !std::all_of(values->begin(), values->end(),
+                                                [](double x) { return std::isfinite(x) && x >= k_never; }))
       return false;
   return true;
 }

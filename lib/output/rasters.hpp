@@ -1,6 +1,6 @@
 #pragma once
-// Rasters of what has passed over the ground: greatest depth and speed of the soil, its time of arrival, and its
-// depth at the end. All ranks hold them whole.
+// Rasters of what has passed over the ground: greatest depth and speed of the soil, its time of arrival, and
+// its depth at the end. All ranks hold them whole.
 
 #include <petscsys.h>
 

@@ -60,7 +60,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::begin_probes(ProbeState* state) {
   PetscFunctionBeginUser;
   collect_soil(state_);
   const std::size_t count = config_.probes.size();
-  state->followed.assign(count, -1), state->start.assign(3 * count, 0), state->section_zero.assign(2 * count, 0);
+  state->followed.assign(count, -1), state->start.assign(3 * count, 0),
+      state->section_zero.assign(2 * count, 0);
   for (std::size_t n = 0; n < count; ++n) {
     const ProbeConfig& probe = config_.probes[n];
     if (probe.kind != ProbeKind::particle) continue;
@@ -124,8 +125,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::sum_columns(std::vector<long>* sums)
   collect_soil(state_);
   PetscCallCXX(*sums = column_sums(state_, column_grid(config_)));
   if (ranks_)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums->data(), static_cast<int>(sums->size()), MPI_LONG, MPI_SUM,
-                               comm_));
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, sums->data(), static_cast<int>(sums->size()), MPI_LONG, MPI_SUM, comm_));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -163,17 +164,17 @@ void TypedStepper<Space, T, Dim>::restore_sections(const SavedState& saved) {
                        .initial_volume = first ? saved.sections[2 * n + 1] : 0};
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                     \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::take_probe_particles(const ProbeState&,             \
-                                                                            std::vector<ProbeParticle>*);  \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::begin_probes(ProbeState*);                          \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::sum_sections(std::vector<SectionSum>*);             \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::measure_probes(const ProbeState&,                   \
-                                                                      std::vector<double>*);               \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::sum_columns(std::vector<long>*);                    \
-  template BeyondMask<Space> TypedStepper<Space, T, Dim>::mark_beyond();                                   \
-  template void TypedStepper<Space, T, Dim>::note_all_lost(const BeyondMask<Space>&);                      \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::save_sections(SavedState*) const;                   \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                    \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::take_probe_particles(const ProbeState&,            \
+                                                                            std::vector<ProbeParticle>*); \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::begin_probes(ProbeState*);                         \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::sum_sections(std::vector<SectionSum>*);            \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::measure_probes(const ProbeState&,                  \
+                                                                      std::vector<double>*);              \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::sum_columns(std::vector<long>*);                   \
+  template BeyondMask<Space> TypedStepper<Space, T, Dim>::mark_beyond();                                  \
+  template void TypedStepper<Space, T, Dim>::note_all_lost(const BeyondMask<Space>&);                     \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::save_sections(SavedState*) const;                  \
   template void TypedStepper<Space, T, Dim>::restore_sections(const SavedState&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -1,5 +1,5 @@
-// Probes, sections and columns of soil: what the kernels collect is what the particles are, and what follows from
-// it is exact for soil of known state.
+// Probes, sections and columns of soil: what the kernels collect is what the particles are, and what follows
+// from it is exact for soil of known state.
 
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>
@@ -28,8 +28,10 @@ Cloud moving_block(bool rings = false) {
   Cloud cloud;
   cloud.grid = grid_of<Dim>({12, 9, 9}, h, Wall::roller);
   cloud.materials = clays();
-  const std::array<double, 3> low = Dim == 2 ? std::array<double, 3>{3, 1, 0} : std::array<double, 3>{3, 2, 1};
-  const std::array<double, 3> high = Dim == 2 ? std::array<double, 3>{7, 3, 0} : std::array<double, 3>{7, 5, 3};
+  const std::array<double, 3> low =
+      Dim == 2 ? std::array<double, 3>{3, 1, 0} : std::array<double, 3>{3, 2, 1};
+  const std::array<double, 3> high =
+      Dim == 2 ? std::array<double, 3>{7, 3, 0} : std::array<double, 3>{7, 5, 3};
   cloud.bodies = {body_of<Dim>(lattice<Dim>(low, high, 2, h), 2, h, 0)};
   BodyInput& body = cloud.bodies[0];
   body.velocity = {k_speed, 0, 0};
@@ -76,7 +78,8 @@ double sum_of(const std::vector<double>& x) {
 
 }  // namespace
 
-TEST_CASE("regions hold the particles that are near them, and the nearest particle is the nearest", "[probes]") {
+TEST_CASE("regions hold the particles that are near them, and the nearest particle is the nearest",
+          "[probes]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;
@@ -98,7 +101,8 @@ TEST_CASE("regions hold the particles that are near them, and the nearest partic
         in = in && std::fabs(r) <= regions[0].reach[d], square += r * r;
       }
       if (in) expected.push_back(soil.id[p]);
-      const bool third = p >= static_cast<std::size_t>(soil.first[2]) && p < static_cast<std::size_t>(soil.first[3]);
+      const bool third =
+          p >= static_cast<std::size_t>(soil.first[2]) && p < static_cast<std::size_t>(soil.first[3]);
       if (in && third) of_body.push_back(soil.id[p]);
       if (third) least = std::min(least, square);
     }
@@ -189,7 +193,8 @@ TEST_CASE("what leaves beyond a section counts there", "[probes]") {
     Cloud cloud = moving_block<Dim>();
     cloud.grid = grid_of<Dim>({7, 9, 9}, h, Wall::free);
     auto s = state_of<B>(cloud);
-    const std::vector<SectionPlane> planes{{0, 6.6 * h, {}}, {0, 6.6 * h, {0}}, {1, 0.5 * h, {}}, {1, 8 * h, {}}};
+    const std::vector<SectionPlane> planes{
+        {0, 6.6 * h, {}}, {0, 6.6 * h, {0}}, {1, 0.5 * h, {}}, {1, 8 * h, {}}};
     std::vector<SectionSum> lost(planes.size());
     const double mass = k_density * std::pow(h / 2, Dim), column = mass * (Dim == 2 ? 4 : 6 * 4);
     const auto x = s.soil.points.coordinate;
@@ -225,7 +230,9 @@ TEST_CASE("columns hold the volume of the particles, and a block has its depth",
         for (int j = 0; j < grid.cells[1]; ++j)
           for (int i = 0; i < grid.cells[0]; ++i) {
             const double depth = rasters.depth[std::size_t(j) * grid.cells[0] + i];
-            const double area = rings ? std::numbers::pi * cell * cell * (2 * i + 1) : Dim == 3 ? cell * cell : cell;
+            const double area = rings      ? std::numbers::pi * cell * cell * (2 * i + 1)
+                                : Dim == 3 ? cell * cell
+                                           : cell;
             volume += depth * area;
             const double low = i * cell / h, high = (i + 1) * cell / h;
             const double low_y = j * cell / h, high_y = (j + 1) * cell / h;
@@ -233,7 +240,8 @@ TEST_CASE("columns hold the volume of the particles, and a block has its depth",
             const bool outside = high <= 3 || low >= 7 || (Dim == 3 && (high_y <= 2 || low_y >= 5));
             if (inside) CHECK(std::fabs(depth / (2 * h) - 1) < B::of(1e-10, 1e-5));
             if (outside) CHECK(depth < B::of(1e-12, 1e-6));
-            if (inside) CHECK(std::fabs(rasters.most_speed[std::size_t(j) * grid.cells[0] + i] / k_speed - 1) < 1e-6);
+            if (inside)
+              CHECK(std::fabs(rasters.most_speed[std::size_t(j) * grid.cells[0] + i] / k_speed - 1) < 1e-6);
             if (inside) CHECK(rasters.arrival[std::size_t(j) * grid.cells[0] + i] == 2.5);
           }
         CHECK(std::fabs(volume / exact - 1) < B::of(1e-10, 1e-5));
@@ -261,14 +269,16 @@ TEST_CASE("a point in soil with a linear velocity and stress has their values th
       const auto values = values_of(s, config, probe);
       REQUIRE(values.size() == columns_of(probe, config).size());
       for (int d = 0; d < Dim; ++d) CHECK(std::fabs(values[d] - linear(place, d)) < 1e-10);
-      for (int k = 0; k < sym_size<Dim>; ++k) CHECK(std::fabs(values[Dim + k] - linear(place, 10 + k)) < 1e-9);
+      for (int k = 0; k < sym_size<Dim>; ++k)
+        CHECK(std::fabs(values[Dim + k] - linear(place, 10 + k)) < 1e-9);
     }
     const auto none = values_of(s, config, probe_of(ProbeKind::point, {1, 5, 1.7}, config));
     for (const double value : none) CHECK(std::isnan(value));
   });
 }
 
-TEST_CASE("a linear fit is exact for linear functions, and a mean where the points lie on a line", "[probes]") {
+TEST_CASE("a linear fit is exact for linear functions, and a mean where the points lie on a line",
+          "[probes]") {
   LinearFit plane(2, 1), line(2, 1);
   const double points[][2] = {{0.3, 0.9}, {-0.7, 0.2}, {0.5, -0.4}, {1.0, 0.1}};
   for (const auto& r : points) {
@@ -294,7 +304,10 @@ TEST_CASE("rasters keep what was greatest and when soil came first", "[probes]")
   Rasters rasters;
   rasters.begin(config);
   const double steps[][5] = {// time, depth, speed; greatest speed and arrival then
-                             {1, 0.4, 9, 0, k_never}, {2, 2, 0.5, 0.5, k_never}, {3, 1, 3, 3, 3}, {4, 0.7, 2, 3, 3}};
+                             {1, 0.4, 9, 0, k_never},
+                             {2, 2, 0.5, 0.5, k_never},
+                             {3, 1, 3, 3, 3},
+                             {4, 0.7, 2, 3, 3}};
   double most = 0;
   for (const auto& [time, depth, speed, most_speed, arrival] : steps) {
     rasters.update(config, time, sums(depth, speed));
