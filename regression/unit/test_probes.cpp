@@ -36,9 +36,11 @@ Cloud moving_block(bool rings = false) {
   BodyInput& body = cloud.bodies[0];
   body.velocity = {k_speed, 0, 0};
   cloud.rings = rings;
-  if (rings)
-    for (std::size_t p = 0; p < body.position.size() / 2; ++p)
-      body.mass.push_back(k_density * body.particle_volume * 2 * std::numbers::pi * body.position[2 * p]);
+  for (std::size_t p = 0; rings && p < body.position.size() / 2; ++p) {
+    body.volume.push_back(body.particle_volume * 2 * std::numbers::pi * body.position[2 * p]);
+    body.mass.push_back(k_density * body.volume.back());
+  }
+  if (rings) body.least_volume = body.most_volume = body.particle_volume;
   if (rings) body.least_mass = *std::min_element(body.mass.begin(), body.mass.end());
   return cloud;
 }
@@ -68,6 +70,15 @@ std::vector<double> values_of(S& s, Config config, const ProbeConfig& probe) {
   std::vector<SectionSum> sections;
   for (const SectionPlane& plane : planes_of(config)) sections.push_back(section_sum(s, plane));
   return probe_values(config, state, particles, std::vector<double>(particles.size()), sections);
+}
+
+/// Moves all particles by a part of a cell.
+template <class Space, class T, int Dim>
+void push_along_x(const State<Space, T, Dim>& s, double cells) {
+  const auto x = s.soil.points.coordinate;
+  Kokkos::parallel_for(
+      Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+      KOKKOS_LAMBDA(int p) { x(p)[0] += static_cast<T>(cells); });
 }
 
 double sum_of(const std::vector<double>& x) {
@@ -197,10 +208,7 @@ TEST_CASE("what leaves beyond a section counts there", "[probes]") {
         {0, 6.6 * h, {}}, {0, 6.6 * h, {0}}, {1, 0.5 * h, {}}, {1, 8 * h, {}}};
     std::vector<SectionSum> lost(planes.size());
     const double mass = k_density * std::pow(h / 2, Dim), column = mass * (Dim == 2 ? 4 : 6 * 4);
-    const auto x = s.soil.points.coordinate;
-    Kokkos::parallel_for(
-        Kokkos::RangePolicy<typename B::Space>(s.space, 0, s.soil.points.count),
-        KOKKOS_LAMBDA(int p) { x(p)[0] += typename B::real(0.3); });
+    push_along_x(s, 0.3);
     const auto beyond = beyond_mask(s, planes);
     locate(s);
     REQUIRE(read_control(s).lost == std::lround(column / mass));
