@@ -11,6 +11,7 @@
 #include "input/particle_file.hpp"
 #include "input/shapes.hpp"
 #include "mesh/background.hpp"
+#include "output/rasters.hpp"
 #include "step/stepper.hpp"
 
 namespace mpm {
@@ -95,7 +96,9 @@ MemoryNeed memory_need(const Config& config) {
     single ? add_bytes<float, 2>(config, cells, need) : add_bytes<double, 2>(config, cells, need);
   else
     single ? add_bytes<float, 3>(config, cells, need) : add_bytes<double, 3>(config, cells, need);
-  need.device += need.all_ranks;
+  const RasterBytes rasters = raster_bytes(config);
+  need.all_ranks += rasters.device, need.all_ranks_host = rasters.host;
+  need.device += need.all_ranks, need.host += rasters.host;
   return need;
 }
 
@@ -122,6 +125,7 @@ MemoryNeed need_here(const Config& config, MPI_Comm comm, bool shared) {
   const double at_once = shared ? here : 1;
   need.device = (need.device - need.all_ranks) * at_once / ranks + at_once * need.all_ranks;
   // Every rank makes the whole lattice before it keeps its own; rank 0 puts the frames together.
+  need.host += (here - 1) * need.all_ranks_host;
   need.host += here * (need.particles * config.dim * sizeof(double) + k_table * need.patches);
   need.host += (here - 1) * need.rigids * (config.dim + 1) * sizeof(double);
   return need;

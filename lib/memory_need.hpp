@@ -18,6 +18,7 @@ struct MemoryNeed {
   double nodes = 0;      // bytes of that which are not the particles'
   double host = 0;       // bytes beside, while particles are made and frames are written
   double all_ranks = 0;  // bytes of the device that each rank takes, whatever their number
+  double all_ranks_host = 0;  // likewise of the host
 };
 MemoryNeed memory_need(const Config& config);
 

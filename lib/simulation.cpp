@@ -54,6 +54,7 @@ PetscErrorCode Simulation::Body::run_stage() {
     if (outcome != Outcome::finished) break;
     if (schedule.row_in_turn(step)) PetscCall(write_row());
     if (outcome != Outcome::finished) break;
+    if (schedule.raster_in_turn(step)) PetscCall(update_rasters());
     if (schedule.frame_in_turn(step)) PetscCall(write_frame());
     if (schedule.checkpoint_due(step)) PetscCall(write_checkpoint());
     if (!stopped_by.empty() && ((step < schedule.last_step() && !stage_over) || has_next_stage()))
@@ -146,6 +147,7 @@ PetscErrorCode Simulation::Body::write_row() {
   row.dt = step > 0 ? schedule.step_size(step - 1) : dt;
   row.wall_time = wall();
   PetscCall(stepper->measure(row.time - last_row_time, &row));
+  if (!config.probes.empty()) PetscCall(stepper->measure_probes(probes, &row.probes));
   last_row_time = row.time;
   row.stage = config.stage.number;
   if (config.balance) PetscCall(stepper->unbalanced_ratio(row.time, &row.unbalanced_ratio));
@@ -190,11 +192,13 @@ PetscErrorCode Simulation::Body::write_frame() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// The row and the frame at the end that a longer run would not have: a checkpoint comes before them.
+/// The row, the frame and the look for rasters at the end that a longer run would not have: a checkpoint
+/// comes before them.
 PetscErrorCode Simulation::Body::write_last_output() {
   PetscFunctionBeginUser;
   if (step == 0) PetscFunctionReturn(PETSC_SUCCESS);
   if (!schedule.row_in_turn(step)) PetscCall(write_row());
+  if (!schedule.raster_in_turn(step)) PetscCall(update_rasters());
   if (!schedule.frame_in_turn(step)) PetscCall(write_frame());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -264,6 +268,7 @@ PetscErrorCode Simulation::Body::report_performance() {
 PetscErrorCode Simulation::Body::finish() {
   PetscFunctionBeginUser;
   PetscCall(frames.settle());
+  PetscCall(write_rasters());
   PetscCall(agree(comm, history.close()));
   if (outcome == Outcome::finished) PetscCall(agree(comm, forget_later()));
   if (config.output.energy) PetscCall(log.line(format_energy(last_energy)));

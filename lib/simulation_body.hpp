@@ -72,6 +72,9 @@ struct Simulation::Body {
   bool watching = false;  // energy has begun
   Notices notices;
 
+  ProbeState probes;
+  Rasters rasters;
+
   int stage = 0;                                // index into report.stages
   Schedule::Begin stage_begin;                  // where it began
   bool stage_over = false;                      // the event that ends it has come
@@ -93,6 +96,14 @@ struct Simulation::Body {
   PetscErrorCode end_stage();
   PetscErrorCode next_stage();
   PetscErrorCode set_up_stage(SavedState&& state);
+
+  // simulation_probes.cpp
+  PetscErrorCode begin_probes();
+  PetscErrorCode update_rasters();
+  PetscErrorCode write_rasters();
+  std::string probes_fault() const;
+  PetscErrorCode reset_probes();
+  PetscErrorCode keep_sections(const std::vector<SectionSum>& before);
 
   // simulation_files.cpp
   void check_files();

@@ -62,6 +62,7 @@ PetscErrorCode Simulation::Body::read_restart() {
     if (!report.errors.empty()) PetscFunctionReturn(PETSC_SUCCESS);
     option_changes = found.changes;
     fault = state_fault(restart->state, config);
+    if (fault.empty()) fault = probes_fault();
     if (fault.empty()) apply_changes(option_changes, config, restart->state);
   }
   if (!fault.empty())
@@ -144,6 +145,7 @@ PetscErrorCode Simulation::Body::resume() {
   stepping = began.stepping;
   since_rebuild = began.since_rebuild, rebuilds = began.rebuilds;
   longest = began.longest, shortest = began.shortest;
+  probes = std::move(restart->probes), rasters = std::move(restart->rasters);
   bool rebuilt = false;
   const PetscErrorCode unfit = stepper->restore(std::move(restart->state), since_rebuild, &rebuilt);
   if (unfit == PETSC_ERR_ARG_SIZ) {  // told; only a checkpoint that somebody has altered gets here
@@ -228,6 +230,7 @@ PetscErrorCode Simulation::Body::write_checkpoint() {
   PetscCall(share_numbers(comm, 2, mark));
   c.history = {static_cast<long>(mark[0]), static_cast<std::uint32_t>(mark[1])};
   PetscCall(stepper->save(&c.state));
+  c.probes = probes, c.rasters = rasters;
   PetscCall(mpm::write_checkpoint(comm, checkpoint_path(folder, step), std::move(c)));
   checkpointed = step;
   PetscCall(forget_later());

@@ -80,8 +80,9 @@ PetscErrorCode Simulation::Body::tell_need() {
   const double end = schedule.time_of(schedule.last_step());
   const double frames_written = config.output.frames ? std::floor(end / config.output.interval) + 1 : 0;
   const double rows = std::floor(end / config.output.history_interval) + 1;
-  const double columns =
+  double columns =
       4 + config.bodies.size() * (2.0 + 5 * config.dim) + config.rigids.size() * 3.0 * config.dim;
+  for (const ProbeConfig& probe : config.probes) columns += double(columns_of(probe, config).size());
   const MemoryNeed need = memory_need(config);
   Snapshot snapshot;
   SavedState state;
@@ -101,6 +102,14 @@ PetscErrorCode Simulation::Body::tell_need() {
       "of %.4g MB",
       frames_written, frame / 1e6, config.output.compression > 0 ? " before compression" : "", rows,
       k_row * columns, (frames_written * frame + rows * k_row * columns) / 1e6, checkpoint / 1e6));
+  if (config.rasters.on) {
+    const ColumnGrid grid = column_grid(config);
+    const RasterBytes raster = raster_bytes(config);
+    PetscCall(
+        log.print("rasters       %d x %d cells: %.4g MB on the device while they are made, %.4g MB on the "
+                  "host, a rank",
+                  grid.cells[0], grid.cells[1], raster.device / 1e6, raster.host / 1e6));
+  }
   double seconds = 0;
   PetscCall(time_steps(&seconds));
   if (const std::string batches = stepper->batches_report(); !batches.empty()) PetscCall(log.line(batches));

@@ -174,6 +174,8 @@ double Simulation::Body::end_of_run() const {
 PetscErrorCode Simulation::Body::next_stage() {
   PetscFunctionBeginUser;
   SavedState state;
+  std::vector<SectionSum> sections;
+  PetscCall(stepper->sum_sections(&sections));
   PetscCall(stepper->save(&state));
   PetscCall(bring_together(comm, &state));
   rigid_zero.resize(3 * config.rigids.size()), rigid_begin.resize(rigid_zero.size());
@@ -182,6 +184,7 @@ PetscErrorCode Simulation::Body::next_stage() {
     if (config.stage.reset) rigid_zero[k] = rigid_begin[k];
   }
   if (config.stage.reset) reset_state(config, state);
+  if (config.stage.reset) PetscCall(reset_probes());
   const P2G strategy = config.p2g.strategy;  // as it was chosen
   const std::string last = config.stage.name;
   const std::vector<EffectiveOption> options = report.options;
@@ -200,6 +203,7 @@ PetscErrorCode Simulation::Body::next_stage() {
   for (const OptionChange& c : changes)
     PetscCall(log.line("changed here: " + c.name + " " + c.before + " -> " + c.after));
   PetscCall(set_up_stage(std::move(state)));
+  if (outcome == Outcome::finished && !config.stage.remove.empty()) PetscCall(keep_sections(sections));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

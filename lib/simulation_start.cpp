@@ -236,6 +236,7 @@ PetscErrorCode Simulation::Body::start() {
   frames.open(config.output.directory, config.precision, {config.output.fields, config.output.compression},
               comm);
   wall_start = seconds_now();
+  PetscCall(begin_probes());
   PetscCall(write_row());
   PetscCall(write_frame());
   PetscFunctionReturn(PETSC_SUCCESS);

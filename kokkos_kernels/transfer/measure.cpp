@@ -3,6 +3,7 @@
 #include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
 #include "physics/pore_water.hpp"
+#include "transfer/positions.hpp"
 
 namespace mpm {
 namespace {
@@ -121,6 +122,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   constexpr int together = is_device<Space> ? 1 : 256;
   const auto soil = s.soil.points;
   const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing, s.grid.period};
+  const auto position = positions_of(s);
   const int count = soil.count;
   const auto alone = s.strays.alone;
   const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
@@ -205,6 +207,7 @@ double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long ra
                          const OverRanks& over) {
   const auto soil = s.soil.points;
   const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing, s.grid.period};
+  const auto position = positions_of(s);
   const Ruler ruler(m.lower[d], m.upper[d]);
   const Kokkos::RangePolicy<Space> range(s.space, 0, soil.count);
   const Kokkos::View<int*, typename Space::memory_space> counts("mpm::ranked_coordinate", 1 << Ruler::digit);

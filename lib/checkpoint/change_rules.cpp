@@ -35,6 +35,9 @@ constexpr Row k_rules[] = {
     {Owner::run, "time_max_steps", k_anew},
     {Owner::run, "output_interval", k_output},
     {Owner::run, "output_energy", {}},  // it begins with the run
+    {Owner::run, "output_rasters", {}},
+    {Owner::run, "raster_origin", k_anew},
+    {Owner::run, "raster_interval", k_output},
     {Owner::run, "output_*", k_anew},
     {Owner::run, "history_interval", k_output},
     {Owner::run, "checkpoint_interval", k_output},

@@ -12,6 +12,8 @@
 #include "data/saved_state.hpp"
 #include "input/options.hpp"
 #include "output/history.hpp"
+#include "output/probes.hpp"
+#include "output/rasters.hpp"
 
 namespace mpm {
 
@@ -45,6 +47,8 @@ struct Checkpoint {
   HistoryMark history;
   long frames = 0;  // written so far
   SavedState state;
+  ProbeState probes{};
+  Rasters rasters{};
 };
 
 /// Writes the file under a temporary name, flushes it to the disk, reads it again to compare its checksum,

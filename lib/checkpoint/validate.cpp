@@ -8,6 +8,7 @@
 #include "checkpoint/changes.hpp"
 #include "data/side_terms.hpp"
 #include "mesh/background.hpp"
+#include "output/probes.hpp"
 #include "parallel/global_bound.hpp"
 
 namespace mpm {
@@ -101,6 +102,9 @@ std::string state_fault(const SavedState& state, const Config& config) {
     if (!in_mesh(address, config.mesh, config.dim, 2 * ring))
       return "a checkpoint with a sound impulse_address";
   const auto finite = [](double x) { return std::isfinite(x); };
+  if (state.sections.size() != 2 * planes_of(config).size() ||
+      !std::all_of(state.sections.begin(), state.sections.end(), finite))
+    return "a checkpoint with a sound section_lost";
   if (!std::all_of(state.impulse.values.begin(), state.impulse.values.end(), finite))
     return "a checkpoint with a sound impulse";
   if (!sound_sides(state.sides, config)) return "a checkpoint with sound side_kinds and side_nodes";

@@ -109,6 +109,7 @@ struct HistoryRow {
   double unbalanced_ratio = 0;                 // -, where some stage ends by equilibrium
   long filled_cells = 0, empty_cells = 0;      // cells that hold soil; gaps between them
   EnergyRow energy{};                          // where the run asks for it
+  std::vector<double> probes{};                // the columns of all probes (output/probes.hpp)
 };
 
 }  // namespace mpm

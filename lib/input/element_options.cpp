@@ -19,7 +19,7 @@ void pass_over_mesh(OptionReader& in) {
   all.list(report);
   list_all(all);
   std::vector<std::string> beginnings;
-  for (const char* list : {"bodies", "rigid_bodies"})
+  for (const char* list : {"bodies", "rigid_bodies", "probes"})
     for (const std::string& name : split(in.given_text(list)))
       if (!name.empty()) beginnings.push_back(name + "_");
   const int count = in.pass_over(all.known(), beginnings);

@@ -125,6 +125,15 @@ void check_particles(OptionReader& in, const BodyConfig& body, const Config& con
 void check_density(OptionReader& in, const BodyConfig& body, const Config& config,
                    const ParticleTable& table);
 
+/// The options of one probe. A null mesh is unsound; the bodies have been read.
+void read_probe(OptionReader& in, const MeshConfig* mesh, const Config& config, ProbeConfig& probe);
+/// Rejects more sections than there may be.
+void check_probes(OptionReader& in, const Config& config);
+/// -output_rasters and -raster_*, before the names: no name may begin so. A null mesh is unsound.
+void read_rasters(OptionReader& in, const MeshConfig* mesh, Config& config);
+/// -raster_bodies, once the bodies have been read.
+void read_raster_bodies(OptionReader& in, const Config& config, RasterConfig& rasters);
+
 /// -stages: the good names. The names of all options are reserved.
 std::vector<std::string> read_stage_names(OptionReader& in);
 /// What the stage of a reader owns; rigids and gravity have been read.
@@ -156,7 +165,7 @@ bool check_element_start(OptionReader& in, const MaterialConfig& material, doubl
 /// Lists every option with the reader, which lists.
 void list_all(OptionReader& in);
 
-/// -materials, -bodies, -rigid_bodies and the options of each that they name. The fixed options must have
+/// -materials, -bodies, -rigid_bodies, -probes and the options of each that they name. The fixed options must have
 /// been read before, since no name may begin as they do. A null mesh (unsound) leaves the shapes unchecked
 /// against it.
 void read_named(OptionReader& in, const MeshConfig* mesh, Config& config);

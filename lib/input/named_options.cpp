@@ -1,4 +1,4 @@
-// -materials, -bodies, -rigid_bodies, and what each named thing owns.
+// -materials, -bodies, -rigid_bodies, -probes, and what each named thing owns.
 
 #include <algorithm>
 #include <cctype>
@@ -33,7 +33,8 @@ struct Names {
     if (!is_name(name)) return "names of letters, digits and _ that begin with a letter, as sand,clay";
     if (reserved.count(key) || is_petsc_name(key + "_"))
       return "names other than " + name + ", which begins other options";
-    if (used.count(key)) return "names that no other material, body or rigid has; " + name + " is taken";
+    if (used.count(key))
+      return "names that no other material, body, rigid or probe has; " + name + " is taken";
     return "";
   }
 };
@@ -274,14 +275,15 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
   const auto bodies = read_names(
       in, {.name = "bodies", .meaning = "names of the deformable bodies", .required = true}, names);
   const auto rigids = read_names(in, {.name = "rigid_bodies", .meaning = "names of the rigid bodies"}, names);
+  const auto probes = read_names(
+      in, {.name = "probes", .meaning = "names of the probes, places of which the history tells"}, names);
   if (!in.listing()) {
-    for (const char* list : {"materials", "bodies", "rigid_bodies"}) leave_out(in, list, names);
+    for (const char* list : {"materials", "bodies", "rigid_bodies", "probes"}) leave_out(in, list, names);
     forgive_unlisted(in, names);
   }
   auto errors = in.errors();
   for (const auto& name : materials) read_material(in, name, mesh, config, config.materials.emplace_back());
-  const bool sound_materials =
-      mesh && !config.materials.empty() && in.errors() == errors && !in.listing();
+  const bool sound_materials = mesh && !config.materials.empty() && in.errors() == errors && !in.listing();
   if (sound_materials)
     for (MaterialConfig& material : config.materials) prepare_material(material, mesh->spacing, 0);
   errors = in.errors();
@@ -293,6 +295,11 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
     config.rigids.emplace_back().name = name;
     read_rigid(in, mesh, config, config.rigids.back());
   }
+  for (const auto& name : probes) {
+    config.probes.emplace_back().name = name;
+    read_probe(in, mesh, config, config.probes.back());
+  }
+  check_probes(in, config);
   if (sound_materials && in.errors() == errors) check_level_ground(in, *mesh, config);
   if (sound_materials) prepare_for_pressure(mesh->spacing, config);
   if (mesh && in.errors() == errors)

@@ -382,7 +382,9 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   read_output(in, options_file, config.time.end, config.output);
   if (config.output.energy && config.device_memory_limit)
     in.reject("output_energy", "off where -device_memory_limit sends the soil in batches");
+  read_rasters(in, sound ? &config.mesh : nullptr, config);
   read_named(in, sound ? &config.mesh : nullptr, config);
+  read_raster_bodies(in, config, config.rasters);
   if (sound) check_absorbing(in, config);
   if (sound && in.errors() == errors) check_periodic(in, config);
   check_revolution(in, config);

@@ -12,6 +12,7 @@
 #include "common/numbers.hpp"
 #include "common/text.hpp"
 #include "output/files.hpp"
+#include "output/probes.hpp"
 
 namespace mpm {
 namespace {
@@ -80,6 +81,8 @@ std::string history_header(const Config& config) {
   header += ",empty_cells";
   if (config.output.energy)
     for (const EnergyColumn& column : k_energy_columns) header += std::string(",") + column.name;
+  for (const ProbeConfig& probe : config.probes)
+    for (const std::string& column : columns_of(probe, config)) header += "," + column;
   if (!config.stages.empty()) header += ",stage";
   if (config.balance) header += ",unbalanced_ratio";
   return header;
@@ -110,6 +113,7 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
   text += "," + std::to_string(row.empty_cells);
   if (config.output.energy)
     for (const EnergyColumn& column : k_energy_columns) text += "," + text_of(row.energy.*column.value);
+  for (const double value : row.probes) text += "," + text_of(value);
   if (!config.stages.empty()) text += "," + std::to_string(row.stage);
   if (config.balance) text += "," + text_of(row.unbalanced_ratio);
   return text;

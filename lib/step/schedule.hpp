@@ -58,14 +58,20 @@ class Schedule {
   /// Whether a row or a frame is due though the run goes on after this step.
   bool row_in_turn(long step) const { return due(step, output_.history_interval); }
   bool frame_in_turn(long step) const { return due(step, output_.interval); }
+  bool raster_in_turn(long step) const {
+    return output_.raster_interval && due(step, *output_.raster_interval);
+  }
   bool checkpoint_due(long step) const {
     return output_.checkpoint_interval && (step == last_ || due(step, *output_.checkpoint_interval));
   }
   bool frame_due(long step) const { return step == last_ || due(step, output_.interval); }
-  /// The next step after `step` at which a row, a frame or a checkpoint is due.
+  /// The next step after `step` at which a row, a frame, a checkpoint or a look for rasters is due.
   long next_stop(long step) const {
-    const long checkpoint = output_.checkpoint_interval ? next(step, *output_.checkpoint_interval) : last_;
-    return std::min({last_, next(step, output_.history_interval), next(step, output_.interval), checkpoint});
+    const auto next_of = [&](const std::optional<double>& interval) {
+      return interval ? next(step, *interval) : last_;
+    };
+    return std::min({last_, next(step, output_.history_interval), next(step, output_.interval),
+                     next_of(output_.checkpoint_interval), next_of(output_.raster_interval)});
   }
 
  private:

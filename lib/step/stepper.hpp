@@ -14,6 +14,7 @@
 #include "data/saved_state.hpp"
 #include "mpm/config.hpp"
 #include "output/performance.hpp"
+#include "output/probes.hpp"
 
 namespace mpm {
 
@@ -64,6 +65,14 @@ class Stepper {
   /// Mean unbalanced force over mean weight of the nodes, at a time [s]; infinite where no node is free to
   /// tell.
   virtual PetscErrorCode unbalanced_ratio(double time, double* ratio) = 0;
+  /// What probes know at the start of the run, the same on every rank.
+  virtual PetscErrorCode begin_probes(ProbeState* state) = 0;
+  /// What is beyond the sections, with what has left there, and passes them; of all ranks.
+  virtual PetscErrorCode sum_sections(std::vector<SectionSum>* sums) = 0;
+  /// The columns of all probes in a row of the history.
+  virtual PetscErrorCode measure_probes(const ProbeState& state, std::vector<double>* values) = 0;
+  /// The sums of the columns of the rasters (column_sums.hpp), of all ranks.
+  virtual PetscErrorCode sum_columns(std::vector<long>* sums) = 0;
   /// Speed of the fastest wave in the soil as it is now [m/s].
   virtual PetscErrorCode fastest_wave(double* speed) = 0;
   /// The frame at snapshot->time; on several ranks each has a range of the particles of a body.
@@ -109,8 +118,8 @@ double critical_time_step(const Config& config);
 /// materials/any.hpp); infinite where no law adds anything.
 double viscous_time_step(const Config& config);
 
-/// Whether the stiffness of some body depends on stress or state, or the domains of its particles stretch: the
-/// time step follows what Stepper::fastest_wave gives.
+/// Whether the stiffness of some body depends on stress or state, or the domains of its particles stretch:
+/// the time step follows what Stepper::fastest_wave gives.
 bool stiffness_changes(const Config& config);
 
 /// Version of Kokkos, and the name of the device that the backend runs on.

@@ -189,6 +189,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.f_bar_fraction = model.owners.empty() ? f_bar : 0;
   state_.keeps_stress = model.from_run;
   state_.energy.on = config_.output.energy;
+  planes_ = planes_of(config_);
+  lost_beyond_.resize(planes_.size());
   Fault fault{};
   PetscCallCXX(set_up_sides(&grid));
   PetscCallCXX(upload_loads(state_, load_input(config_, carried)));
@@ -284,9 +286,10 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(double elapsed, Failure* fai
   Control control{};
   PetscErrorCode failed = PETSC_SUCCESS;
   const auto work = [&] {
+    const BeyondMask<Space> beyond = mark_beyond();
     locate(state_);
     control = read_control(state_);
-    if (control.lost > 0) note_lost(state_);
+    if (control.lost > 0) note_all_lost(beyond);
     if (control.fault_count == 0) failed = split_and_merge();
     if (control.fault_count > 0 || failed != PETSC_SUCCESS) return;
     sort_and_list(state_);
@@ -307,6 +310,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscCall(save_for_starts(saved));
   saved->particles = ids();
   PetscCall(save_energy(saved));
+  PetscCall(save_sections(saved));
   if (ranks_) PetscCall(gather_strays(saved));
   if (ranks_) PetscCall(ranks_->save(saved));
   PetscCall(save_sides(&saved->sides));
@@ -328,6 +332,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   Failure unfit;
   PetscCallCXX(unfit.what = take_saved(state_, saved));
   restore_energy(saved);
+  restore_sections(saved);
   double lost = 0;
   for (const Lost& of_body : state_.strays.lost) lost += of_body.count + of_body.merged;
   if (state_.soil.points.splits) children_ = std::max(0L, saved.particles - total_);

@@ -20,6 +20,7 @@
 #include "transfer/download_nodes.hpp"
 #include "transfer/measure.hpp"
 #include "transfer/save_state.hpp"
+#include "transfer/section_sums.hpp"
 #include "transfer/unbalanced.hpp"
 #include "transfer/upload.hpp"
 #include "transfer/upload_sides.hpp"
@@ -36,6 +37,10 @@ class TypedStepper final : public Stepper {
   PetscErrorCode rebuild(double elapsed, Failure* failure) override;
   PetscErrorCode measure(double interval, HistoryRow* row) override;
   PetscErrorCode unbalanced_ratio(double time, double* ratio) override;
+  PetscErrorCode begin_probes(ProbeState* state) override;
+  PetscErrorCode sum_sections(std::vector<SectionSum>* sums) override;
+  PetscErrorCode measure_probes(const ProbeState& state, std::vector<double>* values) override;
+  PetscErrorCode sum_columns(std::vector<long>* sums) override;
   PetscErrorCode fastest_wave(double* speed) override;
   PetscErrorCode snapshot(Snapshot* snapshot) override;
   PetscErrorCode ownership(std::vector<OwnedPatch>* patches) override;
@@ -69,6 +74,12 @@ class TypedStepper final : public Stepper {
   PetscErrorCode gather_sides(std::vector<double>* table) const;
   PetscErrorCode save_sides(SavedSides* saved) const;
   void restore_sides(const SavedSides& saved);
+  PetscErrorCode take_probe_particles(const ProbeState& state, std::vector<ProbeParticle>* particles);
+  /// Before and after locate(), for sections: which particles are beyond them, and which of these have left.
+  BeyondMask<Space> mark_beyond();
+  void note_all_lost(const BeyondMask<Space>& beyond);
+  PetscErrorCode save_sections(SavedState* saved) const;
+  void restore_sections(const SavedState& saved);
   void set_gravity(double time);
   PetscErrorCode measure_body(int body, BodyRow* row);
   PetscErrorCode begin_energy();
@@ -111,6 +122,8 @@ class TypedStepper final : public Stepper {
   long total_ = 0;                                                   // particles of all ranks at the start
   long children_ = 0;                                                // that splitting has added, on all ranks
   double kinetic_at_start_ = 0, elastic_at_start_ = 0;  // J, of all ranks, where there is an energy balance
+  std::vector<SectionPlane> planes_;                    // of the sections among the probes
+  std::vector<SectionSum> lost_beyond_;                 // by plane: what has left there, on this rank
   KeptById heights_;                                    // m, absolute, where each particle was created
 };
 

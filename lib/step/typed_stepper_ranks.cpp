@@ -107,11 +107,12 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(double elapsed, Fai
   std::vector<double> sides;  // of all ranks: other ranks may come to reach their nodes
   PetscCall(gather_sides(&sides));
   const auto work = [&] {
+    const BeyondMask<Space> beyond = mark_beyond();
     locate(state_);
     const Control control = read_control(state_);
     *failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
     failed = share(failure);
-    if (control.lost > 0) note_lost(state_);
+    if (control.lost > 0) note_all_lost(beyond);
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = split_and_merge();
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = ranks_->rebuild(state_);
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = correct_positions(elapsed);

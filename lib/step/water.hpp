@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/gravity_on_soil.hpp"
+#include "common/pore_pressure.hpp"
 #include "data/water.hpp"
 #include "mpm/config.hpp"
 
@@ -27,13 +28,6 @@ Water<Dim> water_of(const Config& config) {
 template <int Dim>
 Water<Dim> water_of_kernels(const Config& config) {
   return carries_alike(config) ? Water<Dim>{} : water_of<Dim>(config);
-}
-
-/// Whether frames tell a pore pressure.
-inline bool has_pore_pressure(const Config& config) {
-  for (const MaterialConfig& material : config.materials)
-    if (material.pore_stiffness > 0) return true;
-  return config.water.level.has_value();
 }
 
 }  // namespace mpm

@@ -31,3 +31,17 @@ TEST_CASE("soil that slows down is taken as steady, and no margin that is left a
   CHECK(steps_to_move(-1, 1e-3, 1) == 0);
   CHECK(std::isfinite(steps_to_move(0.25, 0, 0)));
 }
+
+TEST_CASE("looks for rasters are due at their interval, and steps stop there", "[schedule]") {
+  TimeConfig time;
+  time.end = 1;
+  OutputConfig output;
+  output.interval = output.history_interval = 10;
+  CHECK_FALSE(Schedule(time, output, 0.1).raster_in_turn(3));
+  output.raster_interval = 0.3;
+  const Schedule schedule(time, output, 0.1);
+  for (long step = 0; step <= 10; ++step) CHECK(schedule.raster_in_turn(step) == (step > 0 && step % 3 == 0));
+  CHECK(schedule.next_stop(0) == 3);
+  CHECK(schedule.next_stop(3) == 6);
+  CHECK(schedule.next_stop(9) == 10);
+}

@@ -207,12 +207,35 @@ struct OutputConfig {
   bool energy = false;              // the history has an energy balance
   double interval = 0;              // s between frames
   double history_interval = 0;      // s between rows of the history
+  std::optional<double> raster_interval;  // s between looks at the soil for the rasters; none: there are none
   Progress progress = Progress::automatic;
   std::optional<double>
       checkpoint_interval;                // s between checkpoints; none: only when the run is told to stop
   std::optional<double> wall_time_limit;  // s of wall time after which the run stops
   std::string restart;                    // the checkpoint to go on from, or "latest"; empty: from the start
   std::vector<std::string> restart_change;  // names of options, without dash, that may differ from its own
+};
+
+enum class ProbeKind { point, particle, gauge, section };
+
+/// A place where the history tells of the soil.
+struct ProbeConfig {
+  std::string name;
+  ProbeKind kind = ProbeKind::point;
+  Vec3 at{};                // m; of a gauge without the vertical axis; of a section the component `axis` alone
+  int axis = 0;             // section: that it is normal to
+  double width = 0;         // m, gauge: of the strip (square in 3D) around its place
+  std::vector<int> bodies;  // indices into Config::bodies that count; empty: all
+};
+
+/// Rasters of what has passed over the ground, by columns of soil.
+struct RasterConfig {
+  bool on = false;
+  double spacing = 0;                     // m, edge of a cell
+  double threshold_depth = 0;             // m, above which soil has arrived
+  std::optional<double> threshold_speed;  // m/s, which it must have then too
+  std::vector<int> bodies;                // indices into Config::bodies that count; empty: all
+  Vec3 origin{};                          // m, added to the coordinates in files
 };
 
 /// Water at rest, in which the soil is submerged.
@@ -283,6 +306,8 @@ struct Config {
   std::vector<BodyConfig> bodies;
   std::vector<RigidConfig> rigids;
   OutputConfig output;
+  std::vector<ProbeConfig> probes;
+  RasterConfig rasters;
   ElementConfig element;
   StageConfig stage;                // which stage these options are of
   bool balance = false;             // the history tells the unbalanced ratio

@@ -1,0 +1,13 @@
+#pragma once
+#include "mpm/config.hpp"
+
+namespace mpm {
+
+/// Whether frames and probes tell a pore pressure, and total stress.
+inline bool has_pore_pressure(const Config& config) {
+  for (const MaterialConfig& material : config.materials)
+    if (material.pore_stiffness > 0) return true;
+  return config.water.level.has_value();
+}
+
+}  // namespace mpm
