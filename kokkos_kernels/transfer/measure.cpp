@@ -34,32 +34,6 @@ struct Sum {
   }
 };
 
-/// Where particles are, m from the mesh's lower corner. Those that have passed a periodic side since the last
-/// rebuild are within the mesh again.
-template <class Space, class T, int Dim>
-struct Positions {
-  Soil<Space, T, Dim> soil;
-  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  double spacing;     // m
-  Coord<Dim> period;  // Grid::period
-
-  KOKKOS_INLINE_FUNCTION double operator()(int p, int d) const {
-    const double cells = in_cells(p, d);
-    return (cells + (cells < 0 ? period[d] : cells >= period[d] ? -period[d] : 0)) * spacing;
-  }
-  /// Where it would be had it passed no periodic side.
-  KOKKOS_INLINE_FUNCTION double on_its_way(int p, int d) const {
-    const double passed = soil.has_periods ? double(soil.periods(p)[d]) * period[d] : 0;
-    return (in_cells(p, d) + passed) * spacing;
-  }
-
- private:
-  KOKKOS_INLINE_FUNCTION double in_cells(int p, int d) const {
-    const int cell = soil.cell(p);
-    return double(origin(cell / Patch<Dim>::cells)[d]) + coord_of<Dim>(cell)[d] + soil.coordinate(p)[d];
-  }
-};
-
 /// Energy [J/m3] that particle p can give back, its pore water's among it.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION double stored_energy(const Soil<Space, T, Dim>& soil, int material, int p) {
@@ -121,7 +95,6 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   // adds pair by pair.
   constexpr int together = is_device<Space> ? 1 : 256;
   const auto soil = s.soil.points;
-  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing, s.grid.period};
   const auto position = positions_of(s);
   const int count = soil.count;
   const auto alone = s.strays.alone;
@@ -206,7 +179,6 @@ template <class Space, class T, int Dim>
 double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
                          const OverRanks& over) {
   const auto soil = s.soil.points;
-  const Positions<Space, T, Dim> position{soil, s.patches.origin, s.spacing, s.grid.period};
   const auto position = positions_of(s);
   const Ruler ruler(m.lower[d], m.upper[d]);
   const Kokkos::RangePolicy<Space> range(s.space, 0, soil.count);
