@@ -110,7 +110,7 @@ def check(runs):
         gradient, value = np.polyfit(1 / f, drive, 1)
         yield Row(f"safety factor, {what}", -gradient / value, safety(c, phi, beta), 0.007, "limit equilibrium, exact here",
                   relative=True)
-        yield Row("the same against that at the depth of the lowest particles", -gradient / value,
+        yield Row(f"safety factor at the depth of the lowest particles, {what}", -gradient / value,
                   safety(c, phi, beta, 1 - 0.5 / CELLS), 0.002, "limit equilibrium", relative=True)
         yield Row(f"{what}: acceleration for F 1 % above (m/s2)", near, exact(name, "above") / 4, 0,
                   "a quarter of Newton's second law: it slides", at_least=True)
