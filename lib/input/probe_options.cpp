@@ -10,6 +10,8 @@ namespace mpm {
 namespace {
 
 constexpr std::size_t k_most_sections = 64;
+const Option k_raster_bodies{
+    .name = "raster_bodies", .meaning = "bodies that count for the rasters", .standard = "all"};
 
 /// Indices of the bodies that an option names; empty where it is not given: all count.
 void read_bodies(OptionReader& in, const Option& option, const Config& config, std::vector<int>& bodies) {
@@ -183,13 +185,11 @@ void read_rasters(OptionReader& in, const MeshConfig* mesh, Config& config) {
              .unit = "m",
              .range = k_coordinate},
             config.dim, rasters.origin);
+  if (listing) read_bodies(in, k_raster_bodies, config, rasters.bodies);
 }
 
 void read_raster_bodies(OptionReader& in, const Config& config, RasterConfig& rasters) {
-  if (rasters.on || in.listing())
-    read_bodies(in,
-                {.name = "raster_bodies", .meaning = "bodies that count for the rasters", .standard = "all"},
-                config, rasters.bodies);
+  if (rasters.on && !in.listing()) read_bodies(in, k_raster_bodies, config, rasters.bodies);
 }
 
 }  // namespace mpm

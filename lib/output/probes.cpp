@@ -42,7 +42,7 @@ void add_state(std::vector<double>& values, const Config& config, std::span<cons
                std::span<const double> stress, double pore_pressure) {
   for (int d = 0; d < config.dim; ++d) values.push_back(velocity[d]);
   for (int k = 0; k < stress_size(config); ++k) values.push_back(stress[k]);
-  values.push_back(-(stress[0] + stress[1] + stress[2]) / 3);
+  values.push_back((0 - (stress[0] + stress[1] + stress[2])) / 3);
   if (has_pore_pressure(config)) values.push_back(pore_pressure);
 }
 
