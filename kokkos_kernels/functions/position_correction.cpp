@@ -21,7 +21,7 @@ struct CompareVolumes {
   using B = BoundaryTerms<Dim>;
   Grid<T, Dim> grid;
   Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  Fill<Space, T, Dim> fill;
+  FillField<Space, T, Dim> fill;
   T per_volume, per_area;  // 1/m3, 1/m2
 
   KOKKOS_INLINE_FUNCTION void operator()(int i) const {
@@ -57,7 +57,7 @@ template <class Space, class T, int Dim>
 struct FindShift {
   Soil<Space, T, Dim> soil;
   NodePlaces<Space, T, Dim> places;
-  Fill<Space, T, Dim> fill;
+  FillField<Space, T, Dim> fill;
   NodeField<Space, T, SoilTerms<Dim>::size> sums;
   CorrectionVectors<Space, T, Dim> shares, shifts;
   decltype(PositionCorrection<Space>::flow_column) flow_column;
@@ -214,7 +214,7 @@ struct reduction_identity<mpm::Added> {
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void compare_volumes(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill) {
+void compare_volumes(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill) {
   const double area = power(s.spacing, Dim - 1);
   Kokkos::parallel_for(
       "mpm::compare_volumes", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
@@ -223,7 +223,7 @@ void compare_volumes(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill) {
 }
 
 template <class Space, class T, int Dim>
-void find_shifts(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill, double elapsed) {
+void find_shifts(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill, double elapsed) {
   ensure(s.scratch, 2 * sizeof(Vector<T, Dim>) * s.soil.points.count);
   Kokkos::parallel_for("mpm::find_shifts", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
                        FindShift<Space, T, Dim>{s.soil.points,
@@ -262,8 +262,8 @@ void apply_shifts(State<Space, T, Dim>& s) {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                  \
-  template void compare_volumes(State<Space, T, Dim>&, const Fill<Space, T, Dim>&);     \
-  template void find_shifts(State<Space, T, Dim>&, const Fill<Space, T, Dim>&, double); \
+  template void compare_volumes(State<Space, T, Dim>&, const FillField<Space, T, Dim>&);     \
+  template void find_shifts(State<Space, T, Dim>&, const FillField<Space, T, Dim>&, double); \
   template void apply_shifts(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
