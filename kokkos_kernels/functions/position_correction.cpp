@@ -8,8 +8,8 @@ namespace mpm {
 namespace {
 
 constexpr double k_flowed = 0.1;           // -, plastic shear strain from which on soil counts as flowing
-constexpr double k_most_diffusion = 0.15;  // -, explicit diffusion of the density stays smooth below
-constexpr double k_surface = 0.8;          // -, a node that is filled less may be at a free surface
+constexpr double k_most_diffusion = 0.2;  // -, explicit diffusion of the density stays smooth below
+constexpr double k_surface = 0.5;          // -, a node that is filled less may be at a free surface
 constexpr double k_outside = 0.15;         // -, more of f - a^2/2 is not that of a node beyond a surface
 constexpr double k_most_gap = 0.2;         // -, that counts
 constexpr double k_near_rigid = 1.5;       // cells, from its surface: its nodes are not full of soil
