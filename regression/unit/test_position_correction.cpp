@@ -33,7 +33,7 @@ Cloud soil_of(Stuff stuff, double scatter, double height, bool moves = true) {
   Dice dice{std::mt19937_64(7)};
   cloud.grid = grid_of<Dim>({12, 10, 6}, h, Wall::roller);
   cloud.materials = clays();
-  cloud.materials.push_back({model_index_in<Newtonian<double>>(Materials{}), {1e5, 1}});
+  cloud.materials.push_back({model_index_in<Newtonian>(Materials{}), {1e5, 1}});
   BodyInput body =
       body_of<Dim>(lattice<Dim>({0, 0, 0}, {12, height, 6}, 2, h), 2, h, stuff == Stuff::fluid ? 2 : 0);
   if (stuff == Stuff::fluid) body.state.clear();
