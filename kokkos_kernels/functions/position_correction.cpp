@@ -8,8 +8,8 @@ namespace mpm {
 namespace {
 
 constexpr double k_flowed = 0.1;           // -, plastic shear strain from which on soil counts as flowing
-constexpr double k_most_diffusion = 0.15;  // -, explicit diffusion of the density stays smooth below
-constexpr double k_surface = 0.8;          // -, a node that is filled less may be at a free surface
+constexpr double k_most_diffusion = 0.2;  // -, explicit diffusion of the density stays smooth below
+constexpr double k_surface = 0.5;          // -, a node that is filled less may be at a free surface
 constexpr double k_outside = 0.15;         // -, more of f - a^2/2 is not that of a node beyond a surface
 constexpr double k_most_gap = 0.2;         // -, that counts
 constexpr double k_near_rigid = 1.5;       // cells, from its surface: its nodes are not full of soil
@@ -21,7 +21,7 @@ struct CompareVolumes {
   using B = BoundaryTerms<Dim>;
   Grid<T, Dim> grid;
   Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  Fill<Space, T, Dim> fill;
+  FillField<Space, T, Dim> fill;
   T per_volume, per_area;  // 1/m3, 1/m2
 
   KOKKOS_INLINE_FUNCTION void operator()(int i) const {
@@ -57,7 +57,7 @@ template <class Space, class T, int Dim>
 struct FindShift {
   Soil<Space, T, Dim> soil;
   NodePlaces<Space, T, Dim> places;
-  Fill<Space, T, Dim> fill;
+  FillField<Space, T, Dim> fill;
   NodeField<Space, T, SoilTerms<Dim>::size> sums;
   CorrectionVectors<Space, T, Dim> shares, shifts;
   decltype(PositionCorrection<Space>::flow_column) flow_column;
@@ -214,7 +214,7 @@ struct reduction_identity<mpm::Added> {
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void compare_volumes(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill) {
+void compare_volumes(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill) {
   const double area = power(s.spacing, Dim - 1);
   Kokkos::parallel_for(
       "mpm::compare_volumes", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
@@ -223,7 +223,7 @@ void compare_volumes(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill) {
 }
 
 template <class Space, class T, int Dim>
-void find_shifts(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill, double elapsed) {
+void find_shifts(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill, double elapsed) {
   ensure(s.scratch, 2 * sizeof(Vector<T, Dim>) * s.soil.points.count);
   Kokkos::parallel_for("mpm::find_shifts", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
                        FindShift<Space, T, Dim>{s.soil.points,
@@ -262,8 +262,8 @@ void apply_shifts(State<Space, T, Dim>& s) {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                  \
-  template void compare_volumes(State<Space, T, Dim>&, const Fill<Space, T, Dim>&);     \
-  template void find_shifts(State<Space, T, Dim>&, const Fill<Space, T, Dim>&, double); \
+  template void compare_volumes(State<Space, T, Dim>&, const FillField<Space, T, Dim>&);     \
+  template void find_shifts(State<Space, T, Dim>&, const FillField<Space, T, Dim>&, double); \
   template void apply_shifts(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -37,14 +37,14 @@ struct FillTerms {
   static constexpr int size = BoundaryTerms<Dim>::size;
 };
 template <class Space, class T, int Dim>
-using Fill = NodeField<Space, T, FillTerms<Dim>::size>;
+using FillField = NodeField<Space, T, FillTerms<Dim>::size>;
 
 /// Makes of volume and area at the nodes (BoundaryTerms) how full they are (FillTerms). A node at the depth s
 /// [cells] below a free surface that is plane has f = 1 - a^2/2 with a = |A_i| = 1 - s, one above it f =
 /// a^2/2. Neither lacks anything:
 ///   e_i = max(-k, f_i - 1 + a_i^2/2);   0 where f_i - a_i^2/2 is small
 template <class Space, class T, int Dim>
-void compare_volumes(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill);
+void compare_volumes(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill);
 
 /// The shift of each particle:
 ///   delta_p = -min(k_most_diffusion, rate gamma_p) sum_i e_i grad S_ip   [cells, 1/cell]
@@ -54,7 +54,7 @@ void compare_volumes(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill);
 /// particle. shares_of becomes m_p L_p delta_p [kg m/s], the momentum for the velocity of the new place.
 /// Makes room in s.scratch for both.
 template <class Space, class T, int Dim>
-void find_shifts(State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill, double elapsed);
+void find_shifts(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill, double elapsed);
 
 /// Moves the particles, and gives each the velocity of its new place to first order, less what keeps the
 /// momentum at the nodes: v_p += L_p delta_p - sum_i S_ip (sum_q S_iq m_q L_q delta_q) / m_i. Strays::lost

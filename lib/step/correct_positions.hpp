@@ -9,7 +9,7 @@ namespace mpm {
 /// The volume and the boundary of the soil at the nodes, of this rank: as soil_to_nodes makes them near
 /// rigids, but everywhere. Bodies of revolution are not corrected.
 template <ParticleDomain domain, class Space, class T, int Dim>
-void volume_to_nodes(const State<Space, T, Dim>& s, const Fill<Space, T, Dim>& fill) {
+void volume_to_nodes(const State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill) {
   const Kokkos::View<int*, typename Space::memory_space> everywhere(
       Kokkos::view_alloc("mpm::everywhere", Kokkos::WithoutInitializing), s.patches.slots);
   Kokkos::deep_copy(s.space, everywhere, 1);
@@ -33,7 +33,7 @@ PetscErrorCode correct_positions_for(State<Space, T, Dim>& s, double elapsed,
   PetscFunctionBeginUser;
   sum_present_soil(s);
   if (ranks) PetscCall(ranks->add_present_soil(s));
-  const Fill<Space, T, Dim> fill("mpm::fill", s.patches.node_count());
+  const FillField<Space, T, Dim> fill("mpm::fill", s.patches.node_count());
   volume_to_nodes<domain>(s, fill);
   if (ranks) PetscCall(ranks->add_nodes(s, fill.data(), FillTerms<Dim>::size));
   compare_volumes(s, fill);
