@@ -11,13 +11,13 @@ namespace mpm {
 
 /// Estimates from sizes alone, right to about a tenth.
 struct MemoryNeed {
-  double particles = 0;  // of the bodies: of their lattices, and listed in files
-  double rigids = 0;     // particles of the rigids, which every rank has all
-  double patches = 0;    // of the mesh, with the ring outside
-  double device = 0;     // bytes, where the kernels run
-  double nodes = 0;      // bytes of that which are not the particles'
-  double host = 0;       // bytes beside, while particles are made and frames are written
-  double all_ranks = 0;  // bytes of the device that each rank takes, whatever their number
+  double particles = 0;       // of the bodies: of their lattices, and listed in files
+  double rigids = 0;          // particles of the rigids, which every rank has all
+  double patches = 0;         // of the mesh, with the ring outside
+  double device = 0;          // bytes, where the kernels run
+  double nodes = 0;           // bytes of that which are not the particles'
+  double host = 0;            // bytes beside, while particles are made and frames are written
+  double all_ranks = 0;       // bytes of the device that each rank takes, whatever their number
   double all_ranks_host = 0;  // likewise of the host
 };
 MemoryNeed memory_need(const Config& config);

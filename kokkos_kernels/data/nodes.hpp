@@ -127,11 +127,13 @@ struct alignas(8) Signal {
   int ended;   // steps that run_persistent_steps has ended
   int paused;  // Pause, after the last of them; before, Pause::last if the step at hand is to be the last
 };
-/// The barrier of a launch: how many of its teams have begun, how many are done with their part of the step,
-/// and the signal for which teams wait. It is apart in memory, since all of them ask for it all the time.
+/// The barrier of a launch: how many of its teams have begun, how often teams have been done with their part
+/// of a step (of all launches; it may overflow), how often they had before the launch, and the signal for
+/// which teams wait. It is apart in memory, since all of them ask for it all the time.
 struct LaunchBarrier {
-  int begun, arrived;
-  char apart[128 - 2 * sizeof(int)];
+  int begun;
+  unsigned arrived, before;
+  char apart[128 - 3 * sizeof(int)];
   Signal signal;
 };
 
@@ -146,20 +148,28 @@ KOKKOS_INLINE_FUNCTION bool rebuild_due(double bound, double increment, double m
 template <class Space>
 using ControlView = Kokkos::View<Control, typename Space::memory_space>;
 
-/// The largest movement of a particle in the present step [cells]. Each patch notes that of its own at one of
-/// several places, since all at one would wait for each other.
+/// The largest movement of a particle in a step [cells]. Each patch notes that of its own at one of several
+/// places, since all at one would wait for each other.
 template <class Space>
-struct Movements {
+struct MovementPlaces {
   static constexpr int places = is_device<Space> ? 256 : 16;
   // Non-negative floating-point numbers order like their bit patterns, and GPUs have an atomic maximum for
   // integers.
-  Kokkos::View<std::uint64_t[places], typename Space::memory_space> bits;
+  std::uint64_t* bits;
 
   KOKKOS_INLINE_FUNCTION void note(int slot, double moved) const {
-    Kokkos::atomic_max(&bits(slot % places), Kokkos::bit_cast<std::uint64_t>(moved));
+    Kokkos::atomic_max(bits + slot % places, Kokkos::bit_cast<std::uint64_t>(moved));
   }
-  KOKKOS_INLINE_FUNCTION double noted(int place) const { return Kokkos::bit_cast<double>(bits(place)); }
-  KOKKOS_INLINE_FUNCTION void begin(int place) const { bits(place) = 0; }
+  KOKKOS_INLINE_FUNCTION double noted(int place) const { return Kokkos::bit_cast<double>(bits[place]); }
+  KOKKOS_INLINE_FUNCTION void begin(int place) const { bits[place] = 0; }
+};
+/// Those of `turns` steps.
+template <class Space, int turns = 1>
+struct Movements {
+  static constexpr int places = MovementPlaces<Space>::places;
+  Kokkos::View<std::uint64_t[turns * places], typename Space::memory_space> bits;
+
+  KOKKOS_INLINE_FUNCTION MovementPlaces<Space> of(int turn) const { return {bits.data() + turn * places}; }
 };
 
 /// Notes a fault; the first one is kept.

@@ -50,8 +50,8 @@ struct State {
   Kokkos::View<int*, Memory> near_rigid;   // by slot: its place among those, from 1 on; 0 elsewhere
   int near_count = 0;
   Windows<Space> boundary_windows, strength_windows;  // of the patches near a rigid
-  Kokkos::View<double*, Memory>
-      slot_forces;  // N, [of near_slots][rigid][direction], of the soil on the rigid
+  Kokkos::View<double*, Memory> slot_forces;          // N, [turn of a persistent step, else 0][of
+                                                      // near_slots][rigid][direction], of the soil on it
   Nodes<Space, T, Dim> nodes;
   NodeSums<Space, T, Dim> next_sums, last_sums;  // of run_persistent_steps, which sets last_sums to zero
   bool next_zero = false;                        // `next_sums` fits and is zero
@@ -61,6 +61,7 @@ struct State {
   ControlView<Space> control;
   Movements<Space> movements;
   Kokkos::View<LaunchBarrier, Memory> launch_barrier;
+  Movements<Space, 3> launch_movements;       // of persistent steps
   Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step
   Kokkos::View<char*, Memory>
       scratch;  // scratch of a rebuild: one field in its new order; of a step: dilatations, XPIC

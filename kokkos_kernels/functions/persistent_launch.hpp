@@ -28,7 +28,8 @@ auto step_of(const State<Space, T, Dim>& s, double dt, int steps) {
             0,
             steps,
             {s.nodes, WithNodes ? s.next_sums : s.nodes, s.last_sums},
-            s.launch_barrier};
+            s.launch_barrier,
+            s.launch_movements};
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& points = s.rigid_points[r].points;
     if (points.surface_normal) continue;

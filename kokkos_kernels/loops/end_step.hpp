@@ -53,20 +53,35 @@ struct MovingRigid {
   }
 };
 
-/// Counts the step after `before` and adds what any point can have moved to the bound; moved, margin [cells];
-/// late: State::rebuild_late. Returns why the steps are paused then.
-template <class T>
-KOKKOS_INLINE_FUNCTION int count_step(Control& c, const Control& before, double moved, double margin,
-                                      int late) {
-  constexpr double epsilon = Kokkos::Experimental::epsilon<T>::value;  // round-off of a coordinate's update
-  const double increment = moved + epsilon, bound = before.bound + increment;
-  const bool due = late > 0 && rebuild_due(bound, increment, margin, late);
-  c.increment = increment, c.bound = bound;
-  c.due_in = before.due_in > 0 ? before.due_in - 1 : (due ? late : 0);
-  c.steps = before.steps + 1;
-  if (before.due_in != 1 && bound <= margin && before.fault_count == 0) return before.paused;
-  return c.paused = before.paused | Pause::due;
-}
+/// What the end of a step changes of Control, beside the count of steps.
+struct StepEnd {
+  double bound, increment;
+  int due_in, paused;
+  bool fault;  // was met
+
+  KOKKOS_INLINE_FUNCTION explicit StepEnd(const Control& c)
+      : bound(c.bound),
+        increment(c.increment),
+        due_in(c.due_in),
+        paused(c.paused),
+        fault(c.fault_count != 0) {}
+
+  /// Adds what any point can have moved to the bound; moved, margin [cells], moved infinite where there was a
+  /// fault; epsilon: round-off of a coordinate's update [cells]; late: State::rebuild_late.
+  KOKKOS_INLINE_FUNCTION void add(double moved, double epsilon, double margin, int late) {
+    if (moved < Kokkos::Experimental::infinity_v<double>)
+      increment = moved + epsilon;
+    else
+      fault = true;
+    bound += increment;
+    const bool due = late > 0 && rebuild_due(bound, increment, margin, late), is_last = due_in == 1;
+    due_in = due_in > 0 ? due_in - 1 : (due ? late : 0);
+    if (is_last || !(bound <= margin) || fault) paused |= Pause::due;
+  }
+  KOKKOS_INLINE_FUNCTION void keep_in(Control& c) const {
+    c.bound = bound, c.increment = increment, c.due_in = due_in, c.paused = paused;
+  }
+};
 
 template <class Space, class T, int Dim>
 struct EndStep {
@@ -99,72 +114,64 @@ struct EndStep {
   /// Doubles that a team of so many threads needs.
   int room(int threads) const { return Dim * count + warps(threads); }
 
-  /// part: room(threads). Returns, to the thread of once(), why the steps are paused then.
+  /// What a step has left for its end: the rigids, the forces of the slots' nodes on them, the movements of
+  /// particles, and where the forces on the rigids go [N], unless it is null.
+  struct Left {
+    Rigid<Dim>* rigids;
+    const double* forces;
+    MovementPlaces<Space> movements;
+    double* sums;
+  };
+  KOKKOS_INLINE_FUNCTION Left left() const {
+    return {rigids.data(), forces.data(), movements.of(0), sums.data()};
+  }
+
+  /// part: room(threads).
   template <class Team>
-  KOKKOS_INLINE_FUNCTION int operator()(const Team& team, double* part) const {
+  KOKKOS_INLINE_FUNCTION void operator()(const Team& team, double* part) const {
+    const int done = control().steps + 1;
+    const StepEnd found = move(team, StepEnd(control()), left(), true, part);
+    set_timed(team, done);
+    once(team, [&] {
+      found.keep_in(control());
+      control().steps = done;
+    });
+  }
+
+  /// Moves the rigids. found: the end of the step before; clears: the movements begin anew. Returns, to all
+  /// threads, the end of this step; until all have it, they need `part`: room(threads).
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION StepEnd move(const Team& team, StepEnd found, const Left& left, bool clears,
+                                      double* part) const {
     const int values = Dim * count, parts = warps(team.team_size()), rank = team.team_rank();
-    const Control before = control();  // asked for with all else
     MovingRigid<Dim> rigid{};
-    if (rank < count) rigid = MovingRigid<Dim>(rigids(rank));
-    const Noted noted = noted_movements(team);
-    if (!summed) sum_by_warps(team, 0, values, part);
+    if (rank < count) rigid = MovingRigid<Dim>(left.rigids[rank]);
+    const Noted noted = noted_movements(team, left.movements, clears);
+    if (!summed) sum_by_warps(team, left.forces, 0, values, part);
     keep(team, largest_of_warp(noted.largest()), part + values);
     team.team_barrier();  // also: no thread looks at `paused` any more
     MPM_ROLLED
     for (int r = rank; r < count; r += team.team_size()) {
-      if (r > rank) rigid = MovingRigid<Dim>(rigids(r));
+      if (r > rank) rigid = MovingRigid<Dim>(left.rigids[r]);
       Vector<double, Dim> contact;
       for (int d = 0; d < Dim; ++d) {
         const int v = r * Dim + d;
         contact[d] = summed ? sums(v) : part[v];
-        if (!summed) sums(v) = contact[d];
+        if (!summed && left.sums != nullptr) left.sums[v] = contact[d];
       }
       part[r * Dim] = rigid.move(contact, dt) / spacing;
-      rigid.keep_in(rigids(r));
+      rigid.keep_in(left.rigids[r]);
     }
     team.team_barrier();
-    set_timed(team, before.steps + 1);
-    int paused = 0;
-    once(team, [&] {
-      double furthest = 0;  // cells
-      MPM_ROLLED
-      for (int w = 0; w < parts; ++w) furthest = Kokkos::fmax(furthest, part[values + w]);
-      MPM_ROLLED
-      for (int r = 0; r < count; ++r) furthest = Kokkos::fmax(furthest, part[r * Dim]);
-      paused = count_step<T>(control(), before, furthest, margin, late);
-    });
-    return paused;
+    double furthest = 0;  // cells
+    MPM_ROLLED
+    for (int w = 0; w < parts; ++w) furthest = Kokkos::fmax(furthest, part[values + w]);
+    MPM_ROLLED
+    for (int r = 0; r < count; ++r) furthest = Kokkos::fmax(furthest, part[r * Dim]);
+    found.add(furthest, Kokkos::Experimental::epsilon<T>::value, margin, late);
+    return found;
   }
 
-  /// The team of a value sums it. part: room(threads)
-  template <class Team>
-  KOKKOS_INLINE_FUNCTION void sum(const Team& team, int value, double* part) const {
-    keep(team, sum_of_warp(sum_of_thread(value, team.team_rank(), team.team_size())), part);
-    team.team_barrier();
-    once(team, [&] {
-      double sum = 0;
-      for (int w = 0; w < warps(team.team_size()); ++w) sum += part[w];
-      sums(value) = sum;
-    });
-  }
-
-  /// Displacement [m] that rigid r will have, to the same bits. Dynamic: it may move by the forces on it,
-  /// which are there. part: room(threads).
-  template <bool Dynamic, class Team>
-  KOKKOS_INLINE_FUNCTION Vector<double, Dim> next_displacement(const Team& team, int r, double* part) const {
-    const MovingRigid<Dim> rigid(rigids(r));
-    Vector<double, Dim> a{}, to = rigid.pose.displacement;
-    if constexpr (Dynamic) {
-      team.team_barrier();  // what was there before is done with
-      if (rigid.dynamic) sum_by_warps(team, r * Dim, Dim, part);
-      team.team_barrier();
-      for (int d = 0; d < Dim && rigid.dynamic; ++d) a[d] = rigid.acceleration(d, part[d]);
-    }
-    for (int d = 0; d < Dim; ++d) to[d] += rigid.movement(d, a[d], dt);
-    return to;
-  }
-
- private:
   /// Sets what follows tables for the step after so many.
   template <class Team>
   KOKKOS_INLINE_FUNCTION void set_timed(const Team& team, int steps) const {
@@ -174,6 +181,37 @@ struct EndStep {
       timed.set(n, *timed.clock, steps, rigids.data());
     team.team_barrier();
   }
+
+  /// The team of a value sums it. part: room(threads)
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION void sum(const Team& team, int value, double* part) const {
+    keep(team, sum_of_warp(sum_of_thread(forces.data(), value, team.team_rank(), team.team_size())), part);
+    team.team_barrier();
+    once(team, [&] {
+      double sum = 0;
+      for (int w = 0; w < warps(team.team_size()); ++w) sum += part[w];
+      sums(value) = sum;
+    });
+  }
+
+  /// Displacement [m] that rigid r, `of`, will have, to the same bits. Dynamic: it may move by the forces on
+  /// it, which are there. part: room(threads).
+  template <bool Dynamic, class Team>
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> next_displacement(const Team& team, int r, const Rigid<Dim>& of,
+                                                               double* part) const {
+    const MovingRigid<Dim> rigid(of);
+    Vector<double, Dim> a{}, to = rigid.pose.displacement;
+    if constexpr (Dynamic) {
+      team.team_barrier();  // what was there before is done with
+      if (rigid.dynamic) sum_by_warps(team, forces.data(), r * Dim, Dim, part);
+      team.team_barrier();
+      for (int d = 0; d < Dim && rigid.dynamic; ++d) a[d] = rigid.acceleration(d, part[d]);
+    }
+    for (int d = 0; d < Dim; ++d) to[d] += rigid.movement(d, a[d], dt);
+    return to;
+  }
+
+ private:
   template <class Team>
   KOKKOS_INLINE_FUNCTION static void keep(const Team& team, double of_warp, double* part) {
     if (team.team_rank() % k_warp == 0) part[team.team_rank() / k_warp] = of_warp;
@@ -187,31 +225,34 @@ struct EndStep {
   };
   /// Those noted at the places of a thread.
   template <class Team>
-  KOKKOS_INLINE_FUNCTION Noted noted_movements(const Team& team) const {
+  KOKKOS_INLINE_FUNCTION static Noted noted_movements(const Team& team,
+                                                      const MovementPlaces<Space>& movements, bool clears) {
     Noted noted{};
     MPM_ROLLED
     for (int n = team.team_rank(); n < movements.places; n += 2 * team.team_size()) {
       const int m = n + team.team_size();
       const bool two = m < movements.places;
       noted = {noted.largest(), {movements.noted(n), two ? movements.noted(m) : 0.0}};
-      movements.begin(n);
-      if (two) movements.begin(m);
+      if (clears) movements.begin(n);
+      if (clears && two) movements.begin(m);
     }
     return noted;
   }
   /// Sums the forces number `first` to first + n over the slots into part[n], a warp each.
   template <class Team>
-  KOKKOS_INLINE_FUNCTION void sum_by_warps(const Team& team, int first, int n, double* part) const {
+  KOKKOS_INLINE_FUNCTION void sum_by_warps(const Team& team, const double* of_slots, int first, int n,
+                                           double* part) const {
     const int size = team.team_size(), rank = team.team_rank(), lanes = size < k_warp ? size : k_warp;
     MPM_ROLLED
     for (int v = rank / k_warp; v < n; v += warps(size)) {
-      const double sum = sum_of_warp(sum_of_thread(first + v, rank % k_warp, lanes));
+      const double sum = sum_of_warp(sum_of_thread(of_slots, first + v, rank % k_warp, lanes));
       if (rank % k_warp == 0) part[v] = sum;
     }
   }
   /// What a thread sums of a force, number `rank` of those that share the slots, in an order that is always
   /// the same.
-  KOKKOS_INLINE_FUNCTION double sum_of_thread(int value, int rank, int threads) const {
+  KOKKOS_INLINE_FUNCTION double sum_of_thread(const double* of_slots, int value, int rank,
+                                              int threads) const {
     // Slots that a thread asks the memory for at once. On a processor one after the other, so that slots that
     // leave no force change nothing.
     constexpr int k_slots = is_device<Space> ? 4 : 1;
@@ -221,7 +262,7 @@ struct EndStep {
     for (int k = rank; k < slots; k += k_slots * threads)
       for (int m = 0; m < k_slots; ++m) {
         const int slot = Kokkos::min(k + m * threads, slots - 1);
-        const double force = forces(slot * values + value);  // some for nothing, but none waits
+        const double force = of_slots[slot * values + value];  // some for nothing, but none waits
         sum[m] += slot == k + m * threads ? force : 0;
       }
     for (int step = 1; step < k_slots; step *= 2)

@@ -246,7 +246,7 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
     s.strength_windows.place = near;
     ensure(s.strength_windows.sums, window_bytes<StrengthSource<Space, T, Dim>> * s.near_count);
   }
-  ensure(s.slot_forces, std::size_t(s.near_count) * Dim * s.rigid_points.size());
+  ensure(s.slot_forces, 2 * std::size_t(s.near_count) * Dim * s.rigid_points.size());
 }
 
 /// Takes from the pressure of each of the particles [first, last) of a cell this fraction of what it differs

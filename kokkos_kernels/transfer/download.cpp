@@ -12,12 +12,12 @@ std::vector<int> order_for_host(const State<Space, T, Dim>& s) {
   const auto& soil = s.soil.points;
   const auto held = Kokkos::make_pair(0, soil.count);
   const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.id, held));
-  const auto body = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.body, held));
+  const auto body =
+      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.body, held));
   std::vector<int> order(soil.count);
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int p, int q) {
-    return body(p) != body(q) ? body(p) < body(q) : id(p) < id(q);
-  });
+  std::sort(order.begin(), order.end(),
+            [&](int p, int q) { return body(p) != body(q) ? body(p) < body(q) : id(p) < id(q); });
   return order;
 }
 

@@ -8,12 +8,12 @@
 
 namespace mpm {
 
-/// Fields of the soil on the host, as wide as SymTensor and Vector are: those of this rank's particles, in the
-/// order of order_for_host. On one rank, where none was split, that is the order of creation.
+/// Fields of the soil on the host, as wide as SymTensor and Vector are: those of this rank's particles, in
+/// the order of order_for_host. On one rank, where none was split, that is the order of creation.
 struct SoilFields {
-  std::vector<int> id;           // of the first body, rising, then of the second
+  std::vector<int> id;             // of the first body, rising, then of the second
   std::vector<std::size_t> first;  // of each body, and the end of the last one
-  std::vector<double> position;  // m from the mesh's lower corner
+  std::vector<double> position;    // m from the mesh's lower corner
   std::vector<double> velocity, stress, volume;
   std::vector<std::vector<double>> history;  // of each column in use
   std::vector<double> mass;                  // kg

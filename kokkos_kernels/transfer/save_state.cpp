@@ -109,7 +109,7 @@ void restore_lost(State<Space, T, Dim>& s, const SavedState& saved) {
   for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
     const double* const numbers = &saved.lost[b * k_lost];
     s.strays.lost[b] = {numbers[0], numbers[1], numbers[2], {numbers[3], numbers[4], numbers[5]},
-                        numbers[6], numbers[7], numbers[9],  numbers[10]};
+                        numbers[6], numbers[7], numbers[9], numbers[10]};
     put_back(b) = static_cast<int>(numbers[8]);
   }
   Kokkos::deep_copy(s.strays.put_back, put_back);

@@ -348,6 +348,7 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.control = ControlView<Space>("mpm::control");
   s.launch_barrier = decltype(s.launch_barrier)("mpm::launch_barrier");
   s.movements.bits = decltype(s.movements.bits)("mpm::movements");
+  s.launch_movements.bits = decltype(s.launch_movements.bits)("mpm::launch_movements");
   s.rigid_force = decltype(s.rigid_force)("mpm::rigid_force", Dim * rigids.size());
   upload_soil(s, materials, bodies, rigids, fault);
   if (s.affine) upload_affine(s, bodies);

@@ -23,8 +23,8 @@ struct Handle {
 /// HDF5 prints nothing from now on, in this thread where it tells threads apart.
 inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-/// Has HDF5 hold from now on what its cache of metadata takes for two files (0.5 MB each), as many as are open
-/// at once: HDF5 (1.10) crashes where it cannot have that memory for a new file.
+/// Has HDF5 hold from now on what its cache of metadata takes for two files (0.5 MB each), as many as are
+/// open at once: HDF5 (1.10) crashes where it cannot have that memory for a new file.
 void keep_hdf5_memory();
 
 /// What made HDF5's last call fail.

@@ -165,9 +165,9 @@ bool check_element_start(OptionReader& in, const MaterialConfig& material, doubl
 /// Lists every option with the reader, which lists.
 void list_all(OptionReader& in);
 
-/// -materials, -bodies, -rigid_bodies, -probes and the options of each that they name. The fixed options must have
-/// been read before, since no name may begin as they do. A null mesh (unsound) leaves the shapes unchecked
-/// against it.
+/// -materials, -bodies, -rigid_bodies, -probes and the options of each that they name. The fixed options must
+/// have been read before, since no name may begin as they do. A null mesh (unsound) leaves the shapes
+/// unchecked against it.
 void read_named(OptionReader& in, const MeshConfig* mesh, Config& config);
 
 }  // namespace mpm

@@ -194,12 +194,13 @@ void read_position_correction(OptionReader& in, Config& config) {
                       "rebuild, from where they crowd to where they leave gaps"},
           Words<bool>{{"none", false}, {"delta", true}}, config.position_correction);
   if (config.position_correction || in.listing())
-    in.number({.name = "position_correction_rate",
-               .meaning = "how fast the density of particles diffuses: diffusion number, in cells, for a unit "
-                          "of shear strain",
-               .unit = "-",
-               .range = {.lowest = 0, .highest = 100, .open_lowest = true}},
-              config.position_correction_rate);
+    in.number(
+        {.name = "position_correction_rate",
+         .meaning = "how fast the density of particles diffuses: diffusion number, in cells, for a unit "
+                    "of shear strain",
+         .unit = "-",
+         .range = {.lowest = 0, .highest = 100, .open_lowest = true}},
+        config.position_correction_rate);
   else
     in.not_taken("position_correction_rate", "-position_correction is none");
 }

@@ -184,10 +184,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::note_out_of_order(int b, BodyRow* bo
   PetscFunctionBeginUser;
   const Lost& lost = state_.strays.lost[b];
   const auto put_back = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.strays.put_back);
-  double sums[11] = {lost.mass,        lost.kinetic_energy, lost.momentum[0],
-                    lost.momentum[1], lost.momentum[2],    double(put_back(b)),
-                    lost.count,       lost.merged,         lost.merged_energy,
-                    lost.corrected,   lost.raised};
+  double sums[11] = {lost.mass,          lost.kinetic_energy, lost.momentum[0], lost.momentum[1],
+                     lost.momentum[2],   double(put_back(b)), lost.count,       lost.merged,
+                     lost.merged_energy, lost.corrected,      lost.raised};
   if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 11, MPI_DOUBLE, MPI_SUM, comm_));
   body->lost_mass = sums[0], body->lost_energy = sums[1];
   for (int d = 0; d < 3; ++d) body->lost_momentum[d] = sums[2 + d];

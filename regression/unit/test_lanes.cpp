@@ -283,7 +283,8 @@ TEST_CASE("particles that move many at once move as one by one", "[lanes]") {
         INFO(build.name() << " seed " << seed);
         CHECK(read_control(s).fault_count == 0);
         double furthest = 0;
-        for (int n = 0; n < s.movements.places; ++n) furthest = std::max(furthest, s.movements.noted(n));
+        for (int n = 0; n < s.movements.places; ++n)
+          furthest = std::max(furthest, s.movements.of(0).noted(n));
         Kokkos::deep_copy(s.movements.bits, 0);
         CHECK(furthest > 0);
         for (std::size_t k = 0; k < moved.size(); ++k) {

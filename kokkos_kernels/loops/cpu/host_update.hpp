@@ -25,7 +25,7 @@ void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by, bool sums
       const int slot = bins.active_slots(n);
       if (n + 1 < phases[0].last) particles.fetch_nodes(bins.active_slots(n + 1));
       const T moved = particles(slot);
-      s.movements.note(slot, moved);
+      s.movements.of(0).note(slot, moved);
       if (sums) soil.sum(slot);
     } else {
       soil.give_nodes(n);

@@ -117,17 +117,19 @@ struct UpdateParticles {
     const auto number_of = [&](int n) {
       return number_at<decltype(neighbours), Dim>(neighbours, slot, window_coord<Dim>(images(n)));
     };
-    update(team, all, slot, sums, images, number_of, [&](int, int number) {
+    update(team, all, slot, sums, movements.of(0), images, number_of, [&](int, int number) {
       return *reinterpret_cast<const KinematicValues<T, Dim>*>(&kinematics(number, 0));
     });
   }
 
-  /// all: bytes(). out: the sums of the next step. number_of(n): of the image of node n of the window.
+  /// all: bytes(). out: the sums of the next step. noted: for the movements of this one. number_of(n): of the
+  /// image of node n of the window.
   /// motion_of(n, number): what becomes of that image.
   template <class Number, class Motion>
   KOKKOS_INLINE_FUNCTION void update(const Member& team, const Scratch& all, int slot,
-                                     const NodeSums<Space, T, Dim>& out, const Images& images,
-                                     const Number& number_of, const Motion& motion_of) const {
+                                     const NodeSums<Space, T, Dim>& out, const MovementPlaces<Space>& noted,
+                                     const Images& images, const Number& number_of,
+                                     const Motion& motion_of) const {
     const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
     const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
     Scratch scratch = all;
@@ -151,7 +153,7 @@ struct UpdateParticles {
       team.team_barrier();
       if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
       tile.add(team, particle);
-      note_movement(team, slot, moved);
+      note_movement(team, noted, slot, moved);
       tile.give_window(team, out.soil, images);
       if (has_boundary && near_rigid(slot) != 0) {
         team.team_barrier();
@@ -162,7 +164,7 @@ struct UpdateParticles {
       team.team_barrier();
       if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
       Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), particle);
-      note_movement(team, slot, moved);
+      note_movement(team, noted, slot, moved);
     }
   }
 
@@ -184,9 +186,10 @@ struct UpdateParticles {
   }
 
   /// Notes the largest of the movements [cells] of each warp.
-  KOKKOS_INLINE_FUNCTION void note_movement(const Member& team, int slot, T moved) const {
+  KOKKOS_INLINE_FUNCTION static void note_movement(const Member& team, const MovementPlaces<Space>& noted,
+                                                   int slot, T moved) {
     const T most = largest_of_warp(moved);
-    if (team.team_rank() % k_warp == 0) movements.note(slot, most);
+    if (team.team_rank() % k_warp == 0) noted.note(slot, most);
   }
 
   /// Mean dilatation rate of each cell [1/s], weighted by volume; where materials have means of their own,
@@ -274,6 +277,7 @@ struct UpdateParticles {
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
       report(control, fault, soil.id(p), position, Dim);
+      own = Kokkos::Experimental::infinity_v<T>;  // ends the steps
     }
     moved = Kokkos::fmax(moved, own);
     return {q.x, source.point(half_length, soil.mass_of(p, body), q.v, q.stress, q.volume)};

@@ -26,10 +26,16 @@ inline constexpr int k_patience = 20'000;
 /// for another team's nodes. The team keeps the motion of the slot's own nodes, and sums the force of these
 /// nodes on the rigids. Otherwise the nodes have been updated by an earlier launch.
 ///
-/// A launch does many steps if WithNodes. Between two steps all teams wait for the last team, which requires
+/// A launch does many steps if WithNodes. Between two steps all teams wait for each other, which requires
 /// that all teams are co-resident on the device. If some teams have not begun when the others have finished
 /// the first step, the launch ends with that step. The last team decides this. The part of the last team goes
 /// to the team that begins first, so that it is never one of those that have not begun.
+///
+/// From the second step on, each team ends the step for itself, on rigids of its own, as soon as all teams
+/// are done with their parts: all come to the same. That spares the way of the last team's answer through the
+/// memory, three times the latency of the second cache. What a step leaves for its end is kept in turns,
+/// since a team may begin the next step before another has read it. Where loads follow tables, and with laws
+/// that may ask for the time, all wait for the last team in each step.
 template <class Space, class T, int Dim, bool WithNodes, class Laws, ParticleDomain domain>
 struct PersistentStep {
   static constexpr int threads = team_threads<Space>;
@@ -49,6 +55,7 @@ struct PersistentStep {
   // Of the step at hand, of the next one, and of the last one, which are set to zero. They take turns.
   Kokkos::Array<Sums, 3> sums;
   Kokkos::View<LaunchBarrier, typename Space::memory_space> launch_barrier;
+  Movements<Space, 3> movements;  // where WithNodes
 
   static constexpr std::size_t bytes(int values) {
     return (WithNodes ? 2 * scratch_bytes<int>(Update::window) + scratch_bytes<Rigid<Dim>>(values / Dim) +
@@ -66,30 +73,42 @@ struct PersistentStep {
     int* images;   // WindowImages::entry of these nodes
   };
 
+  /// How far a team is.
+  struct Progress {
+    int part, others;   // the last part is number `others`
+    unsigned arrivals;  // LaunchBarrier::arrived once all are done with the step at hand
+    int step, number;   // of this launch, of all launches
+    bool by_all;        // each team ends the step for itself
+    StepEnd found;      // where that is so, by the step before
+    Rigid<Dim>* bodies;
+  };
+
   KOKKOS_FUNCTION void operator()(const Member& team) const {
-    const Control& control = update.control();
-    const int before = launch_barrier().signal.ended, others = team.league_size() - 1;
-    if ((control.paused & ~Pause::last) != 0) return;
-    int part = team.league_rank();
+    if ((update.control().paused & ~Pause::last) != 0) return;
+    Progress at{.part = team.league_rank(),
+                .others = team.league_size() - 1,
+                .arrivals = launch_barrier().before,
+                .step = 0,
+                .number = launch_barrier().signal.ended,
+                .by_all = false,
+                .found = StepEnd(update.control()),
+                .bodies = nullptr};
     if (steps > 1)
       Kokkos::single(
           Kokkos::PerTeam(team),
           [&](int& taken) {
-            taken = (Kokkos::atomic_fetch_add(&launch_barrier().begun, 1) + others) % (others + 1);
+            taken = (Kokkos::atomic_fetch_add(&launch_barrier().begun, 1) + at.others) % (at.others + 1);
           },
-          part);
+          at.part);
     Scratch scratch(team, bytes(nodes.value_count));
     Slot slot{};
-    if (WithNodes && part >= rigid_teams && part < others) slot = slot_of(team, scratch, part - rigid_teams);
-    for (int k = 0; k < steps; ++k) {
-      int paused = 0;
-      if (part < others) {
-        step(team, scratch, part, slot, k);
-        paused = arrive(team, before + k, k + 1 < steps);
-      } else {
-        paused = end_step(team, scratch, others, before + k, k == 0 && steps > 1);
-      }
-      if (paused != 0) return;
+    if (WithNodes && at.part >= rigid_teams && at.part < at.others)
+      slot = slot_of(team, scratch, at.part - rigid_teams);
+    if (WithNodes) at.bodies = scratch.take<Rigid<Dim>>(nodes.value_count / Dim);
+    for (; at.step < steps; ++at.step, ++at.number) {
+      if (at.part < at.others) step(team, scratch, slot, at);
+      if (end_step(team, scratch, at) != 0) return;
+      if (at.step == 0 && steps > 1) begin_by_all(team, at);
     }
   }
 
@@ -110,33 +129,99 @@ struct PersistentStep {
     return slot;
   }
 
-  KOKKOS_INLINE_FUNCTION void step(const Member& team, const Scratch& scratch, int part, const Slot& slot,
-                                   int k) const {
-    if (part < rigid_teams)
-      rigids_to_nodes(team, part, Scratch(scratch).template take<double>(0), sums[(k + 1) % 3]);
+  KOKKOS_INLINE_FUNCTION void step(const Member& team, const Scratch& scratch, const Slot& slot,
+                                   const Progress& at) const {
+    if (at.part < rigid_teams)
+      rigids_to_nodes(team, Scratch(scratch).template take<double>(0), at);
     else if constexpr (WithNodes)
-      step_slot(team, scratch, slot, sums[k % 3], sums[(k + 1) % 3], sums[(k + 2) % 3]);
+      step_slot(team, scratch, slot, at);
     else
-      update.update(team, scratch, update.slots(part - rigid_teams));
+      update.update(team, scratch, update.slots(at.part - rigid_teams));
   }
 
-  /// Says that the team is done with its part of a step, and waits for its end if there is another. Returns
-  /// why the steps are paused.
-  KOKKOS_INLINE_FUNCTION int arrive(const Member& team, int ended, bool waits) const {
+  /// The state in which the first step has left all that a team needs to end the next ones.
+  KOKKOS_INLINE_FUNCTION void begin_by_all(const Member& team, Progress& at) const {
+    if constexpr (WithNodes && std::is_same_v<Laws, LightMaterials>) {
+      if (end.timed.count > 0) return;
+      at.by_all = true;
+      at.found = StepEnd(update.control());
+      at.found.fault = false;  // another team may have met one in the next step; movements tell of it
+      copy_rigids(team, at.bodies);
+    }
+  }
+
+  /// Waits until all parts of a step are done, and ends it. Returns why the steps are paused.
+  KOKKOS_INLINE_FUNCTION int end_step(const Member& team, const Scratch& scratch, Progress& at) const {
+    at.arrivals += at.others + at.by_all;
     team.team_barrier();
+    if (!at.by_all && at.part < at.others) return wait_for_answer(team, at);
+    wait_for_all(team, at);
+    auto left = end.left();
+    if (WithNodes) {
+      left.forces += force_turn(at) * end.slots * nodes.value_count;
+      left.movements = movements_of(at.number);
+      if (at.part == (at.by_all ? 0 : at.others)) clear(team, movements_of(at.number + 2));
+    }
+    if (at.by_all) {
+      left.rigids = at.bodies;
+      if (at.part < at.others) left.sums = nullptr;
+    }
+    if (!at.by_all) at.found = StepEnd(update.control());
+    at.found = end.move(team, at.found, left, !at.by_all, Scratch(scratch).template take<double>(0));
+    if (!at.by_all)
+      answer(team, at);
+    else if (at.part == at.others && (at.found.paused != 0 || at.step + 1 == steps))
+      leave(team, at);
+    team.team_barrier();  // before the room of `end` is used again
+    return at.found.paused;
+  }
+
+  /// Where a step notes movements, by its number; with number + 2, where the step before it did. By value:
+  /// nvcc would copy all arguments of the kernel to memory for a reference to one of an array of views.
+  KOKKOS_INLINE_FUNCTION MovementPlaces<Space> movements_of(int number) const {
+    return movements.of(number % 3);
+  }
+  KOKKOS_INLINE_FUNCTION static void clear(const Member& team, const MovementPlaces<Space>& movements) {
+    for_team(team, movements.places, [&](int n) { movements.begin(n); });
+  }
+  /// Which half of the forces of slots belongs to a step.
+  KOKKOS_INLINE_FUNCTION static int force_turn(const Progress& at) { return WithNodes ? at.number & 1 : 0; }
+
+  /// Says that the team is done with its part, and waits for the last team's answer if there is another step.
+  KOKKOS_INLINE_FUNCTION int wait_for_answer(const Member& team, const Progress& at) const {
     int paused = 0;
     Kokkos::single(
         Kokkos::PerTeam(team),
         [&](int& why) {
           fence_of_teams();  // what this team noted is there for the last one
           Kokkos::atomic_inc(&launch_barrier().arrived);
-          Signal signal{ended, 0};
-          while (waits && signal.ended == ended && (signal.paused & Pause::last) == 0)
+          Signal signal{at.number, 0};
+          while (at.step + 1 < steps && signal.ended == at.number && (signal.paused & Pause::last) == 0)
             signal = Kokkos::bit_cast<Signal>(acquire_of_others(signal_bits()));
           why = signal.paused;
         },
         paused);
     return paused;
+  }
+
+  /// Waits until so many have arrived; this team is one of them where each ends the step for itself.
+  KOKKOS_INLINE_FUNCTION void wait_for_all(const Member& team, const Progress& at) const {
+    const bool impatient = at.step == 0 && steps > 1;
+    Kokkos::single(Kokkos::PerTeam(team), [&] {
+      if (at.by_all) {
+        fence_of_teams();
+        Kokkos::atomic_inc(&launch_barrier().arrived);
+      }
+      const auto missing = [&] {
+        return static_cast<int>(acquire_of_others(&launch_barrier().arrived) - at.arrivals) < 0;
+      };
+      for (int looks = 0; missing(); ++looks)
+        if (impatient && looks == k_patience) {
+          update.control().paused |= Pause::last;
+          tell({at.number, Pause::last});
+        }
+    });
+    team.team_barrier();
   }
 
   KOKKOS_INLINE_FUNCTION long long* signal_bits() const {
@@ -146,41 +231,46 @@ struct PersistentStep {
     store_for_others(signal_bits(), Kokkos::bit_cast<long long>(signal));
   }
 
-  /// Waits for all others and ends their step, the one after so many of all launches.
-  KOKKOS_INLINE_FUNCTION int end_step(const Member& team, Scratch scratch, int others, int ended,
-                                      bool impatient) const {
+  /// The last team's answer to all others.
+  KOKKOS_INLINE_FUNCTION void answer(const Member& team, Progress& at) const {
     Control& control = update.control();
-    Kokkos::single(Kokkos::PerTeam(team), [&] {
-      for (int looks = 0; acquire_of_others(&launch_barrier().arrived) < others; ++looks)
-        if (impatient && looks == k_patience) {
-          control.paused |= Pause::last;
-          tell({ended, Pause::last});
-        }
-    });
+    const int done = control.steps + 1;
+    if ((at.found.paused & Pause::last) != 0) at.found.paused += Pause::not_co_resident - Pause::last;
+    end.set_timed(team, done);
     team.team_barrier();
-    int paused = end(team, scratch.template take<double>(0));
-    Kokkos::single(
-        Kokkos::PerTeam(team),
-        [&](int& why) {
-          if ((paused & Pause::last) != 0) control.paused = paused += Pause::not_co_resident - Pause::last;
-          why = paused;
-          launch_barrier().begun = launch_barrier().arrived = 0;
-          fence_of_teams();
-          tell({ended + 1, paused});
-        },
-        paused);
-    return paused;
+    Kokkos::single(Kokkos::PerTeam(team), [&] {
+      at.found.keep_in(control);
+      control.steps = done;
+      launch_barrier().begun = 0;
+      launch_barrier().before = at.arrivals;
+      fence_of_teams();
+      if (WithNodes) tell({at.number + 1, at.found.paused});
+    });
   }
 
-  KOKKOS_INLINE_FUNCTION void rigids_to_nodes(const Member& team, int part, double* room,
-                                              const Sums& next) const {
+  /// What the host and the next launch need of steps that all teams have ended for themselves.
+  KOKKOS_INLINE_FUNCTION void leave(const Member& team, const Progress& at) const {
+    for (int r = team.team_rank(); r < end.count; r += team.team_size())
+      MovingRigid<Dim>(at.bodies[r]).keep_in(nodes.rigids(r));
+    Kokkos::single(Kokkos::PerTeam(team), [&] {
+      at.found.keep_in(update.control());
+      update.control().steps += at.step;
+      launch_barrier().before = at.arrivals;
+      tell({at.number + 1, at.found.paused});
+    });
+  }
+
+  KOKKOS_INLINE_FUNCTION void rigids_to_nodes(const Member& team, double* room, const Progress& at) const {
+    const Sums& next = sums[(at.step + 1) % 3];
     MPM_ROLLED
     for (int k = 0; k < rigid_count; ++k) {
       const auto& source = rigids[k];
-      const Vector<double, Dim> to = end.template next_displacement<!WithNodes>(team, source.rigid, room);
+      const Rigid<Dim>& body = at.by_all ? at.bodies[source.rigid] : nodes.rigids(source.rigid);
+      const Vector<double, Dim> to =
+          end.template next_displacement<!WithNodes>(team, source.rigid, body, room);
       const int all = rigid_teams * threads;
       MPM_ROLLED
-      for (int p = part * threads + team.team_rank(); p < source.points.count; p += all) {
+      for (int p = at.part * threads + team.team_rank(); p < source.points.count; p += all) {
         source.move(p, to);
         give_to_nodes(source, nodes.places, p, [&](int i, int v, T value) {
           Kokkos::atomic_add(&next.rigid(source.rigid, i, v), value);
@@ -191,16 +281,17 @@ struct PersistentStep {
 
   /// The nodes that matter to a slot, and its particles if it has any.
   KOKKOS_INLINE_FUNCTION void step_slot(const Member& team, Scratch scratch, const Slot& slot,
-                                        const Sums& present, const Sums& next, const Sums& last) const {
+                                        const Progress& at) const {
+    const Sums &present = sums[at.step % 3], &next = sums[(at.step + 1) % 3], &last = sums[(at.step + 2) % 3];
     const int rigid_bodies = nodes.value_count / Dim;
-    Rigid<Dim>* const bodies = scratch.take<Rigid<Dim>>(rigid_bodies);
+    const Rigid<Dim>* const bodies = at.bodies;
     double* const force = scratch.take<double>(nodes.value_count * cells);
-    if (slot.near > 0) copy_rigids(team, bodies, rigid_bodies);
+    if (slot.near > 0 && !at.by_all) copy_rigids(team, at.bodies);
     typename Update::Images images(update.grid, update.reach, slot.from);
     images.table = slot.images;
     const auto motion_of = [&](int n, int number) {
       const int image = images(n);
-      const Coord<Dim> place = window_coord<Dim>(n), at = in_mesh(slot.from, window_coord<Dim>(image));
+      const Coord<Dim> place = window_coord<Dim>(n), in = in_mesh(slot.from, window_coord<Dim>(image));
       bool own = true;
       for (int d = 0; d < Dim; ++d) own = own && place[d] >= 0 && place[d] < Patch<Dim>::edge;
       if (slot.empty && !own) return KinematicValues<T, Dim>{};
@@ -208,22 +299,24 @@ struct PersistentStep {
       for (int v = 0; v < nodes.value_count && told != nullptr; ++v) told[v * cells] = 0;
       const bool beyond = image != n;  // of a wall, where a node has no motion of its own
       const KinematicValues<T, Dim> kinematics =
-          nodes.kinematics(present, bodies, number, at, slot.near > 0, beyond ? nullptr : told);
+          nodes.kinematics(present, bodies, number, in, slot.near > 0, beyond ? nullptr : told);
       if (own)
         nodes.keep(slot.number * cells + place_of<Dim>(place),
                    beyond ? KinematicValues<T, Dim>{} : kinematics);
       return kinematics;
     };
     update.update(
-        team, scratch, slot.number, next, images, [&](int n) { return slot.numbers[n]; }, motion_of);
+        team, scratch, slot.number, next, movements_of(at.number), images,
+        [&](int n) { return slot.numbers[n]; }, motion_of);
     clear_sums(team, last, slot.number, nodes.has_boundary, nodes.has_mass_normals ? rigid_bodies : 0);
     if (slot.near == 0) return;
     team.team_barrier();
-    nodes.leave_forces(team, force, slot.near - 1);
+    nodes.leave_forces(team, force, slot.near - 1 + force_turn(at) * end.slots);
   }
 
   /// To scratch memory, where a node may look at one value of theirs after the other.
-  KOKKOS_INLINE_FUNCTION void copy_rigids(const Member& team, Rigid<Dim>* bodies, int count) const {
+  KOKKOS_INLINE_FUNCTION void copy_rigids(const Member& team, Rigid<Dim>* bodies) const {
+    const int count = nodes.value_count / Dim;
     using Word = std::uint64_t;
     static_assert(sizeof(Rigid<Dim>) % sizeof(Word) == 0 && std::is_trivially_copyable_v<Rigid<Dim>>);
     const Word* const from = reinterpret_cast<const Word*>(nodes.rigids.data());

@@ -199,14 +199,14 @@ enum class Progress { automatic, on, off };
 
 struct OutputConfig {
   std::string directory;
-  bool partition = false;           // partition.csv: which rank owns what, at each frame
-  bool frames = true;               // of the particles; without them a run writes its history only
-  std::vector<std::string> fields;  // of the frames, beside the position; empty for all
-  int compression = 0;              // of the frames, level of HDF5's deflate filter
-  bool nodes = false;               // frames hold the nodes' mass and velocity too
-  bool energy = false;              // the history has an energy balance
-  double interval = 0;              // s between frames
-  double history_interval = 0;      // s between rows of the history
+  bool partition = false;                 // partition.csv: which rank owns what, at each frame
+  bool frames = true;                     // of the particles; without them a run writes its history only
+  std::vector<std::string> fields;        // of the frames, beside the position; empty for all
+  int compression = 0;                    // of the frames, level of HDF5's deflate filter
+  bool nodes = false;                     // frames hold the nodes' mass and velocity too
+  bool energy = false;                    // the history has an energy balance
+  double interval = 0;                    // s between frames
+  double history_interval = 0;            // s between rows of the history
   std::optional<double> raster_interval;  // s between looks at the soil for the rasters; none: there are none
   Progress progress = Progress::automatic;
   std::optional<double>
@@ -222,9 +222,9 @@ enum class ProbeKind { point, particle, gauge, section };
 struct ProbeConfig {
   std::string name;
   ProbeKind kind = ProbeKind::point;
-  Vec3 at{};                // m; of a gauge without the vertical axis; of a section the component `axis` alone
-  int axis = 0;             // section: that it is normal to
-  double width = 0;         // m, gauge: of the strip (square in 3D) around its place
+  Vec3 at{};         // m; of a gauge without the vertical axis; of a section the component `axis` alone
+  int axis = 0;      // section: that it is normal to
+  double width = 0;  // m, gauge: of the strip (square in 3D) around its place
   std::vector<int> bodies;  // indices into Config::bodies that count; empty: all
 };
 
@@ -298,8 +298,8 @@ struct Config {
   int xpic_order = 2;        // -, m of XPIC(m), with xpic
   double flip_fraction = 1;  // -, fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic
   ParticleDomain particle_domain = ParticleDomain::fixed;
-  bool position_correction = false;     // particles of soil that flows are brought to an even density
-  double position_correction_rate = 20; // -, diffusion number of the density a unit of shear strain
+  bool position_correction = false;      // particles of soil that flows are brought to an even density
+  double position_correction_rate = 20;  // -, diffusion number of the density a unit of shear strain
   StrayRule stray_particles = StrayRule::keep;
   double f_bar_fraction = 0.98;  // -, fraction of the cell's mean in a particle's dilatation (F-bar)
   std::vector<MaterialConfig> materials;
