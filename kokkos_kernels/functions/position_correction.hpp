@@ -20,13 +20,14 @@ using CorrectionVectors =
 /// What the particles give the nodes, by particle; in s.scratch.
 template <class Space, class T, int Dim>
 CorrectionVectors<Space, T, Dim> shares_of(const State<Space, T, Dim>& s) {
-  return {reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()), std::size_t(s.soil.points.count)};
+  return CorrectionVectors<Space, T, Dim>(reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()),
+                                          s.soil.points.count);
 }
 /// Shifts of the particles [cells], by particle; in s.scratch.
 template <class Space, class T, int Dim>
 CorrectionVectors<Space, T, Dim> shifts_of(const State<Space, T, Dim>& s) {
   const std::size_t count = s.soil.points.count;
-  return {reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()) + count, count};
+  return CorrectionVectors<Space, T, Dim>(reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()) + count, count);
 }
 
 /// What the correction knows of a node: of particle sums BoundaryTerms, then these.

@@ -61,12 +61,9 @@ SideWork take_side_work(const State<Space, T, Dim>& s) {
   return done;
 }
 
-namespace {
-
-/// Which rows belong to nodes that this rank answers for.
 template <class Space, class T, int Dim>
-std::vector<char> own_rows(const State<Space, T, Dim>& s) {
-  std::vector<char> own(s.sides.nodes.extent(0), s.owned_nodes.extent(0) == 0);
+std::vector<int> own_side_rows(const State<Space, T, Dim>& s) {
+  std::vector<int> own(s.sides.nodes.extent(0), s.owned_nodes.extent(0) == 0);
   const auto owned = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.owned_nodes);
   const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
   for (int i = 0; owned.extent(0) > 0 && i < s.patches.node_count(); ++i) {
@@ -84,20 +81,22 @@ std::vector<char> own_rows(const State<Space, T, Dim>& s) {
   return own;
 }
 
-}  // namespace
-
 template <class Space, class T, int Dim>
-std::vector<double> side_table(const State<Space, T, Dim>& s, bool own, bool first) {
-  using S = SideTerms<Dim>;
+std::vector<double> side_table(const State<Space, T, Dim>& s) {
   if (!s.sides.in_use()) return {};
   s.space.fence("mpm::side_table");
   const auto table = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.sides.nodes);
-  std::vector<double> values(table.data(), table.data() + table.size());
-  if (!own) return values;
-  const std::vector<char> owned = own_rows(s);
-  for (std::size_t row = 0; row < owned.size(); ++row) {
+  return {table.data(), table.data() + table.size()};
+}
+
+template <class Space, class T, int Dim>
+std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std::vector<int>& own,
+                                        bool first) {
+  using S = SideTerms<Dim>;
+  std::vector<double> values = side_table(s);
+  for (std::size_t row = 0; row < own.size(); ++row) {
     double* const of = &values[row * S::size];
-    for (int k = 0; k < S::dashpot && !owned[row]; ++k) of[k] = 0;
+    for (int k = 0; k < S::dashpot && !own[row]; ++k) of[k] = 0;
     for (int k = S::dashpot; k < S::impulse && !first; ++k) of[k] = 0;
   }
   return values;
@@ -112,11 +111,14 @@ void put_side_table(State<Space, T, Dim>& s, std::vector<double> values, bool fi
   Kokkos::deep_copy(s.sides.nodes, table);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                               \
-  template void upload_sides(State<Space, T, Dim>&, const GridInput&, const std::vector<SideInput>&, \
-                             double);                                                                \
-  template SideWork take_side_work(const State<Space, T, Dim>&);                                     \
-  template std::vector<double> side_table(const State<Space, T, Dim>&, bool, bool);                  \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                   \
+  template void upload_sides(State<Space, T, Dim>&, const GridInput&, const std::vector<SideInput>&,     \
+                             double);                                                                    \
+  template SideWork take_side_work(const State<Space, T, Dim>&);                                         \
+  template std::vector<double> side_table(const State<Space, T, Dim>&);                                  \
+  template std::vector<int> own_side_rows(const State<Space, T, Dim>&);                                  \
+  template std::vector<double> share_of_side_table(const State<Space, T, Dim>&, const std::vector<int>&, \
+                                                   bool);                                                \
   template void put_side_table(State<Space, T, Dim>&, std::vector<double>, bool);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

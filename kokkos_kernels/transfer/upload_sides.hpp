@@ -34,11 +34,17 @@ struct SideWork {
 template <class Space, class T, int Dim>
 SideWork take_side_work(const State<Space, T, Dim>& s);
 
-/// The table of the sides' nodes, row by row (SideTerms). own: of several ranks' tables, the sum is that of
-/// all: what changes in a step is left to the rank that answers for the node, what all know alike to the
-/// first.
+/// The table of the sides' nodes, row by row (SideTerms).
 template <class Space, class T, int Dim>
-std::vector<double> side_table(const State<Space, T, Dim>& s, bool own, bool first);
+std::vector<double> side_table(const State<Space, T, Dim>& s);
+/// Which rows of it are of nodes that this rank answers for.
+template <class Space, class T, int Dim>
+std::vector<int> own_side_rows(const State<Space, T, Dim>& s);
+/// This rank's share of the table of all ranks, which is the sum. own: the rows of which it gives what
+/// changes in a step; first: it gives what all ranks know alike.
+template <class Space, class T, int Dim>
+std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std::vector<int>& own,
+                                        bool first);
 /// Puts a table back; first: with the impulses and works in it, which only one of several ranks may keep.
 template <class Space, class T, int Dim>
 void put_side_table(State<Space, T, Dim>& s, std::vector<double> table, bool first);

@@ -1,5 +1,6 @@
 // What a mesh with periodic sides takes of the other options.
 
+#include "common/text.hpp"
 #include "input/groups.hpp"
 #include "input/height_surface.hpp"
 #include "input/shapes.hpp"

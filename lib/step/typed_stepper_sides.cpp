@@ -73,14 +73,21 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_sides(double interval, Histo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// The table of the sides' nodes, of all ranks.
+/// The table of the sides' nodes, of all ranks. What a node keeps that no soil reaches now, and that no rank
+/// therefore answers for, all have known alike since they last met here.
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::gather_sides(std::vector<double>* table) const {
   PetscFunctionBeginUser;
-  *table = side_table(state_, ranks_ != nullptr, rank_of(comm_) == 0);
-  if (ranks_ && !table->empty())
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, table->data(), static_cast<int>(table->size()), MPI_DOUBLE,
-                               MPI_SUM, comm_));
+  *table = side_table(state_);
+  if (!ranks_ || table->empty()) PetscFunctionReturn(PETSC_SUCCESS);
+  const bool first = rank_of(comm_) == 0;
+  std::vector<int> own = own_side_rows(state_), owners = own;
+  const int rows = static_cast<int>(own.size());
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, owners.data(), rows, MPI_INT, MPI_SUM, comm_));
+  for (int row = 0; row < rows && first; ++row) own[row] = own[row] || owners[row] == 0;
+  *table = share_of_side_table(state_, own, first);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, table->data(), static_cast<int>(table->size()), MPI_DOUBLE,
+                             MPI_SUM, comm_));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -99,7 +106,7 @@ void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides& saved) {
   if (saved.kinds.empty()) return;
   constexpr unsigned k_all = (1u << Dim) - 1;
   constexpr int size = SideTerms<Dim>::size;
-  std::vector<double> table = side_table(state_, false, true);
+  std::vector<double> table = side_table(state_);
   std::size_t from = 0;
   for (int n = 0; n < 2 * Dim; ++n) {
     const Wall then = static_cast<Wall>(saved.kinds[n]), now = state_.grid.wall[n / 2][n % 2];

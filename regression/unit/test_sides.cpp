@@ -235,7 +235,7 @@ TEST_CASE("an absorbing side takes rho c A and the static force from the soil at
     finish_sums(s);
     begin_absorbing(s, {1 / std::sqrt(3.0)}, {});
     const double c = std::sqrt(1.2e7 / k_density), face = std::pow(k_edge, Dim - 1);
-    const auto table = side_table(s, false, true);
+    const auto table = side_table(s);
     const auto of = [&](Coord<Dim> at, int k) {
       return table[s.sides.host[0].row(at) * SideTerms<Dim>::size + k];
     };
