@@ -15,6 +15,7 @@ from row import Row
 
 SPEED, NU, DENSITY, SPACING = 1.0, 0.01, 1000.0, 0.05
 PRESSURE = 5000.0  # Pa, everywhere at the start
+LONG = True
 RUNS = {"flip": "-box_file {start}", "flip_none": "-box_file {start} -position_correction none",
         "apic": "-box_file {start} -velocity_update apic", "apic_none": "-box_file {start} -velocity_update apic -position_correction none"}
 LINES = "Particles gather in lines without the correction."
