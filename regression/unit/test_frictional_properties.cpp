@@ -99,9 +99,10 @@ SymTensor<double, 3> difference(const SymTensor<double, 3>& a, const SymTensor<d
   return d;
 }
 
-/// Whether two stresses are the same sums, which the compiler may contract differently.
+/// Whether two stresses are the same sums, which the compiler may contract differently; size: of the largest
+/// of their parts [Pa].
 bool same_sums(const SymTensor<double, 3>& a, const SymTensor<double, 3>& b, double size) {
-  constexpr double k_round_off = 4 * std::numeric_limits<double>::epsilon();
+  constexpr double k_round_off = 8 * std::numeric_limits<double>::epsilon();
   bool same = true;
   for (int k = 0; k < 6; ++k) same = same && std::fabs(a[k] - b[k]) <= k_round_off * size;
   return same;
@@ -135,8 +136,11 @@ void try_state(const Law<double>& law, const Law<float>& single, const Sym& star
   keep(worst.outside, outside_of(law, point.state[1], point.stress));
   const bool yields = outside_of(law, point.state[1], trial) > 1e-12 * size;
   worst.yielding += yields;
-  if (outside_of(law, point.state[1], trial) < -1e-12 * size)
-    worst.elastic_changed += point.state[0] != 0 || !same_sums(point.stress, trial, size);
+  if (outside_of(law, point.state[1], trial) < -1e-12 * size) {
+    double largest = size;
+    for (int k = 0; k < 6; ++k) largest = std::fmax(largest, std::fabs(start[k]));
+    worst.elastic_changed += point.state[0] != 0 || !same_sums(point.stress, trial, largest);
+  }
   const double modulus = law.young;
   const auto beyond = difference(trial, point.stress);
   keep(worst.gains, -complementary(law, point.stress, beyond) * modulus / size);
