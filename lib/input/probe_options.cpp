@@ -49,7 +49,7 @@ void read_place(OptionReader& in, const MeshConfig* mesh, int first, int count, 
   for (int d = first; d < first + count; ++d)
     if (!(probe.at[d] >= mesh->lower[d] && probe.at[d] <= mesh->upper[d]))
       return in.reject(option.name, formatted("a place in the mesh, whose %c is from %g to %g", "xyz"[d],
-                                              mesh -> lower[d], mesh -> upper[d]));
+                                              (*mesh).lower[d], (*mesh).upper[d]));
 }
 
 void read_axis(OptionReader& in, int dim, ProbeConfig& probe) {
