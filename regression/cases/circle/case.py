@@ -8,6 +8,7 @@ cell, so that the row of nodes at its base is the same. The case `circle_fine` h
 
 from circle_checks import ROUGH, check_factors, draw_factors
 
+LONG = True
 RUNS = {"smooth": "", "rough": ROUGH}
 
 

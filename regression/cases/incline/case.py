@@ -16,6 +16,7 @@ G, THETA = 9.81, np.radians(30)
 DRIVE, PUSH = G * np.sin(THETA), G * np.cos(THETA)
 IN_3D = (" -dim 3 -mesh_lower 0,0,-0.4 -mesh_upper 4.5,0.8,1 -base_lower 0,0,-0.4 -base_upper 4.5,0.8,0 -base_particles_per_cell 2 -gravity 4.905,0,-8.495709211"
          " -mesh_ymin free -mesh_ymax free -mesh_zmin free -mesh_zmax free")
+LONG = True
 INTERFACES = {"shear limit 2 kPa": "-base_shear_limit 2000", "shear limit 6 kPa": "-base_shear_limit 6000",
               "friction 0.3": "-base_friction 0.3", "friction 0.7": "-base_friction 0.7"}
 EXACT = {"shear limit 2 kPa": (DRIVE - 2000 / (DENSITY * HEIGHT), 0.002), "friction 0.3": (DRIVE - 0.3 * PUSH, 0.005)}

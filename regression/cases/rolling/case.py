@@ -13,6 +13,7 @@ from curves import slope
 from row import Row
 
 G, SLOPE = 9.81, np.radians(20)
+LONG = True
 BALL = ("-dim 3 -mesh_lower 0,0,-0.2 -mesh_upper 3.2,1.2,1.3 -mesh_spacing 0.1 -wheel_centre 0.75,0.6,0.5"
         " -base_lower 0,0,-0.2 -base_upper 3.2,1.2,0 -base_particles_per_cell 2 -gravity 3.355218,0,-9.218385 -mesh_zmin free -mesh_zmax free"
         " -wheel_particles_per_cell 2")
