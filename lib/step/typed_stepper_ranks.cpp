@@ -57,7 +57,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
     BoundReport all;
     bool known = false;
     PetscCall(ranks_->look_back(&known, &all));
-    const bool passed = late > 0 && known && rebuild_due(all.bound, all.increment, margin, late);
+    // A report without a bound is of a step before the lists were built.
+    const bool passed =
+        late > 0 && known && all.bound > 0 && rebuild_due(all.bound, all.increment, margin, late);
     due = ranks_->count_down() || passed || (known && all.stopped > 0);
     if (known && is_swift(all.increment)) steps = done + 1;
   }
