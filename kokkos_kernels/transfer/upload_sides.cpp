@@ -96,8 +96,10 @@ std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std
   std::vector<double> values = side_table(s);
   for (std::size_t row = 0; row < own.size(); ++row) {
     double* const of = &values[row * S::size];
-    for (int k = 0; k < S::dashpot && !own[row]; ++k) of[k] = 0;
-    for (int k = S::dashpot; k < S::impulse && !first; ++k) of[k] = 0;
+    for (int k = 0; k < S::impulse; ++k) {
+      const bool alike = k >= S::dashpot && k < S::reaction;
+      if (!(alike ? first : own[row] != 0)) of[k] = 0;
+    }
   }
   return values;
 }

@@ -41,7 +41,7 @@ std::vector<double> side_table(const State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 std::vector<int> own_side_rows(const State<Space, T, Dim>& s);
 /// This rank's share of the table of all ranks, which is the sum. own: the rows of which it gives what
-/// changes in a step; first: it gives what all ranks know alike.
+/// changes in a step and the static reaction; first: it gives what all ranks know alike.
 template <class Space, class T, int Dim>
 std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std::vector<int>& own,
                                         bool first);
