@@ -6,16 +6,24 @@
 A deck has soil in a mesh whose sides, but the top, are of random kinds that act on the soil, under gravity that may be inclined. At every row the momentum of
 the soil must be what gravity and the forces on the sides have made of it.
 A run that is cut in two by a checkpoint must give the same bits as the whole one; a run on two ranks the same to
-round-off. Some decks have two stages, in which the kinds differ.
+round-off. Half of the decks rebuild their lists often. Some decks have two stages, in which the kinds differ.
 """
 import sys
+from pathlib import Path
 
 import numpy as np
 
 from folders import checkpoints, differences, fresh, rows, run
 from random_decks import draws_of, read_arguments
 
+HERE = Path(__file__).resolve()
+sys.path[:0] = [str(HERE.parents[2] / "scripts"), str(HERE.parents[1])]
+
+from differences import largest  # noqa: E402
+from results import Run  # noqa: E402
+
 END = 0.15  # s
+APART = {"double": 1e-9, "single": 0.05}  # of one and two ranks, as compare.py has it
 
 
 def vector(values):
@@ -53,6 +61,7 @@ def make_deck(draw, dim):
                f"-bodies soil -soil_material clay -soil_shape box -soil_lower {vector([0] * dim)} -soil_upper {vector(filled)} "
                f"-gravity {vector(gravity)} -velocity_update {draw.choice(['flip', 'apic', 'xpic'])} -mesh_{'xyz'[dim - 1]}max free "
                f"-time_courant {draw.choice(['0.2', '0.33'])} -history_interval 0.003 -output_interval 0.1").split()
+    options += ["-rebuild_margin", draw.choice(["0.5", "0.01"])]  # seldom, and again and again
     staged = draw.random() < 0.3
     names = [(f"{'xyz'[d]}{side}", d) for d in range(dim) for side in ("min", "max") if (d, side) != (dim - 1, "max")]
     for name, axis in names:
@@ -95,6 +104,7 @@ def main():
     empty = base / "empty.opts"
     empty.write_text("\n")
     listing = base / "failed.txt"
+    furthest = {"double": 0.0, "single": 0.0}
     for number in range(given.count):
         draw = draws_of(given, number)
         dim = int(draw.choice(given.dims.split(",")))
@@ -111,10 +121,14 @@ def main():
                 pair = fresh(base / "pair")
                 run(binary, empty, pair, *options, prefix=("mpirun", "-n", "2", "--bind-to", "none"))
                 check_momentum(pair, gravity, dim, precision)
+                apart, where = largest(Run(pair), Run(whole))
+                furthest[precision] = max(furthest[precision], apart)
+                assert apart <= APART[precision], f"two ranks are {apart:.3g} apart from one at {where}"
         except AssertionError as error:
             listing.write_text(f"{error}\n\n{' '.join(map(str, options))}\n")
             sys.exit(f"deck {number} of seed {given.seed}: {str(error)[-1500:]}\nits options are in {listing}")
-    print(f"{given.count} decks: gravity and the forces on the sides make the momentum; cut runs give the same bits")
+    print(f"{given.count} decks: gravity and the forces on the sides make the momentum; cut runs give the same bits; "
+          f"two ranks are {furthest['double']:.2g} apart from one (single {furthest['single']:.2g})")
 
 
 if __name__ == "__main__":
