@@ -124,9 +124,8 @@ def draw(axes, runs):
     for kind, most in (("P", 80), ("S", 34)):
         shown = angles[angles < most]
         axes.plot(shown, [returned(kind, angle, 1.0, 2.0) for angle in shown], label=f"{kind} wave, exact")
-    for name, (kind, degrees, factor, _, cell) in WAVES.items():
-        if factor == 1 and cell == 0.25:
-            share = energy_of(last_frame(runs[name], "soil")) / energy_of(first_frame(runs[name], "soil"))
-            axes.plot(degrees, share, "ko")
+    for name, mark, label in (("P_30", "ko", "computed"), ("P_60", "ko", None), ("S_20", "ko", None), ("S_20_fine", "k+", "computed, half the cell")):
+        share = energy_of(last_frame(runs[name], "soil")) / energy_of(first_frame(runs[name], "soil"))
+        axes.plot(WAVES[name][1], share, mark, label=label)
     axes.set(xlabel="angle to the normal of the side (degrees)", ylabel="energy returned", yscale="log")
     axes.legend()
