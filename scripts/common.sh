@@ -12,6 +12,8 @@ export OMPI_MCA_rmaps_base_oversubscribe=${OMPI_MCA_rmaps_base_oversubscribe:-1}
 # Where threads of several ranks share the cores, binding would put them all on the first ones.
 export OMP_PROC_BIND=${OMP_PROC_BIND:-false}
 
+cmake_options=()  # more of a script
+
 has_cuda() { [ -n "$MPM_KOKKOS_CUDA" ]; }
 has_gpu() { has_cuda && nvidia-smi -L >/dev/null 2>&1; }
 
@@ -23,7 +25,7 @@ build() {
   # CMake remembers where it found things: with other dependencies it has to start afresh.
   if ! echo "$environment" | cmp -s - "$dir/dependencies"; then fresh=--fresh; fi
   echo "Building $preset (output in $log)"
-  if ! { cmake $fresh -S "$source_dir" --preset "$preset" && echo "$environment" >"$dir/dependencies" &&
+  if ! { cmake $fresh -S "$source_dir" --preset "$preset" "${cmake_options[@]}" && echo "$environment" >"$dir/dependencies" &&
          cmake --build "$dir" "$@"; } >"$log" 2>&1; then
     tail -n 40 "$log" >&2
     echo "The build failed; all of its output is in $log" >&2

@@ -37,11 +37,18 @@ using Reference = Build<Kokkos::Serial, double, Dim>;
 template <class B>
 using StateOf = State<typename B::Space, typename B::real, B::dim>;
 
-/// Calls f(Build) for everything that the kernels are built for.
+/// Calls f(Build) for what the kernels are built for: everything with MPM_TEST_EVERY_BUILD, else without OpenMP
+/// in single precision, which whole runs test.
 template <class F>
 void for_each_build(F&& f) {
 #define MPM_TEST_BUILD(Space, T, Dim) f(Build<Space, T, Dim>{});
+#if defined(MPM_TEST_EVERY_BUILD) || !defined(MPM_WITH_OPENMP)
   MPM_FOR_EACH(MPM_TEST_BUILD)
+#else
+  MPM_FOR_EACH_REAL_DIM(MPM_TEST_BUILD, Kokkos::Serial)
+  MPM_FOR_EACH_DIM(MPM_TEST_BUILD, Kokkos::OpenMP, double)
+  MPM_FOR_CUDA(MPM_TEST_BUILD)
+#endif
 #undef MPM_TEST_BUILD
 }
 /// Calls f(Build) for each dimension of the reference.
