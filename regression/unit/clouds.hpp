@@ -37,8 +37,8 @@ using Reference = Build<Kokkos::Serial, double, Dim>;
 template <class B>
 using StateOf = State<typename B::Space, typename B::real, B::dim>;
 
-/// Calls f(Build) for what the kernels are built for: everything with MPM_TEST_EVERY_BUILD, else without OpenMP
-/// in single precision, which whole runs test.
+/// Calls f(Build) for what the kernels are built for: everything with MPM_TEST_EVERY_BUILD, else without
+/// OpenMP in single precision, which whole runs test.
 template <class F>
 void for_each_build(F&& f) {
 #define MPM_TEST_BUILD(Space, T, Dim) f(Build<Space, T, Dim>{});
