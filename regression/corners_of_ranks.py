@@ -83,7 +83,7 @@ def rebuilds(folder):
 
 
 def looks_too_often(folder, most):
-    """How often the host looked at the steps, where that is too often: it should be seldom, on several ranks too, or a device
+    """How often the host looked at the steps, where that is more than `most` times: it should be seldom, on several ranks too, or a device
     waits for it. The host looks each 0.05 s, so that on a machine with other load it may look after each step."""
     done = performance(folder)
     looks = done["looks_of_host"]

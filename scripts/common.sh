@@ -12,7 +12,7 @@ export OMPI_MCA_rmaps_base_oversubscribe=${OMPI_MCA_rmaps_base_oversubscribe:-1}
 # Where threads of several ranks share the cores, binding would put them all on the first ones.
 export OMP_PROC_BIND=${OMP_PROC_BIND:-false}
 
-cmake_options=()  # more of a script
+cmake_options=()  # what a script sets beside the preset
 
 has_cuda() { [ -n "$MPM_KOKKOS_CUDA" ]; }
 has_gpu() { has_cuda && nvidia-smi -L >/dev/null 2>&1; }
