@@ -29,7 +29,7 @@ class GlobalBound {
   /// Starts the reduction of this rank's report.
   PetscErrorCode post(MPI_Comm comm, const BoundReport& own);
   /// Ends the reduction of the last report but one; `known` is false where there is no such report. The bound
-  /// is the sum of the largest increments, as on one rank.
+  /// is the sum of the largest increments, as on one rank; without a step since the lists were built it is 0.
   PetscErrorCode last_but_one(bool* known, BoundReport* all);
   /// The last report of this rank, if its reduction is under way.
   std::optional<BoundReport> pending() const {
