@@ -16,9 +16,13 @@
 #elif defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
 #define MPM_SHUFFLES
-/// Of a lambda: it is part of its caller, however many kernels a source has.
-#define MPM_INLINE_LAMBDA __attribute__((always_inline))
 #endif
+#endif
+/// Of a lambda: it is part of its caller, however many kernels a source has.
+#ifdef MPM_PLAIN_LANES
+#define MPM_INLINE_LAMBDA
+#else
+#define MPM_INLINE_LAMBDA __attribute__((always_inline))
 #endif
 #if defined(MPM_SHUFFLES) && defined(__AVX__)
 #include <immintrin.h>

@@ -152,10 +152,13 @@ struct HostParticles {
       alignas(R) T weight[Dim][2][3][W], shift[W], hoop[rings ? 3 : 1][W];
       R to_first = 0;
       with_weights_near(x, half, [&](const auto& a) {
-        for (int d = 0, step = 1; d < Dim; ++d, step *= Patch<Dim>::window_edge) {
-          for (int k = 0; k < 3; ++k) a[d].w[k].store(weight[d][0][k]), a[d].g[k].store(weight[d][1][k]);
-          to_first += T(step) * (a[d].first + 1);
-        }
+        // Unrolled here: by indices that a loop counts, the weights would be copied through memory once more.
+        unrolled<Dim>([&](auto d) MPM_INLINE_LAMBDA {
+          unrolled<3>([&](auto k) MPM_INLINE_LAMBDA {
+            a[d].w[k].store(weight[d][0][k]), a[d].g[k].store(weight[d][1][k]);
+          });
+          to_first += T(power(Patch<Dim>::window_edge, d)) * (a[d].first + 1);
+        });
         if constexpr (rings)
           for (int k = 0; k < 3; ++k) a.r.t[k].store(hoop[k]);
       });
