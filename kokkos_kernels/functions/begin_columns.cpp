@@ -35,10 +35,11 @@ struct GiveColumns {
   Sum sums;
   double unit[k_units];
 
-  /// A particle: its mass, volume, moduli times volume, and cell.
+  /// A particle: its mass, volume, moduli times volume, and cell. `turning`: its shear stiffness along the
+  /// level, which the rotation of its stress adds to.
   struct Point {
     double mass, volume;
-    double shear, own_bulk, mean_bulk;  // Pa m3: of its own dilatation, and of its cell's mean
+    double shear, turning, own_bulk, mean_bulk;  // Pa m3: of its own dilatation, and of its cell's mean
     Coord<Dim> first;
   };
   /// A row that it reaches, or the image in a wall of one.
@@ -55,9 +56,16 @@ struct GiveColumns {
     const int cell = soil.cell(p);
     const double volume = soil.volume(p), bulk = m.wave - 4.0 / 3 * m.shear + m.pore,
                  mean = f_bar * double(soil.materials(of.material).f_bar_share);
-    return {double(of.mass),      volume,
-            volume * m.shear,     volume * bulk * (1 - mean),
-            volume * bulk * mean, in_mesh(places.origin(cell / Patch<Dim>::cells), coord_of<Dim>(cell))};
+    const SymTensor<T, Dim> stress = soil.stress(p);
+    double level = 0;  // Pa, mean stress along the level
+    for (int d = 0; d < vertical; ++d) level += double(stress[d]) / vertical;
+    return {double(of.mass),
+            volume,
+            volume * m.shear,
+            volume * (m.shear + (double(stress[vertical]) - level) / 2),
+            volume * bulk * (1 - mean),
+            volume * bulk * mean,
+            in_mesh(places.origin(cell / Patch<Dim>::cells), coord_of<Dim>(cell))};
   }
   /// The unit of a sum.
   static Unit unit_of(int k) {
@@ -145,8 +153,8 @@ struct GiveColumns {
                  carried = line.w * q.mass * i.w * j.w * (1 + line.inv_spread * i.r * j.r);
     for (int k = 0; k < 2; ++k) {
       const double turns = i.turn[k] * j.turn[k];
-      const double modulus = k == 0 ? q.own_bulk + 4.0 / 3 * q.shear : q.shear,
-                   pulled = k == 0 ? q.own_bulk - 2.0 / 3 * q.shear : q.shear;
+      const double modulus = k == 0 ? q.own_bulk + 4.0 / 3 * q.shear : q.turning,
+                   pulled = k == 0 ? q.own_bulk - 2.0 / 3 * q.shear : q.turning;
       add(row, S::stiffness + k * C::band + place, slopes * modulus * turns, k_energy);
       add(row, S::inertia + k * C::band + place, carried * turns, k_mass);
       add(row, S::pull + k * C::band + place, across * pulled * i.turn[1 - k] * j.turn[k], k_energy);
