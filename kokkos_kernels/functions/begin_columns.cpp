@@ -260,6 +260,7 @@ void begin_columns(State<Space, T, Dim>& s, const std::vector<double>& shear_rat
     const Side<Dim>& side = s.sides.host[n];
     for (int c = 0; c < side.step[vertical]; ++c) {
       Coord<Dim> at{};
+      at[n / 2] = n % 2 * s.grid.cells[n / 2];
       if constexpr (Dim == 3) at[n / 2 == 0 ? 1 : 0] = c - 1;
       RawColumn<Dim> raw;
       for (int r = 0; r < s.grid.cells[vertical] + 3; ++r) {
