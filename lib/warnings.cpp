@@ -161,7 +161,7 @@ bool penetrates(const Config& config, const RigidConfig& rigid, Bounds bounds, i
 
 /// Whether soil lies at a side of the mesh that is a wall.
 bool is_wall(const Config& config, int d, int side) {
-  return !is_open(config.mesh.walls[d][side]) && config.mesh.walls[d][side] != Wall::absorbing &&
+  return !is_open(config.mesh.walls[d][side]) && !has_dashpots(config.mesh.walls[d][side]) &&
          std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& body) {
            return reaches(config, bounds_of(body.shape, config.mesh, config.dim), d, side);
          });

@@ -28,7 +28,8 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   for (const auto* more : {&s.next_sums, &s.last_sums})
     add(more->soil), add(more->boundary), add(more->rigid);
   add(s.energy.stress), add(s.energy.strain), add(s.energy.volume);
-  add(s.batches.room), add(s.batches.slots), add(s.timed.loads), add(s.timed.points), add(s.sides.nodes);
+  add(s.batches.room), add(s.batches.slots), add(s.timed.loads), add(s.timed.points), add(s.sides.nodes),
+      add(s.sides.columns);
   return bytes;
 }
 

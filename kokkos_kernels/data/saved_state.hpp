@@ -39,7 +39,8 @@ struct SavedImpulse {
 /// The table of the nodes on sides of the mesh that act (data/sides.hpp), of all ranks.
 struct SavedSides {
   std::vector<long> kinds;  // Wall, [2 direction + 1 for the upper side]: 0 to 2 are the words of -mesh_xmin
-  std::vector<double> values;  // [rows][SideTerms::size], the sides in this order
+  std::vector<double> values;   // [rows][SideTerms::size], the sides in this order
+  std::vector<double> columns;  // [rows][ColumnTerms::size], of those that are free_field
 };
 
 /// Numbers that SavedState::lost has of a body, and places of the numbers of particles among them: those that

@@ -1,5 +1,5 @@
 #pragma once
-// Sides of the mesh that act on the soil by more than a mirror (Wall::friction, absorbing, driven). Beyond
+// Sides of the mesh that act on the soil by more than a mirror (Wall::friction to free_field). Beyond
 // such a side the soil moves as the node on it does; physics/sides.hpp says what the node does.
 
 #include <array>
@@ -7,6 +7,7 @@
 #include "base/choices.hpp"
 #include "base/spaces.hpp"
 #include "base/types.hpp"
+#include "data/column_terms.hpp"
 #include "data/patches.hpp"
 #include "data/side_terms.hpp"
 
@@ -23,12 +24,14 @@ struct Side {
   double unit_mass = 0;          // kg, of a node whose cells are full: its area is that of a cell's face
   double face = 0;               // m2 (m in 2D)
   int first = 0, step[Dim] = {};
+  int first_column = 0;  // free_field: row `first` of the table of columns
 
   KOKKOS_INLINE_FUNCTION int row(const Coord<Dim>& at) const {
     int row = first;
     for (int d = 0; d < Dim; ++d) row += step[d] * (at[d] + 1);
     return row;
   }
+  KOKKOS_INLINE_FUNCTION int column_row(const Coord<Dim>& at) const { return row(at) - first + first_column; }
 };
 
 template <class Space, int Dim>
@@ -37,12 +40,15 @@ struct Sides {
   unsigned mask = 0;                     // those that act: bit 2 d + side, as sides_of
   Kokkos::View<Side<Dim>*, Memory> all;  // [2 d + side]; allocated where one acts
   Kokkos::View<double * [SideTerms<Dim>::size], Kokkos::LayoutRight, Memory> nodes;  // by Side::row
-  std::array<Side<Dim>, 2 * Dim> host{};                                             // as the run began
-  std::array<double, 2 * Dim> dashpot_factor{}, spring_length{};                     // -, m (0: no springs)
-  unsigned unknown = 0;                      // absorbing sides whose dashpots and reactions are not known yet
-  std::array<unsigned, 2 * Dim> held{};      // bit k: component k that the side held before it absorbed
+  Kokkos::View<double * [ColumnTerms<Dim>::size], Kokkos::LayoutRight, Memory>
+      columns;                            // by Side::column_row; allocated where a side is free_field
+  std::array<Side<Dim>, 2 * Dim> host{};  // as the run began
+  std::array<double, 2 * Dim> dashpot_factor{}, spring_length{};  // -, m (0: no springs)
+  unsigned unknown = 0;                  // sides with dashpots that, and whose reactions, are not known yet
+  std::array<unsigned, 2 * Dim> held{};  // bit k: component k that the side held before it absorbed
   std::array<unsigned, 2 * Dim> mirrored{};  // bit k: component k that then turned round in a mirror
   bool in_use() const { return mask != 0; }
+  bool has_columns() const { return columns.extent(0) > 0; }
 };
 
 /// All of them, for kernels.
@@ -51,13 +57,17 @@ struct ActingSides {
   unsigned mask;
   const Side<Dim>* all;
   double* nodes;
+  double* columns;
   KOKKOS_INLINE_FUNCTION double* node(int side, const Coord<Dim>& at) const {
     return nodes + all[side].row(at) * SideTerms<Dim>::size;
+  }
+  KOKKOS_INLINE_FUNCTION double* column(int side, const Coord<Dim>& at) const {
+    return columns + all[side].column_row(at) * ColumnTerms<Dim>::size;
   }
 };
 template <class Space, int Dim>
 ActingSides<Dim> acting(const Sides<Space, Dim>& s) {
-  return {s.mask, s.all.data(), s.nodes.data()};
+  return {s.mask, s.all.data(), s.nodes.data(), s.columns.data()};
 }
 
 }  // namespace mpm

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "functions/free_field.hpp"
+#include "functions/side_moduli.hpp"
 #include "loops/particle_to_node.hpp"
-#include "physics/materials/any.hpp"
 
 namespace mpm {
 namespace {
@@ -32,14 +33,10 @@ struct GiveSides {
   /// What a particle gives, without its weight at the node.
   KOKKOS_INLINE_FUNCTION void terms_of(int p, double (&terms)[k_sums]) const {
     const auto of = soil.properties(p);
-    const AnyMaterial<T>& material = material_in(soil.materials(of.material));
-    SymTensor<T, Dim> stress = soil.stress(p);
-    add_isotropic(stress, soil.excess_pore_pressure(material, p));
-    double modulus = 0;
-    material.visit([&](const auto& law) { modulus = law.wave_modulus(stress, soil.state_of(law, p)); });
+    const SideModuli moduli = side_moduli(soil, shear_ratio(of.material), p);
     const double volume = soil.volume(p), mass = of.mass;
-    terms[k_pressure_waves] = Kokkos::sqrt((modulus + double(material.pore_stiffness)) * volume * mass);
-    terms[k_shear_waves] = shear_ratio(of.material) * Kokkos::sqrt(modulus * volume * mass);
+    terms[k_pressure_waves] = Kokkos::sqrt((moduli.wave + moduli.pore) * volume * mass);
+    terms[k_shear_waves] = shear_ratio(of.material) * Kokkos::sqrt(moduli.wave * volume * mass);
     terms[k_volume] = terms[k_area] = volume, terms[k_mass] = mass;
   }
   /// About the largest force that a particle gives a node [N]: its stress times volume over the edge of a
@@ -176,11 +173,8 @@ void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_r
   using S = SideTerms<Dim>;
   const unsigned sides = s.sides.unknown;
   if (sides == 0) return;
-  Kokkos::View<double*, typename Space::memory_space> ratio("mpm::shear_ratio", shear_ratio.size());
-  const auto ratio_host = Kokkos::create_mirror_view(ratio);
-  for (std::size_t m = 0; m < shear_ratio.size(); ++m) ratio_host(m) = shear_ratio[m];
-  Kokkos::deep_copy(ratio, ratio_host);
-  Give give{s.soil.points, {s.grid, s.patches}, acting(s.sides), sides, ratio, {}, {}};
+  Give give{
+      s.soil.points, {s.grid, s.patches}, acting(s.sides), sides, shear_ratios<Space>(shear_ratio), {}, {}};
   give.sums = typename Give::Sum("mpm::side_sums", s.sides.nodes.extent(0));
   const Kokkos::RangePolicy<Space> range(s.space, 0, s.soil.points.count);
   const auto unit_of = [&](int k) {  // of the whole numbers
@@ -226,6 +220,7 @@ void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_r
     }
   }
   Kokkos::deep_copy(s.sides.nodes, table);
+  begin_columns(s, shear_ratio, ranks, {table.data(), table.data() + table.size()});
   s.sides.unknown = 0;
 }
 

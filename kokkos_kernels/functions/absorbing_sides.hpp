@@ -15,7 +15,7 @@ struct SideRanks {
   std::function<void(double*)> largest = [](double*) {};
 };
 
-/// Sets what the absorbing sides of s.sides.unknown need. The nodal sums are those of the soil as it is
+/// Sets what the sides with dashpots of s.sides.unknown need. The nodal sums are those of the soil as it is
 /// (sum_present_soil), of all ranks. shear_ratio [-]: speed of shear waves over that of pressure waves in the
 /// drained soil of each material. Collective.
 template <class Space, class T, int Dim>

@@ -19,9 +19,10 @@ StepPlan plan_step(const State<Space, T, Dim>& s) {
   plan.sums_ahead = fit && tile && s.xpic_order == 0 && !s.affine && !s.water.is_there() && !s.energy.on;
   plan.writes_sums = has_windows(s.space) && tile && !batches;
   // Patches far from rigids need few registers: where they are many, they go faster with a launch of their
-  // own. What follows a table is set where the rigids move, so that no node may be updated meanwhile.
+  // own. What follows a table is set where the rigids move, so that no node may be updated meanwhile; and
+  // what moves beside the sides, on the main stream.
   plan.nodes_apart = is_device<Space> && !few && !s.rigid_points.empty() && s.near_count > 0 &&
-                     !s.timed.moves_gravity && !s.timed.moves_sides;
+                     !s.timed.moves_gravity && !s.timed.moves_sides && !s.sides.has_columns();
   if (batches)
     plan.form = StepForm::out_of_core;
   else if (plan.sums_ahead)

@@ -1,3 +1,4 @@
+#include "functions/free_field.hpp"
 #include "loops/cpu/host_nodes.hpp"
 
 namespace mpm {
@@ -70,6 +71,7 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stre
 
 template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt, const Space& stream) {
+  if (s.sides.has_columns()) advance_columns(s, dt);
   if constexpr (is_device<Space>)
     s.sides.in_use() ? update_nodes_by_teams<true>(s, dt, stream)
                      : update_nodes_by_teams<false>(s, dt, stream);

@@ -16,30 +16,61 @@ struct SideNode {
   bool counts;      // this rank answers for it
 };
 
-/// The static reaction of absorbing sides, to the force on a node [N].
+/// The force that a side with dashpots gives a node whatever its velocity [N]: the static reaction, and from
+/// a column beside it the stress of the free field.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION double held_force(const ActingSides<Dim>& acting, int side, const SideNode<Dim>& node,
+                                         int k) {
+  const double reaction = acting.node(side, node.at)[SideTerms<Dim>::reaction + k];
+  if (acting.all[side].kind != Wall::free_field) return reaction;
+  return reaction + acting.column(side, node.at)[ColumnTerms<Dim>::traction + k];
+}
+
+/// These, to the force on a node [N].
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION void add_reactions(const ActingSides<Dim>& acting, const SideNode<Dim>& node,
                                           T* force) {
   for (int side = 0; side < 2 * Dim; ++side) {
-    if (!(node.sides >> side & 1u) || acting.all[side].kind != Wall::absorbing) continue;
-    const double* const kept = acting.node(side, node.at);
-    for (int k = 0; k < Dim; ++k) force[k] += static_cast<T>(kept[SideTerms<Dim>::reaction + k]);
+    if (!(node.sides >> side & 1u) || !has_dashpots(acting.all[side].kind)) continue;
+    for (int k = 0; k < Dim; ++k) force[k] += static_cast<T>(held_force(acting, side, node, k));
   }
 }
 
-/// Implicit dashpots (Lysmer and Kuhlemeyer 1969) between the node and what moves with the side's velocity:
-/// m (v' - v) = -c dt (v' - V) - s dt u', where springs s hold the drift u' = u + dt (v' - V).
+/// Dashpots [kg/s] and springs [N/m] of a node, normal and tangential, and how far these are stretched [m].
+struct Dashpots {
+  const double *dashpot, *spring;
+  double* drift;
+};
+
+/// Implicit dashpots (Lysmer and Kuhlemeyer 1969) between a node of a side normal to d and what moves with
+/// the velocity V: m (v' - v) = -c dt (v' - V) - s dt u', where springs s hold the drift u' = u + dt (v' -
+/// V).
 template <int Dim>
-KOKKOS_INLINE_FUNCTION void absorb(const Side<Dim>& side, int d, const SideNode<Dim>& node, double* kept,
+KOKKOS_INLINE_FUNCTION void absorb(const Dashpots& by, int d, const SideNode<Dim>& node, const double* to,
                                    double* v) {
-  using S = SideTerms<Dim>;
   for (int k = 0; k < Dim; ++k) {
     const int along = k == d ? 0 : 1;
-    const double pull = kept[S::spring + along] * node.dt / node.mass,
-                 a = kept[S::dashpot + along] * node.dt / node.mass + pull * node.dt;
-    v[k] = (v[k] + a * side.velocity[k] - pull * kept[S::drift + k]) / (1 + a);
-    kept[S::drift + k] += node.dt * (v[k] - side.velocity[k]);
+    const double pull = by.spring[along] * node.dt / node.mass,
+                 a = by.dashpot[along] * node.dt / node.mass + pull * node.dt;
+    v[k] = (v[k] + a * to[k] - pull * by.drift[k]) / (1 + a);
+    by.drift[k] += node.dt * (v[k] - to[k]);
   }
+}
+
+/// Those of a node on a side. kept: SideTerms.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION Dashpots dashpots_of(double* kept) {
+  using S = SideTerms<Dim>;
+  return {kept + S::dashpot, kept + S::spring, kept + S::drift};
+}
+
+/// What they hold on to [m/s]: the side, or the column beside it.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION const double* far_velocity(const ActingSides<Dim>& acting, int side,
+                                                  const SideNode<Dim>& node) {
+  if (acting.all[side].kind == Wall::free_field)
+    return acting.column(side, node.at) + ColumnTerms<Dim>::after;
+  return acting.all[side].velocity.c;
 }
 
 /// Takes the velocity into the side; the side does not pull.
@@ -72,7 +103,7 @@ KOKKOS_INLINE_FUNCTION void apply_friction(const Side<Dim>& side, int d, bool up
 /// Components that a side prescribes.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION void prescribe(const Side<Dim>& side, int d, bool upper, double* v) {
-  if (side.kind == Wall::absorbing) return;
+  if (has_dashpots(side.kind)) return;
   if (side.kind == Wall::friction) return hold_back(side, d, upper, v);
   for (int k = 0; k < Dim; ++k)
     if (k == d || side.holds_all) v[k] = side.velocity[k];
@@ -80,12 +111,13 @@ KOKKOS_INLINE_FUNCTION void prescribe(const Side<Dim>& side, int d, bool upper, 
 
 /// What the acting sides make of the velocity v of a node, which was v_old before the step. meets: dashpots
 /// and friction too; else, behind a contact, only what sides prescribe. Where sides meet, those that
-/// prescribe more come later.
+/// prescribe more come later; those with columns come behind others with dashpots, which the columns feel
+/// too.
 template <class T, int Dim>
 MPM_CALLED_FUNCTION Vector<T, Dim> by_sides(ActingSides<Dim> acting, SideNode<Dim> node, Vector<T, Dim> v_old,
                                             Vector<T, Dim> v_now, bool meets) {
   using S = SideTerms<Dim>;
-  constexpr Wall k_order[] = {Wall::absorbing, Wall::friction, Wall::driven};
+  constexpr Wall k_order[] = {Wall::absorbing, Wall::free_field, Wall::friction, Wall::driven};
   double v[Dim], before[Dim];
   for (int k = 0; k < Dim; ++k) v[k] = v_now[k];
   for (const Wall kind : k_order)
@@ -94,11 +126,12 @@ MPM_CALLED_FUNCTION Vector<T, Dim> by_sides(ActingSides<Dim> acting, SideNode<Di
       const Side<Dim>& side = acting.all[n];
       double* const kept = acting.node(n, node.at);
       for (int k = 0; k < Dim; ++k) before[k] = v[k];
-      if (meets && kind == Wall::absorbing) absorb(side, n / 2, node, kept, v);
+      if (meets && has_dashpots(kind))
+        absorb(dashpots_of<Dim>(kept), n / 2, node, far_velocity(acting, n, node), v);
       if (meets && kind == Wall::friction) apply_friction<T>(side, n / 2, n % 2 == 1, node, kept, v);
       prescribe(side, n / 2, n % 2 == 1, v);
       for (int k = 0; k < Dim && node.counts; ++k) {
-        const double carried = meets ? node.dt * kept[S::reaction + k] : 0;
+        const double carried = meets ? node.dt * held_force(acting, n, node, k) : 0;
         const double impulse = node.mass * (v[k] - before[k]) + carried;
         kept[S::impulse + k] += impulse;
         kept[S::work] += impulse * (double(v_old[k]) + v[k]) / 2;

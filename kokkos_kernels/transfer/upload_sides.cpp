@@ -1,5 +1,6 @@
 #include "transfer/upload_sides.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/walls.hpp"
@@ -11,7 +12,7 @@ void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vec
                   double density) {
   s.sides = {};
   if (sides.empty()) return;
-  int rows = 0;
+  int rows = 0, column_rows = 0;
   for (const SideInput& in : sides) {
     const int n = 2 * in.direction + in.side;
     Side<Dim>& side = s.sides.host[n];
@@ -27,10 +28,12 @@ void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vec
       side.step[d] = step;
       step *= grid.cells[d] + 3;
     }
+    side.first_column = column_rows;
     rows += side_rows(grid.cells, Dim, in.direction);
+    if (side.kind == Wall::free_field) column_rows += side_rows(grid.cells, Dim, in.direction);
     s.sides.mask |= 1u << n;
     s.sides.dashpot_factor[n] = in.dashpot_factor, s.sides.spring_length[n] = in.spring_length;
-    if (side.kind == Wall::absorbing) s.sides.unknown |= 1u << n;
+    if (has_dashpots(side.kind)) s.sides.unknown |= 1u << n;
     s.sides.held[n] = s.sides.mirrored[n] = 1u << in.direction;
   }
   s.sides.all = decltype(s.sides.all)("mpm::sides", 2 * Dim);
@@ -38,6 +41,7 @@ void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vec
   for (int n = 0; n < 2 * Dim; ++n) host(n) = s.sides.host[n];
   Kokkos::deep_copy(s.sides.all, host);
   s.sides.nodes = decltype(s.sides.nodes)("mpm::side_nodes", rows);
+  if (column_rows > 0) s.sides.columns = decltype(s.sides.columns)("mpm::columns", column_rows);
 }
 
 template <class Space, class T, int Dim>
@@ -90,6 +94,22 @@ std::vector<double> side_table(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
+std::vector<double> column_table(const State<Space, T, Dim>& s) {
+  if (!s.sides.has_columns()) return {};
+  s.space.fence("mpm::column_table");
+  const auto table = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.sides.columns);
+  return {table.data(), table.data() + table.size()};
+}
+
+template <class Space, class T, int Dim>
+void put_column_table(State<Space, T, Dim>& s, const std::vector<double>& values) {
+  if (!s.sides.has_columns()) return;
+  const auto table = Kokkos::create_mirror_view(s.sides.columns);
+  std::copy(values.begin(), values.end(), table.data());
+  Kokkos::deep_copy(s.sides.columns, table);
+}
+
+template <class Space, class T, int Dim>
 std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std::vector<int>& own,
                                         bool first) {
   using S = SideTerms<Dim>;
@@ -121,6 +141,8 @@ void put_side_table(State<Space, T, Dim>& s, std::vector<double> values, bool fi
   template std::vector<int> own_side_rows(const State<Space, T, Dim>&);                                  \
   template std::vector<double> share_of_side_table(const State<Space, T, Dim>&, const std::vector<int>&, \
                                                    bool);                                                \
+  template std::vector<double> column_table(const State<Space, T, Dim>&);                                \
+  template void put_column_table(State<Space, T, Dim>&, const std::vector<double>&);                     \
   template void put_side_table(State<Space, T, Dim>&, std::vector<double>, bool);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

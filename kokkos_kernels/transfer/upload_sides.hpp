@@ -17,8 +17,8 @@ struct SideInput {
   std::array<double, 3> velocity{};  // m/s, where no table tells it
   double friction = 0;               // -
   double shear_limit = 0;            // Pa, infinite where there is none
-  double dashpot_factor = 1;         // -, absorbing
-  double spring_length = 0;          // m, absorbing; 0: no springs
+  double dashpot_factor = 1;         // -, of a side with dashpots
+  double spring_length = 0;          // m, likewise; 0: no springs
 };
 
 /// Sets up the sides of `grid` that act; density [kg/m3]: of the lightest soil.
@@ -48,5 +48,11 @@ std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std
 /// Puts a table back; first: with the impulses and works in it, which only one of several ranks may keep.
 template <class Space, class T, int Dim>
 void put_side_table(State<Space, T, Dim>& s, std::vector<double> table, bool first);
+
+/// The table of the columns beside sides, row by row (ColumnTerms); all ranks have the same.
+template <class Space, class T, int Dim>
+std::vector<double> column_table(const State<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void put_column_table(State<Space, T, Dim>& s, const std::vector<double>& table);
 
 }  // namespace mpm

@@ -54,6 +54,7 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
   archive.list("impulse_address", c.state.impulse.address);
   archive.list("impulse", c.state.impulse.values);
   archive.list("side_kinds", c.state.sides.kinds), archive.list("side_nodes", c.state.sides.values);
+  archive.list("side_columns", c.state.sides.columns);
   archive.list("section_lost", c.state.sections), archive.list("section_zero", c.probes.section_zero);
   archive.list("followed", c.probes.followed), archive.list("followed_start", c.probes.start);
   archive.list("raster_depth", c.rasters.most_depth), archive.list("raster_speed", c.rasters.most_speed);

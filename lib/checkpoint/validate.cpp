@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "checkpoint/changes.hpp"
+#include "data/column_terms.hpp"
 #include "data/side_terms.hpp"
 #include "mesh/background.hpp"
 #include "output/probes.hpp"
@@ -65,19 +66,24 @@ std::string points_fault(const SavedPoints& points, const Config& config, const 
   return "";
 }
 
-/// Whether the table of sides has a row for each node of those that act.
+/// Whether the tables of sides have a row for each node of those that act, and of those with columns.
 bool sound_sides(const SavedSides& sides, const Config& config) {
-  if (sides.kinds.empty()) return sides.values.empty();  // no run has written it
+  if (sides.kinds.empty()) return sides.values.empty() && sides.columns.empty();  // no run has written it
   if (sides.kinds.size() != 2 * static_cast<std::size_t>(config.dim)) return false;
-  std::size_t rows = 0;
+  std::size_t rows = 0, columns = 0;
   for (std::size_t n = 0; n < sides.kinds.size(); ++n) {
-    if (sides.kinds[n] < 0 || sides.kinds[n] > static_cast<long>(Wall::driven)) return false;
-    const bool acts = is_acting(static_cast<Wall>(sides.kinds[n]));
-    if (acts) rows += side_rows(config.mesh.cells, config.dim, static_cast<int>(n / 2));
+    if (sides.kinds[n] < 0 || sides.kinds[n] > static_cast<long>(k_last_wall)) return false;
+    const Wall kind = static_cast<Wall>(sides.kinds[n]);
+    const int of_side = side_rows(config.mesh.cells, config.dim, static_cast<int>(n / 2));
+    if (is_acting(kind)) rows += of_side;
+    if (kind == Wall::free_field) columns += of_side;
   }
   const std::size_t terms = config.dim == 2 ? SideTerms<2>::size : SideTerms<3>::size;
-  return sides.values.size() == rows * terms &&
-         std::all_of(sides.values.begin(), sides.values.end(), [](double x) { return std::isfinite(x); });
+  const std::size_t column_terms = config.dim == 2 ? ColumnTerms<2>::size : ColumnTerms<3>::size;
+  const auto finite = [](double x) { return std::isfinite(x); };
+  return sides.values.size() == rows * terms && sides.columns.size() == columns * column_terms &&
+         std::all_of(sides.values.begin(), sides.values.end(), finite) &&
+         std::all_of(sides.columns.begin(), sides.columns.end(), finite);
 }
 
 }  // namespace
@@ -107,7 +113,8 @@ std::string state_fault(const SavedState& state, const Config& config) {
     return "a checkpoint with a sound section_lost";
   if (!std::all_of(state.impulse.values.begin(), state.impulse.values.end(), finite))
     return "a checkpoint with a sound impulse";
-  if (!sound_sides(state.sides, config)) return "a checkpoint with sound side_kinds and side_nodes";
+  if (!sound_sides(state.sides, config))
+    return "a checkpoint with sound side_kinds, side_nodes and side_columns";
   for (const SavedRigid& rigid : state.rigids)
     for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse, &rigid.binned})
       if (!std::all_of(vector->begin(), vector->end(), finite)) return "a checkpoint with sound rigids";

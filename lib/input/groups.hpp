@@ -16,7 +16,8 @@ bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh);
 
 /// What sides of the mesh take beside their kind: friction, dashpots, velocities. After the time.
 void read_sides(OptionReader& in, Config& config);
-/// Rejects absorbing sides where a material does not tell the speed of its shear waves.
+/// Rejects sides with dashpots where a material does not tell the speed of its shear waves, and columns of
+/// the free field without a base.
 void check_absorbing(OptionReader& in, const Config& config);
 /// Checks what a periodic mesh takes: weight of water across it alone, and rigids that do not end beside its
 /// periodic sides.

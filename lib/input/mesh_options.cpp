@@ -13,7 +13,8 @@ constexpr double k_most_cells = 1 << 30;  // in a direction, so that cells and n
 void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
   static const std::vector<std::pair<std::string, Wall>> words = {
       {"roller", Wall::roller},     {"fixed", Wall::fixed},         {"free", Wall::free},
-      {"friction", Wall::friction}, {"absorbing", Wall::absorbing}, {"periodic", Wall::periodic}};
+      {"friction", Wall::friction}, {"absorbing", Wall::absorbing}, {"free_field", Wall::free_field},
+      {"periodic", Wall::periodic}};
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
       const std::string name = side_option(d, side);
@@ -24,8 +25,8 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
       in.word(
           {.name = name,
            .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no velocity "
-                      "into it, and friction along it; dashpots that absorb waves; the opposite side, which "
-                      "is periodic too"},
+                      "into it, and friction along it; dashpots that absorb waves; dashpots to a column that "
+                      "moves as the free field beside; the opposite side, which is periodic too"},
           words, mesh.walls[d][side]);
     }
 }

@@ -35,16 +35,17 @@ void read_friction(OptionReader& in, const std::string& name, SideConfig& side) 
 
 void read_absorbing(OptionReader& in, const std::string& name, SideConfig& side) {
   in.number({.name = name + "_dashpot_factor",
-             .meaning = "absorbing: factor of the dashpots rho c",
+             .meaning = "absorbing, free_field: factor of the dashpots rho c",
              .unit = "-",
              .range = {.lowest = 0, .highest = 1e3}},
             side.dashpot_factor);
-  in.number({.name = name + "_spring_length",
-             .meaning = "absorbing: length L of springs rho c^2 / L beside the dashpots, against drift",
-             .unit = "m",
-             .range = {.lowest = 0, .highest = 1e9, .open_lowest = true},
-             .standard = "no springs"},
-            side.spring_length);
+  in.number(
+      {.name = name + "_spring_length",
+       .meaning = "absorbing, free_field: length L of springs rho c^2 / L beside the dashpots, against drift",
+       .unit = "m",
+       .range = {.lowest = 0, .highest = 1e9, .open_lowest = true},
+       .standard = "no springs"},
+      side.spring_length);
 }
 
 void read_velocity(OptionReader& in, const std::string& name, int dim, double end, SideConfig& side) {
@@ -74,8 +75,9 @@ void read_side(OptionReader& in, const Config& config, int d, int side, SideConf
   const Wall kind = config.mesh.walls[d][side];
   const auto known = in.known().size();
   if (kind == Wall::friction || in.listing()) read_friction(in, name, to);
-  if (kind == Wall::absorbing || in.listing()) read_absorbing(in, name, to);
-  if (!is_open(kind) || in.listing()) read_velocity(in, name, config.dim, config.time.end, to);
+  if (has_dashpots(kind) || in.listing()) read_absorbing(in, name, to);
+  if ((!is_open(kind) && kind != Wall::free_field) || in.listing())
+    read_velocity(in, name, config.dim, config.time.end, to);
   if (in.listing()) return;
   const std::string word = in.given_text(name);
   const auto& all = in.known();
@@ -99,10 +101,28 @@ void read_sides(OptionReader& in, Config& config) {
       }
 }
 
+namespace {
+
+/// Columns of the free field stand on a base that tells how they are held.
+void check_columns(OptionReader& in, const Config& config, int d, int side) {
+  const int vertical = config.dim - 1;
+  const std::string name = side_option(d, side), base = side_option(vertical, 0);
+  if (d == vertical)
+    return in.reject(name,
+                     "another kind of side: columns of the free field stand beside sides that are not "
+                     "normal to the vertical axis");
+  const Wall below = config.mesh.walls[vertical][0];
+  if (!is_mirror(below) && below != Wall::absorbing && below != Wall::free_field)
+    in.reject(base, "roller, fixed or absorbing where -" + name + " is free_field");
+}
+
+}  // namespace
+
 void check_absorbing(OptionReader& in, const Config& config) {
   for (int d = 0; d < config.dim; ++d)
     for (int side = 0; side < 2; ++side) {
-      if (config.mesh.walls[d][side] != Wall::absorbing) continue;
+      if (!has_dashpots(config.mesh.walls[d][side])) continue;
+      if (config.mesh.walls[d][side] == Wall::free_field) check_columns(in, config, d, side);
       if (config.water.level)
         in.reject(side_option(d, side), "another kind of side where -water_level is given");
       for (const MaterialConfig& material : config.materials)

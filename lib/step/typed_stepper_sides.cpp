@@ -31,7 +31,8 @@ void TypedStepper<Space, T, Dim>::set_up_sides(GridInput* grid) {
   upload_sides(state_, *grid, sides, density);
 }
 
-/// Absorbing sides take their dashpots and reactions from the soil as it is before the first step.
+/// Sides with dashpots take these, their reactions and their columns from the soil as it is before the first
+/// step.
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::begin_sides() {
   PetscFunctionBeginUser;
@@ -96,31 +97,42 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save_sides(SavedSides* saved) const 
   PetscFunctionBeginUser;
   for (int n = 0; n < 2 * Dim; ++n) saved->kinds.push_back(static_cast<long>(state_.grid.wall[n / 2][n % 2]));
   PetscCall(gather_sides(&saved->values));
+  PetscCallCXX(saved->columns = column_table(state_));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// Sides of the same kind go on with what they have kept. One that begins to absorb goes on to carry what it
-/// has held till now.
+/// has held till now. So does one with columns where what holds these has become another: they begin anew.
 template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides& saved) {
   if (saved.kinds.empty()) return;
   constexpr unsigned k_all = (1u << Dim) - 1;
   constexpr int size = SideTerms<Dim>::size;
-  std::vector<double> table = side_table(state_);
-  std::size_t from = 0;
+  constexpr int size_of_column = ColumnTerms<Dim>::size, vertical = k_vertical<Dim>;
+  std::vector<double> table = side_table(state_), columns = column_table(state_);
+  std::size_t from = 0, from_column = 0;
+  bool same_ends = true;
+  for (int upper = 0; upper < 2; ++upper)
+    same_ends = same_ends &&
+                static_cast<Wall>(saved.kinds[2 * vertical + upper]) == state_.grid.wall[vertical][upper];
   for (int n = 0; n < 2 * Dim; ++n) {
     const Wall then = static_cast<Wall>(saved.kinds[n]), now = state_.grid.wall[n / 2][n % 2];
-    const std::size_t count = std::size_t(size) * side_rows(config_.mesh.cells, Dim, n / 2);
+    const std::size_t rows = side_rows(config_.mesh.cells, Dim, n / 2), count = size * rows;
+    const std::size_t of_columns = then == Wall::free_field ? size_of_column * rows : 0;
     state_.sides.held[n] = then == Wall::free ? 0u : then == Wall::roller ? 1u << (n / 2) : k_all;
     state_.sides.mirrored[n] = is_mirror(then) ? state_.sides.held[n] : 0u;
-    if (is_acting(then) && then == now) {
+    if (is_acting(then) && then == now && (of_columns == 0 || same_ends)) {
       std::copy_n(saved.values.begin() + static_cast<long>(from), count,
                   table.begin() + std::size_t(size) * state_.sides.host[n].first);
+      std::copy_n(saved.columns.begin() + static_cast<long>(from_column), of_columns,
+                  columns.begin() + std::size_t(size_of_column) * state_.sides.host[n].first_column);
       state_.sides.unknown &= ~(1u << n);
     }
     if (is_acting(then)) from += count;
+    from_column += of_columns;
   }
   if (state_.sides.in_use()) put_side_table(state_, table, rank_of(comm_) == 0);
+  put_column_table(state_, columns);
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                           \

@@ -100,7 +100,7 @@ TEST_CASE("dashpots of a side are implicit", "[sides]") {
   double kept[SideTerms<2>::size] = {}, v[2] = {2, -1};
   kept[SideTerms<2>::dashpot] = 500, kept[SideTerms<2>::dashpot + 1] = 200;
   const SideNode<2> node{{0, 3}, 1, 1.5, 1e-2, true};
-  absorb(side, 0, node, kept, v);
+  absorb(dashpots_of<2>(kept), 0, node, side.velocity.c, v);
   CHECK(std::fabs(1.5 * (v[0] - 2) + 500 * 1e-2 * (v[0] - 0.3)) < 1e-14);
   CHECK(std::fabs(1.5 * (v[1] + 1) + 200 * 1e-2 * (v[1] + 0.2)) < 1e-14);
 }
