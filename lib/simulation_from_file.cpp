@@ -70,7 +70,7 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
   const long cut = cut_particles(cut_out_of(config, body), config.mesh, config.dim, table);
   if (cut > 0)
     PetscCall(log.print("body %s: %ld particles of the file were cut out", body.name.c_str(), cut));
-  const double density = config.materials[body.material].density;
+  const double density = density_of(config, body);
   const double volume = sum(table.volume), mass = mean_density(table, density) * volume;
   const std::string origin =
       table.origin.empty() ? "" : " (body " + body.shape.file_body + ", " + table.origin + ")";

@@ -100,14 +100,14 @@ PetscErrorCode Simulation::Body::load(Model* model) {
     PetscCall(listed ? load_file(body, &particles, &model->from_run)
                      : load_shape("body " + body.name, body.shape, cut_out_of(config, body),
                                   {rank_of(comm), ranks()}, &particles));
-    const double density = config.materials[body.material].density;
+    const double density = density_of(config, body);
     if (!listed && config.geometry == Geometry::plane_strain) weigh(density, particles);
     if (!listed) PetscCall(revolve(comm, config, density, &particles));
-    if (!body.field.empty()) PetscCall(take_field(body, &particles));
+    if (!body.field.empty() && !field_key(body, config).empty()) PetscCall(take_field(body, &particles));
     if (body.k0) PetscCall(take_level_ground(body, model, &particles));
   }
   for (const auto& rigid : config.rigids)
-    PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, {}, &model->rigids.emplace_back()));
+    if (!rigid.absent) PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, {}, &model->rigids.emplace_back()));
   for (auto* all : {&model->bodies, &model->rigids})
     for (BodyParticles& particles : *all)
       for (std::size_t k = 0; k < particles.position.size(); ++k)

@@ -58,10 +58,10 @@ long Simulation::Body::next_stiffness_check() const {
 }
 
 /// If the stiffness of some soil changes, every k_follow_every steps: measures the fastest wave and computes
-/// dt from it by the Courant number. If the user has fixed dt, the run fails once that dt is not stable.
-PetscErrorCode Simulation::Body::follow_stiffness() {
+/// dt from it by the Courant number; `now`: at this step too. If the user has fixed dt, the run fails once that dt is not stable.
+PetscErrorCode Simulation::Body::follow_stiffness(bool now) {
   PetscFunctionBeginUser;
-  if (!follows || step % k_follow_every != 0 || waves_at == step) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!follows || (step % k_follow_every != 0 && !now) || waves_at == step) PetscFunctionReturn(PETSC_SUCCESS);
   waves_at = step;
   double speed = 0;
   PetscCall(stepper->fastest_wave(&speed));
