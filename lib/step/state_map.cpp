@@ -138,15 +138,17 @@ std::string map_state(const Config& now, const std::vector<char>& changed, const
   const std::size_t count = state.soil.id.size();
   std::vector<std::vector<double>> columns(fresh.columns.size(), std::vector<double>(count));
   const bool has_pore = !columns.empty() && fresh.columns.back() == k_excess_pore_pressure;
+  std::vector<std::pair<std::size_t, double>> drained;  // particles whose excess pore pressure is gone, Pa
   std::string fault;
   for (std::size_t p = 0; p < count; ++p) {
     const auto b = static_cast<std::size_t>(body->values[p]);
-    const double excess = pore != nullptr && laws[b].undrained() ? pore->values[p] : 0;
-    if (has_pore) columns.back()[p] = excess;
+    const double excess = pore != nullptr ? pore->values[p] : 0;
+    if (has_pore && laws[b].undrained()) columns.back()[p] = excess;
     if (changed[b] == 0) {
       for (std::size_t k = 0; k < laws[b].count(); ++k) columns[k][p] = former[k]->values[p];
       continue;
     }
+    if (excess != 0 && !laws[b].undrained()) drained.emplace_back(p, excess);
     std::string why;
     const std::vector<double> values = laws[b].values(p, starts.at(p, excess), why);
     for (std::size_t k = 0; k < values.size(); ++k) columns[k][p] = values[k];
@@ -155,6 +157,9 @@ std::string map_state(const Config& now, const std::vector<char>& changed, const
               " m cannot go on with the material " + now.materials[now.bodies[b].material].name + ": " +
               with_name(why, now.materials[now.bodies[b].material].name);
   }
+  for (SavedField& field : state.soil.fields)
+    for (const auto& [p, excess] : drained)
+      for (int k = 0; k < 3 && field.name == "stress"; ++k) field.values[p * field.components + k] += excess;
   replace_columns(fresh, std::move(columns), state);
   return fault;
 }

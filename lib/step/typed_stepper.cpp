@@ -475,6 +475,11 @@ std::vector<FunctionTime> TypedStepper<Space, T, Dim>::times() const {
 }
 
 template <class Space, class T, int Dim>
+long TypedStepper<Space, T, Dim>::particles() const {
+  return ids() - std::accumulate(unused_.begin(), unused_.end(), 0L);
+}
+
+template <class Space, class T, int Dim>
 std::string TypedStepper<Space, T, Dim>::strategy() const {
   return word_of(chosen(config_.p2g.strategy, backend_of<Space>));
 }

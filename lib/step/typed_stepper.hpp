@@ -52,7 +52,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode save(SavedState* saved) const override;
   PetscErrorCode restore(SavedState&& saved, long since_rebuild, bool* rebuilt) override;
   std::vector<FunctionTime> times() const override;
-  long particles() const override { return total_ + children_; }
+  long particles() const override;
   int patches() const override { return static_cast<int>(sum_over_ranks(state_.patches.slots)); }
   std::size_t memory() const override;
   std::string strategy() const override;
