@@ -198,4 +198,5 @@ def main():
     print(f"{given.count} decks: cut runs, restarts in the place of stages and stages that change nothing give the same bits")
 
 
-main()
+if __name__ == "__main__":
+    main()
