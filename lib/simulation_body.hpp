@@ -71,7 +71,7 @@ struct Simulation::Body {
   std::string stopped_by;                    // what told the run to stop; empty if nothing did
   long checkpointed = -1;                    // step of the last checkpoint
   EnergyWatch energy;
-  bool watching = false;  // energy has begun
+  bool watching = false;    // energy has begun
   double step_seconds = 0;  // s of wall time of a step in the trial of a dry run
   Notices notices;
 

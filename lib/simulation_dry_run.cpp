@@ -137,11 +137,12 @@ PetscErrorCode Simulation::Body::tell_stages() {
     const MemoryNeed need = memory_need(config);
     const double memory = device * need.device / first.device;
     const long own = schedule.last_step() - stage_begin.step;
-    PetscCall(log.print("stage %-7s to %g s%s: %ld steps of %.4g s; %.0f particles of soil, %.0f of rigid "
-                        "bodies, about %.4g MB on the device, a rank",
-                        config.stage.name.c_str(), schedule.time_of(schedule.last_step()),
-                        config.stage.end == StageEnd::time ? "" : " at most", own, dt, need.particles,
-                        need.rigids, memory / 1e6));
+    PetscCall(
+        log.print("stage %-7s to %g s%s: %ld steps of %.4g s; %.0f particles of soil, %.0f of rigid "
+                  "bodies, about %.4g MB on the device, a rank",
+                  config.stage.name.c_str(), schedule.time_of(schedule.last_step()),
+                  config.stage.end == StageEnd::time ? "" : " at most", own, dt, need.particles, need.rigids,
+                  memory / 1e6));
     most = std::max(most, memory), steps += own;
     seconds += own * step_seconds * std::max(need.particles, 1.0) / std::max(first.particles, 1.0);
     stage_begin = {schedule.last_step(), schedule.time_of(schedule.last_step())};

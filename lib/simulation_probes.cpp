@@ -95,7 +95,8 @@ PetscErrorCode Simulation::Body::follow_placed() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// A stage that removes or places bodies takes nothing through a section: what is beyond counts from the new start.
+/// A stage that removes or places bodies takes nothing through a section: what is beyond counts from the new
+/// start.
 PetscErrorCode Simulation::Body::keep_sections(const std::vector<SectionSum>& before) {
   PetscFunctionBeginUser;
   std::vector<SectionSum> after;

@@ -127,9 +127,9 @@ PetscErrorCode Simulation::Body::look_at_present(const SavedState& state, Presen
   }
   const char* const bytes = reinterpret_cast<const char*>(own.data());
   std::vector<char> in;
-  PetscCall(exchange_records(comm, (1 + dim) * sizeof(double),
-                             std::vector<std::vector<char>>(ranks(), {bytes, bytes + own.size() * sizeof(double)}),
-                             &in));
+  PetscCall(exchange_records(
+      comm, (1 + dim) * sizeof(double),
+      std::vector<std::vector<char>>(ranks(), {bytes, bytes + own.size() * sizeof(double)}), &in));
   all.resize(in.size() / sizeof(double));
   std::copy(in.begin(), in.end(), reinterpret_cast<char*>(all.data()));
   for (std::size_t at = 0; at < all.size(); at += 1 + dim) {

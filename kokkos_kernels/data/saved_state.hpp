@@ -65,11 +65,11 @@ struct SavedState {
   /// Ids of each body that no particle has had: those of a body that is not placed yet, and of particles that
   /// were cut out when it was placed.
   std::vector<long> unused;
-  /// The fields of `soil` that hold state variables, in order, and for each body the names of the variables of
-  /// its law, with commas: variable k is in field k. The excess pore pressure is a field of its own name.
+  /// The fields of `soil` that hold state variables, in order, and for each body the names of the variables
+  /// of its law, with commas: variable k is in field k. The excess pore pressure is a field of its own name.
   std::vector<std::string> columns, variables;
-  std::vector<long> alone;   // Grid::address_of the cells whose particles are alone
-  int alone_known = 0;       // 1: `alone` holds; 0: the next step finds it
+  std::vector<long> alone;  // Grid::address_of the cells whose particles are alone
+  int alone_known = 0;      // 1: `alone` holds; 0: the next step finds it
   std::vector<SavedRigid> rigids;
   SavedImpulse impulse;
   std::vector<double> energy;  // k_saved_energy numbers where the run has an energy balance: the works, and

@@ -44,7 +44,8 @@ void check_layers(OptionReader& in, const Config& config, const LevelGround& gro
   const auto& layers = ground.layers();
   for (std::size_t k = 1; k < layers.size(); ++k) {
     const double gap = layers[k - 1].base - layers[k].top;
-    const bool as_before = config.bodies[layers[k - 1].body].from_before && config.bodies[layers[k].body].from_before;
+    const bool as_before =
+        config.bodies[layers[k - 1].body].from_before && config.bodies[layers[k].body].from_before;
     if (std::fabs(gap) <= slack || as_before) continue;
     const std::string upper = config.bodies[layers[k - 1].body].name,
                       lower = config.bodies[layers[k].body].name;
@@ -82,8 +83,8 @@ LevelGround::LevelGround(const Config& config) : config_(config) {
     const BodyConfig& body = config.bodies[b];
     if (!body.k0 || body.absent || body.removed) continue;
     const Bounds bounds = bounds_of(body.shape, config.mesh, config.dim);
-    layers_.push_back({b, bounds.lower[config.dim - 1], bounds.upper[config.dim - 1],
-                       density_of(config, body)});
+    layers_.push_back(
+        {b, bounds.lower[config.dim - 1], bounds.upper[config.dim - 1], density_of(config, body)});
   }
   std::sort(layers_.begin(), layers_.end(), [](const Layer& a, const Layer& b) { return a.top > b.top; });
 }

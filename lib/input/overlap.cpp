@@ -283,8 +283,8 @@ std::string describe_at_stage(const std::vector<Overlap>& overlaps, const Config
                     things.name(cut == placed ? other : placed) + " leaves out " + things.name(cut) +
                     " there)");
   }
-  return "stage " + config.stage.name + " places what is in the place of something else: " +
-         join(parts, ", ");
+  return "stage " + config.stage.name +
+         " places what is in the place of something else: " + join(parts, ", ");
 }
 
 }  // namespace mpm

@@ -11,9 +11,9 @@ namespace mpm {
 
 /// Two bodies, or a body and a rigid, that are in one place.
 struct Overlap {
-  int body = 0;       // which is to be cut: of two bodies the larger
-  std::string other;  // by what: a rigid or another body
-  double volume = 0;  // m3 (m2 in 2D)
+  int body = 0;               // which is to be cut: of two bodies the larger
+  std::string other;          // by what: a rigid or another body
+  double volume = 0;          // m3 (m2 in 2D)
   std::array<int, 2> pair{};  // the two, by numbers: bodies first, then rigids
 };
 

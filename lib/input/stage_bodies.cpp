@@ -83,14 +83,14 @@ void note_presence(const StageConfig& stage, BodyConfig& body) {
 }
 
 void note_presence(const StageConfig& stage, RigidConfig& rigid) {
-  rigid.absent =
-      placed_at(stage, rigid.name) > stage.number || removed_at(stage, rigid.name) <= stage.number;
+  rigid.absent = placed_at(stage, rigid.name) > stage.number || removed_at(stage, rigid.name) <= stage.number;
 }
 
 void read_stage_bodies(OptionReader& in, const Config& config, StageConfig& stage) {
   const Option place{.name = in.listing() ? "STAGE_place" : "place",
-                     .meaning = "bodies and rigid bodies that are not in the run before the stage begins, as "
-                                "a fill or a plate",
+                     .meaning =
+                         "bodies and rigid bodies that are not in the run before the stage begins, as "
+                         "a fill or a plate",
                      .standard = "none"},
       remove{.name = in.listing() ? "STAGE_remove" : "remove",
              .meaning = "bodies and rigid bodies that are removed when the stage begins, as by an excavation",

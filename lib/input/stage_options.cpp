@@ -10,8 +10,8 @@ namespace mpm {
 namespace {
 
 /// The options that a stage alone has.
-constexpr const char* k_stage_keys[] = {"end",   "unbalanced_ratio", "end_rigid", "end_displacement", "reset",
-                                        "remove", "place"};
+constexpr const char* k_stage_keys[] = {"end",   "unbalanced_ratio", "end_rigid", "end_displacement",
+                                        "reset", "remove",           "place"};
 
 /// The name of an option of the stage in the reader of the stage, and in the help.
 std::string name_of(const OptionReader& in, const char* key) {

@@ -48,8 +48,7 @@ void PresentRigids::narrow(SavedState& state) {
   if (all() || state.rigids.size() != others_.size()) return;  // the latter is told
   const std::vector<std::size_t> here = counted(place_.size());
   others_ = state.rigids;
-  state.impulse.values =
-      rearranged(state.impulse.values, 0, 1, others_.size(), place_.size(), place_, here);
+  state.impulse.values = rearranged(state.impulse.values, 0, 1, others_.size(), place_.size(), place_, here);
   state.bounds = rearranged(state.bounds, k_saved_bounds, 3, others_.size(), place_.size(), place_, here);
   state.rigids.clear();
   for (const std::size_t r : place_) state.rigids.push_back(others_[r]);

@@ -27,9 +27,9 @@ class PresentRigids {
  private:
   bool all() const { return place_.size() == others_.size(); }
 
-  std::vector<std::size_t> place_;   // of each that is there, among all
-  std::vector<SavedRigid> others_;   // of all, where those that are not there stand
-  std::vector<std::string> names_;   // of all
+  std::vector<std::size_t> place_;  // of each that is there, among all
+  std::vector<SavedRigid> others_;  // of all, where those that are not there stand
+  std::vector<std::string> names_;  // of all
 };
 
 }  // namespace mpm

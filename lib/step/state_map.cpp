@@ -78,9 +78,7 @@ class Starts {
       start.stress[k] = stress_->values[p * stress_->components + k] + (k < 3 ? excess : 0);
     return start;
   }
-  std::string place(std::size_t p) const {
-    return text_of(std::span(position_).subspan(p * dim_, dim_));
-  }
+  std::string place(std::size_t p) const { return text_of(std::span(position_).subspan(p * dim_, dim_)); }
 
  private:
   int dim_;
@@ -97,8 +95,7 @@ std::string with_name(std::string text, const std::string& name) {
 }
 
 /// The columns of `fresh` in the place of those of the former columns.
-void replace_columns(const SavedState& fresh, std::vector<std::vector<double>>&& columns,
-                     SavedState& state) {
+void replace_columns(const SavedState& fresh, std::vector<std::vector<double>>&& columns, SavedState& state) {
   std::erase_if(state.soil.fields, [&](const SavedField& field) {
     return std::find(state.columns.begin(), state.columns.end(), field.name) != state.columns.end();
   });

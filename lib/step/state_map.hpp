@@ -16,8 +16,8 @@ std::vector<char> changed_laws(const Config& before, const Config& now);
 /// Brings the state variables of `state` into the fields of `fresh`, a state of a stepper for `now`. A body
 /// that is `changed` keeps its stress, and by their names the variables that its law changes or that are each
 /// particle's own; the others begin as in soil of its law that is created with this stress where the particle
-/// is. Where pores drain from now on, the stress stays the effective stress: the excess pore pressure is gone.
-/// Returns why a law cannot start there; empty where all can.
+/// is. Where pores drain from now on, the stress stays the effective stress: the excess pore pressure is
+/// gone. Returns why a law cannot start there; empty where all can.
 std::string map_state(const Config& now, const std::vector<char>& changed, const SavedState& fresh,
                       SavedState& state);
 

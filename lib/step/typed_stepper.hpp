@@ -105,6 +105,8 @@ class TypedStepper final : public Stepper {
   long ids() const { return total_ + children_; }
   /// Leaves particles out that are not in the run; their ids stay theirs.
   PetscErrorCode leave_out(Model* model);
+  /// Which fields of the saved soil hold the state variables of which law.
+  void name_columns(SavedState* saved) const;
   /// What a start from a checkpoint needs and a restart has already.
   PetscErrorCode save_for_starts(SavedState* saved) const;
   double velocity_of(std::size_t rigid, int d, double present, double time) const;
@@ -125,9 +127,9 @@ class TypedStepper final : public Stepper {
   double stepping_ = 0;        // s of wall time in advance
   double last_increment_ = std::numeric_limits<double>::infinity();  // cells, of all ranks, of the last batch
   std::vector<long> first_;                                          // id of the first particle of each body
-  std::vector<long> unused_;                                         // ids of each body that no particle has had
-  long total_ = 0;                                                   // particles of all ranks at the start
-  long children_ = 0;                                                // that splitting has added, on all ranks
+  std::vector<long> unused_;                            // ids of each body that no particle has had
+  long total_ = 0;                                      // particles of all ranks at the start
+  long children_ = 0;                                   // that splitting has added, on all ranks
   double kinetic_at_start_ = 0, elastic_at_start_ = 0;  // J, of all ranks, where there is an energy balance
   std::vector<SectionPlane> planes_;                    // of the sections among the probes
   std::vector<SectionSum> lost_beyond_;                 // by plane: what has left there, on this rank

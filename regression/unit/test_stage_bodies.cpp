@@ -17,9 +17,11 @@ using namespace mpm;
 namespace {
 
 const std::string k_deck =
-    "-mesh_lower 0,0 -mesh_upper 8,6 -mesh_spacing 0.5 -time_end 1 -materials clay,cured -clay_model von_mises "
+    "-mesh_lower 0,0 -mesh_upper 8,6 -mesh_spacing 0.5 -time_end 1 -materials clay,cured -clay_model "
+    "von_mises "
     "-clay_density 1500 -clay_young 1e6 -clay_poisson 0.3 -clay_su 1000 -cured_model linear_elastic "
-    "-cured_density 1700 -cured_young 4e6 -cured_poisson 0.3 -bodies soil,fill -soil_material clay -soil_shape box "
+    "-cured_density 1700 -cured_young 4e6 -cured_poisson 0.3 -bodies soil,fill -soil_material clay "
+    "-soil_shape box "
     "-soil_lower 0,0 -soil_upper 8,2 -fill_material clay -fill_shape box -fill_lower 2,2 -fill_upper 6,3 "
     "-rigid_bodies plate -plate_shape box -plate_lower 3,4 -plate_upper 5,5 -stages one,two,three ";
 
@@ -93,7 +95,8 @@ TEST_CASE("what stages place is checked against each other", "[stage_bodies]") {
     const InputReport report = read(options);
     return report.errors.empty() ? std::string() : report.errors[0];
   };
-  CHECK(first_error("-two_place fill -three_place fill").find("no earlier stage places") != std::string::npos);
+  CHECK(first_error("-two_place fill -three_place fill").find("no earlier stage places") !=
+        std::string::npos);
   CHECK(first_error("-two_remove fill -three_place fill").find("not removed before") != std::string::npos);
   CHECK(first_error("-two_place soil,fill").find("the first stage has no soil") != std::string::npos);
   CHECK(first_error("-three_place plate -two_end displacement -two_end_rigid plate -two_end_displacement 1")
@@ -174,12 +177,14 @@ TEST_CASE("rigid bodies that are not there leave no number in a state and come b
 }
 
 TEST_CASE("a new law takes the variables that both have, and begins the others", "[stage_bodies]") {
-  const InputReport report = read("-clay_su_gradient 100 -clay_su_datum 2 -two_clay_su 3e3 -two_fill_material cured "
-                                  "-two_cured_pore_stiffness 1e7");
+  const InputReport report = read(
+      "-clay_su_gradient 100 -clay_su_datum 2 -two_clay_su 3e3 -two_fill_material cured "
+      "-two_cured_pore_stiffness 1e7");
   const Config one = stage_of(report, 0), two = stage_of(report, 1);
-  SavedState state = state_of(one, {"plastic_strain", "strength"}, {"plastic_strain,strength", "plastic_strain,strength"});
-  const SavedState fresh = state_of(two, {"plastic_strain", "strength", "excess_pore_pressure"},
-                                    {"plastic_strain,strength", ""});
+  SavedState state =
+      state_of(one, {"plastic_strain", "strength"}, {"plastic_strain,strength", "plastic_strain,strength"});
+  const SavedState fresh =
+      state_of(two, {"plastic_strain", "strength", "excess_pore_pressure"}, {"plastic_strain,strength", ""});
   CHECK(map_state(two, changed_laws(one, two), fresh, state).empty());
   CHECK(values_of(state, "stress") == std::vector<double>(16, -1000));
   CHECK(values_of(state, "plastic_strain") == std::vector<double>{7, 7, 0, 0});  // elastic soil has none
@@ -200,12 +205,15 @@ TEST_CASE("pores that begin to drain leave the effective stress", "[stage_bodies
 }
 
 TEST_CASE("soil that a law cannot start from is told by its place", "[stage_bodies]") {
-  const InputReport report =
-      read("-materials clay,cured,cam -cam_model cam_clay -cam_density 1500 -cam_critical_state_ratio 1 -cam_lambda 0.1 "
-           "-cam_kappa 0.02 -cam_poisson 0.3 -cam_specific_volume 2 -cam_ocr 1.5 -two_soil_material cam");
+  const InputReport report = read(
+      "-materials clay,cured,cam -cam_model cam_clay -cam_density 1500 -cam_critical_state_ratio 1 "
+      "-cam_lambda 0.1 "
+      "-cam_kappa 0.02 -cam_poisson 0.3 -cam_specific_volume 2 -cam_ocr 1.5 -two_soil_material cam");
   const Config one = stage_of(report, 0), two = stage_of(report, 1);
-  SavedState state = state_of(one, {"plastic_strain", "strength"}, {"plastic_strain,strength", "plastic_strain,strength"});
-  const SavedState fresh = state_of(two, {"column_0", "column_1"}, {"preconsolidation,specific_volume", "plastic_strain,strength"});
+  SavedState state =
+      state_of(one, {"plastic_strain", "strength"}, {"plastic_strain,strength", "plastic_strain,strength"});
+  const SavedState fresh = state_of(two, {"column_0", "column_1"},
+                                    {"preconsolidation,specific_volume", "plastic_strain,strength"});
   for (SavedField& field : state.soil.fields)
     if (field.name == "stress") field.values.assign(16, 1000);  // tension
   CHECK(map_state(two, changed_laws(one, two), fresh, state).find("the particle of body soil at") == 0);
@@ -213,7 +221,8 @@ TEST_CASE("soil that a law cannot start from is told by its place", "[stage_bodi
 
 TEST_CASE("particles that join keep their ids", "[stage_bodies]") {
   const Config two = stage_of(read("-two_place fill"), 1);
-  const std::vector<std::string> columns = {"plastic_strain", "strength"}, both = {"plastic_strain,strength", "plastic_strain,strength"};
+  const std::vector<std::string> columns = {"plastic_strain", "strength"},
+                                 both = {"plastic_strain,strength", "plastic_strain,strength"};
   SavedState state = state_of(two, columns, both);
   const SavedState fresh = state_of(two, columns, both);
   state.soil.id.resize(2), state.soil.address.resize(2);  // of the ground alone

@@ -179,7 +179,7 @@ struct StageConfig {
   std::vector<int> remove;         // indices into Config::bodies: removed when it begins
   std::vector<int> remove_rigids;  // the same of Config::rigids
   std::vector<int> place, place_rigids;  // likewise: placed when it begins
-  bool reset = false;              // at its end velocities, displacements and plastic strains become zero
+  bool reset = false;  // at its end velocities, displacements and plastic strains become zero
   /// Numbers of the stages that place and remove bodies and rigids, by their names in lower case: of all
   /// stages of the run.
   std::map<std::string, int> placed_at, removed_at;
