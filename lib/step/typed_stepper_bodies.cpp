@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/collectives.hpp"
 #include "common/text.hpp"
 #include "step/typed_stepper.hpp"
 
