@@ -111,7 +111,7 @@ PetscErrorCode Simulation::Body::load(Model* model) {
     if (!listed && config.geometry == Geometry::plane_strain) weigh(density, particles);
     if (!listed) PetscCall(revolve(comm, config, density, &particles));
     if (!body.field.empty() && !field_key(body, config).empty()) PetscCall(take_field(body, &particles));
-    if (body.k0) PetscCall(take_level_ground(body, model, &particles));
+    if (body.k0 && !body.absent) PetscCall(take_level_ground(body, model, &particles));
   }
   for (const auto& rigid : config.rigids)
     if (!rigid.absent)

@@ -145,6 +145,9 @@ void note_presence(const StageConfig& stage, BodyConfig& body);
 void note_presence(const StageConfig& stage, RigidConfig& rigid);
 /// The bodies that the stage of a reader places and removes; bodies and rigids have been read.
 void read_stage_bodies(OptionReader& in, const Config& config, StageConfig& stage);
+/// Checks that a stage cuts out of bodies, as they are placed, what the first one does: their particles keep
+/// their ids.
+void check_cut_kept(OptionReader& in, const Config& first, const Config& now);
 /// What bodies keep from the stage before: their masses, and what is known of their initial stress. Before
 /// prepare_for_pressure, which takes the largest pressures.
 void follow_stage(const Config& before, Config& now);

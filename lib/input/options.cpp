@@ -416,6 +416,7 @@ void read_stages(OptionReader& in, const std::vector<Backend>& backends,
     const bool first = report.stages.size() == 1;
     read_all(reader, backends, report.options_file, input.config,
              first ? nullptr : &report.stages.end()[-2].config);
+    check_cut_kept(reader, report.stages.front().config, input.config);
     check_periodic_kept(reader, input.config.dim, report.stages.front().config.mesh, input.config.mesh);
     input.options = std::move(of_stage.options);
     for (const std::string& key : reader.of_stage())

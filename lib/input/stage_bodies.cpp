@@ -62,6 +62,19 @@ double pressure_of_mesh(const Config& config, const BodyConfig& body) {
   return density_of(config, body) * pressure;
 }
 
+/// Names of what cuts a body as it is placed, because it is placed at the same time, in order.
+std::vector<std::string> cutters_of(const Config& config, const BodyConfig& body) {
+  std::vector<std::string> names;
+  const int placed = placed_at(config.stage, body.name);
+  const auto add = [&](const std::string& name) {
+    if (placed_at(config.stage, name) == placed) names.push_back(name);
+  };
+  for (const int rigid : body.cut_out) add(config.rigids[rigid].name);
+  for (const int other : body.cut_out_bodies) add(config.bodies[other].name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 }  // namespace
 
 int placed_at(const StageConfig& stage, const std::string& name) {
@@ -117,6 +130,18 @@ void read_stage_bodies(OptionReader& in, const Config& config, StageConfig& stag
     return "bodies that are in the run by then; " + name + " is placed at stage " +
            config.stages[placed_at(stage, name) - 1];
   });
+}
+
+void check_cut_kept(OptionReader& in, const Config& first, const Config& now) {
+  if (first.bodies.size() != now.bodies.size() || first.rigids.size() != now.rigids.size()) return;
+  for (std::size_t b = 0; b < now.bodies.size(); ++b) {
+    const std::vector<std::string> wanted = cutters_of(first, first.bodies[b]);
+    if (wanted == cutters_of(now, now.bodies[b])) continue;
+    in.reject(now.bodies[b].name + "_cut_out",
+              wanted.empty() ? "nothing that was placed with it: its particles are there already"
+                             : "what the first stage cuts out as the body is placed, " + join(wanted) +
+                                   ", and what another stage places");
+  }
 }
 
 void follow_stage(const Config& before, Config& now) {

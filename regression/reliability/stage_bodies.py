@@ -2,6 +2,7 @@
 """Random runs whose stages place and remove bodies and change materials, against restarts, kills and other ranks.
 
     stage_bodies.py MPM [--count 50] [--seed 1] [--folder FOLDER] [--dims 2,3] [--precisions double,single]
+                    [--first 0] [--backends serial,openmp]
 
 A deck has two bodies of soil under gravity; stages place up to two lifts of fill, a plate and a pile, remove some of them, change the
 materials of bodies and the parameters of materials, loads and damping. Checked are: mass, which comes and goes with what is placed,
@@ -129,9 +130,15 @@ class Checks:
     def launcher(ranks):
         return ("mpirun", "-n", str(ranks), "--bind-to", "none") if ranks > 1 else ()
 
-    def compare(self, deck, folder, whole, what):
-        kept = [line for line in rows(folder) if line in rows(whole)]
-        assert kept == rows(whole), f"{what}: {len(rows(whole)) - len(kept)} rows of {len(rows(whole))} differ"
+    def compare(self, deck, folder, whole, what, ranks):
+        """Bit by bit, but for the works of several ranks, whose sums begin anew at a restart (to round-off)."""
+        def lines(path):
+            of = rows(path)
+            kept = [k for k, name in enumerate(of[0]) if ranks == 1 or not name.startswith(("energy_", "work_"))]
+            return [[line[k] for k in kept] for line in of]
+        wanted, found = lines(whole), lines(folder)
+        kept = [line for line in found if line in wanted]
+        assert kept == wanted, f"{what}: {len(wanted) - len(kept)} rows of {len(wanted)} differ"
         same(frames(folder)[-1], frames(whole)[-1], [*deck.bodies, *deck.rigids], f"{what}, last frame")
 
     def cut(self, deck, common, whole, ranks):
@@ -145,7 +152,7 @@ class Checks:
         self.run("cut", *deck.staged(), *common, "-time_max_steps", at, "-checkpoint_interval", 1e3, ranks=ranks)
         folder, _ = self.run("cut", *deck.staged(), *common, "-restart", checkpoints(self.base / "cut")[-1], ranks=ranks,
                              fresh_folder=False)
-        self.compare(deck, folder, whole, f"cut at step {at} of {total}, {ranks} ranks")
+        self.compare(deck, folder, whole, f"cut at step {at} of {total}, {ranks} ranks", ranks)
 
     def kill(self, deck, common, whole, ranks):
         """A run that is killed once it has written a checkpoint or two."""
@@ -160,7 +167,7 @@ class Checks:
         if not checkpoints(folder):
             return
         self.run("killed", *words, "-restart", "latest", ranks=ranks, fresh_folder=False)
-        self.compare(deck, folder, whole, f"killed, {ranks} ranks")
+        self.compare(deck, folder, whole, f"killed, {ranks} ranks", ranks)
 
     def ranks(self, deck, common, whole, precision, ranks):
         """Several ranks against one, and their own restarts."""
@@ -240,9 +247,9 @@ def check(checks, deck, draw, common, precision):
 
 
 def main():
-    given, base = read_arguments(__doc__, "stage_bodies", backends="serial,openmp")
+    given, base = read_arguments(__doc__, "stage_bodies", backends="serial,openmp", first="0")
     checks, met = Checks(given.binary, base), 0
-    for number in range(given.count):
+    for number in range(int(given.first), int(given.first) + given.count):
         draw = draws_of(given, number)
         deck = Deck(draw, int(draw.choice(given.dims.split(","))))
         precision = draw.choice(given.precisions.split(","))
