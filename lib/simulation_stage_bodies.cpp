@@ -241,7 +241,7 @@ PetscErrorCode Simulation::Body::adapt_state(const std::vector<char>& changed, c
   PetscCall(share_text(comm, &fault));
   for (std::size_t b = 0; b < changed.size(); ++b) {
     const BodyConfig& body = config.bodies[b];
-    if (changed[b] == 0) continue;
+    if (changed[b] == 0 || !(body.from_before || restart)) continue;
     PetscCall(log.print("body %s has the material %s with the present parameters: its stress stays%s",
                         body.name.c_str(), config.materials[body.material].name.c_str(),
                         kept_text(before[b], fresh.variables[b]).c_str()));

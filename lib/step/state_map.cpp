@@ -115,9 +115,8 @@ std::vector<char> changed_laws(const Config& before, const Config& now) {
   for (std::size_t b = 0; b < std::min(now.bodies.size(), before.bodies.size()); ++b) {
     const MaterialConfig &then = before.materials[before.bodies[b].material],
                          &is = now.materials[now.bodies[b].material];
-    changed[b] = now.bodies[b].from_before &&
-                 (then.name != is.name || then.model != is.model || then.parameters != is.parameters ||
-                  then.texts != is.texts || then.pore_stiffness != is.pore_stiffness);
+    changed[b] = then.name != is.name || then.model != is.model || then.parameters != is.parameters ||
+                 then.texts != is.texts || then.pore_stiffness != is.pore_stiffness;
   }
   return changed;
 }

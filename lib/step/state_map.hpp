@@ -10,7 +10,8 @@
 
 namespace mpm {
 
-/// Whether each body has another law, other parameters or other pore water than before.
+/// Whether each body has another law, other parameters or other pore water than before. Of one that is not in
+/// the run it counts too: the bodies share the fields of state variables.
 std::vector<char> changed_laws(const Config& before, const Config& now);
 
 /// Brings the state variables of `state` into the fields of `fresh`, a state of a stepper for `now`. A body
