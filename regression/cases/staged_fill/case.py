@@ -111,9 +111,8 @@ def check_cut(run):
 
 def draw(axes, runs):
     h = runs["whole"].history
-    for body, label in (("lower", "first lift"), ("upper", "second lift")):
+    for body, label, start in (("lower", "first lift", 0.5 * HEIGHT), ("upper", "second lift", 1.5 * HEIGHT)):
         there = h[f"{body}_mass"] > 0
-        start = h[f"{body}_centre_y"][there][0]
         axes.plot(h["time"][there], 1e3 * (h[f"{body}_centre_y"][there] - start), label=label)
     for stage in range(2, 6):
         axes.axvline(h["time"][np.flatnonzero(h["stage"] == stage)[0]], color="k", lw=0.6, ls="--")
