@@ -92,8 +92,7 @@ void read_cut_out(OptionReader& in, const Listed& listed, BodyConfig& body) {
   const Option option{.name = body.name + "_cut_out",
                       .meaning =
                           "rigids and other bodies in whose shapes the body has no particles, as they are at "
-                          "the start or when a "
-                          "stage places the later of the two"};
+                          "the start or when a stage places the later of the two"};
   std::vector<std::string> others = listed.rigids, names;
   for (const auto& name : listed.bodies)
     if (name != body.name) others.push_back(name);
