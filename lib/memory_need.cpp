@@ -69,6 +69,7 @@ double cells_in(const Shape& shape, const Config& config) {
 double count_particles(const Config& config, MemoryNeed& need) {
   double cells = 0;
   for (const BodyConfig& body : config.bodies) {
+    if (body.absent) continue;
     const double in_cell = std::pow(body.shape.particles_per_cell, config.dim);
     const bool listed = body.shape.kind == ShapeKind::particles;
     const double count = listed ? double(listed_particles(body.shape.file, body.shape.file_body))
@@ -80,7 +81,8 @@ double count_particles(const Config& config, MemoryNeed& need) {
     need.particles += count;
   }
   for (const RigidConfig& rigid : config.rigids)
-    need.rigids += cells_in(rigid.shape, config) * std::pow(rigid.shape.particles_per_cell, config.dim);
+    if (!rigid.absent)
+      need.rigids += cells_in(rigid.shape, config) * std::pow(rigid.shape.particles_per_cell, config.dim);
   return cells;
 }
 

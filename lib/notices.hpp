@@ -17,6 +17,9 @@ class Notices {
   /// A line for each thing that has happened since the last row and was not told before, with advice.
   std::vector<std::string> report(const HistoryRow& row, const Config& config);
 
+  /// A stage may place particles.
+  void begin_stage() { particles_.clear(); }
+
  private:
   void report_soil(const HistoryRow& row, const Config& config, std::vector<std::string>* lines);
 

@@ -9,6 +9,7 @@
 #include "checkpoint/checkpoint.hpp"
 #include "energy_watch.hpp"
 #include "input/options.hpp"
+#include "input/overlap.hpp"
 #include "input/shapes.hpp"
 #include "mpm/simulation.hpp"
 #include "notices.hpp"
@@ -65,11 +66,13 @@ struct Simulation::Body {
   std::optional<Checkpoint> restart;  // until it is on the device
   std::string restart_file, history_rows;
   std::vector<OptionChange> option_changes;  // that -restart_change allows
+  std::vector<char> laws_changed;            // of each body, by them
   std::vector<std::string> passed_over;      // checkpoints that are damaged, as lines for the log
   std::string stopped_by;                    // what told the run to stop; empty if nothing did
   long checkpointed = -1;                    // step of the last checkpoint
   EnergyWatch energy;
-  bool watching = false;  // energy has begun
+  bool watching = false;    // energy has begun
+  double step_seconds = 0;  // s of wall time of a step in the trial of a dry run
   Notices notices;
 
   ProbeState probes;
@@ -95,7 +98,17 @@ struct Simulation::Body {
   double end_of_run() const;
   PetscErrorCode end_stage();
   PetscErrorCode next_stage();
-  PetscErrorCode set_up_stage(SavedState&& state);
+  PetscErrorCode set_up_stage(SavedState&& state, const Present& present, const std::vector<char>& changed);
+
+  // simulation_stage_bodies.cpp
+  bool changes_soil() const;
+  PetscErrorCode check_placed();
+  PetscErrorCode look_at_present(const SavedState& state, Present* present);
+  PetscErrorCode change_bodies(SavedState& state, Present* present);
+  PetscErrorCode cut_present(SavedState& state);
+  PetscErrorCode leave_out(const Present* present, Model* model);
+  PetscErrorCode adapt_state(const std::vector<char>& changed, const std::vector<int>& placed,
+                             SavedState& state);
 
   // simulation_probes.cpp
   PetscErrorCode begin_probes();
@@ -103,6 +116,7 @@ struct Simulation::Body {
   PetscErrorCode write_rasters();
   std::string probes_fault() const;
   PetscErrorCode reset_probes();
+  PetscErrorCode follow_placed();
   PetscErrorCode keep_sections(const std::vector<SectionSum>& before);
 
   // simulation_files.cpp
@@ -141,7 +155,7 @@ struct Simulation::Body {
 
   // simulation_time_step.cpp
   PetscErrorCode choose_time_step();
-  PetscErrorCode follow_stiffness();
+  PetscErrorCode follow_stiffness(bool now = false);
   long next_stiffness_check() const;  // the step at which follow_stiffness has something to do
 
   // simulation_element.cpp
@@ -153,6 +167,7 @@ struct Simulation::Body {
   // simulation_dry_run.cpp
   PetscErrorCode dry_run();
   PetscErrorCode tell_need();
+  PetscErrorCode tell_stages();
   PetscErrorCode time_steps(double* seconds);
 
   // simulation_checkpoint.cpp

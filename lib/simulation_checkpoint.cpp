@@ -1,5 +1,6 @@
 // Going on: checkpoints of a run, and runs from checkpoints.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -64,6 +65,7 @@ PetscErrorCode Simulation::Body::read_restart() {
     fault = state_fault(restart->state, config);
     if (fault.empty()) fault = probes_fault();
     if (fault.empty()) apply_changes(option_changes, config, restart->state);
+    laws_changed = changed_laws(option_changes, config);
   }
   if (!fault.empty())
     report.errors.push_back(given + fault +
@@ -82,8 +84,12 @@ PetscErrorCode Simulation::Body::check_restart() {
   const bool begins = run.dt_since >= 0 && run.dt_since <= run.step &&
                       run.dt * k_most_steps >= config.time.end && run.dt_since_time >= 0 &&
                       run.dt_since_time <= run.time;
-  if (follows && begins) {
-    dt = config.time.step.value_or(run.dt);
+  const bool other_laws = std::find(laws_changed.begin(), laws_changed.end(), 1) != laws_changed.end();
+  const bool same_step = begins && dt == run.dt;  // since then, where a change of laws has brought it
+  if (other_laws && begins && !same_step) {
+    schedule = Schedule(config.time, config.output, dt, {run.step, run.time});
+  } else if ((follows || same_step) && begins) {
+    if (follows) dt = config.time.step.value_or(run.dt);
     schedule = Schedule(config.time, config.output, dt, {run.dt_since, run.dt_since_time});
   }
   const long last = schedule.last_step();
@@ -146,6 +152,8 @@ PetscErrorCode Simulation::Body::resume() {
   since_rebuild = began.since_rebuild, rebuilds = began.rebuilds;
   longest = began.longest, shortest = began.shortest;
   probes = std::move(restart->probes), rasters = std::move(restart->rasters);
+  PetscCall(adapt_state(laws_changed, {}, restart->state));
+  if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
   bool rebuilt = false;
   const PetscErrorCode unfit = stepper->restore(std::move(restart->state), since_rebuild, &rebuilt);
   if (unfit == PETSC_ERR_ARG_SIZ) {  // told; only a checkpoint that somebody has altered gets here

@@ -67,9 +67,11 @@ PetscErrorCode Simulation::Body::dry_run() {
   Model model;
   Failure failure;
   PetscCall(load(&model));
+  PetscCall(leave_out(nullptr, &model));
   PetscCall(stepper->set_up(std::move(model), &failure));
   if (!failure.what.empty()) PetscCall(fail(failure.what));
   if (outcome == Outcome::finished) PetscCall(tell_need());
+  if (outcome == Outcome::finished && report.stages.size() > 1) PetscCall(tell_stages());
   PetscCall(log.line("a dry run: nothing was written"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -117,6 +119,37 @@ PetscErrorCode Simulation::Body::tell_need() {
   PetscCall(log.print("wall time     about %s: %.4g us a step with strategy %s, without output",
                       format_duration(seconds * schedule.last_step()).c_str(), 1e6 * seconds,
                       stepper->strategy().c_str()));
+  step_seconds = seconds;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// What each stage takes, if it takes all of its time and the soil is as stiff as at its start; the trial is
+/// of the first one, whose time a step grows with the particles.
+PetscErrorCode Simulation::Body::tell_stages() {
+  PetscFunctionBeginUser;
+  const double device = stepper->memory() / ranks();  // of the first, measured
+  const MemoryNeed first = memory_need(config);
+  double most = 0, seconds = 0;
+  long steps = 0;
+  for (int k = 0; k < static_cast<int>(report.stages.size()); ++k) {
+    take_stage(k);
+    PetscCall(choose_time_step());
+    const MemoryNeed need = memory_need(config);
+    const double memory = device * need.device / first.device;
+    const long own = schedule.last_step() - stage_begin.step;
+    PetscCall(
+        log.print("stage %-7s to %g s%s: %ld steps of %.4g s; %.0f particles of soil, %.0f of rigid "
+                  "bodies, about %.4g MB on the device, a rank",
+                  config.stage.name.c_str(), schedule.time_of(schedule.last_step()),
+                  config.stage.end == StageEnd::time ? "" : " at most", own, dt, need.particles, need.rigids,
+                  memory / 1e6));
+    most = std::max(most, memory), steps += own;
+    seconds += own * step_seconds * std::max(need.particles, 1.0) / std::max(first.particles, 1.0);
+    stage_begin = {schedule.last_step(), schedule.time_of(schedule.last_step())};
+  }
+  PetscCall(log.print("all stages    %ld steps to %g s%s; about %.4g MB on the device at the most, a rank%s",
+                      steps, stage_begin.time, follows ? ", if the soil becomes no stiffer" : "", most / 1e6,
+                      seconds > 0 ? (", and about " + format_duration(seconds)).c_str() : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

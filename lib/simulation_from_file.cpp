@@ -68,17 +68,18 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
   PetscCheck(fault.empty(), comm, PETSC_ERR_FILE_READ, "%s has changed: it should be %s",
              body.shape.file.c_str(), fault.c_str());
   const long cut = cut_particles(cut_out_of(config, body), config.mesh, config.dim, table);
-  if (cut > 0)
+  if (cut > 0 && !body.from_before)
     PetscCall(log.print("body %s: %ld particles of the file were cut out", body.name.c_str(), cut));
-  const double density = config.materials[body.material].density;
+  const double density = density_of(config, body);
   const double volume = sum(table.volume), mass = mean_density(table, density) * volume;
   const std::string origin =
       table.origin.empty() ? "" : " (body " + body.shape.file_body + ", " + table.origin + ")";
-  PetscCall(log.line(
-      formatted("body %s: %ld particles of %s%s stand for %.6g %s, %.9g kg", body.name.c_str(),
-                static_cast<long>(table.volume.size()), body.shape.file.c_str(), origin.c_str(), volume,
-                config.dim == 2 && config.geometry == Geometry::plane_strain ? "m2" : "m3", mass) +
-      missing(table, body, source.parameter)));
+  if (!body.from_before)
+    PetscCall(log.line(
+        formatted("body %s: %ld particles of %s%s stand for %.6g %s, %.9g kg", body.name.c_str(),
+                  static_cast<long>(table.volume.size()), body.shape.file.c_str(), origin.c_str(), volume,
+                  config.dim == 2 && config.geometry == Geometry::plane_strain ? "m2" : "m3", mass) +
+        missing(table, body, source.parameter)));
   *from_run = *from_run || !table.origin.empty();
   particles->spacing = config.mesh.spacing / body.shape.particles_per_cell;
   particles->velocity = std::move(table.velocity);

@@ -42,6 +42,11 @@ static PetscErrorCode revolve(MPI_Comm comm, const Config& config, double densit
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Whether a rigid body is in the run since the present stage, or the run has none.
+static bool is_new(const Config& config, const RigidConfig& rigid) {
+  return std::max(1, placed_at(config.stage, rigid.name)) >= config.stage.number;
+}
+
 /// Each particle's own strength, from a field that was checked with the options.
 PetscErrorCode Simulation::Body::take_field(const BodyConfig& body, BodyParticles* particles) {
   PetscFunctionBeginUser;
@@ -60,6 +65,7 @@ PetscErrorCode Simulation::Body::take_field(const BodyConfig& body, BodyParticle
     ends[0] = std::min(ends[0], value), ends[1] = std::min(ends[1], -value);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPI_DOUBLE, MPI_MIN, comm));
+  if (body.from_before) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(log.print("body %s: %s of each particle from %s, %.6g to %.6g", body.name.c_str(), key.c_str(),
                       body.field.c_str(), ends[0], -ends[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -78,6 +84,7 @@ PetscErrorCode Simulation::Body::take_level_ground(const BodyConfig& body, Model
         particles->stress.insert(particles->stress.end(), stress.begin(), stress.begin() + components));
   }
   model->from_run = true;  // a stress that F-bar would bring together in a cell is in equilibrium as it is
+  if (body.from_before) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(log.print("body %s: stress of level ground, %.6g Pa vertical at its lowest particles, K0 %.4g",
                       body.name.c_str(), body.stress[config.dim - 1],
                       k0_of(config.materials[body.material])));
@@ -98,16 +105,18 @@ PetscErrorCode Simulation::Body::load(Model* model) {
     const bool listed = body.shape.kind == ShapeKind::particles;
     BodyParticles& particles = model->bodies.emplace_back();
     PetscCall(listed ? load_file(body, &particles, &model->from_run)
-                     : load_shape("body " + body.name, body.shape, cut_out_of(config, body),
-                                  {rank_of(comm), ranks()}, &particles));
-    const double density = config.materials[body.material].density;
+                     : load_shape(body.from_before ? "" : "body " + body.name, body.shape,
+                                  cut_out_of(config, body), {rank_of(comm), ranks()}, &particles));
+    const double density = density_of(config, body);
     if (!listed && config.geometry == Geometry::plane_strain) weigh(density, particles);
     if (!listed) PetscCall(revolve(comm, config, density, &particles));
-    if (!body.field.empty()) PetscCall(take_field(body, &particles));
-    if (body.k0) PetscCall(take_level_ground(body, model, &particles));
+    if (!body.field.empty() && !field_key(body, config).empty()) PetscCall(take_field(body, &particles));
+    if (body.k0 && !body.absent) PetscCall(take_level_ground(body, model, &particles));
   }
   for (const auto& rigid : config.rigids)
-    PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, {}, &model->rigids.emplace_back()));
+    if (!rigid.absent)
+      PetscCall(load_shape(is_new(config, rigid) ? "rigid " + rigid.name : "", rigid.shape, {}, {},
+                           &model->rigids.emplace_back()));
   for (auto* all : {&model->bodies, &model->rigids})
     for (BodyParticles& particles : *all)
       for (std::size_t k = 0; k < particles.position.size(); ++k)
@@ -131,14 +140,15 @@ static PetscErrorCode take_volumes(MPI_Comm comm, std::vector<double>&& volume, 
 }
 
 /// Particles of a shape's lattice, or this rank's part of them. Their positions are absolute, as in a file.
+/// name: for the log; empty: it has been told.
 PetscErrorCode Simulation::Body::load_shape(const std::string& name, const Shape& shape,
                                             const std::vector<Shape>& cut_out, LatticePart part,
                                             BodyParticles* particles) {
   PetscFunctionBeginUser;
   Lattice lattice;
   PetscCall(fill(shape, config.mesh, config.dim, lattice, cut_out, part));
-  PetscCall(log_shape(name, lattice, part.of > 1));
-  PetscCall(log_cuts(name, shape));
+  if (!name.empty()) PetscCall(log_shape(name, lattice, part.of > 1));
+  if (!name.empty()) PetscCall(log_cuts(name, shape));
   particles->position = std::move(lattice.position);
   particles->spacing = lattice.spacing;
   particles->particle_volume = lattice.particle_volume;

@@ -1,5 +1,6 @@
 // Probes of the history, and rasters of what passed.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,7 +15,7 @@ PetscErrorCode Simulation::Body::begin_probes() {
   PetscFunctionBeginUser;
   if (!config.probes.empty()) PetscCall(stepper->begin_probes(&probes));
   for (std::size_t n = 0; n < config.probes.size(); ++n) {
-    if (config.probes[n].kind != ProbeKind::particle) continue;
+    if (config.probes[n].kind != ProbeKind::particle || probes.followed[n] < 0) continue;
     Vec3 at{};
     for (int d = 0; d < config.dim; ++d) at[d] = probes.start[3 * n + d] + config.mesh.lower[d];
     PetscCall(log.print("probe %s follows the particle at %s", config.probes[n].name.c_str(),
@@ -80,7 +81,22 @@ PetscErrorCode Simulation::Body::reset_probes() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// A stage that removes bodies takes nothing through a section: what is beyond counts from the new start.
+/// Particles for the probes that follow one of a body that was not there before.
+PetscErrorCode Simulation::Body::follow_placed() {
+  PetscFunctionBeginUser;
+  if (config.probes.empty()) PetscFunctionReturn(PETSC_SUCCESS);
+  ProbeState now;
+  PetscCall(stepper->begin_probes(&now));
+  for (std::size_t n = 0; n < config.probes.size(); ++n) {
+    if (probes.followed[n] >= 0 || now.followed[n] < 0) continue;
+    probes.followed[n] = now.followed[n];
+    std::copy_n(&now.start[3 * n], 3, &probes.start[3 * n]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// A stage that removes or places bodies takes nothing through a section: what is beyond counts from the new
+/// start.
 PetscErrorCode Simulation::Body::keep_sections(const std::vector<SectionSum>& before) {
   PetscFunctionBeginUser;
   std::vector<SectionSum> after;

@@ -8,6 +8,7 @@
 #include "common/collectives.hpp"
 #include "common/text.hpp"
 #include "simulation_body.hpp"
+#include "step/state_map.hpp"
 #include "warnings.hpp"
 
 namespace mpm {
@@ -22,38 +23,6 @@ void reset_state(const Config& config, SavedState& state) {
       if (field.name == name) std::fill(field.values.begin(), field.values.end(), 0.0);
   for (std::size_t r = 0; r < state.rigids.size(); ++r)
     if (config.rigids[r].motion == Motion::dynamic) state.rigids[r].velocity = {};
-}
-
-/// The numbers of a field for each point; empty where there is none of the name.
-std::vector<double> numbers_of(const SavedPoints& points, const char* name) {
-  for (const SavedField& field : points.fields)
-    if (field.name == name) return field.values;
-  return {};
-}
-
-/// Removes the particles of bodies from the state: they count as lost.
-PetscErrorCode remove_bodies(MPI_Comm comm, int dim, const std::vector<int>& bodies, SavedState& state) {
-  PetscFunctionBeginUser;
-  const auto body = numbers_of(state.soil, "body"), mass = numbers_of(state.soil, "mass"),
-             velocity = numbers_of(state.soil, "velocity");
-  std::vector<double> gone(state.lost.size());
-  for (std::size_t p = 0; p < state.soil.id.size(); ++p) {
-    const int of = static_cast<int>(body[p]);
-    if (std::find(bodies.begin(), bodies.end(), of) == bodies.end()) continue;
-    double* const lost = &gone[static_cast<std::size_t>(of) * k_lost];  // count, mass, energy, momentum
-    lost[0] += 1, lost[1] += mass[p];
-    for (int d = 0; d < dim; ++d) {
-      const double v = velocity[p * dim + d];
-      lost[2] += mass[p] * v * v / 2, lost[3 + d] += mass[p] * v;
-    }
-    state.soil.address[p] = -1;
-  }
-  leave_out_lost(state.soil);
-  PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, gone.data(), static_cast<int>(gone.size()), MPI_DOUBLE, MPI_SUM, comm));
-  for (std::size_t k = 0; k < gone.size(); ++k) state.lost[k] += gone[k];
-  state.alone_known = 0, state.alone.clear();
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 double length_of(const Vec3& x) { return std::hypot(x[0], x[1], x[2]); }
@@ -175,7 +144,9 @@ PetscErrorCode Simulation::Body::next_stage() {
   PetscFunctionBeginUser;
   SavedState state;
   std::vector<SectionSum> sections;
+  HistoryRow row;  // before the soil changes
   PetscCall(stepper->sum_sections(&sections));
+  if (config.output.energy) PetscCall(stepper->measure(0, &row));
   PetscCall(stepper->save(&state));
   PetscCall(bring_together(comm, &state));
   rigid_zero.resize(3 * config.rigids.size()), rigid_begin.resize(rigid_zero.size());
@@ -186,7 +157,7 @@ PetscErrorCode Simulation::Body::next_stage() {
   if (config.stage.reset) reset_state(config, state);
   if (config.stage.reset) PetscCall(reset_probes());
   const P2G strategy = config.p2g.strategy;  // as it was chosen
-  const std::string last = config.stage.name;
+  const Config before = config;
   const std::vector<EffectiveOption> options = report.options;
   PetscCall(log.line(format_performance(performance())));
   stage_begin = {step, schedule.time_of(step)};
@@ -194,39 +165,55 @@ PetscErrorCode Simulation::Body::next_stage() {
   take_stage(stage + 1);
   config.p2g.strategy = strategy;
   PetscCall(choose_time_step());
-  if (!config.stage.remove.empty()) PetscCall(remove_bodies(comm, config.dim, config.stage.remove, state));
   const std::vector<OptionChange> changes = changes_between(options, report.options);
-  apply_changes(changes, config, state);
-  PetscCall(log.print("stage %s ends after step %ld at time %.9g s; stage %s begins%s", last.c_str(), step,
-                      stage_begin.time, config.stage.name.c_str(),
+  PetscCall(log.print("stage %s ends after step %ld at time %.9g s; stage %s begins%s",
+                      before.stage.name.c_str(), step, stage_begin.time, config.stage.name.c_str(),
                       changes.empty() ? ", with the same options" : ""));
   for (const OptionChange& c : changes)
     PetscCall(log.line("changed here: " + c.name + " " + c.before + " -> " + c.after));
-  PetscCall(set_up_stage(std::move(state)));
-  if (outcome == Outcome::finished && !config.stage.remove.empty()) PetscCall(keep_sections(sections));
+  Present present;
+  PetscCall(change_bodies(state, &present));
+  for (const int r : config.stage.place_rigids)  // their displacements begin with them
+    for (int d = 0; d < 3; ++d) rigid_zero[3 * r + d] = rigid_begin[3 * r + d] = 0;
+  apply_changes(changes, config, state);
+  if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
+  const std::vector<char> changed = changed_laws(before, config);
+  const bool other_soil = changes_soil() || std::find(changed.begin(), changed.end(), 1) != changed.end();
+  PetscCall(set_up_stage(std::move(state), present, changed));
+  if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
+  if (changes_soil()) PetscCall(keep_sections(sections));
+  if (!config.stage.place.empty()) PetscCall(follow_placed());
+  if (config.output.energy && other_soil) PetscCall(stepper->keep_balance(row.energy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// A stepper for the options of the stage with a state.
-PetscErrorCode Simulation::Body::set_up_stage(SavedState&& state) {
+PetscErrorCode Simulation::Body::set_up_stage(SavedState&& state, const Present& present,
+                                              const std::vector<char>& changed) {
   PetscFunctionBeginUser;
   Model model;
   Failure failure;
   stepper.reset();  // before the next one takes memory
   PetscCall(load(&model));
+  PetscCall(leave_out(&present, &model));
   stepper = make_stepper(config, comm);
+  part = {.step = step, .stepping = stepping};
+  if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(stepper->set_up(std::move(model), &failure));
   if (!failure.what.empty()) {
     PetscCall(fail(failure.what));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(adapt_state(changed, config.stage.place, state));
+  if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
   bool rebuilt = false;
   PetscCall(stepper->restore(std::move(state), since_rebuild, &rebuilt));
   if (rebuilt) since_rebuild = 0;
   watching = false, waves_at = -1, told_dt = 0, looks = 0;
-  part = {.step = step, .stepping = stepping};
+  notices.begin_stage();
   part.wall = wall();
-  PetscCall(follow_stiffness());
+  const bool other_laws = std::find(changed.begin(), changed.end(), 1) != changed.end();
+  PetscCall(follow_stiffness(other_laws || !config.stage.place.empty()));
   PetscCall(log.print("time step %.9g s; stage %s goes on to %g s at most", dt, config.stage.name.c_str(),
                       config.time.end));
   PetscFunctionReturn(PETSC_SUCCESS);

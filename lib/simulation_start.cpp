@@ -91,6 +91,7 @@ PetscErrorCode Simulation::Body::check_places() {
   std::vector<Overlap> overlaps;
   PetscCall(find_overlaps(comm, config, &overlaps));
   report.errors = describe(overlaps, config);
+  PetscCall(check_placed());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,6 +199,7 @@ PetscErrorCode Simulation::Body::start() {
   Model model;
   Failure failure;
   PetscCall(load(&model));
+  PetscCall(leave_out(nullptr, &model));
   if (restart) keep_strategy();
   if (config.p2g.strategy == P2G::automatic) PetscCall(choose_strategy(model, device));
   stepper = make_stepper(config, comm);

@@ -58,10 +58,12 @@ long Simulation::Body::next_stiffness_check() const {
 }
 
 /// If the stiffness of some soil changes, every k_follow_every steps: measures the fastest wave and computes
-/// dt from it by the Courant number. If the user has fixed dt, the run fails once that dt is not stable.
-PetscErrorCode Simulation::Body::follow_stiffness() {
+/// dt from it by the Courant number; `now`: at this step too. If the user has fixed dt, the run fails once
+/// that dt is not stable.
+PetscErrorCode Simulation::Body::follow_stiffness(bool now) {
   PetscFunctionBeginUser;
-  if (!follows || step % k_follow_every != 0 || waves_at == step) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!follows || (step % k_follow_every != 0 && !now) || waves_at == step)
+    PetscFunctionReturn(PETSC_SUCCESS);
   waves_at = step;
   double speed = 0;
   PetscCall(stepper->fastest_wave(&speed));
@@ -70,9 +72,10 @@ PetscErrorCode Simulation::Body::follow_stiffness() {
   const double largest = step_of(limits, largest_courant(config), config);
   if (config.time.step) {
     if (dt > largest * (1 + k_round_off))
-      PetscCall(fail(formatted("-time_step: given \"%g\", takes at most %.6g s now that %s; leave it out, "
-                               "and the step follows the soil",
-                               *config.time.step, largest, what_shortens_the_step(config, speed).c_str())));
+      PetscCall(
+          fail(formatted("-time_step: given \"%g\", takes at most %.6g s now that %s; leave it out, "
+                         "and the step follows the soil",
+                         *config.time.step, largest, what_shortens_the_step(config, speed).c_str())));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   const double wanted = step_of(limits, config.time.courant, config);

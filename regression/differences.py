@@ -41,7 +41,7 @@ class Scales:
     """What differences of a problem's fields are measured by, from its reference run."""
 
     def __init__(self, run, groups):
-        fields = [groups[body] for body in run.words("bodies")]
+        fields = [groups[body] for body in run.words("bodies") if len(groups[body]["volume"]) > 0]  # a stage may place others
         pressure = max(0.0, *(float(-each["stress"][:, :3].mean(axis=1).min()) for each in fields))
         materials = {run.text(f"{body}_material") for body in run.words("bodies")}
         known = {name: stiffness(run, name, pressure) for name in materials}

@@ -26,7 +26,7 @@ ANSWERS = {  # cases on the GPU
     "quick": ["bar", "column", "water_column", "water_footing", "water_slope", "water_undrained", "infinite_slope", "film", "channel",
               "collapse", "plate", "sloshing", "dam_break", "retaining_wall", "footing_cohesion_coarse", "footing_surcharge_coarse",
               "footing_weight_coarse", "cut_friction_coarse"],
-    "site": ["sliding_side", "moving_side", "absorbing_side", "free_field", "timed_loads", "stages", "probes", "k0_ground"],
+    "site": ["sliding_side", "moving_side", "absorbing_side", "free_field", "timed_loads", "stages", "staged_fill", "probes", "k0_ground"],
     "domains": ["clay_column", "large_deformation", "energy"],
     "revolution": ["thick_cylinder", "cylinders", "circle", "circle_fine"],
 }

@@ -47,6 +47,9 @@ struct SavedSides {
 /// have left, and those that others took up.
 inline constexpr int k_lost = 11, k_lost_left = 0, k_lost_merged = 6;
 
+/// Numbers of a rank in SavedState::bounds, beside three a rigid that follow them.
+inline constexpr int k_saved_bounds = 8;
+
 /// Numbers of SavedState::energy.
 inline constexpr int k_saved_energy = 8;
 
@@ -60,8 +63,14 @@ struct SavedState {
   SavedPoints soil;
   long particles = 0;        // ids given, of all ranks: rows of particles that are gone have no address (-1)
   std::vector<double> lost;  // k_lost numbers a body: those of Lost, and Strays::put_back
-  std::vector<long> alone;   // Grid::address_of the cells whose particles are alone
-  int alone_known = 0;       // 1: `alone` holds; 0: the next step finds it
+  /// Ids of each body that no particle has had: those of a body that is not placed yet, and of particles that
+  /// were cut out when it was placed.
+  std::vector<long> unused;
+  /// The fields of `soil` that hold state variables, in order, and for each body the names of the variables
+  /// of its law, with commas: variable k is in field k. The excess pore pressure is a field of its own name.
+  std::vector<std::string> columns, variables;
+  std::vector<long> alone;  // Grid::address_of the cells whose particles are alone
+  int alone_known = 0;      // 1: `alone` holds; 0: the next step finds it
   std::vector<SavedRigid> rigids;
   SavedImpulse impulse;
   std::vector<double> energy;  // k_saved_energy numbers where the run has an energy balance: the works, and

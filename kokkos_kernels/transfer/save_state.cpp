@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "functions/step_kernels.hpp"
+#include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
@@ -161,6 +162,15 @@ void restore_whole(View& view, const std::vector<long>& values) {
   Kokkos::deep_copy(view, host);
 }
 
+/// Room in the host's store for as many particles, where the soil goes in batches.
+template <class Space, class T, int Dim>
+void make_room(State<Space, T, Dim>& s, int count) {
+  if (!s.batches.in_use() || count == s.soil.points.count) return;
+  collect_soil(s);
+  s.soil.points.count = s.soil.points.all = count;
+  store_soil(s, count, s.scratch.extent(0));
+}
+
 /// Points with their addresses, not sorted yet. The name of a field that does not fit, or nothing.
 template <class Space, class Points_>
 std::string restore_points(ParticleSet<Space, Points_>& set, const SavedPoints& saved) {
@@ -249,6 +259,7 @@ std::string take_saved(State<Space, T, Dim>& s, const SavedState& saved) {
   if (saved.rigids.size() != s.rigid_points.size()) return "the number of rigids";
   if (saved.lost.size() != s.strays.lost.size() * k_lost) return "the number of bodies";
   restore_lost(s, saved);
+  make_room(s, static_cast<int>(saved.soil.id.size()));
   const std::string missing = restore_points(s.soil, saved.soil);
   if (!missing.empty()) return missing;
   restore_rigids(s, saved, true);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "checkpoint/checkpoint.hpp"
+#include "common/text.hpp"
 
 namespace mpm {
 
@@ -48,6 +49,11 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
     (*vectors[k % k_motion / 3])[k % 3] = motion[k];
   }
   archive.value("particles", c.state.particles), archive.list("lost", c.state.lost);
+  archive.list("unused", c.state.unused);
+  std::string columns = join(c.state.columns), variables = join(c.state.variables, "\n");
+  archive.text("columns", columns), archive.text("variables", variables);
+  c.state.columns = columns.empty() ? std::vector<std::string>{} : split(columns);
+  c.state.variables = split(variables, '\n');
   archive.list("energy", c.state.energy);
   archive.value("alone_known", c.state.alone_known), archive.list("alone", c.state.alone);
   archive.list("bounds", c.state.bounds), archive.list("owners", c.state.owners);

@@ -149,6 +149,20 @@ void apply_changes(const std::vector<OptionChange>& changes, const Config& confi
   }
 }
 
+std::vector<char> changed_laws(const std::vector<OptionChange>& changes, const Config& config) {
+  std::vector<char> changed(config.bodies.size());
+  for (std::size_t b = 0; b < changed.size(); ++b) {
+    const BodyConfig& body = config.bodies[b];
+    const std::string material = "-" + lower_case(body.name) + "_material",
+                      own = "-" + lower_case(config.materials[body.material].name) + "_";
+    changed[b] = std::any_of(changes.begin(), changes.end(), [&](const OptionChange& change) {
+      const std::string name = lower_case(change.name);
+      return name == material || name.starts_with(own);
+    });
+  }
+  return changed;
+}
+
 std::string changed_machine(const Checkpoint& then, const Checkpoint& now) {
   std::string text;
   const auto compare = [&](const std::string& what, const std::string& before, const std::string& after) {

@@ -42,6 +42,9 @@ std::vector<OptionChange> changes_between(const std::vector<EffectiveOption>& be
 /// Gives rigids whose motion or velocity changed the velocity that the options now say.
 void apply_changes(const std::vector<OptionChange>& changes, const Config& config, SavedState& state);
 
+/// Of each body, whether the changes are of its material, or of the material's parameters.
+std::vector<char> changed_laws(const std::vector<OptionChange>& changes, const Config& config);
+
 /// What goes on otherwise than it was and so gives other bits; empty if nothing. `now` tells the machine and
 /// the options with which the run goes on.
 std::string changed_machine(const Checkpoint& then, const Checkpoint& now);

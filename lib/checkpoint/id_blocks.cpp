@@ -122,12 +122,17 @@ void leave_out_lost(SavedPoints& points) {
   points.id.resize(kept), points.address.resize(kept);
 }
 
+long ids_without_particle(const SavedState& state) {
+  double lost = 0;
+  for (std::size_t k = 0; k < state.lost.size(); k += k_lost)
+    lost += state.lost[k + k_lost_left] + state.lost[k + k_lost_merged];
+  return std::lround(lost) + std::accumulate(state.unused.begin(), state.unused.end(), 0L);
+}
+
 PetscErrorCode bring_together(MPI_Comm comm, SavedState* state) {
   PetscFunctionBeginUser;
   IdBlock block;
-  double lost = 0;
-  for (std::size_t k = 0; k < state->lost.size(); k += k_lost) lost += state->lost[k];
-  PetscCall(bring_to_blocks(comm, state->particles, std::lround(lost), state->soil, &block));
+  PetscCall(bring_to_blocks(comm, state->particles, ids_without_particle(*state), state->soil, &block));
   PetscCall(gather_impulse(comm, static_cast<int>(state->rigids.size()), state->impulse));
   leave_out_lost(state->soil);
   PetscFunctionReturn(PETSC_SUCCESS);

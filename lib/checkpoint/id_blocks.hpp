@@ -18,6 +18,10 @@ PetscErrorCode bring_to_blocks(MPI_Comm comm, long total, long lost, SavedPoints
 /// Leaves out the rows of particles that have left the run.
 void leave_out_lost(SavedPoints& points);
 
+/// Ids that were given and belong to no particle of the run: of what has left or was taken up by others, and
+/// of what is not placed.
+long ids_without_particle(const SavedState& state);
+
 /// What a checkpoint of this state would give each rank: its block of the particles, and all impulses.
 /// Collective.
 PetscErrorCode bring_together(MPI_Comm comm, SavedState* state);

@@ -61,6 +61,12 @@ std::array<long, 3> cell_of(long address, const MeshConfig& mesh, int dim) {
   return cell;
 }
 
+/// A coordinate in the cell of an address becomes a place [m].
+void put_in_mesh(long address, const MeshConfig& mesh, int dim, double* x) {
+  const auto cell = cell_of(address, mesh, dim);
+  for (int d = 0; d < dim; ++d) x[d] = mesh.lower[d] + (cell[d] + x[d]) * mesh.spacing;
+}
+
 /// The rows of a body's particles in the fields of a checkpoint.
 struct BodyRows {
   const SavedPoints& soil;
@@ -148,11 +154,8 @@ std::string read_checkpoint_particles(const ParticleSource& source, const MeshCo
   if (fault = find_body(c, source.group, body); !fault.empty()) return fault;
 
   table.position = body.read("coordinate", dim);
-  for (std::size_t k = 0; k < table.position.size(); ++k) {
-    const int d = static_cast<int>(k % dim);
-    const auto cell = cell_of(c.state.soil.address[body.rows[k / dim]], there, dim);
-    table.position[k] = there.lower[d] + (cell[d] + table.position[k]) * there.spacing;
-  }
+  for (std::size_t p = 0; p < table.position.size() / dim; ++p)
+    put_in_mesh(c.state.soil.address[body.rows[p]], there, dim, &table.position[p * dim]);
   table.volume = body.read("volume", 1), table.mass = body.read("mass", 1);
   for (const std::string& name : source.state) {
     const std::string column = column_of(c, source.group, name, body);
@@ -176,6 +179,15 @@ std::string read_checkpoint_particles(const ParticleSource& source, const MeshCo
   }
   table.origin = "checkpoint of step " + std::to_string(c.run.step) + ", " + text_of(c.run.time) + " s";
   return body.fault;
+}
+
+std::vector<double> positions_of(const SavedPoints& points, const MeshConfig& mesh, int dim) {
+  std::vector<double> position;
+  for (const SavedField& field : points.fields)
+    if (field.name == "coordinate") position = field.values;
+  for (std::size_t p = 0; p < position.size() / dim; ++p)
+    put_in_mesh(points.address[p], mesh, dim, &position[p * dim]);
+  return position;
 }
 
 }  // namespace mpm

@@ -15,6 +15,8 @@
 namespace mpm {
 namespace {
 
+constexpr std::size_t k_most_columns = 100;
+
 /// Whether an address (patch number in the grid with its ring, times cells of a patch, plus place) is that of
 /// a cell at most `ring` cells outside the mesh.
 bool in_mesh(long address, const MeshConfig& mesh, int dim, int ring) {
@@ -86,6 +88,24 @@ bool sound_sides(const SavedSides& sides, const Config& config) {
          std::all_of(sides.columns.begin(), sides.columns.end(), finite);
 }
 
+/// What is wrong with the account of bodies that are placed at a stage, and of their state variables.
+std::string bodies_fault(const SavedState& state, const Config& config) {
+  const std::size_t bodies = config.bodies.size();
+  const auto negative = [](long count) { return count < 0; };
+  if (state.unused.size() != bodies || std::any_of(state.unused.begin(), state.unused.end(), negative))
+    return "a checkpoint with a sound account of unused";
+  if (state.variables.size() != bodies || state.columns.size() > k_most_columns)
+    return "a checkpoint with sound variables and columns";
+  for (const SavedField& field : state.soil.fields)
+    for (std::size_t p = 0; field.name == "body" && p < field.values.size(); ++p) {
+      const double b = field.values[p];
+      if (b >= 0 && b < static_cast<double>(bodies) && config.bodies[static_cast<std::size_t>(b)].absent)
+        return "a checkpoint before which no particle of " + config.bodies[static_cast<std::size_t>(b)].name +
+               " was placed";
+    }
+  return "";
+}
+
 }  // namespace
 
 std::string state_fault(const SavedState& state, const Config& config) {
@@ -96,6 +116,7 @@ std::string state_fault(const SavedState& state, const Config& config) {
     return "a checkpoint with a sound margin and due_in";
   if (state.lost.size() != config.bodies.size() * k_lost || state.particles < 0)
     return "a checkpoint with a sound account of what has left";
+  if (const std::string fault = bodies_fault(state, config); !fault.empty()) return fault;
   if (state.energy.size() != (config.output.energy ? k_saved_energy : 0))
     return "a checkpoint with an energy balance where the run has one";
   for (const long address : state.alone)

@@ -191,10 +191,7 @@ PetscErrorCode write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoi
   PetscFunctionBeginUser;
   SavedState& state = checkpoint.state;
   IdBlock soil;
-  double lost = 0;
-  for (std::size_t k = 0; k < state.lost.size(); k += k_lost)
-    lost += state.lost[k + k_lost_left] + state.lost[k + k_lost_merged];
-  PetscCall(bring_to_blocks(comm, state.particles, std::lround(lost), state.soil, &soil));
+  PetscCall(bring_to_blocks(comm, state.particles, ids_without_particle(state), state.soil, &soil));
   PetscCall(gather_impulse(comm, static_cast<int>(state.rigids.size()), state.impulse));
   if (size_of(comm) == 1)
     PetscCall(write_alone(path, checkpoint, soil));

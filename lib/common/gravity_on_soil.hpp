@@ -19,7 +19,7 @@ inline bool carries_alike(const Config& config) {
   double highest = 0;  // m, against gravity, of the mesh
   for (int d = 0; d < config.dim; ++d)
     highest += std::max(-g[d] / size * config.mesh.lower[d], -g[d] / size * config.mesh.upper[d]);
-  const auto density = [&](const BodyConfig& body) { return config.materials[body.material].density; };
+  const auto density = [&](const BodyConfig& body) { return density_of(config, body); };
   return *config.water.level >= highest + config.mesh.spacing &&
          std::all_of(config.bodies.begin(), config.bodies.end(),
                      [&](const BodyConfig& body) { return density(body) == density(config.bodies[0]); });
@@ -29,7 +29,7 @@ inline bool carries_alike(const Config& config) {
 inline Vec3 gravity_on_soil(const Config& config) {
   Vec3 g = config.gravity;
   if (!carries_alike(config)) return g;
-  const double share = config.water.density / config.materials[config.bodies[0].material].density;
+  const double share = config.water.density / density_of(config, config.bodies[0]);
   for (double& component : g) component *= 1 - share;
   return g;
 }

@@ -26,7 +26,9 @@ struct BodyParticles {
   double least_mass = 0;                     // kg, where the particles differ in mass, of all ranks; else 0
   std::vector<double> reference_height;  // m, absolute, of creation [N]; or empty where they are just created
   long total = 0;                        // of all ranks; 0: those above
-  std::vector<int> id;                   // on several ranks: of each particle here, among those of all bodies
+  std::vector<int> id;         // of each particle here, among those of all bodies; on one rank empty
+                               // where all are there
+  std::vector<char> left_out;  // [N] 1: it has an id and is not in the run; empty where all are in it
   std::vector<double> velocity_gradient;  // m/s a cell [dim^2 N], where the neighbours may be on other ranks
   std::vector<double> domain;  // cells2, moments of domains that stretch [dim (dim + 1) / 2 N], or empty
 };

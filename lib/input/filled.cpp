@@ -80,21 +80,53 @@ Filled::Filled(const Shape& shape, const ParticleSource& source, const std::vect
   measure();
 }
 
+Filled::Filled(const Shape& shape, std::vector<double> position, const MeshConfig& mesh, int dim)
+    : width(mesh.spacing / shape.particles_per_cell),
+      listed(true),
+      shape_(shape),
+      mesh_(mesh),
+      dim_(dim),
+      has_moved_(true) {
+  volume = static_cast<double>(position.size()) / dim * std::pow(width, dim);
+  places_.emplace_back(std::move(position), width, dim);
+  bounds = places_[0].bounds();
+  measure();
+}
+
+void Filled::move(const Vec3& by) {
+  for (int d = 0; d < dim_; ++d) moved_[d] += by[d], bounds.lower[d] += by[d], bounds.upper[d] += by[d];
+}
+
 void Filled::measure() {
   for (const Shape& hole : cut_shapes_) holes_.emplace_back(hole, dim_, k_slack * mesh_.spacing);
   thinnest = bounds.upper[0] - bounds.lower[0];
   for (int d = 1; d < dim_; ++d) thinnest = std::min(thinnest, bounds.upper[d] - bounds.lower[d]);
 }
 
+/// Particles that have moved leave gaps of less than their width, which are soil too: a point with soil near
+/// it on two opposite sides.
+bool Filled::soil_holds(const Vec3& x) const {
+  if (places_[0].hold(x)) return true;
+  for (int d = 0; d < dim_ && has_moved_; ++d) {
+    Vec3 low = x, high = x;
+    low[d] -= width / 2, high[d] += width / 2;
+    if (places_[0].hold(low) && places_[0].hold(high)) return true;
+  }
+  return false;
+}
+
 void Filled::enter_row(double low, double high) {
+  low -= moved_[dim_ - 1], high -= moved_[dim_ - 1];
   const double reach = shape_.fill == Fill::cell ? mesh_.spacing : 0;  // holds_cell() looks at whole cells
   for (Region& region : region_) region.enter_row(low - reach, high + reach);
   for (Region& hole : holes_) hole.enter_row(low, high);
 }
 
-bool Filled::holds(const Vec3& x) const {
+bool Filled::holds(const Vec3& place) const {
+  Vec3 x = place;
+  for (int d = 0; d < dim_; ++d) x[d] -= moved_[d];
   if (!places_.empty()) {
-    if (!places_[0].hold(x)) return false;
+    if (!soil_holds(x)) return false;
   } else if (shape_.fill == Fill::cell) {
     Vec3 corner{};
     for (int d = 0; d < dim_; ++d)

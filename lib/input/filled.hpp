@@ -38,7 +38,11 @@ class Filled {
   /// Of a file, which must be sound.
   Filled(const Shape& shape, const ParticleSource& source, const std::vector<Shape>& cut_out,
          const MeshConfig& mesh, int dim);
+  /// Of soil that has moved from its shape: the places of its particles [m, packed by dim].
+  Filled(const Shape& shape, std::vector<double> position, const MeshConfig& mesh, int dim);
 
+  /// Moves all of it by a displacement [m].
+  void move(const Vec3& by);
   /// Prepares for points whose vertical coordinate is from low to high [m].
   void enter_row(double low, double high);
   bool holds(const Vec3& x) const;
@@ -51,6 +55,7 @@ class Filled {
 
  private:
   void measure();
+  bool soil_holds(const Vec3& x) const;
 
   const Shape& shape_;
   MeshConfig mesh_;
@@ -58,6 +63,8 @@ class Filled {
   std::vector<Shape> cut_shapes_;
   std::vector<Region> region_, holes_;  // none or one; any number
   std::vector<PlacesOfParticles> places_;
+  bool has_moved_ = false;  // its particles are no lattice any more
+  Vec3 moved_{};            // m
 };
 
 }  // namespace mpm

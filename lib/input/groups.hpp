@@ -137,6 +137,21 @@ void read_raster_bodies(OptionReader& in, const Config& config, RasterConfig& ra
 
 /// -stages: the good names. The names of all options are reserved.
 std::vector<std::string> read_stage_names(OptionReader& in);
+/// Which stages place and remove bodies, by the texts of their options; the names are not checked.
+void note_stage_bodies(const OptionReader& in, const std::vector<std::string>& stages, StageConfig& stage);
+/// Number of the stage that places a body or rigid; 0: the run begins with it.
+int placed_at(const StageConfig& stage, const std::string& name);
+/// Whether a body or rigid is in the run in a stage.
+void note_presence(const StageConfig& stage, BodyConfig& body);
+void note_presence(const StageConfig& stage, RigidConfig& rigid);
+/// The bodies that the stage of a reader places and removes; bodies and rigids have been read.
+void read_stage_bodies(OptionReader& in, const Config& config, StageConfig& stage);
+/// Checks that a stage cuts out of bodies, as they are placed, what the first one does: their particles keep
+/// their ids.
+void check_cut_kept(OptionReader& in, const Config& first, const Config& now);
+/// What bodies keep from the stage before: their masses, and what is known of their initial stress. Before
+/// prepare_for_pressure, which takes the largest pressures.
+void follow_stage(const Config& before, Config& now);
 /// What the stage of a reader owns; rigids and gravity have been read.
 void read_stage(OptionReader& in, Config& config);
 /// Checks that the options that the stage of a reader gives may change at a stage.
@@ -168,7 +183,7 @@ void list_all(OptionReader& in);
 
 /// -materials, -bodies, -rigid_bodies, -probes and the options of each that they name. The fixed options must
 /// have been read before, since no name may begin as they do. A null mesh (unsound) leaves the shapes
-/// unchecked against it.
-void read_named(OptionReader& in, const MeshConfig* mesh, Config& config);
+/// unchecked against it. `before`: the stage before, if there is one.
+void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const Config* before = nullptr);
 
 }  // namespace mpm

@@ -44,7 +44,9 @@ void check_layers(OptionReader& in, const Config& config, const LevelGround& gro
   const auto& layers = ground.layers();
   for (std::size_t k = 1; k < layers.size(); ++k) {
     const double gap = layers[k - 1].base - layers[k].top;
-    if (std::fabs(gap) <= slack) continue;
+    const bool as_before =
+        config.bodies[layers[k - 1].body].from_before && config.bodies[layers[k].body].from_before;
+    if (std::fabs(gap) <= slack || as_before) continue;
     const std::string upper = config.bodies[layers[k - 1].body].name,
                       lower = config.bodies[layers[k].body].name;
     return in.reject(
@@ -79,10 +81,10 @@ double k0_of(const MaterialConfig& material) {
 LevelGround::LevelGround(const Config& config) : config_(config) {
   for (int b = 0; b < static_cast<int>(config.bodies.size()); ++b) {
     const BodyConfig& body = config.bodies[b];
-    if (!body.k0) continue;
+    if (!body.k0 || body.absent || body.removed) continue;
     const Bounds bounds = bounds_of(body.shape, config.mesh, config.dim);
-    layers_.push_back({b, bounds.lower[config.dim - 1], bounds.upper[config.dim - 1],
-                       config.materials[body.material].density});
+    layers_.push_back(
+        {b, bounds.lower[config.dim - 1], bounds.upper[config.dim - 1], density_of(config, body)});
   }
   std::sort(layers_.begin(), layers_.end(), [](const Layer& a, const Layer& b) { return a.top > b.top; });
 }
@@ -110,16 +112,18 @@ Sym6 LevelGround::stress(const BodyConfig& body, double height, double width) co
 void check_level_ground(OptionReader& in, const MeshConfig& mesh, Config& config) {
   const auto errors = in.errors();
   for (const BodyConfig& body : config.bodies)
-    if (const std::string fault = body.k0 ? fault_of(config, body) : ""; !fault.empty())
+    if (const std::string fault = body.k0 && !body.from_before ? fault_of(config, body) : ""; !fault.empty())
       in.reject(body.name + "_stress", fault);
   if (in.errors() != errors) return;
   const LevelGround ground(config);
   check_layers(in, config, ground, 1e-6 * mesh.spacing);
   for (const LevelGround::Layer& layer : ground.layers())
-    check_ratio(in, config.materials[config.bodies[layer.body].material]);
+    if (const BodyConfig& body = config.bodies[layer.body]; !body.from_before)
+      check_ratio(in, config.materials[body.material]);
   if (in.errors() != errors) return;
   for (const LevelGround::Layer& layer : ground.layers()) {
     BodyConfig& body = config.bodies[layer.body];
+    if (body.from_before) continue;  // its stress is that of the soil
     const MaterialConfig& material = config.materials[body.material];
     const double width = mesh.spacing / body.shape.particles_per_cell;
     const Sym6 low = ground.stress(body, layer.base + width / 2, width),

@@ -89,10 +89,10 @@ void forgive_unlisted(OptionReader& in, const Names& names) {
 
 /// The rigids and bodies out of whose shapes the body is cut.
 void read_cut_out(OptionReader& in, const Listed& listed, BodyConfig& body) {
-  const Option option{
-      .name = body.name + "_cut_out",
-      .meaning =
-          "rigids and other bodies in whose shapes, as they are at the start, the body has no particles"};
+  const Option option{.name = body.name + "_cut_out",
+                      .meaning =
+                          "rigids and other bodies in whose shapes the body has no particles, as they are at "
+                          "the start or when a stage places the later of the two"};
   std::vector<std::string> others = listed.rigids, names;
   for (const auto& name : listed.bodies)
     if (name != body.name) others.push_back(name);
@@ -144,7 +144,8 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
     check_particles(in, body, config, *mesh, listed);
     check_density(in, body, config, listed);
   }
-  if (sound_materials && in.errors() == errors) check_body_field(in, *mesh, config, body);
+  const bool keeps_none = body.from_before && field_key(body, config).empty();  // its law was changed
+  if (sound_materials && in.errors() == errors && !keeps_none) check_body_field(in, *mesh, config, body);
   if (sound_materials && in.errors() == errors && !body.k0) check_starts(in, *mesh, config, listed, body);
 }
 
@@ -267,7 +268,7 @@ void read_only_material(OptionReader& in, Config& config) {
   }
 }
 
-void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
+void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const Config* before) {
   Names names(in);
   in.section("Names");
   const auto materials =
@@ -289,10 +290,12 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
   errors = in.errors();
   for (const auto& name : bodies) {
     config.bodies.emplace_back().name = name;
+    note_presence(config.stage, config.bodies.back());
     read_body(in, mesh, config, {bodies, rigids}, sound_materials, config.bodies.back());
   }
   for (const auto& name : rigids) {
     config.rigids.emplace_back().name = name;
+    note_presence(config.stage, config.rigids.back());
     read_rigid(in, mesh, config, config.rigids.back());
   }
   for (const auto& name : probes) {
@@ -301,6 +304,7 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
   }
   check_probes(in, config);
   if (sound_materials && in.errors() == errors) check_level_ground(in, *mesh, config);
+  if (sound_materials && before && in.errors() == errors) follow_stage(*before, config);
   if (sound_materials) prepare_for_pressure(mesh->spacing, config);
   if (mesh && in.errors() == errors)
     for (const auto& body : config.bodies) check_cut_out(in, *mesh, config, body);

@@ -342,8 +342,9 @@ void check_restart_change(OptionReader& in, const Config& config) {
   for (const std::string& name : config.output.restart_change)
     if (!name.empty() && !change_rule(name, config).listed)
       return in.reject(option,
-                       "names of options among gravity, damping, those of the mesh's sides, and of rigids "
-                       "their motion, loads and contact; " +
+                       "names of options among gravity, damping, those of the mesh's sides, of rigids "
+                       "their motion, loads and contact, of materials their parameters, and the material "
+                       "of a body; " +
                            name + " is none");
 }
 
@@ -356,7 +357,7 @@ void read_element_run(OptionReader& in, const std::vector<Backend>& backends, co
 }
 
 void read_all(OptionReader& in, const std::vector<Backend>& backends, const std::string& options_file,
-              Config& config) {
+              Config& config, const Config* before = nullptr) {
   const auto errors = in.errors();
   in.section("Run");
   in.integer({.name = "dim",
@@ -384,7 +385,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   if (config.output.energy && config.device_memory_limit)
     in.reject("output_energy", "off where -device_memory_limit sends the soil in batches");
   read_rasters(in, sound ? &config.mesh : nullptr, config);
-  read_named(in, sound ? &config.mesh : nullptr, config);
+  read_named(in, sound ? &config.mesh : nullptr, config, before);
   read_raster_bodies(in, config, config.rasters);
   if (sound) check_absorbing(in, config);
   if (sound && in.errors() == errors) check_periodic(in, config);
@@ -410,8 +411,12 @@ void read_stages(OptionReader& in, const std::vector<Backend>& backends,
     StageInput& input = report.stages.emplace_back();
     input.config.stages = names;
     input.config.stage = {.name = name, .number = static_cast<int>(report.stages.size())};
+    note_stage_bodies(in, names, input.config.stage);
     OptionReader reader = in.for_stage(name, names, of_stage);
-    read_all(reader, backends, report.options_file, input.config);
+    const bool first = report.stages.size() == 1;
+    read_all(reader, backends, report.options_file, input.config,
+             first ? nullptr : &report.stages.end()[-2].config);
+    check_cut_kept(reader, report.stages.front().config, input.config);
     check_periodic_kept(reader, input.config.dim, report.stages.front().config.mesh, input.config.mesh);
     input.options = std::move(of_stage.options);
     for (const std::string& key : reader.of_stage())

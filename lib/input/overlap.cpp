@@ -114,36 +114,144 @@ PetscErrorCode overlap_of(MPI_Comm comm, Filled& a, Filled& b, int dim, double* 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Bodies and rigids by one number each: bodies first.
+struct Things {
+  const Config& config;
+  int bodies, all;
+
+  explicit Things(const Config& c)
+      : config(c),
+        bodies(static_cast<int>(c.bodies.size())),
+        all(bodies + static_cast<int>(c.rigids.size())) {}
+  bool is_body(int n) const { return n < bodies; }
+  const std::string& name(int n) const {
+    return is_body(n) ? config.bodies[n].name : config.rigids[n - bodies].name;
+  }
+  /// Whether it is in the run in this stage.
+  bool is_there(int n) const {
+    return is_body(n) ? !config.bodies[n].absent && !config.bodies[n].removed
+                      : !config.rigids[n - bodies].absent;
+  }
+  /// Whether this stage places it.
+  bool is_placed(int n) const {
+    const auto& list = is_body(n) ? config.stage.place : config.stage.place_rigids;
+    return std::find(list.begin(), list.end(), is_body(n) ? n : n - bodies) != list.end();
+  }
+  /// Whether -A_cut_out has b.
+  bool cuts(int b, int a) const {
+    if (!is_body(a)) return false;
+    const BodyConfig& body = config.bodies[a];
+    const auto& list = is_body(b) ? body.cut_out_bodies : body.cut_out;
+    return std::find(list.begin(), list.end(), is_body(b) ? b : b - bodies) != list.end();
+  }
+  /// What it fills as it is placed.
+  std::unique_ptr<Filled> as_placed(int n) const {
+    if (!is_body(n))
+      return std::make_unique<Filled>(config.rigids[n - bodies].shape, std::vector<Shape>{}, config.mesh,
+                                      config.dim);
+    const BodyConfig& body = config.bodies[n];
+    const auto holes = cut_out_of(config, body);
+    if (body.shape.kind == ShapeKind::particles)
+      return std::make_unique<Filled>(body.shape, source_of(body), holes, config.mesh, config.dim);
+    return std::make_unique<Filled>(body.shape, holes, config.mesh, config.dim);
+  }
+  /// What it fills when the stage begins.
+  std::unique_ptr<Filled> as_it_is(int n, const Present& present) const {
+    if (is_placed(n)) return as_placed(n);
+    if (is_body(n))
+      return std::make_unique<Filled>(config.bodies[n].shape, present.soil[n], config.mesh, config.dim);
+    auto filled = as_placed(n);
+    filled->move(present.rigids[n - bodies]);
+    return filled;
+  }
+};
+
+/// The overlaps of those that fill something, in pairs that `looks`(a, b) takes. Rigids may overlap.
+template <class Looks>
+PetscErrorCode look_at_pairs(MPI_Comm comm, const Things& things,
+                             const std::vector<std::unique_ptr<Filled>>& filled, const Looks& looks,
+                             std::vector<Overlap>* overlaps) {
+  PetscFunctionBeginUser;
+  for (int a = 0; a < things.bodies; ++a)
+    for (int b = a + 1; b < things.all; ++b) {
+      if (!filled[a] || !filled[b] || !looks(a, b)) continue;
+      Overlap overlap;
+      PetscCall(overlap_of(comm, *filled[a], *filled[b], things.config.dim, &overlap.volume));
+      if (overlap.volume == 0) continue;
+      const bool second = things.is_body(b) && filled[b]->volume > filled[a]->volume;
+      overlap.body = second ? b : a;
+      overlap.other = things.name(second ? a : b);
+      overlap.pair = {a, b};
+      overlaps->push_back(overlap);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+std::string volume_text(const Overlap& overlap, const Config& config) {
+  return formatted("%.4g %s", overlap.volume, config.dim == 2 ? "m2" : "m3");
+}
+
 }  // namespace
 
 PetscErrorCode find_overlaps(MPI_Comm comm, const Config& config, std::vector<Overlap>* overlaps) {
   PetscFunctionBeginUser;
-  const int bodies = static_cast<int>(config.bodies.size()),
-            all = bodies + static_cast<int>(config.rigids.size());
-  std::vector<std::unique_ptr<Filled>> filled;
-  for (const BodyConfig& body : config.bodies) {
-    const auto holes = cut_out_of(config, body);
-    const bool listed = body.shape.kind == ShapeKind::particles;
-    PetscCallCXX(filled.push_back(
-        listed ? std::make_unique<Filled>(body.shape, source_of(body), holes, config.mesh, config.dim)
-               : std::make_unique<Filled>(body.shape, holes, config.mesh, config.dim)));
-  }
-  for (const RigidConfig& rigid : config.rigids)
-    PetscCallCXX(filled.push_back(
-        std::make_unique<Filled>(rigid.shape, std::vector<Shape>{}, config.mesh, config.dim)));
-  for (int a = 0; a < bodies; ++a)
-    for (int b = a + 1; b < all; ++b) {
-      Overlap overlap;
-      PetscCall(overlap_of(comm, *filled[a], *filled[b], config.dim, &overlap.volume));
-      if (overlap.volume == 0) continue;
-      const bool second = b < bodies && filled[b]->volume > filled[a]->volume;
-      overlap.body = second ? b : a;
-      overlap.other = second       ? config.bodies[a].name
-                      : b < bodies ? config.bodies[b].name
-                                   : config.rigids[b - bodies].name;
-      overlaps->push_back(overlap);
-    }
+  const Things things(config);
+  std::vector<std::unique_ptr<Filled>> filled(things.all);
+  for (int n = 0; n < things.all; ++n)
+    if (things.is_there(n)) PetscCallCXX(filled[n] = things.as_placed(n));
+  PetscCall(look_at_pairs(
+      comm, things, filled, [](int, int) { return true; }, overlaps));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode find_overlaps_of_placed(MPI_Comm comm, const Config& config, const std::vector<char>& fixed,
+                                       std::vector<Overlap>* overlaps) {
+  PetscFunctionBeginUser;
+  const Things things(config);
+  std::vector<std::unique_ptr<Filled>> filled(things.all);
+  for (int n = 0; n < things.all; ++n)
+    if (things.is_placed(n) || (!things.is_body(n) && things.is_there(n) && fixed[n - things.bodies]))
+      PetscCallCXX(filled[n] = things.as_placed(n));
+  const auto looks = [&](int a, int b) { return things.is_placed(b) || !things.cuts(b, a); };
+  PetscCall(look_at_pairs(comm, things, filled, looks, overlaps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode find_overlaps_at_stage(MPI_Comm comm, const Config& config, const Present& present,
+                                      std::vector<Overlap>* overlaps) {
+  PetscFunctionBeginUser;
+  const Things things(config);
+  std::vector<std::unique_ptr<Filled>> filled(things.all);
+  for (int n = 0; n < things.all; ++n) {
+    const bool gone = things.is_body(n) && !things.is_placed(n) && present.soil[n].empty();
+    if (things.is_there(n) && !gone) PetscCallCXX(filled[n] = things.as_it_is(n, present));
+  }
+  const auto looks = [&](int a, int b) {
+    const bool one = things.is_placed(a), other = things.is_placed(b);
+    return one && other ? true : (one || other) && !things.cuts(a, b) && !things.cuts(b, a);
+  };
+  PetscCall(look_at_pairs(comm, things, filled, looks, overlaps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+std::vector<char> cut_at_stage(const Config& config, int body, const Present& present,
+                               const std::vector<double>& position) {
+  const Things things(config);
+  const int dim = config.dim;
+  std::vector<char> out(position.size() / dim);
+  for (int n = 0; n < things.all; ++n) {
+    const bool meet = things.is_placed(n) != things.is_placed(body);  // both are there from now on
+    const bool gone = things.is_body(n) && !things.is_placed(n) && present.soil[n].empty();
+    if (!meet || gone || !things.is_there(n) || !things.cuts(n, body)) continue;
+    const std::unique_ptr<Filled> filled = things.as_it_is(n, present);
+    for (std::size_t p = 0; p < out.size(); ++p) {
+      Vec3 x{};
+      std::copy_n(&position[p * dim], dim, x.begin());
+      filled->enter_row(x[dim - 1], x[dim - 1]);
+      if (filled->holds(x)) out[p] = 1;
+    }
+  }
+  return out;
 }
 
 std::vector<std::string> describe(const std::vector<Overlap>& overlaps, const Config& config) {
@@ -154,15 +262,29 @@ std::vector<std::string> describe(const std::vector<Overlap>& overlaps, const Co
     std::vector<std::string> names;
     for (const int rigid : body.cut_out) names.push_back(config.rigids[rigid].name);
     for (const int other : body.cut_out_bodies) names.push_back(config.bodies[other].name);
-    char volume[40];
-    std::snprintf(volume, sizeof volume, "%.4g %s", overlaps[k].volume, config.dim == 2 ? "m2" : "m3");
     lines.push_back("mpm: -" + body.name +
                     "_cut_out: " + (names.empty() ? "not given" : "given \"" + join(names) + "\"") +
                     ", takes " + overlaps[k].other + (names.empty() ? "" : " too") +
                     ", or shapes that do not overlap: " + body.name + " and " + overlaps[k].other + " have " +
-                    volume + " in common");
+                    volume_text(overlaps[k], config) + " in common");
   }
   return lines;
+}
+
+std::string describe_at_stage(const std::vector<Overlap>& overlaps, const Config& config) {
+  const Things things(config);
+  std::vector<std::string> parts;
+  for (const Overlap& overlap : overlaps) {
+    const auto [a, b] = overlap.pair;
+    const int placed = things.is_placed(a) ? a : b, other = placed == a ? b : a;
+    const int cut = things.is_body(placed) ? placed : other;
+    parts.push_back(things.name(placed) + " has " + volume_text(overlap, config) + " in common with " +
+                    things.name(other) + " (-" + things.name(cut) + "_cut_out " +
+                    things.name(cut == placed ? other : placed) + " leaves out " + things.name(cut) +
+                    " there)");
+  }
+  return "stage " + config.stage.name +
+         " places what is in the place of something else: " + join(parts, ", ");
 }
 
 }  // namespace mpm

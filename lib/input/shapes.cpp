@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "input/cut_cells.hpp"
+#include "input/groups.hpp"
 #include "input/region.hpp"
 
 namespace mpm {
@@ -160,8 +161,12 @@ std::vector<std::pair<std::string, std::string>> files_of(const Shape& shape) {
 
 std::vector<Shape> cut_out_of(const Config& config, const BodyConfig& body) {
   std::vector<Shape> shapes;
-  for (const int rigid : body.cut_out) shapes.push_back(config.rigids[rigid].shape);
-  for (const int other : body.cut_out_bodies) shapes.push_back(config.bodies[other].shape);
+  const int placed = placed_at(config.stage, body.name);
+  const auto add = [&](const auto& other) {
+    if (placed_at(config.stage, other.name) == placed) shapes.push_back(other.shape);
+  };
+  for (const int rigid : body.cut_out) add(config.rigids[rigid]);
+  for (const int other : body.cut_out_bodies) add(config.bodies[other]);
   return shapes;
 }
 

@@ -10,8 +10,8 @@ namespace mpm {
 namespace {
 
 /// The options that a stage alone has.
-constexpr const char* k_stage_keys[] = {"end",   "unbalanced_ratio", "end_rigid", "end_displacement", "reset",
-                                        "remove"};
+constexpr const char* k_stage_keys[] = {"end",   "unbalanced_ratio", "end_rigid", "end_displacement",
+                                        "reset", "remove",           "place"};
 
 /// The name of an option of the stage in the reader of the stage, and in the help.
 std::string name_of(const OptionReader& in, const char* key) {
@@ -30,6 +30,8 @@ void read_end_by_displacement(OptionReader& in, const Config& config, StageConfi
     in.reject(name_of(in, "end"), "time or equilibrium where there is no rigid body");
   else
     in.word(rigid, in.listing() ? std::vector<std::string>{"NAME"} : rigids, stage.end_rigid);
+  if (!config.rigids.empty() && config.rigids[stage.end_rigid].absent)
+    in.reject(rigid.name, "a rigid body that is in the run in this stage");
   in.number({.name = name_of(in, "end_displacement"),
              .meaning = "displacement: its size since the stage began, at which the stage ends",
              .unit = "m",
@@ -37,23 +39,6 @@ void read_end_by_displacement(OptionReader& in, const Config& config, StageConfi
              .required = !in.listing(),
              .standard = in.listing() ? "required with displacement" : ""},
             stage.end_displacement);
-}
-
-/// The bodies that a stage removes. The first stage has nothing to remove.
-void read_removed(OptionReader& in, const Config& config, StageConfig& stage) {
-  const Option option{.name = name_of(in, "remove"),
-                      .meaning = "bodies that are removed when the stage begins, as by an excavation",
-                      .standard = "none"};
-  if (!in.listing() && stage.number == 1) return in.not_taken("remove", "the first stage has all bodies");
-  std::vector<std::string> bodies, names;
-  for (const BodyConfig& body : config.bodies) bodies.push_back(body.name);
-  const std::string takes = in.listing() ? "names of -bodies" : "names of -bodies: " + join(bodies, ", ");
-  if (!in.list_of(option, takes, names)) return;
-  for (const std::string& name : names) {
-    const auto found = std::find(bodies.begin(), bodies.end(), name);
-    if (found == bodies.end()) return in.reject(option.name, takes);
-    stage.remove.push_back(static_cast<int>(found - bodies.begin()));
-  }
 }
 
 /// Whether one name is the other, or begins the options of the other.
@@ -148,7 +133,7 @@ void read_stage(OptionReader& in, Config& config) {
   else
     for (const char* key : {"end_rigid", "end_displacement"})
       in.not_taken(key, "the stage does not end by a displacement");
-  read_removed(in, config, stage);
+  read_stage_bodies(in, config, stage);
   in.word(
       {.name = name_of(in, "reset"),
        .meaning = "on: at the end of the stage velocities, displacements and plastic strains become zero, "

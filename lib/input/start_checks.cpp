@@ -28,6 +28,7 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
   const MaterialConfig& material = config.materials[body.material];
   const int up = config.dim - 1;
   body.largest_pressure = std::max(0.0, pressure_of(body.stress));
+  if (body.from_before) return;  // it goes on as it is
   if (body.shape.kind != ShapeKind::particles) {
     const Bounds bounds = bounds_of(body.shape, mesh, config.dim);
     if (check_start(in, body.name, material, bounds.lower[up], body.stress))

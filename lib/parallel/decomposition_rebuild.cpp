@@ -33,7 +33,7 @@ auto on_host(const View& view, int n) {
 
 // Of a rank in SavedState::bounds: bound, increment, whether a report is under way, the two numbers of it,
 // sum, and the two numbers of the next report.
-constexpr int k_bounds = 8;
+constexpr int k_bounds = k_saved_bounds;
 constexpr double k_worth = 0.02;  // least gain in balance for which patches change hands
 
 }  // namespace

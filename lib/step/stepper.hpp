@@ -79,6 +79,9 @@ class Stepper {
   virtual PetscErrorCode snapshot(Snapshot* snapshot) = 0;
   /// Rows of partition.csv, on rank 0: the patches that hold particles, with these and their rank.
   virtual PetscErrorCode ownership(std::vector<OwnedPatch>* patches) = 0;
+  /// After the soil was changed between two steps: the energy balance goes on with what is dissipated and
+  /// what the update takes as they were in `before`. Collective.
+  virtual PetscErrorCode keep_balance(const EnergyRow& before) = 0;
   /// What the log should tell of the rebuilds since the last call.
   virtual std::string drain_log() = 0;
   /// None on one rank. Collective.

@@ -1,6 +1,7 @@
 #include "step/typed_stepper.hpp"
 #include "common/f_bar.hpp"
 #include "common/revolution.hpp"
+#include "common/text.hpp"
 #include "device/device_agrees.hpp"
 #include "input/courant.hpp"
 #include "input/shapes.hpp"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numeric>
 
 namespace mpm {
 namespace {
@@ -65,7 +67,7 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   in.position = std::move(particles.position);
   in.particle_volume = particles.particle_volume;
   in.half_length = particles.spacing / config.mesh.spacing / 2;
-  in.density = material.density;
+  in.density = density_of(config, body);
   in.velocity = body.velocity;
   in.particle_velocity = std::move(particles.velocity);
   in.volume = std::move(particles.volume), in.mass = std::move(particles.mass);
@@ -159,6 +161,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
     note_heights<Dim>(config_.mesh, particles);
   }
   PetscCall(keep_heights(model));
+  PetscCall(leave_out(&model));
   std::vector<BodyInput> bodies;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     bodies.push_back(body_input<Dim>(config_, config_.bodies[b], std::move(model.bodies[b])));
@@ -309,10 +312,13 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscCallCXX(*saved = save_state(state_));
   PetscCall(save_for_starts(saved));
   saved->particles = ids();
+  saved->unused = unused_;
+  name_columns(saved);
   PetscCall(save_energy(saved));
   PetscCall(save_sections(saved));
   if (ranks_) PetscCall(gather_strays(saved));
   if (ranks_) PetscCall(ranks_->save(saved));
+  rigids_.widen(*saved);
   PetscCall(save_sides(&saved->sides));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -320,6 +326,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long since_rebuild, bool* rebuilt) {
   PetscFunctionBeginUser;
+  rigids_.narrow(saved);
+  unused_ = saved.unused;
   const double margin = config_.p2g.margin;
   const auto& forced = config_.p2g.rebuild_interval;
   if (forced) saved.due_in = 0;
@@ -336,7 +344,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   double lost = 0;
   for (const Lost& of_body : state_.strays.lost) lost += of_body.count + of_body.merged;
   if (state_.soil.points.splits) children_ = std::max(0L, saved.particles - total_);
-  if (sum_over_ranks(state_.soil.points.count + lost) != ids() && unfit.what.empty())
+  const long unused = std::accumulate(unused_.begin(), unused_.end(), 0L);
+  if (sum_over_ranks(state_.soil.points.count + lost) + static_cast<double>(unused) != ids() &&
+      unfit.what.empty())
     unfit.what = "the number of particles";
   PetscCall(share(&unfit));
   PetscCheck(unfit.what.empty(), comm_, PETSC_ERR_ARG_SIZ,

@@ -14,6 +14,7 @@
 #include "parallel/kept_by_id.hpp"
 #include "rebuild/merge_particles.hpp"
 #include "rebuild/split_particles.hpp"
+#include "step/present_rigids.hpp"
 #include "step/step.hpp"
 #include "step/stepper.hpp"
 #include "transfer/download.hpp"
@@ -30,13 +31,15 @@ namespace mpm {
 template <class Space, class T, int Dim>
 class TypedStepper final : public Stepper {
  public:
-  TypedStepper(const Config& config, MPI_Comm comm) : config_(config), comm_(comm) {}
+  TypedStepper(const Config& config, MPI_Comm comm)
+      : rigids_(config), config_(rigids_.narrowed(config)), comm_(comm) {}
 
   PetscErrorCode set_up(Model&& model, Failure* failure) override;
   PetscErrorCode advance(const StepRange& steps, Batch* batch) override;
   PetscErrorCode rebuild(double elapsed, Failure* failure) override;
   PetscErrorCode measure(double interval, HistoryRow* row) override;
   PetscErrorCode unbalanced_ratio(double time, double* ratio) override;
+  PetscErrorCode keep_balance(const EnergyRow& before) override;
   PetscErrorCode begin_probes(ProbeState* state) override;
   PetscErrorCode sum_sections(std::vector<SectionSum>* sums) override;
   PetscErrorCode measure_probes(const ProbeState& state, std::vector<double>* values) override;
@@ -49,7 +52,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode save(SavedState* saved) const override;
   PetscErrorCode restore(SavedState&& saved, long since_rebuild, bool* rebuilt) override;
   std::vector<FunctionTime> times() const override;
-  long particles() const override { return total_ + children_; }
+  long particles() const override;
   int patches() const override { return static_cast<int>(sum_over_ranks(state_.patches.slots)); }
   std::size_t memory() const override;
   std::string strategy() const override;
@@ -100,6 +103,10 @@ class TypedStepper final : public Stepper {
   PetscErrorCode correct_positions(double elapsed);
   /// Ids that have been given to particles of all ranks.
   long ids() const { return total_ + children_; }
+  /// Leaves particles out that are not in the run; their ids stay theirs.
+  PetscErrorCode leave_out(Model* model);
+  /// Which fields of the saved soil hold the state variables of which law.
+  void name_columns(SavedState* saved) const;
   /// What a start from a checkpoint needs and a restart has already.
   PetscErrorCode save_for_starts(SavedState* saved) const;
   double velocity_of(std::size_t rigid, int d, double present, double time) const;
@@ -107,7 +114,8 @@ class TypedStepper final : public Stepper {
   long until_sample() const;
   long steps_to_rebuild(const Control& control, bool rebuilt);
 
-  Config config_;
+  PresentRigids rigids_;
+  Config config_;  // of the rigids that are there
   MPI_Comm comm_;
   State<Space, T, Dim> state_;
   std::unique_ptr<Decomposition<Space, T, Dim>> ranks_;  // null on one rank
@@ -119,8 +127,9 @@ class TypedStepper final : public Stepper {
   double stepping_ = 0;        // s of wall time in advance
   double last_increment_ = std::numeric_limits<double>::infinity();  // cells, of all ranks, of the last batch
   std::vector<long> first_;                                          // id of the first particle of each body
-  long total_ = 0;                                                   // particles of all ranks at the start
-  long children_ = 0;                                                // that splitting has added, on all ranks
+  std::vector<long> unused_;                            // ids of each body that no particle has had
+  long total_ = 0;                                      // particles of all ranks at the start
+  long children_ = 0;                                   // that splitting has added, on all ranks
   double kinetic_at_start_ = 0, elastic_at_start_ = 0;  // J, of all ranks, where there is an energy balance
   std::vector<SectionPlane> planes_;                    // of the sections among the probes
   std::vector<SectionSum> lost_beyond_;                 // by plane: what has left there, on this rank

@@ -46,6 +46,23 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_energy(HistoryRow* row) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::keep_balance(const EnergyRow& before) {
+  PetscFunctionBeginUser;
+  HistoryRow row;
+  collect_soil(state_);
+  PetscCall(sum_soil());
+  for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
+    BodyRow body;
+    PetscCall(measure_body(b, &body));
+    row.bodies.push_back(body);
+  }
+  PetscCall(measure_energy(&row));
+  elastic_at_start_ += before.dissipated - row.energy.dissipated;
+  kinetic_at_start_ += row.energy.update - before.update;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /// The works of all ranks, and the energies at the start.
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::save_energy(SavedState* saved) const {
@@ -90,6 +107,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::count_cells(HistoryRow* row) const {
   template PetscErrorCode TypedStepper<Space, T, Dim>::measure_energy(HistoryRow*);    \
   template PetscErrorCode TypedStepper<Space, T, Dim>::save_energy(SavedState*) const; \
   template void TypedStepper<Space, T, Dim>::restore_energy(const SavedState&);        \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::keep_balance(const EnergyRow&); \
   template PetscErrorCode TypedStepper<Space, T, Dim>::count_cells(HistoryRow*) const;
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

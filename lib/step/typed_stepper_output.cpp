@@ -61,6 +61,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
     }
     row->rigids.push_back(rigid);
   }
+  rigids_.widen(row->rigids);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -230,6 +231,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
       }
     out->rigids.push_back(std::move(rigid));
   }
+  rigids_.widen(out->rigids);
   if (config_.output.nodes) {
     out->nodes = {node_snapshot<Dim>(download_nodes(state_), config_.mesh.lower)};
     if (ranks_) PetscCall(gather_nodes(comm_, &out->nodes[0]));

@@ -20,30 +20,31 @@ double wave_speed(const Config& config, const BodyConfig& body) {
   const bool of_file = body.shape.kind == ShapeKind::particles && !body.stress_given;
   if (of_file) stress = {-body.largest_pressure, -body.largest_pressure, -body.largest_pressure};
   return std::sqrt((wave_modulus(law, lowest, stress, body.largest_own_parameter) + material.pore_stiffness) /
-                   material.density);
+                   density_of(config, body));
 }
 
 bool stiffness_changes(const Config& config) {
   if (config.particle_domain != ParticleDomain::fixed) return true;
   return std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& body) {
-    return stiffness_changes(model_index(config.materials[body.material].model));
+    return !body.absent && stiffness_changes(model_index(config.materials[body.material].model));
   });
 }
 
 double critical_time_step(const Config& config) {
   double step = std::numeric_limits<double>::infinity();
   for (const BodyConfig& body : config.bodies)
-    step = std::min(step, config.mesh.spacing / wave_speed(config, body));
+    if (!body.absent) step = std::min(step, config.mesh.spacing / wave_speed(config, body));
   return step;
 }
 
 double viscous_time_step(const Config& config) {
   double step = std::numeric_limits<double>::infinity();
   for (const BodyConfig& body : config.bodies) {
+    if (body.absent) continue;
     const MaterialConfig& material = config.materials[body.material];
     const auto law =
         make_material<double>(model_index(material.model), material.parameters, material.object.get());
-    step = std::min(step, largest_time_step(law, config.mesh.spacing, material.density, config.dim));
+    step = std::min(step, largest_time_step(law, config.mesh.spacing, density_of(config, body), config.dim));
   }
   return step;
 }

@@ -4,9 +4,9 @@
     stages.py MPM [--count 50] [--seed 1] [--folder FOLDER] [--dims 2,3] [--precisions double,single]
 
 A deck has soil of one to three bodies under gravity, up to two rigid bodies, and two to four stages, of which each changes some
-loads, walls, contacts, damping and intervals of output, or removes a body. Checked are, bit by bit: a run that is cut in two by a
-checkpoint at any step; a first stage and a restart with -restart_change in the place of the second stage; stages that change
-nothing in the place of one run. On two ranks positions must be the same to round-off. Mass is lost by removal alone.
+loads, walls, contacts, damping, the clay and intervals of output, or removes a body. Checked are, bit by bit: a run that is cut
+in two by a checkpoint at any step; a first stage and a restart with -restart_change in the place of the second stage; stages
+that change nothing in the place of one run. On two ranks positions must be the same to round-off. Mass is lost by removal alone.
 """
 import sys
 
@@ -61,6 +61,8 @@ class Deck:
             found.append(("damping", draw.choice(["0", "0.3", "0.7"])))
         if draw.random() < 0.3:
             found.append((draw.choice(["mesh_xmin", "mesh_xmax", "mesh_ymin"]), draw.choice(["fixed", "roller"])))
+        if draw.random() < 0.4:
+            found.append(draw.choice([("clay_su", "2000"), ("clay_young", "1.5e6"), ("clay_poisson", "0.4")]))
         for name in self.rigids:
             if draw.random() < 0.5:
                 motion = draw.choice(["fixed", "prescribed", "dynamic"])
@@ -198,4 +200,5 @@ def main():
     print(f"{given.count} decks: cut runs, restarts in the place of stages and stages that change nothing give the same bits")
 
 
-main()
+if __name__ == "__main__":
+    main()

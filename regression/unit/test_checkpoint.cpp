@@ -345,6 +345,7 @@ TEST_CASE("a state that no kernel could take is refused", "[checkpoint]") {
   SavedState sound;
   sound.rigids.resize(1);
   sound.lost.resize(config.bodies.size() * k_lost);
+  sound.unused.resize(config.bodies.size()), sound.variables.resize(config.bodies.size());
   sound.soil.address = {(1 + 5) * 64 + 3};  // the first patch of the mesh: 5 patches a row with the ring
   sound.soil.fields = {{"coordinate", 2, 8, {0.25, 1.2}},
                        {"body", 1, 2, {1}},
@@ -370,6 +371,8 @@ TEST_CASE("a state that no kernel could take is refused", "[checkpoint]") {
     CHECK(refused([n](SavedState& s) { ++s.soil.fields[n].components; }));
   }
   CHECK(refused([](SavedState& s) { s.bound = 0.7; }));
+  CHECK(refused([](SavedState& s) { s.unused[1] = -1; }));
+  CHECK(refused([](SavedState& s) { s.variables.pop_back(); }));
   CHECK(refused([](SavedState& s) { s.rigids[0].velocity[0] = HUGE_VAL; }));
   CHECK(refused([](SavedState& s) { s.rigids.clear(); }));
   CHECK(refused([](SavedState& s) { s.impulse.address = {5}; }));

@@ -4,6 +4,7 @@
 // of a vector is zero and unused.
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -116,6 +117,11 @@ struct BodyConfig {
   std::optional<double> largest_own_parameter;
   std::vector<int> cut_out;         // indices into Config::rigids: particles in their shapes are left out
   std::vector<int> cut_out_bodies;  // the same of Config::bodies
+  bool absent = false;              // a later stage places it
+  bool from_before = false;         // it has been in the run before this stage
+  bool removed = false;             // this stage or an earlier one removes it
+  /// kg/m3, with which its soil was created, where that is not the density of its present material.
+  std::optional<double> density;
 };
 
 /// Where the normals of a contact come from: the body's own surface, or its nodal mass gradient (Eq. 3).
@@ -145,6 +151,7 @@ struct RigidConfig {
   double contact_gap_reach = 0.15;  // cells, gap at which it ends
   double contact_gap_exponent = 6;  // -
   bool has_shear_limit = false;     // -NAME_shear_limit was given (it then bounds the friction too)
+  bool absent = false;              // not in the run in this stage: a later one places it, or it was removed
 };
 
 /// Courant numbers above this are known to be unstable (the energy of an elastic bar grows at 0.7).
@@ -170,7 +177,12 @@ struct StageConfig {
   int end_rigid = 0;               // displacement: index into Config::rigids
   double end_displacement = 0;     // m, size of its displacement since the stage began
   std::vector<int> remove;         // indices into Config::bodies: removed when it begins
-  bool reset = false;              // at its end velocities, displacements and plastic strains become zero
+  std::vector<int> remove_rigids;  // the same of Config::rigids
+  std::vector<int> place, place_rigids;  // likewise: placed when it begins
+  bool reset = false;  // at its end velocities, displacements and plastic strains become zero
+  /// Numbers of the stages that place and remove bodies and rigids, by their names in lower case: of all
+  /// stages of the run.
+  std::map<std::string, int> placed_at, removed_at;
 };
 
 struct P2GConfig {
@@ -314,5 +326,11 @@ struct Config {
   std::vector<std::string> stages;  // names of all stages, in order; empty: the run has none
   bool dry_run = false;             // tell what the run would take, and do not run
 };
+
+/// Density with which the soil of a body was created [kg/m3]: its particles keep their masses where a stage
+/// changes its material.
+inline double density_of(const Config& config, const BodyConfig& body) {
+  return body.density.value_or(config.materials[body.material].density);
+}
 
 }  // namespace mpm

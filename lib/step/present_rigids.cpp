@@ -1,0 +1,85 @@
+#include "step/present_rigids.hpp"
+
+#include <algorithm>
+
+namespace mpm {
+namespace {
+
+/// Rows of `head` numbers and then `width` numbers a rigid, of some rigids, as rows of others: the numbers of
+/// rigid from[k] go to rigid to[k], and all others are 0.
+std::vector<double> rearranged(const std::vector<double>& rows, std::size_t head, std::size_t width,
+                               std::size_t before, std::size_t after, const std::vector<std::size_t>& from,
+                               const std::vector<std::size_t>& to) {
+  const std::size_t length = head + width * before, now = head + width * after;
+  if (length == 0 || rows.size() % length != 0) return rows;  // those of a file that somebody has altered
+  std::vector<double> out(rows.size() / length * now);
+  for (std::size_t n = 0; n < rows.size() / length; ++n) {
+    const double* const row = &rows[n * length];
+    std::copy_n(row, head, &out[n * now]);
+    for (std::size_t k = 0; k < from.size(); ++k)
+      std::copy_n(row + head + width * from[k], width, &out[n * now + head + width * to[k]]);
+  }
+  return out;
+}
+
+/// 0, 1, ...
+std::vector<std::size_t> counted(std::size_t count) {
+  std::vector<std::size_t> numbers(count);
+  for (std::size_t k = 0; k < count; ++k) numbers[k] = k;
+  return numbers;
+}
+
+}  // namespace
+
+PresentRigids::PresentRigids(const Config& config) : others_(config.rigids.size()) {
+  for (std::size_t r = 0; r < config.rigids.size(); ++r) {
+    names_.push_back(config.rigids[r].name);
+    if (!config.rigids[r].absent) place_.push_back(r);
+  }
+}
+
+Config PresentRigids::narrowed(const Config& config) const {
+  Config out = config;
+  std::erase_if(out.rigids, [](const RigidConfig& rigid) { return rigid.absent; });
+  return out;
+}
+
+void PresentRigids::narrow(SavedState& state) {
+  if (all() || state.rigids.size() != others_.size()) return;  // the latter is told
+  const std::vector<std::size_t> here = counted(place_.size());
+  others_ = state.rigids;
+  state.impulse.values = rearranged(state.impulse.values, 0, 1, others_.size(), place_.size(), place_, here);
+  state.bounds = rearranged(state.bounds, k_saved_bounds, 3, others_.size(), place_.size(), place_, here);
+  state.rigids.clear();
+  for (const std::size_t r : place_) state.rigids.push_back(others_[r]);
+}
+
+void PresentRigids::widen(SavedState& state) const {
+  if (all()) return;
+  const std::vector<std::size_t> here = counted(place_.size());
+  state.impulse.values =
+      place_.empty() ? std::vector<double>(state.impulse.address.size() * others_.size())
+                     : rearranged(state.impulse.values, 0, 1, place_.size(), others_.size(), here, place_);
+  state.bounds = rearranged(state.bounds, k_saved_bounds, 3, place_.size(), others_.size(), here, place_);
+  std::vector<SavedRigid> rigids = others_;
+  for (std::size_t k = 0; k < place_.size(); ++k) rigids[place_[k]] = state.rigids[k];
+  state.rigids = std::move(rigids);
+}
+
+void PresentRigids::widen(std::vector<RigidRow>& rows) const {
+  if (all()) return;
+  std::vector<RigidRow> out(others_.size());
+  for (std::size_t r = 0; r < others_.size(); ++r) out[r].displacement = others_[r].displacement;
+  for (std::size_t k = 0; k < place_.size(); ++k) out[place_[k]] = rows[k];
+  rows = std::move(out);
+}
+
+void PresentRigids::widen(std::vector<ParticleSnapshot>& groups) const {
+  if (all()) return;
+  std::vector<ParticleSnapshot> out(others_.size());
+  for (std::size_t r = 0; r < others_.size(); ++r) out[r].name = names_[r];
+  for (std::size_t k = 0; k < place_.size(); ++k) out[place_[k]] = std::move(groups[k]);
+  groups = std::move(out);
+}
+
+}  // namespace mpm

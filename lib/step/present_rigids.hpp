@@ -1,0 +1,35 @@
+#pragma once
+// The stepper knows of the rigid bodies that are in the run; the history, frames and checkpoints know of all.
+
+#include <vector>
+
+#include "common/snapshot.hpp"
+#include "data/saved_state.hpp"
+#include "mpm/config.hpp"
+
+namespace mpm {
+
+/// Which rigid bodies of a configuration are in the run.
+class PresentRigids {
+ public:
+  explicit PresentRigids(const Config& config);
+
+  /// The configuration with these rigids alone.
+  Config narrowed(const Config& config) const;
+  /// A state of all rigids becomes one of these; the others stay as they are then.
+  void narrow(SavedState& state);
+  /// A state of these rigids becomes one of all.
+  void widen(SavedState& state) const;
+  /// The same of the rows of the history, and of a frame, where those that are not there have no particles.
+  void widen(std::vector<RigidRow>& rows) const;
+  void widen(std::vector<ParticleSnapshot>& groups) const;
+
+ private:
+  bool all() const { return place_.size() == others_.size(); }
+
+  std::vector<std::size_t> place_;  // of each that is there, among all
+  std::vector<SavedRigid> others_;  // of all, where those that are not there stand
+  std::vector<std::string> names_;  // of all
+};
+
+}  // namespace mpm
