@@ -35,6 +35,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
   PetscFunctionBeginUser;
   row->bodies.clear(), row->rigids.clear();
   set_gravity(row->time);
+  set_loads(row->time);
   collect_soil(state_);
   PetscCall(sum_soil());
   for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
@@ -42,6 +43,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
     PetscCall(measure_body(b, &body));
     row->bodies.push_back(body);
   }
+  PetscCall(measure_loads(row));
   if (state_.energy.on) PetscCall(measure_energy(row));
   PetscCall(count_cells(row));
   row->walls = wall_forces(state_);
@@ -76,8 +78,10 @@ PetscErrorCode TypedStepper<Space, T, Dim>::unbalanced_ratio(double time, double
   PetscFunctionBeginUser;
   collect_soil(state_);
   set_gravity(time);
+  set_loads(time);
   sum_present_soil(state_);
   buoyancy_to_nodes(state_);
+  loads_to_nodes(state_);
   if (ranks_) PetscCall(ranks_->add_present_soil(state_));
   const UnbalancedForces own = unbalanced_forces(state_);
   double sums[2] = {own.force, own.weight};
