@@ -52,6 +52,7 @@ struct FaceTerms {
 };
 template <int Dim>
 using Face = Vector<double, FaceTerms<Dim>::size>;
+inline constexpr int k_most_faces = 3;  // of a particle
 
 /// The soil: the particles of all deformable bodies.
 template <class Space, class T, int Dim>
@@ -71,7 +72,7 @@ struct Soil : Points<Space, T, Dim> {
   /// mesh is periodic.
   Kokkos::View<Vector<T, Dim>*, Memory> periods;
   /// The surfaces of loads that a particle is on; as many are in use as some particle needs.
-  Kokkos::Array<Kokkos::View<Face<Dim>*, Memory>, Dim> faces;
+  Kokkos::Array<Kokkos::View<Face<Dim>*, Memory>, k_most_faces> faces;
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
   Kokkos::View<StoredMaterial<T>*, Memory> materials;
@@ -147,7 +148,7 @@ void for_each_field_of(F&& f, Soil_& s, Others&... others) {
   if (s.has_domain) f("domain", Use::changes, s.domain, others.domain...);
   if (s.splits) f("ancestor", Use::none, s.ancestor, others.ancestor...);
   if (s.has_periods) f("periods", Use::none, s.periods, others.periods...);
-  constexpr const char* face_names[] = {"face_0", "face_1", "face_2"};
+  constexpr const char* face_names[k_most_faces] = {"face_0", "face_1", "face_2"};
   for (int k = 0; k < s.face_count; ++k) f(face_names[k], Use::none, s.faces[k], others.faces[k]...);
 }
 template <class F, class RigidPoints_>

@@ -13,6 +13,7 @@ namespace mpm {
 namespace {
 
 constexpr double k_slack = 1e-6;  // of a particle's width
+constexpr int k_most_loads = 3;   // of a particle: k_most_faces
 
 double along(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -340,9 +341,9 @@ PetscErrorCode check_load_faces(MPI_Comm comm, const Config& config, std::vector
                                  load.name.c_str(), text_of(load.lower, config.dim).c_str(), load.name.c_str(),
                                  text_of(load.upper, config.dim).c_str(), config.bodies[load.body].name.c_str()));
   }
-  if (most > config.dim)
-    lines->push_back(formatted("mpm: -loads: given %d loads on one particle, takes at most %d on each",
-                               most, config.dim));
+  if (most > k_most_loads)
+    lines->push_back(formatted("mpm: -loads: given loads of which %d are on one particle, takes at most %d on each",
+                               most, k_most_loads));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Random loads on surfaces: pressures and tractions, constant and by tables, on bodies of random shapes.
 
-    tractions.py MPM [--count 50] [--seed 1] [--folder FOLDER] [--dims 2,3] [--precisions double,single]
+    tractions.py MPM [--count 50] [--seed 1] [--folder FOLDER] [--dims 2,3] [--precisions double,single] [--backends serial,openmp]
 
 A body that touches nothing has up to three loads on parts of its surface. From row to row its momentum must change by the force that
 the history tells, and by its weight. A table of one value must give the same bits as the constant, and so must a run that is cut in
@@ -191,7 +191,7 @@ def check_stages(binary, empty, base, deck, common, tolerance):
 
 
 def main():
-    given, base = read_arguments(__doc__, "tractions")
+    given, base = read_arguments(__doc__, "tractions", backends="serial,openmp")
     binary = given.binary
     empty = base / "empty.opts"
     empty.write_text("\n")
@@ -203,7 +203,7 @@ def main():
         precision = draw.choice(given.precisions.split(","))
         tolerance = 1e-11 if precision == "double" else 2e-4
         strategy = draw.choice(["sequential", "mosaic", "gather", "tile", "tile"])
-        common = ["-backend", draw.choice(["serial", "openmp"]), "-precision", precision, "-p2g", strategy]
+        common = ["-backend", draw.choice(given.backends.split(",")), "-precision", precision, "-p2g", strategy]
         try:
             whole, flat, timed = fresh(base / "whole"), fresh(base / "flat"), fresh(base / "timed")
             run(binary, empty, whole, *deck.options, *deck.constant, *common)
