@@ -73,7 +73,8 @@ std::string EnergyWatch::check(const HistoryRow& row, const Config& config) {
   if (!(now > available_ + k_slack * passed_ + least_)) return {};
   return formatted(
       "the kinetic energy has grown to %.4g J, and only %.4g J of it have a source (the energy at the start, "
-      "gravity, loads, water, rigids, sides of the mesh): the time step is not stable for this soil; take a smaller "
+      "gravity, loads, water, rigids, sides of the mesh): the time step is not stable for this soil; take a "
+      "smaller "
       "-time_courant",
       now, available_);
 }

@@ -110,11 +110,11 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   std::vector<LoadedSurface> surfaces;
   PetscCall(find_load_faces(comm, config, &model->bodies, &model->face_count, &surfaces));
   for (std::size_t n = 0; n < surfaces.size(); ++n)
-    PetscCall(log.print("load %s: on %ld particles of body %s, area %.9g %s, as a vector out of the body (%s)",
-                        config.loads[n].name.c_str(), surfaces[n].particles,
-                        config.bodies[config.loads[n].body].name.c_str(), surfaces[n].area,
-                        config.dim == 2 && config.geometry == Geometry::plane_strain ? "m" : "m2",
-                        text_of(surfaces[n].vector, config.dim).c_str()));
+    PetscCall(log.print(
+        "load %s: on %ld particles of body %s, area %.9g %s, as a vector out of the body (%s)",
+        config.loads[n].name.c_str(), surfaces[n].particles, config.bodies[config.loads[n].body].name.c_str(),
+        surfaces[n].area, config.dim == 2 && config.geometry == Geometry::plane_strain ? "m" : "m2",
+        text_of(surfaces[n].vector, config.dim).c_str()));
   for (const auto& rigid : config.rigids)
     PetscCall(load_shape("rigid " + rigid.name, rigid.shape, {}, {}, &model->rigids.emplace_back()));
   for (auto* all : {&model->bodies, &model->rigids})

@@ -9,7 +9,7 @@ namespace mpm {
 /// A load in the step at hand.
 template <int Dim>
 struct SurfaceLoad {
-  double pressure;        // Pa, against the normal out of the soil
+  double pressure;       // Pa, against the normal out of the soil
   double traction[Dim];  // Pa, of the area at the start
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 // Loads and motions that follow tables in time: gravity, velocities of sides, velocities and forces of rigid
-// bodies, and loads on surfaces. The end of a step sets those of the next step on the device, so that one launch can do many
-// steps.
+// bodies, and loads on surfaces. The end of a step sets those of the next step on the device, so that one
+// launch can do many steps.
 
 #include "base/spaces.hpp"
 #include "base/time_curve.hpp"
@@ -32,8 +32,8 @@ enum class LoadTarget : int { gravity, velocity, force, side, pressure, traction
 /// whose weight it carries [kg]; 0 elsewhere.
 struct TimedLoad {
   LoadTarget target;
-  int rigid, component;  // of a side, 2 direction + 1 for the upper one stands for the rigid; or the number of
-                         // a surface's load
+  int rigid, component;  // of a side, 2 direction + 1 for the upper one stands for the rigid; or the number
+                         // of a surface's load
   TimedNumber own, gravity;
   double factor;
 };
@@ -98,7 +98,7 @@ struct TimedLoads {
 
   int count() const { return static_cast<int>(loads.extent(0)); }
   LoadsOfStep<T, Dim> of_step() const {
-    return {loads.data(), points.data(), clock.data(), moves_gravity ? gravity.data() : nullptr,
+    return {loads.data(), points.data(),   clock.data(), moves_gravity ? gravity.data() : nullptr,
             sides.data(), surfaces.data(), count()};
   }
 };

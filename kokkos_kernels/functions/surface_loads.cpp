@@ -10,6 +10,11 @@ namespace {
 template <class T>
 inline constexpr T k_thin = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e-6);
 
+/// Cells by which a face may reach beyond a row of nodes and still act at that row: the nodes beyond may have
+/// less than State::mass_cut, where no force acts.
+template <class T>
+inline constexpr T k_at_row = sizeof(T) == sizeof(double) ? T(1e-6) : T(1e-5);
+
 /// Particles that the loads of a State act on.
 template <class Space, class T, int Dim>
 struct LoadedParticles {
@@ -71,7 +76,11 @@ struct PlaceFaces {
     if (particles.has_load(p))
       for (int k = 0; k < particles.soil.face_count; ++k) add_face(p, k, area, force);
     FaceBox<T, Dim> box = box_across(particles.soil, p, axis);
-    box.centre[axis] += area > 0 ? box.half[axis] : area < 0 ? -box.half[axis] : T(0);
+    const T side = area > 0 ? T(1) : area < 0 ? T(-1) : T(0);
+    T& at = box.centre[axis];
+    at += side * box.half[axis];
+    if (const T row = Kokkos::round(at), beyond = side * (at - row); beyond > 0 && beyond < k_at_row<T>)
+      at = row;
     box.half[axis] = k_thin<T>;
     DomainMoments<T, Dim> domain{};
     for (int d = 0; d < Dim; ++d) domain[d] = box.half[d] * box.half[d];
@@ -321,11 +330,11 @@ std::vector<SurfaceSum> sum_surfaces(const State<Space, T, Dim>& s) {
   return sums;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                      \
-  template void list_loaded(State<Space, T, Dim>&);                                         \
-  template LoadSource<Space, T, Dim> place_faces(const State<Space, T, Dim>&, int);         \
-  template void add_loads(State<Space, T, Dim>&);                                           \
-  template void follow_surfaces(State<Space, T, Dim>&, double);                             \
+#define MPM_INSTANTIATE(Space, T, Dim)                                              \
+  template void list_loaded(State<Space, T, Dim>&);                                 \
+  template LoadSource<Space, T, Dim> place_faces(const State<Space, T, Dim>&, int); \
+  template void add_loads(State<Space, T, Dim>&);                                   \
+  template void follow_surfaces(State<Space, T, Dim>&, double);                     \
   template std::vector<SurfaceSum> sum_surfaces(const State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -28,8 +28,8 @@ void follow_surfaces(State<Space, T, Dim>& s, double dt);
 
 /// The surface of a load as it is now, on this rank: sums over its particles that are not alone.
 struct SurfaceSum {
-  double vector[3] = {};   // m2, area as a vector out of the soil
-  double area = 0;         // m2
+  double vector[3] = {};  // m2, area as a vector out of the soil
+  double area = 0;        // m2
   double start_area = 0;  // m2, at the start of the run, of the particles that are here
 };
 template <class Space, class T, int Dim>

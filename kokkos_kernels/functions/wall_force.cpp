@@ -119,8 +119,8 @@ struct PressOnWalls {
         terms.value[SoilTerms<Dim>::mass] -= w * carried;
         const Coord<Dim> node = walls.node(cell, a, step);
         for (int k = 0; k < Dim; ++k)
-          walls.add(node, k, terms.value[SoilTerms<Dim>::force + k],
-                    terms.value[SoilTerms<Dim>::mass] * g[k], sum);
+          walls.add(node, k, terms.value[SoilTerms<Dim>::force + k], terms.value[SoilTerms<Dim>::mass] * g[k],
+                    sum);
       });
     });
   }

@@ -28,7 +28,8 @@ struct BodyParticles {
   long total = 0;                        // of all ranks; 0: those above
   std::vector<int> id;                   // on several ranks: of each particle here, among those of all bodies
   std::vector<double> velocity_gradient;  // m/s a cell [dim^2 N], where the neighbours may be on other ranks
-  std::vector<double> faces;  // surfaces of loads [faces_width N], as FaceTerms has them; empty: there are none
+  std::vector<double>
+      faces;  // surfaces of loads [faces_width N], as FaceTerms has them; empty: there are none
   std::vector<double> domain;  // cells2, moments of domains that stretch [dim (dim + 1) / 2 N], or empty
 };
 

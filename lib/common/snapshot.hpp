@@ -112,13 +112,13 @@ struct HistoryRow {
   std::vector<RigidRow> rigids;
   std::array<std::array<Vec3, 2>, 3> walls{};  // N, of the soil on each side of the mesh
   std::vector<LoadRow> loads{};
-  double load_work = 0;                        // J, of loads on surfaces, since the start
-  double side_work = 0;                        // J, of sides that act on the soil, since the last row
-  int stage = 0;                               // number of the stage, from 1 on; 0: the run has none
-  double unbalanced_ratio = 0;                 // -, where some stage ends by equilibrium
-  long filled_cells = 0, empty_cells = 0;      // cells that hold soil; gaps between them
-  EnergyRow energy{};                          // where the run asks for it
-  std::vector<double> probes{};                // the columns of all probes (output/probes.hpp)
+  double load_work = 0;                    // J, of loads on surfaces, since the start
+  double side_work = 0;                    // J, of sides that act on the soil, since the last row
+  int stage = 0;                           // number of the stage, from 1 on; 0: the run has none
+  double unbalanced_ratio = 0;             // -, where some stage ends by equilibrium
+  long filled_cells = 0, empty_cells = 0;  // cells that hold soil; gaps between them
+  EnergyRow energy{};                      // where the run asks for it
+  std::vector<double> probes{};            // the columns of all probes (output/probes.hpp)
 };
 
 }  // namespace mpm

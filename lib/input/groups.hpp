@@ -81,8 +81,8 @@ void check_shape(OptionReader& in, const std::string& name, const Shape& shape, 
 void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& config, const BodyConfig& body);
 
 /// NAME_table and NAME_table_interpolation, where NAME is the option `of`, a vector of `dim` components, or a
-/// number (dim 1): its values in time till `end` [s]. has_constant: NAME itself is an option too, with the value `constant`, of which a table of one
-/// column gives factors. Returns whether the table is given.
+/// number (dim 1): its values in time till `end` [s]. has_constant: NAME itself is an option too, with the
+/// value `constant`, of which a table of one column gives factors. Returns whether the table is given.
 bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, double end,
                 const Vec3& constant, std::optional<TimeTable>& table);
 

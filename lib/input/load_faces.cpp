@@ -30,7 +30,8 @@ std::array<Vec3, 3> axes_of(const Shape& shape, int dim) {
 /// Particles that may cover the faces of others, with their width [m].
 class Cover {
  public:
-  Cover(const Config& config, double widest) : config_(config), widest_(widest), points_(config.dim, 2 * widest) {}
+  Cover(const Config& config, double widest)
+      : config_(config), widest_(widest), points_(config.dim, 2 * widest) {}
   void add(const Vec3& x, double width) {
     put(x, width);
     for (int d = 0; d < config_.dim; ++d) {  // their images round a period
@@ -195,7 +196,8 @@ class Finder {
     PetscFunctionBeginUser;
     if (size_of(comm_) == 1) PetscFunctionReturn(PETSC_SUCCESS);
     const char* const bytes = reinterpret_cast<const char*>(numbers->data());
-    const std::vector<std::vector<char>> out(size_of(comm_), {bytes, bytes + numbers->size() * sizeof(double)});
+    const std::vector<std::vector<char>> out(size_of(comm_),
+                                             {bytes, bytes + numbers->size() * sizeof(double)});
     std::vector<char> in;
     PetscCall(exchange_records(comm_, sizeof(double), out, &in));
     numbers->resize(in.size() / sizeof(double));
@@ -206,7 +208,8 @@ class Finder {
                double width) const {
     constexpr double k_least_cosine = 0.5;
     if (load.facing) {
-      const double cosine = sign * along(*load.facing, axes[axis]) / std::sqrt(along(*load.facing, *load.facing));
+      const double cosine =
+          sign * along(*load.facing, axes[axis]) / std::sqrt(along(*load.facing, *load.facing));
       if (cosine < k_least_cosine - k_slack) return false;
     }
     if (!is_near(beyond(x, axes[axis], sign * width / 2), load, k_slack * width)) return false;
@@ -256,7 +259,8 @@ FaceOf face_of(const Config& config, const LoadConfig& load, const Marked& marke
 }
 
 /// Appends a load to those of a particle. `width`: numbers of a load.
-void keep(std::vector<std::vector<double>>& of_particles, std::size_t p, int dim, int load, const FaceOf& face) {
+void keep(std::vector<std::vector<double>>& of_particles, std::size_t p, int dim, int load,
+          const FaceOf& face) {
   auto& all = of_particles[p];
   all.insert(all.end(), face.vector.begin(), face.vector.begin() + dim);
   all.insert(all.end(), {face.area, face.steps, load + 1.0});
@@ -290,7 +294,8 @@ PetscErrorCode find_load_faces(MPI_Comm comm, const Config& config, std::vector<
       sums[0] += 1, sums[1] += face.area;
       for (int d = 0; d < dim; ++d) sums[2 + d] += face.vector[d];
     }
-    if (!finder.is_listed(load.body)) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, comm));
+    if (!finder.is_listed(load.body))
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, comm));
     (*surfaces)[n] = {static_cast<long>(sums[0]), sums[1], {sums[2], sums[3], sums[4]}};
   }
   std::size_t most = 0;
@@ -336,14 +341,16 @@ PetscErrorCode check_load_faces(MPI_Comm comm, const Config& config, std::vector
   for (std::size_t n = 0; n < surfaces.size(); ++n) {
     const LoadConfig& load = config.loads[n];
     if (surfaces[n].particles == 0)
-      lines->push_back(formatted("mpm: -%s_lower: given \"%s\", takes, with -%s_upper \"%s\", a box round a part "
-                                 "of the free surface of body %s; no face of its particles is in this one",
-                                 load.name.c_str(), text_of(load.lower, config.dim).c_str(), load.name.c_str(),
-                                 text_of(load.upper, config.dim).c_str(), config.bodies[load.body].name.c_str()));
+      lines->push_back(
+          formatted("mpm: -%s_lower: given \"%s\", takes, with -%s_upper \"%s\", a box round a part "
+                    "of the free surface of body %s; no face of its particles is in this one",
+                    load.name.c_str(), text_of(load.lower, config.dim).c_str(), load.name.c_str(),
+                    text_of(load.upper, config.dim).c_str(), config.bodies[load.body].name.c_str()));
   }
   if (most > k_most_loads)
-    lines->push_back(formatted("mpm: -loads: given loads of which %d are on one particle, takes at most %d on each",
-                               most, k_most_loads));
+    lines->push_back(
+        formatted("mpm: -loads: given loads of which %d are on one particle, takes at most %d on each", most,
+                  k_most_loads));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

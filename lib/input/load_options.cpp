@@ -30,13 +30,14 @@ void read_body_of(OptionReader& in, const Config& config, LoadConfig& load) {
 /// The box in which the surface is at the start.
 void read_box(OptionReader& in, int dim, LoadConfig& load) {
   const auto errors = in.errors();
-  in.vector({.name = load.name + "_lower",
-             .meaning = "lower corner of a box; the load is on the free surface of the body in it at the start: on "
-                        "the faces of particles that no other particle covers, whose centres are in the box",
-             .unit = "m",
-             .range = k_coordinate,
-             .required = true},
-            dim, load.lower);
+  in.vector(
+      {.name = load.name + "_lower",
+       .meaning = "lower corner of a box; the load is on the free surface of the body in it at the start: on "
+                  "the faces of particles that no other particle covers, whose centres are in the box",
+       .unit = "m",
+       .range = k_coordinate,
+       .required = true},
+      dim, load.lower);
   in.vector({.name = load.name + "_upper",
              .meaning = "its upper corner",
              .unit = "m",
@@ -53,8 +54,9 @@ void read_box(OptionReader& in, int dim, LoadConfig& load) {
 void read_facing(OptionReader& in, int dim, LoadConfig& load) {
   const Option option{
       .name = load.name + "_facing",
-      .meaning = "a direction out of the body: of the faces in the box only those whose normal is within 60 "
-                 "degrees of it",
+      .meaning =
+          "a direction out of the body: of the faces in the box only those whose normal is within 60 "
+          "degrees of it",
       .unit = "-",
       .range = k_coordinate,
       .standard = "all"};

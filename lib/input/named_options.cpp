@@ -280,7 +280,8 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config) {
   const auto probes = read_names(
       in, {.name = "probes", .meaning = "names of the probes, places of which the history tells"}, names);
   if (!in.listing()) {
-    for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "probes"}) leave_out(in, list, names);
+    for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "probes"})
+      leave_out(in, list, names);
     forgive_unlisted(in, names);
   }
   auto errors = in.errors();

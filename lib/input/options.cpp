@@ -341,10 +341,12 @@ void check_restart_change(OptionReader& in, const Config& config) {
   if (!in.listing() && config.output.restart.empty()) return in.not_taken(option, "there is no -restart");
   for (const std::string& name : config.output.restart_change)
     if (!name.empty() && !change_rule(name, config).listed)
-      return in.reject(option,
-                       "names of options among gravity, damping, those of the mesh's sides, and of rigids "
-                       "their motion, loads and contact; " +
-                           name + " is none");
+      return in.reject(
+          option,
+          "names of options among gravity, damping, those of the mesh's sides, of loads their pressure and "
+          "traction, and of rigids "
+          "their motion, loads and contact; " +
+              name + " is none");
 }
 
 /// All that a single material point needs. Its law is computed on the processor whatever the backend.

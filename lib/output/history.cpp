@@ -139,9 +139,10 @@ std::string format_energy(const EnergyRow& e) {
   return formatted(
       "energy (J): kinetic %.4g, elastic %.4g, dissipated in the soil %.4g, lost with particles %.4g; work "
       "of "
-      "gravity %.4g, loads %.4g, rigids %.4g, walls and contact %.4g, damping %.4g, velocity update %.4g; missing %.3g",
-      e.kinetic, e.elastic, e.dissipated, e.lost, e.gravity, e.loads, e.rigids, e.contact, e.damping, e.update,
-      e.error);
+      "gravity %.4g, loads %.4g, rigids %.4g, walls and contact %.4g, damping %.4g, velocity update %.4g; "
+      "missing %.3g",
+      e.kinetic, e.elastic, e.dissipated, e.lost, e.gravity, e.loads, e.rigids, e.contact, e.damping,
+      e.update, e.error);
 }
 
 HistoryMark mark_of(const std::string& path, long bytes, std::string* text) {

@@ -92,7 +92,8 @@ void loads_to_nodes(State<Space, T, Dim>& s) {
   if (!s.loads.in_use()) return;
   Kokkos::deep_copy(s.space, s.nodes.load, T(0));
   for (int axis = 0; axis < Dim; ++axis)
-    interpolate<LoadSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, place_faces(s, axis), s.nodes.load);
+    interpolate<LoadSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, place_faces(s, axis),
+                                           s.nodes.load);
   add_loads(s);
 }
 
@@ -162,11 +163,11 @@ struct Step {
       buoyancy_to_nodes(s);  //   and what water carries of it
       loads_to_nodes(s);     //   and the loads on its surface
     }));
-    if (ranks) PetscCall(ranks->add_soil(s));                        //   the sum over ranks
-    PetscCall(complete_nodes(s.space));                              //   strength, particles that are alone
+    if (ranks) PetscCall(ranks->add_soil(s));  //   the sum over ranks
+    PetscCall(complete_nodes(s.space));        //   strength, particles that are alone
     PetscCall(run(StepPhase::nodes, [&] {
-      update_nodes(s, dt);                                // 4 velocities, walls, contact
-      if (s.loads.in_use()) follow_surfaces(s, dt);       //   work of loads, and their areas
+      update_nodes(s, dt);                           // 4 velocities, walls, contact
+      if (s.loads.in_use()) follow_surfaces(s, dt);  //   work of loads, and their areas
     }));
     if (s.energy.on) PetscCall(run(StepPhase::energy, [&] { add_node_works(s, dt); }));
     PetscCall(run(StepPhase::particles, [&] { return update_soil(); }));  // 5 stress, movement

@@ -76,11 +76,11 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_loads(HistoryRow* row) const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                     \
-  template void TypedStepper<Space, T, Dim>::set_up_loads(const Model&);                   \
-  template void TypedStepper<Space, T, Dim>::set_loads(double);                            \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::load_work(double*) const;           \
-  template void TypedStepper<Space, T, Dim>::restore_load_work(double);                    \
+#define MPM_INSTANTIATE(Space, T, Dim)                                           \
+  template void TypedStepper<Space, T, Dim>::set_up_loads(const Model&);         \
+  template void TypedStepper<Space, T, Dim>::set_loads(double);                  \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::load_work(double*) const; \
+  template void TypedStepper<Space, T, Dim>::restore_load_work(double);          \
   template PetscErrorCode TypedStepper<Space, T, Dim>::measure_loads(HistoryRow*) const;
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

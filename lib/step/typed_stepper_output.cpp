@@ -159,6 +159,17 @@ void add_half_lengths(const SoilFields& soil, std::size_t from, std::size_t to, 
   }
 }
 
+/// The area of the faces of loads, as a vector, of the particles [from, to).
+template <int Dim>
+void add_load_areas(const SoilFields& soil, std::size_t from, std::size_t to, ParticleSnapshot* body) {
+  static constexpr const char* names[] = {"load_area_x", "load_area_y", "load_area_z"};
+  for (int d = 0; d < Dim; ++d) {
+    StateField field{names[d], {}};
+    for (std::size_t p = from; p < to; ++p) field.values.push_back(soil.load_area[p * Dim + d]);
+    body->state.push_back(std::move(field));
+  }
+}
+
 /// Along periodic directions, how many lengths of the mesh the particles [from, to) have gone beyond it.
 template <int Dim>
 void add_periods(const MeshConfig& mesh, const SoilFields& soil, std::size_t from, std::size_t to,
@@ -214,6 +225,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     if (has_pore_pressure(config_))  // of all bodies, so that pictures may show them
       add_pore_pressures<Dim>(config_, soil, state_.soil.points.history.pore, from, to, &body);
     add_periods<Dim>(config_.mesh, soil, from, to, &body);
+    if (state_.soil.points.face_count > 0) add_load_areas<Dim>(soil, from, to, &body);
     if (state_.soil.points.has_domain) add_half_lengths<Dim>(soil, from, to, &body);
     body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
     body.reference_height.assign(height.begin() + from, height.begin() + to);

@@ -12,7 +12,7 @@ import sys
 
 import numpy as np
 
-from folders import checkpoints, differences, fresh, rows, run
+from folders import ENVIRONMENT, checkpoints, differences, fresh, rows, run
 from random_decks import draws_of, read_arguments
 
 STEP = 2e-4  # s
@@ -62,7 +62,7 @@ class Deck:
             self.options += f"-block_shape disc -block_centre {vector(centre)} -block_radius {draw.choice([0.6, 0.8])}".split()
         else:
             self.options += f"-block_shape box -block_lower {vector(lower)} -block_upper {vector(upper)}".split()
-            self.options += ["-block_angle_deg", str(draw.choice([10, 30, 45, 77]))] if kind == "turned" else []
+            self.options += ["-block_angle_deg", str(draw.choice([10, 30, 45, -20]))] if kind == "turned" else []
         if kind == "two":  # another body on the first: the face between them is no surface
             names.append("other")
             low, high = list(lower), list(upper)
@@ -70,7 +70,7 @@ class Deck:
             self.options += (f"-other_shape box -other_lower {vector(low)} -other_upper {vector(high)} -other_material soil "
                              f"-other_particles_per_cell {per_cell}").split()
         self.options += f"-bodies {','.join(names)} -block_material soil -block_particles_per_cell {per_cell}".split()
-        self.names, self.centre = names, centre
+        self.names, self.centre, self.covered = names, centre, kind == "two"
         self.options += [] if self.rings else ["-block_velocity", vector([draw.uniform(-0.5, 0.5) for _ in range(dim)])]
         self.options += ["-time_courant", "0.2"][:0]
 
@@ -81,11 +81,11 @@ class Deck:
         options = []
         if name != "all" and draw.random() < 0.5:
             k = draw.randrange(dim)
-            low[k] = self.centre[k] if not (self.rings and k == 0) else 0.0
+            low[k] = self.centre[k] if not (k == 0 and (self.rings or self.covered)) else 0.0
         if name == "top":
             options += ["-top_facing", vector([0] * (dim - 1) + [1])]
         if name == "side":
-            options += ["-side_facing", vector([1] + [0] * (dim - 1))]
+            options += ["-side_facing", vector([-1 if self.covered else 1] + [0] * (dim - 1))]
         options += f"-{name}_body {body} -{name}_lower {vector(low)} -{name}_upper {vector(high)}".split()
         self.constant += options
         self.timed += options
@@ -204,6 +204,7 @@ def main():
         tolerance = 1e-11 if precision == "double" else 2e-4
         strategy = draw.choice(["sequential", "mosaic", "gather", "tile", "tile"])
         common = ["-backend", draw.choice(given.backends.split(",")), "-precision", precision, "-p2g", strategy]
+        ENVIRONMENT["OMP_NUM_THREADS"] = draw.choice(["1", "1", "1", "2"])
         try:
             whole, flat, timed = fresh(base / "whole"), fresh(base / "flat"), fresh(base / "timed")
             run(binary, empty, whole, *deck.options, *deck.constant, *common)

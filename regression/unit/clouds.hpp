@@ -82,12 +82,12 @@ struct Cloud {
   double flip_fraction = 1, damping = 0, f_bar_fraction = 0;
   int xpic_order = 0;
   bool affine = false;
-  bool rings = false;                   // the particles are rings about x = 0
-  bool stretch = false, split = false;  // the domains of particles; those that are too long
-  bool energy = false;                  // an energy balance
-  int face_count = 0;                   // loads that a particle is on at most
+  bool rings = false;                                // the particles are rings about x = 0
+  bool stretch = false, split = false;               // the domains of particles; those that are too long
+  bool energy = false;                               // an energy balance
+  int face_count = 0;                                // loads that a particle is on at most
   std::vector<std::array<double, 4>> surface_loads;  // Pa: pressure and traction of each
-  double memory_limit = 0;              // bytes, for batches of the soil
+  double memory_limit = 0;                           // bytes, for batches of the soil
 };
 
 template <class B>

@@ -23,7 +23,8 @@ void give_random_faces(Cloud& cloud, int seed) {
     for (std::size_t p = 0; p < body.position.size() / Dim; ++p)
       for (int load = 1; load <= 2; ++load) {
         const bool has = dice.below(3) == 0;
-        for (int d = 0; d < Dim; ++d) body.faces.push_back(has ? dice.below(3) == 0 ? 0.01 : dice.uniform(-0.02, 0.02) : 0);
+        for (int d = 0; d < Dim; ++d)
+          body.faces.push_back(has ? dice.below(3) == 0 ? 0.01 : dice.uniform(-0.02, 0.02) : 0);
         const double area = has ? dice.uniform(0.005, 0.02) : 0;
         body.faces.insert(body.faces.end(), {area, 1.0, has ? double(load) : 0.0});
       }
@@ -53,7 +54,8 @@ void close_surface(BodyInput& body, double width) {
       for (std::size_t q = 0; q < count; ++q) {
         double apart = 0;
         for (int d = 0; d < Dim; ++d)
-          apart = std::max(apart, std::fabs(at(q, d) - at(p, d) - (d == n / 2 ? (n % 2 ? width : -width) : 0)));
+          apart =
+              std::max(apart, std::fabs(at(q, d) - at(p, d) - (d == n / 2 ? (n % 2 ? width : -width) : 0)));
         covered = covered || apart < width / 10;
       }
       if (!covered) area[n / 2] += (n % 2 ? 1 : -1) * std::pow(width, Dim - 1), size = 1;
@@ -87,7 +89,8 @@ TEST_CASE("nodes get the forces of loads on faces, by every strategy", "[surface
         for (std::size_t i = 0; i < load.value.size() / Dim; ++i)
           for (int d = 0; d < Dim; ++d) {
             sum[d] += load.value[i * Dim + d], size += std::fabs(load.value[i * Dim + d]);
-            wrong = std::max(wrong, std::fabs(load.value[i * Dim + d] - soil.value[i * soil.width + SoilTerms<Dim>::force + d]));
+            wrong = std::max(wrong, std::fabs(load.value[i * Dim + d] -
+                                              soil.value[i * soil.width + SoilTerms<Dim>::force + d]));
           }
         if (how == P2G::sequential) first = load;
         INFO(build.name() << ' ' << word_of(how) << (stretch ? " stretched" : ""));

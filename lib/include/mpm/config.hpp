@@ -219,11 +219,11 @@ struct OutputConfig {
 /// A load on a part of a body's surface, which moves with it.
 struct LoadConfig {
   std::string name;
-  int body = 0;                 // index into Config::bodies
-  Vec3 lower{}, upper{};        // m, box in which the surface is at the start
-  std::optional<Vec3> facing;   // direction that its normals have, to 60 degrees
-  double pressure = 0;          // Pa, along the normal, into the soil
-  Vec3 traction{};              // Pa, of the area at the start
+  int body = 0;                                             // index into Config::bodies
+  Vec3 lower{}, upper{};                                    // m, box in which the surface is at the start
+  std::optional<Vec3> facing;                               // direction that its normals have, to 60 degrees
+  double pressure = 0;                                      // Pa, along the normal, into the soil
+  Vec3 traction{};                                          // Pa, of the area at the start
   std::optional<TimeTable> pressure_table, traction_table;  // Pa, instead of them
 };
 
