@@ -342,8 +342,8 @@ PetscErrorCode check_load_faces(MPI_Comm comm, const Config& config, std::vector
     const LoadConfig& load = config.loads[n];
     if (surfaces[n].particles == 0)
       lines->push_back(
-          formatted("mpm: -%s_lower: given \"%s\", takes, with -%s_upper \"%s\", a box round a part "
-                    "of the free surface of body %s; no face of its particles is in this one",
+          formatted("mpm: -%s_lower: given \"%s\", takes a lower corner that with -%s_upper \"%s\" makes "
+                    "a box round some free surface of body %s; no face of its particles is in this one",
                     load.name.c_str(), text_of(load.lower, config.dim).c_str(), load.name.c_str(),
                     text_of(load.upper, config.dim).c_str(), config.bodies[load.body].name.c_str()));
   }

@@ -10,9 +10,9 @@ namespace mpm {
 namespace {
 
 constexpr const char* k_pressure_meaning =
-    "pressure on the surface, along its normal, which it follows; against the soil where it is positive";
+    "pressure into the soil along the normal of the surface, which it follows";
 constexpr const char* k_traction_meaning =
-    "force by area of the surface at the start, whose direction stays, whatever becomes of the surface";
+    "dead load of fixed direction, by area of the surface at the start";
 
 void read_body_of(OptionReader& in, const Config& config, LoadConfig& load) {
   std::vector<std::string> bodies;
