@@ -52,6 +52,7 @@ void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
     add(last_.bodies[b].water_energy - row.bodies[b].water_energy);
   }
   add(row.side_work);
+  add(row.load_work - last_.load_work);
   for (std::size_t r = 0; r < row.rigids.size(); ++r)
     for (int d = 0; d < config.dim; ++d)
       add(std::fabs(row.rigids[r].force[d] *
@@ -72,7 +73,8 @@ std::string EnergyWatch::check(const HistoryRow& row, const Config& config) {
   if (!(now > available_ + k_slack * passed_ + least_)) return {};
   return formatted(
       "the kinetic energy has grown to %.4g J, and only %.4g J of it have a source (the energy at the start, "
-      "gravity, water, rigids, sides of the mesh): the time step is not stable for this soil; take a smaller "
+      "gravity, loads, water, rigids, sides of the mesh): the time step is not stable for this soil; take a "
+      "smaller "
       "-time_courant",
       now, available_);
 }

@@ -39,6 +39,7 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   double a_particle = Footprint<T, Dim>::particle(columns);
   if (config.particle_domain != ParticleDomain::fixed) a_particle += Footprint<T, Dim>::domain;
   if (is_periodic(config.mesh)) a_particle += Footprint<T, Dim>::periods;
+  if (!config.loads.empty()) a_particle += Footprint<T, Dim>::face;
   if (config.output.energy) a_particle += Footprint<T, Dim>::energy;
   if (config.position_correction) a_particle += Footprint<T, Dim>::correction;
   if (config.p2g.strategy == P2G::gather) {
@@ -48,6 +49,7 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   }
   const double soil = need.particles * a_particle;
   need.nodes = k_ring * cells * Footprint<T, Dim>::node;
+  if (!config.loads.empty()) need.nodes += k_ring * cells * Footprint<T, Dim>::load;
   if (config.position_correction) need.nodes += k_ring * cells * Footprint<T, Dim>::shares;
   if (config.backend == Backend::openmp && chosen(config.p2g.strategy, config.backend) == P2G::tile)
     need.nodes += cells * Footprint<T, Dim>::window;

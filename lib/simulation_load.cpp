@@ -10,6 +10,7 @@
 #include "input/field_file.hpp"
 #include "input/groups.hpp"
 #include "input/level_ground.hpp"
+#include "input/load_faces.hpp"
 #include "mesh/background.hpp"
 #include "parallel/distribute.hpp"
 #include "simulation_body.hpp"
@@ -113,6 +114,14 @@ PetscErrorCode Simulation::Body::load(Model* model) {
     if (!body.field.empty() && !field_key(body, config).empty()) PetscCall(take_field(body, &particles));
     if (body.k0 && !body.absent) PetscCall(take_level_ground(body, model, &particles));
   }
+  std::vector<LoadedSurface> surfaces;
+  PetscCall(find_load_faces(comm, config, &model->bodies, &model->face_count, &surfaces));
+  for (std::size_t n = 0; n < surfaces.size(); ++n)
+    PetscCall(log.print(
+        "load %s: on %ld particles of body %s, area %.9g %s, as a vector out of the body (%s)",
+        config.loads[n].name.c_str(), surfaces[n].particles, config.bodies[config.loads[n].body].name.c_str(),
+        surfaces[n].area, config.dim == 2 && config.geometry == Geometry::plane_strain ? "m" : "m2",
+        text_of(surfaces[n].vector, config.dim).c_str()));
   for (const auto& rigid : config.rigids)
     if (!rigid.absent)
       PetscCall(load_shape(is_new(config, rigid) ? "rigid " + rigid.name : "", rigid.shape, {}, {},

@@ -8,6 +8,7 @@
 #include "common/text.hpp"
 #include "gpu.hpp"
 #include "input/courant.hpp"
+#include "input/load_faces.hpp"
 #include "input/overlap.hpp"
 #include "input/run_options.hpp"
 #include "memory_need.hpp"
@@ -92,6 +93,7 @@ PetscErrorCode Simulation::Body::check_places() {
   PetscCall(find_overlaps(comm, config, &overlaps));
   report.errors = describe(overlaps, config);
   PetscCall(check_placed());
+  PetscCall(check_load_faces(comm, config, &report.errors));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

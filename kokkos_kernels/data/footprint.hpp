@@ -15,6 +15,9 @@ struct Footprint {
   static constexpr double domain = sizeof(DomainMoments<T, Dim>);
   /// More where the mesh is periodic.
   static constexpr double periods = sizeof(Vector<T, Dim>);
+  /// More with loads on surfaces: of a particle (one load), and of a node.
+  static constexpr double face = sizeof(Face<Dim>) + grown * (2 * sizeof(Vector<T, Dim>) + domain);
+  static constexpr double load = grown * sizeof(T) * Dim;
   /// More for an energy balance.
   static constexpr double energy = grown * (2 * sizeof(SymTensor<T, Dim>) + sizeof(T));
   /// More for the position correction: of a particle, which sorts in half of it, and of a node.

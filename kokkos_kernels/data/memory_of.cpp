@@ -23,6 +23,8 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add(s.nodes.soil), add(s.nodes.kinematics), add(s.nodes.residual), add(s.nodes.shares),
       add(s.nodes.boundary), add(s.nodes.impulse);
   add(s.nodes.strength), add(s.nodes.displaced), add(s.nodes.rigid), add(s.near_rigid), add(s.vertices);
+  add(s.nodes.load), add(s.loads.loaded), add(s.loads.windows.sums);
+  add(s.loads.coordinate), add(s.loads.force), add(s.loads.domain);
   add(s.strays.alone), add(s.split.slots);
   add(s.boundary_windows.sums), add(s.strength_windows.sums);
   for (const auto* more : {&s.next_sums, &s.last_sums})

@@ -65,6 +65,7 @@ struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, NodeKinematics<Dim>::size> kinematics;
   NodeField<Space, T, StrengthTerms::size> strength;    // allocated where a contact asks for it
   NodeField<Space, T, DisplacedTerms::size> displaced;  // kg, of water; allocated with it
+  NodeField<Space, T, Dim> load;      // N, of loads on surfaces, of this rank's soil; allocated with them
   NodeField<Space, T, Dim> residual;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   NodeField<Space, T, Dim> shares;    // of the position correction (ShareSource); allocated for it
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>

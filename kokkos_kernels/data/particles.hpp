@@ -43,6 +43,17 @@ struct History {
   int pore = -1;                            // column of the excess pore pressure [Pa]; -1: there is none
 };
 
+/// What a particle keeps of the surface of one load (data/surface_loads.hpp): its area as a vector out of the
+/// soil [m2]; the area at the start [m2], and over it the size of the vector then, which is more than 1 where
+/// the surface goes in steps of particles; and the number of the load, from 1 on, 0 where there is none.
+template <int Dim>
+struct FaceTerms {
+  static constexpr int area = 0, start = Dim, steps = Dim + 1, load = Dim + 2, size = Dim + 3;
+};
+template <int Dim>
+using Face = Vector<double, FaceTerms<Dim>::size>;
+inline constexpr int k_most_faces = 3;  // of a particle
+
 /// The soil: the particles of all deformable bodies.
 template <class Space, class T, int Dim>
 struct Soil : Points<Space, T, Dim> {
@@ -60,6 +71,8 @@ struct Soil : Points<Space, T, Dim> {
   /// How often a particle has passed the upper side of each direction less the lower one; in use where the
   /// mesh is periodic.
   Kokkos::View<Vector<T, Dim>*, Memory> periods;
+  /// The surfaces of loads that a particle is on; as many are in use as some particle needs.
+  Kokkos::Array<Kokkos::View<Face<Dim>*, Memory>, k_most_faces> faces;
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
   Kokkos::View<StoredMaterial<T>*, Memory> materials;
@@ -68,6 +81,7 @@ struct Soil : Points<Space, T, Dim> {
   T least_half_length = 0;    // cells, of such a domain (k_least_half_length)
   bool splits = false;        // particles with a domain that is too long are split; they have own masses
   bool has_periods = false;   // the mesh is periodic along some direction
+  int face_count = 0;         // of `faces` in use; the same on all ranks
   bool rings = false;         // the particles are rings about the axis of revolution, as their masses
   const Coord<Dim>* patch_origin = nullptr;  // of them: lower cell of each slot (Patches::origin)
 
@@ -134,6 +148,8 @@ void for_each_field_of(F&& f, Soil_& s, Others&... others) {
   if (s.has_domain) f("domain", Use::changes, s.domain, others.domain...);
   if (s.splits) f("ancestor", Use::none, s.ancestor, others.ancestor...);
   if (s.has_periods) f("periods", Use::none, s.periods, others.periods...);
+  constexpr const char* face_names[k_most_faces] = {"face_0", "face_1", "face_2"};
+  for (int k = 0; k < s.face_count; ++k) f(face_names[k], Use::none, s.faces[k], others.faces[k]...);
 }
 template <class F, class RigidPoints_>
 requires requires(RigidPoints_& s) { s.reference_position; }

@@ -74,7 +74,8 @@ struct SavedState {
   std::vector<SavedRigid> rigids;
   SavedImpulse impulse;
   std::vector<double> energy;  // k_saved_energy numbers where the run has an energy balance: the works, and
-                               // kinetic and elastic energy at the start [J], of all ranks; else empty
+                               // kinetic and elastic energy at the start [J], of all ranks; behind them,
+                               // where there are loads on surfaces, their work since the start [J]
   SavedSides sides;
   std::vector<double>
       sections;  // 2 a section: kg and m3 (initial volume) that have left beyond it, of all ranks

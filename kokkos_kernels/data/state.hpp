@@ -12,6 +12,7 @@
 #include "data/split_patches.hpp"
 #include "data/step_plan.hpp"
 #include "data/strays.hpp"
+#include "data/surface_loads.hpp"
 #include "data/timed_loads.hpp"
 
 namespace mpm {
@@ -72,6 +73,7 @@ struct State {
   Vector<double, Dim> gravity{};  // m/s2; where it follows a table, what measurements take
   TimedLoads<Space, T, Dim> timed;
   Sides<Space, Dim> sides;                // of the mesh, that act on the soil
+  SurfaceLoads<Space, T, Dim> loads;      // on parts of bodies' surfaces
   Water<Dim> water{};                     // hydrostatic, in which the soil is submerged
   Kokkos::View<double*, Memory> density;  // kg/m3, that the soil of each body begins with
   double damping = 0;                     // -

@@ -1,13 +1,14 @@
 #pragma once
-// Loads and motions that follow tables in time: gravity, velocities of sides, and velocities and forces of
-// rigid bodies. The end of a step sets those of the next step on the device, so that one launch can do many
-// steps.
+// Loads and motions that follow tables in time: gravity, velocities of sides, velocities and forces of rigid
+// bodies, and loads on surfaces. The end of a step sets those of the next step on the device, so that one
+// launch can do many steps.
 
 #include "base/spaces.hpp"
 #include "base/time_curve.hpp"
 #include "base/types.hpp"
 #include "data/nodes.hpp"
 #include "data/sides.hpp"
+#include "data/surface_loads.hpp"
 
 namespace mpm {
 
@@ -25,13 +26,14 @@ struct TimedNumber {
   }
 };
 
-enum class LoadTarget : int { gravity, velocity, force, side };
+enum class LoadTarget : int { gravity, velocity, force, side, pressure, traction };
 
 /// A component of what follows a table: own + factor * gravity. Of a rigid's force the factor is the mass
 /// whose weight it carries [kg]; 0 elsewhere.
 struct TimedLoad {
   LoadTarget target;
-  int rigid, component;  // of a side, 2 direction + 1 for the upper one stands for the rigid
+  int rigid, component;  // of a side, 2 direction + 1 for the upper one stands for the rigid; or the number
+                         // of a surface's load
   TimedNumber own, gravity;
   double factor;
 };
@@ -60,6 +62,7 @@ struct LoadsOfStep {
   LoadClock* clock;
   Vector<T, Dim>* gravity;
   Side<Dim>* sides;
+  SurfaceLoad<Dim>* surfaces;
   int count;
 
   /// Sets load n for the step that follows `steps` steps of a clock.
@@ -73,6 +76,10 @@ struct LoadsOfStep {
       rigids[load.rigid].velocity[d] = value;
     else if (load.target == LoadTarget::side)
       sides[load.rigid].velocity[d] = value;
+    else if (load.target == LoadTarget::pressure)
+      surfaces[load.rigid].pressure = value;
+    else if (load.target == LoadTarget::traction)
+      surfaces[load.rigid].traction[d] = value;
     else
       rigids[load.rigid].force[d] = value;
   }
@@ -85,13 +92,14 @@ struct TimedLoads {
   Kokkos::View<CurvePoint*, Memory> points;
   Kokkos::View<LoadClock, Memory> clock;  // allocated with loads
   Kokkos::View<Vector<T, Dim>, Memory> gravity;
-  Kokkos::View<Side<Dim>*, Memory> sides;  // State::sides
+  Kokkos::View<Side<Dim>*, Memory> sides;            // State::sides
+  Kokkos::View<SurfaceLoad<Dim>*, Memory> surfaces;  // of State::loads
   bool moves_gravity = false, moves_sides = false;
 
   int count() const { return static_cast<int>(loads.extent(0)); }
   LoadsOfStep<T, Dim> of_step() const {
-    return {loads.data(), points.data(), clock.data(), moves_gravity ? gravity.data() : nullptr,
-            sides.data(), count()};
+    return {loads.data(), points.data(),   clock.data(), moves_gravity ? gravity.data() : nullptr,
+            sides.data(), surfaces.data(), count()};
   }
 };
 

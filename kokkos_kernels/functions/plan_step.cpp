@@ -15,8 +15,9 @@ StepPlan plan_step(const State<Space, T, Dim>& s) {
   const bool fit = is_device<Space> ? sums_fit<Space, T, Dim> : has_windows(s.space);
   StepPlan plan;
   // XPIC and APIC ask for the nodal sums again. Submerged soil also gives the nodes the water it displaces.
-  // The energy balance looks at the sums between functions 4 and 5.
-  plan.sums_ahead = fit && tile && s.xpic_order == 0 && !s.affine && !s.water.is_there() && !s.energy.on;
+  // The energy balance looks at the sums between functions 4 and 5, and loads on surfaces do so too.
+  plan.sums_ahead = fit && tile && s.xpic_order == 0 && !s.affine && !s.water.is_there() && !s.energy.on &&
+                    !s.loads.in_use();
   plan.writes_sums = has_windows(s.space) && tile && !batches;
   // Patches far from rigids need few registers: where they are many, they go faster with a launch of their
   // own. What follows a table is set where the rigids move, so that no node may be updated meanwhile; and

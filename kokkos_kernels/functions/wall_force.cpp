@@ -1,5 +1,6 @@
 #include "functions/wall_force.hpp"
 
+#include "functions/surface_loads.hpp"
 #include "loops/particle_to_node.hpp"
 
 namespace mpm {
@@ -31,24 +32,13 @@ struct reduction_identity<mpm::ForceSum<Dim>> {
 namespace mpm {
 namespace {
 
-/// What particles give the nodes at walls and beyond. A node at a wall is held against its internal force and
-/// weight. Of one beyond, the image's half of the soil takes the internal force, and the image gives as much
-/// back: twice that force passes the wall.
-template <class Space, class T, int Dim, ParticleDomain domain>
-struct PressOnWalls {
-  using Source = SoilSource<Space, T, Dim, domain>;
-  Source source;
+/// Which particles are near walls, and which wall holds a node.
+template <class Space, class T, int Dim>
+struct NearWalls {
   NodePlaces<Space, T, Dim> places;
-  DisplacedSource<Space, T, Dim, domain> displaced;  // in use where there is water
-  Vector<double, Dim> g;
 
-  struct Terms {
-    T value[Source::size];
-  };
-
-  /// Whether a particle reaches a node at a wall.
-  KOKKOS_INLINE_FUNCTION bool is_near(int p) const {
-    const int cell = source.points.cell(p);
+  /// Whether a particle of a cell reaches a node at a wall.
+  KOKKOS_INLINE_FUNCTION bool is_near(int cell) const {
     const Coord<Dim> from = places.origin(cell / Patch<Dim>::cells), in = coord_of<Dim>(cell);
     bool near = false;
     for (int d = 0; d < Dim; ++d) near |= from[d] + in[d] < 2 || from[d] + in[d] >= places.grid.cells[d] - 2;
@@ -61,20 +51,76 @@ struct PressOnWalls {
     const Wall wall = places.grid.wall[d][side];
     return wall == Wall::fixed || (wall == Wall::roller && k == d) ? side : -1;  // others: side_forces
   }
+  /// Adds component k of the forces on a node: of what a node beyond a wall has, internal, twice, and not the
+  /// weight (above).
+  KOKKOS_INLINE_FUNCTION void add(const Coord<Dim>& node, int k, double internal, double weight,
+                                  ForceSum<Dim>& sum) const {
+    for (int d = 0; d < Dim; ++d) {
+      const int at = node[d], side = holding_side(d, at, k);
+      if (side < 0) continue;
+      const bool beyond = image_along(places.grid, d, at) != at;
+      sum.of[d][side][k] += beyond ? 2 * internal : internal + weight;
+      break;  // where two sides hold it, the first one
+    }
+  }
+  /// The lowest node that a particle of a cell reaches, `first` from the cell.
+  template <class Weights>
+  KOKKOS_INLINE_FUNCTION Coord<Dim> node(int cell, const Weights& a, const Vector<int, Dim>& step) const {
+    Coord<Dim> at = in_mesh(places.origin(cell / Patch<Dim>::cells), coord_of<Dim>(cell));
+    for (int d = 0; d < Dim; ++d) at[d] += a[d].first + step[d];
+    return at;
+  }
+};
+
+/// What loads on faces give such nodes: forces, as the internal ones.
+template <class Space, class T, int Dim>
+struct PressLoads {
+  LoadSource<Space, T, Dim> source;
+  NearWalls<Space, T, Dim> walls;
+
   KOKKOS_INLINE_FUNCTION void operator()(int p, ForceSum<Dim>& sum) const {
-    if (!is_near(p)) return;
+    const int cell = source.points.cell(p);
+    if (source.skips(cell / Patch<Dim>::cells) || !walls.is_near(cell)) return;
+    const auto q = source.load(p);
+    with_weights(source.points.coordinate(p), q.half_length, [&](const auto& a) {
+      for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const auto&) {
+        if (!(w > 0)) return;
+        const Coord<Dim> node = walls.node(cell, a, step);
+        for (int k = 0; k < Dim; ++k) walls.add(node, k, double(w) * double(q.force[k]), 0, sum);
+      });
+    });
+  }
+};
+
+/// What particles give the nodes at walls and beyond. A node at a wall is held against its internal force and
+/// weight. Of one beyond, the image's half of the soil takes the internal force, and the image gives as much
+/// back: twice that force passes the wall.
+template <class Space, class T, int Dim, ParticleDomain domain>
+struct PressOnWalls {
+  using Source = SoilSource<Space, T, Dim, domain>;
+  Source source;
+  NearWalls<Space, T, Dim> walls;
+  DisplacedSource<Space, T, Dim, domain> displaced;  // in use where there is water
+  Vector<double, Dim> g;
+
+  struct Terms {
+    T value[Source::size];
+  };
+
+  KOKKOS_INLINE_FUNCTION void operator()(int p, ForceSum<Dim>& sum) const {
+    const int cell = source.points.cell(p);
+    if (!walls.is_near(cell)) return;
     const typename Source::Point q = source.load(p);
     const T carried = displaced.water.is_there() ? displaced.load(p).mass : T(0);
     with_weights(source.points.coordinate(p), q.half_length, [&](const auto& a) {
-      const int cell = source.points.cell(p);
-      const Coord<Dim> first = in_mesh(places.origin(cell / Patch<Dim>::cells), coord_of<Dim>(cell));
       for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const auto& grad) {
-        Coord<Dim> node;
-        for (int d = 0; d < Dim; ++d) node[d] = first[d] + a[d].first + step[d];
         if (!(w > 0)) return;
         Terms terms = share_of(q, w, grad);
         terms.value[SoilTerms<Dim>::mass] -= w * carried;
-        add_node(node, terms, sum);
+        const Coord<Dim> node = walls.node(cell, a, step);
+        for (int k = 0; k < Dim; ++k)
+          walls.add(node, k, terms.value[SoilTerms<Dim>::force + k], terms.value[SoilTerms<Dim>::mass] * g[k],
+                    sum);
       });
     });
   }
@@ -87,17 +133,6 @@ struct PressOnWalls {
         q, w, grad, [] { return 0; }, [&](int value, T v) { terms.value[value] += v; });
     return terms;
   }
-  KOKKOS_INLINE_FUNCTION void add_node(const Coord<Dim>& node, const Terms& terms, ForceSum<Dim>& sum) const {
-    for (int k = 0; k < Dim; ++k)
-      for (int d = 0; d < Dim; ++d) {
-        const int at = node[d], side = holding_side(d, at, k);
-        if (side < 0) continue;
-        const bool beyond = image_along(places.grid, d, at) != at;
-        const double f = terms.value[SoilTerms<Dim>::force + k];
-        sum.of[d][side][k] += beyond ? 2 * f : f + terms.value[SoilTerms<Dim>::mass] * g[k];
-        break;  // where two sides hold it, the first one
-      }
-  }
 };
 
 }  // namespace
@@ -108,13 +143,20 @@ WallForces wall_forces(const State<Space, T, Dim>& s) {
   with_domain(s.soil.points, [&](auto domain) {
     PressOnWalls<Space, T, Dim, domain()> press{
         {s.soil.points, s.grid.inv_spacing},
-        {s.grid, s.patches},
+        {{s.grid, s.patches}},
         {s.soil.points, s.water, s.density, s.patches.origin, s.spacing},
         {}};
     for (int d = 0; d < Dim; ++d) press.g[d] = s.gravity[d];
     Kokkos::parallel_reduce("mpm::wall_forces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
                             press, Kokkos::Sum<ForceSum<Dim>>(sum));
   });
+  for (int axis = 0; axis < Dim && s.loads.in_use(); ++axis) {
+    ForceSum<Dim> of_loads;
+    Kokkos::parallel_reduce("mpm::wall_loads", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+                            PressLoads<Space, T, Dim>{place_faces(s, axis), {{s.grid, s.patches}}},
+                            Kokkos::Sum<ForceSum<Dim>>(of_loads));
+    sum += of_loads;
+  }
   WallForces forces{};
   for (int d = 0; d < Dim; ++d)
     for (int side = 0; side < 2; ++side)

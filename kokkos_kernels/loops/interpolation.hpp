@@ -17,10 +17,14 @@ Interpolation<Source> interpolation_of(const State<Space, T, Dim>& s, const Bins
   constexpr bool strength = std::is_same_v<Source, StrengthSource<Space, T, Dim>> ||
                             std::is_same_v<Source, StretchedStrengthSource<Space, T, Dim>> ||
                             std::is_same_v<Source, RingStrengthSource<Space, T, Dim>>;
+  constexpr bool load = std::is_same_v<Source, LoadSource<Space, T, Dim>>;
   constexpr bool rigid = std::is_same_v<Source, RigidSource<Space, T, Dim>>;
   Interpolation<Source> it{stream, s.grid, s.patches, bins, source, out, s.control, s.p2g.mosaic_cells};
-  it.windows = boundary ? s.boundary_windows : strength ? s.strength_windows : bins.windows;
-  it.adds = !s.plan.writes_sums;
+  it.windows = boundary   ? s.boundary_windows
+               : strength ? s.strength_windows
+               : load     ? s.loads.windows
+                          : bins.windows;
+  it.adds = load || !s.plan.writes_sums;
   if (rigid) it.near_slots = s.near_slots, it.near_count = s.near_count;
   return it;
 }

@@ -284,6 +284,36 @@ struct DisplacedSource {
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
+/// The forces of loads on the faces of particles that lie along one axis, sum N f_p, N the mean of the linear
+/// hat of the node over the face. A face is a box without thickness: `points` has faces in lieu of the
+/// coordinates and domains of its particles (place_faces).
+template <class Space_, class T, int Dim>
+struct LoadSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr ParticleDomain domain = ParticleDomain::stretch;
+  static constexpr int dim = Dim, size = Dim;
+  static constexpr Kind kind = Kind::motion;
+  struct Point {
+    HalfLengths<T, Dim> half_length;
+    T force[Dim];
+  };
+  Soil<Space, T, Dim> points;
+  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space> force;  // N
+  Kokkos::View<int*, typename Space::memory_space> loaded;            // by slot
+
+  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return loaded(slot) == 0; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    Point q{half_lengths_of(points.domain(p), points.least_half_length), {}};
+    for (int d = 0; d < Dim; ++d) q.force[d] = force(p)[d];
+    return q;
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value; }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.force[value]; }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
+};
+
 /// Rigid body to nodes: m_i^R = sum S m_p and the mass gradient n_i^R = sum grad S m_p (Eq. 3; it points out
 /// of the body). A strategy may move() a point before it gives.
 template <class Space_, class T, int Dim>
@@ -426,6 +456,7 @@ using RingDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::ring>
   X(BoundarySource, Space, T, Dim)            \
   X(StrengthSource, Space, T, Dim)            \
   X(DisplacedSource, Space, T, Dim)           \
+  X(LoadSource, Space, T, Dim)                \
   X(RigidSource, Space, T, Dim)               \
   X(StretchedSoilSource, Space, T, Dim)       \
   X(StretchedAffineSource, Space, T, Dim)     \

@@ -52,7 +52,12 @@ struct MergeInCell {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION bool may_merge(int p) const { return address(p) >= 0 && soil.body(p) == body; }
+  /// Particles that loads act on stay: they may be at surfaces that face each other.
+  KOKKOS_INLINE_FUNCTION bool may_merge(int p) const {
+    bool loaded = false;
+    for (int k = 0; k < soil.face_count; ++k) loaded = loaded || soil.faces[k](p)[FaceTerms<Dim>::load] > 0;
+    return address(p) >= 0 && soil.body(p) == body && !loaded;
+  }
 
   /// The pair whose common domain is smallest, of equal ones the first: a cell's particles lie by rising id.
   KOKKOS_INLINE_FUNCTION bool find_pair(int first, int last, int& p, int& q) const {

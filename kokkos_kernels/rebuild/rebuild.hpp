@@ -77,6 +77,14 @@ template <class T, int Dim>
 struct SortedPart<DomainMoments<T, Dim>> {
   using type = std::conditional_t<Dim == 2, T, Vector<T, Dim>>;
 };
+template <class T>
+struct SortedPart<Vector<T, 5>> {  // Face
+  using type = T;
+};
+template <class T>
+struct SortedPart<Vector<T, 6>> {
+  using type = Vector<T, 2>;
+};
 template <class Value>
 using PartOf = typename SortedPart<Value>::type;
 

@@ -2,6 +2,7 @@
 // points are put in order of id, so that the result does not depend on how threads ran.
 
 #include "functions/step_kernels.hpp"
+#include "functions/surface_loads.hpp"
 #include "physics/cell_mean.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
@@ -338,6 +339,10 @@ void sort_and_list(State<Space, T, Dim>& s) {
   if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
   if (s.shear_fraction) ensure(s.nodes.strength, nodes);
   if (s.water.is_there()) ensure(s.nodes.displaced, nodes);
+  if (s.loads.in_use()) {
+    ensure(s.nodes.load, nodes);
+    list_loaded(s);
+  }
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid = decltype(s.nodes.rigid)(
         Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),

@@ -96,6 +96,11 @@ struct Split {
     soil.domain(p) = soil.domain(other) = m;
     soil.mass(p) = soil.mass(other) = soil.mass(p) / 2;
     soil.volume(p) = soil.volume(other) = soil.volume(p) / 2;
+    for (int k = 0; k < soil.face_count; ++k) {
+      Face<Dim>& face = soil.faces[k](p);
+      for (int d = 0; d < FaceTerms<Dim>::steps; ++d) face[d] /= 2;  // the areas
+      soil.faces[k](other) = face;
+    }
     // Near a side of the mesh both halves stay as much nearer to the place of the whole.
     constexpr int k_tries = 4;
     for (int n = 0; n < k_tries; ++n) {

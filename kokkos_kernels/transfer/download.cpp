@@ -64,6 +64,12 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
   if (soil.has_domain) spread(soil.domain, Dim, fields.half_length, half_length);
   if (soil.splits) spread(soil.ancestor, 1, fields.ancestor, whole);
 
+  for (int k = 0; k < soil.face_count; ++k) {
+    std::vector<double> area;
+    spread(soil.faces[k], Dim, area, part);
+    fields.load_area.resize(area.size());
+    for (std::size_t n = 0; n < area.size(); ++n) fields.load_area[n] += area[n];
+  }
   if (soil.has_periods) spread(soil.periods, Dim, fields.periods, part);
 
   const auto x_p = host_of(soil.coordinate);

@@ -20,6 +20,7 @@ struct SoilFields {
   std::vector<double> half_length;           // m [Dim N], where domains stretch
   std::vector<double> ancestor;              // ids, where particles split
   std::vector<double> periods;               // [Dim N], Soil::periods of these positions
+  std::vector<double> load_area;             // m2 [Dim N], vector of the faces of loads, where there are some
 };
 /// The order in which particles come to the host: by body, and by id in a body.
 template <class Space, class T, int Dim>

@@ -181,6 +181,15 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
     });
   if (soil.has_periods)
     fill_view(soil.periods, "mpm::periods", soil.count, [](int) { return filled<T, Dim>(0); });
+  for (int k = 0; k < soil.face_count; ++k)
+    fill_view(soil.faces[k], "mpm::face", soil.count, [&](int p) {
+      constexpr int size = FaceTerms<Dim>::size;
+      const BodyInput& body = bodies[body_of[p]];
+      Face<Dim> face{};
+      for (int n = 0; n < size && !body.faces.empty(); ++n)
+        face[n] = body.faces[(std::size_t(in_body(p)) * soil.face_count + k) * size + n];
+      return face;
+    });
   if (soil.splits)
     fill_view(soil.ancestor, "mpm::ancestor", soil.count, [&](int p) { return double(id_of(p)); });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {

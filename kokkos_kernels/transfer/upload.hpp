@@ -37,6 +37,8 @@ struct BodyInput {
   std::vector<double> velocity_gradient;     // m/s a cell [Dim^2 N], or empty where the velocities tell it
   std::vector<double> domain;        // cells2, moments of domains that stretch [Dim (Dim + 1) / 2 N], or
                                      // empty where they are squares of the half length
+  std::vector<double> faces;         // surfaces of loads, FaceTerms one after the other
+                                     // [FaceTerms::size face_count N], or empty where there are none
   std::vector<int> id;               // [N], or empty where they are counted from 0
   double particle_volume = 0;        // m3
   double least_volume = 0;           // m3, of all ranks, as they were created; 0: that above

@@ -31,7 +31,7 @@ void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads) 
     s.timed.moves_sides = s.timed.moves_sides || in.target == LoadTarget::side;
     timed.push_back({in.target, in.rigid, in.component, number(in.own), number(in.gravity), in.factor});
   }
-  s.timed.sides = s.sides.all;
+  s.timed.sides = s.sides.all, s.timed.surfaces = s.loads.now;
   fill_view(s.timed.loads, "mpm::timed_loads", timed);
   fill_view(s.timed.points, "mpm::timed_points", points);
   s.timed.clock = decltype(s.timed.clock)("mpm::load_clock");
@@ -41,8 +41,22 @@ void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads) 
   Kokkos::deep_copy(s.timed.gravity, gravity);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) \
-  template void upload_loads(State<Space, T, Dim>&, const std::vector<LoadInput>&);
+template <class Space, class T, int Dim>
+void upload_surface_loads(State<Space, T, Dim>& s, const std::vector<SurfaceLoad<Dim>>& loads) {
+  if (loads.empty()) return;
+  if (s.loads.in_use()) {  // in their place, which the kernels know
+    const auto host = Kokkos::create_mirror_view(s.loads.now);
+    for (std::size_t n = 0; n < loads.size(); ++n) host(n) = loads[n];
+    return Kokkos::deep_copy(s.loads.now, host);
+  }
+  fill_view(s.loads.now, "mpm::surface_loads", loads);
+  s.loads.work = decltype(s.loads.work)("mpm::loads.work");
+  s.loads.of_step = decltype(s.loads.of_step)("mpm::loads.of_step");
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                              \
+  template void upload_loads(State<Space, T, Dim>&, const std::vector<LoadInput>&); \
+  template void upload_surface_loads(State<Space, T, Dim>&, const std::vector<SurfaceLoad<Dim>>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -23,6 +23,11 @@ struct LoadInput {
   double factor = 0;
 };
 
+/// Puts loads on surfaces on the device, with the values that they have where they follow no table. Before
+/// upload_loads and upload.
+template <class Space, class T, int Dim>
+void upload_surface_loads(State<Space, T, Dim>& s, const std::vector<SurfaceLoad<Dim>>& loads);
+
 /// Puts the loads on the device; begin_loads sets their first values. s.gravity is that of the start.
 template <class Space, class T, int Dim>
 void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads);

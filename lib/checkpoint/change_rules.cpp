@@ -92,6 +92,12 @@ constexpr Row k_rules[] = {
     {Owner::rigid, "force_table", k_load},
     {Owner::rigid, "force_table_interpolation", k_load},
     {Owner::rigid, "density", k_load},
+    {Owner::load, "pressure", k_load},
+    {Owner::load, "pressure_table", k_load},
+    {Owner::load, "pressure_table_interpolation", k_load},
+    {Owner::load, "traction", k_load},
+    {Owner::load, "traction_table", k_load},
+    {Owner::load, "traction_table_interpolation", k_load},
     // Contact.
     {Owner::rigid, "shear_limit", k_load},
     {Owner::rigid, "shear_fraction", k_load},
@@ -138,6 +144,7 @@ ChangeRule change_rule(const std::string& name, const Config& config) {
   note_longest(config.materials, low, Owner::material, length, owner);
   note_longest(config.bodies, low, Owner::body, length, owner);
   note_longest(config.rigids, low, Owner::rigid, length, owner);
+  note_longest(config.loads, low, Owner::load, length, owner);
   if (config.dim == 2 && low.starts_with("mesh_z")) return {};
   return change_rule(owner, low.substr(length));
 }

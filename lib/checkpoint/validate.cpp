@@ -117,8 +117,9 @@ std::string state_fault(const SavedState& state, const Config& config) {
   if (state.lost.size() != config.bodies.size() * k_lost || state.particles < 0)
     return "a checkpoint with a sound account of what has left";
   if (const std::string fault = bodies_fault(state, config); !fault.empty()) return fault;
-  if (state.energy.size() != (config.output.energy ? k_saved_energy : 0))
-    return "a checkpoint with an energy balance where the run has one";
+  const std::size_t energies = (config.output.energy ? k_saved_energy : 0) + (config.loads.empty() ? 0 : 1);
+  if (state.energy.size() != energies)
+    return "a checkpoint with an energy balance where the run has one, and the work of loads";
   for (const long address : state.alone)
     if (!in_mesh(address, config.mesh, config.dim, 0)) return "a checkpoint with a sound alone";
   const std::size_t rigids = config.rigids.size();

@@ -30,6 +30,8 @@ struct BodyParticles {
                                // where all are there
   std::vector<char> left_out;  // [N] 1: it has an id and is not in the run; empty where all are in it
   std::vector<double> velocity_gradient;  // m/s a cell [dim^2 N], where the neighbours may be on other ranks
+  std::vector<double>
+      faces;  // surfaces of loads [faces_width N], as FaceTerms has them; empty: there are none
   std::vector<double> domain;  // cells2, moments of domains that stretch [dim (dim + 1) / 2 N], or empty
 };
 
@@ -38,6 +40,7 @@ struct Model {
   std::array<int, 3> patches{};  // with the ring outside the mesh
   std::vector<BodyParticles> bodies, rigids;
   Owners owners;          // on several ranks: of each patch
+  int face_count = 0;     // loads that a particle is on at most, of all ranks
   bool from_run = false;  // some particles are as another run left them: their stresses stay so at the start
 };
 

@@ -81,8 +81,14 @@ struct RigidRow {
   Vec3 force{};         // N, of the soil on it, mean over the interval since the last row
 };
 
-/// The energy balance of the soil: kinetic + internal + lost - start = gravity + rigids + contact + damping +
-/// update + error [J]. Works are those since the start.
+/// One row of the history for one load on a surface.
+struct LoadRow {
+  Vec3 force{};     // N, of the load on the soil
+  double area = 0;  // m2, of the surface now
+};
+
+/// The energy balance of the soil: kinetic + internal + lost - start = gravity + loads + rigids + contact +
+/// damping + update + error [J]. Works are those since the start.
 struct EnergyRow {
   double kinetic = 0;     // of the particles
   double internal = 0;    // work of the stress: elastic and dissipated
@@ -90,6 +96,7 @@ struct EnergyRow {
   double dissipated = 0;  // internal less what the elastic energy has grown
   double lost = 0;        // kinetic, of particles that left, and of merging
   double gravity = 0;     // work of gravity, and of the water that carries soil
+  double loads = 0;       // of loads on surfaces
   double rigids = 0;      // of the rigids on the soil
   double contact = 0;     // of walls and contact beyond that: what friction and impact take
   double damping = 0;     // of -damping
@@ -104,12 +111,14 @@ struct HistoryRow {
   std::vector<BodyRow> bodies;
   std::vector<RigidRow> rigids;
   std::array<std::array<Vec3, 2>, 3> walls{};  // N, of the soil on each side of the mesh
-  double side_work = 0;                        // J, of sides that act on the soil, since the last row
-  int stage = 0;                               // number of the stage, from 1 on; 0: the run has none
-  double unbalanced_ratio = 0;                 // -, where some stage ends by equilibrium
-  long filled_cells = 0, empty_cells = 0;      // cells that hold soil; gaps between them
-  EnergyRow energy{};                          // where the run asks for it
-  std::vector<double> probes{};                // the columns of all probes (output/probes.hpp)
+  std::vector<LoadRow> loads{};
+  double load_work = 0;                    // J, of loads on surfaces, since the start
+  double side_work = 0;                    // J, of sides that act on the soil, since the last row
+  int stage = 0;                           // number of the stage, from 1 on; 0: the run has none
+  double unbalanced_ratio = 0;             // -, where some stage ends by equilibrium
+  long filled_cells = 0, empty_cells = 0;  // cells that hold soil; gaps between them
+  EnergyRow energy{};                      // where the run asks for it
+  std::vector<double> probes{};            // the columns of all probes (output/probes.hpp)
 };
 
 }  // namespace mpm

@@ -44,6 +44,10 @@ inline std::vector<std::pair<std::string, const TimeTable*>> tables_of(const Con
   for (int d = 0; d < config.dim; ++d)
     for (int side = 0; side < 2; ++side)
       add("-" + side_option(d, side) + "_velocity_table", config.mesh.sides[d][side].velocity_table);
+  for (const LoadConfig& load : config.loads) {
+    add("-" + load.name + "_pressure_table", load.pressure_table);
+    add("-" + load.name + "_traction_table", load.traction_table);
+  }
   for (const RigidConfig& rigid : config.rigids) {
     add("-" + rigid.name + "_velocity_table", rigid.velocity_table);
     add("-" + rigid.name + "_displacement_table", rigid.displacement_table);

@@ -81,9 +81,9 @@ void check_shape(OptionReader& in, const std::string& name, const Shape& shape, 
 /// Checks that the shapes cut out of a body leave a particle.
 void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& config, const BodyConfig& body);
 
-/// NAME_table and NAME_table_interpolation, where NAME is the option `of`, a vector: its values in time till
-/// `end` [s]. has_constant: NAME itself is an option too, with the value `constant`, of which a table of one
-/// column gives factors. Returns whether the table is given.
+/// NAME_table and NAME_table_interpolation, where NAME is the option `of`, a vector of `dim` components, or a
+/// number (dim 1): its values in time till `end` [s]. has_constant: NAME itself is an option too, with the
+/// value `constant`, of which a table of one column gives factors. Returns whether the table is given.
 bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, double end,
                 const Vec3& constant, std::optional<TimeTable>& table);
 
@@ -125,6 +125,11 @@ void check_particles(OptionReader& in, const BodyConfig& body, const Config& con
 /// Checks that the masses of a file are those of the body's material, to a quarter.
 void check_density(OptionReader& in, const BodyConfig& body, const Config& config,
                    const ParticleTable& table);
+
+/// The options of one load on a surface; the bodies and the time have been read.
+void read_load(OptionReader& in, const Config& config, LoadConfig& load);
+/// Rejects loads where the step cannot have them.
+void check_loads(OptionReader& in, const Config& config);
 
 /// The options of one probe. A null mesh is unsound; the bodies have been read.
 void read_probe(OptionReader& in, const MeshConfig* mesh, const Config& config, ProbeConfig& probe);

@@ -1,4 +1,4 @@
-// -materials, -bodies, -rigid_bodies, -probes, and what each named thing owns.
+// -materials, -bodies, -rigid_bodies, -loads, -probes, and what each named thing owns.
 
 #include <algorithm>
 #include <cctype>
@@ -34,7 +34,7 @@ struct Names {
     if (reserved.count(key) || is_petsc_name(key + "_"))
       return "names other than " + name + ", which begins other options";
     if (used.count(key))
-      return "names that no other material, body, rigid or probe has; " + name + " is taken";
+      return "names that no other material, body, rigid, load or probe has; " + name + " is taken";
     return "";
   }
 };
@@ -276,10 +276,13 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
   const auto bodies = read_names(
       in, {.name = "bodies", .meaning = "names of the deformable bodies", .required = true}, names);
   const auto rigids = read_names(in, {.name = "rigid_bodies", .meaning = "names of the rigid bodies"}, names);
+  const auto loads = read_names(
+      in, {.name = "loads", .meaning = "names of the loads on parts of the surface of bodies"}, names);
   const auto probes = read_names(
       in, {.name = "probes", .meaning = "names of the probes, places of which the history tells"}, names);
   if (!in.listing()) {
-    for (const char* list : {"materials", "bodies", "rigid_bodies", "probes"}) leave_out(in, list, names);
+    for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "probes"})
+      leave_out(in, list, names);
     forgive_unlisted(in, names);
   }
   auto errors = in.errors();
@@ -298,6 +301,11 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
     note_presence(config.stage, config.rigids.back());
     read_rigid(in, mesh, config, config.rigids.back());
   }
+  for (const auto& name : loads) {
+    config.loads.emplace_back().name = name;
+    read_load(in, config, config.loads.back());
+  }
+  check_loads(in, config);
   for (const auto& name : probes) {
     config.probes.emplace_back().name = name;
     read_probe(in, mesh, config, config.probes.back());

@@ -342,9 +342,9 @@ void check_restart_change(OptionReader& in, const Config& config) {
   for (const std::string& name : config.output.restart_change)
     if (!name.empty() && !change_rule(name, config).listed)
       return in.reject(option,
-                       "names of options among gravity, damping, those of the mesh's sides, of rigids "
-                       "their motion, loads and contact, of materials their parameters, and the material "
-                       "of a body; " +
+                       "names of options among gravity, damping, those of the mesh's sides, of loads their "
+                       "pressure and traction, of rigids their motion, loads and contact, of materials their "
+                       "parameters, and the material of a body; " +
                            name + " is none");
 }
 

@@ -175,6 +175,7 @@ void OptionReader::section(const std::string& title) {
   owner_ = title.starts_with("Material") || title.starts_with("Each material") ? Owner::material
            : title.starts_with("Each rigid")                                   ? Owner::rigid
            : title.starts_with("Each body")                                    ? Owner::body
+           : title.starts_with("Each load")                                    ? Owner::load
                                                                                : Owner::run;
   if (listing_) report_->help_text += "\n" + title + "\n";
 }

@@ -47,10 +47,10 @@ bool begins_alike(const std::string& one, const std::string& other) {
   return a == b || a.starts_with(b + "_") || b.starts_with(a + "_");
 }
 
-/// The name of a material, body, rigid or probe whose options a stage of this name would take; empty where
-/// there is none.
+/// The name of a material, body, rigid, load or probe whose options a stage of this name would take; empty
+/// where there is none.
 std::string named_so(const OptionReader& in, const std::string& stage) {
-  for (const char* list : {"materials", "bodies", "rigid_bodies", "probes"})
+  for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "probes"})
     for (const std::string& name : split(in.given_text(list)))
       if (!name.empty() && begins_alike(name, stage)) return name;
   return "";
@@ -84,10 +84,10 @@ std::vector<std::string> read_stage_names(OptionReader& in) {
     if (begins && fault.empty())
       in.reject(option.name, "names other than " + name + ", which begins other options");
     else if (!other.empty())
-      in.reject(
-          option.name,
-          "names that neither are those of materials, bodies, rigids and probes nor begin as they do; " +
-              name + " and " + other + " do not differ so");
+      in.reject(option.name,
+                "names that neither are those of materials, bodies, rigids, loads and probes nor begin as "
+                "they do; " +
+                    name + " and " + other + " do not differ so");
     else if (!fault.empty() || twice)
       in.reject(option.name, twice ? "names that differ, of which none begins another: " + name : fault);
     else

@@ -36,9 +36,12 @@ bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, 
   const std::string name = of.name + "_table";
   const Option points{.name = name,
                       .meaning = of.meaning +
-                                 " in time: points as t:x:y,t:x:y (t:x:y:z in 3D), or a CSV file "
-                                 "of these columns" +
-                                 (has_constant ? "; with one column, factors of " + of.name : ""),
+                                 (dim == 1 ? " in time: points as t:p,t:p, or a CSV file of these columns"
+                                           : " in time: points as t:x:y,t:x:y (t:x:y:z in 3D), or a CSV file "
+                                             "of these columns") +
+                                 (!has_constant ? ""
+                                  : dim == 1    ? "; where " + of.name + " is given too, its factors"
+                                                : "; with one column, factors of " + of.name),
                       .unit = of.unit,
                       .standard = "none"};
   std::string text;
@@ -59,7 +62,8 @@ bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, 
     fault = formatted("a time and %d components in each point", dim);
   if (!fault.empty()) return in.reject(name, fault), true;
   read.table.smooth = smooth;
-  if (read.columns == 1 && !scale(in, of, dim, constant, read.table)) return true;
+  const bool factors = read.columns == 1 && (dim > 1 || in.given(of.name));
+  if (factors && !scale(in, of, dim, constant, read.table)) return true;
   if (read.columns != 1 && in.given(of.name))
     return in.reject(of.name, "nothing beside -" + name +
                                   " that has all components; a table of one column "

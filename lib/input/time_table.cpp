@@ -24,8 +24,10 @@ struct Place {
 std::string add_point(const std::vector<std::string>& cells, const Place& place, int dim, TableText& read) {
   const int columns = static_cast<int>(cells.size()) - 1;
   if (columns != 1 && columns != dim)
-    return formatted("a time and %d components, or a time and a factor, in each point; %s has %zu number%s",
-                     dim, place.text().c_str(), cells.size(), cells.size() == 1 ? "" : "s");
+    return formatted("%s in each point; %s has %zu number%s",
+                     dim == 1 ? "a time and a number"
+                              : formatted("a time and %d components, or a time and a factor,", dim).c_str(),
+                     place.text().c_str(), cells.size(), cells.size() == 1 ? "" : "s");
   if (read.columns != 0 && columns != read.columns)
     return formatted("as many numbers in each point; %s has %d, those before it %d", place.text().c_str(),
                      columns + 1, read.columns + 1);

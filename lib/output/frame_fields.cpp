@@ -37,6 +37,9 @@ const std::vector<Field>& frame_fields() {
                           {"periods_x", "-", 1, Of::bodies, nullptr},
                           {"periods_y", "-", 1, Of::bodies, nullptr},
                           {"periods_z", "-", 1, Of::bodies, nullptr},
+                          {"load_area_x", "m2", 1, Of::bodies, nullptr},
+                          {"load_area_y", "m2", 1, Of::bodies, nullptr},
+                          {"load_area_z", "m2", 1, Of::bodies, nullptr},
                           {"mass", "kg", 1, Of::bodies_and_nodes, &ParticleSnapshot::mass},
                           {"reference_height", "m", 1, Of::bodies, &ParticleSnapshot::reference_height},
                           {"number", "-", 1, Of::nodes, &ParticleSnapshot::number}};

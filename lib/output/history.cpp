@@ -28,9 +28,16 @@ constexpr EnergyColumn k_energy_columns[] = {
     {"energy_kinetic", &EnergyRow::kinetic}, {"energy_internal", &EnergyRow::internal},
     {"energy_elastic", &EnergyRow::elastic}, {"energy_dissipated", &EnergyRow::dissipated},
     {"energy_lost", &EnergyRow::lost},       {"work_gravity", &EnergyRow::gravity},
-    {"work_rigids", &EnergyRow::rigids},     {"work_contact", &EnergyRow::contact},
-    {"work_damping", &EnergyRow::damping},   {"work_update", &EnergyRow::update},
-    {"energy_error", &EnergyRow::error}};
+    {"work_loads", &EnergyRow::loads},       {"work_rigids", &EnergyRow::rigids},
+    {"work_contact", &EnergyRow::contact},   {"work_damping", &EnergyRow::damping},
+    {"work_update", &EnergyRow::update},     {"energy_error", &EnergyRow::error}};
+
+/// Calls f(column) for those of a run: the work of loads where it has some.
+template <class F>
+void for_each_energy(const Config& config, F&& f) {
+  for (const EnergyColumn& column : k_energy_columns)
+    if (column.value != &EnergyRow::loads || !config.loads.empty()) f(column);
+}
 
 /// Appends ",a,b[,c]".
 void append(std::string& row, const Vec3& vector, int dim) {
@@ -78,9 +85,13 @@ std::string history_header(const Config& config) {
   for_each_wall(config, [&](int d, int side) {
     append(header, std::string("wall_") + k_axis[d] + (side == 0 ? "min" : "max") + "_force_", config.dim);
   });
+  for (const LoadConfig& load : config.loads) {
+    append(header, load.name + "_force_", config.dim);
+    header += "," + load.name + "_area";
+  }
   header += ",empty_cells";
   if (config.output.energy)
-    for (const EnergyColumn& column : k_energy_columns) header += std::string(",") + column.name;
+    for_each_energy(config, [&](const EnergyColumn& column) { header += std::string(",") + column.name; });
   for (const ProbeConfig& probe : config.probes)
     for (const std::string& column : columns_of(probe, config)) header += "," + column;
   if (!config.stages.empty()) header += ",stage";
@@ -110,9 +121,14 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
     for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})
       append(text, *vector, dim);
   for_each_wall(config, [&](int d, int side) { append(text, row.walls[d][side], dim); });
+  for (const LoadRow& load : row.loads) {
+    append(text, load.force, dim);
+    text += "," + text_of(load.area);
+  }
   text += "," + std::to_string(row.empty_cells);
   if (config.output.energy)
-    for (const EnergyColumn& column : k_energy_columns) text += "," + text_of(row.energy.*column.value);
+    for_each_energy(config,
+                    [&](const EnergyColumn& column) { text += "," + text_of(row.energy.*column.value); });
   for (const double value : row.probes) text += "," + text_of(value);
   if (!config.stages.empty()) text += "," + std::to_string(row.stage);
   if (config.balance) text += "," + text_of(row.unbalanced_ratio);
@@ -123,9 +139,10 @@ std::string format_energy(const EnergyRow& e) {
   return formatted(
       "energy (J): kinetic %.4g, elastic %.4g, dissipated in the soil %.4g, lost with particles %.4g; work "
       "of "
-      "gravity %.4g, rigids %.4g, walls and contact %.4g, damping %.4g, velocity update %.4g; missing %.3g",
-      e.kinetic, e.elastic, e.dissipated, e.lost, e.gravity, e.rigids, e.contact, e.damping, e.update,
-      e.error);
+      "gravity %.4g, loads %.4g, rigids %.4g, walls and contact %.4g, damping %.4g, velocity update %.4g; "
+      "missing %.3g",
+      e.kinetic, e.elastic, e.dissipated, e.lost, e.gravity, e.loads, e.rigids, e.contact, e.damping,
+      e.update, e.error);
 }
 
 HistoryMark mark_of(const std::string& path, long bytes, std::string* text) {

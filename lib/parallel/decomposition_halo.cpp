@@ -10,7 +10,7 @@ namespace mpm {
 template <class Space, class T, int Dim>
 bool sends_ahead(const State<Space, T, Dim>& s, const PartitionConfig& config) {
   return backend_of<Space> != Backend::openmp && config.halo_overlap && !s.water.is_there() && !s.energy.on &&
-         chosen(s.p2g.strategy, backend_of<Space>) == P2G::tile;
+         !s.loads.in_use() && chosen(s.p2g.strategy, backend_of<Space>) == P2G::tile;
 }
 
 /// The sums of soil and of its boundary, which only the nodes near a rigid read.

@@ -28,7 +28,7 @@ struct Field {
   std::vector<double>* values;
   int width;
 };
-std::vector<Field> fields_of(BodyParticles& body, int dim) {
+std::vector<Field> fields_of(BodyParticles& body, int dim, int faces) {
   std::vector<Field> fields = {{&body.position, dim},
                                {&body.velocity, dim},
                                {&body.stress, dim == 2 ? 4 : 6},
@@ -37,16 +37,17 @@ std::vector<Field> fields_of(BodyParticles& body, int dim) {
                                {&body.reference_height, 1},
                                {&body.own_parameter, 1},
                                {&body.velocity_gradient, dim * dim},
+                               {&body.faces, faces * (dim + 3)},
                                {&body.domain, dim * (dim + 1) / 2}};
   for (StateField& state : body.state) fields.push_back({&state.values, 1});
   return fields;
 }
 
 /// Of a body of which every rank has all particles: this rank's part.
-void keep_part(LatticePart part, int dim, BodyParticles& body) {
+void keep_part(LatticePart part, int dim, int faces, BodyParticles& body) {
   const long count = static_cast<long>(body.position.size()) / dim;
   const long from = count * part.number / part.of, to = count * (part.number + 1) / part.of;
-  for (const auto& [values, width] : fields_of(body, dim))
+  for (const auto& [values, width] : fields_of(body, dim, faces))
     if (!values->empty())
       *values = std::vector<double>(values->begin() + from * width, values->begin() + to * width);
 }
@@ -84,12 +85,12 @@ PetscErrorCode send_rows(MPI_Comm comm, const std::vector<int>& to, int width, s
 }
 
 PetscErrorCode send_to_owners(MPI_Comm comm, const PatchGrid& grid, double spacing, const Owners& owners,
-                              BodyParticles* body) {
+                              int faces, BodyParticles* body) {
   PetscFunctionBeginUser;
   std::vector<int> to;
   for (std::size_t p = 0; p < body->id.size(); ++p)
     to.push_back(owners[patch_of(body->position, p, grid, spacing)]);
-  for (const auto& [values, width] : fields_of(*body, grid.dim)) {
+  for (const auto& [values, width] : fields_of(*body, grid.dim, faces)) {
     int present = !values->empty();  // on some rank: this one may have no particle yet
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &present, 1, MPI_INT, MPI_MAX, comm));
     if (present) PetscCall(send_rows(comm, to, width, values));
@@ -138,7 +139,7 @@ PetscErrorCode distribute(MPI_Comm comm, const Config& config, const BackgroundM
     BodyParticles& body = model->bodies[b];
     if (config.bodies[b].shape.kind == ShapeKind::particles) {
       take_gradients(config, body);
-      keep_part({rank_of(comm), size_of(comm)}, dim, body);
+      keep_part({rank_of(comm), size_of(comm)}, dim, model->face_count, body);
     }
     PetscCall(number_particles(comm, dim, &first, &body));
   }
@@ -150,7 +151,7 @@ PetscErrorCode distribute(MPI_Comm comm, const Config& config, const BackgroundM
     PetscCall(mesh.owners(&model->owners));
   }
   for (BodyParticles& body : model->bodies)
-    PetscCall(send_to_owners(comm, grid, spacing, model->owners, &body));
+    PetscCall(send_to_owners(comm, grid, spacing, model->owners, model->face_count, &body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

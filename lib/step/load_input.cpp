@@ -35,6 +35,12 @@ std::vector<LoadInput> load_input(const Config& config, const std::vector<double
     for (int d = 0; d < config.dim; ++d)
       if (const auto& table = config.mesh.sides[n / 2][n % 2].velocity_table)
         add(LoadTarget::side, n, d, number_of(table, 0, d), {}, 0);
+  for (int n = 0; n < static_cast<int>(config.loads.size()); ++n) {
+    const LoadConfig& load = config.loads[n];
+    if (load.pressure_table) add(LoadTarget::pressure, n, 0, number_of(load.pressure_table, 0, 0), {}, 0);
+    for (int d = 0; d < config.dim && load.traction_table; ++d)
+      add(LoadTarget::traction, n, d, number_of(load.traction_table, 0, d), {}, 0);
+  }
   for (int r = 0; r < static_cast<int>(config.rigids.size()); ++r) {
     const RigidConfig& rigid = config.rigids[r];
     const bool weighs = rigid.motion == Motion::dynamic && (rigid.force_table || config.gravity_table);
@@ -54,6 +60,18 @@ double gravity_at(const Config& config, int d, double time) {
   if (!config.gravity_table) return config.gravity[d];
   const auto points = points_of(*config.gravity_table, d);
   return curve_of(points, config.gravity_table->smooth).value(time);
+}
+
+double pressure_at(const LoadConfig& load, double time) {
+  if (!load.pressure_table) return load.pressure;
+  const auto points = points_of(*load.pressure_table, 0);
+  return curve_of(points, load.pressure_table->smooth).value(time);
+}
+
+double traction_at(const LoadConfig& load, int d, double time) {
+  if (!load.traction_table) return load.traction[d];
+  const auto points = points_of(*load.traction_table, d);
+  return curve_of(points, load.traction_table->smooth).value(time);
 }
 
 double velocity_at(const RigidConfig& rigid, int d, double time) {

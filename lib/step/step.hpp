@@ -5,6 +5,7 @@
 #include "functions/find_strays.hpp"
 #include "functions/split_patches.hpp"
 #include "functions/step_kernels.hpp"
+#include "functions/surface_loads.hpp"
 #include "functions/velocity_update.hpp"
 #include "loops/interpolation.hpp"
 #include "parallel/decomposition.hpp"
@@ -85,6 +86,17 @@ void buoyancy_to_nodes(State<Space, T, Dim>& s) {
   add_buoyancy(s);
 }
 
+/// Loads on surfaces to the nodes, and to the forces there. Of this rank's soil, likewise.
+template <class Space, class T, int Dim>
+void loads_to_nodes(State<Space, T, Dim>& s) {
+  if (!s.loads.in_use()) return;
+  Kokkos::deep_copy(s.space, s.nodes.load, T(0));
+  for (int axis = 0; axis < Dim; ++axis)
+    interpolate<LoadSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, place_faces(s, axis),
+                                           s.nodes.load);
+  add_loads(s);
+}
+
 /// The soil's strength at the nodes near rigids, where a contact asks for it.
 template <class Space, class T, int Dim>
 PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
@@ -149,10 +161,14 @@ struct Step {
     PetscCall(run(StepPhase::soil_to_nodes, [&] {
       sum_soil(s.space);     // 3 soil to nodes
       buoyancy_to_nodes(s);  //   and what water carries of it
+      loads_to_nodes(s);     //   and the loads on its surface
     }));
-    if (ranks) PetscCall(ranks->add_soil(s));                        //   the sum over ranks
-    PetscCall(complete_nodes(s.space));                              //   strength, particles that are alone
-    PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt); }));  // 4 velocities, walls, contact
+    if (ranks) PetscCall(ranks->add_soil(s));  //   the sum over ranks
+    PetscCall(complete_nodes(s.space));        //   strength, particles that are alone
+    PetscCall(run(StepPhase::nodes, [&] {
+      update_nodes(s, dt);                           // 4 velocities, walls, contact
+      if (s.loads.in_use()) follow_surfaces(s, dt);  //   work of loads, and their areas
+    }));
     if (s.energy.on) PetscCall(run(StepPhase::energy, [&] { add_node_works(s, dt); }));
     PetscCall(run(StepPhase::particles, [&] { return update_soil(); }));  // 5 stress, movement
     if (s.energy.on) PetscCall(run(StepPhase::energy, [&] { add_stress_work(s); }));

@@ -84,6 +84,7 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   in.id = std::move(particles.id);
   in.velocity_gradient = std::move(particles.velocity_gradient);
   in.domain = std::move(particles.domain);
+  in.faces = std::move(particles.faces);
   return in;
 }
 
@@ -196,6 +197,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   lost_beyond_.resize(planes_.size());
   Fault fault{};
   PetscCallCXX(set_up_sides(&grid));
+  PetscCallCXX(set_up_loads(model));
   PetscCallCXX(upload_loads(state_, load_input(config_, carried)));
   PetscCallCXX(fault = upload(state_, grid, materials, bodies, rigids));
   *failure = fault.kind == FaultKind::none ? too_small() : describe(fault);

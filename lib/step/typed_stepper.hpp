@@ -84,6 +84,13 @@ class TypedStepper final : public Stepper {
   PetscErrorCode save_sections(SavedState* saved) const;
   void restore_sections(const SavedState& saved);
   void set_gravity(double time);
+  /// What loads on surfaces need: at the start, for what is measured at a time, for a row, and for
+  /// checkpoints.
+  void set_up_loads(const Model& model);
+  void set_loads(double time);
+  PetscErrorCode measure_loads(HistoryRow* row) const;
+  PetscErrorCode load_work(double* work) const;
+  void restore_load_work(double work);
   PetscErrorCode measure_body(int body, BodyRow* row);
   PetscErrorCode begin_energy();
   PetscErrorCode measure_energy(HistoryRow* row);

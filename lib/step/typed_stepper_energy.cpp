@@ -40,7 +40,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_energy(HistoryRow* row) {
   e.dissipated = e.internal - (e.elastic - elastic_at_start_);
   e.gravity = works[Work::gravity], e.damping = works[Work::damping];
   e.rigids = works[Work::rigids], e.contact = works[Work::boundary] - e.rigids;
-  const double of_nodes = works[Work::internal] + e.gravity + e.damping + works[Work::boundary];
+  e.loads = row->load_work;
+  const double of_nodes = works[Work::internal] + e.gravity + e.loads + e.damping + works[Work::boundary];
   e.update = e.kinetic + e.lost - kinetic_at_start_ - of_nodes;
   e.error = e.internal + works[Work::internal];
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -68,20 +69,27 @@ template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::save_energy(SavedState* saved) const {
   PetscFunctionBeginUser;
   saved->energy.clear();
-  if (!state_.energy.on) PetscFunctionReturn(PETSC_SUCCESS);
-  static_assert(k_saved_energy == Work::count + 2);
-  const auto works = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.energy.work);
-  saved->energy.assign(works.data(), works.data() + Work::count);
-  if (ranks_)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, saved->energy.data(), Work::count, MPI_DOUBLE, MPI_SUM, comm_));
-  saved->energy.insert(saved->energy.end(), {kinetic_at_start_, elastic_at_start_});
+  if (state_.energy.on) {
+    static_assert(k_saved_energy == Work::count + 2);
+    const auto works = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.energy.work);
+    saved->energy.assign(works.data(), works.data() + Work::count);
+    if (ranks_)
+      PetscCallMPI(
+          MPI_Allreduce(MPI_IN_PLACE, saved->energy.data(), Work::count, MPI_DOUBLE, MPI_SUM, comm_));
+    saved->energy.insert(saved->energy.end(), {kinetic_at_start_, elastic_at_start_});
+  }
+  if (!state_.loads.in_use()) PetscFunctionReturn(PETSC_SUCCESS);
+  double work = 0;
+  PetscCall(load_work(&work));
+  PetscCallCXX(saved->energy.push_back(work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// Rank 0 takes the works of all.
 template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::restore_energy(const SavedState& saved) {
-  if (!state_.energy.on || saved.energy.size() != k_saved_energy) return;
+  if (state_.loads.in_use() && !saved.energy.empty()) restore_load_work(saved.energy.back());
+  if (!state_.energy.on || saved.energy.size() < k_saved_energy) return;
   const auto works = Kokkos::create_mirror_view(state_.energy.work);
   for (int k = 0; k < Work::count; ++k) works(k) = ranks_ && rank_of(comm_) > 0 ? 0 : saved.energy[k];
   Kokkos::deep_copy(state_.energy.work, works);

@@ -35,6 +35,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
   PetscFunctionBeginUser;
   row->bodies.clear(), row->rigids.clear();
   set_gravity(row->time);
+  set_loads(row->time);
   collect_soil(state_);
   PetscCall(sum_soil());
   for (int b = 0; b < static_cast<int>(config_.bodies.size()); ++b) {
@@ -42,6 +43,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
     PetscCall(measure_body(b, &body));
     row->bodies.push_back(body);
   }
+  PetscCall(measure_loads(row));
   if (state_.energy.on) PetscCall(measure_energy(row));
   PetscCall(count_cells(row));
   row->walls = wall_forces(state_);
@@ -77,8 +79,10 @@ PetscErrorCode TypedStepper<Space, T, Dim>::unbalanced_ratio(double time, double
   PetscFunctionBeginUser;
   collect_soil(state_);
   set_gravity(time);
+  set_loads(time);
   sum_present_soil(state_);
   buoyancy_to_nodes(state_);
+  loads_to_nodes(state_);
   if (ranks_) PetscCall(ranks_->add_present_soil(state_));
   const UnbalancedForces own = unbalanced_forces(state_);
   double sums[2] = {own.force, own.weight};
@@ -156,6 +160,17 @@ void add_half_lengths(const SoilFields& soil, std::size_t from, std::size_t to, 
   }
 }
 
+/// The area of the faces of loads, as a vector, of the particles [from, to).
+template <int Dim>
+void add_load_areas(const SoilFields& soil, std::size_t from, std::size_t to, ParticleSnapshot* body) {
+  static constexpr const char* names[] = {"load_area_x", "load_area_y", "load_area_z"};
+  for (int d = 0; d < Dim; ++d) {
+    StateField field{names[d], {}};
+    for (std::size_t p = from; p < to; ++p) field.values.push_back(soil.load_area[p * Dim + d]);
+    body->state.push_back(std::move(field));
+  }
+}
+
 /// Along periodic directions, how many lengths of the mesh the particles [from, to) have gone beyond it.
 template <int Dim>
 void add_periods(const MeshConfig& mesh, const SoilFields& soil, std::size_t from, std::size_t to,
@@ -211,6 +226,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     if (has_pore_pressure(config_))  // of all bodies, so that pictures may show them
       add_pore_pressures<Dim>(config_, soil, state_.soil.points.history.pore, from, to, &body);
     add_periods<Dim>(config_.mesh, soil, from, to, &body);
+    if (state_.soil.points.face_count > 0) add_load_areas<Dim>(soil, from, to, &body);
     if (state_.soil.points.has_domain) add_half_lengths<Dim>(soil, from, to, &body);
     body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
     body.reference_height.assign(height.begin() + from, height.begin() + to);

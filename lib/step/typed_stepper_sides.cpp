@@ -38,8 +38,11 @@ PetscErrorCode TypedStepper<Space, T, Dim>::begin_sides() {
   PetscFunctionBeginUser;
   if (state_.sides.unknown == 0) PetscFunctionReturn(PETSC_SUCCESS);
   set_gravity(state_.time);
+  set_loads(state_.time);
   collect_soil(state_);
-  PetscCall(sum_soil());
+  sum_present_soil(state_);
+  loads_to_nodes(state_);
+  if (ranks_) PetscCall(ranks_->add_present_soil(state_));
   std::vector<double> ratios;
   for (const MaterialConfig& material : config_.materials)
     ratios.push_back(shear_wave_ratio(material).value_or(0));

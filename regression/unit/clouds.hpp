@@ -14,6 +14,7 @@
 #include "physics/materials/any.hpp"
 #include "transfer/download.hpp"
 #include "transfer/upload.hpp"
+#include "transfer/upload_loads.hpp"
 
 namespace mpm::test {
 
@@ -81,10 +82,12 @@ struct Cloud {
   double flip_fraction = 1, damping = 0, f_bar_fraction = 0;
   int xpic_order = 0;
   bool affine = false;
-  bool rings = false;                   // the particles are rings about x = 0
-  bool stretch = false, split = false;  // the domains of particles; those that are too long
-  bool energy = false;                  // an energy balance
-  double memory_limit = 0;              // bytes, for batches of the soil
+  bool rings = false;                                // the particles are rings about x = 0
+  bool stretch = false, split = false;               // the domains of particles; those that are too long
+  bool energy = false;                               // an energy balance
+  int face_count = 0;                                // loads that a particle is on at most
+  std::vector<std::array<double, 4>> surface_loads;  // Pa: pressure and traction of each
+  double memory_limit = 0;                           // bytes, for batches of the soil
 };
 
 template <class B>
@@ -104,6 +107,13 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typenam
   s.f_bar_fraction = cloud.f_bar_fraction;
   s.batches.limit = cloud.memory_limit;
   s.energy.on = cloud.energy;
+  s.soil.points.face_count = cloud.face_count;
+  std::vector<SurfaceLoad<B::dim>> loads;
+  for (const auto& load : cloud.surface_loads) {
+    SurfaceLoad<B::dim>& now = loads.emplace_back(SurfaceLoad<B::dim>{load[0], {}});
+    for (int d = 0; d < B::dim; ++d) now.traction[d] = load[1 + d];
+  }
+  upload_surface_loads(s, loads);
   if (upload(s, cloud.grid, cloud.materials, cloud.bodies, cloud.rigids).kind != FaultKind::none)
     throw std::runtime_error("a particle of the test lies outside the mesh");
   if (cloud.energy) begin_works(s);

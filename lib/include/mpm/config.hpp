@@ -228,6 +228,17 @@ struct OutputConfig {
   std::vector<std::string> restart_change;  // names of options, without dash, that may differ from its own
 };
 
+/// A load on a part of a body's surface, which moves with it.
+struct LoadConfig {
+  std::string name;
+  int body = 0;                                             // index into Config::bodies
+  Vec3 lower{}, upper{};                                    // m, box in which the surface is at the start
+  std::optional<Vec3> facing;                               // direction that its normals have, to 60 degrees
+  double pressure = 0;                                      // Pa, along the normal, into the soil
+  Vec3 traction{};                                          // Pa, of the area at the start
+  std::optional<TimeTable> pressure_table, traction_table;  // Pa, instead of them
+};
+
 enum class ProbeKind { point, particle, gauge, section };
 
 /// A place where the history tells of the soil.
@@ -318,6 +329,7 @@ struct Config {
   std::vector<BodyConfig> bodies;
   std::vector<RigidConfig> rigids;
   OutputConfig output;
+  std::vector<LoadConfig> loads;
   std::vector<ProbeConfig> probes;
   RasterConfig rasters;
   ElementConfig element;

@@ -1,0 +1,32 @@
+#pragma once
+// Loads on parts of bodies' surfaces, which move with them: pressures and tractions. What each particle keeps
+// of the surface is in Soil::faces.
+
+#include "data/particles.hpp"
+
+namespace mpm {
+
+/// A load in the step at hand.
+template <int Dim>
+struct SurfaceLoad {
+  double pressure;       // Pa, against the normal out of the soil
+  double traction[Dim];  // Pa, of the area at the start
+};
+
+/// All loads of a run, and what their sums at the nodes need.
+template <class Space, class T, int Dim>
+struct SurfaceLoads {
+  using Memory = typename Space::memory_space;
+  Kokkos::View<SurfaceLoad<Dim>*, Memory> now;
+  Kokkos::View<double, Memory> work, of_step;  // J, on this rank: since the start, and of one step
+  Kokkos::View<int*, Memory> loaded;           // by slot: its place among those with loads, from 1 on; else 0
+  int loaded_count = 0;
+  Windows<Space> windows;  // of these slots
+  // Of each particle's faces along one axis: their places and boxes, as those of particles, and forces [N].
+  Kokkos::View<Vector<T, Dim>*, Memory> coordinate, force;
+  Kokkos::View<DomainMoments<T, Dim>*, Memory> domain;
+
+  bool in_use() const { return now.extent(0) > 0; }
+};
+
+}  // namespace mpm

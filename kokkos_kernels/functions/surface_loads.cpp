@@ -1,0 +1,341 @@
+#include "functions/surface_loads.hpp"
+
+#include "loops/particle_to_node.hpp"
+#include "rebuild/rebuild.hpp"
+
+namespace mpm {
+namespace {
+
+/// Half of the thickness of a face [cells]: so little that the weights are those of a plane to round-off.
+template <class T>
+inline constexpr T k_thin = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e-6);
+
+/// Cells by which a face may reach beyond a row of nodes and still act at that row: the nodes beyond may have
+/// less than State::mass_cut, where no force acts.
+template <class T>
+inline constexpr T k_at_row = sizeof(T) == sizeof(double) ? T(1e-6) : T(1e-5);
+
+/// Particles that the loads of a State act on.
+template <class Space, class T, int Dim>
+struct LoadedParticles {
+  Soil<Space, T, Dim> soil;
+  decltype(SurfaceLoads<Space, T, Dim>::loaded) loaded;
+  decltype(Strays<Space>::alone) alone;
+
+  explicit LoadedParticles(const State<Space, T, Dim>& s)
+      : soil(s.soil.points), loaded(s.loads.loaded), alone(s.strays.alone) {}
+  /// Number of the load of face k of particle p; -1 where there is none.
+  KOKKOS_INLINE_FUNCTION int load_of(int p, int k) const {
+    return static_cast<int>(soil.faces[k](p)[FaceTerms<Dim>::load]) - 1;
+  }
+  KOKKOS_INLINE_FUNCTION bool in_loaded_slot(int p) const {
+    return loaded(soil.cell(p) / Patch<Dim>::cells) != 0;
+  }
+  /// Whether loads act on particle p: particles that are alone fly free.
+  KOKKOS_INLINE_FUNCTION bool has_load(int p) const {
+    if (!in_loaded_slot(p) || is_alone(alone, soil.cell(p))) return false;
+    for (int k = 0; k < soil.face_count; ++k)
+      if (load_of(p, k) >= 0) return true;
+    return false;
+  }
+};
+
+/// The box of a particle in the plane: its centre and half lengths [cells, in the frame of its cell]. Along
+/// the radius of a ring it is as far out as the mean of a linear field over the ring asks, and no further
+/// than the ring.
+template <class T, int Dim>
+struct FaceBox {
+  Vector<T, Dim> centre, half;
+};
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION FaceBox<T, Dim> box_across(const Soil<Space, T, Dim>& soil, int p, int axis) {
+  FaceBox<T, Dim> box;
+  const HalfLengths<T, Dim> half = any_domain_of(soil, p);
+  for (int d = 0; d < Dim; ++d) box.centre[d] = soil.coordinate(p)[d], box.half[d] = half[d].l;
+  if constexpr (Dim == 2)
+    if (soil.rings) {
+      const RingDomain<T> ring{half[0], axis_of<T>(soil, soil.cell(p))};
+      const RadialPart<T> part = radial_part(box.centre[0], ring);
+      const T shift = axis == 0 ? T(0) : radial_centroid(part, ring) - part.centre;
+      box.centre[0] = part.centre + shift, box.half[0] = part.half.l - shift;
+    }
+  return box;
+}
+
+/// The faces of particles along an axis, and the forces on them.
+template <class Space, class T, int Dim>
+struct PlaceFaces {
+  using F = FaceTerms<Dim>;
+  LoadedParticles<Space, T, Dim> particles;
+  SurfaceLoads<Space, T, Dim> loads;
+  int axis;
+
+  KOKKOS_INLINE_FUNCTION void operator()(int p) const {
+    if (!particles.in_loaded_slot(p)) return;
+    double area = 0, force[Dim] = {};
+    if (particles.has_load(p))
+      for (int k = 0; k < particles.soil.face_count; ++k) add_face(p, k, area, force);
+    FaceBox<T, Dim> box = box_across(particles.soil, p, axis);
+    const T side = area > 0 ? T(1) : area < 0 ? T(-1) : T(0);
+    T& at = box.centre[axis];
+    at += side * box.half[axis];
+    if (const T row = Kokkos::round(at), beyond = side * (at - row); beyond > 0 && beyond < k_at_row<T>)
+      at = row;
+    box.half[axis] = k_thin<T>;
+    DomainMoments<T, Dim> domain{};
+    for (int d = 0; d < Dim; ++d) domain[d] = box.half[d] * box.half[d];
+    loads.coordinate(p) = box.centre, loads.domain(p) = domain;
+    for (int d = 0; d < Dim; ++d) loads.force(p)[d] = static_cast<T>(force[d]);
+  }
+
+ private:
+  /// Each component of a pressure acts on the face that is normal to it. A traction is divided among the
+  /// faces as the components of the area.
+  KOKKOS_INLINE_FUNCTION void add_face(int p, int k, double& area, double (&force)[Dim]) const {
+    const int load = particles.load_of(p, k);
+    if (load < 0) return;
+    const Face<Dim> face = particles.soil.faces[k](p);
+    const SurfaceLoad<Dim>& now = loads.now(load);
+    double size = 0;
+    for (int d = 0; d < Dim; ++d) size += Kokkos::fabs(face[F::area + d]);
+    const double share = size > 0 ? Kokkos::fabs(face[F::area + axis]) / size : axis == 0 ? 1.0 : 0.0;
+    area += face[F::area + axis];
+    force[axis] -= now.pressure * face[F::area + axis];
+    for (int d = 0; d < Dim; ++d) force[d] += now.traction[d] * face[F::start] * share;
+  }
+};
+
+/// cof(B)^T a of B^T, the cofactors of B times a.
+KOKKOS_INLINE_FUNCTION void cofactors_times(const double (&b)[2][2], const double (&a)[2], double (&out)[2]) {
+  out[0] = b[1][1] * a[0] - b[1][0] * a[1];
+  out[1] = b[0][0] * a[1] - b[0][1] * a[0];
+}
+KOKKOS_INLINE_FUNCTION void cofactors_times(const double (&b)[3][3], const double (&a)[3], double (&out)[3]) {
+  for (int i = 0; i < 3; ++i) {
+    out[i] = 0;
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    for (int j = 0; j < 3; ++j) {
+      const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      out[i] += (b[i1][j1] * b[i2][j2] - b[i1][j2] * b[i2][j1]) * a[j];
+    }
+  }
+}
+KOKKOS_INLINE_FUNCTION double determinant(const double (&m)[2][2]) {
+  return m[0][0] * m[1][1] - m[0][1] * m[1][0];
+}
+KOKKOS_INLINE_FUNCTION double determinant(const double (&m)[3][3]) {
+  const double first[3] = {1, 0, 0};
+  double row[3];
+  cofactors_times(m, first, row);
+  return m[0][0] * row[0] + m[1][0] * row[1] + m[2][0] * row[2];
+}
+
+/// Areas after a step, by Nanson's formula a' = det(G) G^-T a with G = (I - L dt/2)^-1 (I + L dt/2), which of
+/// a spin is a rotation.
+template <class Space, class T, int Dim>
+struct FollowSurfaces {
+  using F = FaceTerms<Dim>;
+  LoadedParticles<Space, T, Dim> particles;
+  NodePlaces<Space, T, Dim> places;
+  decltype(Nodes<Space, T, Dim>::kinematics) kinematics;
+  ControlView<Space> control;
+  double half_step;  // s
+
+  KOKKOS_INLINE_FUNCTION void operator()(int p) const {
+    if (control().paused || !particles.has_load(p)) return;
+    double l[Dim][Dim] = {}, hoop = 0;  // times half the step
+    rates(p, l, hoop);
+    double before[Dim][Dim], after[Dim][Dim];  // I - L dt/2, I + L dt/2
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) {
+        before[i][j] = (i == j ? 1.0 : 0.0) - l[i][j];
+        after[i][j] = (i == j ? 1.0 : 0.0) + l[i][j];
+      }
+    const double scale = (1 + hoop) / ((1 - hoop) * determinant(before));
+    for (int k = 0; k < particles.soil.face_count; ++k) {
+      if (particles.load_of(p, k) < 0) continue;
+      Face<Dim>& face = particles.soil.faces[k](p);
+      double area[Dim], turned[Dim];
+      for (int d = 0; d < Dim; ++d) area[d] = face[F::area + d];
+      cofactors_times(after, area, turned);
+      for (int d = 0; d < Dim; ++d) {
+        double sum = 0;
+        for (int e = 0; e < Dim; ++e) sum += before[e][d] * turned[e];
+        face[F::area + d] = scale * sum;
+      }
+    }
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION void rates(int p, double (&l)[Dim][Dim], double& hoop) const {
+    const double scale = half_step * double(places.grid.inv_spacing);
+    with_any_domain(particles.soil, p, [&](const auto& domain) {
+      constexpr bool ring = std::is_same_v<std::decay_t<decltype(domain)>, RingDomain<T>>;
+      for_each_node<Kind::motion>(
+          particles.soil, domain, places, p, [&](int i, T, const auto& grad, auto&&, auto&& sign) {
+            for (int d = 0; d < Dim; ++d) {
+              const double v = scale * double(sign(d) * kinematics(i, NodeKinematics<Dim>::velocity + d));
+              for (int e = 0; e < Dim; ++e) l[d][e] += v * double(grad[e]);
+              if constexpr (ring)
+                if (d == 0) hoop += v * double(grad[Dim]);
+            }
+          });
+    });
+  }
+};
+
+/// Work of the loads of this rank at the nodes, with the mean of a node's velocity before and after the step.
+template <class Space, class T, int Dim>
+void add_load_work(State<Space, T, Dim>& s, double dt) {
+  using S = SoilTerms<Dim>;
+  const auto control = s.control;
+  const auto load = s.nodes.load;
+  const auto soil = s.nodes.soil;
+  const auto kinematics = s.nodes.kinematics;
+  const double mass_cut = s.mass_cut;
+  const auto of_step = s.loads.of_step;
+  Kokkos::parallel_reduce(
+      "mpm::load_work", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
+      KOKKOS_LAMBDA(int i, double& sum) {
+        const double m_i = soil(i, S::mass);
+        if (control().paused || !(m_i > mass_cut)) return;  // no force acts on a node of less mass
+        for (int d = 0; d < Dim; ++d) {
+          const double v = soil(i, S::momentum + d) / m_i + kinematics(i, NodeKinematics<Dim>::velocity + d);
+          sum += double(load(i, d)) * v * (dt / 2);
+        }
+      },
+      Kokkos::Sum<double, typename Space::memory_space>(of_step));
+  const auto work = s.loads.work;
+  const bool balance = s.energy.on;
+  const auto works = s.energy.work;
+  Kokkos::parallel_for(
+      "mpm::add_load_work", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
+        work() += of_step();
+        if (balance) works(Work::internal) -= of_step();  // which counts all forces at the nodes
+      });
+}
+
+/// SurfaceSum of one load, for parallel_reduce.
+struct AddedSurface {
+  SurfaceSum of;
+  KOKKOS_INLINE_FUNCTION AddedSurface& operator+=(const AddedSurface& other) {
+    for (int d = 0; d < 3; ++d) of.vector[d] += other.of.vector[d];
+    of.area += other.of.area, of.start_area += other.of.start_area;
+    return *this;
+  }
+};
+
+}  // namespace
+}  // namespace mpm
+
+namespace Kokkos {
+template <>
+struct reduction_identity<mpm::AddedSurface> {
+  KOKKOS_FORCEINLINE_FUNCTION static mpm::AddedSurface sum() { return {}; }
+};
+}  // namespace Kokkos
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+void list_loaded(State<Space, T, Dim>& s) {
+  auto& loads = s.loads;
+  const int slots = s.patches.slots;
+  ensure(loads.loaded, slots);
+  const auto loaded = loads.loaded;
+  const auto begin = s.soil.bins.begin;
+  const LoadedParticles<Space, T, Dim> particles(s);
+  Kokkos::parallel_for(
+      "mpm::mark_loaded", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
+        constexpr int cells = Patch<Dim>::cells;
+        bool some = false;
+        for (int p = begin(slot * cells); p < begin((slot + 1) * cells) && !some; ++p)
+          for (int k = 0; k < particles.soil.face_count; ++k) some |= particles.load_of(p, k) >= 0;
+        loaded(slot) = some;
+      });
+  Kokkos::parallel_scan(
+      "mpm::list_loaded", Kokkos::RangePolicy<Space>(s.space, 0, slots),
+      KOKKOS_LAMBDA(int slot, int& n, bool last) {
+        if (loaded(slot) == 0) return;
+        if (last) loaded(slot) = n + 1;
+        ++n;
+      },
+      loads.loaded_count);
+  if (has_windows(s.space)) {
+    loads.windows.place = loaded;
+    ensure(loads.windows.sums, window_bytes<LoadSource<Space, T, Dim>> * loads.loaded_count);
+  }
+  const int count = s.soil.points.count;
+  ensure(loads.coordinate, count), ensure(loads.force, count), ensure(loads.domain, count);
+}
+
+template <class Space, class T, int Dim>
+LoadSource<Space, T, Dim> place_faces(const State<Space, T, Dim>& s, int axis) {
+  Kokkos::parallel_for("mpm::place_faces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+                       PlaceFaces<Space, T, Dim>{LoadedParticles<Space, T, Dim>(s), s.loads, axis});
+  LoadSource<Space, T, Dim> source{s.soil.points, s.loads.force, s.loads.loaded};
+  source.points.coordinate = s.loads.coordinate, source.points.domain = s.loads.domain;
+  source.points.has_domain = true, source.points.least_half_length = k_thin<T>;
+  return source;
+}
+
+template <class Space, class T, int Dim>
+void add_loads(State<Space, T, Dim>& s) {
+  const auto soil = s.nodes.soil;
+  const auto load = s.nodes.load;
+  const auto control = s.control;
+  Kokkos::parallel_for(
+      "mpm::add_loads", light(Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count())),
+      KOKKOS_LAMBDA(int i) {
+        if (control().paused) return;
+        for (int d = 0; d < Dim; ++d) soil(i, SoilTerms<Dim>::force + d) += load(i, d);
+      });
+}
+
+template <class Space, class T, int Dim>
+void follow_surfaces(State<Space, T, Dim>& s, double dt) {
+  add_load_work(s, dt);
+  Kokkos::parallel_for(
+      "mpm::follow_surfaces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+      FollowSurfaces<Space, T, Dim>{
+          LoadedParticles<Space, T, Dim>(s), {s.grid, s.patches}, s.nodes.kinematics, s.control, dt / 2});
+}
+
+template <class Space, class T, int Dim>
+std::vector<SurfaceSum> sum_surfaces(const State<Space, T, Dim>& s) {
+  using F = FaceTerms<Dim>;
+  std::vector<SurfaceSum> sums;
+  const LoadedParticles<Space, T, Dim> particles(s);
+  for (int n = 0; n < static_cast<int>(s.loads.now.extent(0)); ++n) {
+    AddedSurface sum;
+    Kokkos::parallel_reduce(
+        "mpm::sum_surfaces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+        KOKKOS_LAMBDA(int p, AddedSurface& own) {
+          if (!particles.has_load(p)) return;
+          for (int k = 0; k < particles.soil.face_count; ++k) {
+            if (particles.load_of(p, k) != n) continue;
+            const Face<Dim>& face = particles.soil.faces[k](p);
+            double square = 0;
+            for (int d = 0; d < Dim; ++d) {
+              own.of.vector[d] += face[F::area + d];
+              square += face[F::area + d] * face[F::area + d];
+            }
+            own.of.area += Kokkos::sqrt(square) / face[F::steps];
+            own.of.start_area += face[F::start];
+          }
+        },
+        Kokkos::Sum<AddedSurface>(sum));
+    sums.push_back(sum.of);
+  }
+  return sums;
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                              \
+  template void list_loaded(State<Space, T, Dim>&);                                 \
+  template LoadSource<Space, T, Dim> place_faces(const State<Space, T, Dim>&, int); \
+  template void add_loads(State<Space, T, Dim>&);                                   \
+  template void follow_surfaces(State<Space, T, Dim>&, double);                     \
+  template std::vector<SurfaceSum> sum_surfaces(const State<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

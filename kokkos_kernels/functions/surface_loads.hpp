@@ -1,0 +1,38 @@
+#pragma once
+// Loads on surfaces (data/surface_loads.hpp) in a step.
+
+#include <vector>
+
+#include "data/state.hpp"
+#include "physics/p2g_terms.hpp"
+
+namespace mpm {
+
+/// After lists were made: which slots hold particles with loads.
+template <class Space, class T, int Dim>
+void list_loaded(State<Space, T, Dim>& s);
+
+/// The source of the forces on faces that lie along an axis, of particles in the slots with loads. It takes
+/// their places from s.loads, where this puts them.
+template <class Space, class T, int Dim>
+LoadSource<Space, T, Dim> place_faces(const State<Space, T, Dim>& s, int axis);
+
+/// Adds s.nodes.load to the forces at the nodes.
+template <class Space, class T, int Dim>
+void add_loads(State<Space, T, Dim>& s);
+
+/// Behind function 4, before particles move: the work of the loads in the step, and the areas of the faces
+/// after it. dt [s].
+template <class Space, class T, int Dim>
+void follow_surfaces(State<Space, T, Dim>& s, double dt);
+
+/// The surface of a load as it is now, on this rank: sums over its particles that are not alone.
+struct SurfaceSum {
+  double vector[3] = {};  // m2, area as a vector out of the soil
+  double area = 0;        // m2
+  double start_area = 0;  // m2, at the start of the run, of the particles that are here
+};
+template <class Space, class T, int Dim>
+std::vector<SurfaceSum> sum_surfaces(const State<Space, T, Dim>& s);
+
+}  // namespace mpm

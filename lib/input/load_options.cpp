@@ -1,0 +1,97 @@
+// -loads: pressures and tractions on parts of bodies' surfaces.
+
+#include <algorithm>
+
+#include "common/text.hpp"
+#include "common/time_table.hpp"
+#include "input/groups.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr const char* k_pressure_meaning =
+    "pressure into the soil along the normal of the surface, which it follows";
+constexpr const char* k_traction_meaning =
+    "dead load of fixed direction, by area of the surface at the start";
+
+void read_body_of(OptionReader& in, const Config& config, LoadConfig& load) {
+  std::vector<std::string> bodies;
+  for (const BodyConfig& body : config.bodies) bodies.push_back(body.name);
+  if (bodies.empty() && !in.listing())
+    in.ignore(load.name + "_body");  // the list is wrong, which is reported
+  else
+    in.word({.name = load.name + "_body",
+             .meaning = "the body on whose surface it is",
+             .required = true,
+             .aside = ", of -bodies"},
+            bodies, load.body);
+}
+
+/// The box in which the surface is at the start.
+void read_box(OptionReader& in, int dim, LoadConfig& load) {
+  const auto errors = in.errors();
+  in.vector(
+      {.name = load.name + "_lower",
+       .meaning = "lower corner of a box; the load is on the free surface of the body in it at the start: on "
+                  "the faces of particles that no other particle covers, whose centres are in the box",
+       .unit = "m",
+       .range = k_coordinate,
+       .required = true},
+      dim, load.lower);
+  in.vector({.name = load.name + "_upper",
+             .meaning = "its upper corner",
+             .unit = "m",
+             .range = k_coordinate,
+             .required = true},
+            dim, load.upper);
+  if (in.listing() || in.errors() != errors) return;
+  for (int d = 0; d < dim; ++d)
+    if (!(load.upper[d] >= load.lower[d]))
+      return in.reject(load.name + "_upper", formatted("a corner above -%s_lower, \"%s\"", load.name.c_str(),
+                                                       text_of(load.lower, dim).c_str()));
+}
+
+void read_facing(OptionReader& in, int dim, LoadConfig& load) {
+  const Option option{
+      .name = load.name + "_facing",
+      .meaning =
+          "a direction out of the body: of the faces in the box only those whose normal is within 60 "
+          "degrees of it",
+      .unit = "-",
+      .range = k_coordinate,
+      .standard = "all"};
+  Vec3 facing{};
+  if (!in.vector(option, dim, facing)) return;
+  if (facing == Vec3{}) return in.reject(option.name, "a direction other than 0");
+  load.facing = facing;
+}
+
+}  // namespace
+
+void read_load(OptionReader& in, const Config& config, LoadConfig& load) {
+  in.section("Each load NAME");
+  const int dim = config.dim;
+  read_body_of(in, config, load);
+  read_box(in, dim, load);
+  read_facing(in, dim, load);
+  const Option pressure{
+      .name = load.name + "_pressure", .meaning = k_pressure_meaning, .unit = "Pa", .range = k_stress};
+  const Option traction{
+      .name = load.name + "_traction", .meaning = k_traction_meaning, .unit = "Pa", .range = k_stress};
+  in.number(pressure, load.pressure);
+  read_timed(in, pressure, true, 1, config.time.end, {load.pressure, 0, 0}, load.pressure_table);
+  in.vector(traction, dim, load.traction);
+  read_timed(in, traction, true, dim, config.time.end, load.traction, load.traction_table);
+  const bool none = !in.given(pressure.name) && !in.given(pressure.name + "_table") &&
+                    !in.given(traction.name) && !in.given(traction.name + "_table");
+  if (none && !in.listing())
+    in.reject(pressure.name, "a pressure in Pa, or -" + traction.name + " is given, or a table of either");
+}
+
+void check_loads(OptionReader& in, const Config& config) {
+  if (config.loads.empty()) return;
+  if (config.device_memory_limit)
+    in.reject("loads", "nothing where -device_memory_limit sends the soil in batches");
+}
+
+}  // namespace mpm
