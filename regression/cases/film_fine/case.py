@@ -5,7 +5,7 @@ $k$ = 800 Pa s$^{1/2}$ and $n$ = 1/2, and the velocity $\\frac{n}{n+1} (\\rho g 
 at the surface. Grains (`mu_i`, glass beads of 0.5 mm at a volume fraction of 0.6, 20 mm on 24°) have the same inertial
 number $I = I_0 (\\tan\\theta - \\mu_s) / (\\mu_2 - \\tan\\theta)$ everywhere, and the velocity $\\tfrac23 (I/d_g)
 \\sqrt{0.6\\, g \\cos\\theta}\\, H^{3/2}$ at the surface. They lie between periodic sides, because they take long to come to their
-steady flow, and move by APIC: sheared by more than a hundred, grains by FLIP begin to bounce ([the law](soils.md#mu_i)).
+steady flow, with eight cells over the height, and move by APIC: sheared by more than a hundred, grains by FLIP begin to bounce ([the law](soils.md#mu_i)).
 """
 
 import film
@@ -13,7 +13,7 @@ from film import FluidFilm, GrainFilm
 
 DECK = "regression/cases/film/case.opts"
 FILMS = {"newtonian": FluidFilm(10, 0.05, 1000, 0, 5, 1, 16), "Bingham": FluidFilm(15, 0.5, 1500, 100, 200, 1, 16),
-         "Herschel-Bulkley": FluidFilm(15, 0.5, 1500, 100, 800, 0.5, 16), "grains": GrainFilm(24, 0.02, 16)}
+         "Herschel-Bulkley": FluidFilm(15, 0.5, 1500, 100, 800, 0.5, 16), "grains": GrainFilm(24, 0.02, 8)}
 TOLERANCES = (0.02, 0.03, 0.03, 0.02)
 RUNS = {law: each.options() for law, each in FILMS.items()}
 BACKENDS, PRECISIONS = ("openmp", "cuda"), ("double",)

@@ -56,6 +56,7 @@ def beside(height):
             + wave(2e-3, 0) + PERIODIC)
 
 
+LONG = True
 RUNS = ({f"{name}_{kind}": BOTH + more + sides for name, more in LEVEL.items() for kind, sides in (("column", PERIODIC), ("free", FREE))}
         | {"weight_column": WEIGHT + PERIODIC, "weight_free": WEIGHT + FREE, "layer": LAYER}
         | {f"bar_{factor}": bar(factor) for factor in FACTORS}
