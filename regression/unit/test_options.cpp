@@ -235,7 +235,7 @@ TEST_CASE("strengths that a file gives each particle are those that the material
     return errors[0].starts_with(given) ? errors[0].substr(given.size()) : join(errors, "; ");
   };
   const auto largest = [&](const std::string& law) {
-    return config_of(head + rest + law).bodies.at(0).largest_own_parameter;
+    return config_of(head + rest + law).bodies.at(0).largest_own[0];
   };
   const std::string clay = "-clay_model von_mises -clay_su 1000 ", young = "-clay_young 1e6 ",
                     sand = "-clay_model mohr_coulomb -clay_cohesion 9 -clay_young 1e6 -clay_friction_deg ";
@@ -245,7 +245,7 @@ TEST_CASE("strengths that a file gives each particle are those that the material
   const Config stiff = config_of(head + rest + clay + "-clay_rigidity 500");
   const MaterialConfig twice{"clay", "von_mises", 1500, {500 * 700., 0.3, 1, 0, 0, 0}};
   Config plain = stiff;
-  plain.materials = {twice}, plain.bodies[0].largest_own_parameter.reset();
+  plain.materials = {twice}, plain.bodies[0].largest_own = {};
   CHECK(std::fabs(wave_speed(stiff, stiff.bodies[0]) / wave_speed(plain, plain.bodies[0]) - 1) < 1e-12);
 
   with("su", {0, 700});
