@@ -6,6 +6,7 @@
 #include <span>
 
 #include "common/hdf5_handle.hpp"
+#include "common/text.hpp"
 #include "output/shared_file.hpp"
 
 namespace mpm {
