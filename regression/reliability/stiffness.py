@@ -52,7 +52,8 @@ def side_options(draw, dim, wide):
 
 def make_deck(draw, dim):
     """Options without those of the modulus; the box, m; the modulus at its top, Pa, and its growth, Pa/m."""
-    size = [H * draw.choice([4, 5, 8, 8]), *([H * 2] if dim == 3 else []), H * draw.randint(5, 8)]
+    wide, high = (draw.choice([11, 16, 16, 20]), draw.randint(9, 14)) if dim == 2 else (draw.choice([6, 8, 8]), draw.randint(5, 8))
+    size = [H * wide, *([H * 2] if dim == 3 else []), H * high]
     upper = [*size[:-1], size[-1] + 3 * H]
     law = draw.choice(LAWS).format(su=f"{10 ** draw.uniform(3.5, 4.5):.5g}")
     young, growth = 10 ** draw.uniform(6.3, 7), 10 ** draw.uniform(5.5, 7)
@@ -64,7 +65,7 @@ def make_deck(draw, dim):
                f"-time_end 0.06 -output_interval 0.03 -history_interval 0.01").split()
     if draw.random() < 0.3:
         options += ["-soil_pore_stiffness", "2e7"]
-    return options + side_options(draw, dim, round(size[0] / H)), size, young, growth
+    return options + side_options(draw, dim, wide), size, young, growth
 
 
 def box(size, per_cell):
