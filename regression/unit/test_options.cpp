@@ -80,16 +80,17 @@ TEST_CASE("a material has its model's parameters in the order of the model's tab
   CHECK(clay.name == "clay");
   CHECK(clay.model == "von_mises");
   CHECK(clay.density == 1500);
-  CHECK(clay.parameters == std::vector<double>{1e6, 0.3, 1000, 2000, 1.5, 0});
+  CHECK(clay.parameters == std::vector<double>{1e6, 0.3, 1000, 2000, 1.5, 0, 0, 0});
 }
 
 TEST_CASE("rigidity takes the place of Young's modulus", "[options]") {
   std::string deck = k_deck;
   deck.erase(deck.find("-clay_young 1e6 "), std::string("-clay_young 1e6 ").size());
   CHECK(config_of(deck + "-clay_rigidity 500").materials.at(0).parameters ==
-        std::vector<double>{0, 0.3, 1000, 0, 0, 500});
+        std::vector<double>{0, 0.3, 1000, 0, 0, 500, 0, 0});
   CHECK(read(deck).report.errors.at(0) ==
-        "mpm: -clay_young: not given, takes a number in Pa from 0.001 to 1e+15, or -clay_rigidity in its "
+        "mpm: -clay_young: not given, takes a number in Pa from 0.001 to 1e+15, or field, or -clay_rigidity "
+        "in its "
         "place");
   CHECK(read(k_deck + "-clay_rigidity 500").report.errors.at(0) ==
         "mpm: -clay_young: given \"1e6\", takes nothing here: -clay_rigidity is in its place");
