@@ -85,7 +85,7 @@ struct DruckerPrager : FrictionalSoil<T> {
     const R apex = has_apex ? apex_over_cohesion * c : R(this->tension);
     const R cap = has_tension ? Kokkos::fmin(this->tension, apex) : apex;
     s = rotated(s, by.spin);
-    add_elastic(s, by.strain, this->lambda_of(state), shear_modulus);
+    this->add_elastic_to(s, by.strain, state);
 
     const R p = mean_of(s), r = Kokkos::sqrt(second_invariant(s, p)), f = r + slope * p - strength;
     const R beyond = has_apex || has_tension ? p - cap : R(-1);

@@ -94,6 +94,16 @@ struct Elasticity : YoungsModulus<T> {
     return of_particle(shear_modulus, state);
   }
 
+  /// Adds the elastic stress of an increment of strain. Constants of all particles are no lanes.
+  template <class R, int N, int Dim>
+  KOKKOS_FORCEINLINE_FUNCTION void add_elastic_to(SymTensor<R, Dim>& s, const SymTensor<R, Dim>& strain,
+                                                  const LawState<R, N>& state) const {
+    if (this->varies())
+      add_elastic(s, strain, lambda_of(state), shear_modulus_of_particle(state));
+    else
+      add_elastic(s, strain, lambda, shear_modulus);
+  }
+
   /// Soil of one Young's modulus takes no memory for it.
   KOKKOS_FUNCTION bool carries(int k) const { return k != Variable || this->varies(); }
   /// lambda + 2 G [Pa], which gives the speed of the fastest wave (Eq. 14).

@@ -63,7 +63,7 @@ struct J2Hardening : Elasticity<T, 2> {
                               const Increment<R, T, Dim>& by) const {
     s = rotated(s, by.spin);
     const R shear_modulus = this->shear_modulus_of_particle(state);
-    add_elastic(s, by.strain, this->lambda_of(state), shear_modulus);
+    this->add_elastic_to(s, by.strain, state);
     const R mean = mean_of(s), trial = shear_stress_of(s, mean);
     const R strength = shear_yield + shear_slope * (state[plastic_strain] + state[remainder]);
     const auto yields = trial > strength;

@@ -30,7 +30,7 @@ struct LinearElastic : Elasticity<T, 0> {
   KOKKOS_FORCEINLINE_FUNCTION void update(SymTensor<R, Dim>& stress, LawState<R, 1>& state,
                                           const Increment<R, T, Dim>& by) const {
     stress = rotated(stress, by.spin);
-    add_elastic(stress, by.strain, this->lambda_of(state), this->shear_modulus_of_particle(state));
+    this->add_elastic_to(stress, by.strain, state);
   }
 };
 

@@ -56,7 +56,7 @@ struct MohrCoulomb : FrictionalSoil<T> {
                               const Increment<R, T, Dim>& by) const {
     s = rotated(s, by.spin);
     const R shear_modulus = this->shear_modulus_of_particle(state);
-    add_elastic(s, by.strain, this->lambda_of(state), shear_modulus);
+    this->add_elastic_to(s, by.strain, state);
     state[plastic_strain] += return_stress(shape, size_of(state[cohesion_of_particle]), shear_modulus, s);
   }
 };
