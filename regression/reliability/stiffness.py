@@ -8,7 +8,7 @@ random velocity. The modulus is given three times: as young_gradient, as a field
 the run with the field. The three runs must agree to round-off; a field of one value must agree with that value as young. The particles of
 the frames must have the modulus of their height, and the time step must be that of the largest. A run that is cut in two by a checkpoint
 must give the same bits as the whole one, and a run on several ranks the same to round-off. A field in which the modulus also varies along x must
-move soil otherwise, and its particles must have its values.
+give its particles moduli that differ. Wrong fields are refused in one line.
 """
 import pathlib
 import sys
@@ -100,6 +100,13 @@ def first_step(folder):
     return float(later[time]) / int(later[step])
 
 
+def refuse(binary, empty, base, options, words):
+    """The run is refused in one line."""
+    result = run(binary, empty, fresh(base / "refused"), *options, status=2)
+    lines = result.stderr.strip().splitlines()
+    assert len(lines) == 1 and words in lines[0], f"not refused by a line with \"{words}\":\n{result.stderr}"
+
+
 def check_deck(binary, empty, base, draw, dim, options, precision, size, young, growth):
     field, one_value, uneven = base / "field.h5", base / "one.h5", base / "uneven.h5"
     shape = box(size, draw.choice([1, 2, 2, 3] if dim == 2 else [1, 2]))
@@ -122,6 +129,11 @@ def check_deck(binary, empty, base, draw, dim, options, precision, size, young, 
     gradient = go("gradient", *shape, "-soil_young", repr(young), "-soil_young_gradient", repr(growth), "-soil_young_datum", repr(size[up]))
     off = agree(whole, gradient, "the field against growth with depth", precision)
 
+    refuse(binary, empty, base, [*options, *shape, "-soil_young", repr(young), "-ground_field", field], "-soil_young")
+    refuse(binary, empty, base, [*options, *shape, "-soil_young", "field"], "where body ground has no -ground_field")
+
+    make_field(one_value, draw, size, lambda x, depth: young - 2 * young * (depth == 0))
+    refuse(binary, empty, base, [*options, *shape, "-soil_young", "field", "-ground_field", one_value], "whose young is a number in Pa from 0.001")
     make_field(one_value, draw, size, lambda x, depth: young + 0 * depth)
     same = go("one", *shape, "-soil_young", "field", "-ground_field", one_value)
     plain = go("plain", *shape, "-soil_young", repr(young))
