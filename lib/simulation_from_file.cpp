@@ -37,14 +37,14 @@ void take_masses(ParticleTable&& table, const Config& config, double density, Bo
 }
 
 /// What the file tells in the place of the material, and what it does not tell, for the log.
-std::string missing(const ParticleTable& table, const BodyConfig& body, const std::string& parameter) {
+std::string missing(const ParticleTable& table, const BodyConfig& body) {
   std::string text;
   const auto add = [&](const std::string& line) { text += "\n  " + line; };
-  if (const auto& own = table.own_parameter; !own.empty())
-    add(formatted("each with its own %s: %.6g to %.6g", parameter.c_str(),
+  for (const auto& [key, own] : table.own_parameters)
+    add(formatted("each with its own %s: %.6g to %.6g", key.c_str(),
                   *std::min_element(own.begin(), own.end()), *std::max_element(own.begin(), own.end())));
   if (table.mass.empty()) add("without masses: they are the material's density times the volumes");
-  if (table.reference_height.empty() && table.own_parameter.empty())
+  if (table.reference_height.empty() && table.own_parameters.empty())
     add("without reference heights: strengths that grow with depth are those of where the particles are now");
   if (table.put_inside > 0)
     add(formatted("%ld that were less than half a cell outside the mesh are put to its side",
@@ -79,14 +79,14 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
         formatted("body %s: %ld particles of %s%s stand for %.6g %s, %.9g kg", body.name.c_str(),
                   static_cast<long>(table.volume.size()), body.shape.file.c_str(), origin.c_str(), volume,
                   config.dim == 2 && config.geometry == Geometry::plane_strain ? "m2" : "m3", mass) +
-        missing(table, body, source.parameter)));
+        missing(table, body)));
   *from_run = *from_run || !table.origin.empty();
   particles->spacing = config.mesh.spacing / body.shape.particles_per_cell;
   particles->velocity = std::move(table.velocity);
   particles->stress = std::move(table.stress);
   particles->state = std::move(table.state);
   particles->reference_height = std::move(table.reference_height);
-  particles->own_parameter = std::move(table.own_parameter);
+  particles->own_parameters = std::move(table.own_parameters);
   if (config.velocity_update == VelocityUpdate::apic)
     particles->velocity_gradient = std::move(table.velocity_gradient);
   if (config.particle_domain != ParticleDomain::fixed) particles->domain = std::move(table.domain);

@@ -48,27 +48,30 @@ static bool is_new(const Config& config, const RigidConfig& rigid) {
   return std::max(1, placed_at(config.stage, rigid.name)) >= config.stage.number;
 }
 
-/// Each particle's own strength, from a field that was checked with the options.
+/// Each particle's own strength and Young's modulus, from a field that was checked with the options.
 PetscErrorCode Simulation::Body::take_field(const BodyConfig& body, BodyParticles* particles) {
   PetscFunctionBeginUser;
-  GridField field;
-  const std::string key = field_key(body, config);
+  std::vector<NamedGrid> grids;
   std::string fault;
-  PetscCallCXX(fault = read_field(body.field, key, config.dim, field));
+  PetscCallCXX(fault = read_body_grids(body, config, grids));
   PetscCheck(fault.empty(), comm, PETSC_ERR_FILE_READ, "%s has changed: it should be %s", body.field.c_str(),
              fault.c_str());
-  double ends[2] = {std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};  // least, -most
-  for (std::size_t p = 0; p < particles->position.size(); p += config.dim) {
-    Vec3 x{};
-    std::copy_n(&particles->position[p], config.dim, x.begin());
-    const double value = field.at(x);
-    PetscCallCXX(particles->own_parameter.push_back(value));
-    ends[0] = std::min(ends[0], value), ends[1] = std::min(ends[1], -value);
+  for (const auto& [key, grid] : grids) {
+    StateField& own = particles->own_parameters.emplace_back(StateField{key, {}});
+    double ends[2] = {std::numeric_limits<double>::max(),
+                      std::numeric_limits<double>::max()};  // least, -most
+    for (std::size_t p = 0; p < particles->position.size(); p += config.dim) {
+      Vec3 x{};
+      std::copy_n(&particles->position[p], config.dim, x.begin());
+      const double value = grid.at(x);
+      PetscCallCXX(own.values.push_back(value));
+      ends[0] = std::min(ends[0], value), ends[1] = std::min(ends[1], -value);
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPI_DOUBLE, MPI_MIN, comm));
+    if (body.from_before) continue;
+    PetscCall(log.print("body %s: %s of each particle from %s, %.6g to %.6g", body.name.c_str(), key.c_str(),
+                        body.field.c_str(), ends[0], -ends[1]));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPI_DOUBLE, MPI_MIN, comm));
-  if (body.from_before) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(log.print("body %s: %s of each particle from %s, %.6g to %.6g", body.name.c_str(), key.c_str(),
-                      body.field.c_str(), ends[0], -ends[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -72,6 +72,10 @@ struct Stiffness {
                  rigidity = parameter_of(material, "rigidity");
     if (gradient > 0) strength += gradient * std::max(0.0, datum - foot);
     if (rigidity > 0) young = rigidity * strength;
+    const double growth = parameter_of(material, "young_gradient"),
+                 level = parameter_of(material, "young_datum");
+    if (growth > 0) young += growth * std::max(0.0, level - foot);
+    if (young < 0) young = std::numeric_limits<double>::quiet_NaN();  // each particle's own
   }
 };
 

@@ -13,12 +13,13 @@ import numpy as np
 from results import read_frame
 
 
-def stiffness(run, material, pressure):
-    """Modulus of compression waves, and Young's or, without one, the bulk modulus of a material under a mean pressure, Pa."""
+def stiffness(run, material, pressure, own_young=0):
+    """Modulus of compression waves, and Young's or, without one, the bulk modulus of a material under a mean pressure, Pa. own_young: the
+    largest of its particles, where they have their own."""
     def value(key):
         return run.number(f"{material}_{key}")
 
-    nu, young = value("poisson"), value("young") or value("rigidity") * value("su")
+    nu, young = value("poisson"), own_young or value("young") or value("rigidity") * value("su")
     if young:
         return young * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) + value("pore_stiffness"), young
     bulk = value("bulk_modulus")
@@ -44,7 +45,9 @@ class Scales:
         fields = [groups[body] for body in run.words("bodies") if len(groups[body]["volume"]) > 0]  # a stage may place others
         pressure = max(0.0, *(float(-each["stress"][:, :3].mean(axis=1).min()) for each in fields))
         materials = {run.text(f"{body}_material") for body in run.words("bodies")}
-        known = {name: stiffness(run, name, pressure) for name in materials}
+        own = {name: max((groups[body]["young"].max() for body in run.words("bodies") if "young" in groups[body]
+                          and run.text(f"{body}_material") == name), default=0) for name in materials}
+        known = {name: stiffness(run, name, pressure, own[name]) for name in materials}
         z = max(np.sqrt(run.number(f"{name}_density") * wave) for name, (wave, _) in known.items())  # Pa s/m
         speed = max(np.abs(each["velocity"]).max() for each in fields)
         self.stress = max(z * speed, *(np.abs(each["stress"]).max() for each in fields))

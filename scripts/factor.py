@@ -140,6 +140,6 @@ def factor(run, name):
 def has_reference(run):
     """Is the soil that of the stored curves: weightless, of one strength, with their stiffness?"""
     clay, = clays_of(run, run.words("bodies")) or [None]
-    return (clay is not None and not any(run.numbers("gravity"))
+    return (clay is not None and not any(run.numbers("gravity")) and run.text(f"{clay}_young") != "field"
             and abs(run.number(f"{clay}_young") / run.number(f"{clay}_su") - REFERENCE_RIGIDITY) < 1e-6 * REFERENCE_RIGIDITY
             and run.number(f"{clay}_poisson") == REFERENCE_POISSON)

@@ -34,10 +34,12 @@ std::string value_of(const std::string& name, const std::vector<EffectiveOption>
   return "";
 }
 
-/// What a checkpoint says of a body's file that gives the particles their own values of a parameter.
+/// What a checkpoint says of a body's file that gives the particles their own values of parameters.
 std::string own_parameter_note(const BodyConfig& body, const Config& config) {
-  if (!body.largest_own_parameter) return "";
-  return own_parameter_words(own_parameter(state_variables(config.materials[body.material])));
+  std::string note;
+  for (const std::string& key : given_parameters(body, state_variables(config.materials[body.material])))
+    note += own_parameter_words(key);
+  return note;
 }
 
 /// What a file holds, in place of its name.

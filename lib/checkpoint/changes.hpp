@@ -10,11 +10,11 @@
 namespace mpm {
 
 /// The options in force with the checksums of the files that list particles in lieu of these files' names, so
-/// that a file may move and may not change, and whether it gives particles own values of a parameter.
+/// that a file may move and may not change, and of which parameters it gives particles own values.
 std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>& options,
                                              const Config& config);
 
-/// With these words ends what is kept of a file that gives each particle its own value of a parameter.
+/// These words are in what is kept of a file that gives each particle its own value of a parameter.
 std::string own_parameter_words(const std::string& parameter);
 
 /// An option that has another value than in the checkpoint.

@@ -130,8 +130,10 @@ std::string column_of(const Checkpoint& c, const std::string& body, const std::s
 std::string column_of_own(const Checkpoint& c, const std::string& body, const std::string& parameter,
                           const BodyRows& rows) {
   const std::string note = own_parameter_words(parameter);
-  const auto has_note = [&](const char* key) { return value_of(c, "-" + body + key).ends_with(note); };
-  if (parameter.empty() || !(has_note("_file") || has_note("_field"))) return "";
+  const auto has_note = [&](const char* key) {
+    return (value_of(c, "-" + body + key) + ",").find(note + ",") != std::string::npos;
+  };
+  if (!(has_note("_file") || has_note("_field"))) return "";
   for (const StateVariable& variable : variables_of(c, body))
     if (variable.parameter != nullptr && parameter == variable.parameter)
       return column_of(c, body, variable.name, rows);
@@ -161,8 +163,9 @@ std::string read_checkpoint_particles(const ParticleSource& source, const MeshCo
     const std::string column = column_of(c, source.group, name, body);
     if (!column.empty()) table.state.push_back({name, body.read(column.c_str(), 1)});
   }
-  if (const auto own = column_of_own(c, source.group, source.parameter, body); !own.empty())
-    table.own_parameter = body.read(own.c_str(), 1);
+  for (const std::string& key : source.parameters)
+    if (const auto own = column_of_own(c, source.group, key, body); !own.empty())
+      table.own_parameters.push_back({key, body.read(own.c_str(), 1)});
   table.reference_height = body.read("reference_height", 1);
   if (source.velocity) table.velocity = body.read("velocity", dim);
   if (source.stress) table.stress = body.read("stress", dim == 2 ? 4 : 6);

@@ -16,10 +16,20 @@ std::vector<StateVariable> state_variables(const std::string& model) {
   return index < 0 ? std::vector<StateVariable>{} : state_variables(index);
 }
 
-std::string own_parameter(const std::vector<StateVariable>& variables) {
+std::vector<std::string> own_parameters(const std::vector<StateVariable>& variables) {
+  std::vector<std::string> keys;
   for (const StateVariable& variable : variables)
-    if (variable.parameter != nullptr) return variable.parameter;
-  return "";
+    if (variable.parameter != nullptr) keys.push_back(variable.parameter);
+  return keys;
+}
+
+std::vector<std::string> given_parameters(const BodyConfig& body,
+                                          const std::vector<StateVariable>& variables) {
+  std::vector<std::string> given;
+  const auto keys = own_parameters(variables);
+  for (std::size_t k = 0; k < keys.size(); ++k)
+    if (body.largest_own[k]) given.push_back(keys[k]);
+  return given;
 }
 
 std::optional<double> shear_wave_ratio(const MaterialConfig& material) {

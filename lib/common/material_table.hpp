@@ -16,9 +16,13 @@ int model_index(const std::string& name);
 /// All state variables of the law of this name; none where there is no such law.
 std::vector<StateVariable> state_variables(const std::string& model);
 
-/// Key of the parameter that each particle of a material may have a value of its own of (a file of particles
-/// gives it); empty where there is none.
-std::string own_parameter(const std::vector<StateVariable>& variables);
+/// Keys of the parameters that each particle of a material may have values of its own of (a field or a file
+/// of particles gives them), in the order of OwnValues.
+std::vector<std::string> own_parameters(const std::vector<StateVariable>& variables);
+
+/// Those of them of which a field or a file gives the particles of a body their own.
+std::vector<std::string> given_parameters(const BodyConfig& body,
+                                          const std::vector<StateVariable>& variables);
 
 /// The state variables that the particles of a material carry; none where there is no such law.
 std::vector<StateVariable> state_variables(const MaterialConfig& material);

@@ -18,7 +18,7 @@ struct BodyParticles {
   std::vector<double> velocity;              // m/s [dim N], or empty where the body's own holds for all
   std::vector<double> stress;                // Pa [4 N in 2D, 6 N in 3D], likewise
   std::vector<StateField> state;             // state variables that a file gives
-  std::vector<double> own_parameter;         // of the law, that a file gives [N], or empty: the material's
+  std::vector<StateField> own_parameters;    // of the law, that a field or a file gives
   std::vector<double> volume;                // m3 [N], or empty where particle_volume holds for all
   std::vector<double> mass;                  // kg [N], or empty where particle_mass holds for all
   double least_volume = 0, most_volume = 0;  // m3, of creation, of all ranks; 0: particle_volume

@@ -23,19 +23,20 @@ struct ParticleSnapshot {
   std::vector<int> id;  // of the particles of this rank, in the body; empty where they follow one another
   long first = 0;       // on several ranks: number in the body of the first particle here,
   long total = -1;      // and of all of them; negative where all are here
-  std::vector<double> position;          // m     [3 N]
-  std::vector<double> velocity;          // m/s   [3 N]
-  std::vector<double> grid_velocity;     // m/s   [3 N], of the nodes, interpolated to the particles
-  std::vector<double> stress;            // Pa    [6 N], Cauchy, tension positive
-  std::vector<double> volume;            // m3    [N]
-  std::vector<StateField> state;         // the state variables that frames have
-  std::string own_parameter{};           // the one of them that is each particle's own value of a parameter
-  std::vector<double> mass;              // kg    [N], of particles and nodes
-  std::vector<double> reference_height;  // m   [N], where the particle was created
-  std::vector<double> number;            // -     [N], of nodes: in the whole mesh, x fastest
+  std::vector<double> position;               // m     [3 N]
+  std::vector<double> velocity;               // m/s   [3 N]
+  std::vector<double> grid_velocity;          // m/s   [3 N], of the nodes, interpolated to the particles
+  std::vector<double> stress;                 // Pa    [6 N], Cauchy, tension positive
+  std::vector<double> volume;                 // m3    [N]
+  std::vector<StateField> state;              // the state variables that frames have
+  std::vector<std::string> own_parameters{};  // of them: each particle's own values of parameters
+  std::vector<double> mass;                   // kg    [N], of particles and nodes
+  std::vector<double> reference_height;       // m   [N], where the particle was created
+  std::vector<double> number;                 // -     [N], of nodes: in the whole mesh, x fastest
 };
 
-/// The attribute of a body's group in a frame that names the parameter of which each particle has its own.
+/// The attribute of a body's group in a frame that names the parameters of which each particle has its own,
+/// with commas between them.
 inline constexpr const char* k_own_parameter = "own_parameter";
 
 /// The name of the group of nodes.

@@ -35,9 +35,10 @@ long cut_particles(const std::vector<Shape>& cut_out, const MeshConfig& mesh, in
     count += out[row];
   }
   for (auto* field : {&table.position, &table.velocity, &table.stress, &table.volume, &table.mass,
-                      &table.reference_height, &table.own_parameter, &table.velocity_gradient, &table.domain})
+                      &table.reference_height, &table.velocity_gradient, &table.domain})
     keep_rows(out, *field);
-  for (StateField& state : table.state) keep_rows(out, state.values);
+  for (auto* list : {&table.state, &table.own_parameters})
+    for (StateField& field : *list) keep_rows(out, field.values);
   return count;
 }
 

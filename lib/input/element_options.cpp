@@ -92,6 +92,8 @@ void read_element(OptionReader& in, Config& config) {
   const auto errors = in.errors();
   read_only_material(in, config);
   ElementConfig& path = config.element;
+  if (in.errors() == errors && needs_own_young(config.materials[0]))
+    in.reject(config.materials[0].name + "_young", "a number in Pa with -element_path, which has no field");
   if (in.errors() == errors && !path.file.empty()) {
     const std::string fault = read_path(path.file, state_variables(config.materials[0]), path);
     if (!fault.empty()) in.reject("element_path", fault);

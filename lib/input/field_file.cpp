@@ -97,6 +97,23 @@ double GridField::at(const Vec3& x) const {
   return value;
 }
 
+Vec3 GridField::place_of(std::size_t value) const {
+  Vec3 x{};
+  for (int d = 0; d < dim; ++d) {
+    const auto points = static_cast<std::size_t>(count[d]);
+    x[d] = lower[d] + spacing[d] * static_cast<double>(value % points);
+    value /= points;
+  }
+  return x;
+}
+
+bool has_dataset(const std::string& path, const std::string& key) {
+  if (!irregular_fault(path).empty()) return false;
+  const Quiet quiet;
+  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  return file.id >= 0 && H5Lexists(file.id, key.c_str(), H5P_DEFAULT) > 0;
+}
+
 std::string read_field(const std::string& path, const std::string& key, int dim, GridField& field) {
   if (const std::string fault = irregular_fault(path); !fault.empty()) return fault;
   const Quiet quiet;

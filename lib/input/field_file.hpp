@@ -16,8 +16,18 @@ struct GridField {
   std::vector<double> values;          // x fastest
 
   double at(const Vec3& x) const;
+  Vec3 place_of(std::size_t value) const;  // m, of the point with this value
   double upper(int d) const { return lower[d] + spacing[d] * static_cast<double>(count[d] - 1); }
 };
+
+/// The values of the parameter with this key.
+struct NamedGrid {
+  std::string key;
+  GridField grid;
+};
+
+/// Whether a file can be read as HDF5 and has a dataset of this name.
+bool has_dataset(const std::string& path, const std::string& key);
 
 /// Reads the dataset `key` of an HDF5 file: numbers with the vertical axis first and x last, the place of the
 /// first value in its attribute `lower` and the distances in `spacing`, dim numbers each by axis x, y, z

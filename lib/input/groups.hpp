@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "input/field_file.hpp"
 #include "input/particle_file.hpp"
 #include "input/reader.hpp"
+#include "physics/materials/tables.hpp"
 
 namespace mpm {
 
@@ -48,9 +50,15 @@ void prepare_material(MaterialConfig& material, double spacing, double largest_p
 void prepare_for_pressure(double spacing, Config& config);
 
 /// Whether a particle of a sound material may start at a height [m] with a stress [Pa], and with its own
-/// value of the law's strength where there is one; reports why it may not.
+/// values of the law's parameters where there are some; reports why it may not.
 bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
-                 const Sym6& stress, std::optional<double> own = {});
+                 const Sym6& stress, const OwnValues& own = {});
+
+/// Whether the particles of a material must be given their own Young's moduli (-NAME_young field).
+bool needs_own_young(const MaterialConfig& material);
+
+/// Whether a particle of a sound material may start so; as check_start, without a report.
+bool may_start(const MaterialConfig& material, double height, const Sym6& stress, const OwnValues& own);
 
 /// What particles should be whose own values of a parameter are from `least` to `largest`, as the end of
 /// "takes ..."; empty where their material takes these.
@@ -105,10 +113,11 @@ void check_in_water(OptionReader& in, const Config& config, const RigidConfig& r
 
 /// -NAME_field of a body; `listed`: a file lists its particles, and it takes none.
 void read_body_field(OptionReader& in, const std::string& name, bool listed, BodyConfig& body);
-/// Checks the field against the body's sound shape and material, and notes its largest value.
+/// Checks the field against the body's sound shape and material, and notes its largest values.
 void check_body_field(OptionReader& in, const MeshConfig& mesh, const Config& config, BodyConfig& body);
-/// The parameter of a body's law that a field gives; empty where it has none.
-std::string field_key(const BodyConfig& body, const Config& config);
+/// Reads the grids of the parameters that a body's field gives its particles, by their keys; some must be
+/// there. Returns what the file should have been, as the end of "takes ..."; empty where all is well.
+std::string read_body_grids(const BodyConfig& body, const Config& config, std::vector<NamedGrid>& grids);
 
 /// The initial velocity and stress of a body, which take the place of those of its file.
 void read_start(OptionReader& in, int dim, BodyConfig& body);

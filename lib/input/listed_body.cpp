@@ -54,6 +54,17 @@ std::string beyond_bounds(const ParticleTable& table, const Config& config, cons
   return "";
 }
 
+/// What the file lacks where the material asks for each particle's own Young's modulus; empty otherwise.
+std::string missing_young(const BodyConfig& body, const Config& config, const ParticleTable& table) {
+  if (body.material >= static_cast<int>(config.materials.size())) return "";  // reported
+  const MaterialConfig& material = config.materials[body.material];
+  for (const StateField& own : table.own_parameters)
+    if (own.name == "young") return "";
+  if (!needs_own_young(material)) return "";
+  return "a file with " + body.shape.file_body + "/young, the modulus of each particle in Pa, where -" +
+         material.name + "_young is field";
+}
+
 }  // namespace
 
 ParticleSource source_of(const BodyConfig& body) {
@@ -66,7 +77,7 @@ ParticleSource source_of(const BodyConfig& body, const Config& config) {
   const auto variables = state_variables(config.materials[body.material]);
   for (const StateVariable& variable : variables)
     if (variable.changes && variable.output) source.state.push_back(variable.name);
-  source.parameter = own_parameter(variables);
+  source.parameters = own_parameters(variables);
   if (config.materials[body.material].pore_stiffness > 0) source.state.push_back(k_excess_pore_pressure);
   return source;
 }
@@ -80,10 +91,12 @@ void check_particles(OptionReader& in, const BodyConfig& body, const Config& con
   const ParticleSource source = source_of(body, config);
   std::string fault = read_particles(source, mesh, config.dim, table);
   if (fault.empty()) fault = beyond_bounds(table, config, mesh);
-  if (const auto& own = table.own_parameter; fault.empty() && !own.empty())
-    fault = own_parameter_fault(config.materials[body.material], source.parameter,
-                                *std::min_element(own.begin(), own.end()),
-                                *std::max_element(own.begin(), own.end()));
+  for (const auto& [key, own] : table.own_parameters)
+    if (fault.empty())
+      fault =
+          own_parameter_fault(config.materials[body.material], key, *std::min_element(own.begin(), own.end()),
+                              *std::max_element(own.begin(), own.end()));
+  if (fault.empty()) fault = missing_young(body, config, table);
   if (!fault.empty()) {
     table = {};
     in.reject(option, fault);

@@ -282,7 +282,7 @@ std::string own_parameter_fault(const MaterialConfig& material, const std::strin
         "particles whose " + key + " is a number in " + option.unit + option.range.text();
     if (!option.range.holds(least)) return takes + "; the least of this file is " + text_of(least);
     if (!option.range.holds(largest)) return takes + "; the largest of this file is " + text_of(largest);
-    weakest.parameters.at(k) = least;
+    if (parameter_of(material, key) != k_young_of_particle) weakest.parameters.at(k) = least;
   }
   const ParameterFault fault =
       parameter_fault(make_material<double>(which, weakest.parameters, weakest.object.get()));
@@ -292,7 +292,7 @@ std::string own_parameter_fault(const MaterialConfig& material, const std::strin
 }
 
 bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
-                 const Sym6& stress, std::optional<double> own) {
+                 const Sym6& stress, const OwnValues& own) {
   const auto law =
       make_material<double>(model_index(material.model), material.parameters, material.object.get());
   const ParameterFault fault =
@@ -301,6 +301,16 @@ bool check_start(OptionReader& in, const std::string& body, const MaterialConfig
   const bool of_body = fault.key == "stress";
   in.reject((of_body ? body : material.name) + "_" + fault.key, with_prefix(fault.takes, material.name));
   return false;
+}
+
+bool may_start(const MaterialConfig& material, double height, const Sym6& stress, const OwnValues& own) {
+  const auto law =
+      make_material<double>(model_index(material.model), material.parameters, material.object.get());
+  return start_fault(law, {.position = {}, .height = height, .stress = stress, .own = own}).key.empty();
+}
+
+bool needs_own_young(const MaterialConfig& material) {
+  return parameter_of(material, "young") == k_young_of_particle;
 }
 
 bool check_element_start(OptionReader& in, const MaterialConfig& material, double height,

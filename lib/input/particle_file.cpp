@@ -153,12 +153,14 @@ std::string not_positive(const std::vector<double>& numbers, const char* what) {
 
 /// Whether the particles of a group of a frame had their own values of this parameter.
 bool has_own(hid_t group, const std::string& parameter) {
-  if (parameter.empty() || H5Aexists(group, k_own_parameter) <= 0) return false;
+  if (H5Aexists(group, k_own_parameter) <= 0) return false;
   Handle item(H5Aopen(group, k_own_parameter, H5P_DEFAULT), H5Aclose);
   Handle type(H5Aget_type(item.id), H5Tclose);
   if (H5Tget_class(type.id) != H5T_STRING || H5Tis_variable_str(type.id) != 0) return false;
   std::string text(H5Tget_size(type.id), '\0');
-  return text.size() == parameter.size() && H5Aread(item.id, type.id, text.data()) >= 0 && text == parameter;
+  if (H5Aread(item.id, type.id, text.data()) < 0) return false;
+  const auto keys = split(text);
+  return std::find(keys.begin(), keys.end(), parameter) != keys.end();
 }
 
 /// The group of a frame, or of a file laid out as one.
@@ -191,9 +193,11 @@ std::string read_group(hid_t file, const ParticleSource& source, int dim, Partic
     in.read_if_there(name.c_str(), 1, 1, needed, field.values);
     if (!field.values.empty()) table.state.push_back(std::move(field));
   }
-  if (!source.parameter.empty())
-    in.read_if_there(source.parameter.c_str(), 1, 1, frame && has_own(opened.id, source.parameter),
-                     table.own_parameter);
+  for (const std::string& key : source.parameters) {
+    StateField field{key, {}};
+    in.read_if_there(key.c_str(), 1, 1, frame && has_own(opened.id, key), field.values);
+    if (!field.values.empty()) table.own_parameters.push_back(std::move(field));
+  }
   in.read_if_there("mass", 1, 1, frame, table.mass);
   in.read_if_there("reference_height", 1, 1, frame, table.reference_height);
   if (frame) table.origin = "frame of step " + std::to_string(step) + ", " + text_of(time) + " s";

@@ -12,32 +12,32 @@ namespace mpm {
 /// The particles of one body. Vectors have dim components, stresses 4 in 2D and 6 in 3D (xx yy zz xy yz zx);
 /// what the file does not have is empty.
 struct ParticleTable {
-  std::vector<double> position;           // m [dim N]
-  std::vector<double> velocity;           // m/s [dim N]
-  std::vector<double> stress;             // Pa, effective, tension positive [4 N or 6 N]
-  std::vector<StateField> state;          // state variables that the source asked for and the file has
-  std::vector<double> own_parameter;      // of the source's parameter, in its unit [N]; empty: the material's
-  std::vector<double> volume;             // m3 (m2 in 2D), present [N]
-  std::vector<double> mass;               // kg [N]; empty: the material's density times the volume
-  std::vector<double> reference_height;   // m, of the particle's creation [N]; empty: it is created now
-  std::vector<double> velocity_gradient;  // m/s a cell of the mesh, C_p of APIC [dim^2 N]
-  std::vector<double> domain;             // cells2 of the mesh, moments of domains [dim (dim + 1) / 2 N]
+  std::vector<double> position;            // m [dim N]
+  std::vector<double> velocity;            // m/s [dim N]
+  std::vector<double> stress;              // Pa, effective, tension positive [4 N or 6 N]
+  std::vector<StateField> state;           // state variables that the source asked for and the file has
+  std::vector<StateField> own_parameters;  // of the source's parameters, that the file has
+  std::vector<double> volume;              // m3 (m2 in 2D), present [N]
+  std::vector<double> mass;                // kg [N]; empty: the material's density times the volume
+  std::vector<double> reference_height;    // m, of the particle's creation [N]; empty: it is created now
+  std::vector<double> velocity_gradient;   // m/s a cell of the mesh, C_p of APIC [dim^2 N]
+  std::vector<double> domain;              // cells2 of the mesh, moments of domains [dim (dim + 1) / 2 N]
   long put_inside = 0;  // particles that were less than half a cell outside the mesh, as a run may leave them
   std::string origin;   // "frame of step 12, 0.5 s"; empty for a file of the user's own
 };
 
 /// Where a body's particles are, and what of them is asked for.
 struct ParticleSource {
-  std::string path, group;              // group: the name of the body in the file
-  bool velocity = true, stress = true;  // false: options give it for all particles
-  std::vector<std::string> state{};     // the state variables that the body's law changes
-  std::string parameter{};  // key of the parameter that each particle may have its own of, or empty
+  std::string path, group;                // group: the name of the body in the file
+  bool velocity = true, stress = true;    // false: options give it for all particles
+  std::vector<std::string> state{};       // the state variables that the body's law changes
+  std::vector<std::string> parameters{};  // that each particle may have its own values of
 };
 
 /// Reads the particles of a body from an HDF5 file: a checkpoint, a frame, or a file laid out as one, with a
 /// group that holds `position` (N x 3) and `volume` (N), and where they are there `velocity` (N x 3),
 /// `stress` (N x 6; total where there is a `pore_pressure` (N), else effective), the state variables, `mass`,
-/// `reference_height` and the source's parameter (N). A frame must hold all of them that its run had, for
+/// `reference_height` and the source's parameters (N). A frame must hold all of them that its run had, for
 /// otherwise its -output_fields left them out; one of an earlier version (without the attribute `dim`)
 /// counts as a file of the user's. In 2D the components that are not in the plane are passed over. Every
 /// number must be finite, every particle in the mesh, volumes and masses greater than 0. Returns what the

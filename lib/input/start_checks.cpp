@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/material_table.hpp"
 #include "input/groups.hpp"
 #include "input/shapes.hpp"
 #include "physics/materials/tables.hpp"
@@ -35,18 +36,25 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
       check_start(in, body.name, material, bounds.upper[up], body.stress);
     return;
   }
-  const auto& own = listed.own_parameter;
-  bool looks = !own.empty() ||
+  const auto keys = own_parameters(state_variables(material));
+  std::array<const std::vector<double>*, k_most_own> own{};
+  for (std::size_t k = 0; k < keys.size(); ++k)
+    for (const StateField& field : listed.own_parameters)
+      if (field.name == keys[k]) own[k] = &field.values;
+  bool looks = !listed.own_parameters.empty() ||
                std::all_of(listed.state.begin(), listed.state.end(),
                            [](const StateField& field) { return field.name == k_excess_pore_pressure; });
-  if (!own.empty()) body.largest_own_parameter = *std::max_element(own.begin(), own.end());
+  for (std::size_t k = 0; k < keys.size(); ++k)
+    if (own[k] != nullptr) body.largest_own[k] = *std::max_element(own[k]->begin(), own[k]->end());
   for (std::size_t p = 0; p < listed.volume.size(); ++p) {
     const bool is_new = listed.reference_height.empty();
     const double height = is_new ? listed.position[p * config.dim + up] : listed.reference_height[p];
     const Sym6 stress = stress_of(body, listed, p, config.dim);
     body.largest_pressure = std::max(body.largest_pressure, pressure_of(stress));
-    looks = looks && check_start(in, body.name, material, height, stress,
-                                 own.empty() ? std::nullopt : std::optional(own[p]));
+    OwnValues of_particle{};
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      if (own[k] != nullptr) of_particle[k] = (*own[k])[p];
+    looks = looks && check_start(in, body.name, material, height, stress, of_particle);
   }
 }
 

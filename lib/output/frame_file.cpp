@@ -6,6 +6,7 @@
 #include <span>
 
 #include "common/hdf5_handle.hpp"
+#include "common/text.hpp"
 #include "output/shared_file.hpp"
 
 namespace mpm {
@@ -148,8 +149,8 @@ PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSn
   const char* name = particles.name.c_str();
   Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   PetscCall(check(group.id, path, name));
-  if (!particles.own_parameter.empty())
-    PetscCall(write_text(group.id, path, k_own_parameter, particles.own_parameter));
+  if (!particles.own_parameters.empty())
+    PetscCall(write_text(group.id, path, k_own_parameter, join(particles.own_parameters, ",")));
   for (const Field& field : frame_fields()) {
     if (!is_written(particles, field, kind, style)) continue;
     if (reserve == nullptr) {

@@ -35,11 +35,11 @@ std::vector<Field> fields_of(BodyParticles& body, int dim, int faces) {
                                {&body.volume, 1},
                                {&body.mass, 1},
                                {&body.reference_height, 1},
-                               {&body.own_parameter, 1},
                                {&body.velocity_gradient, dim * dim},
                                {&body.faces, faces * (dim + 3)},
                                {&body.domain, dim * (dim + 1) / 2}};
-  for (StateField& state : body.state) fields.push_back({&state.values, 1});
+  for (auto* list : {&body.state, &body.own_parameters})
+    for (StateField& field : *list) fields.push_back({&field.values, 1});
   return fields;
 }
 

@@ -1,6 +1,7 @@
 #include "step/state_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "checkpoint/particles.hpp"
@@ -27,14 +28,16 @@ class BodyLaw {
         variables_(state_variables(law_)),
         undrained_(config.materials[body.material].pore_stiffness > 0) {
     const std::vector<std::string> before = names.empty() ? std::vector<std::string>{} : split(names);
+    std::size_t of_own = 0;  // number among OwnValues
     for (const StateVariable& variable : variables_) {
       const auto found = std::find(before.begin(), before.end(), variable.name);
-      const bool own = body.largest_own_parameter && variable.parameter != nullptr;
+      const bool may_own = variable.parameter != nullptr, own = may_own && body.largest_own[of_own];
       const bool keeps = found != before.end() && (variable.changes || own);
       const std::size_t column = static_cast<std::size_t>(found - before.begin());
       kept_.push_back(keeps && column < state.columns.size() ? find(state.soil, state.columns[column])
                                                              : nullptr);
-      if (own && kept_.back() != nullptr) own_ = kept_.back();
+      if (own) own_[of_own] = kept_.back();
+      if (may_own) ++of_own;
     }
   }
 
@@ -43,7 +46,8 @@ class BodyLaw {
 
   /// The variables of particle p, which is where `start` tells; why it cannot start, where it cannot.
   std::vector<double> values(std::size_t p, ParticleStart start, std::string& fault) const {
-    if (own_ != nullptr) start.own = own_->values[p];
+    for (std::size_t k = 0; k < own_.size(); ++k)
+      if (own_[k] != nullptr) start.own[k] = own_[k]->values[p];
     if (const ParameterFault found = start_fault(law_, start); !found.key.empty())
       fault = (found.key == "stress" ? "it takes " : "-NAME_" + found.key + " takes ") + found.takes;
     std::vector<double> values = initial_state(law_, start);
@@ -57,7 +61,7 @@ class BodyLaw {
   std::vector<StateVariable> variables_;
   bool undrained_;
   std::vector<const SavedField*> kept_;  // of each variable, whose values go on; null: it begins anew
-  const SavedField* own_ = nullptr;
+  std::array<const SavedField*, k_most_own> own_{};  // those of them that are each particle's own values
 };
 
 /// Where the particles of a state are, for laws that begin there.

@@ -35,7 +35,7 @@ void note_heights(const MeshConfig& mesh, BodyParticles& particles) {
 }
 
 /// The state variables of the particles of a body [variable][particle]: those of their creation, but for
-/// those that a law changes and a file gives. Where a file gives the law's strength, that is the particles'.
+/// those that a law changes and a file gives. Own parameters that a field or a file gives are the particles'.
 template <int Dim>
 std::vector<std::vector<double>> start_state(const Config& config, const AnyMaterial<double>& law,
                                              const BodyInput& in, BodyParticles& particles) {
@@ -43,9 +43,15 @@ std::vector<std::vector<double>> start_state(const Config& config, const AnyMate
   const std::size_t count = in.position.size() / Dim;
   std::vector<std::vector<double>> state(variables.size(), std::vector<double>(count));
   ParticleStart start;
+  std::array<const StateField*, k_most_own> own{};
+  const auto keys = own_parameters(variables);
+  for (const StateField& given : particles.own_parameters)
+    if (const auto key = std::find(keys.begin(), keys.end(), given.name); key != keys.end())
+      own[key - keys.begin()] = &given;
   for (std::size_t p = 0; p < count && !variables.empty(); ++p) {
     start.height = particles.reference_height[p];
-    if (!particles.own_parameter.empty()) start.own = particles.own_parameter[p];
+    for (std::size_t k = 0; k < own.size(); ++k)
+      if (own[k] != nullptr) start.own[k] = own[k]->values[p];
     for (int d = 0; d < Dim; ++d) start.position[d] = in.position[p * Dim + d] + config.mesh.lower[d];
     for (int k = 0; k < sym_size<Dim> && !in.stress.empty(); ++k)
       start.stress[k] = in.stress[p * sym_size<Dim> + k];

@@ -39,10 +39,11 @@ PetscErrorCode TypedStepper<Space, T, Dim>::leave_out(Model* model) {
     }
     unused_[b] = std::count(out.begin(), out.end(), 1);
     if (unused_[b] == 0) continue;
-    for (auto* field : {&body.position, &body.velocity, &body.stress, &body.own_parameter, &body.volume,
-                        &body.mass, &body.reference_height, &body.velocity_gradient, &body.domain})
+    for (auto* field : {&body.position, &body.velocity, &body.stress, &body.volume, &body.mass, &body.faces,
+                        &body.reference_height, &body.velocity_gradient, &body.domain})
       keep_rows(out, *field);
-    for (StateField& state : body.state) keep_rows(out, state.values);
+    for (auto* list : {&body.state, &body.own_parameters})
+      for (StateField& field : *list) keep_rows(out, field.values);
     keep_rows(out, body.id);
   }
   if (size_of(comm_) > 1)

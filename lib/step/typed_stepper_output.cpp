@@ -109,17 +109,18 @@ PetscErrorCode TypedStepper<Space, T, Dim>::fastest_wave(double* speed) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// The state variables of a body's particles [from, to) that frames have, and where they have own values of a
-/// parameter (own_parameter), these. Every body has a plastic strain there, so that pictures of all bodies
-/// may show it: zero where the law has none.
+/// The state variables of a body's particles [from, to) that frames have, and of the parameters of which they
+/// have own values (own_parameters), these. Every body has a plastic strain there, so that pictures of all
+/// bodies may show it: zero where the law has none.
 std::vector<StateField> state_fields(const std::vector<StateVariable>& variables,
-                                     const std::string& own_parameter, const SoilFields& soil,
+                                     const std::vector<std::string>& own_parameters, const SoilFields& soil,
                                      std::size_t from, std::size_t to) {
   std::vector<StateField> fields;
   bool has_plastic_strain = false;
   for (std::size_t k = 0; k < variables.size(); ++k) {
     const StateVariable& variable = variables[k];
-    const bool own = variable.parameter != nullptr && own_parameter == variable.parameter;
+    const bool own = variable.parameter != nullptr && std::find(own_parameters.begin(), own_parameters.end(),
+                                                                variable.parameter) != own_parameters.end();
     if (!variable.output && !own) continue;
     const auto begin = soil.history[k].begin();
     fields.push_back({own ? variable.parameter : variable.name,
@@ -221,8 +222,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     }
     body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
     const auto variables = state_variables(config_.materials[config_.bodies[b].material]);
-    if (config_.bodies[b].largest_own_parameter) body.own_parameter = own_parameter(variables);
-    body.state = state_fields(variables, body.own_parameter, soil, from, to);
+    body.own_parameters = given_parameters(config_.bodies[b], variables);
+    body.state = state_fields(variables, body.own_parameters, soil, from, to);
     if (has_pore_pressure(config_))  // of all bodies, so that pictures may show them
       add_pore_pressures<Dim>(config_, soil, state_.soil.points.history.pore, from, to, &body);
     add_periods<Dim>(config_.mesh, soil, from, to, &body);

@@ -19,7 +19,7 @@ double wave_speed(const Config& config, const BodyConfig& body) {
   Sym6 stress = body.stress;
   const bool of_file = body.shape.kind == ShapeKind::particles && !body.stress_given;
   if (of_file) stress = {-body.largest_pressure, -body.largest_pressure, -body.largest_pressure};
-  return std::sqrt((wave_modulus(law, lowest, stress, body.largest_own_parameter) + material.pore_stiffness) /
+  return std::sqrt((wave_modulus(law, lowest, stress, body.largest_own) + material.pore_stiffness) /
                    density_of(config, body));
 }
 

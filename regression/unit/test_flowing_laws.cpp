@@ -238,14 +238,14 @@ TEST_CASE("stiffness of elastic soil grows with depth, and costs nothing where i
   for (const auto& [height, young] : {std::pair{9., 1e6}, {4., 1e6}, {-1., 2e6}}) {
     CHECK(std::fabs(wave_modulus(soil, height) / wave_modulus(make_material<double>(0, {young, 0.3})) - 1) <
           1e-14);
-    CHECK(std::fabs(initial_state(soil, {.height = height}).at(0) / (young / 1e6) - 1) < 1e-14);
+    CHECK(std::fabs(initial_state(soil, {.height = height}).at(0) / young - 1) < 1e-14);
   }
   CHECK(initial_state(uniform, {.height = -1}).empty());
   auto law = law_of<LinearElastic<double>>(
       {{"young", 1e6}, {"poisson", 0.3}, {"young_gradient", 2e5}, {"young_datum", 5}});
   Point<LinearElastic<double>, 3> deep(law, {}),
       stiff(law_of<LinearElastic<double>>({{"young", 2e6}, {"poisson", 0.3}}), {});
-  CHECK(deep.state[0] == 2);  // 5 m below the datum
+  CHECK(deep.state[0] == 2e6);  // 5 m below the datum
   const Sym by{1e-3, -2e-3, 5e-4, 3e-4, -1e-4, 2e-4};
   deep.strain(by), stiff.strain(by);
   for (int k = 0; k < 6; ++k) CHECK(std::fabs(deep.stress[k] / stiff.stress[k] - 1) < 1e-14);

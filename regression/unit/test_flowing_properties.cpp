@@ -112,7 +112,7 @@ void try_state(const Law<double>& law, const Law<float>& rough_law, const Sym& s
     finite &= std::isfinite(point.stress[k]) && std::isfinite(rough.stress[k]);
     keep(worst.single, std::fabs(rough.stress[k] - point.stress[k]));
   }
-  for (int k = 0; k < point.state.size; ++k) {
+  for (int k = 0; k < point.state.size && carries(law, k); ++k) {
     finite &= std::isfinite(point.state[k]) && std::isfinite(rough.state[k]);
     const double modulus = law.wave_modulus(point.stress, point.state);
     keep(worst.state,

@@ -35,7 +35,7 @@ std::vector<SymTensor<typename Law::real, Dim>> after_step(const Law& law, const
   const T second = static_cast<T>(law.initial_state({})[1]);
   Kokkos::parallel_for(
       "test::laws", Kokkos::RangePolicy<Space>(0, n), KOKKOS_LAMBDA(int p) {
-        LawState<T, 2> state{{0, second}};
+        LawState<T, state_size<Law>> state{{0, second}};
         Increment<T, T, Dim> increment{};
         increment.strain = strain(p);
         law.update(stress(p), state, increment);
@@ -78,7 +78,7 @@ void check_lanes(const Values& values) {
   constexpr int k_blocks = 2000;
   for (int block = 0; block < k_blocks; ++block) {
     SymTensor<R, Dim> stress;
-    LawState<R, 2> state;
+    LawState<R, state_size<Law<T>>> state;
     Increment<R, T, Dim> increment{};
     std::vector<Point<Law<T>, Dim>> right;
     for (int l = 0; l < W; ++l) {
@@ -88,7 +88,7 @@ void check_lanes(const Values& values) {
         stress[k].set(l, right[l].stress[k]);
         increment.strain[k].set(l, static_cast<T>(by[k]));
       }
-      for (int k = 0; k < 2; ++k) state[k].set(l, right[l].state[k]);
+      for (int k = 0; k < state.size; ++k) state[k].set(l, right[l].state[k]);
       right[l].strain(by);
       yielding += right[l].state[0] > 0;
     }

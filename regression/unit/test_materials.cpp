@@ -36,10 +36,11 @@ KOKKOS_INLINE_FUNCTION void with_state(const AnyMaterial<T>& material, PointStat
                                        const F& f) {
   material.visit([&](const auto& law) {
     LawState<T, state_size<std::decay_t<decltype(law)>>> state{};
-    T* const values[] = {&point.plastic_strain, &point.strength};
-    for (int k = 0; k < state.size; ++k) state[k] = *values[k];
+    constexpr int k_values = 2;  // none has its own Young's modulus
+    T* const values[k_values] = {&point.plastic_strain, &point.strength};
+    for (int k = 0; k < state.size && k < k_values; ++k) state[k] = *values[k];
     f(law, state);
-    for (int k = 0; k < state.size; ++k) *values[k] = state[k];
+    for (int k = 0; k < state.size && k < k_values; ++k) *values[k] = state[k];
   });
 }
 

@@ -80,16 +80,17 @@ TEST_CASE("a material has its model's parameters in the order of the model's tab
   CHECK(clay.name == "clay");
   CHECK(clay.model == "von_mises");
   CHECK(clay.density == 1500);
-  CHECK(clay.parameters == std::vector<double>{1e6, 0.3, 1000, 2000, 1.5, 0});
+  CHECK(clay.parameters == std::vector<double>{1e6, 0.3, 1000, 2000, 1.5, 0, 0, 0});
 }
 
 TEST_CASE("rigidity takes the place of Young's modulus", "[options]") {
   std::string deck = k_deck;
   deck.erase(deck.find("-clay_young 1e6 "), std::string("-clay_young 1e6 ").size());
   CHECK(config_of(deck + "-clay_rigidity 500").materials.at(0).parameters ==
-        std::vector<double>{0, 0.3, 1000, 0, 0, 500});
+        std::vector<double>{0, 0.3, 1000, 0, 0, 500, 0, 0});
   CHECK(read(deck).report.errors.at(0) ==
-        "mpm: -clay_young: not given, takes a number in Pa from 0.001 to 1e+15, or -clay_rigidity in its "
+        "mpm: -clay_young: not given, takes a number in Pa from 0.001 to 1e+15, or field, or -clay_rigidity "
+        "in its "
         "place");
   CHECK(read(k_deck + "-clay_rigidity 500").report.errors.at(0) ==
         "mpm: -clay_young: given \"1e6\", takes nothing here: -clay_rigidity is in its place");
@@ -235,7 +236,7 @@ TEST_CASE("strengths that a file gives each particle are those that the material
     return errors[0].starts_with(given) ? errors[0].substr(given.size()) : join(errors, "; ");
   };
   const auto largest = [&](const std::string& law) {
-    return config_of(head + rest + law).bodies.at(0).largest_own_parameter;
+    return config_of(head + rest + law).bodies.at(0).largest_own[0];
   };
   const std::string clay = "-clay_model von_mises -clay_su 1000 ", young = "-clay_young 1e6 ",
                     sand = "-clay_model mohr_coulomb -clay_cohesion 9 -clay_young 1e6 -clay_friction_deg ";
@@ -245,7 +246,7 @@ TEST_CASE("strengths that a file gives each particle are those that the material
   const Config stiff = config_of(head + rest + clay + "-clay_rigidity 500");
   const MaterialConfig twice{"clay", "von_mises", 1500, {500 * 700., 0.3, 1, 0, 0, 0}};
   Config plain = stiff;
-  plain.materials = {twice}, plain.bodies[0].largest_own_parameter.reset();
+  plain.materials = {twice}, plain.bodies[0].largest_own = {};
   CHECK(std::fabs(wave_speed(stiff, stiff.bodies[0]) / wave_speed(plain, plain.bodies[0]) - 1) < 1e-12);
 
   with("su", {0, 700});

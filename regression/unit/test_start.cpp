@@ -78,7 +78,7 @@ struct File {
                     const FrameStyle& style = {}) {
     REQUIRE(write_frame(path, {0.5, 12, {particles}, {}, {}, dim_of_frame}, Precision::double_, style) ==
             PETSC_SUCCESS);
-    return read_particles({path, "soil", true, true, {"plastic_strain"}, "su"}, config_of(dim).mesh, dim,
+    return read_particles({path, "soil", true, true, {"plastic_strain"}, {"su"}}, config_of(dim).mesh, dim,
                           table);
   }
 };
@@ -243,8 +243,8 @@ TEST_CASE("a strength that a file gives each particle is in the state, the frame
         config.materials[0].parameters = {1e6, 0.3, 500, 20, 0, -1, 0, 0, 2};
       if (model[0] == 's') config.materials[0].parameters = {1e6, 0.3, 500, 50, 9, 0, 1};
       BodyParticles particles = pair_of(dim);
-      particles.own_parameter = own;
-      config.bodies[0].largest_own_parameter = own[0];
+      particles.own_parameters = {{key, own}};
+      config.bodies[0].largest_own[0] = own[0];
       const auto stepper = make_stepper(config);
       Model start;
       for (int d = 0; d < 3; ++d) start.patches[d] = d < dim ? 8 / patch_edge(dim) + 2 : 1;
@@ -256,7 +256,7 @@ TEST_CASE("a strength that a file gives each particle is in the state, the frame
       REQUIRE(stepper->snapshot(&frame) == PETSC_SUCCESS);
       REQUIRE(stepper->save(&c.state) == PETSC_SUCCESS);
       frame.dim = dim;
-      CHECK(frame.bodies[0].own_parameter == key);
+      CHECK(frame.bodies[0].own_parameters == std::vector{key});
       c.version = "1", c.dim = dim, c.backend = "serial", c.precision = "double", c.strategy = "tile";
       c.options = {{"-bodies", "soil", "", false},
                    {"-soil_material", "clay", "", false},
@@ -274,8 +274,10 @@ TEST_CASE("a strength that a file gives each particle is in the state, the frame
       const auto read = [&](const std::string& path, const std::string& parameter) {
         ParticleTable table;
         INFO(model << " " << path);
-        CHECK(read_particles({path, "soil", true, true, {}, parameter}, config.mesh, dim, table) == "");
-        return table.own_parameter;
+        std::vector<std::string> keys;
+        if (!parameter.empty()) keys.push_back(parameter);
+        CHECK(read_particles({path, "soil", true, true, {}, keys}, config.mesh, dim, table) == "");
+        return table.own_parameters.empty() ? std::vector<double>{} : table.own_parameters[0].values;
       };
       CHECK(read(file.path, key) == own);
       CHECK(read(file.path + ".frame", key) == own);
@@ -290,19 +292,22 @@ TEST_CASE("a frame whose -output_fields left out the particles' own strength is 
   ParticleSnapshot particles = three(2);
   particles.state.push_back({"su", {3, 2, 1}});
   ParticleTable table;
+  const auto own = [](const ParticleTable& of) {
+    return of.own_parameters.empty() ? std::vector<double>{} : of.own_parameters[0].values;
+  };
   CHECK(file.fault(particles, table, 2, 2) == "");  // copied to the frame by the user
-  CHECK(table.own_parameter == std::vector<double>{3, 2, 1});
+  CHECK(own(table) == std::vector<double>{3, 2, 1});
   FrameStyle style;
   for (const std::string& name : frame_field_names())
     if (name != "su") style.fields.push_back(name);
   CHECK(file.fault(particles, table, 2, 2, style) == "");
-  CHECK(table.own_parameter.empty());
-  particles.own_parameter = "su";
+  CHECK(own(table).empty());
+  particles.own_parameters = {"su"};
   CHECK(file.fault(particles, table, 2, 2) == "");
-  CHECK(table.own_parameter == std::vector<double>{3, 2, 1});
+  CHECK(own(table) == std::vector<double>{3, 2, 1});
   CHECK(file.fault(particles, table, 2, 2, style) ==
         "a frame with soil/su, which -output_fields of its run left out");
-  particles.own_parameter = "cohesion";  // of another law
+  particles.own_parameters = {"cohesion", "young"};  // of another law
   CHECK(file.fault(particles, table, 2, 2, style) == "");
 }
 

@@ -66,7 +66,7 @@ std::vector<const char*> failures(ModelList<Models...>) {
 /// The state of a particle that is created at a height [m] with a stress [Pa].
 template <class Law>
 auto start_of(const Law& law, double height, const std::array<double, 6>& stress = {},
-              std::optional<double> own = {}) {
+              const OwnValues& own = {}) {
   LawState<double, state_size<Law>> state{};
   const auto start = law.initial_state({.height = height, .stress = stress, .own = own});
   for (std::size_t k = 0; k < start.size(); ++k) state[static_cast<int>(k)] = start[k];
@@ -190,7 +190,7 @@ std::vector<double> initial_state(const AnyMaterial<double>& material, const Par
 }
 
 double wave_modulus(const AnyMaterial<double>& material, double height, const std::array<double, 6>& stress,
-                    std::optional<double> own) {
+                    const OwnValues& own) {
   double modulus = 0;
   SymTensor<double, 3> start;
   for (int k = 0; k < sym_size<3>; ++k) start[k] = stress[k];

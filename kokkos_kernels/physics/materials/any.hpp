@@ -110,7 +110,7 @@ std::vector<double> initial_state(const AnyMaterial<double>& material, const Par
 /// lambda + 2 G [Pa] of a material that is created at a height [m] with a stress [Pa]. own: that of
 /// ParticleStart.
 double wave_modulus(const AnyMaterial<double>& material, double height = 0,
-                    const std::array<double, 6>& stress = {}, std::optional<double> own = {});
+                    const std::array<double, 6>& stress = {}, const OwnValues& own = {});
 
 /// Undrained shear strength [Pa] of a material that is created at a height [m] without stress.
 double strength_at(const AnyMaterial<double>& material, double height);

@@ -16,30 +16,28 @@ struct DruckerPrager : FrictionalSoil<T> {
   T match;
   T slope, flow_slope;                           // eta, of friction and of dilation
   T strength_over_cohesion, apex_over_cohesion;  // xi, and xi / eta; the latter without friction is 0
-  T bulk_modulus;                                // Pa
+  T bulk_modulus;                                // Pa, of reference_young()
 
   static constexpr auto parameters() {
-    std::array<Parameter<DruckerPrager>, 9> rows{};
-    const auto shared = Soil::template friction_parameters<DruckerPrager>(
-        "largest mean stress, tension positive; none: that of the apex");
-    for (std::size_t k = 0; k < shared.size(); ++k) rows[k] = shared[k];
-    rows.back() = {
-        "match",
-        &DruckerPrager::match,
-        "",
-        "where the strength is that of mohr_coulomb",
-        0,
-        -1,
-        std::numeric_limits<double>::quiet_NaN(),
-        nullptr,
-        {{{"compression", compression}, {"extension", extension}, {"plane_strain", plane_strain}}}};
-    return rows;
+    const std::array<Parameter<DruckerPrager>, 1> own = {
+        {{"match",
+          &DruckerPrager::match,
+          "",
+          "where the strength is that of mohr_coulomb",
+          0,
+          -1,
+          std::numeric_limits<double>::quiet_NaN(),
+          nullptr,
+          {{{"compression", compression}, {"extension", extension}, {"plane_strain", plane_strain}}}}}};
+    return joined(Soil::template friction_parameters<DruckerPrager>(
+                      "largest mean stress, tension positive; none: that of the apex"),
+                  own, Soil::template growth_rows<DruckerPrager>());
   }
   /// Called once the parameters are set. Constants of the three cones: de Souza Neto, Peric & Owen 2008, 6.4;
   /// plane strain at failure with any angle of dilation.
   void prepare() {
     Soil::prepare_elasticity();
-    bulk_modulus = static_cast<T>(double(this->young) / (3 * (1 - 2 * double(this->poisson))));
+    bulk_modulus = static_cast<T>(this->reference_young() / (3 * (1 - 2 * double(this->poisson))));
     const double phi = Soil::radians(this->friction_deg), psi = Soil::radians(this->dilation_deg);
     const double s = std::sin(phi), s_flow = std::sin(psi);
     double eta, eta_flow, xi;
@@ -78,22 +76,23 @@ struct DruckerPrager : FrictionalSoil<T> {
   }
 
   template <class R, int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 2>& state,
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 3>& state,
                               const Increment<R, T, Dim>& by) const {
-    const T shear_modulus = this->shear_modulus;
+    const R shear_modulus = this->shear_modulus_of_particle(state),
+            bulk = this->of_particle(bulk_modulus, state);
     const bool has_apex = apex_over_cohesion > 0, has_tension = this->tension >= 0;
     const R c = state[cohesion_of_particle], strength = strength_over_cohesion * c;
     const R apex = has_apex ? apex_over_cohesion * c : R(this->tension);
     const R cap = has_tension ? Kokkos::fmin(this->tension, apex) : apex;
     s = rotated(s, by.spin);
-    add_elastic(s, by.strain, this->lambda, shear_modulus);
+    this->add_elastic_to(s, by.strain, state);
 
     const R p = mean_of(s), r = Kokkos::sqrt(second_invariant(s, p)), f = r + slope * p - strength;
     const R beyond = has_apex || has_tension ? p - cap : R(-1);
     const auto yields = Kokkos::fmax(f, beyond) > 0;
     if (!any_of(yields)) return;
-    const R l = Kokkos::fmax(f, R(0)) / (shear_modulus + bulk_modulus * slope * flow_slope);
-    R p_new = p - bulk_modulus * flow_slope * l, r_new = Kokkos::fmax(r - shear_modulus * l, R(0));
+    const R l = Kokkos::fmax(f, R(0)) / (shear_modulus + bulk * slope * flow_slope);
+    R p_new = p - bulk * flow_slope * l, r_new = Kokkos::fmax(r - shear_modulus * l, R(0));
     if (has_apex || has_tension) {
       const auto below = (p_new <= cap) & (r - shear_modulus * l >= 0);
       p_new = select(below, p_new, cap);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "physics/materials/material.hpp"
+#include "physics/materials/elasticity.hpp"
 
 namespace mpm {
 
@@ -16,75 +16,58 @@ inline constexpr double k_no_tension = -1;
 /// linearly with depth below a level and belongs to the particle; a tension cut-off, at the apex of the yield
 /// surface where it would be above. Jaumann rate of the Cauchy stress.
 template <class T>
-struct FrictionalSoil {
-  using real = T;
-  T young, poisson, cohesion, friction_deg, dilation_deg, tension, cohesion_gradient, cohesion_datum;
-  T lambda, shear_modulus;  // Pa, of young and poisson
+struct FrictionalSoil : Elasticity<T, 2> {
+  T cohesion, friction_deg, dilation_deg, tension, cohesion_gradient, cohesion_datum;
 
   /// The rows of the table of parameters that the laws share. `tension_meaning`: of the stress that
   /// `tension` limits.
   template <class Law>
   static constexpr std::array<Parameter<Law>, 8> friction_parameters(const char* tension_meaning) {
     constexpr double required = std::numeric_limits<double>::quiet_NaN();
-    return {{{"young", &Law::young, "Pa", "Young's modulus", 1e-3, 1e15, required},
-             {"poisson", &Law::poisson, "-", "Poisson's ratio", -0.99, 0.4999, required},
-             {"cohesion", &Law::cohesion, "Pa", "cohesion at and above cohesion_datum", 0, 1e12, required},
-             {"friction_deg", &Law::friction_deg, "deg", "angle of friction", 0, 59.99, required},
-             {"dilation_deg", &Law::dilation_deg, "deg", "angle of dilation", 0, 59.99, 0},
-             {"tension",
-              &Law::tension,
-              "Pa",
-              tension_meaning,
-              0,
-              1e12,
-              k_no_tension,
-              nullptr,
-              {{{"none", k_no_tension}}}},
-             {"cohesion_gradient", &Law::cohesion_gradient, "Pa/m", "growth of the cohesion with depth", 0,
-              1e12, 0},
-             {"cohesion_datum", &Law::cohesion_datum, "m", "level below which the cohesion grows", -1e9, 1e9,
-              0}}};
+    const std::array<Parameter<Law>, 6> own = {
+        {{"cohesion", &Law::cohesion, "Pa", "cohesion at and above cohesion_datum", 0, 1e12, required},
+         {"friction_deg", &Law::friction_deg, "deg", "angle of friction", 0, 59.99, required},
+         {"dilation_deg", &Law::dilation_deg, "deg", "angle of dilation", 0, 59.99, 0},
+         {"tension",
+          &Law::tension,
+          "Pa",
+          tension_meaning,
+          0,
+          1e12,
+          k_no_tension,
+          nullptr,
+          {{{"none", k_no_tension}}}},
+         {"cohesion_gradient", &Law::cohesion_gradient, "Pa/m", "growth of the cohesion with depth", 0, 1e12,
+          0},
+         {"cohesion_datum", &Law::cohesion_datum, "m", "level below which the cohesion grows", -1e9, 1e9,
+          0}}};
+    return joined(YoungsModulus<T>::template young_rows<Law>(), own);
   }
 
-  enum : int { plastic_strain, cohesion_of_particle };
-  using State = LawState<T, 2>;
-  static constexpr std::array<StateVariable, 2> state() {
+  enum : int { plastic_strain, cohesion_of_particle, young_of_particle };
+  using State = LawState<T, 3>;
+  static constexpr std::array<StateVariable, 3> state() {
     return {{{"plastic_strain", "-"},  // accumulated engineering plastic shear strain
-             {.name = "cohesion", .unit = "Pa", .changes = false, .output = false, .parameter = "cohesion"}}};
+             {.name = "cohesion", .unit = "Pa", .changes = false, .output = false, .parameter = "cohesion"},
+             YoungsModulus<T>::young_variable()}};
   }
   ParameterFault check() const {
     if (dilation_deg > friction_deg)
       return {"dilation_deg", "an angle in deg that is not above -NAME_friction_deg"};
     if (friction_deg == 0 && cohesion == 0 && cohesion_gradient == 0)
       return {"cohesion", "a cohesion in Pa greater than 0 where -NAME_friction_deg is 0"};
-    return {};
+    return this->young_fault();
   }
-  std::array<double, 2> initial_state(const ParticleStart& at) const {
-    return {0, at.own.value_or(cohesion + (at.height < cohesion_datum
-                                               ? cohesion_gradient * (cohesion_datum - at.height)
-                                               : 0.0))};
-  }
-
-  /// lambda + 2 G [Pa], which gives the speed of the fastest wave (Eq. 14).
-  template <int Dim>
-  KOKKOS_FUNCTION T wave_modulus(const SymTensor<T, Dim>&, const State&) const {
-    return lambda + 2 * shear_modulus;
+  std::array<double, 3> initial_state(const ParticleStart& at) const {
+    const double depth = at.height < cohesion_datum ? cohesion_datum - at.height : 0.0;
+    return {0, at.own[0].value_or(cohesion + cohesion_gradient * depth),
+            this->young_at(at.height, at.own[1])};
   }
   /// Undrained shear strength [Pa]: none, since the strength follows the mean stress.
   KOKKOS_FUNCTION T shear_strength(const State&) const { return 0; }
-  /// Energy that the soil can give back [J/m3].
-  template <int Dim>
-  KOKKOS_FUNCTION T stored_energy(const SymTensor<T, Dim>& stress, const State&) const {
-    return elastic_energy(stress, lambda, shear_modulus);
-  }
 
  protected:
   static double radians(double degrees) { return degrees * (3.14159265358979323846 / 180); }
-
-  void prepare_elasticity() {
-    lambda = static_cast<T>(lame_of<double>(young, poisson));
-    shear_modulus = static_cast<T>(shear_modulus_of<double>(young, poisson));
-  }
 
   /// What the log says of angles below one degree, which are likely radians, and of a cut-off above the apex
   /// [Pa] of the yield surface; a line each.

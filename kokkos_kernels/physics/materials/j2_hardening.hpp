@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "physics/materials/deviator.hpp"
+#include "physics/materials/elasticity.hpp"
 
 namespace mpm {
 
@@ -15,64 +16,54 @@ namespace mpm {
 /// (hardening_modulus / 3) xi. The part of xi that a single-precision number cannot hold is a state variable
 /// too (Kahan 1965), because the strength follows increments of xi however small they are.
 template <class T>
-struct J2Hardening {
-  using real = T;
+struct J2Hardening : Elasticity<T, 2> {
   static constexpr const char* k_name = "j2_hardening";
-  T young, poisson, yield_stress, hardening_modulus;
-  T lambda, shear_modulus;     // Pa, of young and poisson
+  T yield_stress, hardening_modulus;
   T shear_yield, shear_slope;  // Pa, sqrt(J2) at first yield and its growth with xi
 
   static constexpr auto parameters() {
     constexpr double required = std::numeric_limits<double>::quiet_NaN();
     using Law = J2Hardening;
-    return std::to_array<Parameter<Law>>(
-        {{"young", &Law::young, "Pa", "Young's modulus", 1e-3, 1e15, required},
-         {"poisson", &Law::poisson, "-", "Poisson's ratio", -0.99, 0.4999, required},
-         {"yield_stress", &Law::yield_stress, "Pa", "uniaxial stress at first yield, sqrt(3 J2)", 0, 1e13,
+    const auto own = std::to_array<Parameter<Law>>(
+        {{"yield_stress", &Law::yield_stress, "Pa", "uniaxial stress at first yield, sqrt(3 J2)", 0, 1e13,
           required},
          {"hardening_modulus", &Law::hardening_modulus, "Pa",
           "growth of the uniaxial yield stress with the plastic axial strain", 0, 1e15, 0}});
+    return joined(YoungsModulus<T>::template young_rows<Law>(), own,
+                  YoungsModulus<T>::template growth_rows<Law>());
   }
   /// Called once the parameters are set.
   void prepare() {
-    lambda = static_cast<T>(lame_of<double>(young, poisson));
-    shear_modulus = static_cast<T>(shear_modulus_of<double>(young, poisson));
+    this->prepare_elasticity();
     shear_yield = static_cast<T>(yield_stress / std::sqrt(3.0));
     shear_slope = static_cast<T>(hardening_modulus / 3.0);
   }
 
-  enum : int { plastic_strain, remainder };
-  using State = LawState<T, 2>;
-  static constexpr std::array<StateVariable, 2> state() {
+  enum : int { plastic_strain, remainder, young_of_particle };
+  using State = LawState<T, 3>;
+  static constexpr std::array<StateVariable, 3> state() {
     return {{{"plastic_strain", "-"},  // accumulated engineering plastic shear strain
-             {.name = "plastic_strain_remainder", .unit = "-", .output = false}}};
+             {.name = "plastic_strain_remainder", .unit = "-", .output = false},
+             YoungsModulus<T>::young_variable()}};
   }
   ParameterFault check() const {
-    if (yield_stress > 0 || hardening_modulus > 0) return {};
+    if (yield_stress > 0 || hardening_modulus > 0) return this->young_fault();
     return {"yield_stress", "a stress in Pa greater than 0 where -NAME_hardening_modulus is 0"};
   }
-  std::array<double, 2> initial_state(const ParticleStart&) const { return {}; }
-
-  /// lambda + 2 G [Pa], which gives the speed of the fastest wave (Eq. 14).
-  template <int Dim>
-  KOKKOS_FUNCTION T wave_modulus(const SymTensor<T, Dim>&, const State&) const {
-    return lambda + 2 * shear_modulus;
+  std::array<double, 3> initial_state(const ParticleStart& at) const {
+    return {0, 0, this->young_at(at.height, at.own[0])};
   }
   /// sqrt(J2) [Pa] at which the particle yields.
   KOKKOS_FUNCTION T shear_strength(const State& state) const {
     return shear_yield + shear_slope * state[plastic_strain];
   }
-  /// Energy that the body can give back [J/m3].
-  template <int Dim>
-  KOKKOS_FUNCTION T stored_energy(const SymTensor<T, Dim>& stress, const State&) const {
-    return elastic_energy(stress, lambda, shear_modulus);
-  }
 
   template <class R, int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 2>& state,
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 3>& state,
                               const Increment<R, T, Dim>& by) const {
     s = rotated(s, by.spin);
-    add_elastic(s, by.strain, lambda, shear_modulus);
+    const R shear_modulus = this->shear_modulus_of_particle(state);
+    this->add_elastic_to(s, by.strain, state);
     const R mean = mean_of(s), trial = shear_stress_of(s, mean);
     const R strength = shear_yield + shear_slope * (state[plastic_strain] + state[remainder]);
     const auto yields = trial > strength;

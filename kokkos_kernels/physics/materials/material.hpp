@@ -3,7 +3,6 @@
 // rotation of stress. docs/CONTRIBUTING.md tells how a law is written.
 
 #include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,8 +61,7 @@ struct ParticleStart {
   std::array<double, 3> position{};  // m; along the vertical, the last axis of the mesh, in `height`
   double height = 0;                 // m, reference height
   std::array<double, 6> stress{};    // Pa: xx yy zz xy yz zx, tension positive
-  std::optional<double> own{};       // of the parameter of StateVariable::parameter, where a file gives the
-                                     // particle a value of its own; its unit
+  OwnValues own{};                   // where a file gives the particle values of its own
 };
 
 /// What a law may know of the run that it is for (its optional member prepare_for).

@@ -16,8 +16,10 @@ struct MohrCoulomb : FrictionalSoil<T> {
   T sc_over_cohesion, apex_over_cohesion;  // -; the latter without friction is 0
 
   static constexpr auto parameters() {
-    return Soil::template friction_parameters<MohrCoulomb>(
-        "largest principal stress, tension positive; none: that of the apex, cohesion * cot(friction)");
+    return joined(Soil::template friction_parameters<MohrCoulomb>(
+                      "largest principal stress, tension positive; none: that of the apex, cohesion * "
+                      "cot(friction)"),
+                  Soil::template growth_rows<MohrCoulomb>());
   }
   /// Called once the parameters are set.
   void prepare() {
@@ -50,12 +52,12 @@ struct MohrCoulomb : FrictionalSoil<T> {
   }
 
   template <class R, int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 2>& state,
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 3>& state,
                               const Increment<R, T, Dim>& by) const {
     s = rotated(s, by.spin);
-    add_elastic(s, by.strain, this->lambda, this->shear_modulus);
-    state[plastic_strain] +=
-        return_stress(shape, size_of(state[cohesion_of_particle]), R(this->shear_modulus), s);
+    const R shear_modulus = this->shear_modulus_of_particle(state);
+    this->add_elastic_to(s, by.strain, state);
+    state[plastic_strain] += return_stress(shape, size_of(state[cohesion_of_particle]), shear_modulus, s);
   }
 };
 

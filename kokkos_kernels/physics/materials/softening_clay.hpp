@@ -22,7 +22,6 @@ struct SofteningClay : Clay<T> {
 
   static constexpr auto parameters() {
     constexpr double required = std::numeric_limits<double>::quiet_NaN();
-    const auto shared = Clay<T>::template clay_parameters<SofteningClay>();
     const auto own = std::to_array<Parameter<SofteningClay>>(
         {{"remoulded_ratio", &SofteningClay::remoulded_ratio, "-", "remoulded over intact strength", 1e-6, 1,
           required},
@@ -67,10 +66,8 @@ struct SofteningClay : Clay<T> {
           von_mises,
           nullptr,
           {{{"von_mises", von_mises}, {"tresca", tresca}}}}});
-    std::array<Parameter<SofteningClay>, shared.size() + own.size()> rows{};
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      rows[k] = k < shared.size() ? shared[k] : own[k - shared.size()];
-    return rows;
+    return joined(Clay<T>::template clay_parameters<SofteningClay>(), own,
+                  YoungsModulus<T>::template growth_rows<SofteningClay>());
   }
   /// Called once the parameters are set.
   void prepare() {
@@ -86,15 +83,20 @@ struct SofteningClay : Clay<T> {
     prepare();
   }
 
-  enum : int { plastic_strain, strength, plastic_strain_rest, shear_rate };
-  using State = LawState<T, 4>;
-  static constexpr std::array<StateVariable, 4> state() {
+  enum : int { plastic_strain, strength, plastic_strain_rest, shear_rate, young_of_particle };
+  using State = LawState<T, 5>;
+  static constexpr std::array<StateVariable, 5> state() {
     return {{{"plastic_strain", "-"},  // xi, accumulated engineering plastic shear strain
              {.name = "strength", .unit = "Pa", .changes = false, .output = false, .parameter = "su"},  // su0
              rest_variable<T>("plastic_strain_rest", "-"),
-             {.name = "shear_rate", .unit = "1/s"}}};  // smoothed
+             {.name = "shear_rate", .unit = "1/s"},  // smoothed
+             YoungsModulus<T>::young_variable()}};
   }
-  KOKKOS_FUNCTION bool carries(int k) const { return k != shear_rate || rate_time > 0; }
+  /// Only the last variables may be missing: soil whose Young's modulus varies has the shear rate too.
+  KOKKOS_FUNCTION bool carries(int k) const {
+    const bool own_young = this->varies();
+    return k < shear_rate || own_young || (k == shear_rate && rate_time > 0);
+  }
 
   ParameterFault check() const {
     if (this->su == 0 && this->su_gradient == 0)
@@ -104,7 +106,7 @@ struct SofteningClay : Clay<T> {
     if (rate_factor > 0 && !(rate_reference > 0))
       return {"rate_reference", "a rate in 1/s greater than 0 where -NAME_rate_factor is greater than 0"};
     if (const ParameterFault fault = Clay<T>::check(); !fault.key.empty()) return fault;
-    return xi95_cell > 0 ? ParameterFault{} : brittleness_fault(this->su);
+    return xi95_cell > 0 ? ParameterFault{} : brittleness_fault(this->su, this->young);
   }
   std::string warning() const {
     if (!(xi95_cell > 0)) return "";
@@ -112,10 +114,12 @@ struct SofteningClay : Clay<T> {
            std::to_string(xi95_cell) + " m";
   }
   ParameterFault start_fault(const ParticleStart& at) const {
-    return brittleness_fault(Clay<T>::initial_state(at)[strength]);
+    const auto [xi, su0, own_young] = Clay<T>::initial_state(at);
+    return brittleness_fault(su0, own_young);
   }
-  std::array<double, 4> initial_state(const ParticleStart& at) const {
-    return {0, Clay<T>::initial_state(at)[strength], 0, 0};
+  std::array<double, 5> initial_state(const ParticleStart& at) const {
+    const auto [xi, su0, own_young] = Clay<T>::initial_state(at);
+    return {xi, su0, 0, 0, own_young};
   }
 
   /// lambda + 2 G [Pa], which gives the speed of the fastest wave (Eq. 14).
@@ -134,13 +138,14 @@ struct SofteningClay : Clay<T> {
   }
 
   template <class R, int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 4>& state,
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 5>& state,
                               const Increment<R, T, Dim>& by) const {
     const auto& e = this->stiffness;
-    const R su_p = state[strength], shear_modulus = e.shear_modulus + e.shear_modulus_over_su * su_p;  // Pa
+    const R su_p = state[strength], basis = this->basis_of(su_p, state[young_of_particle]);  // Pa
+    const R shear_modulus = e.shear_modulus + e.shear_modulus_over_basis * basis;            // Pa
     const R rapid = su_p * rate_effect(state, by);
     s = rotated(s, by.spin);
-    add_elastic(s, by.strain, R(e.lambda + e.lambda_over_su * su_p), shear_modulus);
+    add_elastic(s, by.strain, R(e.lambda + e.lambda_over_basis * basis), shear_modulus);
     const R more = surface == T(tresca) ? return_to_hexagon(s, state, shear_modulus, rapid)
                                         : return_to_circle(s, state, shear_modulus, rapid);
     const auto yields = more > 0;
@@ -148,8 +153,8 @@ struct SofteningClay : Clay<T> {
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION static LawState<T, 2> of_clay(const State& state) {
-    return {{state[plastic_strain], state[strength]}};
+  KOKKOS_INLINE_FUNCTION static typename Clay<T>::State of_clay(const State& state) {
+    return {{state[plastic_strain], state[strength], state[young_of_particle]}};
   }
   /// S(xi) - d.
   template <class R>
@@ -157,23 +162,25 @@ struct SofteningClay : Clay<T> {
     return remoulded_ratio < 1 ? (1 - remoulded_ratio) * Kokkos::exp(-fall * xi) : R(0);
   }
 
-  /// Soil of strength su0 [Pa] must not soften faster than it unloads: 3 su0 R (1-d)/xi95 < G.
-  ParameterFault brittleness_fault(double su0) const {
-    const double ratio = rigidity_of_shear(su0), largest = 1 + k_most_decades * rate_factor;
+  /// Soil of strength su0 [Pa] and one or its own Young's modulus [Pa] must not soften faster than it
+  /// unloads: 3 su0 R (1-d)/xi95 < G. Less than 0: the modulus is not known yet.
+  ParameterFault brittleness_fault(double su0, double young) const {
+    if (young < 0) return {};
+    const double ratio = rigidity_of_shear(su0, young), largest = 1 + k_most_decades * rate_factor;
     const double least = 3 * largest * (1 - remoulded_ratio) / ratio;
     if (!(su0 > 0) || remoulded_ratio == 1 || xi95 > least) return {};
     return {"xi95", "more than " + std::to_string(least) +
                         " for the cells of the mesh, or the soil softens faster than it unloads"};
   }
   /// G over su0.
-  double rigidity_of_shear(double su0) const {
-    return shear_modulus_of<double>(this->young, this->poisson) / su0 +
+  double rigidity_of_shear(double su0, double young) const {
+    return shear_modulus_of<double>(young, this->poisson) / su0 +
            shear_modulus_of<double>(this->rigidity, this->poisson);
   }
 
   /// R of the step's rate of shear strain, sqrt(2 e' : e')/dt, which is smoothed where rate_time is given.
   template <class R, int Dim>
-  KOKKOS_INLINE_FUNCTION R rate_effect(LawState<R, 4>& state, const Increment<R, T, Dim>& by) const {
+  KOKKOS_INLINE_FUNCTION R rate_effect(LawState<R, 5>& state, const Increment<R, T, Dim>& by) const {
     if (!(rate_factor > 0)) return 1;
     R rate = 2 * Kokkos::sqrt(second_invariant(by.strain, mean_of(by.strain))) / by.dt;
     if (rate_time > 0)
@@ -186,7 +193,7 @@ struct SofteningClay : Clay<T> {
   /// g = rapid S(xi + g). Newton's method from g = 0 is monotone, since the soil softens less than it
   /// unloads.
   template <class R, int Dim>
-  KOKKOS_INLINE_FUNCTION R return_to_circle(SymTensor<R, Dim>& s, const LawState<R, 4>& state,
+  KOKKOS_INLINE_FUNCTION R return_to_circle(SymTensor<R, Dim>& s, const LawState<R, 5>& state,
                                             const R& shear_modulus, const R& rapid) const {
     constexpr int k_iterations = 5;
     // Relative change of g after which the iterations end: what is left is about its square.
@@ -213,7 +220,7 @@ struct SofteningClay : Clay<T> {
   /// Returns a trial stress to Tresca's hexagon with the strength at the start of the step, an error of the
   /// order of the step.
   template <class R, int Dim>
-  KOKKOS_INLINE_FUNCTION R return_to_hexagon(SymTensor<R, Dim>& s, const LawState<R, 4>& state,
+  KOKKOS_INLINE_FUNCTION R return_to_hexagon(SymTensor<R, Dim>& s, const LawState<R, 5>& state,
                                              const R& shear_modulus, const R& rapid) const {
     const R su_now = rapid * (remoulded_ratio + what_is_left(state[plastic_strain]));
     const PyramidSize<R> size{

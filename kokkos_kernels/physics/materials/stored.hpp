@@ -11,7 +11,7 @@ namespace mpm {
 
 /// State variables that a particle has room for. A law may have as many; one that runs on processors alone
 /// (k_host_double) as many as k_most_state_on_host.
-inline constexpr int k_most_state_on_device = 4, k_most_state_on_host = 74;
+inline constexpr int k_most_state_on_device = 5, k_most_state_on_host = 74;
 template <class Space>
 inline constexpr int k_most_state = is_device<Space> ? k_most_state_on_device : k_most_state_on_host;
 

@@ -1,6 +1,8 @@
 #pragma once
 // What the tables of the laws say, for code that does not see the laws.
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +17,13 @@ struct StateVariable {
   bool output = true;   // frames have it
   bool used = true;     // update() asks for it
   const char* parameter = nullptr;  // key of the parameter whose value at the particle it is, which a file of
-                                    // particles may give; at most one variable of a law has one
+                                    // particles may give; at most k_most_own variables of a law have one
 };
+
+/// Values that a particle has of its own, of the parameters of StateVariable::parameter in the order of the
+/// law's table, in their units; none where the material tells it.
+inline constexpr int k_most_own = 2;
+using OwnValues = std::array<std::optional<double>, k_most_own>;
 
 /// Name of the excess pore pressure [Pa] in frames, checkpoints and files of particles. Particles of a
 /// material with a pore stiffness carry it beside the state of their law.

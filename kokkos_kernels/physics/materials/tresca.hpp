@@ -13,23 +13,22 @@ struct Tresca : Clay<T> {
   static constexpr const char* k_name = "tresca";
   using Clay<T>::plastic_strain;
   using Clay<T>::strength;
+  using Clay<T>::young_of_particle;
   T tension;  // Pa, or k_no_tension
   PyramidShape<T> shape;
 
   static constexpr auto parameters() {
-    std::array<Parameter<Tresca>, 7> rows{};
-    const auto shared = Clay<T>::template clay_parameters<Tresca>();
-    for (std::size_t k = 0; k < shared.size(); ++k) rows[k] = shared[k];
-    rows.back() = {"tension",
-                   &Tresca::tension,
-                   "Pa",
-                   "largest principal stress, tension positive",
-                   0,
-                   1e12,
-                   k_no_tension,
-                   nullptr,
-                   {{{"none", k_no_tension}}}};
-    return rows;
+    const std::array<Parameter<Tresca>, 1> own = {{{"tension",
+                                                    &Tresca::tension,
+                                                    "Pa",
+                                                    "largest principal stress, tension positive",
+                                                    0,
+                                                    1e12,
+                                                    k_no_tension,
+                                                    nullptr,
+                                                    {{{"none", k_no_tension}}}}}};
+    return joined(Clay<T>::template clay_parameters<Tresca>(), own,
+                  YoungsModulus<T>::template growth_rows<Tresca>());
   }
   /// Called once the parameters are set.
   void prepare() {
@@ -43,12 +42,13 @@ struct Tresca : Clay<T> {
   }
 
   template <class R, int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 2>& state,
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 3>& state,
                               const Increment<R, T, Dim>& by) const {
     const auto& e = this->stiffness;
-    const R su_p = state[strength], shear_modulus = e.shear_modulus + e.shear_modulus_over_su * su_p;  // Pa
+    const R su_p = state[strength], basis = this->basis_of(su_p, state[young_of_particle]);  // Pa
+    const R shear_modulus = e.shear_modulus + e.shear_modulus_over_basis * basis;            // Pa
     s = rotated(s, by.spin);
-    add_elastic(s, by.strain, R(e.lambda + e.lambda_over_su * su_p), shear_modulus);
+    add_elastic(s, by.strain, R(e.lambda + e.lambda_over_basis * basis), shear_modulus);
     const PyramidSize<R> size{
         .sc = 2 * su_p, .cut_off = tension, .low = tension - 2 * su_p, .cuts = tension >= 0, .apex = {}};
     state[plastic_strain] += return_stress(shape, size, shear_modulus, s);

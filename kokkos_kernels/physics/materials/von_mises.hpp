@@ -10,16 +10,21 @@ struct VonMises : Clay<T> {
   static constexpr const char* k_name = "von_mises";
   using Clay<T>::plastic_strain;
   using Clay<T>::strength;
+  using Clay<T>::young_of_particle;
 
-  static constexpr auto parameters() { return Clay<T>::template clay_parameters<VonMises>(); }
+  static constexpr auto parameters() {
+    return joined(Clay<T>::template clay_parameters<VonMises>(),
+                  YoungsModulus<T>::template growth_rows<VonMises>());
+  }
 
   template <class R, int Dim>
-  KOKKOS_FORCEINLINE_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 2>& state,
+  KOKKOS_FORCEINLINE_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 3>& state,
                                           const Increment<R, T, Dim>& by) const {
     const typename Clay<T>::Stiffness e = this->stiffness;
-    const R su_p = state[strength], shear_modulus = e.shear_modulus + e.shear_modulus_over_su * su_p;  // Pa
+    const R su_p = state[strength], basis = this->basis_of(su_p, state[young_of_particle]);  // Pa
+    const R shear_modulus = e.shear_modulus + e.shear_modulus_over_basis * basis;            // Pa
     s = rotated(s, by.spin);
-    add_elastic(s, by.strain, R(e.lambda + e.lambda_over_su * su_p), shear_modulus);
+    add_elastic(s, by.strain, R(e.lambda + e.lambda_over_basis * basis), shear_modulus);
 
     const R mean = mean_of(s), j2 = second_invariant(s, mean);
     const auto yields = j2 > su_p * su_p;

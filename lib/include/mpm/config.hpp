@@ -111,10 +111,11 @@ struct BodyConfig {
   bool k0 = false;  // its stress is that of level ground; `stress` is then that of its lowest particles
   /// Pa, largest mean stress in compression of its particles at the start.
   double largest_pressure = 0;
-  std::string field;  // HDF5 file with a grid of the law's strength, from which its particles take theirs
-  /// Largest value of the law's strength that its file or field gives each particle, in the parameter's unit;
-  /// none where neither is given.
-  std::optional<double> largest_own_parameter;
+  /// HDF5 file with grids of the law's strength and Young's modulus, from which its particles take theirs.
+  std::string field;
+  /// Largest values of the parameters that its file or field gives each particle, in the order of the law's
+  /// table and in their units; none where neither gives it.
+  std::array<std::optional<double>, 2> largest_own{};
   std::vector<int> cut_out;         // indices into Config::rigids: particles in their shapes are left out
   std::vector<int> cut_out_bodies;  // the same of Config::bodies
   bool absent = false;              // a later stage places it
