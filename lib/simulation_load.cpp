@@ -114,7 +114,7 @@ PetscErrorCode Simulation::Body::load(Model* model) {
     const double density = density_of(config, body);
     if (!listed && config.geometry == Geometry::plane_strain) weigh(density, particles);
     if (!listed) PetscCall(revolve(comm, config, density, &particles));
-    if (!body.field.empty() && !field_key(body, config).empty()) PetscCall(take_field(body, &particles));
+    if (!body.field.empty() && takes_field(body, config)) PetscCall(take_field(body, &particles));
     if (body.k0 && !body.absent) PetscCall(take_level_ground(body, model, &particles));
   }
   std::vector<LoadedSurface> surfaces;

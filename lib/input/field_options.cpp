@@ -65,6 +65,10 @@ void read_body_field(OptionReader& in, const std::string& name, bool listed, Bod
       body.field);
 }
 
+bool takes_field(const BodyConfig& body, const Config& config) {
+  return !own_parameters(state_variables(config.materials[body.material])).empty();
+}
+
 std::string read_body_grids(const BodyConfig& body, const Config& config, std::vector<NamedGrid>& grids) {
   const MaterialConfig& material = config.materials[body.material];
   const auto keys = own_parameters(state_variables(material));

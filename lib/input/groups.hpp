@@ -115,6 +115,8 @@ void check_in_water(OptionReader& in, const Config& config, const RigidConfig& r
 void read_body_field(OptionReader& in, const std::string& name, bool listed, BodyConfig& body);
 /// Checks the field against the body's sound shape and material, and notes its largest values.
 void check_body_field(OptionReader& in, const MeshConfig& mesh, const Config& config, BodyConfig& body);
+/// Whether the law of a body's material takes values of each particle.
+bool takes_field(const BodyConfig& body, const Config& config);
 /// Reads the grids of the parameters that a body's field gives its particles, by their keys; some must be
 /// there. Returns what the file should have been, as the end of "takes ..."; empty where all is well.
 std::string read_body_grids(const BodyConfig& body, const Config& config, std::vector<NamedGrid>& grids);

@@ -144,7 +144,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
     check_particles(in, body, config, *mesh, listed);
     check_density(in, body, config, listed);
   }
-  const bool keeps_none = body.from_before && field_key(body, config).empty();  // its law was changed
+  const bool keeps_none = body.from_before && !takes_field(body, config);  // its law was changed
   if (sound_materials && in.errors() == errors && !keeps_none) check_body_field(in, *mesh, config, body);
   if (sound_materials && in.errors() == errors && !body.k0) check_starts(in, *mesh, config, listed, body);
 }
