@@ -52,6 +52,7 @@ def bar():
 
 FIELD = "-column_field {start}"
 GRADIENT = f"-soil_young {YOUNG:g} -soil_young_gradient {GROWTH:g} -soil_young_datum {LOWER[1] + HEIGHT:g}"
+LONG = True
 RUNS = {"field_2D": strip(2, FIELD), "field_3D": strip(3, FIELD), "gradient": strip(2, GRADIENT)}
 RUNS |= {law: strip(2, f"{FIELD} -soil_model {law} {more}") for law, more in STRONG.items()}
 RUNS["bar"] = bar()

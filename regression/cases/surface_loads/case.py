@@ -23,6 +23,7 @@ PRESSURE, TURN = 50e3, np.radians(30)
 TRACTION, PRESSED = "0:0:0,0.0033:400:-700,0.02:-300:100,1:0:0", "0:1,0.004:-2,0.0101:3,1:0"
 FREE = (OPEN + " -time_end 0.02 -elastic_young 1e10 -soil_lower 1.03,0.47 -soil_upper 3.03,1.47 -strip_facing 0,1 -strip_lower 0.9,1.4"
         " -strip_upper 3.1,1.6 -history_interval 0.001 -output_interval 0.02")
+LONG = True
 RUNS = {
     "strip": "",
     "strip_traction": " -strip_pressure 0 -strip_traction 0,-50e3",
