@@ -16,13 +16,11 @@ import numpy as np
 
 from folders import fresh, frames, rows, run
 from random_decks import draws_of, read_arguments
-from sides import APART, check_cut, vector
+from sides import check_repeats, vector
 
 HERE = pathlib.Path(__file__).resolve()
 sys.path[:0] = [str(HERE.parents[2] / "scripts"), str(HERE.parents[1])]
 
-from differences import largest  # noqa: E402
-from results import Run  # noqa: E402
 
 H = 0.5  # m, edge of a cell
 OFF_COLUMN = {"double": 1e-6, "single": 0.02}  # of the largest displacement
@@ -177,14 +175,7 @@ def main():
                 off[precision] = max(off[precision], check_column(binary, empty, base, options, column, precision))
             else:
                 check_momentum(whole, dim, precision)
-            if "atomic" not in options:
-                check_cut(binary, empty, base, options + sides, whole, draw)
-            if draw.random() < 0.5:
-                pair = fresh(base / "pair")
-                run(binary, empty, pair, *options, *sides, prefix=("mpirun", "--oversubscribe", "-n", draw.choice(["2", "3"]), "--bind-to", "none"))
-                apart, where = largest(Run(pair), Run(whole))
-                ranks[precision] = max(ranks[precision], apart)
-                assert apart <= APART[precision], f"several ranks are {apart:.3g} apart from one at {where}"
+            ranks[precision] = max(ranks[precision], check_repeats(binary, empty, base, options + sides, whole, draw, precision))
         except AssertionError as error:
             listing.write_text(f"{error}\n\n{' '.join(map(str, options + sides))}\n")
             sys.exit(f"deck {number} of seed {given.seed}: {str(error)[-1500:]}\nits options are in {listing}")

@@ -98,6 +98,20 @@ def check_cut(binary, empty, base, options, whole, draw):
     assert not [f for f in differences(cut, whole) if "history" not in f], f"cut at step {at} of {step}: frames differ"
 
 
+def check_repeats(binary, empty, base, options, whole, draw, precision):
+    """A run that a checkpoint cuts gives the same bits as `whole`, and two or three ranks, which half of the decks draw, the same
+    answers. Returns how far these are from those of one rank; 0 where one rank is drawn."""
+    if "atomic" not in options:
+        check_cut(binary, empty, base, options, whole, draw)
+    if draw.random() >= 0.5:
+        return 0.0
+    several = fresh(base / "several")
+    run(binary, empty, several, *options, prefix=("mpirun", "--oversubscribe", "-n", draw.choice(["2", "3"]), "--bind-to", "none"))
+    apart, where = largest(Run(several), Run(whole))
+    assert apart <= APART[precision], f"several ranks are {apart:.3g} apart from one at {where}"
+    return apart
+
+
 def main():
     given, base = read_arguments(__doc__, "sides")
     binary = given.binary

@@ -18,7 +18,7 @@ import numpy as np
 
 from folders import fresh, frames, rows, run
 from random_decks import draws_of, read_arguments
-from sides import APART, check_cut, vector
+from sides import check_repeats, vector
 
 HERE = pathlib.Path(__file__).resolve()
 sys.path[:0] = [str(HERE.parents[2] / "scripts"), str(HERE.parents[1])]
@@ -180,14 +180,7 @@ def main():
         try:
             whole, of_field, apart = check_deck(binary, empty, base, draw, dim, options, precision, *ground)
             off[precision] = max(off[precision], apart)
-            if "atomic" not in options:
-                check_cut(binary, empty, base, options + of_field, whole, draw)
-            if draw.random() < 0.5:
-                pair = fresh(base / "pair")
-                run(binary, empty, pair, *options, *of_field, prefix=("mpirun", "--oversubscribe", "-n", draw.choice(["2", "3"]), "--bind-to", "none"))
-                apart, where = largest(Run(pair), Run(whole))
-                ranks[precision] = max(ranks[precision], apart)
-                assert apart <= APART[precision], f"several ranks are {apart:.3g} apart from one at {where}"
+            ranks[precision] = max(ranks[precision], check_repeats(binary, empty, base, options + of_field, whole, draw, precision))
         except AssertionError as error:
             listing.write_text(f"{error}\n\n{' '.join(map(str, options))}\n")
             sys.exit(f"deck {number} of seed {given.seed}: {str(error)[-1500:]}\nits options are in {listing}")

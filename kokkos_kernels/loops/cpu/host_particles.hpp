@@ -152,7 +152,7 @@ struct HostParticles {
       alignas(R) T weight[Dim][2][3][W], shift[W], hoop[rings ? 3 : 1][W];
       R to_first = 0;
       with_weights_near(x, half, [&](const auto& a) {
-        // Unrolled here: by indices that a loop counts, the weights would be copied through memory once more.
+        // Unrolled: a loop counter as the index would copy the weights through memory once more.
         unrolled<Dim>([&](auto d) MPM_INLINE_LAMBDA {
           unrolled<3>([&](auto k) MPM_INLINE_LAMBDA {
             a[d].w[k].store(weight[d][0][k]), a[d].g[k].store(weight[d][1][k]);
