@@ -8,7 +8,6 @@ shakes: between sides of the free field it must move as between periodic sides, 
 free field. *Slopes* of a random law with weight, which come to rest before they are shaken: the momentum must be what gravity and the sides have made of it. In
 both, a run that is cut in two by a checkpoint must give the same bits as the whole one, and a run on several ranks the same to round-off.
 """
-import pathlib
 import sys
 
 import h5py
@@ -17,10 +16,6 @@ import numpy as np
 from folders import fresh, frames, rows, run
 from random_decks import draws_of, read_arguments
 from sides import check_repeats, vector
-
-HERE = pathlib.Path(__file__).resolve()
-sys.path[:0] = [str(HERE.parents[2] / "scripts"), str(HERE.parents[1])]
-
 
 H = 0.5  # m, edge of a cell
 OFF_COLUMN = {"double": 1e-6, "single": 0.02}  # of the largest displacement
