@@ -49,6 +49,8 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   }
   const double soil = need.particles * a_particle;
   need.nodes = k_ring * cells * Footprint<T, Dim>::node;
+  if (config.particle_domain != ParticleDomain::fixed)
+    need.nodes += k_ring * cells * Footprint<T, Dim>::domain_node;
   if (!config.loads.empty()) need.nodes += k_ring * cells * Footprint<T, Dim>::load;
   if (config.position_correction) need.nodes += k_ring * cells * Footprint<T, Dim>::shares;
   if (config.backend == Backend::openmp && chosen(config.p2g.strategy, config.backend) == P2G::tile)

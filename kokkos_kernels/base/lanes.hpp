@@ -359,12 +359,12 @@ KOKKOS_FORCEINLINE_FUNCTION mpm::Lanes<T, W> sqrt(mpm::Lanes<T, W> a) {
 
 namespace mpm {
 
-/// Square root in single precision, and a number of single precision as R: numbers, or lanes of as many.
-KOKKOS_FORCEINLINE_FUNCTION float single_sqrt(double a) { return Kokkos::sqrt(static_cast<float>(a)); }
-KOKKOS_FORCEINLINE_FUNCTION float single_sqrt(float a) { return Kokkos::sqrt(a); }
+/// A number in single precision, and a number of single precision as R: numbers, or lanes of as many.
+KOKKOS_FORCEINLINE_FUNCTION float to_single(double a) { return static_cast<float>(a); }
+KOKKOS_FORCEINLINE_FUNCTION float to_single(float a) { return a; }
 template <class T, int W>
-KOKKOS_FORCEINLINE_FUNCTION Lanes<float, W> single_sqrt(Lanes<T, W> a) {
-  return Kokkos::sqrt(impl::converted<float>(a));
+KOKKOS_FORCEINLINE_FUNCTION Lanes<float, W> to_single(Lanes<T, W> a) {
+  return impl::converted<float>(a);
 }
 template <class R>
 KOKKOS_FORCEINLINE_FUNCTION R to_real(float a) {

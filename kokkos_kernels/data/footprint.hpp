@@ -12,11 +12,13 @@ template <class T, int Dim>
 struct Footprint {
   static constexpr double grown = 17.0 / 16;  // ensure() leaves room
   /// More where domains stretch.
-  static constexpr double domain = sizeof(DomainMoments<T, Dim>);
+  static constexpr double domain = sizeof(DomainMoments<T, Dim>) + 2 * sizeof(Vector<T, Dim>) + sizeof(T);
+  /// And of a node.
+  static constexpr double domain_node = grown * sizeof(T) * (CentreTerms<Dim>::size + Dim);
   /// More where the mesh is periodic.
   static constexpr double periods = sizeof(Vector<T, Dim>);
   /// More with loads on surfaces: of a particle (one load), and of a node.
-  static constexpr double face = sizeof(Face<Dim>) + grown * (2 * sizeof(Vector<T, Dim>) + domain);
+  static constexpr double face = sizeof(Face<Dim>) + grown * 3 * sizeof(Vector<T, Dim>);
   static constexpr double load = grown * sizeof(T) * Dim;
   /// More for an energy balance.
   static constexpr double energy = grown * (2 * sizeof(SymTensor<T, Dim>) + sizeof(T));

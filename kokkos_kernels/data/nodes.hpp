@@ -33,6 +33,11 @@ struct BoundaryTerms {
 struct StrengthTerms {
   static constexpr int strength = 0, volume = 1, size = 2;
 };
+/// What soil gives a node where domains stretch: mass [kg], and mass times the way from the node [kg cells].
+template <int Dim>
+struct CentreTerms {
+  static constexpr int mass = 0, way = 1, size = 1 + Dim;
+};
 /// Values that a rigid gives a node: mass [kg], mass gradient times the cell's edge [kg] (Eq. 3).
 template <int Dim>
 struct RigidTerms {
@@ -68,6 +73,8 @@ struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, Dim> load;      // N, of loads on surfaces, of this rank's soil; allocated with them
   NodeField<Space, T, Dim> residual;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   NodeField<Space, T, Dim> shares;    // of the position correction (ShareSource); allocated for it
+  NodeField<Space, T, CentreTerms<Dim>::size> centre;  // of the soil, where domains stretch
+  NodeField<Space, T, Dim> drift;  // kg cells, mass times the way since the last rebuild; likewise
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
       impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step
 };

@@ -58,14 +58,20 @@ inline constexpr int k_most_faces = 3;  // of a particle
 template <class Space, class T, int Dim>
 struct Soil : Points<Space, T, Dim> {
   using Memory = typename Space::memory_space;
-  Kokkos::View<Vector<T, Dim>*, Memory> velocity;       // m/s
-  Kokkos::View<SymTensor<T, Dim>*, Memory> stress;      // Pa, Cauchy, tension positive
-  Kokkos::View<T*, Memory> volume;                      // m3, current
-  History<Space, T> history;                            // state variables of the laws
-  Kokkos::View<std::uint16_t*, Memory> body;            // index into bodies
-  Kokkos::View<Matrix<T, Dim>*, Memory> affine;         // m/s a cell, C_p of APIC; of extent 0 without it
-  Kokkos::View<T*, Memory> mass;                        // kg, in use where has_own_mass
-  Kokkos::View<DomainMoments<T, Dim>*, Memory> domain;  // cells2, in use where has_domain: physics/domain.hpp
+  Kokkos::View<Vector<T, Dim>*, Memory> velocity;   // m/s
+  Kokkos::View<SymTensor<T, Dim>*, Memory> stress;  // Pa, Cauchy, tension positive
+  Kokkos::View<T*, Memory> volume;                  // m3, current
+  History<Space, T> history;                        // state variables of the laws
+  Kokkos::View<std::uint16_t*, Memory> body;        // index into bodies
+  Kokkos::View<Matrix<T, Dim>*, Memory> affine;     // m/s a cell, C_p of APIC; of extent 0 without it
+  Kokkos::View<T*, Memory> mass;                    // kg, in use where has_own_mass
+  /// In use where has_domain (physics/domain.hpp): half lengths along the axes [cells], which a step reads,
+  /// and what they come from at a rebuild: the moments of the domain [cells2], and of the last rebuild the
+  /// coordinate [cells] and the volume [m3].
+  Kokkos::View<Vector<T, Dim>*, Memory> half_length;
+  Kokkos::View<DomainMoments<T, Dim>*, Memory> domain;
+  Kokkos::View<Vector<T, Dim>*, Memory> begun;
+  Kokkos::View<T*, Memory> begun_volume;
   /// Id of the particle of the start that this one is, or a part of; in use where particles split.
   Kokkos::View<double*, Memory> ancestor;
   /// How often a particle has passed the upper side of each direction less the lower one; in use where the
@@ -145,7 +151,12 @@ void for_each_field_of(F&& f, Soil_& s, Others&... others) {
   f("body", s.bodies.extent(0) > 1 ? Use::reads : Use::none, s.body, others.body...);
   if (s.affine.extent(0) > 0) f("affine", Use::none, s.affine, others.affine...);
   if (s.has_own_mass) f("mass", Use::reads, s.mass, others.mass...);
-  if (s.has_domain) f("domain", Use::changes, s.domain, others.domain...);
+  if (s.has_domain) {
+    f("half_length", Use::reads, s.half_length, others.half_length...);
+    f("domain", Use::none, s.domain, others.domain...);
+    f("begun", Use::none, s.begun, others.begun...);
+    f("begun_volume", Use::none, s.begun_volume, others.begun_volume...);
+  }
   if (s.splits) f("ancestor", Use::none, s.ancestor, others.ancestor...);
   if (s.has_periods) f("periods", Use::none, s.periods, others.periods...);
   constexpr const char* face_names[k_most_faces] = {"face_0", "face_1", "face_2"};

@@ -1,5 +1,6 @@
 #include "functions/surface_loads.hpp"
 
+#include "base/small_matrix.hpp"
 #include "loops/particle_to_node.hpp"
 #include "rebuild/rebuild.hpp"
 
@@ -82,9 +83,7 @@ struct PlaceFaces {
     if (const T row = Kokkos::round(at), beyond = side * (at - row); beyond > 0 && beyond < k_at_row<T>)
       at = row;
     box.half[axis] = k_thin<T>;
-    DomainMoments<T, Dim> domain{};
-    for (int d = 0; d < Dim; ++d) domain[d] = box.half[d] * box.half[d];
-    loads.coordinate(p) = box.centre, loads.domain(p) = domain;
+    loads.coordinate(p) = box.centre, loads.half_length(p) = box.half;
     for (int d = 0; d < Dim; ++d) loads.force(p)[d] = static_cast<T>(force[d]);
   }
 
@@ -105,29 +104,16 @@ struct PlaceFaces {
   }
 };
 
-/// cof(B)^T a of B^T, the cofactors of B times a.
-KOKKOS_INLINE_FUNCTION void cofactors_times(const double (&b)[2][2], const double (&a)[2], double (&out)[2]) {
-  out[0] = b[1][1] * a[0] - b[1][0] * a[1];
-  out[1] = b[0][0] * a[1] - b[0][1] * a[0];
-}
-KOKKOS_INLINE_FUNCTION void cofactors_times(const double (&b)[3][3], const double (&a)[3], double (&out)[3]) {
-  for (int i = 0; i < 3; ++i) {
+/// The cofactors of B times a.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void cofactors_times(const double (&b)[Dim][Dim], const double (&a)[Dim],
+                                            double (&out)[Dim]) {
+  double c[Dim][Dim];
+  cofactors(b, c);
+  for (int i = 0; i < Dim; ++i) {
     out[i] = 0;
-    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-    for (int j = 0; j < 3; ++j) {
-      const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-      out[i] += (b[i1][j1] * b[i2][j2] - b[i1][j2] * b[i2][j1]) * a[j];
-    }
+    for (int j = 0; j < Dim; ++j) out[i] += c[i][j] * a[j];
   }
-}
-KOKKOS_INLINE_FUNCTION double determinant(const double (&m)[2][2]) {
-  return m[0][0] * m[1][1] - m[0][1] * m[1][0];
-}
-KOKKOS_INLINE_FUNCTION double determinant(const double (&m)[3][3]) {
-  const double first[3] = {1, 0, 0};
-  double row[3];
-  cofactors_times(m, first, row);
-  return m[0][0] * row[0] + m[1][0] * row[1] + m[2][0] * row[2];
 }
 
 /// Areas after a step, by Nanson's formula a' = det(G) G^-T a with G = (I - L dt/2)^-1 (I + L dt/2), which of
@@ -266,7 +252,7 @@ void list_loaded(State<Space, T, Dim>& s) {
     ensure(loads.windows.sums, window_bytes<LoadSource<Space, T, Dim>> * loads.loaded_count);
   }
   const int count = s.soil.points.count;
-  ensure(loads.coordinate, count), ensure(loads.force, count), ensure(loads.domain, count);
+  ensure(loads.coordinate, count), ensure(loads.force, count), ensure(loads.half_length, count);
 }
 
 template <class Space, class T, int Dim>
@@ -274,8 +260,8 @@ LoadSource<Space, T, Dim> place_faces(const State<Space, T, Dim>& s, int axis) {
   Kokkos::parallel_for("mpm::place_faces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
                        PlaceFaces<Space, T, Dim>{LoadedParticles<Space, T, Dim>(s), s.loads, axis});
   LoadSource<Space, T, Dim> source{s.soil.points, s.loads.force, s.loads.loaded};
-  source.points.coordinate = s.loads.coordinate, source.points.domain = s.loads.domain;
-  source.points.has_domain = true, source.points.least_half_length = k_thin<T>;
+  source.points.coordinate = s.loads.coordinate, source.points.half_length = s.loads.half_length;
+  source.points.has_domain = true;
   return source;
 }
 

@@ -1,10 +1,11 @@
 #pragma once
 // Domains of particles, and what is kept of those that follow the soil (-particle_domain stretch). Such a
-// domain begins as the square of its
-// lattice and deforms with the soil to a parallelogram (parallelepiped). What a particle keeps of it are
-// three times the second moments of its area about its centre, M = sum_k r_k r_k^T with r_k = F r_k0 the
-// vectors from the centre to the middles of the sides, a symmetric tensor [cells^2]. The shape functions take
-// the box along the axes of the mesh that has the same second moment along each axis, l_d = sqrt(M_dd).
+// domain begins as the square of its lattice and deforms with the soil to a parallelogram (parallelepiped).
+// What a particle keeps of it are three times the second moments of its area about its centre,
+// M = sum_k r_k r_k^T with r_k = F r_k0 the vectors from the centre to the middles of the sides, a symmetric
+// tensor [cells^2]. The shape functions take the box along the axes of the mesh that has the same second
+// moment along each axis, l_d = sqrt(M_dd). Moments and half lengths change at a rebuild alone
+// (functions/follow_soil.hpp), so that a step only reads the half lengths.
 
 #include "base/half_length.hpp"
 #include "base/types.hpp"
@@ -13,16 +14,22 @@
 namespace mpm {
 
 /// Half lengths [cells] of the domain with these moments, `least` at least and k_most_half_length at most.
-/// Their root and quotient are of single precision, which costs a processor and a GPU a quarter; Newton's
-/// step then makes the inverse that of l in T, for the weights rely on it.
-template <class R, class T, int Dim>
-KOKKOS_FORCEINLINE_FUNCTION HalfLengths<R, Dim> half_lengths_of(const DomainMoments<R, Dim>& m, T least) {
-  constexpr T most = T(k_most_half_length * k_most_half_length);
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION Vector<T, Dim> bounded_half_lengths(const DomainMoments<T, Dim>& m, T least) {
+  Vector<T, Dim> half;
+  for (int d = 0; d < Dim; ++d)
+    half[d] = Kokkos::fmin(T(k_most_half_length), Kokkos::fmax(least, Kokkos::sqrt(m[d])));
+  return half;
+}
+
+/// Half lengths with their inverses. The quotient is of single precision, which costs less; Newton's step
+/// then makes the inverse that of l in T, for the weights rely on it. T: the type of the numbers in R.
+template <class T, class R, int Dim>
+KOKKOS_FORCEINLINE_FUNCTION HalfLengths<R, Dim> with_inverses(const Vector<R, Dim>& length) {
   HalfLengths<R, Dim> half;
   for (int d = 0; d < Dim; ++d) {
-    const auto l = single_sqrt(Kokkos::fmin(most, Kokkos::fmax(least * least, m[d])));
-    half[d].l = to_real<R>(l);
-    half[d].inverse = to_real<R>(0.5f / l);
+    half[d].l = length[d];
+    half[d].inverse = to_real<R>(0.5f / to_single(length[d]));
     if constexpr (!std::is_same_v<T, float>) half[d].inverse *= T(2) - T(2) * half[d].l * half[d].inverse;
   }
   return half;
@@ -60,12 +67,12 @@ KOKKOS_INLINE_FUNCTION DomainOf<T, Dim, domain> domain_of(const Soil<Space, T, D
   else if constexpr (domain == ParticleDomain::ring)
     return {of.half_length, axis_of<T>(soil, soil.cell(p))};
   else
-    return half_lengths_of(soil.domain(p), soil.least_half_length);
+    return with_inverses<T>(soil.half_length(p));
 }
 /// The same where only the run knows whether domains stretch, for what is not done in every step.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION HalfLengths<T, Dim> any_domain_of(const Soil<Space, T, Dim>& soil, int p) {
-  if (soil.has_domain) return half_lengths_of(soil.domain(p), soil.least_half_length);
+  if (soil.has_domain) return with_inverses<T>(soil.half_length(p));
   HalfLengths<T, Dim> half;
   for (int d = 0; d < Dim; ++d) half[d] = soil.bodies(soil.body(p)).half_length;
   return half;

@@ -304,13 +304,73 @@ struct LoadSource {
 
   KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return loaded(slot) == 0; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    Point q{half_lengths_of(points.domain(p), points.least_half_length), {}};
+    Point q{with_inverses<T>(points.half_length(p)), {}};
     for (int d = 0; d < Dim; ++d) q.force[d] = force(p)[d];
     return q;
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value; }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.force[value]; }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
+};
+
+/// Where the soil is that a node has: m_i, and m_i times the way from the node to the centre of its mass.
+template <class Space_, class T, int Dim>
+struct CentreSource {
+  using Space = Space_;
+  using real = T;
+  using Terms = CentreTerms<Dim>;
+  static constexpr ParticleDomain domain = ParticleDomain::stretch;
+  static constexpr int dim = Dim, size = Terms::size;
+  static constexpr Kind kind = Kind::geometry;
+  static constexpr bool takes_offset = true;
+  struct Point {
+    HalfLengths<T, Dim> half_length;
+    T mass;
+  };
+  Soil<Space, T, Dim> points;
+
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    return {with_inverses<T>(points.half_length(p)), points.properties(p).mass};
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value - Terms::way; }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
+    return value == Terms::mass ? q.mass : T(0);
+  }
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
+  /// As AffineSource::give_more.
+  template <class W, class Add>
+  KOKKOS_INLINE_FUNCTION static void give_more(const Point& q, W w, const Vector<W, Dim>& offset, Add&& add) {
+    for (int d = 0; d < Dim; ++d) add(Terms::way + d, -w * (q.mass * offset[d]));
+  }
+};
+
+/// The way of the soil since the last rebuild to the nodes, sum S m_p (x_p - x_p0) [kg cells].
+template <class Space_, class T, int Dim>
+struct DriftSource {
+  using Space = Space_;
+  using real = T;
+  static constexpr ParticleDomain domain = ParticleDomain::stretch;
+  static constexpr int dim = Dim, size = Dim;
+  static constexpr Kind kind = Kind::motion;
+  struct Point {
+    HalfLengths<T, Dim> half_length;
+    T way[Dim];
+  };
+  Soil<Space, T, Dim> points;
+
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    Point q{with_inverses<T>(points.half_length(p)), {}};
+    const T mass = points.properties(p).mass;
+    for (int d = 0; d < Dim; ++d) q.way[d] = mass * (points.coordinate(p)[d] - points.begun(p)[d]);
+    return q;
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value; }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.way[value]; }
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
@@ -457,6 +517,8 @@ using RingDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::ring>
   X(StrengthSource, Space, T, Dim)            \
   X(DisplacedSource, Space, T, Dim)           \
   X(LoadSource, Space, T, Dim)                \
+  X(CentreSource, Space, T, Dim)              \
+  X(DriftSource, Space, T, Dim)               \
   X(RigidSource, Space, T, Dim)               \
   X(StretchedSoilSource, Space, T, Dim)       \
   X(StretchedAffineSource, Space, T, Dim)     \

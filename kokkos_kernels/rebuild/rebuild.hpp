@@ -5,6 +5,7 @@
 
 #include "base/spaces.hpp"
 #include "data/state.hpp"
+#include "functions/follow_soil.hpp"
 
 namespace mpm {
 
@@ -25,11 +26,14 @@ void locate_rigids(State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void sort_and_list(State<Space, T, Dim>& s);
 
-/// Both of them.
+/// Both of them, with domains that follow the soil: a whole rebuild on one rank, but for what splits, merges
+/// and moves particles.
 template <class Space, class T, int Dim>
 void rebuild(State<Space, T, Dim>& s) {
+  if (s.soil.points.has_domain) sum_drift(s), stretch_domains(s);
   locate(s);
   sort_and_list(s);
+  begin_domains(s);
 }
 
 /// Nodal impulses that outlive a rebuild, with the patches that they were of.

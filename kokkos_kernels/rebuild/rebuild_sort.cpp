@@ -336,6 +336,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   ensure(s.nodes.kinematics, nodes);
   if (s.xpic_order > 0) ensure(s.nodes.residual, nodes);
   if (s.correction.on) ensure(s.nodes.shares, nodes);
+  if (s.soil.points.has_domain) ensure(s.nodes.centre, nodes), ensure(s.nodes.drift, nodes);
   if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
   if (s.shear_fraction) ensure(s.nodes.strength, nodes);
   if (s.water.is_there()) ensure(s.nodes.displaced, nodes);

@@ -58,10 +58,8 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
     spread(soil.body, 1, fields.mass, of_body);
 
   const double spacing = s.spacing;
-  const auto half_length = [&](const auto& moments, int d) {
-    return double(half_lengths_of(moments, soil.least_half_length)[d]) * spacing;
-  };
-  if (soil.has_domain) spread(soil.domain, Dim, fields.half_length, half_length);
+  const auto half_length = [&](const auto& cells, int d) { return double(cells[d]) * spacing; };
+  if (soil.has_domain) spread(soil.half_length, Dim, fields.half_length, half_length);
   if (soil.splits) spread(soil.ancestor, 1, fields.ancestor, whole);
 
   for (int k = 0; k < soil.face_count; ++k) {

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "functions/follow_soil.hpp"
+#include "physics/domain.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/pore_water.hpp"
 #include "physics/stretch_domain.hpp"
@@ -169,16 +171,20 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       const BodyInput& body = bodies[body_of[p]];
       return static_cast<T>(body.mass.empty() ? common_mass(body) : body.mass[in_body(p)]);
     });
-  if (soil.has_domain)
+  if (soil.has_domain) {
     fill_view(soil.domain, "mpm::domain", soil.count, [&](int p) {
       const BodyInput& body = bodies[body_of[p]];
       constexpr int moments = Dim * (Dim + 1) / 2;
       auto domain = square_domain<T, Dim>(static_cast<T>(body.half_length));
       for (int k = 0; k < moments && !body.domain.empty(); ++k)
         domain[k] = static_cast<T>(body.domain[std::size_t(in_body(p)) * moments + k]);
-      limit_domain<T>(domain);
+      limit_domain(domain);
       return domain;
     });
+    for (auto* place : {&soil.half_length, &soil.begun})  // begin_domains() fills them
+      fill_view(*place, "mpm::domain_place", soil.count, [](int) { return filled<T, Dim>(0); });
+    fill_view(soil.begun_volume, "mpm::begun_volume", soil.count, [](int) { return T(0); });
+  }
   if (soil.has_periods)
     fill_view(soil.periods, "mpm::periods", soil.count, [](int) { return filled<T, Dim>(0); });
   for (int k = 0; k < soil.face_count; ++k)
@@ -362,7 +368,9 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   upload_soil(s, materials, bodies, rigids, fault);
   if (s.affine) upload_affine(s, bodies);
   upload_rigids(s, rigids, k_rigid_cut, fault);
-  if (fault.kind == FaultKind::none) sort_and_list(s);
+  if (fault.kind != FaultKind::none) return fault;
+  sort_and_list(s);
+  begin_domains(s);
   return fault;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/collectives.hpp"
+#include "functions/follow_soil.hpp"
 #include "functions/step_kernels.hpp"
 #include "rebuild/rebuild.hpp"
 
@@ -43,6 +44,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm comm, const Partitio
   long moved = 0;
   PetscCall(migrate(s, &moved));
   sort_and_list(s);
+  begin_domains(s);
   PetscCall(make_lists(s));
   note_bound(s, s.space);
   s.space.fence("mpm::note_bound");

@@ -79,6 +79,8 @@ class Decomposition {
   bool count_down() { return bound_.count_down(); }
   /// Ends the reductions under way.
   PetscErrorCode drain() { return bound_.drain(); }
+  /// Forgets reports and messages of the steps before a rebuild.
+  PetscErrorCode forget();
 
   /// The parts of a checkpoint that are not in the ranks' states: owners, and the movement bounds of all
   /// ranks. Collective.
@@ -129,8 +131,6 @@ class Decomposition {
   PetscErrorCode end_ahead(const State_& s, const Space& stream, bool with_bound);
   bool measures() const { return exchanges_ % k_measured_each == 0; }
   void measure_ahead();
-  /// Forgets reports and messages of the steps before a rebuild.
-  PetscErrorCode forget();
   PetscErrorCode post_bound();
   void note_bound(const State_& s, const Space& stream);
   void put_border_first(State_& s, std::vector<int> held, const std::vector<char>& border);

@@ -26,7 +26,7 @@ double bytes_to_nodes(const State<Space, T, Dim>& s) {
   particle += sizeof(*p.velocity.data()) + sizeof(*p.stress.data()) + sizeof(*p.volume.data());
   if (s.affine) particle += sizeof(*p.affine.data());
   if (p.has_own_mass) particle += sizeof(*p.mass.data());
-  if (p.has_domain) particle += sizeof(*p.domain.data());
+  if (p.has_domain) particle += sizeof(*p.half_length.data());
   return p.count * particle + s.patches.node_count() * double(sizeof(T) * SoilTerms<Dim>::size);
 }
 

@@ -7,6 +7,7 @@
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
+#include "step/follow_soil.hpp"
 #include "step/load_input.hpp"
 #include "step/schedule.hpp"
 #include "step/surface_input.hpp"
@@ -298,13 +299,15 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(double elapsed, Failure* fai
   PetscErrorCode failed = PETSC_SUCCESS;
   const auto work = [&] {
     const BeyondMask<Space> beyond = mark_beyond();
+    failed = follow_soil(state_);
     locate(state_);
     control = read_control(state_);
     if (control.lost > 0) note_all_lost(beyond);
-    if (control.fault_count == 0) failed = split_and_merge();
+    if (control.fault_count == 0 && failed == PETSC_SUCCESS) failed = split_and_merge();
     if (control.fault_count > 0 || failed != PETSC_SUCCESS) return;
     sort_and_list(state_);
     failed = correct_positions(elapsed);
+    begin_domains(state_);
   };
   PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
   PetscCall(failed);

@@ -6,6 +6,7 @@
 #include "common/collectives.hpp"
 #include "common/text.hpp"
 #include "data/memory_of.hpp"
+#include "step/follow_soil.hpp"
 #include "step/typed_stepper.hpp"
 
 namespace mpm {
@@ -110,14 +111,16 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(double elapsed, Fai
   PetscCall(gather_sides(&sides));
   const auto work = [&] {
     const BeyondMask<Space> beyond = mark_beyond();
+    failed = follow_soil(state_, ranks_.get());
     locate(state_);
     const Control control = read_control(state_);
     *failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
-    failed = share(failure);
+    if (failed == PETSC_SUCCESS) failed = share(failure);
     if (control.lost > 0) note_all_lost(beyond);
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = split_and_merge();
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = ranks_->rebuild(state_);
     if (failed == PETSC_SUCCESS && failure->what.empty()) failed = correct_positions(elapsed);
+    begin_domains(state_);
   };
   PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
   PetscCall(failed);

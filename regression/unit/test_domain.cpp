@@ -2,8 +2,8 @@
 
 #include <catch2/catch_test_macros.hpp>
 
+#include "base/small_matrix.hpp"
 #include "compare.hpp"
-#include "physics/advance.hpp"
 #include "physics/stretch_domain.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/measure.hpp"
@@ -14,58 +14,38 @@ using namespace mpm::test;
 
 namespace {
 
-constexpr double k_dt = 1e-4;      // s
-constexpr double k_least = 0.1;    // cells, of half lengths
-constexpr double k_single = 6e-8;  // share of a half length: its root is of single precision
+constexpr double k_dt = 1e-4;    // s
+constexpr double k_least = 0.1;  // cells, of half lengths
 
 template <int Dim>
-using Square = std::array<std::array<double, Dim>, Dim>;
+using Square = double[Dim][Dim];
 
+/// The half lengths [cells] that shape functions take.
 template <int Dim>
-Square<Dim> unit() {
-  Square<Dim> a{};
-  for (int d = 0; d < Dim; ++d) a[d][d] = 1;
-  return a;
+HalfLengths<double, Dim> half_lengths(const DomainMoments<double, Dim>& m) {
+  return with_inverses<double>(bounded_half_lengths(m, k_least));
 }
+
+/// A deformation gradient with components of up to `by` beside the unit tensor.
 template <int Dim>
-Square<Dim> product(const Square<Dim>& a, const Square<Dim>& b) {
-  Square<Dim> c{};
+void random_gradient(Dice& dice, double by, Square<Dim>& f) {
   for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j)
-      for (int k = 0; k < Dim; ++k) c[i][j] += a[i][k] * b[k][j];
-  return c;
+    for (int j = 0; j < Dim; ++j) f[i][j] = (i == j) + dice.uniform(-by, by);
 }
 
-/// The increment of a velocity gradient L [1/s] over dt [s]; `more` is added to its dilatation (F-bar).
-template <class R, int Dim>
-Increment<R, double, Dim> increment(const Square<Dim>& L, double dt, double more = 0) {
-  R gradient[Dim][Dim];
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) gradient[i][j] = L[i][j];
-  auto by = increment_of<R, double, Dim>(gradient, dt, Clock{});
-  for (int d = 0; d < 3; ++d) by.strain[d] += more / 3;
-  return by;
-}
-
-/// The square of half length l after `steps` steps under L, up to the time `end` [s].
+/// A turn of the plane of the first two axes.
 template <int Dim>
-DomainMoments<double, Dim> stretched(DomainMoments<double, Dim> m, const Square<Dim>& L, double end,
-                                     int steps) {
-  for (int n = 0; n < steps; ++n) stretch_domain(m, increment<double, Dim>(L, end / steps));
-  return m;
+void turn(double angle, Square<Dim>& f) {
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) f[i][j] = i == j;
+  f[0][0] = f[1][1] = std::cos(angle), f[1][0] = std::sin(angle), f[0][1] = -f[1][0];
 }
 
 /// F M F^T.
 template <int Dim>
-DomainMoments<double, Dim> deformed(const DomainMoments<double, Dim>& m, const Square<Dim>& F) {
-  Square<Dim> whole, transposed;
-  for (int i = 0; i < Dim; ++i)
-    for (int j = 0; j < Dim; ++j) whole[i][j] = m[moment_index<Dim>(i, j)], transposed[i][j] = F[j][i];
-  const Square<Dim> after = product<Dim>(product<Dim>(F, whole), transposed);
-  DomainMoments<double, Dim> out;
-  for (int i = 0; i < Dim; ++i)
-    for (int j = i; j < Dim; ++j) out[moment_index<Dim>(i, j)] = after[i][j];
-  return out;
+DomainMoments<double, Dim> deformed(DomainMoments<double, Dim> m, const Square<Dim>& f) {
+  stretch_domain(m, f, 1);
+  return m;
 }
 
 template <int Dim>
@@ -73,14 +53,6 @@ double largest_apart(const DomainMoments<double, Dim>& a, const DomainMoments<do
   double largest = 0;
   for (int k = 0; k < Dim * (Dim + 1) / 2; ++k) largest = std::max(largest, std::fabs(a[k] - b[k]));
   return largest;
-}
-
-/// A velocity gradient that turns the plane of the first two axes by `angle` in 1 s.
-template <int Dim>
-Square<Dim> spin(double angle) {
-  Square<Dim> L{};
-  L[0][1] = -angle, L[1][0] = angle;
-  return L;
 }
 
 /// Two bodies that move, strain and have domains of their own.
@@ -125,20 +97,15 @@ TEST_CASE("a domain deforms to the parallelogram of its deformation gradient", "
     constexpr int Dim = decltype(build)::dim;
     Dice dice{std::mt19937_64(4)};
     for (int path = 0; path < 20; ++path) {
-      Square<Dim> L;
-      for (auto& row : L)
-        for (double& value : row) value = dice.uniform(-0.5, 0.5);
-      Square<Dim> F = unit<Dim>(), term = unit<Dim>();  // exp(L)
-      for (int n = 1; n < 30; ++n) {
-        term = product<Dim>(term, L);
-        for (int i = 0; i < Dim; ++i)
-          for (int j = 0; j < Dim; ++j) F[i][j] += (term[i][j] /= n);
-      }
-      const auto square = square_domain<double, Dim>(0.25);
-      const double coarse = largest_apart(stretched<Dim>(square, L, 1, 50), deformed<Dim>(square, F)),
-                   fine = largest_apart(stretched<Dim>(square, L, 1, 100), deformed<Dim>(square, F));
-      CHECK(fine < 1e-5);
-      CHECK(fine < coarse / 3.5);  // of second order
+      Square<Dim> f;
+      random_gradient<Dim>(dice, 0.4, f);
+      const auto m = deformed<Dim>(square_domain<double, Dim>(0.25), f);
+      for (int i = 0; i < Dim; ++i)
+        for (int j = i; j < Dim; ++j) {
+          double sum = 0;  // of r_k = F r_k0
+          for (int k = 0; k < Dim; ++k) sum += 0.25 * f[i][k] * 0.25 * f[j][k];
+          CHECK(std::fabs(m[moment_index<Dim>(i, j)] - sum) < 1e-15);
+        }
     }
   });
 }
@@ -148,43 +115,27 @@ TEST_CASE("a domain turns with the soil: stretched, it lies along its soil", "[d
     constexpr int Dim = decltype(build)::dim;
     const double pi = std::acos(-1.0);
     const auto square = square_domain<double, Dim>(0.25);
-    CHECK(largest_apart(stretched<Dim>(square, spin<Dim>(2 * pi), 1, 1000), square) < 1e-6);
-    Square<Dim> stretch = unit<Dim>();
-    stretch[0][0] = 1.6, stretch[1][1] = 0.8;
-    const auto longer = deformed<Dim>(square, stretch);
-    const auto quarter = half_lengths_of(stretched<Dim>(longer, spin<Dim>(pi / 2), 1, 1000), k_least);
-    CHECK(std::fabs(quarter[0] - 0.2) < 1e-6);
-    CHECK(std::fabs(quarter[1] - 0.4) < 1e-6);
-    const auto eighth = half_lengths_of(stretched<Dim>(longer, spin<Dim>(pi / 4), 1, 1000), k_least);
-    CHECK(std::fabs(eighth[0] - eighth[1]) < 1e-6);
-    CHECK(std::fabs(eighth[0] - std::sqrt((0.16 + 0.04) / 2)) < 1e-6);
-    if (Dim == 3) CHECK(std::fabs(quarter[Dim - 1] - 0.25) < 1e-12);
+    Square<Dim> f;
+    turn<Dim>(0.7, f);
+    CHECK(largest_apart(deformed<Dim>(square, f), square) < 1e-15);
+    auto longer = square;
+    longer[0] = 0.4 * 0.4, longer[1] = 0.2 * 0.2;
+    turn<Dim>(pi / 2, f);
+    const auto quarter = half_lengths(deformed<Dim>(longer, f));
+    CHECK(std::fabs(quarter[0] - 0.2) < 1e-15);
+    CHECK(std::fabs(quarter[1] - 0.4) < 1e-15);
+    turn<Dim>(pi / 4, f);
+    const auto eighth = half_lengths(deformed<Dim>(longer, f));
+    CHECK(std::fabs(eighth[0] - eighth[1]) < 1e-15);
+    CHECK(std::fabs(eighth[0] - std::sqrt((0.16 + 0.04) / 2)) < 1e-15);
+    if (Dim == 3) CHECK(std::fabs(quarter[Dim - 1] - 0.25) < 1e-15);
     // Sheared along an axis, rows keep their distance, and the domain its height.
-    Square<Dim> shear{};
-    shear[0][1] = 1;
-    const auto moments = stretched<Dim>(square, shear, 1.5, 1000);
-    const auto sheared = half_lengths_of(moments, k_least);
-    const double exact = 0.25 * std::sqrt(1 + 1.5 * 1.5);
-    CHECK(std::fabs(sheared[1] - 0.25) < 1e-12);
-    CHECK(std::fabs(std::sqrt(moments[0]) - exact) < 1e-9);
-    CHECK(std::fabs(sheared[0] - exact) < k_single * exact);
+    turn<Dim>(0, f);
+    f[0][1] = 1.5;
+    const auto sheared = half_lengths(deformed<Dim>(square, f));
+    CHECK(std::fabs(sheared[1] - 0.25) < 1e-15);
+    CHECK(std::fabs(sheared[0] - 0.25 * std::sqrt(1 + 1.5 * 1.5)) < 1e-15);
     CHECK(std::fabs(2 * sheared[0].l * sheared[0].inverse - 1) < 1e-13);
-  });
-}
-
-TEST_CASE("the dilatation of a domain is that of the particle's volume", "[domain]") {
-  for_each_reference([](auto build) {
-    constexpr int Dim = decltype(build)::dim;
-    auto m = square_domain<double, Dim>(0.25);
-    Square<Dim> L{};
-    L[0][0] = 0.3, L[1][1] = -0.1;
-    constexpr int k_steps = 200;
-    constexpr double k_more = 2e-4;  // a step
-    for (int n = 0; n < k_steps; ++n) stretch_domain(m, increment<double, Dim>(L, 1.0 / k_steps, k_more));
-    double area = 1;
-    const auto half = half_lengths_of(m, k_least);
-    for (int d = 0; d < Dim; ++d) area *= half[d] / 0.25;
-    CHECK(std::fabs(std::log(area) - (0.2 + k_steps * k_more)) < 1e-6);
   });
 }
 
@@ -195,11 +146,10 @@ TEST_CASE("half lengths stay within their bounds, and moments those of a paralle
     Dice dice{std::mt19937_64(6)};
     auto m = square_domain<double, Dim>(0.25);
     for (int n = 0; n < 5000; ++n) {
-      Square<Dim> L;
-      for (auto& row : L)
-        for (double& value : row) value = dice.uniform(-1, 1);
-      stretch_domain(m, increment<double, Dim>(L, 0.1));
-      const auto half = half_lengths_of(m, k_least);
+      Square<Dim> f;
+      random_gradient<Dim>(dice, 0.1, f);
+      stretch_domain(m, f, dice.uniform(0.95, 1.05));
+      const auto half = half_lengths(m);
       for (int i = 0; i < Dim; ++i) {
         REQUIRE((half[i] >= k_least && half[i] <= 0.5));
         REQUIRE((m[i] >= 1e-4 && m[i] <= 16));
@@ -215,34 +165,134 @@ TEST_CASE("soil that is pressed beyond the least half length and springs back ha
   for_each_reference([](auto build) {
     constexpr int Dim = decltype(build)::dim;
     const auto square = square_domain<double, Dim>(0.25);
-    Square<Dim> press{}, release{};
-    press[1][1] = -1.5, release[1][1] = 1.5;
-    const auto pressed = stretched<Dim>(square, press, 1, 500);
-    CHECK(half_lengths_of(pressed, k_least)[1].l == double(float(k_least)));
-    CHECK(largest_apart(stretched<Dim>(pressed, release, 1, 500), square) < 1e-6);
+    Square<Dim> f;
+    turn<Dim>(0, f);
+    f[1][1] = 0.2;
+    const auto pressed = deformed<Dim>(square, f);
+    CHECK(half_lengths(pressed)[1].l == k_least);
+    f[1][1] = 5;
+    CHECK(largest_apart(deformed<Dim>(pressed, f), square) < 1e-15);
   });
 }
 
-TEST_CASE("lanes stretch domains as plain numbers do", "[domain]") {
-  for_each_reference([](auto build) {
-    constexpr int Dim = decltype(build)::dim;
-    using R = Lanes<double, 4>;
-    Square<Dim> L;
-    Dice dice{std::mt19937_64(8)};
-    for (auto& row : L)
-      for (double& value : row) value = dice.uniform(-1, 1);
-    DomainMoments<R, Dim> lanes{};
-    DomainMoments<double, Dim> plain[4];
-    for (int l = 0; l < 4; ++l) {
-      plain[l] = square_domain<double, Dim>(0.1 + 0.1 * l);
-      for (int k = 0; k < Dim * (Dim + 1) / 2; ++k) lanes[k].set(l, plain[l][k]);
+namespace {
+
+/// Soil in the middle of a mesh, or from its lower corner on, at places that no lattice has.
+template <int Dim>
+Cloud scattered_soil(int seed, bool at_walls) {
+  constexpr double k_spacing = 0.1;  // m
+  Dice dice{std::mt19937_64(seed)};
+  Cloud cloud;
+  cloud.grid = grid_of<Dim>({14, 12, 9}, k_spacing, Wall::free);
+  for (int d = 0; d < Dim; ++d)
+    if (at_walls) cloud.grid.walls[d][0] = d == 1 ? Wall::fixed : Wall::roller;
+  cloud.materials = clays();
+  const double from = at_walls ? 0 : 2;
+  BodyInput body = body_of<Dim>(
+      lattice<Dim>({from, from, from}, {from + 7, from + 6, from + 5}, 2, k_spacing), 2, k_spacing, 0);
+  for (double& x : body.position) x += dice.uniform(-0.2, 0.2) * k_spacing;
+  cloud.bodies = {body};
+  give_own_domains<Dim>(cloud, seed);
+  return cloud;
+}
+
+/// Moves the soil by F from a fixed point [cells], with its volume.
+template <class Space, class T, int Dim>
+void move_by(State<Space, T, Dim>& s, const Square<Dim>& f, double fixed) {
+  const auto& soil = s.soil.points;
+  const auto x = on_host(soil.coordinate);
+  const auto volume = on_host(soil.volume);
+  const auto cell = on_host(soil.cell);
+  const auto origin = on_host(s.patches.origin);
+  for (int p = 0; p < soil.count; ++p) {
+    double at[Dim];
+    for (int d = 0; d < Dim; ++d)
+      at[d] = double(x(p)[d]) + origin(cell(p) / Patch<Dim>::cells)[d] + coord_of<Dim>(cell(p))[d] - fixed;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) x(p)[i] += T((f[i][j] - (i == j)) * at[j]);
+    volume(p) *= T(determinant(f));
+  }
+  Kokkos::deep_copy(soil.coordinate, x), Kokkos::deep_copy(soil.volume, volume);
+}
+
+/// Largest difference of the domains from F M F^T, M those of before.
+template <class S, int Dim>
+double off(const S& s, const Table& before, const Square<Dim>& f) {
+  constexpr int n = Dim * (Dim + 1) / 2;
+  const Table after = domains_of_soil(s);
+  double largest = 0;
+  for (std::size_t p = 0; p < before.value.size() / n; ++p) {
+    DomainMoments<double, Dim> m, now;
+    for (int k = 0; k < n; ++k) m[k] = before.value[p * n + k], now[k] = after.value[p * n + k];
+    largest = std::max(largest, largest_apart(now, deformed<Dim>(m, f)));
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("domains follow a linear motion exactly, however particles lie, by every strategy", "[domain]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    Dice dice{std::mt19937_64(9)};
+    for (const P2G how : k_strategies) {
+      auto s = state_of<B>(scattered_soil<Dim>(5, false), how);
+      const Table before = domains_of_soil(s);
+      Square<Dim> f;
+      random_gradient<Dim>(dice, 0.03, f);
+      move_by(s, f, 6);
+      sum_drift(s), stretch_domains(s);
+      INFO(B::name() << " " << word_of(how));
+      CHECK(off<decltype(s), Dim>(s, before, f) < B::of(1e-12, 2e-5));
+      Square<Dim> still;
+      turn<Dim>(0, still);
+      CHECK(off<decltype(s), Dim>(s, before, still) > 1e-3);
     }
-    for (int n = 0; n < 40; ++n) {
-      stretch_domain(lanes, increment<R, Dim>(L, 0.02, 1e-3));
-      for (auto& m : plain) stretch_domain(m, increment<double, Dim>(L, 0.02, 1e-3));
-    }
-    for (int l = 0; l < 4; ++l)
-      for (int k = 0; k < Dim * (Dim + 1) / 2; ++k) CHECK(std::fabs(lanes[k][l] - plain[l][k]) < 1e-14);
+  });
+}
+
+TEST_CASE("domains follow a linear motion exactly at smooth walls and a fixed one", "[domain]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    auto s = state_of<B>(scattered_soil<Dim>(6, true));
+    const Table before = domains_of_soil(s);
+    Square<Dim> f;  // no motion at the fixed wall, none across the smooth ones
+    turn<Dim>(0, f);
+    f[1][1] = 0.95;
+    move_by(s, f, 0);
+    sum_drift(s), stretch_domains(s);
+    INFO(B::name());
+    CHECK(off<decltype(s), Dim>(s, before, f) < B::of(1e-12, 2e-5));
+  });
+}
+
+TEST_CASE("soil of which each node has as little as a line keeps the shape of its domains", "[domain]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    constexpr double h = 0.1;  // m
+    Cloud cloud;
+    cloud.grid = grid_of<Dim>({12, 12, 12}, h, Wall::free);
+    cloud.materials = clays();
+    std::vector<double> places;
+    for (int n = 0; n < 8; ++n)
+      for (int d = 0; d < Dim; ++d) places.push_back((d == 0 ? 2.25 + 0.5 * n : 5.3) * h);
+    cloud.bodies = {body_of<Dim>(places, 2, h, 0)};
+    cloud.stretch = true;
+    auto s = state_of<B>(cloud);
+    const Table before = domains_of_soil(s);
+    Square<Dim> f;
+    turn<Dim>(0, f);
+    f[0][0] = 1.1, f[1][0] = 0.05;
+    move_by(s, f, 5);
+    sum_drift(s), stretch_domains(s);
+    INFO(B::name());
+    const Table after = domains_of_soil(s);
+    const double grown = std::pow(1.1, 2.0 / Dim);  // as the volume
+    for (std::size_t k = 0; k < before.value.size(); ++k)
+      CHECK(std::fabs(after.value[k] - grown * before.value[k]) < B::of(1e-14, 1e-6));
   });
 }
 
@@ -290,11 +340,14 @@ TEST_CASE("steps with stretching domains are those of the plain loop, by every s
       choose_update(cloud, kind);
       auto plain = state_of<Reference<B::dim>>(cloud);
       const Table before = domains_of_soil(plain);
-      run_steps(plain, k_dt, 6);
-      CHECK(largest_difference(domains_of_soil(plain), before) > 1e-3);
+      const auto go = [](auto& t) {
+        for (int n = 0; n < 2; ++n) run_steps(t, k_dt, 3), rebuild(t);
+      };
+      go(plain);
+      CHECK(largest_difference(domains_of_soil(plain), before) > 1e-4);
       for (const P2G how : k_strategies) {
         auto s = state_of<B>(cloud, how);
-        run_steps(s, k_dt, 6);
+        go(s);
         INFO(B::name() << " " << word_of(how) << ", velocity update " << kind);
         CHECK(largest_difference(soil_fields(s), soil_fields(plain)) < B::of(1e-10, 2e-2));
         CHECK(largest_difference(domains_of_soil(s), domains_of_soil(plain)) < B::of(1e-10, 2e-2));
@@ -317,7 +370,10 @@ TEST_CASE("soil that moves as one body keeps its domains, and steps as with fixe
     for (const P2G how : k_strategies) {
       auto s = state_of<B>(cloud, how), same = state_of<B>(fixed, how);
       const Table before = domains_of_soil(s);
-      run_steps(s, k_dt, 50), run_steps(same, k_dt, 50);
+      for (int n = 0; n < 5; ++n) {
+        run_steps(s, k_dt, 10), run_steps(same, k_dt, 10);
+        rebuild(s), rebuild(same);
+      }
       INFO(B::name() << " " << word_of(how));
       const Table after = domains_of_soil(s);
       double change = 0;  // cells2
@@ -345,7 +401,7 @@ TEST_CASE("a stray that flies keeps its domain", "[domain]") {
     for (const P2G how : k_strategies) {
       auto s = state_of<B>(cloud, how);
       const Table before = domains_of_soil(s);
-      run_steps(s, k_dt, 20);
+      run_steps(s, k_dt, 20), rebuild(s);
       INFO(B::name() << " " << word_of(how));
       CHECK(domains_of_soil(s) == before);
     }
@@ -371,8 +427,7 @@ TEST_CASE("short domains slow the time step, and long ones no more than a lone p
       return fastest_wave(s);
     };
     const double square = wave_at(0.25, 0.25);
-    CHECK(std::fabs(wave_at(0.1, 0.25) / square - std::sqrt((10.0 + 4 * (Dim - 1)) / (4 * Dim))) <
-          2 * k_single);
+    CHECK(std::fabs(wave_at(0.1, 0.25) / square - std::sqrt((10.0 + 4 * (Dim - 1)) / (4 * Dim))) < 1e-12);
     CHECK(std::fabs(wave_at(0.5, 0.25) / square - std::sqrt((6.0 + 4 * (Dim - 1)) / (4 * Dim))) < 1e-12);
     cloud.stretch = false;
     CHECK(wave_at(0.1, 0.1) == square);
@@ -394,6 +449,8 @@ TEST_CASE("batches carry domains", "[domain]") {
     cloud.memory_limit = state_of<B>(cloud, P2G::tile).batches.least;
     auto parts = state_of<B>(cloud, P2G::tile);
     REQUIRE(parts.batches.all.size() > 3);
+    run_steps(whole, k_dt, 5), run_steps(parts, k_dt, 5);
+    rebuild(whole), rebuild(parts);
     run_steps(whole, k_dt, 5), run_steps(parts, k_dt, 5);
     collect_soil(parts);
     CHECK(largest_difference(soil_fields(parts), soil_fields(whole)) == 0);

@@ -12,6 +12,7 @@
 #include "common/collectives.hpp"
 #include "parallel/decomposition.hpp"
 #include "parallel/kept_by_id.hpp"
+#include "step/follow_soil.hpp"
 #include "step/step.hpp"
 #include "transfer/velocity_gradients.hpp"
 
@@ -226,8 +227,10 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
         REQUIRE(pair.ranks.drain() == PETSC_SUCCESS);
         if (n % 4 != 0) continue;
         rebuild(pair.alone);
+        REQUIRE(follow_soil(pair.here, &pair.ranks) == PETSC_SUCCESS);
         locate(pair.here);
         REQUIRE(pair.ranks.rebuild(pair.here) == PETSC_SUCCESS);
+        begin_domains(pair.here);
       }
       INFO(B::name() << ", velocity update " << kind << ", path " << static_cast<int>(way.path));
       const long total = pair.alone.soil.points.count;

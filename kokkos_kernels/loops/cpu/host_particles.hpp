@@ -7,7 +7,6 @@
 #include "loops/cpu/host_samples.hpp"
 #include "loops/cpu/host_window.hpp"
 #include "physics/advance.hpp"
-#include "physics/stretch_domain.hpp"
 #include "physics/walls.hpp"
 
 namespace mpm {
@@ -231,7 +230,7 @@ struct HostParticles {
     for (int l = 0; l < (stage.one_body ? 1 : W); ++l)
       law.material[l] = soil.bodies(soil.body(p + Kokkos::min(l, count - 1))).material;
     if (alone(slot) != 0) law.flies = which_are_alone(p, count), law.some_fly = any_of(law.flies > 0);
-    const R volume = q.volume, own = advance_block(q, law, t, R::load(stage.mean + n), p, count);
+    const R volume = q.volume, own = advance(q, law, t, R::load(stage.mean + n), by, domain_at(p, count));
     if (law.some_fly) q.volume = select(law.flies > 0, volume, q.volume);
     if (stage.at_wall) put_back_on_walls(q, p, count, slot);
     store_field(q.x.c, soil.coordinate, p, count);
@@ -249,25 +248,6 @@ struct HostParticles {
       return domains_of<domain, R, Dim>(soil, p, count, bodies_of<R>(soil, p, count));
     else
       return PlaneDomain{};
-  }
-
-  /// advance(), and the domains where they stretch. A particle that flies freely keeps its own.
-  KOKKOS_FORCEINLINE_FUNCTION R advance_block(Particle<R, Dim>& q, const LawLanes<R, Space, T, Dim>& law,
-                                              const GridSample<R, Dim, slopes>& t, const R& mean, int p,
-                                              int count) const {
-    if constexpr (domain != ParticleDomain::stretch) {
-      return advance(q, law, t, mean, by, domain_at(p, count));
-    } else {
-      DomainMoments<R, Dim> moments;
-      load_field(soil.domain, p, count, moments.c);
-      const auto was = moments;
-      const StretchingLaw<R, Dim, LawLanes<R, Space, T, Dim>> stretching{law, moments};
-      const R moved = advance(q, stretching, t, mean, by, domain_at(p, count));
-      for (int k = 0; k < Dim * (Dim + 1) / 2 && law.some_fly; ++k)
-        moments[k] = select(law.flies > 0, was[k], moments[k]);
-      store_field(moments.c, soil.domain, p, count);
-      return moved;
-    }
   }
 
   // What few blocks need is in functions of its own, which take and return values, so that the others keep

@@ -217,9 +217,9 @@ KOKKOS_FORCEINLINE_FUNCTION DomainOf<R, Dim, domain> domains_of(const Points_& p
       ring.axis_x.set(l, axis_of<typename R::real>(points, points.cell(p + Kokkos::min(l, count - 1))));
     return ring;
   } else {
-    DomainMoments<R, Dim> moments;
-    load_field(points.domain, p, count, moments.c);
-    return half_lengths_of(moments, points.least_half_length);
+    Vector<R, Dim> length;
+    load_field(points.half_length, p, count, length.c);
+    return with_inverses<typename R::real>(length);
   }
 }
 

@@ -5,7 +5,6 @@
 #include "device/warp.hpp"
 #include "loops/gpu/tile.hpp"
 #include "physics/advance.hpp"
-#include "physics/stretch_domain.hpp"
 
 namespace mpm {
 
@@ -175,7 +174,7 @@ struct UpdateParticles {
     for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
       prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
       prefetch(&soil.volume(p));
-      if constexpr (domain == ParticleDomain::stretch) prefetch(&soil.domain(p));
+      if constexpr (domain == ParticleDomain::stretch) prefetch(&soil.half_length(p));
       if constexpr (Dim == 2) {  // the forms that spill least: scripts/law_registers
         for (int k = 0; k < most_state(Laws{}, true); ++k)
           if (k < soil.history.columns) prefetch(&soil.history.column[k](p));
@@ -249,21 +248,11 @@ struct UpdateParticles {
     Particle<T, Dim> q{soil.coordinate(p), soil.velocity(p), soil.stress(p), soil.volume(p)};
     const bool flies = kind != PatchKind::common && (lone >> place & 1) != 0;
     T own = 0;
-    Domain half_length = domain_of<domain>(soil, p, body);
+    const Domain half_length = domain_of<domain>(soil, p, body);
     with_weights_near(q.x, half_length, [&](const auto& a) {
       const ParticleLaw<Space, T, Dim, Laws> of_particle{soil, p, body.material, law, flies};
-      const auto move = [&](const auto& changes) {
-        own =
-            advance(q, changes, sample_nodes<domain, T, Dim>(nodes, cell, a, by.inv_spacing),
+      own = advance(q, of_particle, sample_nodes<domain, T, Dim>(nodes, cell, a, by.inv_spacing),
                     by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by, step_domain<domain>(soil, p));
-      };
-      if constexpr (domain != ParticleDomain::stretch) {
-        move(of_particle);
-      } else {
-        DomainMoments<T, Dim> moments = soil.domain(p);
-        move(StretchingLaw<T, Dim, ParticleLaw<Space, T, Dim, Laws>>{of_particle, moments});
-        if (!flies) soil.domain(p) = moments, half_length = half_lengths_of(moments, soil.least_half_length);
-      }
     });
     if (flies) q.volume = soil.volume(p);
     soil.coordinate(p) = q.x;

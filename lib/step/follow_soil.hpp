@@ -1,0 +1,25 @@
+#pragma once
+// Domains follow the soil at a rebuild, before the particles' new places are found.
+
+#include "functions/follow_soil.hpp"
+#include "parallel/decomposition.hpp"
+
+namespace mpm {
+
+/// Deforms the domains of particles with their soil, where the run asks for it, before locate(). ranks: null
+/// on one rank. Collective.
+template <class Space, class T, int Dim>
+PetscErrorCode follow_soil(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks = nullptr) {
+  PetscFunctionBeginUser;
+  if (!s.soil.points.has_domain) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ranks) PetscCall(ranks->forget());
+  sum_drift(s);
+  if (ranks) {
+    PetscCall(ranks->add_nodes(s, s.nodes.centre.data(), CentreTerms<Dim>::size));
+    PetscCall(ranks->add_nodes(s, s.nodes.drift.data(), Dim));
+  }
+  stretch_domains(s);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm
