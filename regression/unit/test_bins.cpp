@@ -185,7 +185,7 @@ TEST_CASE("every field goes with its particle", "[bins]") {
     auto s = state_of<B>(cloud);
     mark_by_id(s);
     const auto soil = carried_fields(s.soil.points);
-    REQUIRE(soil.size() == 8);
+    REQUIRE(soil.size() == 11);
     // The order after an upload is already not that of creation: compare with the input.
     std::size_t id = 0, wrong = 0;
     for (std::size_t b = 0; b < cloud.bodies.size(); ++b)

@@ -68,6 +68,7 @@ StateOf<B> corrected(const Cloud& cloud, int times, P2G how = P2G::tile, double 
   for (int n = 0; n < times; ++n) {
     if (n > 0) rebuild(s);
     REQUIRE(correct_positions(s, elapsed) == PETSC_SUCCESS);
+    begin_domains(s);
   }
   return s;
 }
