@@ -200,7 +200,7 @@ TEST_CASE("every field goes with its particle", "[bins]") {
     for (const auto& set : s.rigid_points) homes.push_back(carried_fields(set.points)[0]);
     const auto order = order_of(s);
     move_points(s);
-    rebuild(s);
+    locate(s), sort_and_list(s);  // domains would follow the soil
     CHECK(order_of(s) != order);
     CHECK(carried_fields(s.soil.points) == soil);
     for (std::size_t r = 0; r < homes.size(); ++r)
