@@ -72,6 +72,9 @@ PetscErrorCode Simulation::Body::fail(const std::string& what) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Steps after which domains follow the soil where no rebuild came: an elastic wave crosses some fifty cells.
+constexpr long k_follow_every = 128;
+
 /// Steps up to `target`, in batches that end where the movement bound will probably ask for a rebuild.
 PetscErrorCode Simulation::Body::advance_to(long target) {
   PetscFunctionBeginUser;
@@ -81,6 +84,7 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
   while (step < target) {
     long steps = std::min({target - step, std::max(estimate, 1L), batch_limit});
     if (config.p2g.rebuild_interval) steps = std::min(steps, *config.p2g.rebuild_interval - since_rebuild);
+    if (domains_follow()) steps = std::min(steps, k_follow_every - since_rebuild % k_follow_every);
     const double step_dt = schedule.step_size(step);
     if (step_dt == dt)
       steps = std::min(steps, std::max(schedule.last_whole_step() - step, 1L));
@@ -101,6 +105,8 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     }
     if (batch.rebuild || (config.p2g.rebuild_interval && since_rebuild >= *config.p2g.rebuild_interval))
       PetscCall(rebuild(batch));
+    else if (domains_follow() && since_rebuild % k_follow_every == 0)
+      PetscCall(follow_soil());
     if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(log.progress(
         {step, schedule.time_of(step), 0, end_of_run(), stepping, double(step) * stepper->particles()}));
@@ -108,6 +114,16 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     PetscCall(look_for_stop(&stop));
     if (stop) PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+bool Simulation::Body::domains_follow() const { return config.particle_domain != ParticleDomain::fixed; }
+
+PetscErrorCode Simulation::Body::follow_soil() {
+  PetscFunctionBeginUser;
+  const double before = seconds_now();
+  PetscCall(stepper->follow_soil());
+  stepping += seconds_now() - before;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -143,6 +143,8 @@ struct Simulation::Body {
   PetscErrorCode run_stage();
   PetscErrorCode advance_to(long target);
   PetscErrorCode rebuild(const Batch& batch);
+  bool domains_follow() const;
+  PetscErrorCode follow_soil();
   PetscErrorCode write_row();
   PetscErrorCode watch(const HistoryRow& row);
   PetscErrorCode write_frame();

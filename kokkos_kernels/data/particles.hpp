@@ -66,8 +66,8 @@ struct Soil : Points<Space, T, Dim> {
   Kokkos::View<Matrix<T, Dim>*, Memory> affine;     // m/s a cell, C_p of APIC; of extent 0 without it
   Kokkos::View<T*, Memory> mass;                    // kg, in use where has_own_mass
   /// In use where has_domain (physics/domain.hpp): half lengths along the axes [cells], which a step reads,
-  /// and what they come from at a rebuild: the moments of the domain [cells2], and of the last rebuild the
-  /// coordinate [cells] and the volume [m3].
+  /// and what they come from: the moments of the domain [cells2], and the coordinate [cells] and the volume
+  /// [m3] when these changed last.
   Kokkos::View<Vector<T, Dim>*, Memory> half_length;
   Kokkos::View<DomainMoments<T, Dim>*, Memory> domain;
   Kokkos::View<Vector<T, Dim>*, Memory> begun;

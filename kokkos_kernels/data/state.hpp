@@ -59,7 +59,7 @@ struct State {
   bool co_resident = true;  // as far as is known the device holds all teams of run_persistent_steps at once
   Kokkos::View<std::uint64_t*, Memory>
       owned_nodes;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
-  ControlView<Space> control;
+  ControlView<Space> control, never_paused;
   Movements<Space> movements;
   Kokkos::View<LaunchBarrier, Memory> launch_barrier;
   Movements<Space, 3> launch_movements;       // of persistent steps

@@ -19,7 +19,7 @@ void sum_at_home(State<Space, T, Dim>& s, const NodeField<Space, T, Source::size
   const auto sum = [&](const Bins<Space>& bins) {
     auto it = interpolation_of(s, bins, Source{s.soil.points}, out, s.space);
     it.adds = true;
-    it.control = ControlView<Space>("mpm::not_paused");  // s.control is paused where a rebuild is due
+    it.control = s.never_paused;  // s.control is where a rebuild is due
     particle_to_node(s.p2g.strategy, it);
   };
   if (!s.batches.in_use()) return sum(s.soil.bins);
@@ -59,6 +59,25 @@ struct WayOfNodes {
   }
 };
 
+/// F <- (I + c N) F with N = E^2 / tr E^2, E the small strain of F: dilates it by c [-] to first order, along
+/// the directions in which the soil was strained.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void dilate_along_strain(double (&f)[Dim][Dim], double c) {
+  double e[Dim][Dim], n[Dim][Dim], was[Dim][Dim], trace = 0;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) e[i][j] = (f[i][j] + f[j][i]) / 2 - (i == j), was[i][j] = f[i][j];
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j) {
+      n[i][j] = 0;
+      for (int k = 0; k < Dim; ++k) n[i][j] += e[i][k] * e[k][j];
+      if (i == j) trace += n[i][j];
+    }
+  if (!(trace > 0)) return;
+  for (int i = 0; i < Dim; ++i)
+    for (int j = 0; j < Dim; ++j)
+      for (int k = 0; k < Dim; ++k) f[i][j] += c / trace * n[i][k] * was[k][j];
+}
+
 template <class Space, class T, int Dim>
 struct StretchDomains {
   Soil<Space, T, Dim> soil;
@@ -72,6 +91,7 @@ struct StretchDomains {
     double f[Dim][Dim];
     look_around(p).deformation(f);
     const double dilatation = double(soil.volume(p)) / double(soil.begun_volume(p));
+    dilate_along_strain(f, Kokkos::log(dilatation / determinant(f)));
     stretch_domain(soil.domain(p), f, Kokkos::pow(dilatation / determinant(f), 2.0 / Dim));
   }
 

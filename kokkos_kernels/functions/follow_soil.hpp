@@ -1,6 +1,6 @@
 #pragma once
-// Domains follow the soil (-particle_domain stretch) at a rebuild, from where particles are to where they
-// were at the rebuild before:
+// Domains follow the soil (-particle_domain stretch) between steps, at rebuilds and after so many steps without
+// one, from where particles were the last time to where they are:
 //   1. sum_drift        CentreSource, DriftSource: of the soil at each node the centre of mass, and its way
 //   2. stretch_domains  the deformation gradient of each particle by least squares over its nodes; its domain
 //   3. begin_domains    once the lists are made: half lengths, and the places from which the next way counts
@@ -15,7 +15,7 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void sum_drift(State<Space, T, Dim>& s);
 
-/// Deforms the domain of each particle, M <- k F M F^T, F the deformation gradient since the last rebuild.
+/// Deforms the domain of each particle, M <- k F M F^T, F the deformation gradient since the last time.
 /// The soil of node i now has its centre at x_i and came by u_i. With weights S_ip and their means x, u:
 ///   G = [sum S_ip (u_i - u) (x_i - x)^T] [sum S_ip (x_i - x) (x_i - x)^T]^-1,  F = (I - G)^-1
 /// which is exact where the motion is linear, however particles lie. k makes the dilatation that of the
@@ -24,7 +24,7 @@ void sum_drift(State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void stretch_domains(State<Space, T, Dim>& s);
 
-/// After a rebuild, and where particles are new.
+/// After the lists were made, and where particles are new.
 template <class Space, class T, int Dim>
 void begin_domains(State<Space, T, Dim>& s);
 

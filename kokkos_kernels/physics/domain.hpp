@@ -4,7 +4,7 @@
 // What a particle keeps of it are three times the second moments of its area about its centre,
 // M = sum_k r_k r_k^T with r_k = F r_k0 the vectors from the centre to the middles of the sides, a symmetric
 // tensor [cells^2]. The shape functions take the box along the axes of the mesh that has the same second
-// moment along each axis, l_d = sqrt(M_dd). Moments and half lengths change at a rebuild alone
+// moment along each axis, l_d = sqrt(M_dd). Moments and half lengths change between steps
 // (functions/follow_soil.hpp), so that a step only reads the half lengths.
 
 #include "base/half_length.hpp"

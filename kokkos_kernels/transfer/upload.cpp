@@ -361,6 +361,7 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
     s.soil_boundary = s.soil_boundary || rigid.shear_fraction > 0;
   }
   s.control = ControlView<Space>("mpm::control");
+  s.never_paused = ControlView<Space>("mpm::never_paused");
   s.launch_barrier = decltype(s.launch_barrier)("mpm::launch_barrier");
   s.movements.bits = decltype(s.movements.bits)("mpm::movements");
   s.launch_movements.bits = decltype(s.launch_movements.bits)("mpm::launch_movements");

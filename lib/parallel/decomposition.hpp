@@ -79,8 +79,8 @@ class Decomposition {
   bool count_down() { return bound_.count_down(); }
   /// Ends the reductions under way.
   PetscErrorCode drain() { return bound_.drain(); }
-  /// Forgets reports and messages of the steps before a rebuild.
-  PetscErrorCode forget();
+  /// Drops the sums of the next step that are on their way or there: it makes them anew.
+  void drop_ahead();
 
   /// The parts of a checkpoint that are not in the ranks' states: owners, and the movement bounds of all
   /// ranks. Collective.
@@ -129,6 +129,8 @@ class Decomposition {
   void sum(const Space& space, const Fields& fields);
   PetscErrorCode add(const Space& space, const Fields& fields, bool with_bound);
   PetscErrorCode end_ahead(const State_& s, const Space& stream, bool with_bound);
+  /// Forgets reports and messages of the steps before a rebuild.
+  PetscErrorCode forget();
   bool measures() const { return exchanges_ % k_measured_each == 0; }
   void measure_ahead();
   PetscErrorCode post_bound();

@@ -207,9 +207,15 @@ PetscErrorCode Decomposition<Space, T, Dim>::forget() {
   PetscCall(bound_.drain());
   bound_.set_sum(0);
   bound_.set_due_in(0);
-  side_.space().fence("mpm::forget");
-  ahead_ = Ahead::nothing;
+  drop_ahead();
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+void Decomposition<Space, T, Dim>::drop_ahead() {
+  side_.space().fence("mpm::drop_ahead");
+  ahead_ = Ahead::nothing;
+  present_added_ = false;
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                                 \
@@ -223,7 +229,8 @@ PetscErrorCode Decomposition<Space, T, Dim>::forget() {
   template Part<Space> Decomposition<Space, T, Dim>::border(const State<Space, T, Dim>&);              \
   template Part<Space> Decomposition<Space, T, Dim>::inner(const State<Space, T, Dim>&) const;         \
   template PetscErrorCode Decomposition<Space, T, Dim>::send_ahead(State<Space, T, Dim>&);             \
-  template PetscErrorCode Decomposition<Space, T, Dim>::forget();
+  template PetscErrorCode Decomposition<Space, T, Dim>::forget();                                      \
+  template void Decomposition<Space, T, Dim>::drop_ahead();
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

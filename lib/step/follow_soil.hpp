@@ -6,13 +6,13 @@
 
 namespace mpm {
 
-/// Deforms the domains of particles with their soil, where the run asks for it, before locate(). ranks: null
-/// on one rank. Collective.
+/// Deforms the domains of particles with their soil, where the run asks for it. Before locate(), or between two
+/// steps, whose sums of the next step it drops. ranks: null on one rank. Collective.
 template <class Space, class T, int Dim>
 PetscErrorCode follow_soil(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks = nullptr) {
   PetscFunctionBeginUser;
   if (!s.soil.points.has_domain) PetscFunctionReturn(PETSC_SUCCESS);
-  if (ranks) PetscCall(ranks->forget());
+  if (ranks) ranks->drop_ahead();
   sum_drift(s);
   if (ranks) {
     PetscCall(ranks->add_nodes(s, s.nodes.centre.data(), CentreTerms<Dim>::size));

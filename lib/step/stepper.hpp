@@ -59,6 +59,8 @@ class Stepper {
   virtual PetscErrorCode advance(const StepRange& steps, Batch* batch) = 0;
   /// Bins, patches and lists anew, and the correction of positions. elapsed: time since the last rebuild [s].
   virtual PetscErrorCode rebuild(double elapsed, Failure* failure) = 0;
+  /// Domains that stretch follow the soil, as at a rebuild; lists stay. Between two steps, with no rebuild due.
+  virtual PetscErrorCode follow_soil() = 0;
   /// Rows of the history at row->time; `interval` [s] is the time since the last call, over which the forces
   /// are a mean.
   virtual PetscErrorCode measure(double interval, HistoryRow* row) = 0;

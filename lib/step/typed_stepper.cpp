@@ -299,7 +299,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(double elapsed, Failure* fai
   PetscErrorCode failed = PETSC_SUCCESS;
   const auto work = [&] {
     const BeyondMask<Space> beyond = mark_beyond();
-    failed = follow_soil(state_);
+    failed = mpm::follow_soil(state_);
     locate(state_);
     control = read_control(state_);
     if (control.lost > 0) note_all_lost(beyond);
@@ -313,6 +313,18 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(double elapsed, Failure* fai
   PetscCall(failed);
   timers_.sample(sampling);
   *failure = control.fault_count > 0 ? describe(control.fault) : too_small();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::follow_soil() {
+  PetscFunctionBeginUser;
+  overlap_.join(state_.space);
+  PetscCallCXX(PetscCall(mpm::follow_soil(state_, ranks_.get())));
+  PetscCallCXX(begin_domains(state_));
+  state_.summed = {};  // by the domains of before
+  state_.batches.loaded = false;
+  state_.space.fence("mpm::follow_soil");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

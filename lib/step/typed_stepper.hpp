@@ -37,6 +37,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode set_up(Model&& model, Failure* failure) override;
   PetscErrorCode advance(const StepRange& steps, Batch* batch) override;
   PetscErrorCode rebuild(double elapsed, Failure* failure) override;
+  PetscErrorCode follow_soil() override;
   PetscErrorCode measure(double interval, HistoryRow* row) override;
   PetscErrorCode unbalanced_ratio(double time, double* ratio) override;
   PetscErrorCode keep_balance(const EnergyRow& before) override;

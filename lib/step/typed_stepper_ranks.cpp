@@ -111,7 +111,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(double elapsed, Fai
   PetscCall(gather_sides(&sides));
   const auto work = [&] {
     const BeyondMask<Space> beyond = mark_beyond();
-    failed = follow_soil(state_, ranks_.get());
+    failed = mpm::follow_soil(state_, ranks_.get());
     locate(state_);
     const Control control = read_control(state_);
     *failure = control.fault_count > 0 ? describe(control.fault) : Failure{};
