@@ -92,7 +92,14 @@ struct StretchDomains {
     look_around(p).deformation(f);
     const double dilatation = double(soil.volume(p)) / double(soil.begun_volume(p));
     dilate_along_strain(f, Kokkos::log(dilatation / determinant(f)));
-    stretch_domain(soil.domain(p), f, Kokkos::pow(dilatation / determinant(f), 2.0 / Dim));
+    const double scale = Kokkos::pow(dilatation / determinant(f), 2.0 / Dim);
+    DomainMoments<T, Dim> m = soil.domain(p);
+    stretch_domain(m, f, scale);
+    soil.domain(p) = m;
+    for (int i = 0; i < Dim; ++i)  // half of it once more
+      for (int j = 0; j < Dim; ++j) f[i][j] = ((i == j) + f[i][j]) / 2;
+    stretch_domain(m, f, Kokkos::sqrt(scale));
+    soil.half_length(p) = bounded_half_lengths(m, soil.least_half_length);
   }
 
  private:
@@ -143,7 +150,6 @@ void begin_domains(State<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
   Kokkos::parallel_for(
       "mpm::begin_domains", Kokkos::RangePolicy<Space>(s.space, 0, soil.count), KOKKOS_LAMBDA(int p) {
-        soil.half_length(p) = bounded_half_lengths(soil.domain(p), soil.least_half_length);
         soil.begun(p) = soil.coordinate(p);
         soil.begun_volume(p) = soil.volume(p);
       });

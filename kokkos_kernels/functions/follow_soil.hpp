@@ -3,7 +3,7 @@
 // one, from where particles were the last time to where they are:
 //   1. sum_drift        CentreSource, DriftSource: of the soil at each node the centre of mass, and its way
 //   2. stretch_domains  the deformation gradient of each particle by least squares over its nodes; its domain
-//   3. begin_domains    once the lists are made: half lengths, and the places from which the next way counts
+//   3. begin_domains    once the lists are made: the places from which the next way counts
 // The first two need the lists and nodes of before the rebuild.
 
 #include "base/spaces.hpp"
@@ -20,7 +20,8 @@ void sum_drift(State<Space, T, Dim>& s);
 ///   G = [sum S_ip (u_i - u) (x_i - x)^T] [sum S_ip (x_i - x) (x_i - x)^T]^-1,  F = (I - G)^-1
 /// which is exact where the motion is linear, however particles lie. k makes the dilatation that of the
 /// particle's volume. Where nodes have their soil too near to a line (plane), F = I. Particles that are alone
-/// keep their domains.
+/// keep their domains. The half lengths become those of half of this way further on, so that they are neither
+/// late nor early in the mean until the next time.
 template <class Space, class T, int Dim>
 void stretch_domains(State<Space, T, Dim>& s);
 

@@ -252,6 +252,29 @@ TEST_CASE("domains follow a linear motion exactly, however particles lie, by eve
   });
 }
 
+TEST_CASE("half lengths are those of half of the last deformation further on", "[domain]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    auto s = state_of<B>(scattered_soil<Dim>(7, false));
+    Square<Dim> f;
+    turn<Dim>(0, f);
+    f[0][0] = 1.04, f[1][1] = 0.97;
+    move_by(s, f, 6);
+    sum_drift(s), stretch_domains(s);
+    const Table domains = domains_of_soil(s), lengths = by_id(s.soil.points, s.soil.points.half_length);
+    const double half[3] = {1.02, 0.985, 1};
+    double off = 0;
+    for (std::size_t p = 0; p < lengths.value.size() / Dim; ++p)
+      for (int d = 0; d < Dim; ++d) {
+        const double l = std::sqrt(domains.value[p * Dim * (Dim + 1) / 2 + d]) * half[d];
+        off = std::max(off, std::fabs(lengths.value[p * Dim + d] - std::clamp(l, k_least, 0.5)));
+      }
+    INFO(B::name());
+    CHECK(off < B::of(1e-12, 2e-5));
+  });
+}
+
 TEST_CASE("domains follow a linear motion exactly at smooth walls and a fixed one", "[domain]") {
   for_each_build([](auto build) {
     using B = decltype(build);

@@ -61,7 +61,6 @@ void merge_all(S& s) {
   locate(s);
   merge_particles(s);
   sort_and_list(s);
-  begin_domains(s);
 }
 
 /// Number of particles that merging has taken, and the kinetic energy [J] that went with them.

@@ -49,7 +49,6 @@ int split_all(S& s, int next_id) {
   for (std::size_t n = 0; n < splittings.size(); ++n) ids.push_back(next_id + static_cast<int>(n));
   split_particles(s, splittings, ids);
   sort_and_list(s);
-  begin_domains(s);
   return static_cast<int>(ids.size());
 }
 
