@@ -2,8 +2,9 @@
 
 Clay of 1800 kg/m3 that stands 2 m high is too weak to stand: it falls, strikes the wall and comes back. There is no exact
 answer, but soil that flows has no gaps and an even surface. The depth of a column of cells may differ from the mean of both
-neighbours by 2 % of the mean depth (standard deviation), and no cell below the surface may be empty. With domains of a
-fixed size and FLIP the soil comes apart into fingers.
+neighbours by 2 % of the mean depth (standard deviation), and no cell below the surface may be empty. The wave breaks, so
+that a single run tells little: of 500 Pa the mean of seven strengths from 470 to 530 Pa is compared. With domains of a fixed
+size and FLIP the soil comes apart into fingers.
 """
 
 import numpy as np
@@ -14,7 +15,8 @@ from row import Row
 
 LOWER, SPACING, COUNT = (0.0, 0.0), 0.1, 40
 FIXED = "-particle_domain fixed -velocity_update flip"
-RUNS = {"su500": "", "su2000": "-clay_su 2000", "fixed500": FIXED, "fixed2000": f"{FIXED} -clay_su 2000"}
+NEAR = {f"su{pascal}": f"-clay_su {pascal}" for pascal in (470, 480, 490, 510, 520, 530)}
+RUNS = {"su500": "", "su2000": "-clay_su 2000", "fixed500": FIXED, "fixed2000": f"{FIXED} -clay_su 2000", **NEAR}
 WHAT = {"su500": "su = 500 Pa", "su2000": "su = 2000 Pa"}
 SHALLOW = "The layer is only five cells deep."
 FINGERS = "Domains of a fixed size and FLIP."
@@ -29,7 +31,9 @@ def even(frame):
 def check(runs):
     for name, what in WHAT.items():
         frame, fixed = last_frame(runs[name], "soil"), last_frame(runs["fixed" + name[2:]], "soil")
-        yield Row(f"standard deviation of the depth between columns, {what}", even(frame), 0, 0.02, "an even flow",
+        alike = [runs[near] for near in NEAR] if name == "su500" else []
+        uneven = np.mean([even(last_frame(run, "soil")) for run in (runs[name], *alike)])
+        yield Row(f"standard deviation of the depth between columns, {what}", uneven, 0, 0.02, "an even flow",
                   shortfall=SHALLOW, bound=0.1)
         yield Row(f"the same, fixed domains, FLIP, {what}", even(fixed), 0, 0.02, "an even flow", shortfall=FINGERS, bound=0.2)
         _, empty = measures(frame["position"], LOWER, SPACING, COUNT)
