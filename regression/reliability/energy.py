@@ -95,8 +95,9 @@ def check_same(column, theirs, scale, bound, whose):
         assert far < bound, f"{name} of {whose} is {far:.3g} off"
 
 
-def check_deck(draw, do, about, dim, single):
-    """do(name, option, ...) runs the deck into a folder of this name and returns it. Returns the share of the energy that is missing."""
+def check_deck(draw, do, about, dim, single, both):
+    """do(name, option, ...) runs the deck into a folder of this name and returns it; both: the program has both precisions. Returns the
+    share of the energy that is missing."""
     balance, serial = ["-output_energy", "on"], ["-backend", "serial", "-p2g", "tile"]
     whole = do("whole", *balance, *serial)
     column, scale = check_row(history(whole), about, dim, single)
@@ -111,7 +112,7 @@ def check_deck(draw, do, about, dim, single):
     other = [*balance, "-backend", draw.choice(["serial", "openmp"]), "-p2g", draw.choice(["tile", "gather", "atomic"])]
     pair = do("pair", *other, prefix=("mpirun", "-n", "2", "--bind-to", "none"))
     check_same(column, check_row(history(pair), about, dim, single)[0], scale, 1e-3 if single else 1e-8, "two ranks")
-    if single:
+    if single and both:
         exact = do("double", *balance, *serial, "-precision", "double")
         check_same(column, check_row(history(exact), about, dim, False)[0], scale, 1e-3, "the run in double precision")
     return np.abs(column["error"]).max() / scale
@@ -134,7 +135,7 @@ def main():
             return folder
 
         try:
-            missing.append(check_deck(draw, do, about, dim, precision == "single"))
+            missing.append(check_deck(draw, do, about, dim, precision == "single", "double" in given.precisions))
         except AssertionError as error:
             (base / "failed.txt").write_text(f"{error}\n\n{' '.join(map(str, common))}\n")
             sys.exit(f"deck {number} of seed {given.seed}: {str(error)[-1500:]}\nits options are in {base / 'failed.txt'}")

@@ -1,12 +1,12 @@
 """Spreading of a Bingham fluid and of a viscous one
 
-*Bingham.* Fluid of the yield stress $\\tau_y$ = 50 Pa, the viscosity $\\eta$ = 25 Pa s and the volume $V$ = 0.5 m2 (of one half) spreads
-over a level rough floor. In a thin layer the flux is $q = -\\rho g h_x Y^2 (3h - Y) / 6\\eta$, with the depth that is sheared $Y = h -
-\\tau_y / \\rho g |h_x|$, and $h_t + q_x = 0$ (Liu & Mei 1989); the case solves it with finite volumes. The layer comes to rest at
-$x_f = (9 V^2 \\rho g / 8 \\tau_y)^{1/3}$ = 4.358 m, but slowly: 99.9 % of it lie within 4.01 m at 40 s, when the run ends, 4.13 m at 80 s
-and 4.29 m at 640 s. *Viscous.* A Newtonian fluid with $\\nu$ = 0.01 m2/s and $V$ = 0.01 m2 spreads as $x_f = 1.4112\\, (g V^3 / 3\\nu)^{1/5} t^{1/5}$
-(Huppert 1982), whatever its shape at the start, here a box of 0.2 m x 0.05 m. Both solutions hold for layers that are thin against their
-length, which the mud is not in the first seconds.
+*Bingham.* Fluid of the yield stress $\\tau_y$ = 50 Pa, the viscosity $\\eta$ = 25 Pa s and the volume $V$ = 0.5 m2 (of one half)
+spreads over a level rough floor. In a thin layer the flux is $q = -\\rho g h_x Y^2 (3h - Y) / 6\\eta$, with the depth that is sheared
+$Y = h - \\tau_y / \\rho g |h_x|$, and $h_t + q_x = 0$ (Liu & Mei 1989); the case solves it with finite volumes. The layer comes to
+rest at $x_f = (9 V^2 \\rho g / 8 \\tau_y)^{1/3}$ = 4.358 m, but slowly: 99.9 % of it lie within 4.01 m at 40 s, when the run ends,
+4.13 m at 80 s and 4.29 m at 640 s. *Viscous.* A Newtonian fluid with $\\nu$ = 0.01 m2/s and $V$ = 0.01 m2 spreads as
+$x_f = 1.4112\\, (g V^3 / 3\\nu)^{1/5} t^{1/5}$ (Huppert 1982), whatever its shape at the start, here a box of 0.2 m x 0.05 m. Both
+solutions hold for layers that are thin against their length, which the mud is not in the first seconds.
 
 Fluid that flows has an even surface: the depth of a column of cells may differ from the mean of both neighbours by 2 % of the mean depth
 (standard deviation; columns of two cells or more).
