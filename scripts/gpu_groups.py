@@ -27,7 +27,7 @@ ANSWERS = {  # cases on the GPU
               "collapse", "plate", "sloshing", "dam_break", "retaining_wall", "footing_cohesion_coarse", "footing_surcharge_coarse",
               "footing_weight_coarse", "cut_friction_coarse"],
     "site": ["sliding_side", "moving_side", "absorbing_side", "free_field", "timed_loads", "stages", "staged_fill", "probes", "k0_ground"],
-    "domains": ["clay_column", "large_deformation", "energy"],
+    "domains": ["clay_column", "large_deformation", "energy", "energy_collapse", "even_flow", "vortex"],
     "revolution": ["thick_cylinder", "cylinders", "circle", "circle_fine"],
 }
 PROCESSOR_ANSWERS = {  # back ends, threads and runs at a time, cases: the longest first

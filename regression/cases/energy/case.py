@@ -10,7 +10,6 @@ import numpy as np
 
 from row import Row
 
-PRECISIONS = ("double",)
 RUNS = {"flip": "-time_courant 0.4", "half": "-time_courant 0.2", "quarter": "-time_courant 0.1",
         "xpic": "-time_courant 0.4 -velocity_update xpic", "apic": "-time_courant 0.4 -velocity_update apic"}
 
