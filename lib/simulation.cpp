@@ -72,8 +72,8 @@ PetscErrorCode Simulation::Body::fail(const std::string& what) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Steps after which domains follow the soil where no rebuild came: an elastic wave crosses some fifty cells.
-constexpr long k_follow_every = 128;
+/// Steps after which domains follow the soil where no rebuild came: an elastic wave crosses some 200 cells.
+constexpr long k_follow_every = 512;
 
 /// Steps up to `target`, in batches that end where the movement bound will probably ask for a rebuild.
 PetscErrorCode Simulation::Body::advance_to(long target) {
