@@ -16,8 +16,8 @@ COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
 STYLES = ["-", "--", ":", "-."]
 
 
-def save(figure, path):
-    figure.savefig(path, dpi=150)
+def save(figure, path, **options):
+    figure.savefig(path, dpi=150, **options)
     plt.close(figure)
     return path
 

@@ -124,7 +124,7 @@ def draw_rasters(run, terrain=None):
         terrain, origin = read_ascii(terrain), run.numbers("raster_origin", [0, 0, 0])
         terrain.x, terrain.y = terrain.x + origin[0], terrain.y + origin[1]
     x0, x1, y0, y1 = rasters["max_depth"].extent
-    figure, all_axes = plt.subplots(2, 2, figsize=(12, 11 * (y1 - y0) / (x1 - x0) + 0.6), layout="constrained")
+    figure, all_axes = plt.subplots(2, 2, figsize=(12, 11 * (y1 - y0) / (x1 - x0) + 0.6), layout="compressed")
     for axes, name in zip(all_axes.flat, RASTERS):
         draw_map(axes, run, name, rasters, terrain)
-    return save(figure, run.folder / "rasters.png")
+    return save(figure, run.folder / "rasters.png", bbox_inches="tight")

@@ -16,6 +16,7 @@ from folders import ENVIRONMENT, checkpoints, differences, fresh, rows, run
 from random_decks import draws_of, read_arguments
 
 STEP = 2e-4  # s
+CUT = 1e-7  # share of a step's impulse that nodes below the cut of the mass leave out (method.md), while a surface leaves a row of nodes
 SPACING = 0.25
 GRAVITY = 9.81
 
@@ -71,8 +72,7 @@ class Deck:
                              f"-other_particles_per_cell {per_cell}").split()
         self.options += f"-bodies {','.join(names)} -block_material soil -block_particles_per_cell {per_cell}".split()
         self.names, self.centre, self.covered = names, centre, kind == "two"
-        self.options += [] if self.rings else ["-block_velocity", vector([draw.uniform(-0.5, 0.5) for _ in range(dim)])]
-        self.options += ["-time_courant", "0.2"][:0]
+        self.options += ["-geometry", "axisymmetric"] if self.rings else ["-block_velocity", vector([draw.uniform(-0.5, 0.5) for _ in range(dim)])]
 
     def add_load(self, draw, folder, name, across):
         dim = self.dim
@@ -133,13 +133,15 @@ def check_momentum(deck, folder, tolerance):
         force = sum(column(folder, f"{name}_force_{axis}") for name in deck.loads)
         weight = mass * deck.gravity if k == deck.dim - 1 else 0 * mass
         impulse = np.cumsum(np.diff(time) * (force + weight)[:-1])
-        size = np.abs(np.diff(time) * (np.abs(force) + np.abs(weight))[:-1]).sum() + np.abs(momentum).max() + 1e-3
+        steps = np.diff(time) * (np.abs(force) + np.abs(weight))[:-1]
+        size = steps.sum() + np.abs(momentum).max() + 1e-3
         error = np.abs(momentum[1:] - momentum[0] - impulse).max() / size
-        assert error < tolerance, f"the momentum along {axis} is {error:.3g} off the impulse of the loads"
-        check_momentum.largest = max(check_momentum.largest, error)
+        allowed = tolerance + CUT * steps.max() / size
+        assert error < allowed, f"the momentum along {axis} is {error:.3g} off the impulse of the loads, more than {allowed:.3g}"
+        check_momentum.errors.append(error)
 
 
-check_momentum.largest = 0.0
+check_momentum.errors = []
 
 
 def check_balance(folder):
@@ -229,7 +231,8 @@ def main():
         except AssertionError as error:
             listing.write_text(f"{error}\n\n{' '.join(map(str, deck.options + deck.timed + common))}\n")
             sys.exit(f"deck {number} of seed {given.seed}: {str(error)[-1500:]}\nits options are in {listing}")
-    print(f"{given.count} decks: momentum is the impulse of the loads (at most {check_momentum.largest:.2g} off), the energy balance holds "
+    print(f"{given.count} decks: momentum is the impulse of the loads (off by {np.median(check_momentum.errors):.2g} in the middle, at most "
+          f"{max(check_momentum.errors):.2g}), the energy balance holds "
           f"(at most {check_balance.largest:.2g} missing); tables of one value and cut runs give the same bits")
 
 
