@@ -72,10 +72,8 @@ PetscErrorCode Simulation::Body::fail(const std::string& what) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Steps after which domains follow the soil where no rebuild came: an elastic wave crosses some 200 cells.
-constexpr long k_follow_every = 512;
-
-/// Steps up to `target`, in batches that end where the movement bound will probably ask for a rebuild.
+/// Steps up to `target`, in batches that end where the movement bound will probably ask for a rebuild. Where
+/// domains change they end too, for the time step follows these.
 PetscErrorCode Simulation::Body::advance_to(long target) {
   PetscFunctionBeginUser;
   // s of wall time between two looks at the steps, which cost time on a device only, and whether to stop
@@ -84,7 +82,7 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
   while (step < target) {
     long steps = std::min({target - step, std::max(estimate, 1L), batch_limit});
     if (config.p2g.rebuild_interval) steps = std::min(steps, *config.p2g.rebuild_interval - since_rebuild);
-    if (domains_follow()) steps = std::min(steps, k_follow_every - since_rebuild % k_follow_every);
+    if (domains_follow()) steps = std::min(steps, k_domain_steps - since_rebuild % k_domain_steps);
     const double step_dt = schedule.step_size(step);
     if (step_dt == dt)
       steps = std::min(steps, std::max(schedule.last_whole_step() - step, 1L));
@@ -105,19 +103,22 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     }
     if (batch.rebuild || (config.p2g.rebuild_interval && since_rebuild >= *config.p2g.rebuild_interval))
       PetscCall(rebuild(batch));
-    else if (domains_follow() && since_rebuild % k_follow_every == 0)
+    else if (domains_changed())
       PetscCall(follow_soil());
     if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(log.progress(
         {step, schedule.time_of(step), 0, end_of_run(), stepping, double(step) * stepper->particles()}));
     bool stop = false;
     PetscCall(look_for_stop(&stop));
-    if (stop) PetscFunctionReturn(PETSC_SUCCESS);
+    if (stop || domains_changed()) PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 bool Simulation::Body::domains_follow() const { return config.particle_domain != ParticleDomain::fixed; }
+bool Simulation::Body::domains_changed() const {
+  return domains_follow() && since_rebuild % k_domain_steps == 0;
+}
 
 PetscErrorCode Simulation::Body::follow_soil() {
   PetscFunctionBeginUser;

@@ -30,6 +30,9 @@ inline double seconds_now() {
 
 inline constexpr double k_most_steps = 1e12;
 
+/// Steps after which domains follow the soil where no rebuild came: an elastic wave crosses some 200 cells.
+inline constexpr long k_domain_steps = 512;
+
 struct Simulation::Body {
   MPI_Comm comm = MPI_COMM_NULL;
   Config config;
@@ -40,10 +43,11 @@ struct Simulation::Body {
 
   FolderLock lock;  // of the output folder; goes when all is written and closed
 
-  double dt = 0;         // s
-  bool follows = false;  // dt follows the stiffness of the soil, or is held against it
-  long waves_at = -1;    // step of the last look at the waves
-  double told_dt = 0;    // s, the last one that the log has
+  double dt = 0;             // s
+  bool follows = false;      // dt follows the stiffness of the soil and its domains, or is held against them
+  bool laws_follow = false;  // the stiffness of some soil changes
+  long waves_at = -1;        // step of the last look at the waves
+  double told_dt = 0;        // s, the last one that the log has
   Schedule schedule;
   std::unique_ptr<Stepper> stepper;
   Log log;
@@ -144,6 +148,7 @@ struct Simulation::Body {
   PetscErrorCode advance_to(long target);
   PetscErrorCode rebuild(const Batch& batch);
   bool domains_follow() const;
+  bool domains_changed() const;  // at this step, by a rebuild or by follow_soil
   PetscErrorCode follow_soil();
   PetscErrorCode write_row();
   PetscErrorCode watch(const HistoryRow& row);

@@ -30,7 +30,8 @@ std::string what_shortens_the_step(const Config& config, double speed) {
 PetscErrorCode Simulation::Body::choose_time_step() {
   PetscFunctionBeginUser;
   const StepLimits limits{critical_time_step(config), viscous_time_step(config)};
-  follows = stiffness_changes(config);
+  laws_follow = stiffness_changes(config);
+  follows = laws_follow || domains_follow();
   dt = config.time.step.value_or(step_of(limits, config.time.courant, config));
   const double largest = step_of(limits, largest_courant(config), config);
   if (dt > largest * (1 + k_round_off)) {
@@ -54,16 +55,16 @@ PetscErrorCode Simulation::Body::choose_time_step() {
 }
 
 long Simulation::Body::next_stiffness_check() const {
-  return follows ? (step / k_follow_every + 1) * k_follow_every : schedule.last_step();
+  return laws_follow ? (step / k_follow_every + 1) * k_follow_every : schedule.last_step();
 }
 
-/// If the stiffness of some soil changes, every k_follow_every steps: measures the fastest wave and computes
-/// dt from it by the Courant number; `now`: at this step too. If the user has fixed dt, the run fails once
-/// that dt is not stable.
+/// If the stiffness of some soil changes, every k_follow_every steps, and where domains have changed:
+/// measures the fastest wave and computes dt from it by the Courant number; `now`: at this step too. If the
+/// user has fixed dt, the run fails once that dt is not stable.
 PetscErrorCode Simulation::Body::follow_stiffness(bool now) {
   PetscFunctionBeginUser;
-  if (!follows || (step % k_follow_every != 0 && !now) || waves_at == step)
-    PetscFunctionReturn(PETSC_SUCCESS);
+  const bool due = now || domains_changed() || (laws_follow && step % k_follow_every == 0);
+  if (!follows || !due || waves_at == step) PetscFunctionReturn(PETSC_SUCCESS);
   waves_at = step;
   double speed = 0;
   PetscCall(stepper->fastest_wave(&speed));

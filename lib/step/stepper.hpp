@@ -123,8 +123,8 @@ double critical_time_step(const Config& config);
 /// materials/any.hpp); infinite where no law adds anything.
 double viscous_time_step(const Config& config);
 
-/// Whether the stiffness of some body depends on stress or state, or the domains of its particles stretch:
-/// the time step follows what Stepper::fastest_wave gives.
+/// Whether the stiffness of some body depends on stress or state: the time step follows what
+/// Stepper::fastest_wave gives.
 bool stiffness_changes(const Config& config);
 
 /// Version of Kokkos, and the name of the device that the backend runs on.

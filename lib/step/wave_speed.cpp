@@ -24,7 +24,6 @@ double wave_speed(const Config& config, const BodyConfig& body) {
 }
 
 bool stiffness_changes(const Config& config) {
-  if (config.particle_domain != ParticleDomain::fixed) return true;
   return std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& body) {
     return !body.absent && stiffness_changes(model_index(config.materials[body.material].model));
   });
