@@ -80,7 +80,7 @@ PetscErrorCode Simulation::Body::follow_stiffness(bool now) {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   const double wanted = step_of(limits, config.time.courant, config);
-  dt = step > 0 ? std::min(wanted, k_growth * dt) : wanted;
+  dt = step > 0 && laws_follow ? std::min(wanted, k_growth * dt) : wanted;
   schedule = Schedule(config.time, config.output, dt, {step, schedule.time_of(step)});
   if (told_dt > 0 && std::fabs(dt - told_dt) <= k_told * told_dt) PetscFunctionReturn(PETSC_SUCCESS);
   if (told_dt > 0)
