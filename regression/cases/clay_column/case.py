@@ -15,6 +15,7 @@ from flow import depths, measures, unevenness
 from results import read_frame
 from row import Row
 
+LONG = True
 LOWER, SPACING, COUNT = (0.0, 0.0), 0.1, 40
 FINE, AWAY = SPACING / 2, 10  # m, and columns of these cells in 0.5 m
 FIXED = "-particle_domain fixed -velocity_update flip"

@@ -11,6 +11,7 @@ import numpy as np
 from curves import last_frame
 from row import Row
 
+LONG = True
 STRENGTH, G = 1000.0, 9.81
 BLOCK = ("-dim 3 -mesh_lower 0,0,0 -mesh_upper 1.5,1.5,1.2 -mesh_ymax roller -mesh_zmin roller -mesh_zmax free -gravity 0,0,-9.81 "
          "-soil_lower 0,0,0 -soil_upper 0.5,0.5,1")
