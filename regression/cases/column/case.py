@@ -23,6 +23,8 @@ STRETCH = " -particle_domain stretch"
 SOFT = {"4 %": ("4", ""), "33 %": ("33", PRESSED), "33 %, domains stretch": ("33_stretch", PRESSED + STRETCH),
         "60 %, domains stretch": ("60_stretch", " -soil_young 4.365e4 -damping 0.98 -time_end 1200 -output_interval 1200" + STRETCH)}
 OVERLAP = "Particles keep their size: compressed by a third, they overlap, and the error is 1.8 % whatever the cells."
+ROUND_OFF = ("In single precision domains of soil at rest drift by round-off: with 80 cells the error is 0.26 %, in double precision "
+             "0.21 %.")
 STIFF, POISSON, WEIGHT, STIFF_HEIGHT = 1e8, 0.3, 2e4, 10.0
 
 
@@ -74,7 +76,8 @@ def settlement(run):
 def check(runs):
     for strain, (name, _) in SOFT.items():
         errors = [stress_error(runs[f"{name}_{n}"]) for n in CELLS]
-        why = OVERLAP if strain == "33 %" else ""
+        single = runs[f"{name}_{CELLS[-1]}"].text("precision") == "single"
+        why = OVERLAP if strain == "33 %" else ROUND_OFF if single and strain.startswith("60 %") else ""
         yield Row(f"order of the stress over {CELLS} cells, strain {strain}", -order(CELLS, errors), 1, 0.1,
                   "first order", at_least=True, shortfall=why, bound=1.05)
         yield Row(f"mean error of the stress over rho g H, {CELLS[-1]} cells, strain {strain}", errors[-1], 0, 0.01,
