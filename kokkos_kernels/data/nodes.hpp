@@ -74,7 +74,7 @@ struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, Dim> residual;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   NodeField<Space, T, Dim> shares;    // of the position correction (ShareSource); allocated for it
   NodeField<Space, T, CentreTerms<Dim>::size> centre;  // of the soil, where domains stretch
-  NodeField<Space, T, Dim> drift;  // kg cells, mass times the way since the last rebuild; likewise
+  NodeField<Space, T, Dim> drift;  // kg cells, mass times the way since domains changed last; likewise
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
       impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step
 };

@@ -19,7 +19,7 @@ void sum_at_home(State<Space, T, Dim>& s, const NodeField<Space, T, Source::size
   const auto sum = [&](const Bins<Space>& bins) {
     auto it = interpolation_of(s, bins, Source{s.soil.points}, out, s.space);
     it.adds = true;
-    it.control = s.never_paused;  // s.control is where a rebuild is due
+    it.control = s.never_paused;  // where a rebuild is due, s.control is paused
     particle_to_node(s.p2g.strategy, it);
   };
   if (!s.batches.in_use()) return sum(s.soil.bins);

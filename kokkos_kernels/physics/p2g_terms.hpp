@@ -314,7 +314,7 @@ struct LoadSource {
   KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
-/// Where the soil is that a node has: m_i, and m_i times the way from the node to the centre of its mass.
+/// Where the soil of a node is: its mass m_i, and m_i times the way from the node to its centre of mass.
 template <class Space_, class T, int Dim>
 struct CentreSource {
   using Space = Space_;
@@ -347,7 +347,7 @@ struct CentreSource {
   }
 };
 
-/// The way of the soil since the last rebuild to the nodes, sum S m_p (x_p - x_p0) [kg cells].
+/// The way of the soil since its domains changed last, to the nodes: sum S m_p (x_p - x_p0) [kg cells].
 template <class Space_, class T, int Dim>
 struct DriftSource {
   using Space = Space_;
