@@ -138,7 +138,7 @@ struct GiveColumns {
     for (const Row& i : rows) {
       const int row = row_at(i.at), place = i.at - cell + 1;
       add(row, S::mass, line.w * i.w * q.mass, k_mass);
-      if (place >= 0 && place < k_reached) {
+      if (place >= 0 && place < k_rows_reached) {
         add(of_cell, S::dilatation + place, line.w * q.volume * i.g * i.turn[0], k_volume);
         add(of_cell, S::pressed + place, line.w * q.mean_bulk * i.g * i.turn[0], k_energy);
         add(of_cell, S::pressing + place, line.normal * q.mean_bulk * i.w * i.turn[1], k_energy);

@@ -37,10 +37,6 @@ KOKKOS_INLINE_FUNCTION double inner_share(const Soil<Space, T, Dim>& soil, int p
   return 1;
 }
 
-/// Least weight along each axis with which a particle reaches a node here. Particles on a lattice are just at
-/// the end of their reach of many nodes, where round-off decides whether the weight is zero.
-constexpr double k_reached = 1e-6;
-
 /// Mass [kg] of the nodes that a particle reaches; of a node beyond a wall and its image once.
 template <class Space, class T, int Dim>
 struct MassInReach {

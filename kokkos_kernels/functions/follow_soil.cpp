@@ -14,10 +14,11 @@ constexpr double k_least_det = 0.05;  // of I - G: the soil was stretched by les
 
 /// Sums of a source over the soil at home, to `out`.
 template <class Source, class Space, class T, int Dim>
-void sum_at_home(State<Space, T, Dim>& s, const NodeField<Space, T, Source::size>& out) {
+void sum_at_home(State<Space, T, Dim>& s, const Source& source,
+                 const NodeField<Space, T, Source::size>& out) {
   Kokkos::deep_copy(s.space, out, T(0));
   const auto sum = [&](const Bins<Space>& bins) {
-    auto it = interpolation_of(s, bins, Source{s.soil.points}, out, s.space);
+    auto it = interpolation_of(s, bins, source, out, s.space);
     it.adds = true;
     it.control = s.never_paused;  // where a rebuild is due, s.control is paused
     particle_to_node(s.p2g.strategy, it);
@@ -132,8 +133,14 @@ struct StretchDomains {
 template <class Space, class T, int Dim>
 void sum_drift(State<Space, T, Dim>& s) {
   collect_soil(s);
-  sum_at_home<CentreSource<Space, T, Dim>>(s, s.nodes.centre);
-  sum_at_home<DriftSource<Space, T, Dim>>(s, s.nodes.drift);
+  const auto soil = s.soil.points;
+  sum_at_home(s, CentreSource<Space, T, Dim>{soil}, s.nodes.centre);
+  Kokkos::parallel_for(
+      "mpm::drift", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
+      KOKKOS_LAMBDA(int p) {
+        for (int d = 0; d < Dim; ++d) soil.begun(p)[d] = soil.coordinate(p)[d] - soil.begun(p)[d];
+      });
+  sum_at_home(s, StretchedResidualSource<Space, T, Dim>{soil, soil.begun}, s.nodes.drift);
 }
 
 template <class Space, class T, int Dim>

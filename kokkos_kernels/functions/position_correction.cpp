@@ -13,7 +13,6 @@ constexpr double k_surface = 0.5;         // -, a node that is filled less may b
 constexpr double k_outside = 0.15;        // -, more of f - a^2/2 is not that of a node beyond a surface
 constexpr double k_most_gap = 0.2;        // -, that counts
 constexpr double k_near_rigid = 1.5;      // cells, from its surface: its nodes are not full of soil
-constexpr double k_reached = 1e-6;        // -, weight below which round-off tells whether a node is reached
 
 /// How full a node is, from what particles give it. Beyond a wall the soil goes on as its mirror image.
 template <class Space, class T, int Dim>

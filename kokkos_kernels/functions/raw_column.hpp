@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-inline constexpr int k_reached = 4;  // rows that the particles of a cell reach, from the one below it on
+inline constexpr int k_rows_reached = 4;  // rows that the particles of a cell reach, from the one below it on
 
 /// What the rows of columns sum, with gradients by cells: mass, and the matrices of ColumnTerms. What goes
 /// with the mean dilatation of a cell (F-bar) is the product of two sums, which the row of its lower node
@@ -18,8 +18,8 @@ template <int Dim>
 struct ColumnSum {
   using C = ColumnTerms<Dim>;
   static constexpr int mass = 0, stiffness = 1, inertia = stiffness + C::matrix, pull = inertia + C::matrix,
-                       volume = pull + C::matrix, dilatation = volume + 1, pressed = dilatation + k_reached,
-                       pressing = pressed + k_reached, size = pressing + k_reached;
+                       volume = pull + C::matrix, dilatation = volume + 1, pressed = dilatation + k_rows_reached,
+                       pressing = pressed + k_rows_reached, size = pressing + k_rows_reached;
 };
 
 /// The rows of a column while it is made from sums.
@@ -42,8 +42,8 @@ struct RawColumn {
   void add_means() {
     for (int c = 0; c < static_cast<int>(sums.size()); ++c) {
       const std::vector<double> of = sums[c];
-      for (int i = 0; i < k_reached && of[S::volume] > 0; ++i)
-        for (int j = 0; j < k_reached; ++j) {
+      for (int i = 0; i < k_rows_reached && of[S::volume] > 0; ++i)
+        for (int j = 0; j < k_rows_reached; ++j) {
           const double mean = of[S::dilatation + j] / of[S::volume];
           add(c - 1 + i, c - 1 + j, S::stiffness, of[S::pressed + i] * mean);
           add(c - 1 + i, c - 1 + j, S::pull, of[S::pressing + i] * mean);

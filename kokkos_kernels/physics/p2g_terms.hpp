@@ -119,7 +119,8 @@ struct AffineSource : SoilSource<Space_, T, Dim, domain_> {
   }
 };
 
-/// Any velocity of the particles to nodes, as momentum: sum S m_p r_p. XPIC sends what is left of theirs.
+/// Any vector of the particles to nodes with their masses: sum S m_p r_p. XPIC sends what is left of their
+/// velocities, domains that follow the soil send its way.
 template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
 struct ResidualSource {
   using Space = Space_;
@@ -132,7 +133,7 @@ struct ResidualSource {
     T momentum[Dim];
   };
   Soil<Space, T, Dim> points;
-  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> residual;  // m/s
+  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> residual;
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
@@ -347,33 +348,6 @@ struct CentreSource {
   }
 };
 
-/// The way of the soil since its domains changed last, to the nodes: sum S m_p (x_p - x_p0) [kg cells].
-template <class Space_, class T, int Dim>
-struct DriftSource {
-  using Space = Space_;
-  using real = T;
-  static constexpr ParticleDomain domain = ParticleDomain::stretch;
-  static constexpr int dim = Dim, size = Dim;
-  static constexpr Kind kind = Kind::motion;
-  struct Point {
-    HalfLengths<T, Dim> half_length;
-    T way[Dim];
-  };
-  Soil<Space, T, Dim> points;
-
-  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
-  KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    Point q{with_inverses<T>(points.half_length(p)), {}};
-    const T mass = points.properties(p).mass;
-    for (int d = 0; d < Dim; ++d) q.way[d] = mass * (points.coordinate(p)[d] - points.begun(p)[d]);
-    return q;
-  }
-  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value; }
-  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
-  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.way[value]; }
-  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
-};
-
 /// Rigid body to nodes: m_i^R = sum S m_p and the mass gradient n_i^R = sum grad S m_p (Eq. 3; it points out
 /// of the body). A strategy may move() a point before it gives.
 template <class Space_, class T, int Dim>
@@ -518,7 +492,6 @@ using RingDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::ring>
   X(DisplacedSource, Space, T, Dim)           \
   X(LoadSource, Space, T, Dim)                \
   X(CentreSource, Space, T, Dim)              \
-  X(DriftSource, Space, T, Dim)               \
   X(RigidSource, Space, T, Dim)               \
   X(StretchedSoilSource, Space, T, Dim)       \
   X(StretchedAffineSource, Space, T, Dim)     \

@@ -8,6 +8,10 @@
 
 namespace mpm {
 
+/// Weight along an axis below which round-off may decide whether a particle reaches a node [-]: particles on a
+/// lattice are just at the end of their reach of many nodes.
+inline constexpr double k_reached = 1e-6;
+
 /// Weights of the three nodes that a particle reaches along one axis.
 ///   x [cells] particle's coordinate, in the frame of some cell;  half [cells] its half length
 ///   first     lowest node reached, in the same frame

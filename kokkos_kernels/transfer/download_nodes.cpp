@@ -7,7 +7,7 @@ namespace {
 
 /// Number of a node in the whole mesh; -1 outside it.
 template <class T, int Dim>
-long number_of(const Grid<T, Dim>& grid, const Coord<Dim>& at) {
+long node_number(const Grid<T, Dim>& grid, const Coord<Dim>& at) {
   long number = 0;
   for (int d = Dim - 1; d >= 0; --d) {
     if (at[d] < 0 || at[d] > grid.cells[d]) return -1;
@@ -30,7 +30,7 @@ NodeFields download_nodes(const State<Space, T, Dim>& s) {
   };
   std::vector<std::pair<long, int>> order;
   for (int i = 0; i < s.patches.node_count(); ++i)
-    if (const long number = number_of(s.grid, place(i)); number >= 0 && soil(i, S::mass) > 0)
+    if (const long number = node_number(s.grid, place(i)); number >= 0 && soil(i, S::mass) > 0)
       order.emplace_back(number, i);
   std::sort(order.begin(), order.end());
   NodeFields fields;

@@ -13,7 +13,11 @@ constexpr double k_tiny = 1.0 / 32, k_nothing = 1e-3;  // of a cell: a small par
 }  // namespace
 
 CutCells::CutCells(const Facets& facets, const CellGrid& grid)
-    : facets_(facets), grid_(grid), level_(grid.first[2]), below_(grid.columns()) {
+    : facets_(facets),
+      grid_(grid),
+      level_(grid.first[2]),
+      below_(grid.columns()),
+      listed_(grid.columns()) {
   const long levels = grid.last[2] - grid.first[2];
   std::vector<long> lowest(facets.size());
   begin_.assign(levels + 2, 0);
@@ -51,8 +55,19 @@ void CutCells::take_facets() {
   }
 }
 
-void CutCells::next(std::vector<CellPart>* parts) {
-  if (parts) parts->assign(grid_.columns(), {});
+/// Those that no piece below leaves open end at the level before.
+void CutCells::leave_empty_columns() {
+  std::erase_if(columns_, [this](long c) {
+    if (std::abs(below_[c].area) > k_round) return false;
+    listed_[c] = 0;
+    return true;
+  });
+}
+
+void CutCells::next(LevelParts* parts) {
+  if (parts) parts->of.resize(grid_.columns()), parts->clear();
+  leave_empty_columns();
+  const auto known = static_cast<std::ptrdiff_t>(columns_.size());
   take_facets();
   const auto floor = static_cast<double>(level_), ceiling = floor + 1;
   std::size_t kept = 0;
@@ -67,9 +82,12 @@ void CutCells::next(std::vector<CellPart>* parts) {
   }
   active_.resize(kept);
   ++level_;
+  std::sort(columns_.begin() + known, columns_.end());
+  std::inplace_merge(columns_.begin(), columns_.begin() + known, columns_.end());
   if (!parts) return;
-  for (std::size_t c = 0; c < parts->size(); ++c) {
-    CellPart& part = (*parts)[c];
+  parts->columns = columns_;
+  for (const long c : columns_) {
+    CellPart& part = parts->of[c];
     const Area& full = below_[c];
     part.volume -= full.area;
     part.moment[0] -= full.x, part.moment[1] -= full.y, part.moment[2] -= full.area / 2;
@@ -90,20 +108,21 @@ void CutCells::for_each_slab(const ConvexPiece& piece, int d, const F& f) const 
   }
 }
 
-void CutCells::add_columns(const ConvexPiece& piece, std::vector<CellPart>* parts) {
+void CutCells::add_columns(const ConvexPiece& piece, LevelParts* parts) {
   for_each_slab(piece, 0, [&](const ConvexPiece& slab, long i) {
     for_each_slab(slab, 1, [&](const ConvexPiece& cell, long j) { add_cell(cell, i, j, parts); });
   });
 }
 
-void CutCells::add_cell(const ConvexPiece& piece, long i, long j, std::vector<CellPart>* parts) {
+void CutCells::add_cell(const ConvexPiece& piece, long i, long j, LevelParts* parts) {
   UnderPiece under;
   under.add(piece, {static_cast<double>(i), static_cast<double>(j), static_cast<double>(level_)});
   const long column = (j - grid_.first[1]) * (grid_.last[0] - grid_.first[0]) + i - grid_.first[0];
+  if (!listed_[column]) listed_[column] = 1, columns_.push_back(column);
   Area& below = below_[column];
   below.area += under.area, below.x += under.area_x, below.y += under.area_y;
   if (!parts) return;
-  CellPart& part = (*parts)[column];
+  CellPart& part = parts->of[column];
   part.volume += under.volume;
   part.moment[0] += under.moment_x, part.moment[1] += under.moment_y, part.moment[2] += under.moment_z;
 }
@@ -119,18 +138,21 @@ class Levels {
   explicit Levels(const CellGrid& grid)
       : grid_(grid), width_(grid.last[0] - grid.first[0]), rows_(grid.last[1] - grid.first[1]) {
     for (Level& level : levels_)
-      level.own.resize(grid.columns()), level.taken.resize(grid.columns()), level.gone.resize(grid.columns());
+      level.own.of.resize(grid.columns()), level.taken.resize(grid.columns()),
+          level.gone.resize(grid.columns());
   }
-  std::vector<CellPart>& enter(long k) {
+  /// The level's parts, of which there are none yet.
+  LevelParts& enter(long k) {
     Level& level = at(k);
-    std::fill(level.own.begin(), level.own.end(), CellPart{});
-    std::fill(level.taken.begin(), level.taken.end(), CellPart{});
-    std::fill(level.gone.begin(), level.gone.end(), 0);
+    for (const long column : level.own.columns) level.taken[column] = {}, level.gone[column] = 0;
+    level.own.clear();
     return level.own;
   }
+  const std::vector<long>& columns(long k) const { return at(k).own.columns; }
   /// Full cells and empty ones, without round-off.
   void round(long k) {
-    for (CellPart& part : at(k).own) {
+    for (const long column : columns(k)) {
+      CellPart& part = at(k).own.of[column];
       if (std::abs(part.volume - 1) < k_round) part = {1, {0.5, 0.5, 0.5}};
       if (part.volume < k_round) part = {};
     }
@@ -140,20 +162,21 @@ class Levels {
   /// The part that the particle of a cell stands for.
   CellPart particle(long k, long column) const {
     CellPart part = at(k).taken[column];
-    if (!at(k).gone[column]) add(at(k).own[column], {}, part);
+    if (!at(k).gone[column]) add(at(k).own.of[column], {}, part);
     return part;
   }
 
  private:
   struct Level {
-    std::vector<CellPart> own, taken;  // by column; taken from others
-    std::vector<char> gone;            // its own part stands for no particle of its own
+    LevelParts own;
+    std::vector<CellPart> taken;  // from others, by column
+    std::vector<char> gone;       // its own part stands for no particle of its own
   };
   using Cell = std::array<long, 3>;
   Level& at(long k) { return levels_[(k - grid_.first[2] + k_window) % k_window]; }
   const Level& at(long k) const { return levels_[(k - grid_.first[2] + k_window) % k_window]; }
   Cell cell_of(long k, long column) const { return {column % width_, column / width_, k}; }
-  const CellPart& own_of(const Cell& cell) const { return at(cell[2]).own[cell[1] * width_ + cell[0]]; }
+  const CellPart& own_of(const Cell& cell) const { return at(cell[2]).own.of[cell[1] * width_ + cell[0]]; }
   Cell largest_neighbour(const Cell& cell) const;
   /// A cell of k_least_part or more that is a neighbour, or a neighbour's neighbour. If there is none, a tiny
   /// part goes where there is more, and others stay.
@@ -187,8 +210,8 @@ Levels::Cell Levels::largest_neighbour(const Cell& cell) const {
 }
 
 void Levels::join_small(long k) {
-  for (long column = 0; column < grid_.columns(); ++column) {
-    const CellPart& part = at(k).own[column];
+  for (const long column : columns(k)) {
+    const CellPart& part = at(k).own.of[column];
     if (part.volume == 0 || part.volume >= k_least_part) continue;
     const Cell here = cell_of(k, column), to = taker_of(here);
     at(k).gone[column] = to != here;
@@ -208,14 +231,14 @@ bool any_cut_particle(const Facets& facets, const CellGrid& grid, long from, lon
   // What a level takes comes from two levels above and below it, whose takers depend on two more.
   for (long k = grid.first[2]; k < to + 2 * k_reach; ++k) {
     const bool near = k >= from - 2 * k_reach;
-    std::vector<CellPart>* const own = near ? &levels.enter(k) : nullptr;
+    LevelParts* const own = near ? &levels.enter(k) : nullptr;
     if (k < grid.last[2]) cells.next(own);
     if (near) levels.round(k);
     if (const long middle = k - k_reach; middle >= grid.first[2] && middle >= from - k_reach)
       levels.join_small(middle);
     const long done = k - 2 * k_reach;
     if (done < from || done >= to) continue;
-    for (long column = 0; column < grid.columns(); ++column) {
+    for (const long column : levels.columns(done)) {
       const CellPart part = levels.particle(done, column);
       if (part.volume < k_nothing) continue;
       Vec3 x{};
@@ -234,13 +257,13 @@ bool any_cut_particle(const Facets& facets, const CellGrid& grid, long from, lon
 std::optional<Vec3> overfull_cell(const Facets& facets, const CellGrid& grid) {
   constexpr double k_slack = 1e-6;
   CutCells cells(facets, grid);
-  std::vector<CellPart> parts;
+  LevelParts parts;
   const long width = grid.last[0] - grid.first[0];
   for (long k = grid.first[2]; k < grid.last[2]; ++k) {
     cells.next(&parts);
-    for (std::size_t c = 0; c < parts.size(); ++c) {
-      if (parts[c].volume > -k_slack && parts[c].volume < 1 + k_slack) continue;
-      const long column = static_cast<long>(c);
+    for (const long column : parts.columns) {
+      const double volume = parts.of[column].volume;
+      if (volume > -k_slack && volume < 1 + k_slack) continue;
       Vec3 x;
       const std::array<long, 3> cell{column % width + grid.first[0], column / width + grid.first[1], k};
       for (int d = 0; d < 3; ++d) x[d] = grid.origin[d] + (static_cast<double>(cell[d]) + 0.5) * grid.edge;
