@@ -4,6 +4,8 @@ import numpy as np
 
 from results import read_frame
 
+trapezoid = np.trapezoid if hasattr(np, "trapezoid") else np.trapz  # NumPy 2 has renamed it
+
 
 def slope(t, y, start, end=np.inf):
     """Slope of the straight line of least squares through y(t) over start <= t <= end."""

@@ -12,7 +12,7 @@ arrive, the soil at each side must move as a column of its height between period
 import numpy as np
 
 import particles
-from curves import first_frame
+from curves import first_frame, trapezoid
 from results import read_frame
 from row import Row
 
@@ -97,7 +97,7 @@ def transfer(run, frequency):
         x = np.clip((fine - t0) / (t1 - t0), 0, 1)
         inside = (fine >= t0) & (fine <= t1)
         outcrop[inside] = (v0 + (v1 - v0) * x * x * (3 - 2 * x))[inside]
-    share = lambda t, v: abs(np.trapz(v * np.exp(-2j * np.pi * frequency * t), t))  # noqa: E731
+    share = lambda t, v: abs(trapezoid(v * np.exp(-2j * np.pi * frequency * t), t))  # noqa: E731
     return share(t, v) / share(fine, outcrop)
 
 
