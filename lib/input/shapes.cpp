@@ -6,6 +6,7 @@
 
 #include "input/cut_cells.hpp"
 #include "input/groups.hpp"
+#include "input/height_surface.hpp"
 #include "input/region.hpp"
 
 namespace mpm {
@@ -67,16 +68,46 @@ struct Sites {
   }
 };
 
+/// From where to where a layer lies at the middle of each column of sites [m], taken once for all levels.
+class LayerColumns {
+ public:
+  /// Holds all sites of shapes that are no layers, and of cells that lie wholly in one.
+  LayerColumns(const Shape& shape, int dim, const Sites& sites, double slack) : sites_(sites), up_(dim - 1) {
+    if (shape.kind != ShapeKind::layer || shape.fill == Fill::cell) return;
+    for (long j = sites.first[1]; j < (dim == 3 ? sites.last[1] : sites.first[1] + 1); ++j)
+      for (long i = sites.first[0]; i < sites.last[0]; ++i) {
+        const Vec3 x = sites.corner(i, j, 0, dim);
+        const double y = dim == 3 ? x[1] + sites.edge / 2 : 0;
+        columns_.push_back({shape.base->at(x[0] + sites.edge / 2, y) - slack,
+                            shape.top->at(x[0] + sites.edge / 2, y) + slack});
+      }
+  }
+  bool may_hold(long i, long j, double height) const {
+    if (columns_.empty()) return true;
+    const long row = up_ == 2 ? (j - sites_.first[1]) * (sites_.last[0] - sites_.first[0]) : 0;
+    const auto& [low, high] = columns_[row + i - sites_.first[0]];
+    return height >= low && height <= high;
+  }
+
+ private:
+  const Sites& sites_;
+  int up_;
+  std::vector<std::array<double, 2>> columns_;
+};
+
 /// Calls visit(i, j, k) for each filled site, x fastest, until it returns true; returns whether it did.
 template <class Visit>
 bool any_site(const Shape& shape, const MeshConfig& mesh, int dim, const Sites& sites, Visit&& visit) {
   Region region(shape, dim, k_slack * mesh.spacing);
+  const LayerColumns layer(shape, dim, sites, 2 * k_slack * mesh.spacing);
   for (long k = sites.first[2]; k < sites.last[2]; ++k)
     for (long j = sites.first[1]; j < sites.last[1]; ++j) {
       const Vec3 row = sites.corner(0, j, k, dim);
       region.enter_row(row[dim - 1], row[dim - 1] + sites.edge);
       const auto [from, to] = sites.range(region.span(row[1], row[1] + sites.edge));
+      const double height = row[dim - 1] + sites.edge / 2;
       for (long i = from; i < to; ++i) {
+        if (!layer.may_hold(i, j, height)) continue;
         Vec3 x = sites.corner(i, j, k, dim);
         bool filled;
         if (shape.fill == Fill::cell) {
