@@ -6,6 +6,7 @@
 #include "physics/ring_domain.hpp"
 #include "physics/walls.hpp"
 #include "rebuild/batches.hpp"
+#include "rebuild/limit_volumes.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
@@ -141,6 +142,7 @@ void locate(State<Space, T, Dim>& s) {
   const bool removes = s.strays.rule == StrayRule::remove;
   const double spacing = s.spacing;
   const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
+  const auto start_volume = s.strays.start_volume;
   Kokkos::parallel_for(
       "mpm::locate_soil", Kokkos::RangePolicy<Space>(s.space, 0, soil.count), KOKKOS_LAMBDA(int p) {
         const int cell = soil.cell(p);
@@ -160,7 +162,10 @@ void locate(State<Space, T, Dim>& s) {
           c[d] -= passed;
         }
         const T size = bounded_volume(soil, p, T(spacing));
-        bool leaves = removes && (is_alone(alone, cell) || size <= least || size >= most);
+        const VolumeBounds<T> own = own_volume_bounds(start_volume, soil, p);
+        const bool limited =
+            size <= least || size >= most || soil.volume(p) <= own.least || soil.volume(p) >= own.most;
+        bool leaves = removes && (is_alone(alone, cell) || limited);
         leaves = leaves || !grid.holds(c);
         soil.coordinate(p) = x;
         address(p) = leaves ? -1 : grid.address_of(c, grid.field_of(number(cell / Patch<Dim>::cells)));

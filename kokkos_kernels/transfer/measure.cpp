@@ -3,6 +3,7 @@
 #include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
 #include "physics/pore_water.hpp"
+#include "rebuild/limit_volumes.hpp"
 #include "transfer/positions.hpp"
 
 namespace mpm {
@@ -99,6 +100,7 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
   const int count = soil.count;
   const auto alone = s.strays.alone;
   const T least = static_cast<T>(s.strays.least_volume), most = static_cast<T>(s.strays.most_volume);
+  const auto start_volume = s.strays.start_volume;
   const auto water = s.water;
   const auto density = s.density;
   Sum<Dim> total;
@@ -124,7 +126,9 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
           if (water.is_there()) own.m.water_energy += water_energy(soil, water, density, position, p);
           own.m.alone += is_alone(alone, soil.cell(p));
           const T size = bounded_volume(soil, p, T(position.spacing));
-          own.m.limited += size <= least || size >= most;
+          const VolumeBounds<T> bounds = own_volume_bounds(start_volume, soil, p);
+          own.m.limited += size <= least || size >= most || soil.volume(p) <= bounds.least ||
+                           soil.volume(p) >= bounds.most;
           if (soil.has_domain) own.m.stretched += is_longest(soil.domain(p));
           ++own.m.count;
         }

@@ -349,6 +349,9 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.soil.points.least_half_length = static_cast<T>(least_half_length);
   if (s.soil.points.splits) smallest *= k_least_piece, s.mass_cut *= k_least_piece;
   s.strays.least_volume = k_least_volume * smallest, s.strays.most_volume = k_most_volume * largest;
+  const bool alike = smallest == largest && !s.soil.points.splits;
+  fill_view(s.strays.start_volume, "mpm::start_volume", alike ? 0 : static_cast<int>(bodies.size()),
+            [&](int b) { return bodies[b].weighed ? 1 / bodies[b].density : 0; });
   s.strays.lost.assign(bodies.size(), {});
   s.strays.put_back = decltype(s.strays.put_back)("mpm::put_back", bodies.size());
   s.rigid_moves = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.shear_fraction = s.has_friction =

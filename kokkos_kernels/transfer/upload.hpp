@@ -46,6 +46,7 @@ struct BodyInput {
   double particle_mass = 0;          // kg; 0: density times particle_volume
   double half_length = 0.25;         // cells
   double density = 0;                // kg/m3
+  bool weighed = false;              // each particle's mass is the density times its volume at its creation
   double least_mass = 0;             // kg, where they differ in mass, of all ranks; else 0
   std::array<double, 3> velocity{};  // m/s
   int material = 0;

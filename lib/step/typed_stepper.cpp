@@ -6,6 +6,7 @@
 #include "input/courant.hpp"
 #include "input/shapes.hpp"
 #include "physics/materials/any.hpp"
+#include "rebuild/limit_volumes.hpp"
 #include "step/bytes_moved.hpp"
 #include "step/follow_soil.hpp"
 #include "step/load_input.hpp"
@@ -75,6 +76,7 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   in.particle_volume = particles.particle_volume;
   in.half_length = particles.spacing / config.mesh.spacing / 2;
   in.density = density_of(config, body);
+  in.weighed = body.shape.kind != ShapeKind::particles;
   in.velocity = body.velocity;
   in.particle_velocity = std::move(particles.velocity);
   in.volume = std::move(particles.volume), in.mass = std::move(particles.mass);
@@ -299,6 +301,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild(double elapsed, Failure* fai
   PetscErrorCode failed = PETSC_SUCCESS;
   const auto work = [&] {
     const BeyondMask<Space> beyond = mark_beyond();
+    limit_volumes(state_);
     failed = mpm::follow_soil(state_);
     locate(state_);
     control = read_control(state_);

@@ -6,6 +6,7 @@
 #include "common/collectives.hpp"
 #include "common/text.hpp"
 #include "data/memory_of.hpp"
+#include "rebuild/limit_volumes.hpp"
 #include "step/follow_soil.hpp"
 #include "step/typed_stepper.hpp"
 
@@ -111,6 +112,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(double elapsed, Fai
   PetscCall(gather_sides(&sides));
   const auto work = [&] {
     const BeyondMask<Space> beyond = mark_beyond();
+    limit_volumes(state_);
     failed = mpm::follow_soil(state_, ranks_.get());
     locate(state_);
     const Control control = read_control(state_);

@@ -5,6 +5,7 @@
 
 #include "compare.hpp"
 #include "functions/wall_force.hpp"
+#include "rebuild/limit_volumes.hpp"
 #include "transfer/measure.hpp"
 
 using namespace mpm;
@@ -260,6 +261,47 @@ TEST_CASE("a volume beyond its bounds is limited, or a fault where strays stop t
         if (rule != StrayRule::stop) continue;
         CHECK(control.fault.kind == FaultKind::volume);
         CHECK(control.fault.particle == swollen);
+      }
+  });
+}
+
+TEST_CASE("the volume of a small particle among large ones is limited by its own mass", "[walls]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    for (const bool weighed : {true, false})  // a file's masses and volumes are its own
+      for (const StrayRule rule : {StrayRule::keep, StrayRule::stop}) {
+        INFO(build.name() << (weighed ? " shape" : " file") << (rule == StrayRule::stop ? " stop" : " keep"));
+        Cloud cloud;
+        cloud.grid = grid_of<B::dim>({8, 8, 8}, k_edge, Wall::roller);
+        cloud.materials = clays();
+        BodyInput body = body_of<B::dim>(lattice<B::dim>({2, 2, 2}, {5, 5, 5}, 2, k_edge), 2, k_edge, 1);
+        const int count = static_cast<int>(body.position.size()) / B::dim;
+        const int swollen = count / 2, pressed = swollen + 1;
+        body.volume.assign(count, body.particle_volume);
+        body.least_volume = body.particle_volume / 64, body.most_volume = body.particle_volume;
+        for (const int p : {swollen, pressed}) body.volume[p] = body.least_volume;
+        for (const double v : body.volume) body.mass.push_back(body.density * v);
+        body.least_mass = body.density * body.least_volume;
+        body.weighed = weighed;
+        body.volume[swollen] *= 40, body.volume[pressed] /= 40;
+        const std::vector<double> before = body.volume;
+        cloud.bodies = {body};
+        auto s = state_of<B>(cloud);
+        s.strays.rule = rule;
+        limit_volumes(s);
+        const std::vector<double> volume = download_soil(s).volume;
+        const double own = body.least_volume;
+        for (int p = 0; p < count; ++p) {
+          const double expected = !weighed       ? before[p]
+                                  : p == swollen ? k_most_volume * own
+                                  : p == pressed ? k_least_volume * own
+                                                 : before[p];
+          CHECK(std::fabs(volume[p] / expected - 1) < 1e-6);
+        }
+        CHECK((measure(s, 0).limited >= 2) == weighed);
+        const Control control = read_control(s);
+        CHECK((control.fault_count == 2) == (weighed && rule == StrayRule::stop));
+        if (control.fault_count > 0) CHECK(control.fault.kind == FaultKind::volume);
       }
   });
 }
