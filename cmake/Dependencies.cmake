@@ -33,9 +33,9 @@ function(mpm_kokkos_sources target)
   set_source_files_properties(${ARGN} PROPERTIES LANGUAGE ${MPM_KOKKOS_LANGUAGE})
 endfunction()
 
-# The same for a group of sources. nvcc, which takes 20 s to read Kokkos' headers, compiles them as one file, <target>_<group>.cpp in
-# the build folder (CMake has no UNITY_BUILD for CUDA before 3.31); other compilers compile them one by one.
-# Sources of a group must not define the same name in unnamed namespaces.
+# The same for a group of sources. nvcc takes 20 s to read Kokkos' headers; it compiles the group as one file,
+# <target>_<group>.cpp in the build folder. (UNITY_BUILD of CMake 3.25 does not know CUDA.) Other compilers compile each source.
+# No two sources of a group may define the same name in unnamed namespaces.
 function(mpm_kokkos_group target group)
   if(NOT MPM_KOKKOS_LANGUAGE STREQUAL CUDA)
     mpm_kokkos_sources(${target} ${ARGN})

@@ -17,9 +17,9 @@ struct Lost {
   double corrected = 0, raised = 0;  // J, kinetic and of height: what the position correction has added
 };
 
-/// Least and most volume of a particle, of its own at the start (limit_volumes), and in each step of that of
-/// the smallest and of the largest particle. A particle of twice its volume is as stiff as two with half its
-/// mass: beyond it the time step is not stable any more.
+/// Least and most volume of a particle over a volume at the start: in each step over that of the smallest and
+/// that of the largest particle, at a rebuild over the particle's own (limit_volumes). A particle of twice
+/// its volume is as stiff as two with half its mass: beyond it the time step is not stable any more.
 inline constexpr double k_least_volume = 0.2, k_most_volume = 2;
 
 /// Whether the particles of a cell, by its number, are alone. alone: Strays::alone
@@ -39,7 +39,7 @@ struct Strays {
   Kokkos::View<int*, Memory> put_back;         // by body: particles that were put back at a wall
   double least_volume = 0, most_volume = 0;    // m3, of any particle
   /// By body: a particle's volume over its mass at the start [m3/kg], 0 where a file gave both. Of extent 0
-  /// where the bounds of any particle are those of each.
+  /// where all particles have the same volume at the start and do not split.
   Kokkos::View<double*, Memory> start_volume;
   std::vector<Lost> lost;  // by body
 };

@@ -1,7 +1,8 @@
 #pragma once
-// Domains follow the soil (-particle_domain stretch) between steps, at rebuilds and after so many steps without
-// one, from where particles were the last time to where they are:
-//   1. sum_drift        CentreSource, ResidualSource: of the soil at each node the centre of mass, and its way
+// Domains follow the soil (-particle_domain stretch) between steps, at rebuilds and after so many steps
+// without one, from where particles were the last time to where they are:
+//   1. sum_drift        CentreSource, ResidualSource: of the soil at each node the centre of mass, and its
+//   way
 //   2. stretch_domains  the deformation gradient of each particle by least squares over its nodes; its domain
 //   3. begin_domains    once the lists are made: the places from which the next way counts
 // The first two need the lists and nodes of before the rebuild.
@@ -11,8 +12,8 @@
 
 namespace mpm {
 
-/// Sums of this rank's soil to s.nodes.centre and s.nodes.drift, by the run's strategy. The field `begun` of
-/// the soil then holds its way [cells] until begin_domains().
+/// Sums of this rank's soil to s.nodes.centre and s.nodes.drift, by the run's strategy. Until
+/// begin_domains() the field `begun` of the soil is the way of each particle [cells].
 template <class Space, class T, int Dim>
 void sum_drift(State<Space, T, Dim>& s);
 

@@ -18,8 +18,9 @@ template <int Dim>
 struct ColumnSum {
   using C = ColumnTerms<Dim>;
   static constexpr int mass = 0, stiffness = 1, inertia = stiffness + C::matrix, pull = inertia + C::matrix,
-                       volume = pull + C::matrix, dilatation = volume + 1, pressed = dilatation + k_rows_reached,
-                       pressing = pressed + k_rows_reached, size = pressing + k_rows_reached;
+                       volume = pull + C::matrix, dilatation = volume + 1,
+                       pressed = dilatation + k_rows_reached, pressing = pressed + k_rows_reached,
+                       size = pressing + k_rows_reached;
 };
 
 /// The rows of a column while it is made from sums.

@@ -119,8 +119,8 @@ struct AffineSource : SoilSource<Space_, T, Dim, domain_> {
   }
 };
 
-/// Any vector of the particles to nodes with their masses: sum S m_p r_p. XPIC sends what is left of their
-/// velocities, domains that follow the soil send its way.
+/// Any vector r_p of the particles to nodes, by mass: sum S m_p r_p. For XPIC it is what is left of the
+/// velocity [m/s], for follow_soil() the way of the particle [cells].
 template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
 struct ResidualSource {
   using Space = Space_;

@@ -1,7 +1,7 @@
 #pragma once
-// Bounds of the volume of a particle by its own mass. The step keeps volumes within those of any particle
-// (advance); where particles are unequal, as parts of cells and pieces are, a small one could grow there far
-// beyond its own, and its stress would throw it about.
+// Bounds of the volume of a particle by its own mass. The bounds of a step (advance) come from the smallest
+// and the largest particle of the run. Parts of cells and split particles are smaller: within the bounds of a
+// step such a particle could grow to many times its volume, and its stress would throw it about.
 
 #include "data/state.hpp"
 
@@ -24,8 +24,8 @@ KOKKOS_INLINE_FUNCTION VolumeBounds<T> own_volume_bounds(const Start& start_volu
   return {static_cast<T>(k_least_volume * start), static_cast<T>(k_most_volume * start)};
 }
 
-/// Brings volumes within their own bounds, before the particles' new places are found; does nothing where the
-/// bounds of any particle are those of each. With StrayRule::stop one that was beyond them is a fault.
+/// Brings volumes within own_volume_bounds() at a rebuild, before locate(); does nothing where
+/// Strays::start_volume is not in use. With StrayRule::stop a volume that was beyond them is a fault.
 template <class Space, class T, int Dim>
 void limit_volumes(State<Space, T, Dim>& s);
 

@@ -13,11 +13,7 @@ constexpr double k_tiny = 1.0 / 32, k_nothing = 1e-3;  // of a cell: a small par
 }  // namespace
 
 CutCells::CutCells(const Facets& facets, const CellGrid& grid)
-    : facets_(facets),
-      grid_(grid),
-      level_(grid.first[2]),
-      below_(grid.columns()),
-      listed_(grid.columns()) {
+    : facets_(facets), grid_(grid), level_(grid.first[2]), below_(grid.columns()), listed_(grid.columns()) {
   const long levels = grid.last[2] - grid.first[2];
   std::vector<long> lowest(facets.size());
   begin_.assign(levels + 2, 0);

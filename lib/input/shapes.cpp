@@ -68,10 +68,11 @@ struct Sites {
   }
 };
 
-/// From where to where a layer lies at the middle of each column of sites [m], taken once for all levels.
+/// The base and the top of a layer at the middle of each column of sites [m]: evaluated once, not at every
+/// level.
 class LayerColumns {
  public:
-  /// Holds all sites of shapes that are no layers, and of cells that lie wholly in one.
+  /// For a shape that is no layer, and for Fill::cell, every site may be filled.
   LayerColumns(const Shape& shape, int dim, const Sites& sites, double slack) : sites_(sites), up_(dim - 1) {
     if (shape.kind != ShapeKind::layer || shape.fill == Fill::cell) return;
     for (long j = sites.first[1]; j < (dim == 3 ? sites.last[1] : sites.first[1] + 1); ++j)
