@@ -140,7 +140,7 @@ void sum_drift(State<Space, T, Dim>& s) {
       KOKKOS_LAMBDA(int p) {
         for (int d = 0; d < Dim; ++d) soil.begun(p)[d] = soil.coordinate(p)[d] - soil.begun(p)[d];
       });
-  sum_at_home(s, StretchedResidualSource<Space, T, Dim>{soil, soil.begun}, s.nodes.drift);
+  sum_at_home(s, ResidualSource<Space, T, Dim>{soil, soil.begun}, s.nodes.drift);
 }
 
 template <class Space, class T, int Dim>

@@ -100,7 +100,8 @@ struct PressOnWalls {
   using Source = SoilSource<Space, T, Dim, domain>;
   Source source;
   NearWalls<Space, T, Dim> walls;
-  DisplacedSource<Space, T, Dim, domain> displaced;  // in use where there is water
+  DisplacedSource<Space, T, Dim, domain == ParticleDomain::ring ? domain : ParticleDomain::stretch>
+      displaced;  // in use where there is water
   Vector<double, Dim> g;
 
   struct Terms {

@@ -15,7 +15,6 @@ Interpolation<Source> interpolation_of(const State<Space, T, Dim>& s, const Bins
                             std::is_same_v<Source, StretchedBoundarySource<Space, T, Dim>> ||
                             std::is_same_v<Source, RingBoundarySource<Space, T, Dim>>;
   constexpr bool strength = std::is_same_v<Source, StrengthSource<Space, T, Dim>> ||
-                            std::is_same_v<Source, StretchedStrengthSource<Space, T, Dim>> ||
                             std::is_same_v<Source, RingStrengthSource<Space, T, Dim>>;
   constexpr bool load = std::is_same_v<Source, LoadSource<Space, T, Dim>>;
   constexpr bool rigid = std::is_same_v<Source, RigidSource<Space, T, Dim>>;

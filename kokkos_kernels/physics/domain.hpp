@@ -78,6 +78,16 @@ KOKKOS_INLINE_FUNCTION HalfLengths<T, Dim> any_domain_of(const Soil<Space, T, Di
   return half;
 }
 
+/// As domain_of, for kernels that are the same for domains that are fixed and that stretch: those are `stretch`.
+template <ParticleDomain domain, class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION DomainOf<T, Dim, domain> box_or_ring_of(const Soil<Space, T, Dim>& soil, int p,
+                                                               const BodyProperties<T>& of) {
+  if constexpr (domain == ParticleDomain::ring)
+    return domain_of<domain>(soil, p, of);
+  else
+    return any_domain_of(soil, p);
+}
+
 /// Calls f(domain of particle p), likewise.
 template <class Space, class T, int Dim, class F>
 KOKKOS_INLINE_FUNCTION void with_any_domain(const Soil<Space, T, Dim>& soil, int p, F&& f) {
@@ -86,7 +96,14 @@ KOKKOS_INLINE_FUNCTION void with_any_domain(const Soil<Space, T, Dim>& soil, int
   f(any_domain_of(soil, p));
 }
 
-/// Calls f(domain), the domain as std::integral_constant, by what the soil has.
+/// Calls f(domain), the domain as std::integral_constant, for kernels that call box_or_ring_of.
+template <class Space, class T, int Dim, class F>
+void with_box_or_ring(const Soil<Space, T, Dim>& soil, F&& f) {
+  if constexpr (Dim == 2)
+    if (soil.rings) return f(std::integral_constant<ParticleDomain, ParticleDomain::ring>{});
+  f(std::integral_constant<ParticleDomain, ParticleDomain::stretch>{});
+}
+/// The same by what the soil has.
 template <class Space, class T, int Dim, class F>
 void with_domain(const Soil<Space, T, Dim>& soil, F&& f) {
   if constexpr (Dim == 2)

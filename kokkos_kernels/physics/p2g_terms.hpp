@@ -121,7 +121,7 @@ struct AffineSource : SoilSource<Space_, T, Dim, domain_> {
 
 /// Any vector r_p of the particles to nodes, by mass: sum S m_p r_p. For XPIC it is what is left of the
 /// velocity [m/s], for follow_soil() the way of the particle [cells].
-template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::stretch>
 struct ResidualSource {
   using Space = Space_;
   using real = T;
@@ -138,7 +138,7 @@ struct ResidualSource {
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     const BodyProperties<T> body = points.properties(p);
-    Point q{domain_of<domain_>(points, p, body), {}};
+    Point q{box_or_ring_of<domain_>(points, p, body), {}};
     for (int d = 0; d < Dim; ++d) q.momentum[d] = body.mass * residual(p)[d];
     return q;
   }
@@ -150,15 +150,15 @@ struct ResidualSource {
 
 /// Any Dim values of the particles to nodes, each a scalar: sum S q_p. Walls turn none of them, so that their
 /// sum over the nodes is that over the particles.
-template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
+template <class Space_, class T, int Dim>
 struct ShareSource {
   using Space = Space_;
   using real = T;
-  static constexpr ParticleDomain domain = domain_;
+  static constexpr ParticleDomain domain = ParticleDomain::stretch;
   static constexpr int dim = Dim, size = Dim;
   static constexpr Kind kind = Kind::geometry;
   struct Point {
-    DomainOf<T, Dim, domain_> half_length;
+    HalfLengths<T, Dim> half_length;
     T value[Dim];
   };
   Soil<Space, T, Dim> points;
@@ -166,7 +166,7 @@ struct ShareSource {
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    Point q{domain_of<domain_>(points, p, points.bodies(points.body(p))), {}};
+    Point q{any_domain_of(points, p), {}};
     for (int d = 0; d < Dim; ++d) q.value[d] = values(p)[d];
     return q;
   }
@@ -211,7 +211,7 @@ struct BoundarySource {
 };
 
 /// The soil's strength at a node, sum S V_p s_p, and its volume, sum S V_p.
-template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::stretch>
 struct StrengthSource {
   using Space = Space_;
   using real = T;
@@ -234,7 +234,7 @@ struct StrengthSource {
     material_in(points.materials(body.material)).visit([&](const auto& law) {
       strength = law.shear_strength(points.state_of(law, p));
     });
-    return {domain_of<domain_>(points, p, body), volume * strength, volume};
+    return {box_or_ring_of<domain_>(points, p, body), volume * strength, volume};
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
@@ -247,7 +247,7 @@ struct StrengthSource {
 /// The mass of the water that the soil displaces, sum S rho_w m_p / rho below the level [kg]. rho is the
 /// density that the soil began with: when its pores change their volume, water comes and goes, and the weight
 /// of the grains under water stays.
-template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::stretch>
 struct DisplacedSource {
   using Space = Space_;
   using real = T;
@@ -272,7 +272,7 @@ struct DisplacedSource {
     Vector<double, Dim> x;
     for (int d = 0; d < Dim; ++d)
       x[d] = (double(from[d]) + in[d] + double(points.coordinate(p)[d])) * spacing;
-    const auto half_length = domain_of<domain_>(points, p, body);
+    const auto half_length = box_or_ring_of<domain_>(points, p, body);
     Vector<double, Dim> half;  // m
     for (int d = 0; d < Dim; ++d) half[d] = double(half_length[d].l) * spacing;
     const double share = water.submerged_share(x, half);
@@ -449,15 +449,7 @@ using StretchedSoilSource = SoilSource<Space, T, Dim, ParticleDomain::stretch>;
 template <class Space, class T, int Dim>
 using StretchedAffineSource = AffineSource<Space, T, Dim, ParticleDomain::stretch>;
 template <class Space, class T, int Dim>
-using StretchedResidualSource = ResidualSource<Space, T, Dim, ParticleDomain::stretch>;
-template <class Space, class T, int Dim>
-using StretchedShareSource = ShareSource<Space, T, Dim, ParticleDomain::stretch>;
-template <class Space, class T, int Dim>
 using StretchedBoundarySource = BoundarySource<Space, T, Dim, ParticleDomain::stretch>;
-template <class Space, class T, int Dim>
-using StretchedStrengthSource = StrengthSource<Space, T, Dim, ParticleDomain::stretch>;
-template <class Space, class T, int Dim>
-using StretchedDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::stretch>;
 
 /// The sources of soil that is revolved about the axis.
 template <class Space, class T, int Dim>
@@ -495,11 +487,7 @@ using RingDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::ring>
   X(RigidSource, Space, T, Dim)               \
   X(StretchedSoilSource, Space, T, Dim)       \
   X(StretchedAffineSource, Space, T, Dim)     \
-  X(StretchedResidualSource, Space, T, Dim)   \
-  X(StretchedShareSource, Space, T, Dim)      \
   X(StretchedBoundarySource, Space, T, Dim)   \
-  X(StretchedStrengthSource, Space, T, Dim)   \
-  X(StretchedDisplacedSource, Space, T, Dim)  \
   MPM_FOR_EACH_RING_SOURCE_##Dim(X, Space, T)
 
 }  // namespace mpm

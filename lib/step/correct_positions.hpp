@@ -20,11 +20,11 @@ void volume_to_nodes(const State<Space, T, Dim>& s, const FillField<Space, T, Di
 }
 
 /// The particles' shares to the nodes, of this rank.
-template <ParticleDomain domain, class Space, class T, int Dim>
+template <class Space, class T, int Dim>
 void shares_to_nodes(const State<Space, T, Dim>& s) {
   Kokkos::deep_copy(s.space, s.nodes.shares, T(0));
-  interpolate<ShareSource<Space, T, Dim, domain>>(s, s.p2g.strategy, s.soil.bins,
-                                                  {s.soil.points, shares_of(s)}, s.nodes.shares);
+  interpolate<ShareSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, {s.soil.points, shares_of(s)},
+                                          s.nodes.shares);
 }
 
 template <ParticleDomain domain, class Space, class T, int Dim>
@@ -38,7 +38,7 @@ PetscErrorCode correct_positions_for(State<Space, T, Dim>& s, double elapsed,
   if (ranks) PetscCall(ranks->add_nodes(s, fill.data(), FillTerms<Dim>::size));
   compare_volumes(s, fill);
   find_shifts(s, fill, elapsed);
-  shares_to_nodes<domain>(s);
+  shares_to_nodes(s);
   if (ranks) PetscCall(ranks->add_nodes(s, s.nodes.shares.data(), Dim));
   apply_shifts(s);
   PetscFunctionReturn(PETSC_SUCCESS);

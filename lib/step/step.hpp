@@ -77,7 +77,7 @@ void buoyancy_to_nodes(State<Space, T, Dim>& s) {
   if (!s.water.is_there()) return;
   if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.displaced, T(0));
   for_all_soil(s, [&](const auto& set) {
-    with_domain(set.points, [&](auto domain) {
+    with_box_or_ring(set.points, [&](auto domain) {
       interpolate<DisplacedSource<Space, T, Dim, domain()>>(
           s, s.p2g.strategy, set.bins, {set.points, s.water, s.density, s.patches.origin, s.spacing},
           s.nodes.displaced);
@@ -103,7 +103,7 @@ PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T
   PetscFunctionBeginUser;
   if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.strength, T(0));
   for_all_soil(s, [&](const auto& set) {
-    with_domain(set.points, [&](auto domain) {
+    with_box_or_ring(set.points, [&](auto domain) {
       interpolate<StrengthSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, set.bins,
                                                            {set.points, s.near_rigid}, s.nodes.strength);
     });
@@ -129,7 +129,7 @@ PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T
   for (int pass = 0; pass < s.xpic_order; ++pass) {
     if (pass > 0) {
       Kokkos::deep_copy(s.space, s.nodes.residual, T(0));
-      with_domain(s.soil.points, [&](auto domain) {
+      with_box_or_ring(s.soil.points, [&](auto domain) {
         interpolate<ResidualSource<Space, T, Dim, domain()>>(
             s, s.p2g.strategy, s.soil.bins, {s.soil.points, residual_of(s)}, s.nodes.residual);
       });
