@@ -13,8 +13,8 @@ if(MPM_KOKKOS_LANGUAGE STREQUAL CUDA)
   set(CMAKE_CUDA_ARCHITECTURES ${Kokkos_CUDA_ARCHITECTURES})
   set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
   enable_language(CUDA)
-  # nvcc's -O is for the processor's code alone. Most of that launches kernels, and -O3 takes twice the time over it.
-  string(REPLACE "-O3" "-O1" CMAKE_CUDA_FLAGS_RELEASE "${CMAKE_CUDA_FLAGS_RELEASE}")
+  # nvcc's -O is for the code of the processor alone, and each source has its own.
+  string(REPLACE "-O3" "" CMAKE_CUDA_FLAGS_RELEASE "${CMAKE_CUDA_FLAGS_RELEASE}")
   if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake before 3.25.2 does not know nvcc's C++20
     set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
     list(APPEND CMAKE_CUDA_COMPILE_FEATURES cuda_std_20)
@@ -29,15 +29,19 @@ if(Kokkos_ENABLE_CUDA AND Kokkos_VERSION VERSION_LESS 4.7.02 AND IMPL_MDSPAN IN_
     "or build it with -DKokkos_ENABLE_IMPL_MDSPAN=OFF")
 endif()
 
-# Adds sources that include Kokkos to a target.
+# Adds sources that include Kokkos to a target, with the loops of a step.
 function(mpm_kokkos_sources target)
   target_sources(${target} PRIVATE ${ARGN})
   set_source_files_properties(${ARGN} PROPERTIES LANGUAGE ${MPM_KOKKOS_LANGUAGE})
+  if(MPM_KOKKOS_LANGUAGE STREQUAL CUDA)
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O3>")
+  endif()
 endfunction()
 
-# The same for a group of sources. nvcc takes 20 s to read Kokkos' headers; it compiles the group as one file,
-# <target>_<group>.cpp in the build folder. (UNITY_BUILD of CMake 3.25 does not know CUDA.) Other compilers compile each source.
-# No two sources of a group may define the same name in unnamed namespaces.
+# The same for a group of sources that take little of a step. nvcc takes 20 s to read Kokkos' headers; it compiles the group as one
+# file, <target>_<group>.cpp in the build folder. (UNITY_BUILD of CMake 3.25 does not know CUDA.) Other compilers compile each
+# source. No two sources of a group may define the same name in unnamed namespaces.
+# What the host compiler then gets is nearly all code that launches kernels; -O3 would take over twice as long as -Og.
 function(mpm_kokkos_group target group)
   if(NOT MPM_KOKKOS_LANGUAGE STREQUAL CUDA)
     mpm_kokkos_sources(${target} ${ARGN})
@@ -50,6 +54,7 @@ function(mpm_kokkos_group target group)
   set(together ${CMAKE_CURRENT_BINARY_DIR}/${target}_${group}.cpp)
   file(CONFIGURE OUTPUT ${together} CONTENT "${text}" @ONLY)
   mpm_kokkos_sources(${target} ${together})
+  set_source_files_properties(${together} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-Xcompiler=-Og>")
 endfunction()
 
 find_package(MPI REQUIRED COMPONENTS C)

@@ -7,10 +7,12 @@ namespace mpm {
 template <class Source>
 KOKKOS_INLINE_FUNCTION auto half_length_of(const Source& source, int p) {
   const auto& points = source.points;
-  if constexpr (requires { points.bodies; })
-    return domain_of<Source::domain>(points, p, points.bodies(points.body(p)));
-  else
+  if constexpr (!requires { points.bodies; })
     return points.half_length;
+  else if constexpr (Source::domain == ParticleDomain::fixed)
+    return points.bodies(points.body(p)).half_length;
+  else
+    return box_or_ring_of<Source::domain>(points, p, points.bodies(points.body(p)));
 }
 
 /// Sums the terms of the particles in the list of a node, and in those of its images beyond walls. Periodic:

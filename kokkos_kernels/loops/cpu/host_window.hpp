@@ -216,10 +216,14 @@ KOKKOS_FORCEINLINE_FUNCTION DomainOf<R, Dim, domain> domains_of(const Points_& p
     for (int l = 0; l < R::k_count; ++l)
       ring.axis_x.set(l, axis_of<typename R::real>(points, points.cell(p + Kokkos::min(l, count - 1))));
     return ring;
-  } else {
+  } else if (points.has_domain) {
     Vector<R, Dim> length;
     load_field(points.half_length, p, count, length.c);
     return with_inverses<typename R::real>(length);
+  } else {  // as box_or_ring_of
+    HalfLengths<R, Dim> half;
+    for (int d = 0; d < Dim; ++d) half[d] = bodies.half_length;
+    return half;
   }
 }
 
