@@ -7,6 +7,8 @@ strain here, so $Y$ follows the particle however much the column has been compre
 ($M = \\lambda + 2G$, strains of 0.15 %) must settle by $\\rho g H^2 / 2M$ at its top, with
 $\\sigma_h/\\sigma_v = \\nu/(1-\\nu)$, in 2D and 3D; the finite strain adds 0.05 % to this. At strains of order 1
 particles of a fixed size overlap, and the order falls below one; with `-particle_domain stretch` it does not, at 33 % and at 60 %.
+FLIP keeps velocities that the nodes do not see, and with them the error of one run at 60 % scatters by a third as the time step is
+chosen; XPIC does not keep them.
 """
 
 import numpy as np
@@ -20,11 +22,11 @@ CELLS = (10, 20, 40, 80)
 PRESSED = " -soil_young 1e5 -time_end 120 -output_interval 120"
 STRETCH = " -particle_domain stretch"
 # At 60 % no particle may be pressed further than that on the way, where its domain has its least half length.
+SOFTEST = " -soil_young 4.365e4 -damping 0.98 -time_end 300 -output_interval 300" + STRETCH
 SOFT = {"4 %": ("4", ""), "33 %": ("33", PRESSED), "33 %, domains stretch": ("33_stretch", PRESSED + STRETCH),
-        "60 %, domains stretch": ("60_stretch", " -soil_young 4.365e4 -damping 0.98 -time_end 1200 -output_interval 1200" + STRETCH)}
+        "60 %, domains stretch": ("60_stretch", SOFTEST), "60 %, domains stretch, XPIC": ("60_xpic", SOFTEST + " -velocity_update xpic")}
 OVERLAP = "Particles keep their size: compressed by a third, they overlap, and the error is 1.8 % whatever the cells."
-ROUND_OFF = ("In single precision domains of soil at rest drift by round-off: with 80 cells the error is 0.26 %, in double precision "
-             "0.21 %.")
+NOISE = "By FLIP's noise the error with 80 cells is 0.21 to 0.30 % as the time step is chosen; XPIC has 0.18 %."
 STIFF, POISSON, WEIGHT, STIFF_HEIGHT = 1e8, 0.3, 2e4, 10.0
 
 
@@ -77,7 +79,7 @@ def check(runs):
     for strain, (name, _) in SOFT.items():
         errors = [stress_error(runs[f"{name}_{n}"]) for n in CELLS]
         single = runs[f"{name}_{CELLS[-1]}"].text("precision") == "single"
-        why = OVERLAP if strain == "33 %" else ROUND_OFF if single and strain.startswith("60 %") else ""
+        why = OVERLAP if strain == "33 %" else NOISE if single and strain == "60 %, domains stretch" else ""
         yield Row(f"order of the stress over {CELLS} cells, strain {strain}", -order(CELLS, errors), 1, 0.1,
                   "first order", at_least=True, shortfall=why, bound=1.05)
         yield Row(f"mean error of the stress over rho g H, {CELLS[-1]} cells, strain {strain}", errors[-1], 0, 0.01,
