@@ -29,7 +29,7 @@ ANSWERS = {  # cases on the GPU
     "site": ["k0_ground", "timed_loads", "stages", "staged_fill", "probes", "moving_side", "absorbing_side", "stiffness_field",
              "surface_loads", "sliding_side", "free_field"],
     "periodic": ["periodic", "periodic_flow", "periodic_slope", "oblique_wave"],
-    "domains": ["clay_column", "large_deformation", "energy", "energy_collapse", "even_flow", "vortex"],
+    "domains": ["clay_column", "large_deformation", "large_waves", "energy", "energy_collapse", "even_flow", "vortex"],
     "revolution": ["thick_cylinder", "cylinders", "circle", "deep_sphere_section", "circle_fine", "quarter"],
 }
 PROCESSOR_ANSWERS = {  # back ends, threads and runs at a time, cases: the longest first
