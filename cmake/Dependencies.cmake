@@ -29,7 +29,7 @@ if(Kokkos_ENABLE_CUDA AND Kokkos_VERSION VERSION_LESS 4.7.02 AND IMPL_MDSPAN IN_
     "or build it with -DKokkos_ENABLE_IMPL_MDSPAN=OFF")
 endif()
 
-# Adds sources that include Kokkos to a target, with the loops of a step.
+# Adds sources that include Kokkos to a target. Those that nvcc compiles get -O3: the processor runs a step's loops in them.
 function(mpm_kokkos_sources target)
   target_sources(${target} PRIVATE ${ARGN})
   set_source_files_properties(${ARGN} PROPERTIES LANGUAGE ${MPM_KOKKOS_LANGUAGE})
