@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "base/choices.hpp"
+#include "base/spaces.hpp"
 
 namespace mpm {
 
@@ -29,6 +30,12 @@ struct HalfLengths {
   KOKKOS_INLINE_FUNCTION HalfLength<T>& operator[](int d) { return axis[d]; }
   KOKKOS_INLINE_FUNCTION const HalfLength<T>& operator[](int d) const { return axis[d]; }
 };
+
+/// A half length of a domain that stretches, as it is kept [cells]: a number of single precision in every space,
+/// so that all compute with the same domains. On a device, where a step waits for memory, it takes no more
+/// room than that.
+template <class Space, class T>
+using StoredLength = std::conditional_t<is_device<Space>, float, T>;
 
 /// A square that is revolved about the axis: its half length [cells], and the axis as a coordinate in the
 /// frame of the particle's cell [cells].

@@ -68,7 +68,7 @@ struct Soil : Points<Space, T, Dim> {
   /// In use where has_domain (physics/domain.hpp): half lengths along the axes [cells], which a step reads,
   /// and what they come from: the moments of the domain [cells2], and the coordinate [cells] and the volume
   /// [m3] when these changed last. Between sum_drift() and begin_domains() `begun` is the way since then.
-  Kokkos::View<Vector<T, Dim>*, Memory> half_length;
+  Kokkos::View<Vector<StoredLength<Space, T>, Dim>*, Memory> half_length;
   Kokkos::View<DomainMoments<T, Dim>*, Memory> domain;
   Kokkos::View<Vector<T, Dim>*, Memory> begun;
   Kokkos::View<T*, Memory> begun_volume;

@@ -24,7 +24,7 @@ struct SurfaceLoads {
   Windows<Space> windows;  // of these slots
   // Of each particle's faces along one axis: their places and boxes, as those of particles, and forces [N].
   Kokkos::View<Vector<T, Dim>*, Memory> coordinate, force;
-  Kokkos::View<Vector<T, Dim>*, Memory> half_length;
+  Kokkos::View<Vector<StoredLength<Space, T>, Dim>*, Memory> half_length;
 
   bool in_use() const { return now.extent(0) > 0; }
 };

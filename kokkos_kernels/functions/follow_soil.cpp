@@ -100,7 +100,7 @@ struct StretchDomains {
     for (int i = 0; i < Dim; ++i)  // half of it once more
       for (int j = 0; j < Dim; ++j) f[i][j] = ((i == j) + f[i][j]) / 2;
     stretch_domain(m, f, Kokkos::sqrt(scale));
-    soil.half_length(p) = bounded_half_lengths(m, soil.least_half_length);
+    soil.half_length(p) = to_store<Space>(bounded_half_lengths(m, soil.least_half_length));
   }
 
  private:

@@ -83,7 +83,7 @@ struct PlaceFaces {
     if (const T row = Kokkos::round(at), beyond = side * (at - row); beyond > 0 && beyond < k_at_row<T>)
       at = row;
     box.half[axis] = k_thin<T>;
-    loads.coordinate(p) = box.centre, loads.half_length(p) = box.half;
+    loads.coordinate(p) = box.centre, loads.half_length(p) = to_store<Space>(box.half);
     for (int d = 0; d < Dim; ++d) loads.force(p)[d] = static_cast<T>(force[d]);
   }
 

@@ -22,13 +22,22 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> bounded_half_lengths(const DomainMoments<T
   return half;
 }
 
-/// Half lengths with their inverses. The quotient is of single precision, which costs less; Newton's step
-/// then makes the inverse that of l in T, for the weights rely on it. T: the type of the numbers in R.
-template <class T, class R, int Dim>
-KOKKOS_FORCEINLINE_FUNCTION HalfLengths<R, Dim> with_inverses(const Vector<R, Dim>& length) {
+/// The same as they are kept.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION Vector<StoredLength<Space, T>, Dim> to_store(const Vector<T, Dim>& half) {
+  Vector<StoredLength<Space, T>, Dim> stored;
+  for (int d = 0; d < Dim; ++d) stored[d] = static_cast<float>(half[d]);
+  return stored;
+}
+
+/// Half lengths with their inverses, as R computes with them: a real type, or lanes. The quotient is of single
+/// precision, which costs less; Newton's step then makes the inverse that of l, for the weights rely on it.
+template <class R, class Stored, int Dim>
+KOKKOS_FORCEINLINE_FUNCTION HalfLengths<R, Dim> with_inverses(const Vector<Stored, Dim>& length) {
+  using T = RealOf<R>;
   HalfLengths<R, Dim> half;
   for (int d = 0; d < Dim; ++d) {
-    half[d].l = length[d];
+    half[d].l = R(length[d]);
     half[d].inverse = to_real<R>(0.5f / to_single(length[d]));
     if constexpr (!std::is_same_v<T, float>) half[d].inverse *= T(2) - T(2) * half[d].l * half[d].inverse;
   }

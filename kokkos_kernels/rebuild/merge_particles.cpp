@@ -143,7 +143,7 @@ struct MergeInCell {
         for (int j = 0; j < Dim; ++j)
           soil.affine(p)(i, j) = T(a * soil.affine(p)(i, j) + b * soil.affine(q)(i, j));
     for (int k = 0; k < Dim * (Dim + 1) / 2; ++k) soil.domain(p)[k] = T(m[k]);
-    soil.half_length(p) = bounded_half_lengths(soil.domain(p), soil.least_half_length);
+    soil.half_length(p) = to_store<Space>(bounded_half_lengths(soil.domain(p), soil.least_half_length));
     soil.mass(p) = T(mass), soil.volume(p) = T(volume);
     address(q) = -1;
     return a * b * mass * square / 2;

@@ -94,7 +94,8 @@ struct Split {
         m[moment_index<Dim>(i, j)] -=
             T((length * length - half * half) * axis.direction[i] * axis.direction[j]);
     soil.domain(p) = soil.domain(other) = m;
-    soil.half_length(p) = soil.half_length(other) = bounded_half_lengths(m, soil.least_half_length);
+    soil.half_length(p) = soil.half_length(other) =
+        to_store<Space>(bounded_half_lengths(m, soil.least_half_length));
     soil.mass(p) = soil.mass(other) = soil.mass(p) / 2;
     soil.volume(p) = soil.volume(other) = soil.volume(p) / 2;
     for (int k = 0; k < soil.face_count; ++k) {

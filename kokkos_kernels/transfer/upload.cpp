@@ -183,7 +183,7 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
     });
     const auto domain = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), soil.domain);
     fill_view(soil.half_length, "mpm::half_length", soil.count,
-              [&](int p) { return bounded_half_lengths(domain(p), soil.least_half_length); });
+              [&](int p) { return to_store<Space>(bounded_half_lengths(domain(p), soil.least_half_length)); });
     fill_view(soil.begun, "mpm::begun", soil.count,
               [](int) { return filled<T, Dim>(0); });  // begin_domains()
     fill_view(soil.begun_volume, "mpm::begun_volume", soil.count, [](int) { return T(0); });

@@ -219,7 +219,7 @@ KOKKOS_FORCEINLINE_FUNCTION DomainOf<R, Dim, domain> domains_of(const Points_& p
   } else if (points.has_domain) {
     Vector<R, Dim> length;
     load_field(points.half_length, p, count, length.c);
-    return with_inverses<typename R::real>(length);
+    return with_inverses<R>(length);
   } else {  // as box_or_ring_of
     HalfLengths<R, Dim> half;
     for (int d = 0; d < Dim; ++d) half[d] = bodies.half_length;
