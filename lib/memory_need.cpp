@@ -37,7 +37,8 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   }
   columns += undrained;  // the excess pore pressure
   double a_particle = Footprint<T, Dim>::particle(columns);
-  if (config.particle_domain != ParticleDomain::fixed) a_particle += Footprint<T, Dim>::domain;
+  if (config.particle_domain != ParticleDomain::fixed)
+    a_particle += Footprint<T, Dim>::domain(config.backend == Backend::cuda);
   if (is_periodic(config.mesh)) a_particle += Footprint<T, Dim>::periods;
   if (!config.loads.empty()) a_particle += Footprint<T, Dim>::face;
   if (config.output.energy) a_particle += Footprint<T, Dim>::energy;

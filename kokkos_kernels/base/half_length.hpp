@@ -31,9 +31,9 @@ struct HalfLengths {
   KOKKOS_INLINE_FUNCTION const HalfLength<T>& operator[](int d) const { return axis[d]; }
 };
 
-/// A half length of a domain that stretches, as it is kept [cells]: a number of single precision in every space,
-/// so that all compute with the same domains. On a device, where a step waits for memory, it takes no more
-/// room than that.
+/// Type in memory of a half length [cells] of a domain that stretches. Its value is a number of single
+/// precision in every space (to_store), so that all spaces compute with the same domains. On a device, where
+/// memory limits a step, it takes 4 bytes; on a processor it has the type T, so that a step converts nothing.
 template <class Space, class T>
 using StoredLength = std::conditional_t<is_device<Space>, float, T>;
 

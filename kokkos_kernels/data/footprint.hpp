@@ -12,7 +12,10 @@ template <class T, int Dim>
 struct Footprint {
   static constexpr double grown = 17.0 / 16;  // ensure() leaves room
   /// More where domains stretch.
-  static constexpr double domain = sizeof(DomainMoments<T, Dim>) + 2 * sizeof(Vector<T, Dim>) + sizeof(T);
+  static constexpr double domain(bool on_device) {
+    return sizeof(DomainMoments<T, Dim>) + sizeof(Vector<T, Dim>) + sizeof(T) +
+           (on_device ? sizeof(Vector<float, Dim>) : sizeof(Vector<T, Dim>));  // StoredLength
+  }
   /// And of a node.
   static constexpr double domain_node = grown * sizeof(T) * (CentreTerms<Dim>::size + Dim);
   /// More where the mesh is periodic.

@@ -22,7 +22,7 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> bounded_half_lengths(const DomainMoments<T
   return half;
 }
 
-/// The same as they are kept.
+/// Half lengths [cells] rounded to single precision, as memory holds them.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION Vector<StoredLength<Space, T>, Dim> to_store(const Vector<T, Dim>& half) {
   Vector<StoredLength<Space, T>, Dim> stored;
@@ -30,8 +30,9 @@ KOKKOS_INLINE_FUNCTION Vector<StoredLength<Space, T>, Dim> to_store(const Vector
   return stored;
 }
 
-/// Half lengths with their inverses, as R computes with them: a real type, or lanes. The quotient is of single
-/// precision, which costs less; Newton's step then makes the inverse that of l, for the weights rely on it.
+/// Half lengths with their inverses, as R computes with them: a real type, or lanes. The quotient is of
+/// single precision, which costs less; Newton's step then makes the inverse that of l, for the weights rely
+/// on it.
 template <class R, class Stored, int Dim>
 KOKKOS_FORCEINLINE_FUNCTION HalfLengths<R, Dim> with_inverses(const Vector<Stored, Dim>& length) {
   using T = RealOf<R>;
@@ -87,7 +88,8 @@ KOKKOS_INLINE_FUNCTION HalfLengths<T, Dim> any_domain_of(const Soil<Space, T, Di
   return half;
 }
 
-/// As domain_of, for kernels that are the same for domains that are fixed and that stretch: those are `stretch`.
+/// As domain_of, for kernels that are the same for domains that are fixed and that stretch: those are
+/// `stretch`.
 template <ParticleDomain domain, class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION DomainOf<T, Dim, domain> box_or_ring_of(const Soil<Space, T, Dim>& soil, int p,
                                                                const BodyProperties<T>& of) {
