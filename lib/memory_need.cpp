@@ -54,7 +54,7 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
     need.nodes += k_ring * cells * Footprint<T, Dim>::domain_node;
   if (!config.loads.empty()) need.nodes += k_ring * cells * Footprint<T, Dim>::load;
   if (config.position_correction) need.nodes += k_ring * cells * Footprint<T, Dim>::shares;
-  if (config.backend == Backend::openmp && chosen(config.p2g.strategy, config.backend) == P2G::tile)
+  if (config.backend == Backend::openmp && chosen(config.p2g.strategy) == P2G::tile)
     need.nodes += cells * Footprint<T, Dim>::window;
   need.all_ranks = need.rigids * Footprint<T, Dim>::rigid_point + need.patches * Footprint<T, Dim>::patch;
   need.device = soil + need.nodes;

@@ -57,7 +57,7 @@ inline constexpr double k_least_half_length = 0.1, k_most_half_length = 0.5;
 /// What becomes of particles that are alone, or whose volume leaves its bounds (-stray_particles).
 enum class StrayRule { keep, remove, stop };
 
-/// The strategy that `auto` stands for on a backend.
-constexpr P2G chosen(P2G how, Backend) { return how == P2G::automatic ? P2G::tile : how; }
+/// The strategy that `auto` stands for.
+constexpr P2G chosen(P2G how) { return how == P2G::automatic ? P2G::tile : how; }
 
 }  // namespace mpm

@@ -12,16 +12,34 @@ template <class Space>
 inline constexpr bool is_device =
     !Kokkos::SpaceAccessibility<Kokkos::HostSpace, typename Space::memory_space>::accessible;
 
+#if defined(KOKKOS_ENABLE_OPENMP) && !defined(MPM_NO_OPENMP)
+#define MPM_WITH_OPENMP
+/// The execution space of processors. The kernels of `serial` are those of `openmp`, on one thread, so that
+/// the kernels are compiled once for processors.
+using Processor = Kokkos::OpenMP;
+#else
+using Processor = Kokkos::Serial;
+#endif
+
+/// Whether a backend runs on Space.
 template <class Space>
-inline constexpr Backend backend_of = Backend::serial;
-#ifdef KOKKOS_ENABLE_OPENMP
-template <>
-inline constexpr Backend backend_of<Kokkos::OpenMP> = Backend::openmp;
+constexpr bool runs_on(Backend backend) {
+  return is_device<Space> == (backend == Backend::cuda);
+}
+/// The instance of Space on which a backend runs.
+template <class Space>
+Space space_of([[maybe_unused]] Backend backend) {
+#ifdef MPM_WITH_OPENMP
+  if constexpr (!is_device<Space>)
+    if (backend == Backend::serial) return Space(1);
 #endif
-#ifdef KOKKOS_ENABLE_CUDA
-template <>
-inline constexpr Backend backend_of<Kokkos::Cuda> = Backend::cuda;
-#endif
+  return Space();
+}
+/// Whether several threads of a processor run the kernels of this instance.
+template <class Space>
+bool has_threads(const Space& space) {
+  return !is_device<Space> && space.concurrency() > 1;
+}
 
 /// The same policy, for a kernel of a time step: its functor travels as an argument of the launch. Without
 /// the hint Kokkos sends a large functor through constant memory on CUDA, where each launch waits for the one
@@ -45,12 +63,6 @@ auto light(const Policy& policy) {
 #define MPM_FOR_EACH_REAL_DIM(X, Space) MPM_FOR_EACH_DIM(X, Space, double) MPM_FOR_EACH_DIM(X, Space, float)
 #endif
 
-#if defined(KOKKOS_ENABLE_OPENMP) && !defined(MPM_NO_OPENMP)
-#define MPM_WITH_OPENMP
-#define MPM_FOR_OPENMP(X) MPM_FOR_EACH_REAL_DIM(X, Kokkos::OpenMP)
-#else
-#define MPM_FOR_OPENMP(X)
-#endif
 #ifdef KOKKOS_ENABLE_CUDA
 #define MPM_FOR_CUDA(X) MPM_FOR_EACH_REAL_DIM(X, Kokkos::Cuda)
 #else
@@ -58,4 +70,4 @@ auto light(const Policy& policy) {
 #endif
 
 /// Applies X(Space, T, Dim) to everything that is built: explicit instantiation, run-time choice, tests.
-#define MPM_FOR_EACH(X) MPM_FOR_EACH_REAL_DIM(X, Kokkos::Serial) MPM_FOR_OPENMP(X) MPM_FOR_CUDA(X)
+#define MPM_FOR_EACH(X) MPM_FOR_EACH_REAL_DIM(X, mpm::Processor) MPM_FOR_CUDA(X)

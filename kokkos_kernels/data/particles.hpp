@@ -183,7 +183,7 @@ struct Windows {
 /// Whether the strategy `tile` needs them.
 template <class Space>
 bool has_windows(const Space& space) {
-  return backend_of<Space> == Backend::openmp && space.concurrency() > 1;
+  return has_threads(space);
 }
 
 /// Ranges of points by cell, and the lists of the strategies that need them. Valid while no point has moved
@@ -195,7 +195,7 @@ struct Bins {
   int first_slot = 0, last_slot = 0;        // slots that may hold points: [first_slot, last_slot)
   Kokkos::View<int*, Memory> active_slots;  // slots that hold points, in rising order
   int first_active = 0, last_active = 0;    // range of active_slots that these bins cover
-  int border = 0;  // on several ranks, without OpenMP: this many of active_slots share nodes with other
+  int border = 0;  // on several ranks, without threads: this many of active_slots share nodes with other
                    // ranks. They come first; the border and the rest each rise.
   Kokkos::View<int*, Memory> list_begin;  // gather: first entry of a node's list [nodes + 1]
   Kokkos::View<int*, Memory> list;        // gather: points that may reach the node, in order

@@ -37,10 +37,7 @@ double copy_bandwidth(const Space& space) {
   return best;
 }
 
-template double copy_bandwidth(const Kokkos::Serial&);
-#ifdef KOKKOS_ENABLE_OPENMP
-template double copy_bandwidth(const Kokkos::OpenMP&);
-#endif
+template double copy_bandwidth(const Processor&);
 #ifdef KOKKOS_ENABLE_CUDA
 template double copy_bandwidth(const Kokkos::Cuda&);
 #endif

@@ -21,10 +21,7 @@ bool device_agrees(const Space& space) {
   return agrees;
 }
 
-template bool device_agrees(const Kokkos::Serial&);
-#ifdef KOKKOS_ENABLE_OPENMP
-template bool device_agrees(const Kokkos::OpenMP&);
-#endif
+template bool device_agrees(const Processor&);
 #ifdef KOKKOS_ENABLE_CUDA
 template bool device_agrees(const Kokkos::Cuda&);
 #endif

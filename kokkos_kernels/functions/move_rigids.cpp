@@ -49,10 +49,9 @@ void launch_end(const EndStep<Space, T, Dim>& end, const Space& stream, int team
   if constexpr (is_device<Space>) {
     launch_end_by_teams(end, stream, teams, work);
   } else {
-    Kokkos::parallel_for("mpm::end_step", Kokkos::RangePolicy<Kokkos::Serial>(0, teams), [&](int team) {
-      std::vector<double> part(end.room(1));
-      if (!end.control().paused) work(end, SerialTeam{team}, part.data());
-    });
+    std::vector<double> part(end.room(1));
+    for (int team = 0; team < teams && !end.control().paused; ++team)
+      work(end, SerialTeam{team}, part.data());
   }
 }
 

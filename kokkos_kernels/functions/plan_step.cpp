@@ -7,8 +7,7 @@ template <class Space, class T, int Dim>
 StepPlan plan_step(const State<Space, T, Dim>& s) {
   constexpr int k_few =
       2000;  // patches that a device has all at once, so that a step should take few launches
-  const bool tile = chosen(s.p2g.strategy, backend_of<Space>) == P2G::tile,
-             one_rank = s.owned_nodes.extent(0) == 0;
+  const bool tile = chosen(s.p2g.strategy) == P2G::tile, one_rank = s.owned_nodes.extent(0) == 0;
   const bool few = s.patches.slots < k_few, batches = s.batches.in_use();
   // One thread gains nothing by sums ahead, and the log tells its functions apart. On a GPU the scratch
   // memory must hold the update and the sums.

@@ -33,7 +33,7 @@ struct Interpolation {
 /// would leave most of a GPU's threads idle, a thread a point does not.
 template <class Space>
 P2G strategy_of_rigids(P2G chosen_for_soil) {
-  const bool tile = chosen(chosen_for_soil, backend_of<Space>) == P2G::tile;
+  const bool tile = chosen(chosen_for_soil) == P2G::tile;
   return is_device<Space> && tile ? P2G::atomic : chosen_for_soil;
 }
 /// Whether a strategy moves the points of a rigid itself, since it takes each of them once.
@@ -54,7 +54,7 @@ void reduce_by_tile(const Interpolation<Source>&);  // a team a patch, in scratc
 template <class Source>
 void particle_to_node(P2G how, const Interpolation<Source>& it) {
   if (it.source.points.count == 0 && it.adds) return;
-  switch (chosen(how, backend_of<typename Source::Space>)) {
+  switch (chosen(how)) {
     case P2G::sequential: return scatter_sequential(it);
     case P2G::atomic: return scatter_atomic(it);
     case P2G::mosaic: return scatter_mosaic(it);

@@ -131,7 +131,7 @@ void build_windows(const Space& space, const Patches<Space, Dim>& patches, Bins<
 
 template <class Source, class T, int Dim, class Space>
 void build_for(const State<Space, T, Dim>& s, const Source& source, Bins<Space>& bins) {
-  const P2G how = chosen(s.p2g.strategy, backend_of<Space>);
+  const P2G how = chosen(s.p2g.strategy);
   if (how == P2G::gather) build_node_lists(s.space, source, s.patches, bins, s.p2g.margin + s.p2g.reserve);
   if (how == P2G::mosaic) build_blocks(s.space, s.grid, s.patches, bins, s.p2g.mosaic_cells);
   if (how == P2G::tile && has_windows(s.space)) build_windows<Source>(s.space, s.patches, bins);

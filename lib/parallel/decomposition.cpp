@@ -26,6 +26,9 @@ PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm comm, const Partitio
   rank_ = rank_of(comm);
   size_ = size_of(comm);
   config_ = config;
+  // Ranks may have different numbers of threads, and all overlap or none does.
+  config_.halo_overlap = config.halo_overlap && !has_threads(s.space);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &config_.halo_overlap, 1, MPI_C_BOOL, MPI_LAND, comm));
   owners_ = owners;
   clock_ = WorkClock(is_device<Space>);
   grid_.dim = Dim;

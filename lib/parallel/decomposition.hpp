@@ -23,10 +23,6 @@ namespace mpm {
 /// Least number of particles that a rank has room for, so that every field has its views.
 inline constexpr int k_least_room = 16;
 
-/// Whether nodal sums are sent before all patches are computed.
-template <class Space, class T, int Dim>
-bool sends_ahead(const State<Space, T, Dim>& s, const PartitionConfig& config);
-
 /// The figures of a rank at the end of a run.
 struct RankReport {
   double work = 0, halo = 0, wait = 0;  // s: kernels; packing, copying, summing the halo; waiting for ranks
@@ -53,7 +49,7 @@ class Decomposition {
   /// Whether the step overlaps the halo exchange: it computes the border patches, whose nodes other ranks
   /// reach too, on their own stream, calls send_ahead, and computes the inner patches while the messages
   /// travel.
-  bool overlaps(const State_& s) const { return sends_ahead(s, config_); }
+  bool overlaps(const State_& s) const;
   /// The two parts of the soil. The border's stream waits for the work that s.space has now.
   Part<Space> border(const State_& s);
   Part<Space> inner(const State_& s) const;

@@ -8,9 +8,9 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-bool sends_ahead(const State<Space, T, Dim>& s, const PartitionConfig& config) {
-  return backend_of<Space> != Backend::openmp && config.halo_overlap && !s.water.is_there() && !s.energy.on &&
-         !s.loads.in_use() && chosen(s.p2g.strategy, backend_of<Space>) == P2G::tile;
+bool Decomposition<Space, T, Dim>::overlaps(const State_& s) const {
+  return config_.halo_overlap && !s.water.is_there() && !s.energy.on && !s.loads.in_use() &&
+         chosen(s.p2g.strategy) == P2G::tile;
 }
 
 /// The sums of soil and of its boundary, which only the nodes near a rigid read.
@@ -219,7 +219,7 @@ void Decomposition<Space, T, Dim>::drop_ahead() {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                                 \
-  template bool sends_ahead(const State<Space, T, Dim>&, const PartitionConfig&);                      \
+  template bool Decomposition<Space, T, Dim>::overlaps(const State<Space, T, Dim>&) const;             \
   template void Decomposition<Space, T, Dim>::note_bound(const State<Space, T, Dim>&, const Space&);   \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_soil(State<Space, T, Dim>&, const Space&); \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_residual(State<Space, T, Dim>&);           \

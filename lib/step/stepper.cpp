@@ -32,7 +32,7 @@ const char* word_of(Precision precision) { return precision == Precision::single
 
 std::unique_ptr<Stepper> make_stepper(const Config& config, MPI_Comm comm) {
 #define MPM_CHOOSE(Space, T, Dim)                                              \
-  if (config.backend == backend_of<Space> && config.dim == Dim &&              \
+  if (runs_on<Space>(config.backend) && config.dim == Dim &&                   \
       (config.precision == Precision::single) == (sizeof(T) == sizeof(float))) \
     return std::make_unique<TypedStepper<Space, T, Dim>>(config, comm);
   MPM_FOR_EACH(MPM_CHOOSE)
@@ -49,27 +49,19 @@ std::string device_name(Backend backend) {
 #ifdef KOKKOS_ENABLE_CUDA
   if (backend == Backend::cuda) return Kokkos::Cuda().cuda_device_prop().name;
 #endif
-#ifdef KOKKOS_ENABLE_OPENMP
   if (backend == Backend::openmp) return std::to_string(thread_count(backend)) + " threads";
-#endif
   return backend == Backend::serial ? "1 thread" : "";
 }
 
-int thread_count([[maybe_unused]] Backend backend) {
-#ifdef KOKKOS_ENABLE_OPENMP
-  if (backend == Backend::openmp) return Kokkos::OpenMP().concurrency();
-#endif
-  return 1;
+int thread_count(Backend backend) {
+  return backend == Backend::openmp ? space_of<Processor>(backend).concurrency() : 1;
 }
 
 double copy_bandwidth(Backend backend) {
 #ifdef KOKKOS_ENABLE_CUDA
   if (backend == Backend::cuda) return copy_bandwidth(Kokkos::Cuda());
 #endif
-#ifdef KOKKOS_ENABLE_OPENMP
-  if (backend == Backend::openmp) return copy_bandwidth(Kokkos::OpenMP());
-#endif
-  return copy_bandwidth(Kokkos::Serial());
+  return copy_bandwidth(space_of<Processor>(backend));
 }
 
 }  // namespace mpm

@@ -450,7 +450,7 @@ std::vector<FunctionTime> TypedStepper<Space, T, Dim>::times() const {
 
 template <class Space, class T, int Dim>
 std::string TypedStepper<Space, T, Dim>::strategy() const {
-  return word_of(chosen(config_.p2g.strategy, backend_of<Space>));
+  return word_of(chosen(config_.p2g.strategy));
 }
 
 template <class Space, class T, int Dim>

@@ -32,7 +32,9 @@ template <class Space, class T, int Dim>
 class TypedStepper final : public Stepper {
  public:
   TypedStepper(const Config& config, MPI_Comm comm)
-      : rigids_(config), config_(rigids_.narrowed(config)), comm_(comm) {}
+      : rigids_(config), config_(rigids_.narrowed(config)), comm_(comm) {
+    state_.space = space_of<Space>(config.backend);
+  }
 
   PetscErrorCode set_up(Model&& model, Failure* failure) override;
   PetscErrorCode advance(const StepRange& steps, Batch* batch) override;

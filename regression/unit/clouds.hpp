@@ -18,8 +18,8 @@
 
 namespace mpm::test {
 
-/// One of the builds of the kernels.
-template <class Space_, class T, int Dim>
+/// One of the builds of the kernels, with one thread or as many as there are.
+template <class Space_, class T, int Dim, bool one_thread = false>
 struct Build {
   using Space = Space_;
   using real = T;
@@ -29,44 +29,56 @@ struct Build {
   static constexpr double of(double for_double, double for_single) {
     return is_double ? for_double : for_single;
   }
+  static constexpr Backend backend = is_device<Space> ? Backend::cuda
+                                     : one_thread     ? Backend::serial
+                                                      : Backend::openmp;
+  static Space space() { return space_of<Space>(backend); }
   static std::string name() {
-    return std::string(Space::name()) + (is_double ? " double " : " single ") + std::to_string(Dim) + "D";
+    constexpr const char* words[] = {"serial", "openmp", "cuda"};
+    return words[static_cast<int>(backend)] + std::string(is_double ? " double " : " single ") +
+           std::to_string(Dim) + "D";
   }
 };
+template <class T, int Dim>
+using OneThread = Build<Processor, T, Dim, true>;
 template <int Dim>
-using Reference = Build<Kokkos::Serial, double, Dim>;
+using Reference = OneThread<double, Dim>;
 template <class B>
 using StateOf = State<typename B::Space, typename B::real, B::dim>;
 
 /// Calls f(Build) for what the kernels are built for: everything with MPM_TEST_EVERY_BUILD, else without
-/// OpenMP in single precision, which whole runs test.
+/// several threads in single precision, which whole runs test.
 template <class F>
 void for_each_build(F&& f) {
 #define MPM_TEST_BUILD(Space, T, Dim) f(Build<Space, T, Dim>{});
-#if defined(MPM_TEST_EVERY_BUILD) || !defined(MPM_WITH_OPENMP)
-  MPM_FOR_EACH(MPM_TEST_BUILD)
+#define MPM_TEST_ONE_THREAD(Space, T, Dim) f(Build<Space, T, Dim, true>{});
+  MPM_FOR_EACH_REAL_DIM(MPM_TEST_ONE_THREAD, Processor)
+#ifdef MPM_WITH_OPENMP
+#ifdef MPM_TEST_EVERY_BUILD
+  MPM_FOR_EACH_REAL_DIM(MPM_TEST_BUILD, Processor)
 #else
-  MPM_FOR_EACH_REAL_DIM(MPM_TEST_BUILD, Kokkos::Serial)
-  MPM_FOR_EACH_DIM(MPM_TEST_BUILD, Kokkos::OpenMP, double)
-  MPM_FOR_CUDA(MPM_TEST_BUILD)
+  MPM_FOR_EACH_DIM(MPM_TEST_BUILD, Processor, double)
 #endif
+#endif
+  MPM_FOR_CUDA(MPM_TEST_BUILD)
+#undef MPM_TEST_ONE_THREAD
 #undef MPM_TEST_BUILD
 }
 /// Calls f(Build) for each dimension of the reference.
 template <class F>
 void for_each_reference(F&& f) {
-#define MPM_TEST_BUILD(Space, T, Dim) f(Build<Space, T, Dim>{});
-  MPM_FOR_EACH_DIM(MPM_TEST_BUILD, Kokkos::Serial, double)
+#define MPM_TEST_BUILD(Space, T, Dim) f(Build<Space, T, Dim, true>{});
+  MPM_FOR_EACH_DIM(MPM_TEST_BUILD, Processor, double)
 #undef MPM_TEST_BUILD
 }
 
-/// The same space with another number of threads, where it has threads to number.
-template <class Space>
-Space with_other_threads() {
-#ifdef KOKKOS_ENABLE_OPENMP
-  if constexpr (std::is_same_v<Space, Kokkos::OpenMP>) return Space(Space().concurrency() > 1 ? 1 : 2);
+/// The space of a build with another number of threads, where it has threads to number.
+template <class B>
+typename B::Space with_other_threads() {
+#ifdef MPM_WITH_OPENMP
+  if constexpr (!is_device<typename B::Space>) return typename B::Space(B::space().concurrency() > 1 ? 1 : 2);
 #endif
-  return Space();
+  return B::space();
 }
 
 inline constexpr P2G k_strategies[] = {P2G::sequential, P2G::atomic, P2G::mosaic, P2G::gather, P2G::tile};
@@ -91,7 +103,8 @@ struct Cloud {
 };
 
 template <class B>
-StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential, const typename B::Space& space = {}) {
+StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential,
+                    const typename B::Space& space = B::space()) {
   StateOf<B> s;
   s.space = space;
   s.p2g = cloud.p2g;

@@ -220,9 +220,7 @@ TEST_CASE("the order of the points does not depend on the backend, the number of
     for_each_build([&](auto build) {
       using B = decltype(build);
       if constexpr (B::dim == Dim && B::is_double) {
-        const std::vector<typename B::Space> spaces{typename B::Space(),
-                                                    with_other_threads<typename B::Space>()};
-        for (const auto& space : spaces) {
+        for (const auto& space : {B::space(), with_other_threads<B>()}) {
           INFO(build.name() << ' ' << space.concurrency() << " threads");
           auto s = state_of<B>(cloud, P2G::sequential, space);
           CHECK(order_of(s) == uploaded);
@@ -276,6 +274,7 @@ TEST_CASE("an upload names the particle that lies outside the mesh", "[bins]") {
       cloud.bodies = {body_of<B::dim>(lattice<B::dim>({1, 1, 1}, {3, 3, 3}, 2, 0.1), 2, 0.1, 0)};
       cloud.bodies[0].position[5 * B::dim + 1] = wrong;
       StateOf<B> s;
+      s.space = B::space();
       const Fault fault = upload(s, cloud.grid, cloud.materials, cloud.bodies, cloud.rigids);
       CHECK(fault.kind == FaultKind::outside);
       CHECK(fault.particle == 5);

@@ -52,6 +52,6 @@ TEST_CASE("the least bytes moved of a particle and a node are what is counted by
 }
 
 TEST_CASE("a copy has a bandwidth", "[bytes_moved]") {
-  check_copy<Kokkos::Serial>();
+  check_copy<Processor>();
   check_copy<Kokkos::DefaultExecutionSpace>();
 }

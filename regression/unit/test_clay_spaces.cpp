@@ -52,7 +52,7 @@ std::vector<Particle<Law, Dim>> after_steps(const Law& law, const std::vector<Sy
   return {host.data(), host.data() + n};
 }
 
-/// The same stresses and states as the reference (one thread of the processor, double precision, 3D).
+/// The same stresses and states as the reference (a processor, double precision, 3D).
 template <class B, template <class> class Law>
 void check_on(const Values& values, double pressure) {
   using T = typename B::real;
@@ -64,7 +64,7 @@ void check_on(const Values& values, double pressure) {
     by.push_back(random_sym(dice, 4e-4, B::dim == 2));
     if (B::dim == 2) by.back()[2] = 0;
   }
-  const auto right = after_steps<Kokkos::Serial, Law<double>, 3>(law_of<Law<double>>(values), start, by);
+  const auto right = after_steps<Processor, Law<double>, 3>(law_of<Law<double>>(values), start, by);
   const auto got = after_steps<typename B::Space, Law<T>, B::dim>(law_of<Law<T>>(values), start, by);
   double apart = 0;
   for (std::size_t p = 0; p < got.size(); ++p) {

@@ -44,7 +44,7 @@ std::vector<SymTensor<typename Law::real, Dim>> after_step(const Law& law, const
   return {host_stress.data(), host_stress.data() + n};
 }
 
-/// The same stresses as the reference (one thread of the processor, double precision, 3D) on a back end.
+/// The same stresses as the reference (a processor, double precision, 3D) on a back end.
 template <class B, template <class> class Law>
 void check_on(const Values& values) {
   using T = typename B::real;
@@ -55,7 +55,7 @@ void check_on(const Values& values) {
     by.push_back(random_sym(dice, 5e-3, B::dim == 2));
     if (B::dim == 2) by.back()[2] = 0;
   }
-  const auto right = after_step<Kokkos::Serial, Law<double>, 3>(law_of<Law<double>>(values), start, by);
+  const auto right = after_step<Processor, Law<double>, 3>(law_of<Law<double>>(values), start, by);
   const auto got = after_step<typename B::Space, Law<T>, B::dim>(law_of<Law<T>>(values), start, by);
   double apart = 0;
   for (std::size_t p = 0; p < got.size(); ++p)

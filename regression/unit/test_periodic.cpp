@@ -69,7 +69,7 @@ Outcome outcome_of(const State_& s, const Cloud& cloud, int dim) {
   return out;
 }
 template <class B>
-Outcome run_soil(const Cloud& cloud, P2G how, const typename B::Space& space = {}) {
+Outcome run_soil(const Cloud& cloud, P2G how, const typename B::Space& space = B::space()) {
   auto s = state_of<B>(cloud, how, space);
   const int rebuilds = run_steps(s, k_dt, k_steps);
   Outcome out = outcome_of(s, cloud, B::dim);
@@ -181,11 +181,11 @@ TEST_CASE("tile has the same bits with one thread and with several in a periodic
     if constexpr (is_device<typename B::Space>) {
       return;
     } else {
-      using Serial = Build<Kokkos::Serial, typename B::real, B::dim>;
+      using One = OneThread<typename B::real, B::dim>;
       for (const Periods& shape : k_shapes) {
         const Cloud cloud = random_soil<B::dim>(6, shape, {});
-        const Outcome one = run_soil<Serial>(cloud, P2G::tile), many = run_soil<B>(cloud, P2G::tile),
-                      other = run_soil<B>(cloud, P2G::tile, with_other_threads<typename B::Space>());
+        const Outcome one = run_soil<One>(cloud, P2G::tile), many = run_soil<B>(cloud, P2G::tile),
+                      other = run_soil<B>(cloud, P2G::tile, with_other_threads<B>());
         CHECK(one.velocity == many.velocity);
         CHECK(one.stress == many.stress);
         CHECK(one.position == other.position);

@@ -110,6 +110,7 @@ TEST_CASE("each node of the sides has a row of its own", "[sides]") {
     using B = decltype(build);
     constexpr int Dim = B::dim;
     StateOf<B> s;
+    s.space = B::space();
     GridInput grid = grid_of<Dim>({5, 4, 3}, k_edge, Wall::driven);
     std::vector<SideInput> sides;
     for (int n = 0; n < 2 * Dim; ++n) sides.push_back({.direction = n / 2, .side = n % 2});

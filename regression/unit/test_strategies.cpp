@@ -16,7 +16,7 @@ constexpr int k_seeds[] = {1, 2, 7};
 
 /// Nodal fields after the particles have drifted up to the margin from where they were binned.
 template <class B>
-std::vector<Table> drifted_fields(const Cloud& cloud, P2G how, const typename B::Space& space = {}) {
+std::vector<Table> drifted_fields(const Cloud& cloud, P2G how, const typename B::Space& space = B::space()) {
   auto s = state_of<B>(cloud, how, space);
   drift_within_margin(s);
   interpolate(s);
@@ -40,7 +40,7 @@ Total total_of(const Table& table, int column) {
 /// share.
 template <int Dim>
 int shared_nodes(const StateOf<Reference<Dim>>& s) {
-  const SoilSource<Kokkos::Serial, double, Dim> source{s.soil.points, s.grid.inv_spacing};
+  const SoilSource<Processor, double, Dim> source{s.soil.points, s.grid.inv_spacing};
   const auto& bins = s.soil.bins;
   int shared = 0;
   for (int colour = 0; colour < Patch<Dim>::colours; ++colour) {
@@ -160,8 +160,7 @@ TEST_CASE("gather and the plain loop give the same bits on every run and number 
       INFO(build.name() << ' ' << word_of(how));
       const auto first = drifted_fields<B>(cloud, how);
       for (int run = 0; run < 3; ++run) CHECK(drifted_fields<B>(cloud, how) == first);
-      if (B::is_double)
-        CHECK(drifted_fields<B>(cloud, how, with_other_threads<typename B::Space>()) == first);
+      if (B::is_double) CHECK(drifted_fields<B>(cloud, how, with_other_threads<B>()) == first);
     }
   });
 }
@@ -171,7 +170,7 @@ TEST_CASE("on processors tile gives the bits of one thread whatever the number o
   for_each_build([](auto build) {
     using B = decltype(build);
     using Space = typename B::Space;
-    using One = Build<Kokkos::Serial, typename B::real, B::dim>;
+    using One = OneThread<typename B::real, B::dim>;
     if constexpr (!is_device<Space>) {
       for (const int seed : {3, 4}) {
         Cloud cloud = random_cloud<B::dim>(seed, Wall::roller);
@@ -182,7 +181,7 @@ TEST_CASE("on processors tile gives the bits of one thread whatever the number o
         const int steps = 30, rebuilds = run_steps(expected, k_dt, steps);
         REQUIRE(read_control(expected).fault_count == 0);
         sum_present_soil(expected);
-        for (const Space& space : {Space(), with_other_threads<Space>()}) {
+        for (const Space& space : {B::space(), with_other_threads<B>()}) {
           INFO(build.name() << ", " << space.concurrency() << " threads, seed " << seed);
           auto s = state_of<B>(cloud, P2G::tile, space);
           CHECK(run_steps(s, k_dt, steps) == rebuilds);

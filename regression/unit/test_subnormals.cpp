@@ -36,6 +36,6 @@ void check_space() {
 
 TEST_CASE("every thread takes subnormal numbers for zero", "[subnormals]") {
   if (!mpm::k_flushes_subnormals) SKIP("this processor is not told");
-  check_space<Kokkos::Serial>();
+  check_space<mpm::Processor>();
   check_space<Kokkos::DefaultHostExecutionSpace>();
 }

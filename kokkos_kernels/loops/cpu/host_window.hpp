@@ -122,7 +122,7 @@ struct Shared {
 template <int Phases, class Space, class F>
 void for_each_shared(const char* label, const Space& space, const Shared (&all)[Phases], const F& f) {
   using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Static>>;
-  if constexpr (backend_of<Space> == Backend::serial) {
+  if (!has_threads(space)) {
     for (int phase = 0; phase < Phases; ++phase)
       Kokkos::parallel_for(label, Range(space, all[phase].first, all[phase].last),
                            [&](int n) { f(phase, n); });
