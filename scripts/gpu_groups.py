@@ -26,8 +26,8 @@ ANSWERS = {  # cases on the GPU
     "quick": ["bar", "column", "water_column", "water_footing", "water_slope", "water_undrained", "infinite_slope", "film", "channel",
               "collapse", "plate", "sloshing", "dam_break", "retaining_wall", "footing_cohesion_coarse", "footing_surcharge_coarse",
               "footing_weight_coarse", "cut_friction_coarse"],
-    "site": ["k0_ground", "timed_loads", "stages", "staged_fill", "probes", "moving_side", "absorbing_side", "stiffness_field",
-             "surface_loads", "sliding_side", "free_field"],
+    "site": ["k0_ground", "timed_loads", "stages", "staged_fill", "probes", "moving_side", "absorbing_side", "absorbing_cylinder",
+             "stiffness_field", "surface_loads", "sliding_side", "free_field"],
     "periodic": ["periodic", "periodic_flow", "periodic_slope", "oblique_wave"],
     "domains": ["clay_column", "large_deformation", "large_waves", "energy", "energy_collapse", "even_flow", "vortex"],
     "revolution": ["thick_cylinder", "cylinders", "circle", "deep_sphere_section", "circle_fine", "quarter"],
@@ -35,7 +35,8 @@ ANSWERS = {  # cases on the GPU
 PROCESSOR_ANSWERS = {  # back ends, threads and runs at a time, cases: the longest first
     "limits": ("openmp", 2, 7, ["footing_surcharge", "footing_weight", "footing_cohesion", "cut_tresca", "cut_friction",
                                 "retaining_wall_fine"]),
-    "flows": ("openmp", 2, 7, ["deep_sphere", "footing_square", "collapse_fine", "landslide", "film_fine", "tbar"]),
+    "flows": ("openmp", 2, 7, ["deep_sphere", "footing_square", "collapse_fine", "landslide", "film_fine", "tbar", "circle_fine",
+                              "vortex"]),
     "clay": ("serial,openmp", 2, 9, ["footing_variants", "strip_fine", "cut_fine", "pipe_fine", "strip_gradient", "footing", "pipe",
                                      "slump", "strip", "cut", "footing_coarse"]),
 }

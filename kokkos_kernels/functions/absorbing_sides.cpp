@@ -14,7 +14,9 @@ namespace {
 constexpr double k_resolution = 1e12;  // of the largest term of one particle
 
 /// What the nodes of absorbing sides sum: mass times the speed of pressure and of shear waves [kg m/s],
-/// volume [m3], volume times the normal gradient of the weight [m3/cell], mass [kg].
+/// volume [m3], volume times the normal gradient of the weight [m3/cell], mass [kg]. The sum of the gradients
+/// is the area of the node's part of the side (Gauss). Of rings that is so with the divergence of a vector
+/// along the radius, dS/dr + S/r.
 enum SideSum { k_pressure_waves, k_shear_waves, k_volume, k_area, k_mass, k_sums };
 
 /// What particles give the nodes of absorbing sides.
@@ -57,8 +59,12 @@ struct GiveSides {
     if (!near) return;
     double terms[k_sums];
     terms_of(p, terms);
-    // No side absorbs in a run of rings (check_revolution).
-    with_weights(soil.coordinate(p), any_domain_of(soil, p), [&](const auto& a) {
+    with_any_domain(soil, p, [&](const auto& domain) { give_terms(p, first, domain, terms); });
+  }
+  template <class Domain>
+  KOKKOS_INLINE_FUNCTION void give_terms(int p, const Coord<Dim>& first, const Domain& domain,
+                                         const double (&terms)[k_sums]) const {
+    with_weights(soil.coordinate(p), domain, [&](const auto& a) {
       for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const auto& grad) {
         Coord<Dim> at;
         for (int d = 0; d < Dim; ++d)
@@ -67,7 +73,9 @@ struct GiveSides {
         for (int n = 0; n < 2 * Dim; ++n) {
           if (!(on >> n & 1u)) continue;
           const int row = acting.all[n].row(at);
-          const double normal = grad[n / 2] * (n % 2 == 0 ? -1 : 1);
+          double normal = grad[n / 2] * (n % 2 == 0 ? -1 : 1);
+          if constexpr (std::is_same_v<Domain, RingDomain<T>>)
+            if (n / 2 == 0) normal += grad[Dim];
           for (int k = 0; k < k_sums; ++k) add(row, k, (k == k_area ? normal : double(w)) * terms[k]);
         }
       });

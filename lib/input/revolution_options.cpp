@@ -27,8 +27,8 @@ void check_revolution(OptionReader& in, const Config& config) {
     const std::string name = side_option(n / 2, n % 2);
     if (side.moves)
       in.reject(name + (side.velocity_table ? "_velocity_table" : "_velocity"), "0" + where);
-    else if (is_acting(config.mesh.walls[n / 2][n % 2]))
-      in.reject(name, "roller, fixed or free" + where);
+    else if (const Wall wall = config.mesh.walls[n / 2][n % 2]; is_acting(wall) && wall != Wall::absorbing)
+      in.reject(name, "roller, fixed, free or absorbing" + where);
   }
   if (config.gravity[0] != 0)
     in.reject(config.gravity_table ? "gravity_table" : "gravity",

@@ -4,7 +4,7 @@
     axisymmetric.py MPM [--count 50] [--seed 1] [--folder FOLDER] [--precisions double,single] [--ranks 1,1,2,3]
 
 A deck has one or two bodies, boxes, discs or polygons at the axis or away from it, of one of five laws, that rest on the ground, fall,
-or are pushed by a rigid body of revolution. The mass at the start must be the density times the volume of the rings of the particles and stay so,
+or are pushed by a rigid body of revolution. Its sides hold the soil, are free, or absorb. The mass at the start must be the density times the volume of the rings of the particles and stay so,
 no particle may come to the axis, and what falls freely must have the momentum of its weight. A run on one back end by one strategy and some ranks must
 give what the plain loop of one thread gives, and a run that is cut in two by a checkpoint the same bits as the whole one.
 """
@@ -34,9 +34,12 @@ class Deck:
     def __init__(self, draw):
         self.kind = draw.choice(["rests", "falls", "pushed", "pushed"])
         self.gravity = draw.choice([0, 9.81]) if self.kind == "pushed" else 9.81
-        floor = "free" if self.kind == "falls" else draw.choice(["fixed", "roller"])
+        names = draw.sample(["core", "cap"], draw.choice([1, 2]))
+        laws = [draw.choice(list(LAWS)) for _ in names]
+        absorbing = [] if "newtonian" in laws else ["absorbing"]  # which needs a Poisson's ratio
+        floor = "free" if self.kind == "falls" else draw.choice(["fixed", "roller", *absorbing])
         self.options = (f"-geometry axisymmetric -mesh_lower 0,0 -mesh_upper {WIDTH},{HEIGHT} -mesh_spacing {SPACING} -mesh_xmax "
-                        f"{draw.choice(['free', 'roller', 'fixed'])} -mesh_ymin {floor} -mesh_ymax free -gravity 0,{-self.gravity} "
+                        f"{draw.choice(['free', 'roller', 'fixed', *absorbing])} -mesh_ymin {floor} -mesh_ymax free -gravity 0,{-self.gravity} "
                         f"-damping {0 if self.kind == 'falls' else draw.choice([0, 0.1])} -time_end 10 -time_max_steps 60 "
                         "-history_interval 0.005 -output_interval 20 -checkpoint_interval 0.01 "
                         f"-f_bar_fraction {draw.choice([0, 0.5, 0.98])}").split()
@@ -44,8 +47,6 @@ class Deck:
         self.options += ["-velocity_update", update]
         self.options += ["-flip_fraction", "0.9"] if update == "flip" and draw.random() < 0.5 and self.kind != "falls" else []
         self.densities = {}
-        names = draw.sample(["core", "cap"], draw.choice([1, 2]))
-        laws = [draw.choice(list(LAWS)) for _ in names]
         base = 0.0 if self.kind != "falls" else 1.0
         for name, law in zip(names, laws):
             base = self.add(draw, name, law, base)

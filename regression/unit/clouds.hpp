@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -18,7 +19,20 @@
 
 namespace mpm::test {
 
-/// One of the builds of the kernels, with one thread or as many as there are.
+/// While one of these lives, processors run the tests of for_each_build on several threads.
+class SeveralThreads {
+ public:
+  explicit SeveralThreads(bool several = true) { use_ = several; }
+  SeveralThreads(const SeveralThreads&) = delete;
+  SeveralThreads& operator=(const SeveralThreads&) = delete;
+  ~SeveralThreads() { use_ = false; }
+  static bool in_use() { return use_; }
+
+ private:
+  static inline bool use_ = false;
+};
+
+/// One of the builds of the kernels. one_thread: on processors, whatever SeveralThreads says.
 template <class Space_, class T, int Dim, bool one_thread = false>
 struct Build {
   using Space = Space_;
@@ -29,13 +43,14 @@ struct Build {
   static constexpr double of(double for_double, double for_single) {
     return is_double ? for_double : for_single;
   }
-  static constexpr Backend backend = is_device<Space> ? Backend::cuda
-                                     : one_thread     ? Backend::serial
-                                                      : Backend::openmp;
-  static Space space() { return space_of<Space>(backend); }
+  static Backend backend() {
+    if (is_device<Space>) return Backend::cuda;
+    return one_thread || !SeveralThreads::in_use() ? Backend::serial : Backend::openmp;
+  }
+  static Space space() { return space_of<Space>(backend()); }
   static std::string name() {
     constexpr const char* words[] = {"serial", "openmp", "cuda"};
-    return words[static_cast<int>(backend)] + std::string(is_double ? " double " : " single ") +
+    return words[static_cast<int>(backend())] + std::string(is_double ? " double " : " single ") +
            std::to_string(Dim) + "D";
   }
 };
@@ -46,22 +61,30 @@ using Reference = OneThread<double, Dim>;
 template <class B>
 using StateOf = State<typename B::Space, typename B::real, B::dim>;
 
-/// Calls f(Build) for what the kernels are built for: everything with MPM_TEST_EVERY_BUILD, else without
-/// several threads in single precision, which whole runs test.
+/// Calls f(Build) for what the kernels are built for, on processors with one thread and then with several:
+/// all of it with MPM_TEST_EVERY_BUILD, else without several threads in single precision, which whole runs
+/// test.
 template <class F>
 void for_each_build(F&& f) {
-#define MPM_TEST_BUILD(Space, T, Dim) f(Build<Space, T, Dim>{});
-#define MPM_TEST_ONE_THREAD(Space, T, Dim) f(Build<Space, T, Dim, true>{});
-  MPM_FOR_EACH_REAL_DIM(MPM_TEST_ONE_THREAD, Processor)
-#ifdef MPM_WITH_OPENMP
 #ifdef MPM_TEST_EVERY_BUILD
-  MPM_FOR_EACH_REAL_DIM(MPM_TEST_BUILD, Processor)
+  constexpr bool all = true;
 #else
-  MPM_FOR_EACH_DIM(MPM_TEST_BUILD, Processor, double)
+  constexpr bool all = false;
 #endif
+#ifdef MPM_WITH_OPENMP
+  constexpr int k_most = 2;
+#else
+  constexpr int k_most = 1;
 #endif
+#define MPM_TEST_BUILD(Space, T, Dim) f(Build<Space, T, Dim>{});
+#define MPM_TEST_THREADS(Space, T, Dim) \
+  if (all || sizeof(T) == sizeof(double) || !threads.in_use()) MPM_TEST_BUILD(Space, T, Dim)
+  for (int n = 0; n < k_most; ++n) {
+    const SeveralThreads threads(n > 0);
+    MPM_FOR_EACH_REAL_DIM(MPM_TEST_THREADS, Processor)
+  }
   MPM_FOR_CUDA(MPM_TEST_BUILD)
-#undef MPM_TEST_ONE_THREAD
+#undef MPM_TEST_THREADS
 #undef MPM_TEST_BUILD
 }
 /// Calls f(Build) for each dimension of the reference.
@@ -193,6 +216,21 @@ RigidInput rigid_of(std::vector<double> position, int per_cell, double spacing) 
   rigid.half_length = 0.5 / per_cell;
   rigid.density = 2 * k_density;
   return rigid;
+}
+
+/// The particles of all bodies as rings: a roller at the axis, and the volumes and masses of whole rings.
+inline void revolve(Cloud& cloud) {
+  cloud.rings = true;
+  cloud.grid.walls[0][0] = Wall::roller;
+  for (BodyInput& body : cloud.bodies) {
+    body.least_volume = body.most_volume = body.particle_volume;
+    for (std::size_t p = 0; p < body.position.size(); p += 2) {
+      if (body.position[p] == 0) body.position[p] = 0.01 * cloud.grid.spacing;
+      body.volume.push_back(body.particle_volume * 2 * std::numbers::pi * body.position[p]);
+      body.mass.push_back(body.density * body.volume.back());
+    }
+    body.least_mass = *std::min_element(body.mass.begin(), body.mass.end());
+  }
 }
 
 /// Random numbers that are the same everywhere.

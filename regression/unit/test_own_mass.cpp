@@ -73,7 +73,7 @@ TEST_CASE("own masses that are all alike give what one mass a body gives", "[own
         CHECK(common.soil.points.mass.extent(0) == 0);
         CHECK(own.mass_cut == common.mass_cut);
         run_steps(own, k_dt, 6), run_steps(common, k_dt, 6);
-        const bool ordered = B::backend == Backend::serial;
+        const bool ordered = B::backend() == Backend::serial;
         CHECK(largest_difference(soil_fields(own), soil_fields(common)) <=
               (ordered ? 0 : B::of(1e-11, 2e-2)));
       }

@@ -35,13 +35,7 @@ Cloud moving_block(bool rings = false) {
   cloud.bodies = {body_of<Dim>(lattice<Dim>(low, high, 2, h), 2, h, 0)};
   BodyInput& body = cloud.bodies[0];
   body.velocity = {k_speed, 0, 0};
-  cloud.rings = rings;
-  for (std::size_t p = 0; rings && p < body.position.size() / 2; ++p) {
-    body.volume.push_back(body.particle_volume * 2 * std::numbers::pi * body.position[2 * p]);
-    body.mass.push_back(k_density * body.volume.back());
-  }
-  if (rings) body.least_volume = body.most_volume = body.particle_volume;
-  if (rings) body.least_mass = *std::min_element(body.mass.begin(), body.mass.end());
+  if (rings) revolve(cloud);
   return cloud;
 }
 

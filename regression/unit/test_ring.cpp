@@ -41,21 +41,6 @@ std::vector<double> radii(double l) {
   return r;
 }
 
-/// The particles of all bodies as rings: a roller at the axis, and the volumes and masses of whole rings.
-void revolve(Cloud& cloud) {
-  cloud.rings = true;
-  cloud.grid.walls[0][0] = Wall::roller;
-  for (BodyInput& body : cloud.bodies) {
-    body.least_volume = body.most_volume = body.particle_volume;
-    for (std::size_t p = 0; p < body.position.size(); p += 2) {
-      if (body.position[p] == 0) body.position[p] = 0.01 * cloud.grid.spacing;
-      body.volume.push_back(body.particle_volume * 2 * std::numbers::pi * body.position[p]);
-      body.mass.push_back(body.density * body.volume.back());
-    }
-    body.least_mass = *std::min_element(body.mass.begin(), body.mass.end());
-  }
-}
-
 Cloud ring_cloud(int seed) {
   Cloud cloud = random_cloud<2>(seed, Wall::roller);
   cloud.rigids.resize(1);

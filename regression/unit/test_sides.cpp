@@ -253,3 +253,49 @@ TEST_CASE("an absorbing side takes rho c A and the static force from the soil at
     CHECK(s.sides.unknown == 0);
   });
 }
+
+TEST_CASE(
+    "absorbing sides of a body of revolution have the areas of its surface, and carry the soil's pressure",
+    "[sides]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    if constexpr (B::dim == 2) {
+      INFO(build.name());
+      constexpr int radius = 6, height = 4;  // cells
+      constexpr double pressure = 4000;      // Pa
+      Cloud cloud;
+      cloud.grid = grid_of<2>({radius, height, 1}, k_edge, Wall::absorbing);
+      cloud.materials = {{0, {1e7, 0.25}}};
+      BodyInput body = body_of<2>(lattice<2>({0, 0, 0}, {radius, height, 0}, 2, k_edge), 2, k_edge, 0);
+      body.state.clear();
+      for (std::size_t p = 0; p < body.position.size() / 2; ++p)
+        for (int k = 0; k < sym_size<2>; ++k) body.stress.push_back(k < 3 ? -pressure : 0.0);
+      cloud.bodies = {body};
+      revolve(cloud);
+      auto s = state_of<B>(cloud);
+      upload_sides(s, cloud.grid,
+                   {{.direction = 0, .side = 1}, {.direction = 1}, {.direction = 1, .side = 1}}, k_density);
+      interpolate(s);
+      finish_sums(s);
+      begin_absorbing(s, {1 / std::sqrt(3.0)}, {});
+      const double impedance = std::sqrt(1.2e7 * k_density), turn = 2 * std::numbers::pi * k_edge * k_edge;
+      const auto table = side_table(s);
+      const auto agrees = [&](int side, Coord<2> at, double area) {
+        const double* const kept = &table[s.sides.host[side].row(at) * SideTerms<2>::size];
+        const int along = side < 2 ? 0 : 1;
+        const double out = side % 2 == 0 ? -1 : 1;
+        CHECK(std::fabs(kept[SideTerms<2>::dashpot] / (impedance * area) - 1) < B::of(1e-10, 1e-5));
+        CHECK(std::fabs(kept[SideTerms<2>::dashpot + 1] * std::sqrt(3.0) / (impedance * area) - 1) <
+              B::of(1e-10, 1e-5));
+        CHECK(std::fabs(-out * kept[SideTerms<2>::reaction + along] / (pressure * area) - 1) <
+              B::of(1e-10, 1e-5));
+      };
+      for (int j = 0; j <= height; ++j)
+        agrees(1, {radius, j}, turn * radius * (j == 0 || j == height ? 0.5 : 1));
+      // The integral of N r over the radius.
+      for (const int side : {2, 3})
+        for (int i = 0; i < radius; ++i)
+          agrees(side, {i, side == 2 ? 0 : height}, turn * (i == 0 ? 1.0 / 6 : double(i)));
+    }
+  });
+}

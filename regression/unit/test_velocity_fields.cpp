@@ -72,7 +72,7 @@ TEST_CASE("bodies of two velocity fields pass through each other, each as it mov
           "[velocity_fields]") {
   for_each_build([](auto build) {
     using B = decltype(build);
-    constexpr bool exact = B::backend == Backend::serial;
+    const bool exact = B::backend() == Backend::serial;
     for (P2G how : k_strategies) {
       Cloud both = crossing_blocks<B::dim>();
       // Sums in any order differ by round-off, which would decide where soil touches the plate.
