@@ -124,8 +124,7 @@ void for_each_shared(const char* label, const Space& space, const Shared (&all)[
   using Range = Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Static>>;
   if (!has_threads(space)) {
     for (int phase = 0; phase < Phases; ++phase)
-      Kokkos::parallel_for(label, Range(space, all[phase].first, all[phase].last),
-                           [&](int n) { f(phase, n); });
+      for (int n = all[phase].first; n < all[phase].last; ++n) f(phase, n);
   } else {
     const int threads = space.concurrency();
     int phases = Phases;
