@@ -4,8 +4,8 @@
     axisymmetric.py MPM [--count 50] [--seed 1] [--folder FOLDER] [--precisions double,single] [--ranks 1,1,2,3]
 
 A deck has one or two bodies, boxes, discs or polygons at the axis or away from it, of one of five laws, that rest on the ground, fall,
-or are pushed by a rigid body of revolution. Its sides hold the soil, are free, or absorb. The mass at the start must be the density times the volume of the rings of the particles and stay so,
-no particle may come to the axis, and what falls freely must have the momentum of its weight. A run on one back end by one strategy and some ranks must
+or are pushed by a rigid body of revolution. The sides of the mesh are rollers, fixed, free or absorbing. The mass at the start must be the
+density times the volume of the rings of the particles and stay so, no particle may come to the axis, and what falls freely must have the momentum of its weight. A run on one back end by one strategy and some ranks must
 give what the plain loop of one thread gives, and a run that is cut in two by a checkpoint the same bits as the whole one.
 """
 import sys

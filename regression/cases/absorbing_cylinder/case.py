@@ -11,6 +11,7 @@ between a roller and a fixed base, when its sides begin to absorb.
 import numpy as np
 
 import particles
+from absorbing_checks import reflection_rows, rest_row
 from row import Row
 
 SPACING, FINE, LENGTH, RADIUS = 0.25, 0.125, 15.0, 15.0
@@ -71,21 +72,14 @@ def radial_momentum(factor, times, cells=32 * 120):
 
 def check(runs):
     for name in FACTORS:
-        history, a = runs[f"axial_{name}"].history, float(name)
-        exact, momentum, speed = (1 - a) / (1 + a), history["soil_momentum_y"], history["soil_grid_velocity"]
-        yield Row(f"axial: R by the momentum, a = {name}", momentum[-1] / momentum[0], exact, 0.01, "linear wave equation")
-        yield Row(f"axial: R by the largest velocity, a = {name}", speed[-1] / speed[0], abs(exact), 0.01, "linear wave equation")
+        yield from reflection_rows(runs[f"axial_{name}"].history, "soil", "y", float(name), ("axial: ", name))
     for name in FACTORS:
         history = runs[f"radial_{name}"].history
         momentum, exact = history["soil_momentum_x"], radial_momentum(float(name), history["time"])
         error = np.abs(momentum - exact).max() / momentum[0]
         yield Row(f"radial: largest error of the momentum over that at the start, a = {name}", error, 0, 0.01, "finite differences")
-    for name in ("level", "heap"):
-        history = runs[name].history
-        late = slice(0, None) if name == "level" else history["stage"] == 2
-        place = np.column_stack([history["soil_centre_x"], history["soil_centre_y"]])[late]
-        moved = np.abs(place - place[0]).max()
-        yield Row(f"{name}: movement of the centre in 4 s (m)", moved, 0, 1e-5 if name == "heap" else 1e-6, "at rest")
+    yield rest_row(runs["level"].history, "soil", "level", 1e-6)
+    yield rest_row(runs["heap"].history, "soil", "heap", 1e-5)
 
 
 def draw(axes, runs):

@@ -8,7 +8,7 @@ the static stress, and so must a bank that has come to rest between rollers, whe
 import numpy as np
 
 import particles
-from row import Row
+from absorbing_checks import reflection_rows, rest_row
 
 SPACING, CELLS, CENTRE = 0.25, 60, 35
 DENSITY, SPEED, PEAK = 2000.0, 100.0, 0.01
@@ -43,18 +43,10 @@ def prepare(run, path, options):
 
 def check(runs):
     for name in FACTORS:
-        run = runs[name.replace(", ", "_").replace(" ", "_")].history
-        factor = float(name.split(",")[0])
-        exact, tolerance = (1 - factor) / (1 + factor), 0.03 if "short" in name else 0.01
-        momentum, speed = run["bar_momentum_x"], run["bar_grid_velocity"]
-        yield Row(f"R by the momentum, a = {name}", momentum[-1] / momentum[0], exact, tolerance, "linear wave equation")
-        yield Row(f"R by the largest velocity, a = {name}", speed[-1] / speed[0], abs(exact), tolerance, "linear wave equation")
-    for name in ("level", "bank"):
-        run = runs[name].history
-        late = slice(0, None) if name == "level" else run["stage"] == 2
-        place = np.column_stack([run["bar_centre_x"], run["bar_centre_y"]])[late]
-        moved = np.abs(place - place[0]).max()
-        yield Row(f"{name}: movement of the centre in 4 s (m)", moved, 0, 1e-5 if name == "bank" else 1e-6, "at rest")
+        history = runs[name.replace(", ", "_").replace(" ", "_")].history
+        yield from reflection_rows(history, "bar", "x", float(name.split(",")[0]), ("", name), 0.03 if "short" in name else 0.01)
+    yield rest_row(runs["level"].history, "bar", "level", 1e-6)
+    yield rest_row(runs["bank"].history, "bar", "bank", 1e-5)
 
 
 def draw(axes, runs):
