@@ -55,8 +55,9 @@ std::vector<std::string> Notices::report(const HistoryRow& row, const Config& co
                      "%s_lost_energy)",
                      body.lost_count, body.lost_mass, name.c_str(), name.c_str(), name.c_str()));
     const double top = config.mesh.upper[up] - config.mesh.spacing / 2;
-    report(body.mass > 0 && !is_open(config.mesh.walls[up][1]) && body.upper[up] > top && row.step > 0, name,
-           " lid",
+    const Wall above = config.mesh.walls[up][1];  // soil may go on beyond one with dashpots
+    report(body.mass > 0 && !is_open(above) && !has_dashpots(above) && body.upper[up] > top && row.step > 0,
+           name, " lid",
            "soil has come to the top of the mesh, which is a lid (" + lid +
                " is a roller by default): a higher mesh, or " + lid + " free, lets it go on");
   }

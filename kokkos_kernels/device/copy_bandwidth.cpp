@@ -7,7 +7,7 @@ namespace {
 
 /// One copy. Each array is read, or written, once.
 template <class Space, class View>
-void copy(const Space& space, const View& to, const View& from) {
+void copy_entries(const Space& space, const View& to, const View& from) {
   Kokkos::parallel_for(
       "mpm::copy_bandwidth", Kokkos::RangePolicy<Space, Kokkos::IndexType<long>>(space, 0, from.extent(0)),
       KOKKOS_LAMBDA(long n) { to(n) = from(n); });
@@ -27,7 +27,7 @@ double copy_bandwidth(const Space& space) {
     for (int n = 0; n <= repeats; ++n) {
       space.fence("mpm::before the copies");
       const Kokkos::Timer timer;
-      for (int k = 0; k < copies; ++k) copy(space, to, from);
+      for (int k = 0; k < copies; ++k) copy_entries(space, to, from);
       space.fence("mpm::after the copies");
       if (n > 0) best = std::max(best, copies * 2.0 * bytes / timer.seconds());  // the first time warms up
     }

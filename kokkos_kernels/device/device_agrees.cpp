@@ -1,5 +1,7 @@
 #include "device/device_agrees.hpp"
 
+#include "base/copy.hpp"
+
 namespace mpm {
 
 template <class Space>
@@ -13,8 +15,8 @@ bool device_agrees(const Space& space) {
         for (int k = 0; k < static_cast<int>(first.extent(1)); ++k) first(n, k) = n + k;
         second(n) = static_cast<double>(second.extent(0)) + n;
       });
-  const auto a = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), first);
-  const auto b = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), second);
+  const auto a = mirror_of(first);
+  const auto b = mirror_of(second);
   bool agrees = true;
   for (int n = 0; n < count; ++n)
     for (int k = 0; k < 3; ++k) agrees = agrees && a(n, k) == n + k && b(n) == count + n;

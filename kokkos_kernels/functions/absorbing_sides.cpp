@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/copy.hpp"
 #include "functions/free_field.hpp"
 #include "functions/side_moduli.hpp"
 #include "loops/particle_to_node.hpp"
@@ -204,11 +205,11 @@ void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_r
   });
   set_reactions(s);
   s.space.fence("mpm::begin_absorbing");
-  const auto sums = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), give.sums);
+  const auto sums = mirror_of(give.sums);
   ranks.sum(sums.data(), static_cast<int>(sums.size()));
-  const auto mirrored = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), beyond);
+  const auto mirrored = mirror_of(beyond);
   ranks.sum(mirrored.data(), static_cast<int>(mirrored.size()));
-  const auto table = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.sides.nodes);
+  const auto table = mirror_of(s.sides.nodes);
   for (int n = 0; n < 2 * Dim; ++n) {
     if (!(sides >> n & 1u)) continue;
     const int first = s.sides.host[n].first;
@@ -227,7 +228,7 @@ void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_r
         if (s.sides.mirrored[n] >> k & 1u) table(row, S::reaction + k) -= mirrored(row, k) * unit_force;
     }
   }
-  Kokkos::deep_copy(s.sides.nodes, table);
+  copy(s.sides.nodes, table);
   begin_columns(s, shear_ratio, ranks, {table.data(), table.data() + table.size()});
   s.sides.unknown = 0;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/copy.hpp"
 #include "functions/free_field.hpp"
 #include "functions/raw_column.hpp"
 #include "functions/side_moduli.hpp"
@@ -252,9 +253,9 @@ void begin_columns(State<Space, T, Dim>& s, const std::vector<double>& shear_rat
   Kokkos::parallel_for("mpm::give_columns", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
                        give);
   s.space.fence("mpm::begin_columns");
-  const auto sums = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), give.sums);
+  const auto sums = mirror_of(give.sums);
   ranks.sum(sums.data(), static_cast<int>(sums.size()));
-  const auto table = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.sides.columns);
+  const auto table = mirror_of(s.sides.columns);
   for (int n = 0; n < 2 * Dim; ++n) {
     if (!(sides >> n & 1u)) continue;
     const Side<Dim>& side = s.sides.host[n];
@@ -272,7 +273,7 @@ void begin_columns(State<Space, T, Dim>& s, const std::vector<double>& shear_rat
       set_column(s, raw, side, at, nodes, table.data());
     }
   }
-  Kokkos::deep_copy(s.sides.columns, table);
+  copy(s.sides.columns, table);
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                             \

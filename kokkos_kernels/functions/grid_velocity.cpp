@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/copy.hpp"
 #include "loops/particle_to_node.hpp"
 
 namespace mpm {
@@ -60,7 +61,7 @@ std::vector<double> grid_velocities(const State<Space, T, Dim>& s, const std::ve
   Kokkos::parallel_for(
       "mpm::grid_velocities", Kokkos::RangePolicy<Space>(s.space, 0, count),
       KOKKOS_LAMBDA(int p) { values(p) = velocity(p); });
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), values);
+  const auto host = mirror_of(values);
   std::vector<double> out;
   out.reserve(std::size_t(count) * Dim);
   for (const int p : order)

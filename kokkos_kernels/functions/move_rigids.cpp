@@ -1,5 +1,6 @@
 #include <vector>
 
+#include "base/copy.hpp"
 #include "functions/step_kernels.hpp"
 #include "loops/end_step.hpp"
 #include "loops/particle_to_node.hpp"
@@ -100,7 +101,7 @@ template <class Space, class T, int Dim>
 Control read_control(const State<Space, T, Dim>& s) {
   Control c;
   Kokkos::View<Control, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(&c);
-  Kokkos::deep_copy(s.space, host, s.control);
+  copy(s.space, host, s.control);
   s.space.fence("mpm::read_control");
   return c;
 }

@@ -1,5 +1,7 @@
 #include "functions/node_impulses.hpp"
 
+#include "base/copy.hpp"
+
 namespace mpm {
 namespace {
 
@@ -8,14 +10,14 @@ template <class Space, class Value>
 Kokkos::View<Value*, typename Space::memory_space> on_device(const std::string& label,
                                                              const std::vector<Value>& values) {
   Kokkos::View<Value*, typename Space::memory_space> view(label, values.size());
-  Kokkos::deep_copy(view, Kokkos::View<const Value*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
-                              values.data(), values.size()));
+  copy(view,
+       Kokkos::View<const Value*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(values.data(), values.size()));
   return view;
 }
 
 template <class Value, class View>
 std::vector<Value> on_host(const View& view) {
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+  const auto host = mirror_of(view);
   return {host.data(), host.data() + host.extent(0)};
 }
 

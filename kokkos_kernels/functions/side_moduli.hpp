@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "base/copy.hpp"
 #include "data/particles.hpp"
 #include "physics/materials/any.hpp"
 
@@ -28,9 +29,9 @@ KOKKOS_INLINE_FUNCTION SideModuli side_moduli(const Soil<Space, T, Dim>& soil, d
 template <class Space>
 Kokkos::View<double*, typename Space::memory_space> shear_ratios(const std::vector<double>& ratio) {
   Kokkos::View<double*, typename Space::memory_space> view("mpm::shear_ratio", ratio.size());
-  const auto host = Kokkos::create_mirror_view(view);
+  const auto host = empty_mirror_of(view);
   for (std::size_t m = 0; m < ratio.size(); ++m) host(m) = ratio[m];
-  Kokkos::deep_copy(view, host);
+  copy(view, host);
   return view;
 }
 

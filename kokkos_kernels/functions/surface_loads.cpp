@@ -29,6 +29,13 @@ struct LoadedParticles {
   KOKKOS_INLINE_FUNCTION int load_of(int p, int k) const {
     return static_cast<int>(soil.faces[k](p)[FaceTerms<Dim>::load]) - 1;
   }
+  /// Of all faces of particle p along an axis [m2].
+  KOKKOS_INLINE_FUNCTION double area_along(int p, int axis) const {
+    double area = 0;
+    for (int k = 0; k < soil.face_count; ++k)
+      if (load_of(p, k) >= 0) area += soil.faces[k](p)[FaceTerms<Dim>::area + axis];
+    return area;
+  }
   KOKKOS_INLINE_FUNCTION bool in_loaded_slot(int p) const {
     return loaded(soil.cell(p) / Patch<Dim>::cells) != 0;
   }
@@ -63,6 +70,19 @@ KOKKOS_INLINE_FUNCTION FaceBox<T, Dim> box_across(const Soil<Space, T, Dim>& soi
   return box;
 }
 
+/// The side of a particle's box that faces along an axis with this area stand on, `half` [cells] from the
+/// box's centre; the middle of the box where the area is 0. It is thinner than round-off sees.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION FaceBox<T, Dim> side_of(FaceBox<T, Dim> box, int axis, double area, T half) {
+  const T side = area > 0 ? T(1) : area < 0 ? T(-1) : T(0);
+  T& at = box.centre[axis];
+  at += side * half;
+  if (const T row = Kokkos::round(at), beyond = side * (at - row); beyond > 0 && beyond < k_at_row<T>)
+    at = row;
+  box.half[axis] = k_thin<T>;
+  return box;
+}
+
 /// The faces of particles along an axis, and the forces on them.
 template <class Space, class T, int Dim>
 struct PlaceFaces {
@@ -73,24 +93,20 @@ struct PlaceFaces {
 
   KOKKOS_INLINE_FUNCTION void operator()(int p) const {
     if (!particles.in_loaded_slot(p)) return;
-    double area = 0, force[Dim] = {};
+    double force[Dim] = {};
     if (particles.has_load(p))
-      for (int k = 0; k < particles.soil.face_count; ++k) add_face(p, k, area, force);
-    FaceBox<T, Dim> box = box_across(particles.soil, p, axis);
-    const T side = area > 0 ? T(1) : area < 0 ? T(-1) : T(0);
-    T& at = box.centre[axis];
-    at += side * box.half[axis];
-    if (const T row = Kokkos::round(at), beyond = side * (at - row); beyond > 0 && beyond < k_at_row<T>)
-      at = row;
-    box.half[axis] = k_thin<T>;
-    loads.coordinate(p) = box.centre, loads.half_length(p) = to_store<Space>(box.half);
+      for (int k = 0; k < particles.soil.face_count; ++k) add_face(p, k, force);
+    const FaceBox<T, Dim> box = box_across(particles.soil, p, axis);
+    const double area = particles.has_load(p) ? particles.area_along(p, axis) : 0;
+    const FaceBox<T, Dim> side = side_of(box, axis, area, box.half[axis]);
+    loads.coordinate(p) = side.centre, loads.half_length(p) = to_store<Space>(side.half);
     for (int d = 0; d < Dim; ++d) loads.force(p)[d] = static_cast<T>(force[d]);
   }
 
  private:
   /// Each component of a pressure acts on the face that is normal to it. A traction is divided among the
   /// faces as the components of the area.
-  KOKKOS_INLINE_FUNCTION void add_face(int p, int k, double& area, double (&force)[Dim]) const {
+  KOKKOS_INLINE_FUNCTION void add_face(int p, int k, double (&force)[Dim]) const {
     const int load = particles.load_of(p, k);
     if (load < 0) return;
     const Face<Dim> face = particles.soil.faces[k](p);
@@ -98,26 +114,15 @@ struct PlaceFaces {
     double size = 0;
     for (int d = 0; d < Dim; ++d) size += Kokkos::fabs(face[F::area + d]);
     const double share = size > 0 ? Kokkos::fabs(face[F::area + axis]) / size : axis == 0 ? 1.0 : 0.0;
-    area += face[F::area + axis];
     force[axis] -= now.pressure * face[F::area + axis];
     for (int d = 0; d < Dim; ++d) force[d] += now.traction[d] * face[F::start] * share;
   }
 };
 
-/// The cofactors of B times a.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION void cofactors_times(const double (&b)[Dim][Dim], const double (&a)[Dim],
-                                            double (&out)[Dim]) {
-  double c[Dim][Dim];
-  cofactors(b, c);
-  for (int i = 0; i < Dim; ++i) {
-    out[i] = 0;
-    for (int j = 0; j < Dim; ++j) out[i] += c[i][j] * a[j];
-  }
-}
-
-/// Areas after a step, by Nanson's formula a' = det(G) G^-T a with G = (I - L dt/2)^-1 (I + L dt/2), which of
-/// a spin is a rotation.
+/// Areas after a step. The part of an area vector along an axis is that of a side of the box, which stretches
+/// and turns as the velocities along that side do: da_k = (sum of dv_e/dx_e, e not k) a_k, da_j = - dv_k/dx_j
+/// a_k, which is Nanson's formula with the gradient at the side. The rule of the mean (Cayley) keeps the size
+/// of the area in a spin.
 template <class Space, class T, int Dim>
 struct FollowSurfaces {
   using F = FaceTerms<Dim>;
@@ -129,44 +134,63 @@ struct FollowSurfaces {
 
   KOKKOS_INLINE_FUNCTION void operator()(int p) const {
     if (control().paused || !particles.has_load(p)) return;
-    double l[Dim][Dim] = {}, hoop = 0;  // times half the step
-    rates(p, l, hoop);
-    double before[Dim][Dim], after[Dim][Dim];  // I - L dt/2, I + L dt/2
-    for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j) {
-        before[i][j] = (i == j ? 1.0 : 0.0) - l[i][j];
-        after[i][j] = (i == j ? 1.0 : 0.0) + l[i][j];
+    double before[Dim][Dim] = {}, after[Dim][Dim] = {},
+           inverse[Dim][Dim];  // I - K dt/2, I + K dt/2, da/dt = K a
+    for (int axis = 0; axis < Dim; ++axis) {
+      double rates[Dim] = {};
+      side_rates(p, axis, rates);
+      for (int d = 0; d < Dim; ++d) {
+        before[d][axis] = (d == axis ? 1.0 : 0.0) - rates[d];
+        after[d][axis] = (d == axis ? 1.0 : 0.0) + rates[d];
       }
-    const double scale = (1 + hoop) / ((1 - hoop) * determinant(before));
+    }
+    invert(before, inverse);
     for (int k = 0; k < particles.soil.face_count; ++k) {
       if (particles.load_of(p, k) < 0) continue;
       Face<Dim>& face = particles.soil.faces[k](p);
-      double area[Dim], turned[Dim];
+      double area[Dim], middle[Dim] = {};
       for (int d = 0; d < Dim; ++d) area[d] = face[F::area + d];
-      cofactors_times(after, area, turned);
+      for (int d = 0; d < Dim; ++d)
+        for (int e = 0; e < Dim; ++e) middle[d] += after[d][e] * area[e];
       for (int d = 0; d < Dim; ++d) {
         double sum = 0;
-        for (int e = 0; e < Dim; ++e) sum += before[e][d] * turned[e];
-        face[F::area + d] = scale * sum;
+        for (int e = 0; e < Dim; ++e) sum += inverse[d][e] * middle[e];
+        face[F::area + d] = sum;
       }
     }
   }
 
  private:
-  KOKKOS_INLINE_FUNCTION void rates(int p, double (&l)[Dim][Dim], double& hoop) const {
+  /// Rates of the area vector with the part of it along an axis, times half the step.
+  KOKKOS_INLINE_FUNCTION void side_rates(int p, int axis, double (&rates)[Dim]) const {
+    const auto& soil = particles.soil;
+    const FaceBox<T, Dim> box = box_across(soil, p, axis);
+    const double area = particles.area_along(p, axis);
+    // Soil that has become thinner ends before the side of a box that keeps its size.
+    const double thickness = double(soil.volume(p)) / Kokkos::fabs(area) * double(places.grid.inv_spacing);
+    const T depth = thickness < 2 * double(box.half[axis]) ? static_cast<T>(thickness / 2) : box.half[axis];
+    const FaceBox<T, Dim> side = side_of(box, axis, area, depth);
+    HalfLengths<T, Dim> half;
+    for (int d = 0; d < Dim; ++d) half[d] = HalfLength<T>(side.half[d]);
     const double scale = half_step * double(places.grid.inv_spacing);
-    with_any_domain(particles.soil, p, [&](const auto& domain) {
-      constexpr bool ring = std::is_same_v<std::decay_t<decltype(domain)>, RingDomain<T>>;
-      for_each_node<Kind::motion>(
-          particles.soil, domain, places, p, [&](int i, T, const auto& grad, auto&&, auto&& sign) {
-            for (int d = 0; d < Dim; ++d) {
-              const double v = scale * double(sign(d) * kinematics(i, NodeKinematics<Dim>::velocity + d));
-              for (int e = 0; e < Dim; ++e) l[d][e] += v * double(grad[e]);
-              if constexpr (ring)
-                if (d == 0) hoop += v * double(grad[Dim]);
-            }
-          });
-    });
+    double hoop = 0;  // 1 / radius [1/cell]
+    if constexpr (Dim == 2)
+      if (soil.rings) {
+        const double radius = side.centre[0] - axis_of<T>(soil, soil.cell(p));
+        hoop = radius > 0 ? 1 / radius : 0;
+      }
+    for_each_node_at<Kind::motion>(
+        side.centre, soil.cell(p), half, places, [&](int i, T w, const auto& grad, auto&&, auto&& sign) {
+          const auto v = [&](int d) {
+            return scale * double(sign(d) * kinematics(i, NodeKinematics<Dim>::velocity + d));
+          };
+          rates[axis] += v(0) * double(w) * hoop;
+          for (int d = 0; d < Dim; ++d) {
+            if (d == axis) continue;
+            rates[axis] += v(d) * double(grad[d]);
+            rates[d] -= v(axis) * double(grad[d]);
+          }
+        });
   }
 };
 

@@ -155,15 +155,14 @@ struct Stencil {
   }
 };
 
-/// Calls f(node, w, grad, offset, sign) for every node of particle p: w [-] its weight, grad [1/cell] its
-/// gradient, offset() [cells] from the particle to it; sign(component) as Stencil::sign. Nodes of no weight
-/// are left alone, which keeps the blocks of one colour apart.
-template <Kind kind, class Points_, class Domain, class Space, class T, int Dim, class F>
-KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, const Domain& domain,
-                                          const NodePlaces<Space, T, Dim>& places, int p, F&& f) {
-  const auto x = points.coordinate(p);
+/// Calls f(node, w, grad, offset, sign) for every node of the box with the centre x [cells, in the frame of a
+/// cell]: w [-] its weight, grad [1/cell] its gradient, offset() [cells] from x to it; sign(component) as
+/// Stencil::sign. Nodes of no weight are left alone, which keeps the blocks of one colour apart.
+template <Kind kind, class Domain, class Space, class T, int Dim, class F>
+KOKKOS_INLINE_FUNCTION void for_each_node_at(const Vector<T, Dim>& x, int cell, const Domain& domain,
+                                             const NodePlaces<Space, T, Dim>& places, F&& f) {
   with_weights(x, domain, [&](const auto& a) {
-    const Stencil<kind, T, Dim> stencil(places, points.cell(p), a);
+    const Stencil<kind, T, Dim> stencil(places, cell, a);
     for_each_weight(a, [&](const Vector<int, Dim>& k, T w, const auto& grad) {
       if (!(w > 0)) return;
       f(
@@ -171,6 +170,12 @@ KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, const Domain& d
           [&](int component) { return stencil.sign(k, component); });
     });
   });
+}
+/// The same for every node of particle p.
+template <Kind kind, class Points_, class Domain, class Space, class T, int Dim, class F>
+KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, const Domain& domain,
+                                          const NodePlaces<Space, T, Dim>& places, int p, F&& f) {
+  for_each_node_at<kind>(points.coordinate(p), points.cell(p), domain, places, f);
 }
 
 /// Gives the terms of particle p to its nodes by add(node, value index, value).

@@ -1,5 +1,6 @@
 #include "rebuild/batches.hpp"
 
+#include "base/copy.hpp"
 #include "functions/step_kernels.hpp"
 #include "loops/interpolation.hpp"
 
@@ -9,10 +10,10 @@ namespace {
 constexpr long k_sample_every = 50, k_first_sample = 2;  // steps that are sampled
 
 template <class Space, class View>
-void copy(const Space& space, const View& to, const View& from, int first, int last, double& bytes) {
+void copy_part(const Space& space, const View& to, const View& from, int first, int last, double& bytes) {
   using Part = Kokkos::View<typename View::value_type*, typename View::memory_space, Kokkos::MemoryUnmanaged>;
   const std::size_t count = last - first;
-  Kokkos::deep_copy(space, Part(to.data() + first, count), Part(from.data() + first, count));
+  copy(space, Part(to.data() + first, count), Part(from.data() + first, count));
   bytes += count * sizeof(typename View::value_type);
 }
 
@@ -21,7 +22,7 @@ template <class Space, class T, int Dim>
 double copy_in(const Space& space, const State<Space, T, Dim>& s, const SoilBatch<Space, T, Dim>& batch) {
   double bytes = 0;
   for_each_of_step(s.soil.points, batch.set.points, [&](const auto& home, const auto& there, Use) {
-    copy(space, there, home, batch.first, batch.last, bytes);
+    copy_part(space, there, home, batch.first, batch.last, bytes);
   });
   return bytes;
 }
@@ -30,7 +31,7 @@ template <class Space, class T, int Dim>
 double copy_out(const Space& space, const State<Space, T, Dim>& s, const SoilBatch<Space, T, Dim>& batch) {
   double bytes = 0;
   for_each_of_step(s.soil.points, batch.set.points, [&](const auto& home, const auto& there, Use use) {
-    if (use == Use::changes) copy(space, home, there, batch.first, batch.last, bytes);
+    if (use == Use::changes) copy_part(space, home, there, batch.first, batch.last, bytes);
   });
   return bytes;
 }

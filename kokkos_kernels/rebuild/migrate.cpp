@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/copy.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
@@ -60,7 +61,7 @@ void grow(View& view, int n, int kept) {
   if (static_cast<int>(view.extent(0)) >= n) return;
   View larger(Kokkos::view_alloc(view.label(), Kokkos::WithoutInitializing), n + n / 8);
   const auto range = Kokkos::make_pair(0, kept);
-  if (kept > 0) Kokkos::deep_copy(Kokkos::subview(larger, range), Kokkos::subview(view, range));
+  if (kept > 0) copy(Kokkos::subview(larger, range), Kokkos::subview(view, range));
   view = larger;
 }
 
@@ -94,7 +95,7 @@ std::vector<Leaver> find_leavers(State<Space, T, Dim>& s,
         if (last) leavers(n) = {p, rank};
         ++n;
       });
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), leavers);
+  const auto host = mirror_of(leavers);
   return {host.data(), host.data() + found};
 }
 
@@ -105,8 +106,7 @@ std::vector<char> take_particles(State<Space, T, Dim>& s, const std::vector<int>
   const std::size_t size = record_size(s);  // a multiple of any alignment
   const Unmanaged<char, Space> records = scratch_of<char>(s, count * size, count * sizeof(int));
   const Unmanaged<int, Space> which(reinterpret_cast<int*>(records.data() + count * size), count);
-  Kokkos::deep_copy(
-      which, Kokkos::View<const int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(particles.data(), count));
+  copy(which, Kokkos::View<const int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(particles.data(), count));
   for_each_part(
       s, [&](const auto& view, std::size_t place) { pack_part(s.space, view, place, size, which, records); });
   const auto address = s.soil.address;
@@ -114,7 +114,7 @@ std::vector<char> take_particles(State<Space, T, Dim>& s, const std::vector<int>
       "mpm::forget_leavers", Kokkos::RangePolicy<Space>(s.space, 0, count),
       KOKKOS_LAMBDA(int n) { address(which(n)) = -1; });
   s.space.fence("mpm::take_particles");
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), records);
+  const auto host = mirror_of(records);
   return {host.data(), host.data() + host.extent(0)};
 }
 
@@ -126,8 +126,8 @@ void add_particles(State<Space, T, Dim>& s, const std::vector<char>& records) {
   const int first = s.soil.points.all;
   reserve_particles(s, first + count);
   const Unmanaged<char, Space> here = scratch_of<char>(s, records.size());
-  Kokkos::deep_copy(here, Kokkos::View<const char*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
-                              records.data(), records.size()));
+  copy(here,
+       Kokkos::View<const char*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(records.data(), records.size()));
   for_each_part(s, [&](const auto& view, std::size_t place) {
     unpack_part(s.space, view, place, size, first, count, here);
   });
@@ -155,7 +155,7 @@ std::vector<int> count_by_patch(const State<Space, T, Dim>& s) {
         if (address(p) >= 0) Kokkos::atomic_inc(&counts(address(p) / Patch<Dim>::cells % patches));
       });
   s.space.fence("mpm::count_by_patch");
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), counts);
+  const auto host = mirror_of(counts);
   return {host.data(), host.data() + host.extent(0)};
 }
 

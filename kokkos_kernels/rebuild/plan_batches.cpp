@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/copy.hpp"
 #include "data/memory_of.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
@@ -49,12 +50,6 @@ std::size_t bytes_of(const State<Space, T, Dim>& s, int particles) {
   return lay_out(s, nullptr, batch);
 }
 
-template <class View>
-auto on_host(const View& view, int count) {
-  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(),
-                                             Kokkos::subview(view, Kokkos::make_pair(0, count)));
-}
-
 /// First particle of each slot, and behind the last.
 template <class Space, class T, int Dim>
 Kokkos::View<int*, Kokkos::HostSpace> first_of_slots(const State<Space, T, Dim>& s) {
@@ -65,7 +60,7 @@ Kokkos::View<int*, Kokkos::HostSpace> first_of_slots(const State<Space, T, Dim>&
       "mpm::first_of_slots", Kokkos::RangePolicy<Space>(s.space, 0, slots + 1),
       KOKKOS_LAMBDA(int slot) { first(slot) = begin(slot * Patch<Dim>::cells); });
   s.space.fence("mpm::first_of_slots");
-  return on_host(first, slots + 1);
+  return mirror_of(first, slots + 1);
 }
 
 /// Puts whole patches together as long as they have at most `most` particles.
@@ -92,7 +87,7 @@ void list_slots(State<Space, T, Dim>& s) {
   const auto& whole = s.soil.bins;
   auto& b = s.batches;
   ensure(b.slots, whole.last_active);
-  const auto slots = on_host(whole.active_slots, whole.last_active);
+  const auto slots = mirror_of(whole.active_slots, whole.last_active);
   int end = 0;
   for (SoilBatch<Space, T, Dim>& batch : b.all) {
     Bins<Space>& bins = batch.set.bins;
@@ -103,7 +98,7 @@ void list_slots(State<Space, T, Dim>& s) {
     bins.active_slots = Kokkos::subview(b.slots, Kokkos::make_pair(begin, end));
   }
   const auto all = Kokkos::make_pair(0, end);
-  Kokkos::deep_copy(Kokkos::subview(b.slots, all), Kokkos::subview(whole.active_slots, all));
+  copy(Kokkos::subview(b.slots, all), Kokkos::subview(whole.active_slots, all));
 }
 
 /// Gives each batch its place. As many as can stay on the device.

@@ -1,3 +1,4 @@
+#include "base/copy.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
@@ -10,8 +11,7 @@ KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>& s) {
   kept.impulse = s.nodes.impulse;  // restore_impulse makes a new one
   kept.number =
       decltype(kept.number)(Kokkos::view_alloc("mpm::kept_number", Kokkos::WithoutInitializing), kept.slots);
-  Kokkos::deep_copy(s.space, kept.number,
-                    Kokkos::subview(s.patches.number, Kokkos::make_pair(0, kept.slots)));
+  copy(s.space, kept.number, Kokkos::subview(s.patches.number, Kokkos::make_pair(0, kept.slots)));
   return kept;
 }
 

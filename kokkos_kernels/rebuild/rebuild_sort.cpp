@@ -1,6 +1,7 @@
 // The order of the points: by slot, by cell in it, by id in the cell. A counting sort, then each cell's few
 // points are put in order of id, so that the result does not depend on how threads ran.
 
+#include "base/copy.hpp"
 #include "functions/step_kernels.hpp"
 #include "functions/surface_loads.hpp"
 #include "physics/cell_mean.hpp"
@@ -152,8 +153,8 @@ void list_held(const Space& space, ParticleSet<Space, Points_>& set, const Patch
   ensure(set.bins.active_slots, slots);
   const auto active_slots = set.bins.active_slots, begin = set.bins.begin;
   // The scan, for whose result the host waits, is behind this copy on the stream.
-  Kokkos::deep_copy(space, Kokkos::View<int, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(&set.points.count),
-                    Kokkos::subview(begin, slots * cells));
+  copy(space, Kokkos::View<int, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(&set.points.count),
+       Kokkos::subview(begin, slots * cells));
   int held = 0;
   Kokkos::parallel_scan(
       "mpm::list_held", Kokkos::RangePolicy<Space>(space, 0, slots),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/copy.hpp"
 #include "physics/domain.hpp"
 #include "rebuild/migrate.hpp"
 #include "rebuild/rebuild.hpp"
@@ -147,7 +148,7 @@ std::vector<Splitting> find_splittings(State<Space, T, Dim>& s) {
         if (last) list(n) = {p, id(p)};
         ++n;
       });
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), list);
+  const auto host = mirror_of(list);
   std::vector<Splitting> all(host.data(), host.data() + found);
   std::sort(all.begin(), all.end(), [](const Splitting& a, const Splitting& b) { return a.id < b.id; });
   return all;
@@ -162,9 +163,9 @@ void split_particles(State<Space, T, Dim>& s, const std::vector<Splitting>& spli
   reserve_particles(s, first + more);
   const Kokkos::View<int*, typename Space::memory_space> places("mpm::splitting_places", more),
       numbers("mpm::splitting_ids", more);
-  const auto place = Kokkos::create_mirror_view(places), number = Kokkos::create_mirror_view(numbers);
+  const auto place = empty_mirror_of(places), number = empty_mirror_of(numbers);
   for (int n = 0; n < more; ++n) place(n) = splittings[n].place, number(n) = ids[n];
-  Kokkos::deep_copy(places, place), Kokkos::deep_copy(numbers, number);
+  copy(places, place), copy(numbers, number);
   const auto copy = [&](const auto& field) { copy_some(s.space, field, places, first); };
   auto points = s.soil.points;
   for_each_field(points, copy);

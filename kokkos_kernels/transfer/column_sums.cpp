@@ -1,5 +1,6 @@
 #include "transfer/column_sums.hpp"
 
+#include "base/copy.hpp"
 #include "transfer/body_mask.hpp"
 #include "transfer/particle_box.hpp"
 
@@ -87,7 +88,7 @@ std::vector<long> column_sums(const State<Space, T, Dim>& s, const ColumnGrid& g
   for (int d = 0; d < 2; ++d) add.lower[d] = grid.lower[d], add.cells[d] = grid.cells[d];
   Kokkos::parallel_for("mpm::column_sums", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count), add);
   s.space.fence("mpm::column_sums");
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), sums);
+  const auto host = mirror_of(sums);
   return {host.data(), host.data() + host.extent(0)};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/copy.hpp"
 #include "physics/domain.hpp"
 
 namespace mpm {
@@ -11,9 +12,8 @@ template <class Space, class T, int Dim>
 std::vector<int> order_for_host(const State<Space, T, Dim>& s) {
   const auto& soil = s.soil.points;
   const auto held = Kokkos::make_pair(0, soil.count);
-  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.id, held));
-  const auto body =
-      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.body, held));
+  const auto id = mirror_of(Kokkos::subview(soil.id, held));
+  const auto body = mirror_of(Kokkos::subview(soil.body, held));
   std::vector<int> order(soil.count);
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
@@ -26,7 +26,7 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
   const auto& soil = s.soil.points;
   const auto host_of = [&](const auto& view) {
     const auto held = Kokkos::subview(view, Kokkos::make_pair(0, soil.count));
-    return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), held);
+    return mirror_of(held);
   };
   SoilFields fields;
   const auto id = host_of(soil.id);
@@ -50,7 +50,7 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
   spread(soil.volume, 1, fields.volume, whole);
   fields.history.resize(soil.history.columns);
   for (int k = 0; k < soil.history.columns; ++k) spread(soil.history.column[k], 1, fields.history[k], whole);
-  const auto bodies = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), soil.bodies);
+  const auto bodies = mirror_of(soil.bodies);
   const auto of_body = [&](int b, int) { return double(bodies(b).mass); };
   if (soil.has_own_mass)
     spread(soil.mass, 1, fields.mass, whole);
@@ -72,8 +72,7 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
 
   const auto x_p = host_of(soil.coordinate);
   const auto cell = host_of(soil.cell);
-  const auto origin = Kokkos::create_mirror_view_and_copy(
-      Kokkos::HostSpace(), Kokkos::subview(s.patches.origin, Kokkos::make_pair(0, s.patches.slots)));
+  const auto origin = mirror_of(Kokkos::subview(s.patches.origin, Kokkos::make_pair(0, s.patches.slots)));
   for (const int p : by_id) {
     const Coord<Dim> from = origin(cell(p) / Patch<Dim>::cells), in = coord_of<Dim>(cell(p));
     for (int d = 0; d < Dim; ++d) {
@@ -92,10 +91,9 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int rigid) {
   const auto& points = s.rigid_points[rigid].points;
-  const auto reference_position =
-      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.reference_position);
-  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
-  const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  const auto reference_position = mirror_of(points.reference_position);
+  const auto id = mirror_of(points.id);
+  const auto rigids = mirror_of(s.rigids);
   std::vector<double> position(std::size_t(points.all) * Dim);
   for (int p = 0; p < points.all; ++p) {
     Vector<double, Dim> x = reference_position(p);
@@ -108,7 +106,7 @@ std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int 
 
 template <class Space, class T, int Dim>
 std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s) {
-  auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  auto host = mirror_of(s.rigids);
   std::vector<Rigid<Dim>> rigids(host.data(), host.data() + host.extent(0));
   const auto view = s.rigids;
   Kokkos::parallel_for(

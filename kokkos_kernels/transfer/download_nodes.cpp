@@ -1,5 +1,7 @@
 #include "transfer/download_nodes.hpp"
 
+#include "base/copy.hpp"
+
 #include <algorithm>
 
 namespace mpm {
@@ -21,8 +23,8 @@ long node_number(const Grid<T, Dim>& grid, const Coord<Dim>& at) {
 template <class Space, class T, int Dim>
 NodeFields download_nodes(const State<Space, T, Dim>& s) {
   using S = SoilTerms<Dim>;
-  const auto soil = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.soil);
-  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
+  const auto soil = mirror_of(s.nodes.soil);
+  const auto origin = mirror_of(s.patches.origin);
   const auto place = [&](int i) {
     Coord<Dim> at = coord_of<Dim>(i);
     for (int d = 0; d < Dim; ++d) at[d] += origin(i / Patch<Dim>::cells)[d];

@@ -1,5 +1,7 @@
 #include "transfer/filled_cells.hpp"
 
+#include "base/copy.hpp"
+
 #include <cmath>
 
 namespace mpm {
@@ -28,9 +30,7 @@ std::vector<FilledPatch> filled_cells(const State<Space, T, Dim>& s) {
         });
   }
   s.space.fence("mpm::filled_cells");
-  const auto host = [](const auto& view) {
-    return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
-  };
+  const auto host = [](const auto& view) { return mirror_of(view); };
   const auto of_soil = host(soil_bits), of_rigids = host(rigid_bits);
   const auto number = host(s.patches.number);
   std::vector<FilledPatch> patches;

@@ -1,5 +1,6 @@
 #include "transfer/measure.hpp"
 
+#include "base/copy.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
 #include "physics/pore_water.hpp"
@@ -196,7 +197,7 @@ double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long ra
           const int at = ruler(position(p, d)) >> shift;
           if (at >> Ruler::digit == place) Kokkos::atomic_inc(&counts(at - (place << Ruler::digit)));
         });
-    const auto count = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), counts);
+    const auto count = mirror_of(counts);
     if (over.sum) over.sum(count.data(), 1 << Ruler::digit);
     int digit = 0;
     while (rank > count(digit)) rank -= count(digit++);

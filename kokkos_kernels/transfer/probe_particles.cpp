@@ -4,6 +4,7 @@
 #include <limits>
 #include <tuple>
 
+#include "base/copy.hpp"
 #include "physics/materials/any.hpp"
 #include "transfer/body_mask.hpp"
 #include "transfer/particle_box.hpp"
@@ -75,13 +76,13 @@ struct SquareTo {
 template <class Space>
 Kokkos::View<Region*, typename Space::memory_space> to_device(const std::vector<ProbeRegion>& regions) {
   const Kokkos::View<Region*, typename Space::memory_space> view("mpm::probe_regions", regions.size());
-  const auto host = Kokkos::create_mirror_view(view);
+  const auto host = empty_mirror_of(view);
   for (std::size_t n = 0; n < regions.size(); ++n) {
     const ProbeRegion& from = regions[n];
     for (int d = 0; d < 3; ++d) host(n).centre[d] = from.centre[d], host(n).reach[d] = from.reach[d];
     host(n).box = from.box, host(n).id = from.id;
   }
-  Kokkos::deep_copy(view, host);
+  copy(view, host);
   return view;
 }
 
@@ -111,7 +112,7 @@ std::vector<ProbeParticle> particles_in(const State<Space, T, Dim>& s,
         }
       });
   s.space.fence("mpm::particles_in");
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), records);
+  const auto host = mirror_of(records);
   std::vector<ProbeParticle> particles(host.data(), host.data() + host.extent(0));
   std::sort(particles.begin(), particles.end(), [](const ProbeParticle& a, const ProbeParticle& b) {
     return std::tie(a.region, a.id) < std::tie(b.region, b.id);

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/copy.hpp"
 #include "functions/step_kernels.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
@@ -29,7 +30,7 @@ template <class View>
 SavedField save_field(const std::string& name, const View& view, int count) {
   using Value = typename View::non_const_value_type;
   constexpr int n = components_of<Value>;
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+  const auto host = mirror_of(view);
   SavedField field{name, n, static_cast<int>(sizeof(Number<Value>)), {}};
   field.values.resize(std::size_t(count) * n);
   const auto* numbers = reinterpret_cast<const Number<Value>*>(host.data());
@@ -40,8 +41,8 @@ SavedField save_field(const std::string& name, const View& view, int count) {
 /// Addresses of the cells where points are binned.
 template <class Space, int Dim, class Cells>
 std::vector<long> addresses_of(const Patches<Space, Dim>& patches, const Cells& cells, int count) {
-  const auto cell = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), cells);
-  const auto number = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), patches.number);
+  const auto cell = mirror_of(cells);
+  const auto number = mirror_of(patches.number);
   std::vector<long> address(count);
   for (int p = 0; p < count; ++p) address[p] = address_of_node<Dim>(number, cell(p));
   return address;
@@ -50,7 +51,7 @@ std::vector<long> addresses_of(const Patches<Space, Dim>& patches, const Cells& 
 template <class Patches_, class Points_>
 SavedPoints save_points(const Patches_& patches, Points_ points) {
   SavedPoints saved;
-  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), points.id);
+  const auto id = mirror_of(points.id);
   saved.id.assign(id.data(), id.data() + points.count);
   saved.address = addresses_of(patches, points.cell, points.count);
   const auto save = [&](const char* name, Use, const auto& field) {
@@ -64,10 +65,10 @@ template <class Space, class T, int Dim>
 SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
   SavedImpulse saved;
   if (!s.has_friction) return saved;
-  const auto number = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.number);
-  const auto impulse = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
+  const auto number = mirror_of(s.patches.number);
+  const auto impulse = mirror_of(s.nodes.impulse);
   // Of several ranks one answers for a node: what the others have there may be long out of date.
-  const auto owned_nodes = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.owned_nodes);
+  const auto owned_nodes = mirror_of(s.owned_nodes);
   const int rigids = static_cast<int>(s.rigid_points.size());
   const auto holds_some = [&](int i) {
     if (owned_nodes.extent(0) > 0 && (owned_nodes(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0)
@@ -87,7 +88,7 @@ SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
 /// What has left the run, and which cells hold particles that are alone.
 template <class Space, class T, int Dim>
 void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
-  const auto put_back = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.put_back);
+  const auto put_back = mirror_of(s.strays.put_back);
   for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
     const Lost& lost = s.strays.lost[b];
     const double numbers[k_lost] = {lost.count,       lost.mass,          lost.kinetic_energy,
@@ -98,34 +99,34 @@ void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
   }
   saved.alone_known = s.strays.known ? 1 : 0;
   if (!s.strays.known) return;
-  const auto alone = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.alone);
-  const auto number = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.number);
+  const auto alone = mirror_of(s.strays.alone);
+  const auto number = mirror_of(s.patches.number);
   for (int c = 0; c < s.patches.node_count(); ++c)
     if (is_alone(alone, c)) saved.alone.push_back(address_of_node<Dim>(number, c));
 }
 
 template <class Space, class T, int Dim>
 void restore_lost(State<Space, T, Dim>& s, const SavedState& saved) {
-  const auto put_back = Kokkos::create_mirror_view(s.strays.put_back);
+  const auto put_back = empty_mirror_of(s.strays.put_back);
   for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
     const double* const numbers = &saved.lost[b * k_lost];
     s.strays.lost[b] = {numbers[0], numbers[1], numbers[2], {numbers[3], numbers[4], numbers[5]},
                         numbers[6], numbers[7], numbers[9], numbers[10]};
     put_back(b) = static_cast<int>(numbers[8]);
   }
-  Kokkos::deep_copy(s.strays.put_back, put_back);
+  copy(s.strays.put_back, put_back);
 }
 
 /// After the lists were made.
 template <class Space, class T, int Dim>
 void restore_alone(State<Space, T, Dim>& s, const SavedState& saved) {
   s.strays.known = saved.alone_known != 0;
-  const auto alone = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.strays.alone);
-  const auto slot_of = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.slot_of);
+  const auto alone = mirror_of(s.strays.alone);
+  const auto slot_of = mirror_of(s.patches.slot_of);
   for (const long address : saved.alone)
     if (const int slot = slot_of(address / Patch<Dim>::cells); slot >= 0)
       alone(slot) |= std::uint64_t(1) << (address % Patch<Dim>::cells);
-  Kokkos::deep_copy(s.strays.alone, alone);
+  copy(s.strays.alone, alone);
 }
 
 /// Makes a view hold n entries; its content is lost where it had another number.
@@ -145,21 +146,21 @@ bool restore_field(const std::string& name, View& view, const SavedPoints& saved
   if (field == saved.fields.end() || field->components != n || field->values.size() != std::size_t(count) * n)
     return false;
   resize(view, count);
-  const auto host = Kokkos::create_mirror_view(view);
+  const auto host = empty_mirror_of(view);
   auto* numbers = reinterpret_cast<Number<Value>*>(host.data());
   for (std::size_t k = 0; k < field->values.size(); ++k)
     numbers[k] = static_cast<Number<Value>>(field->values[k]);
-  Kokkos::deep_copy(view, host);
+  copy(view, host);
   return true;
 }
 
 template <class View>
 void restore_whole(View& view, const std::vector<long>& values) {
   resize(view, values.size());
-  const auto host = Kokkos::create_mirror_view(view);
+  const auto host = empty_mirror_of(view);
   for (std::size_t p = 0; p < values.size(); ++p)
     host(p) = static_cast<typename View::non_const_value_type>(values[p]);
-  Kokkos::deep_copy(view, host);
+  copy(view, host);
 }
 
 /// Room in the host's store for as many particles, where the soil goes in batches.
@@ -190,7 +191,7 @@ std::string restore_points(ParticleSet<Space, Points_>& set, const SavedPoints& 
 /// binned: the rigids stand where their points were binned, else where they are.
 template <class Space, class T, int Dim>
 void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved, bool binned) {
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  const auto host = mirror_of(s.rigids);
   for (std::size_t r = 0; r < saved.rigids.size(); ++r)
     for (int d = 0; d < Dim; ++d) {
       const SavedRigid& from = saved.rigids[r];
@@ -199,7 +200,7 @@ void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved, bool binne
       host(r).velocity[d] = from.velocity[d];
       host(r).impulse[d] = from.impulse[d];
     }
-  Kokkos::deep_copy(s.rigids, host);
+  copy(s.rigids, host);
 }
 
 /// The patches are those of the run, so each node that held something is there.
@@ -208,25 +209,25 @@ void restore_nodes(State<Space, T, Dim>& s, const SavedImpulse& saved) {
   if (!s.has_friction) return;
   const int rigids = static_cast<int>(s.rigid_points.size());
   s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", rigids, s.patches.node_count());
-  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
-  const auto slot_of = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.slot_of);
+  const auto host = mirror_of(s.nodes.impulse);
+  const auto slot_of = mirror_of(s.patches.slot_of);
   for (std::size_t n = 0; n < saved.address.size(); ++n) {
     const int slot = slot_of(saved.address[n] / Patch<Dim>::cells);
     if (slot < 0) continue;
     const int i = slot * Patch<Dim>::cells + static_cast<int>(saved.address[n] % Patch<Dim>::cells);
     for (int r = 0; r < rigids; ++r) host(r, i) = static_cast<T>(saved.values[n * rigids + r]);
   }
-  Kokkos::deep_copy(s.nodes.impulse, host);
+  copy(s.nodes.impulse, host);
 }
 
 template <class Space, class T, int Dim>
 void restore_control(State<Space, T, Dim>& s, const SavedState& saved) {
-  const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
+  const auto control = mirror_of(s.control);
   control().bound = saved.bound;
   control().increment = saved.increment;
   control().due_in = s.rebuild_late > 0 ? saved.due_in : 0;
   control().paused = 0;
-  Kokkos::deep_copy(s.control, control);
+  copy(s.control, control);
 }
 
 }  // namespace
@@ -235,11 +236,11 @@ template <class Space, class T, int Dim>
 SavedState save_state(const State<Space, T, Dim>& s) {
   s.space.fence("mpm::save_state");
   SavedState saved;
-  const auto control = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.control);
+  const auto control = mirror_of(s.control);
   saved.bound = control().bound, saved.increment = control().increment;
   saved.margin = s.p2g.margin, saved.due_in = control().due_in;
   saved.soil = save_points(s.patches, s.soil.points);
-  const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  const auto rigids = mirror_of(s.rigids);
   for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
     SavedRigid& rigid = saved.rigids.emplace_back();
     for (int d = 0; d < Dim; ++d) {

@@ -1,5 +1,6 @@
 #include "transfer/section_sums.hpp"
 
+#include "base/copy.hpp"
 #include "transfer/body_mask.hpp"
 #include "transfer/particle_box.hpp"
 
@@ -66,7 +67,7 @@ template <class Space, class T, int Dim>
 SectionSum section_sum(const State<Space, T, Dim>& s, const SectionPlane& plane) {
   constexpr int together = is_device<Space> ? 1 : 256;  // as in measure()
   const auto position = positions_of(s);
-  const auto density = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.density);
+  const auto density = mirror_of(s.density);
   const int count = s.soil.points.count, axis = plane.axis;
   const double place = plane.place;
   SectionSum all;
@@ -112,7 +113,7 @@ void add_lost_beyond(const State<Space, T, Dim>& s, const std::vector<SectionPla
                      const BeyondMask<Space>& beyond, std::vector<SectionSum>& lost) {
   const auto soil = s.soil.points;
   const auto address = s.soil.address;
-  const auto density = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.density);
+  const auto density = mirror_of(s.density);
   for (std::size_t n = 0; n < planes.size(); ++n) {
     const std::uint64_t bit = std::uint64_t(1) << n;
     for (const int body : bodies_of(planes[n], density.extent(0))) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/copy.hpp"
 #include "functions/follow_soil.hpp"
 #include "physics/domain.hpp"
 #include "physics/materials/any.hpp"
@@ -22,9 +23,9 @@ template <class View, class Get>
 void fill_view(View& view, const std::string& label, int count, Get&& get) {
   if (static_cast<int>(view.extent(0)) != count)
     view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), count);
-  auto host = Kokkos::create_mirror_view(view);
+  auto host = empty_mirror_of(view);
   for (int p = 0; p < count; ++p) host(p) = get(p);
-  Kokkos::deep_copy(view, host);
+  copy(view, host);
 }
 
 /// Cell and coordinate in it of positions [m from the mesh's lower corner]; those outside the mesh are a
@@ -181,9 +182,10 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
       limit_domain(domain);
       return domain;
     });
-    const auto domain = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), soil.domain);
-    fill_view(soil.half_length, "mpm::half_length", soil.count,
-              [&](int p) { return to_store<Space>(bounded_half_lengths(domain(p), soil.least_half_length)); });
+    const auto domain = mirror_of(soil.domain);
+    fill_view(soil.half_length, "mpm::half_length", soil.count, [&](int p) {
+      return to_store<Space>(bounded_half_lengths(domain(p), soil.least_half_length));
+    });
     fill_view(soil.begun, "mpm::begun", soil.count,
               [](int) { return filled<T, Dim>(0); });  // begin_domains()
     fill_view(soil.begun_volume, "mpm::begun_volume", soil.count, [](int) { return T(0); });

@@ -1,5 +1,7 @@
 #include "transfer/upload_loads.hpp"
 
+#include "base/copy.hpp"
+
 #include <string>
 
 namespace mpm {
@@ -8,9 +10,9 @@ namespace {
 template <class View, class Value>
 void fill_view(View& view, const std::string& label, const std::vector<Value>& values) {
   view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), values.size());
-  const auto host = Kokkos::create_mirror_view(view);
+  const auto host = empty_mirror_of(view);
   for (std::size_t n = 0; n < values.size(); ++n) host(n) = values[n];
-  Kokkos::deep_copy(view, host);
+  copy(view, host);
 }
 
 }  // namespace
@@ -36,18 +38,18 @@ void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads) 
   fill_view(s.timed.points, "mpm::timed_points", points);
   s.timed.clock = decltype(s.timed.clock)("mpm::load_clock");
   s.timed.gravity = decltype(s.timed.gravity)("mpm::timed_gravity");
-  const auto gravity = Kokkos::create_mirror_view(s.timed.gravity);
+  const auto gravity = empty_mirror_of(s.timed.gravity);
   for (int d = 0; d < Dim; ++d) gravity()[d] = static_cast<T>(s.gravity[d]);
-  Kokkos::deep_copy(s.timed.gravity, gravity);
+  copy(s.timed.gravity, gravity);
 }
 
 template <class Space, class T, int Dim>
 void upload_surface_loads(State<Space, T, Dim>& s, const std::vector<SurfaceLoad<Dim>>& loads) {
   if (loads.empty()) return;
   if (s.loads.in_use()) {  // in their place, which the kernels know
-    const auto host = Kokkos::create_mirror_view(s.loads.now);
+    const auto host = empty_mirror_of(s.loads.now);
     for (std::size_t n = 0; n < loads.size(); ++n) host(n) = loads[n];
-    return Kokkos::deep_copy(s.loads.now, host);
+    return copy(s.loads.now, host);
   }
   fill_view(s.loads.now, "mpm::surface_loads", loads);
   s.loads.work = decltype(s.loads.work)("mpm::loads.work");

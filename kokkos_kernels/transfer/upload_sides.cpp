@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/copy.hpp"
 #include "physics/walls.hpp"
 
 namespace mpm {
@@ -37,9 +38,9 @@ void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vec
     s.sides.held[n] = s.sides.mirrored[n] = 1u << in.direction;
   }
   s.sides.all = decltype(s.sides.all)("mpm::sides", 2 * Dim);
-  const auto host = Kokkos::create_mirror_view(s.sides.all);
+  const auto host = empty_mirror_of(s.sides.all);
   for (int n = 0; n < 2 * Dim; ++n) host(n) = s.sides.host[n];
-  Kokkos::deep_copy(s.sides.all, host);
+  copy(s.sides.all, host);
   s.sides.nodes = decltype(s.sides.nodes)("mpm::side_nodes", rows);
   if (column_rows > 0) s.sides.columns = decltype(s.sides.columns)("mpm::columns", column_rows);
 }
@@ -50,7 +51,7 @@ SideWork take_side_work(const State<Space, T, Dim>& s) {
   SideWork done;
   if (!s.sides.in_use()) return done;
   s.space.fence("mpm::take_side_work");
-  const auto table = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.sides.nodes);
+  const auto table = mirror_of(s.sides.nodes);
   for (int n = 0; n < 2 * Dim; ++n) {
     if (!(s.sides.mask >> n & 1u)) continue;
     const int first = s.sides.host[n].first;
@@ -61,15 +62,15 @@ SideWork take_side_work(const State<Space, T, Dim>& s) {
       table(row, S::work) = 0;
     }
   }
-  Kokkos::deep_copy(s.sides.nodes, table);
+  copy(s.sides.nodes, table);
   return done;
 }
 
 template <class Space, class T, int Dim>
 std::vector<int> own_side_rows(const State<Space, T, Dim>& s) {
   std::vector<int> own(s.sides.nodes.extent(0), s.owned_nodes.extent(0) == 0);
-  const auto owned = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.owned_nodes);
-  const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
+  const auto owned = mirror_of(s.owned_nodes);
+  const auto origin = mirror_of(s.patches.origin);
   for (int i = 0; owned.extent(0) > 0 && i < s.patches.node_count(); ++i) {
     if (!(owned(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1)) continue;
     Coord<Dim> at = coord_of<Dim>(i);
@@ -89,7 +90,7 @@ template <class Space, class T, int Dim>
 std::vector<double> side_table(const State<Space, T, Dim>& s) {
   if (!s.sides.in_use()) return {};
   s.space.fence("mpm::side_table");
-  const auto table = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.sides.nodes);
+  const auto table = mirror_of(s.sides.nodes);
   return {table.data(), table.data() + table.size()};
 }
 
@@ -97,16 +98,16 @@ template <class Space, class T, int Dim>
 std::vector<double> column_table(const State<Space, T, Dim>& s) {
   if (!s.sides.has_columns()) return {};
   s.space.fence("mpm::column_table");
-  const auto table = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.sides.columns);
+  const auto table = mirror_of(s.sides.columns);
   return {table.data(), table.data() + table.size()};
 }
 
 template <class Space, class T, int Dim>
 void put_column_table(State<Space, T, Dim>& s, const std::vector<double>& values) {
   if (!s.sides.has_columns()) return;
-  const auto table = Kokkos::create_mirror_view(s.sides.columns);
+  const auto table = empty_mirror_of(s.sides.columns);
   std::copy(values.begin(), values.end(), table.data());
-  Kokkos::deep_copy(s.sides.columns, table);
+  copy(s.sides.columns, table);
 }
 
 template <class Space, class T, int Dim>
@@ -127,10 +128,10 @@ std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std
 template <class Space, class T, int Dim>
 void put_side_table(State<Space, T, Dim>& s, std::vector<double> values, bool first) {
   using S = SideTerms<Dim>;
-  const auto table = Kokkos::create_mirror_view(s.sides.nodes);
+  const auto table = empty_mirror_of(s.sides.nodes);
   for (std::size_t k = 0; k < values.size(); ++k)
     table.data()[k] = static_cast<int>(k % S::size) >= S::impulse && !first ? 0 : values[k];
-  Kokkos::deep_copy(s.sides.nodes, table);
+  copy(s.sides.nodes, table);
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                                   \

@@ -16,7 +16,7 @@ namespace mpm {
 namespace {
 
 /// A model's table without the types of its members.
-struct Model {
+struct ModelOptions {
   std::string name;
   std::vector<Option> options;                    // names without the material's
   std::vector<double> standard;                   // NaN: required
@@ -26,8 +26,8 @@ struct Model {
 };
 
 template <class M>
-Model table_of() {
-  Model model{M::k_name, {}, {}, {}, {}, {}};
+ModelOptions table_of() {
+  ModelOptions model{M::k_name, {}, {}, {}, {}, {}};
   for (const auto& p : M::parameters()) {
     model.options.push_back({.name = p.key,
                              .meaning = p.meaning,
@@ -46,12 +46,12 @@ Model table_of() {
 }
 
 template <template <class> class... Models>
-std::vector<Model> tables_of(ModelList<Models...>) {
+std::vector<ModelOptions> tables_of(ModelList<Models...>) {
   return {table_of<Models<double>>()...};
 }
 
 /// The parameter that takes the place of another; empty where there is none.
-std::string stand_in_for(const Model& model, const std::string& key) {
+std::string stand_in_for(const ModelOptions& model, const std::string& key) {
   for (std::size_t k = 0; k < model.options.size(); ++k)
     if (model.instead_of[k] == key) return model.options[k].name;
   return "";
@@ -76,7 +76,7 @@ void read_with_words(OptionReader& in, Option option, const std::vector<Paramete
   }
 }
 
-void read_parameters(OptionReader& in, const std::string& name, const Model& model,
+void read_parameters(OptionReader& in, const std::string& name, const ModelOptions& model,
                      std::vector<double>& parameters) {
   for (std::size_t k = 0; k < model.options.size(); ++k) {
     Option option = model.options[k];
@@ -107,7 +107,7 @@ std::string with_prefix(std::string text, const std::string& name) {
 }
 
 /// The options of a model that are texts, in the order of its table.
-std::vector<std::string> read_texts(OptionReader& in, const std::string& name, const Model& model) {
+std::vector<std::string> read_texts(OptionReader& in, const std::string& name, const ModelOptions& model) {
   std::vector<std::string> texts;
   for (const TextOption& text : model.texts) {
     std::string& value = texts.emplace_back();
@@ -129,8 +129,8 @@ std::vector<std::string> read_texts(OptionReader& in, const std::string& name, c
 }
 
 /// Rejects the parameters that only other models have, each once.
-void reject_others(OptionReader& in, const std::string& name, const Model& model,
-                   const std::vector<Model>& models) {
+void reject_others(OptionReader& in, const std::string& name, const ModelOptions& model,
+                   const std::vector<ModelOptions>& models) {
   std::set<std::string> known;
   for (const auto& option : model.options) known.insert(option.name);
   for (const TextOption& text : model.texts) known.insert(text.key);
@@ -138,7 +138,7 @@ void reject_others(OptionReader& in, const std::string& name, const Model& model
     if (known.insert(key).second)
       in.not_taken(name + "_" + key, "the model " + model.name + " has no such parameter");
   };
-  for (const Model& other : models) {
+  for (const ModelOptions& other : models) {
     for (const auto& option : other.options) reject(option.name);
     for (const TextOption& text : other.texts) reject(text.key);
   }
@@ -188,7 +188,7 @@ void read_f_bar(OptionReader& in, const Config& config, MaterialConfig& material
 }  // namespace
 
 double parameter_of(const MaterialConfig& material, const std::string& key) {
-  for (const Model& model : tables_of(Materials{}))
+  for (const ModelOptions& model : tables_of(Materials{}))
     for (std::size_t k = 0; k < model.options.size(); ++k)
       if (model.name == material.model && model.options[k].name == key)
         return k < material.parameters.size() ? material.parameters[k] : model.standard[k];
@@ -199,7 +199,7 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
                    MaterialConfig& material) {
   const auto models = tables_of(Materials{});
   std::vector<std::string> words;
-  for (const Model& model : models) words.push_back(model.name);
+  for (const ModelOptions& model : models) words.push_back(model.name);
 
   material.name = name;
   in.section("Each material NAME");
@@ -226,7 +226,7 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
             material.k0);
   read_f_bar(in, config, material);
   if (in.listing()) {
-    for (const Model& model : models) {
+    for (const ModelOptions& model : models) {
       in.section("Material NAME of model " + model.name);
       read_parameters(in, name, model, material.parameters);
       read_texts(in, name, model);
@@ -273,7 +273,7 @@ void prepare_material(MaterialConfig& material, double spacing, double largest_p
 std::string own_parameter_fault(const MaterialConfig& material, const std::string& key, double least,
                                 double largest) {
   const int which = model_index(material.model);
-  const Model model = tables_of(Materials{})[which];
+  const ModelOptions model = tables_of(Materials{})[which];
   MaterialConfig weakest = material;
   for (std::size_t k = 0; k < model.options.size(); ++k) {
     const Option& option = model.options[k];

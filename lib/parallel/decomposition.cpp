@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/copy.hpp"
 #include "common/collectives.hpp"
 #include "functions/follow_soil.hpp"
 #include "functions/step_kernels.hpp"
@@ -38,7 +39,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm comm, const Partitio
   seen_ = decltype(seen_)("mpm::seen");
   PetscCall(transport_.start(comm, config.halo_path));
   if (overlaps(s)) side_.open(s.space);
-  const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.rigids);
+  const auto rigids = mirror_of(s.rigids);
   for (std::size_t r = 0; r < rigids.extent(0); ++r) forces_shared_ = forces_shared_ || rigids(r).dynamic;
   reserve_particles(s, k_least_room);
   send_owners_to_device();
@@ -61,7 +62,7 @@ void Decomposition<Space, T, Dim>::send_owners_to_device() {
   ensure(owner_, owners_.size());
   const Kokkos::View<const int*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(owners_.data(),
                                                                                   owners_.size());
-  Kokkos::deep_copy(head(owner_, owners_.size()), host);
+  copy(head(owner_, owners_.size()), host);
 }
 
 template <class Space, class T, int Dim>
@@ -72,14 +73,14 @@ PetscErrorCode Decomposition<Space, T, Dim>::add_forces(State_& s) {
   // patches.
   const Space& space = sent_ahead() ? side_.space() : s.space;
   sum_forces(s, space);
-  const auto sums = Kokkos::create_mirror_view(s.rigid_force);
-  Kokkos::deep_copy(space, sums, s.rigid_force);
+  const auto sums = empty_mirror_of(s.rigid_force);
+  copy(space, sums, s.rigid_force);
   space.fence("mpm::add_forces");
   clock_.pause();
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.extent(0)), MPI_DOUBLE, MPI_SUM, comm_));
   clock_.go_on();
-  Kokkos::deep_copy(s.space, s.rigid_force, sums);
+  copy(s.space, s.rigid_force, sums);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/copy.hpp"
 #include "loops/particle_to_node.hpp"
 #include "parallel/decomposition.hpp"
 
@@ -80,7 +81,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::post_bound() {
 
 template <class Space, class T, int Dim>
 void Decomposition<Space, T, Dim>::note_bound(const State_& s, const Space& stream) {
-  Kokkos::deep_copy(stream, seen_, s.control);
+  copy(stream, seen_, s.control);
 }
 
 template <class Space, class T, int Dim>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/copy.hpp"
 #include "common/collectives.hpp"
 #include "common/text.hpp"
 #include "functions/step_kernels.hpp"
@@ -21,14 +22,7 @@ void fill(View& view, const std::vector<Value>& values) {
   if (values.empty()) return;
   const Kokkos::View<const Value*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(values.data(),
                                                                                     values.size());
-  Kokkos::deep_copy(Kokkos::subview(view, Kokkos::make_pair(std::size_t(0), values.size())), host);
-}
-
-/// The first n entries of a view, on the host.
-template <class View>
-auto on_host(const View& view, int n) {
-  return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(),
-                                             Kokkos::subview(view, Kokkos::make_pair(0, n)));
+  copy(Kokkos::subview(view, Kokkos::make_pair(std::size_t(0), values.size())), host);
 }
 
 // Of a rank in SavedState::bounds: bound, increment, whether a report is under way, the two numbers of it,
@@ -144,9 +138,9 @@ PetscErrorCode Decomposition<Space, T, Dim>::migrate(State_& s, long* moved) {
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::make_lists(State_& s) {
   PetscFunctionBeginUser;
-  const auto number = on_host(s.patches.number, s.patches.slots);
+  const auto number = mirror_of(s.patches.number, s.patches.slots);
   const int holding = s.soil.bins.last_active;
-  const auto held = on_host(s.soil.bins.active_slots, holding);
+  const auto held = mirror_of(s.soil.bins.active_slots, holding);
   const std::vector<long> slots(number.data(), number.data() + s.patches.slots);
   occupied_.assign(grid_.fields * grid_.count(), 0);
   for (int n = 0; n < holding; ++n) occupied_[slots[held(n)]] = 1;

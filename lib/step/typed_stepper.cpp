@@ -1,4 +1,5 @@
 #include "step/typed_stepper.hpp"
+#include "base/copy.hpp"
 #include "common/f_bar.hpp"
 #include "common/revolution.hpp"
 #include "common/text.hpp"
@@ -426,9 +427,8 @@ template <class Space, class T, int Dim>
 std::size_t TypedStepper<Space, T, Dim>::body_of(int id) const {
   const auto& soil = state_.soil.points;
   const auto held = Kokkos::make_pair(0, soil.count);
-  const auto ids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.id, held));
-  const auto body =
-      Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), Kokkos::subview(soil.body, held));
+  const auto ids = mirror_of(Kokkos::subview(soil.id, held));
+  const auto body = mirror_of(Kokkos::subview(soil.body, held));
   for (int p = 0; p < soil.count; ++p)
     if (ids(p) == id) return body(p);
   return 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/copy.hpp"
 #include "physics/materials/any.hpp"
 #include "step/correct_positions.hpp"
 #include "step/typed_stepper.hpp"
@@ -29,9 +30,9 @@ void TypedStepper<Space, T, Dim>::set_up_correction() {
   state_.correction.rate = config_.position_correction_rate;
   const int count = static_cast<int>(config_.materials.size());
   state_.correction.flow_column = decltype(state_.correction.flow_column)("mpm::flow_column", count);
-  const auto host = Kokkos::create_mirror_view(state_.correction.flow_column);
+  const auto host = empty_mirror_of(state_.correction.flow_column);
   for (int m = 0; m < count; ++m) host(m) = flow_column(config_.materials[m]);
-  Kokkos::deep_copy(state_.correction.flow_column, host);
+  copy(state_.correction.flow_column, host);
 }
 
 template <class Space, class T, int Dim>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/copy.hpp"
 #include "common/collectives.hpp"
 #include "step/gaps.hpp"
 #include "step/typed_stepper.hpp"
@@ -71,7 +72,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save_energy(SavedState* saved) const
   saved->energy.clear();
   if (state_.energy.on) {
     static_assert(k_saved_energy == Work::count + 2);
-    const auto works = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.energy.work);
+    const auto works = mirror_of(state_.energy.work);
     saved->energy.assign(works.data(), works.data() + Work::count);
     if (ranks_)
       PetscCallMPI(
@@ -90,9 +91,9 @@ template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::restore_energy(const SavedState& saved) {
   if (state_.loads.in_use() && !saved.energy.empty()) restore_load_work(saved.energy.back());
   if (!state_.energy.on || saved.energy.size() < k_saved_energy) return;
-  const auto works = Kokkos::create_mirror_view(state_.energy.work);
+  const auto works = empty_mirror_of(state_.energy.work);
   for (int k = 0; k < Work::count; ++k) works(k) = ranks_ && rank_of(comm_) > 0 ? 0 : saved.energy[k];
-  Kokkos::deep_copy(state_.energy.work, works);
+  copy(state_.energy.work, works);
   kinetic_at_start_ = saved.energy[Work::count], elastic_at_start_ = saved.energy[Work::count + 1];
 }
 

@@ -1,5 +1,6 @@
 // Loads on surfaces, between configuration, state, history and checkpoints.
 
+#include "base/copy.hpp"
 #include "common/collectives.hpp"
 #include "functions/surface_loads.hpp"
 #include "step/load_input.hpp"
@@ -43,7 +44,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::load_work(double* work) const {
   PetscFunctionBeginUser;
   *work = 0;
   if (!state_.loads.in_use()) PetscFunctionReturn(PETSC_SUCCESS);
-  *work = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.loads.work)();
+  *work = mirror_of(state_.loads.work)();
   if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, work, 1, MPI_DOUBLE, MPI_SUM, comm_));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

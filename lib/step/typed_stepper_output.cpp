@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/copy.hpp"
 #include "common/text.hpp"
 #include "data/memory_of.hpp"
 #include "parallel/gather.hpp"
@@ -234,7 +235,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     if (ranks_) PetscCall(order_particles(comm_, last - first, &body));
     out->bodies.push_back(std::move(body));
   }
-  const auto rigids = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.rigids);
+  const auto rigids = mirror_of(state_.rigids);
   for (std::size_t r = 0; r < config_.rigids.size(); ++r) {
     const std::vector<double> position = download_rigid_positions(state_, static_cast<int>(r));
     ParticleSnapshot rigid;
@@ -281,7 +282,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save_for_starts(SavedState* saved) c
   PetscCall(heights_.look_up(created, &height.values));
   const auto& soil = state_.soil.points;
   if (!soil.has_own_mass) {  // else it is there
-    const auto bodies = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), soil.bodies);
+    const auto bodies = mirror_of(soil.bodies);
     SavedField mass{"mass", 1, sizeof(T), {}};
     for (const SavedField& field : saved->soil.fields)
       if (field.name == "body")

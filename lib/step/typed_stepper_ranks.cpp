@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/copy.hpp"
 #include "common/collectives.hpp"
 #include "common/text.hpp"
 #include "data/memory_of.hpp"
@@ -190,7 +191,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::note_out_of_order(int b, BodyRow* body) {
   PetscFunctionBeginUser;
   const Lost& lost = state_.strays.lost[b];
-  const auto put_back = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.strays.put_back);
+  const auto put_back = mirror_of(state_.strays.put_back);
   double sums[11] = {lost.mass,          lost.kinetic_energy, lost.momentum[0], lost.momentum[1],
                      lost.momentum[2],   double(put_back(b)), lost.count,       lost.merged,
                      lost.merged_energy, lost.corrected,      lost.raised};
@@ -223,10 +224,9 @@ PetscErrorCode TypedStepper<Space, T, Dim>::gather_strays(SavedState* saved) con
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::ownership(std::vector<OwnedPatch>* patches) {
   PetscFunctionBeginUser;
-  const auto origin = Kokkos::create_mirror_view_and_copy(
-      Kokkos::HostSpace(),
-      Kokkos::subview(state_.patches.origin, Kokkos::make_pair(0, state_.patches.slots)));
-  const auto begin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), state_.soil.bins.begin);
+  const auto origin =
+      mirror_of(Kokkos::subview(state_.patches.origin, Kokkos::make_pair(0, state_.patches.slots)));
+  const auto begin = mirror_of(state_.soil.bins.begin);
   std::vector<char> own, all;
   for (int slot = 0; slot < state_.patches.slots; ++slot) {
     OwnedPatch patch{
