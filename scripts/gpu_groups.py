@@ -30,12 +30,12 @@ ANSWERS = {  # cases on the GPU
              "stiffness_field", "surface_loads", "sliding_side", "free_field"],
     "periodic": ["periodic", "periodic_flow", "periodic_slope", "oblique_wave"],
     "domains": ["clay_column", "large_deformation", "large_waves", "energy", "energy_collapse", "even_flow", "vortex"],
-    "revolution": ["thick_cylinder", "cylinders", "circle", "deep_sphere_section", "circle_fine", "quarter", "cavity"],
+    "revolution": ["thick_cylinder", "cylinders", "circle", "deep_sphere_section", "circle_fine", "quarter", "cavity", "cavity_sphere"],
 }
 PROCESSOR_ANSWERS = {  # back ends, threads and runs at a time, cases: the longest first
     "limits": ("openmp", 2, 7, ["footing_surcharge", "footing_weight", "footing_cohesion", "cut_tresca", "cut_friction",
                                 "retaining_wall_fine"]),
-    "flows": ("openmp", 2, 7, ["deep_sphere", "footing_square", "collapse_fine", "landslide", "film_fine", "tbar", "cavity", "circle_fine",
+    "flows": ("openmp", 2, 7, ["deep_sphere", "footing_square", "collapse_fine", "landslide", "film_fine", "tbar", "cavity", "cavity_sphere", "circle_fine",
                               "vortex"]),
     "clay": ("serial,openmp", 2, 9, ["footing_variants", "strip_fine", "cut_fine", "pipe_fine", "strip_gradient", "footing", "pipe",
                                      "slump", "strip", "cut", "footing_coarse"]),
