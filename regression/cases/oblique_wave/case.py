@@ -21,7 +21,8 @@ LAME = DENSITY * FAST**2 - 2 * SHEAR
 SPREAD, MIDDLE, PEAK = 7.0, 28.0, 0.01  # standard deviation and height of the packet (m), its largest velocity (m/s)
 # Kind, angle, factor of the dashpots, width of the mesh (one wave length along x) and cell (m).
 WAVES = {"P_30": ("P", 30, 1.0, 12.0, 0.25), "P_60": ("P", 60, 1.0, 6.0, 0.25), "S_20": ("S", 20, 1.0, 12.0, 0.25),
-         "S_20_fine": ("S", 20, 1.0, 12.0, 0.125), "P_45_half": ("P", 45, 0.5, 12.0, 0.25)}
+         "S_20_fine": ("S", 20, 1.0, 12.0, 0.125), "P_45": ("P", 45, 1.0, 12.0, 0.25), "S_45": ("S", 45, 1.0, 12.0, 0.25),
+         "P_45_half": ("P", 45, 0.5, 12.0, 0.25)}
 
 
 def speed_of(kind):
