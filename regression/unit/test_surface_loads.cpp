@@ -185,3 +185,50 @@ TEST_CASE("areas of faces turn with soil that spins, and grow with soil that str
     }
   });
 }
+
+TEST_CASE("areas of faces grow as the soil along them, not as that at the centres of particles",
+          "[surface_loads]") {
+  for_each_build([](auto build) {
+    using B = decltype(build);
+    constexpr int Dim = B::dim;
+    constexpr double spacing = 0.1, rate = 30, dt = 1e-3;
+    Cloud cloud;
+    cloud.grid = grid_of<Dim>({8, 8, 6}, spacing, Wall::free);
+    cloud.materials = clays();
+    cloud.bodies = {body_of<Dim>(lattice<Dim>({2, 2, 1}, {5, 5, 4}, 2, spacing), 2, spacing, 0)};
+    close_surface<Dim>(cloud.bodies[0], spacing / 2);
+    cloud.face_count = 1, cloud.surface_loads = {{k_pressure, 0, 0, 0}};
+    auto s = state_of<B>(cloud, P2G::tile);
+    test::interpolate(s), loads_to_nodes(s), update_nodes(s, dt);
+    const auto kinematics = on_host(s.nodes.kinematics);
+    const auto origin = on_host(s.patches.origin);
+    for (int i = 0; i < s.patches.node_count(); ++i) {
+      const auto at = coord_of<Dim>(i);
+      double x[2];
+      for (int d = 0; d < 2; ++d) x[d] = (origin(i / Patch<Dim>::cells)[d] + at[d]) * spacing;
+      for (int d = 0; d < 2 * Dim; ++d) kinematics(i, d) = 0;
+      kinematics(i, 1) = rate * x[0] * x[1];  // the stretch along y grows with x
+    }
+    Kokkos::deep_copy(s.nodes.kinematics, kinematics);
+    const auto first = on_host(s.soil.points.faces[0]);
+    const std::vector<Face<Dim>> before(first.data(), first.data() + s.soil.points.count);
+    const auto coordinate = on_host(s.soil.points.coordinate);
+    const auto cell = on_host(s.soil.points.cell);
+    follow_surfaces(s, dt);
+    const auto after = on_host(s.soil.points.faces[0]);
+    double wrong = 0;
+    int looked_at = 0;
+    for (int p = 0; p < s.soil.points.count; ++p) {
+      const auto& a = before[p];
+      if (!(std::fabs(a[0]) > 0) || a[1] != 0 || a[Dim - 1] != (Dim == 3 ? 0 : a[1])) continue;
+      ++looked_at;
+      const double in_cells =
+          origin(cell(p) / Patch<Dim>::cells)[0] + coord_of<Dim>(cell(p))[0] + coordinate(p)[0];
+      const double side = (in_cells + std::copysign(0.25, a[0])) * spacing, half = rate * side * dt / 2;
+      wrong = std::max(wrong, std::fabs(after(p)[0] - a[0] * (1 + half) / (1 - half)));
+    }
+    INFO(build.name());
+    CHECK(looked_at > 0);
+    CHECK(wrong < B::of(1e-13, 1e-6) * std::pow(spacing, Dim - 1));
+  });
+}
