@@ -17,35 +17,34 @@ auto bytes_of(const View& view) {
   return Bytes(reinterpret_cast<T*>(view.data()), view.span() * sizeof(typename View::value_type));
 }
 
+/// Whether the bytes of one kind of view mean the same in another.
+template <class To, class From>
+inline constexpr bool k_same_bytes =
+    std::is_same_v<typename To::non_const_value_type, typename From::non_const_value_type> &&
+    (std::is_same_v<typename To::array_layout, typename From::array_layout> || To::rank <= 1);
+
 /// Kokkos::deep_copy(space, to, from) of views of one type of value without strides. Their values are those
 /// that memcpy may copy, and sizes must agree.
 template <class Space, class To, class From>
 void copy(const Space& space, const To& to, const From& from) {
-  static_assert(std::is_same_v<typename To::non_const_value_type, typename From::non_const_value_type>);
-  static_assert(std::is_same_v<typename To::array_layout, typename From::array_layout> || To::rank <= 1);
+  static_assert(k_same_bytes<To, From>);
   Kokkos::deep_copy(space, bytes_of<char>(to), bytes_of<const char>(from));
 }
 /// The same; all that was launched before has ended, and the copy is there.
 template <class To, class From>
 void copy(const To& to, const From& from) {
-  static_assert(std::is_same_v<typename To::non_const_value_type, typename From::non_const_value_type>);
-  static_assert(std::is_same_v<typename To::array_layout, typename From::array_layout> || To::rank <= 1);
+  static_assert(k_same_bytes<To, From>);
   Kokkos::deep_copy(bytes_of<char>(to), bytes_of<const char>(from));
 }
 
-/// Room on the host for what a view holds, zeros: the view itself, where the host can read it.
-template <class View>
-auto empty_mirror_of(const View& view) {
-  return Kokkos::create_mirror_view(view);
-}
-/// What a view holds, on the host: the view itself, where the host can read it.
+/// Kokkos::create_mirror_view_and_copy to the host: the view itself, where the host can read it.
 template <class View>
 auto mirror_of(const View& view) {
   const auto host = Kokkos::create_mirror_view(Kokkos::WithoutInitializing, view);
-  if constexpr (Kokkos::SpaceAccessibility<Kokkos::HostSpace, typename View::memory_space>::accessible)
-    Kokkos::fence("mpm::mirror_of");
-  else
+  if (host.data() != view.data())
     copy(host, view);
+  else
+    Kokkos::fence("mpm::mirror_of");
   return host;
 }
 /// Its first n entries.

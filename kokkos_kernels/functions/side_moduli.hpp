@@ -29,7 +29,7 @@ KOKKOS_INLINE_FUNCTION SideModuli side_moduli(const Soil<Space, T, Dim>& soil, d
 template <class Space>
 Kokkos::View<double*, typename Space::memory_space> shear_ratios(const std::vector<double>& ratio) {
   Kokkos::View<double*, typename Space::memory_space> view("mpm::shear_ratio", ratio.size());
-  const auto host = empty_mirror_of(view);
+  const auto host = Kokkos::create_mirror_view(view);
   for (std::size_t m = 0; m < ratio.size(); ++m) host(m) = ratio[m];
   copy(view, host);
   return view;

@@ -163,7 +163,7 @@ void split_particles(State<Space, T, Dim>& s, const std::vector<Splitting>& spli
   reserve_particles(s, first + more);
   const Kokkos::View<int*, typename Space::memory_space> places("mpm::splitting_places", more),
       numbers("mpm::splitting_ids", more);
-  const auto place = empty_mirror_of(places), number = empty_mirror_of(numbers);
+  const auto place = Kokkos::create_mirror_view(places), number = Kokkos::create_mirror_view(numbers);
   for (int n = 0; n < more; ++n) place(n) = splittings[n].place, number(n) = ids[n];
   copy(places, place), copy(numbers, number);
   const auto copy = [&](const auto& field) { copy_some(s.space, field, places, first); };

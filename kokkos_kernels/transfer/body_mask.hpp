@@ -15,7 +15,7 @@ template <class Space, class T, int Dim, class Lists>
 BodyMask<Space> mask_of(const State<Space, T, Dim>& s, const Lists& lists) {
   const std::size_t bodies = s.soil.points.bodies.extent(0);
   const BodyMask<Space> mask("mpm::body_mask", lists.size(), bodies);
-  const auto host = empty_mirror_of(mask);
+  const auto host = Kokkos::create_mirror_view(mask);
   for (std::size_t n = 0; n < lists.size(); ++n) {
     for (std::size_t b = 0; b < bodies; ++b) host(n, b) = lists[n].bodies.empty();
     for (const int b : lists[n].bodies) host(n, b) = 1;

@@ -30,9 +30,8 @@ std::vector<FilledPatch> filled_cells(const State<Space, T, Dim>& s) {
         });
   }
   s.space.fence("mpm::filled_cells");
-  const auto host = [](const auto& view) { return mirror_of(view); };
-  const auto of_soil = host(soil_bits), of_rigids = host(rigid_bits);
-  const auto number = host(s.patches.number);
+  const auto of_soil = mirror_of(soil_bits), of_rigids = mirror_of(rigid_bits);
+  const auto number = mirror_of(s.patches.number);
   std::vector<FilledPatch> patches;
   for (int slot = 0; slot < slots; ++slot)
     if ((of_soil(slot) | of_rigids(slot)) != 0)

@@ -76,7 +76,7 @@ struct SquareTo {
 template <class Space>
 Kokkos::View<Region*, typename Space::memory_space> to_device(const std::vector<ProbeRegion>& regions) {
   const Kokkos::View<Region*, typename Space::memory_space> view("mpm::probe_regions", regions.size());
-  const auto host = empty_mirror_of(view);
+  const auto host = Kokkos::create_mirror_view(view);
   for (std::size_t n = 0; n < regions.size(); ++n) {
     const ProbeRegion& from = regions[n];
     for (int d = 0; d < 3; ++d) host(n).centre[d] = from.centre[d], host(n).reach[d] = from.reach[d];

@@ -107,7 +107,7 @@ void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
 
 template <class Space, class T, int Dim>
 void restore_lost(State<Space, T, Dim>& s, const SavedState& saved) {
-  const auto put_back = empty_mirror_of(s.strays.put_back);
+  const auto put_back = Kokkos::create_mirror_view(s.strays.put_back);
   for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
     const double* const numbers = &saved.lost[b * k_lost];
     s.strays.lost[b] = {numbers[0], numbers[1], numbers[2], {numbers[3], numbers[4], numbers[5]},
@@ -146,7 +146,7 @@ bool restore_field(const std::string& name, View& view, const SavedPoints& saved
   if (field == saved.fields.end() || field->components != n || field->values.size() != std::size_t(count) * n)
     return false;
   resize(view, count);
-  const auto host = empty_mirror_of(view);
+  const auto host = Kokkos::create_mirror_view(view);
   auto* numbers = reinterpret_cast<Number<Value>*>(host.data());
   for (std::size_t k = 0; k < field->values.size(); ++k)
     numbers[k] = static_cast<Number<Value>>(field->values[k]);
@@ -157,7 +157,7 @@ bool restore_field(const std::string& name, View& view, const SavedPoints& saved
 template <class View>
 void restore_whole(View& view, const std::vector<long>& values) {
   resize(view, values.size());
-  const auto host = empty_mirror_of(view);
+  const auto host = Kokkos::create_mirror_view(view);
   for (std::size_t p = 0; p < values.size(); ++p)
     host(p) = static_cast<typename View::non_const_value_type>(values[p]);
   copy(view, host);

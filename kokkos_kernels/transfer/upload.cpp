@@ -23,7 +23,7 @@ template <class View, class Get>
 void fill_view(View& view, const std::string& label, int count, Get&& get) {
   if (static_cast<int>(view.extent(0)) != count)
     view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), count);
-  auto host = empty_mirror_of(view);
+  auto host = Kokkos::create_mirror_view(view);
   for (int p = 0; p < count; ++p) host(p) = get(p);
   copy(view, host);
 }

@@ -10,7 +10,7 @@ namespace {
 template <class View, class Value>
 void fill_view(View& view, const std::string& label, const std::vector<Value>& values) {
   view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), values.size());
-  const auto host = empty_mirror_of(view);
+  const auto host = Kokkos::create_mirror_view(view);
   for (std::size_t n = 0; n < values.size(); ++n) host(n) = values[n];
   copy(view, host);
 }
@@ -38,7 +38,7 @@ void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads) 
   fill_view(s.timed.points, "mpm::timed_points", points);
   s.timed.clock = decltype(s.timed.clock)("mpm::load_clock");
   s.timed.gravity = decltype(s.timed.gravity)("mpm::timed_gravity");
-  const auto gravity = empty_mirror_of(s.timed.gravity);
+  const auto gravity = Kokkos::create_mirror_view(s.timed.gravity);
   for (int d = 0; d < Dim; ++d) gravity()[d] = static_cast<T>(s.gravity[d]);
   copy(s.timed.gravity, gravity);
 }
@@ -47,7 +47,7 @@ template <class Space, class T, int Dim>
 void upload_surface_loads(State<Space, T, Dim>& s, const std::vector<SurfaceLoad<Dim>>& loads) {
   if (loads.empty()) return;
   if (s.loads.in_use()) {  // in their place, which the kernels know
-    const auto host = empty_mirror_of(s.loads.now);
+    const auto host = Kokkos::create_mirror_view(s.loads.now);
     for (std::size_t n = 0; n < loads.size(); ++n) host(n) = loads[n];
     return copy(s.loads.now, host);
   }

@@ -38,7 +38,7 @@ void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vec
     s.sides.held[n] = s.sides.mirrored[n] = 1u << in.direction;
   }
   s.sides.all = decltype(s.sides.all)("mpm::sides", 2 * Dim);
-  const auto host = empty_mirror_of(s.sides.all);
+  const auto host = Kokkos::create_mirror_view(s.sides.all);
   for (int n = 0; n < 2 * Dim; ++n) host(n) = s.sides.host[n];
   copy(s.sides.all, host);
   s.sides.nodes = decltype(s.sides.nodes)("mpm::side_nodes", rows);
@@ -105,7 +105,7 @@ std::vector<double> column_table(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 void put_column_table(State<Space, T, Dim>& s, const std::vector<double>& values) {
   if (!s.sides.has_columns()) return;
-  const auto table = empty_mirror_of(s.sides.columns);
+  const auto table = Kokkos::create_mirror_view(s.sides.columns);
   std::copy(values.begin(), values.end(), table.data());
   copy(s.sides.columns, table);
 }
@@ -128,7 +128,7 @@ std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std
 template <class Space, class T, int Dim>
 void put_side_table(State<Space, T, Dim>& s, std::vector<double> values, bool first) {
   using S = SideTerms<Dim>;
-  const auto table = empty_mirror_of(s.sides.nodes);
+  const auto table = Kokkos::create_mirror_view(s.sides.nodes);
   for (std::size_t k = 0; k < values.size(); ++k)
     table.data()[k] = static_cast<int>(k % S::size) >= S::impulse && !first ? 0 : values[k];
   copy(s.sides.nodes, table);

@@ -73,7 +73,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::add_forces(State_& s) {
   // patches.
   const Space& space = sent_ahead() ? side_.space() : s.space;
   sum_forces(s, space);
-  const auto sums = empty_mirror_of(s.rigid_force);
+  const auto sums = Kokkos::create_mirror_view(s.rigid_force);
   copy(space, sums, s.rigid_force);
   space.fence("mpm::add_forces");
   clock_.pause();

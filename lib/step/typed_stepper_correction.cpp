@@ -30,7 +30,7 @@ void TypedStepper<Space, T, Dim>::set_up_correction() {
   state_.correction.rate = config_.position_correction_rate;
   const int count = static_cast<int>(config_.materials.size());
   state_.correction.flow_column = decltype(state_.correction.flow_column)("mpm::flow_column", count);
-  const auto host = empty_mirror_of(state_.correction.flow_column);
+  const auto host = Kokkos::create_mirror_view(state_.correction.flow_column);
   for (int m = 0; m < count; ++m) host(m) = flow_column(config_.materials[m]);
   copy(state_.correction.flow_column, host);
 }

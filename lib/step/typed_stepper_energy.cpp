@@ -91,7 +91,7 @@ template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::restore_energy(const SavedState& saved) {
   if (state_.loads.in_use() && !saved.energy.empty()) restore_load_work(saved.energy.back());
   if (!state_.energy.on || saved.energy.size() < k_saved_energy) return;
-  const auto works = empty_mirror_of(state_.energy.work);
+  const auto works = Kokkos::create_mirror_view(state_.energy.work);
   for (int k = 0; k < Work::count; ++k) works(k) = ranks_ && rank_of(comm_) > 0 ? 0 : saved.energy[k];
   copy(state_.energy.work, works);
   kinetic_at_start_ = saved.energy[Work::count], elastic_at_start_ = saved.energy[Work::count + 1];

@@ -65,6 +65,37 @@ void close_surface(BodyInput& body, double width) {
   }
 }
 
+/// A block of soil under a pressure all round, in a step of dt behind function 4.
+template <class B>
+auto block_in_step(double spacing, double dt) {
+  constexpr int Dim = B::dim;
+  Cloud cloud;
+  cloud.grid = grid_of<Dim>({8, 8, 6}, spacing, Wall::free);
+  cloud.materials = clays();
+  cloud.bodies = {body_of<Dim>(lattice<Dim>({2, 2, 1}, {5, 5, 4}, 2, spacing), 2, spacing, 0)};
+  close_surface<Dim>(cloud.bodies[0], spacing / 2);
+  cloud.face_count = 1, cloud.surface_loads = {{k_pressure, 0, 0, 0}};
+  auto s = state_of<B>(cloud, P2G::tile);
+  test::interpolate(s), loads_to_nodes(s), update_nodes(s, dt);
+  return s;
+}
+/// Gives the nodes velocities in the plane of x and y, by f(place, velocity).
+template <class B, class S, class F>
+void set_velocities(S& s, double spacing, F&& f) {
+  constexpr int Dim = B::dim;
+  const auto kinematics = on_host(s.nodes.kinematics);
+  const auto origin = on_host(s.patches.origin);
+  for (int i = 0; i < s.patches.node_count(); ++i) {
+    const auto at = coord_of<Dim>(i);
+    double x[2], v[2];
+    for (int d = 0; d < 2; ++d) x[d] = (origin(i / Patch<Dim>::cells)[d] + at[d]) * spacing;
+    for (int d = 0; d < 2 * Dim; ++d) kinematics(i, d) = 0;
+    f(x, v);
+    for (int d = 0; d < 2; ++d) kinematics(i, d) = v[d];
+  }
+  Kokkos::deep_copy(s.nodes.kinematics, kinematics);
+}
+
 }  // namespace
 
 TEST_CASE("nodes get the forces of loads on faces, by every strategy", "[surface_loads]") {
@@ -146,26 +177,12 @@ TEST_CASE("areas of faces turn with soil that spins, and grow with soil that str
     constexpr int Dim = B::dim;
     constexpr double spacing = 0.1, rate = 3, dt = 1e-3;
     for (const bool spins : {true, false}) {
-      Cloud cloud;
-      cloud.grid = grid_of<Dim>({8, 8, 6}, spacing, Wall::free);
-      cloud.materials = clays();
-      cloud.bodies = {body_of<Dim>(lattice<Dim>({2, 2, 1}, {5, 5, 4}, 2, spacing), 2, spacing, 0)};
-      close_surface<Dim>(cloud.bodies[0], spacing / 2);
-      cloud.face_count = 1, cloud.surface_loads = {{k_pressure, 0, 0, 0}};
-      auto s = state_of<B>(cloud, P2G::tile);
-      test::interpolate(s), loads_to_nodes(s), update_nodes(s, dt);
+      auto s = block_in_step<B>(spacing, dt);
       // A linear field at the nodes: a spin in the plane of x and y, or a stretch along x.
-      const auto kinematics = on_host(s.nodes.kinematics);
-      const auto number = on_host(s.patches.origin);
-      for (int i = 0; i < s.patches.node_count(); ++i) {
-        const auto at = coord_of<Dim>(i);
-        double x[2];
-        for (int d = 0; d < 2; ++d) x[d] = (number(i / Patch<Dim>::cells)[d] + at[d]) * spacing;
-        for (int d = 0; d < 2 * Dim; ++d) kinematics(i, d) = 0;
-        kinematics(i, 0) = spins ? -rate * x[1] : rate * x[0];
-        if (spins) kinematics(i, 1) = rate * x[0];
-      }
-      Kokkos::deep_copy(s.nodes.kinematics, kinematics);
+      set_velocities<B>(s, spacing, [&](const double(&x)[2], double(&v)[2]) {
+        v[0] = spins ? -rate * x[1] : rate * x[0];
+        v[1] = spins ? rate * x[0] : 0;
+      });
       const auto first = on_host(s.soil.points.faces[0]);
       const std::vector<Face<Dim>> before(first.data(), first.data() + s.soil.points.count);
       follow_surfaces(s, dt);
@@ -192,24 +209,11 @@ TEST_CASE("areas of faces grow as the soil along them, not as that at the centre
     using B = decltype(build);
     constexpr int Dim = B::dim;
     constexpr double spacing = 0.1, rate = 30, dt = 1e-3;
-    Cloud cloud;
-    cloud.grid = grid_of<Dim>({8, 8, 6}, spacing, Wall::free);
-    cloud.materials = clays();
-    cloud.bodies = {body_of<Dim>(lattice<Dim>({2, 2, 1}, {5, 5, 4}, 2, spacing), 2, spacing, 0)};
-    close_surface<Dim>(cloud.bodies[0], spacing / 2);
-    cloud.face_count = 1, cloud.surface_loads = {{k_pressure, 0, 0, 0}};
-    auto s = state_of<B>(cloud, P2G::tile);
-    test::interpolate(s), loads_to_nodes(s), update_nodes(s, dt);
-    const auto kinematics = on_host(s.nodes.kinematics);
+    auto s = block_in_step<B>(spacing, dt);
+    set_velocities<B>(s, spacing, [&](const double(&x)[2], double(&v)[2]) {
+      v[0] = 0, v[1] = rate * x[0] * x[1];  // the stretch along y grows with x
+    });
     const auto origin = on_host(s.patches.origin);
-    for (int i = 0; i < s.patches.node_count(); ++i) {
-      const auto at = coord_of<Dim>(i);
-      double x[2];
-      for (int d = 0; d < 2; ++d) x[d] = (origin(i / Patch<Dim>::cells)[d] + at[d]) * spacing;
-      for (int d = 0; d < 2 * Dim; ++d) kinematics(i, d) = 0;
-      kinematics(i, 1) = rate * x[0] * x[1];  // the stretch along y grows with x
-    }
-    Kokkos::deep_copy(s.nodes.kinematics, kinematics);
     const auto first = on_host(s.soil.points.faces[0]);
     const std::vector<Face<Dim>> before(first.data(), first.data() + s.soil.points.count);
     const auto coordinate = on_host(s.soil.points.coordinate);

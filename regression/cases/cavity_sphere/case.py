@@ -32,14 +32,19 @@ def numbers(values):
     return ",".join(f"{x:.10g}" for x in np.ravel(values))
 
 
+def applied(name, u):
+    """The pressure [kPa] at shares u of the time. It grows ever slower, as the hole widens ever faster."""
+    _, _, p0, exact, over, *_ = SOILS[name]
+    return p0 + (over * max(exact.values()) - p0) * u * (7 - 3 * u) / 4
+
+
 def options(name):
-    soil, poisson, p0, exact, over, end, particles, courant = SOILS[name]
+    soil, poisson, p0, _, _, end, particles, courant = SOILS[name]
     wall = np.column_stack([np.sin(ARC), np.cos(ARC)])
     near = numbers(np.vstack([[(NEAR, 0), (NEAR, NEAR), (0, NEAR)], wall]))
     spring = OUTER * (1 - poisson) / (1 - 2 * poisson)
-    u = np.linspace(0, 1, 41)  # the pressure grows ever slower, as the hole widens ever faster
-    p = p0 + (over * max(exact.values()) - p0) * u * (7 - 3 * u) / 4
-    table = ",".join(f"{end * x:g}:{1000 * y:.8g}" for x, y in zip(u, p))
+    u = np.linspace(0, 1, 41)
+    table = ",".join(f"{end * x:g}:{1000 * y:.8g}" for x, y in zip(u, applied(name, u)))
     probes = " ".join(f"-w{n}_kind particle -w{n}_at {1.005 * np.cos(angle):.6g},{1.005 * np.sin(angle):.6g}" for n, angle in enumerate(PROBES))
     stress = f"-{p0}e3,-{p0}e3,-{p0}e3,0"
     return (f" {soil} -soil_poisson {poisson} -near_stress {stress} -far_stress {stress} -near_polygon {near} -near_particles_per_cell {particles}"
@@ -55,9 +60,7 @@ def pressure(run, name):
     """Radius of the cavity [m] and the pressure on its wall [kPa]."""
     cubes = np.column_stack([np.hypot(run.history[f"w{n}_x"], run.history[f"w{n}_y"]) ** 3 for n in range(len(PROBES))])
     grown = np.average(cubes - cubes[0], axis=1, weights=np.cos(PROBES))
-    _, _, p0, exact, over, end, _, _ = SOILS[name]
-    u = run.history["time"] / end
-    return np.cbrt(1 + grown), p0 + (over * max(exact.values()) - p0) * u * (7 - 3 * u) / 4
+    return np.cbrt(1 + grown), applied(name, run.history["time"] / SOILS[name][5])
 
 
 def check(runs):
