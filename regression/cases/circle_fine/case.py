@@ -11,7 +11,7 @@ LONG = True
 
 
 def check(runs):
-    yield from check_factors(runs, cells=40, allowed=0.04)
+    yield from check_factors(runs, cells=40, allowed=0.03)
 
 
 def draw(axes, runs):

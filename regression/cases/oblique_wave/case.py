@@ -121,12 +121,15 @@ def check(runs):
 
 
 def draw(axes, runs):
-    angles = np.linspace(5, 80, 60)
-    for kind, most in (("P", 80), ("S", 34)):
-        shown = angles[angles < most]
-        axes.plot(shown, [returned(kind, angle, 1.0, 2.0) for angle in shown], label=f"{kind} wave, exact")
-    for name, mark, label in (("P_30", "ko", "computed"), ("P_60", "ko", None), ("S_20", "ko", None), ("S_20_fine", "k+", "computed, half the cell")):
-        share = energy_of(last_frame(runs[name], "soil")) / energy_of(first_frame(runs[name], "soil"))
-        axes.plot(WAVES[name][1], share, mark, label=label)
+    angles = np.linspace(5, 80, 300)
+    for kind in "PS":
+        axes.plot(angles, [returned(kind, angle, 1.0, 1.0) for angle in angles], label=f"one {kind} wave, exact")
+    packets = [wave for wave in WAVES.values() if wave[2] == 1]
+    axes.plot([wave[1] for wave in packets], [returned(*wave[:4]) for wave in packets], "ko", mfc="none", label="packet, exact")
+    labels = {0.25: "packet, computed", 0.125: "packet, computed, half the cell"}
+    for name, (_, degrees, factor, _, cell) in WAVES.items():
+        if factor == 1:
+            share = energy_of(last_frame(runs[name], "soil")) / energy_of(first_frame(runs[name], "soil"))
+            axes.plot(degrees, share, "kx" if cell == 0.25 else "k+", label=labels.pop(cell, None))
     axes.set(xlabel="angle to the normal of the side (degrees)", ylabel="energy returned", yscale="log")
     axes.legend()
