@@ -222,6 +222,7 @@ struct UpdateNodes {
       v_r[d] = static_cast<T>(rigid.velocity[d]);
       boundary[d] = node.boundary[BoundaryTerms<Dim>::area + d];
     }
+    cancel_at_rollers(places.grid, node.sides, boundary);
     double distance = 0;
     Vector<double, Dim> out{};
     const bool reaches = rigid.surface_normal || rigid.reach > 0

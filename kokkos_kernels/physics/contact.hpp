@@ -6,15 +6,12 @@
 namespace mpm {
 
 /// Inward unit normal of a rigid body at a node from its mass gradient (Eq. 3), whose sign points out of the
-/// body. The mirrored half of a body at a roller is missing, so the gradient's component normal to it is left
-/// out. False where the gradient says nothing: in the interior of the body it is round-off, or points to its
-/// far face.
+/// body, without what the mirrored half of the body at a roller cancels. False where the gradient says
+/// nothing: in the interior of the body it is round-off, or points to its far face.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool inward_normal(const Grid<T, Dim>& grid, unsigned sides, T mass,
                                           Vector<T, Dim>& n) {
-  for (int d = 0; d < Dim; ++d)
-    for (int side = 0; side < 2; ++side)
-      if ((sides >> (2 * d + side) & 1u) && grid.wall[d][side] == Wall::roller) n[d] = 0;
+  cancel_at_rollers(grid, sides, n);
   const T length = Kokkos::sqrt(dot(n, n));
   constexpr T k_interior = T(0.05);  // of the mass a cell's edge
   if (!(length > k_interior * mass)) return false;

@@ -68,9 +68,15 @@ KOKKOS_INLINE_FUNCTION Distance<3> distance_to_revolved(const Surface<3>& body, 
                                                         const Vector<double, 3>& r) {
   const double off = Kokkos::sqrt(r[0] * r[0] + r[1] * r[1]);
   const Distance<2> section = distance_to_polygon(vertices, body.first, body.count, off, r[2]);
-  const bool on_axis = !(off > k_on_edge);  // where every direction is as good
-  const double x = on_axis ? 1 : r[0] / off, y = on_axis ? 0 : r[1] / off;
-  return {section.value - body.radius, {section.normal[0] * x, section.normal[0] * y, section.normal[1]}};
+  const double value = section.value - body.radius;
+  if (off > k_on_edge) {
+    const double x = r[0] / off, y = r[1] / off;
+    return {value, {section.normal[0] * x, section.normal[0] * y, section.normal[1]}};
+  }
+  // On the axis the normals all round add up to one along it. Next to a shaft every direction is as good.
+  if (Kokkos::fabs(section.normal[1]) > k_on_edge)
+    return {value, {0, 0, Kokkos::copysign(1.0, section.normal[1])}};
+  return {value, {section.normal[0], 0, 0}};
 }
 
 /// Height of the ground at a point [m], linear in each direction between the places where it is given; beyond

@@ -39,6 +39,14 @@ KOKKOS_INLINE_FUNCTION void apply_walls(const Grid<T, Dim>& grid, unsigned sides
   apply_walls(grid, sides, v.c);
 }
 
+/// Leaves out what the mirrored half beyond rollers cancels of a vector in space, as the soil's boundary.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void cancel_at_rollers(const Grid<T, Dim>& grid, unsigned sides, Vector<T, Dim>& v) {
+  for (int d = 0; d < Dim; ++d)
+    for (int side = 0; side < 2; ++side)
+      if ((sides >> (2 * d + side) & 1u) && grid.wall[d][side] == Wall::roller) v[d] = 0;
+}
+
 /// Coordinate along direction d of the image inside of a node that lies beyond a wall; else its own.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION int image_along(const Grid<T, Dim>& grid, int d, int at) {
