@@ -226,7 +226,7 @@ struct UpdateNodes {
     double distance = 0;
     Vector<double, Dim> out{};
     const bool reaches = rigid.surface_normal || rigid.reach > 0
-                             ? surface_contact(rigid, node.at, boundary, distance, out)
+                             ? surface_contact(rigid, node, boundary, distance, out)
                              : true;
     if (rigid.surface_normal ? !(reaches && surface_normal(out, node.sides, n))
                              : !mass_normal(rigid, given, node.sides, n))
@@ -273,9 +273,13 @@ struct UpdateNodes {
     return rigid.pose.to_body([&](int d) { return places.grid.coordinate_within(d, at[d], spacing); });
   }
 
-  /// Area of a cell's face [m^2; m in 2D] at a node; where the soil is revolved, of the ring [m^2].
-  KOKKOS_INLINE_FUNCTION T face(const Coord<Dim>& at) const {
+  /// Area of a cell's face [m^2; m in 2D] at a node, of which rollers leave a half; where the soil is
+  /// revolved, of the ring [m^2].
+  KOKKOS_INLINE_FUNCTION T face(const Coord<Dim>& at, unsigned sides) const {
     T area = power(places.grid.spacing, Dim - 1);
+    for (int d = rings ? 1 : 0; d < Dim; ++d)
+      for (int side = 0; side < 2; ++side)
+        if ((sides >> (2 * d + side) & 1u) && places.grid.wall[d][side] == Wall::roller) area /= 2;
     constexpr T k_on_axis = T(1.0 / 6);  // cells, of a node on the axis: the integral of N r dr
     if constexpr (Dim == 2)
       if (rings) area *= T(2 * Kokkos::numbers::pi) * Kokkos::fmax(T(at[0]), k_on_axis) * places.grid.spacing;
@@ -291,17 +295,19 @@ struct UpdateNodes {
   }
 
   /// Distance [m] of a node from the rigid's own surface, and the normal out of it that contact takes. Where
-  /// the soil's boundary says that the soil is at another face, as in a thin plate, the node looks a second
-  /// time, from a cell's edge further towards the soil. False where the rigid does not reach into the node's
-  /// cells.
-  KOKKOS_INLINE_FUNCTION bool surface_contact(const Rigid<Dim>& rigid, const Coord<Dim>& at,
+  /// the soil's boundary says that the soil is at another face, as in a thin plate, or where several faces
+  /// are equally near, the node looks a second time, from a cell's edge further towards the soil. Where that
+  /// tells no face either the normal is against the boundary's. False where the rigid does not reach into the
+  /// node's cells.
+  KOKKOS_INLINE_FUNCTION bool surface_contact(const Rigid<Dim>& rigid, const Node& node,
                                               const Vector<T, Dim>& boundary, double& distance,
                                               Vector<double, Dim>& out) const {
     constexpr double k_overlap = 1e-3;  // cells: less is no touch
     // Not at a right angle, as a footing's edge is to the soil under it: there round-off would decide.
     constexpr T k_facing = T(0.1);   // cosine
     constexpr T k_bounds = T(1e-3);  // of a cell's face: less is the soil's interior
-    Vector<double, Dim> x = place(rigid, at);
+    constexpr T k_aside = T(1e-3);   // of its length: less is round-off, which leaves a plane of symmetry
+    Vector<double, Dim> x = place(rigid, node.at);
     bool reaches = true;
     MPM_ROLLED
     for (int look = 0; look < 2; ++look) {
@@ -314,10 +320,11 @@ struct UpdateNodes {
         reach += Kokkos::fabs(out[d]);
         against += boundary[d] * out[d];
       }
-      reaches = distance <= reach * spacing;
+      reaches = distance <= Kokkos::fmax(0.0, reach) * spacing;
       const T length = Kokkos::sqrt(dot(boundary, boundary));
-      if (!reaches || !(against > -k_facing * length && length > k_bounds * face(at))) break;
-      for (int d = 0; d < Dim; ++d) x[d] -= spacing * boundary[d] / length;
+      if (!reaches || !(against > -k_facing * length && length > k_bounds * face(node.at, node.sides))) break;
+      for (int d = 0; d < Dim; ++d)
+        if (Kokkos::fabs(boundary[d]) > k_aside * length) x[d] -= spacing * boundary[d] / length;
     }
     return reaches;
   }

@@ -74,7 +74,8 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
   for (int d = 0; d < Dim; ++d) slip[d] = relative[d] - approach * n[d];
   const T speed = Kokkos::sqrt(dot(slip, slip));
   constexpr T k_leaves = T(0.1);  // of the slip: a node in the soil that moves away faster is not in touch
-  const bool touches = !interface.separates || approach > 0 || interface.pressing > 0 ||
+  constexpr T k_along = T(1e-6);  // of the slip: a motion along the face is along it but for round-off
+  const bool touches = !interface.separates || approach > k_along * speed || interface.pressing > 0 ||
                        (interface.within_soil && -approach < k_leaves * speed);
   T largest = touches ? interface.shear_speed : T(0);
   if (interface.friction >= 0) {

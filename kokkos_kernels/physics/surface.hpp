@@ -6,7 +6,8 @@
 
 namespace mpm {
 
-/// Signed distance [m], positive outside, and the outward unit normal there.
+/// Signed distance [m], positive outside, and the outward unit normal there: of a point that is as near to
+/// several faces the sum of theirs, none (zero) where they cancel, as in the middle of a plate.
 template <int Dim>
 struct Distance {
   double value;
@@ -15,8 +16,12 @@ struct Distance {
 
 inline constexpr double k_on_edge = 1e-9;  // m, less is round-off and tells no direction
 
+/// On which side of a plane a point is, by its distance [m]; 0 on the plane.
+KOKKOS_INLINE_FUNCTION double side_of(double x) { return x > k_on_edge ? 1 : (x < -k_on_edge ? -1 : 0); }
+
 /// A product of n intervals, given by how far the point is beyond each (`beyond` [m], negative inside) and
-/// the outward direction of each; corners rounded by `radius` [m]. On an edge the first of its faces counts.
+/// the outward direction of each; corners rounded by `radius` [m]. On an edge the first of its faces counts;
+/// `share` is zero where several are as near to a point inside.
 template <int N>
 KOKKOS_INLINE_FUNCTION double distance_to_product(const Vector<double, N>& beyond, double radius,
                                                   Vector<double, N>& share) {
@@ -32,16 +37,25 @@ KOKKOS_INLINE_FUNCTION double distance_to_product(const Vector<double, N>& beyon
     for (int d = 0; d < N; ++d) share[d] /= outside;
     return outside - radius;
   }
-  for (int d = 0; d < N; ++d) share[d] = d == nearest ? 1 : 0;
+  bool alone = true;
+  for (int d = 0; d < N; ++d) alone = alone && (d == nearest || beyond[d] < beyond[nearest] - k_on_edge);
+  const bool counts = alone || beyond[nearest] > -k_on_edge;
+  for (int d = 0; d < N; ++d) share[d] = counts && d == nearest ? 1 : 0;
   return beyond[nearest];
+}
+
+/// Adds a vector to a sum, or begins it anew.
+KOKKOS_INLINE_FUNCTION void add_or_begin(bool begins, const Vector<double, 2>& v, Vector<double, 2>& sum) {
+  for (int d = 0; d < 2; ++d) sum[d] = (begins ? 0 : sum[d]) + v[d];
 }
 
 /// Distance in the plane to a polygon; edges on the mesh's boundary are no surface.
 template <class Vertices>
 KOKKOS_INLINE_FUNCTION Distance<2> distance_to_polygon(const Vertices& vertices, int first, int count,
                                                        double x, double z) {
-  double least = Kokkos::Experimental::finite_max<double>::value, to_x = 0, to_z = 0, edge_x = 0, edge_z = 1;
-  double turn = 0;  // twice the area: which way round the polygon goes
+  double least = Kokkos::Experimental::finite_max<double>::value;
+  Vector<double, 2> ways, faces;  // from the nearest places; normals of their edges
+  double turn = 0;                // twice the area: which way round the polygon goes
   bool inside = false;
   MPM_ROLLED
   for (int k = 0; k < count; ++k) {
@@ -51,15 +65,19 @@ KOKKOS_INLINE_FUNCTION Distance<2> distance_to_polygon(const Vertices& vertices,
     if (a.outside) continue;
     const double ex = b.x - a.x, ez = b.z - a.z, length2 = ex * ex + ez * ez;
     const double along = Kokkos::fmin(1.0, Kokkos::fmax(0.0, ((x - a.x) * ex + (z - a.z) * ez) / length2));
-    const double dx = x - a.x - along * ex, dz = z - a.z - along * ez, square = dx * dx + dz * dz;
-    if (square + k_on_edge * k_on_edge >= least) continue;  // a vertex is the first edge's
-    least = square, to_x = dx, to_z = dz;
-    edge_x = ez / Kokkos::sqrt(length2), edge_z = -ex / Kokkos::sqrt(length2);
+    const Vector<double, 2> way{x - a.x - along * ex, z - a.z - along * ez};
+    const double length = Kokkos::sqrt(dot(way, way));
+    if (length > least + k_on_edge) continue;
+    const bool nearer = length < least - k_on_edge;
+    add_or_begin(nearer, way, ways);
+    add_or_begin(nearer, {ez / Kokkos::sqrt(length2), -ex / Kokkos::sqrt(length2)}, faces);
+    if (nearer) least = length;
   }
-  const double length = Kokkos::sqrt(least), sign = inside ? -1 : 1;
-  if (length > k_on_edge) return {sign * length, {sign * to_x / length, sign * to_z / length}};
-  const double out = turn > 0 ? 1 : -1;
-  return {0, {out * edge_x, out * edge_z}};
+  const bool on_surface = !(least > k_on_edge);
+  const Vector<double, 2>& sum = on_surface ? faces : ways;
+  const double length = Kokkos::sqrt(dot(sum, sum)), out = (on_surface ? turn < 0 : inside) ? -1 : 1;
+  const double factor = length > k_on_edge ? out / length : 0;
+  return {on_surface ? 0 : (inside ? -least : least), {factor * sum[0], factor * sum[1]}};
 }
 
 /// Distance of a point, r from the centre, to what turns about the vertical axis.
@@ -68,15 +86,12 @@ KOKKOS_INLINE_FUNCTION Distance<3> distance_to_revolved(const Surface<3>& body, 
                                                         const Vector<double, 3>& r) {
   const double off = Kokkos::sqrt(r[0] * r[0] + r[1] * r[1]);
   const Distance<2> section = distance_to_polygon(vertices, body.first, body.count, off, r[2]);
+  const bool on_axis = !(off > k_on_edge);
+  const double x = on_axis ? 0 : r[0] / off, y = on_axis ? 0 : r[1] / off;
   const double value = section.value - body.radius;
-  if (off > k_on_edge) {
-    const double x = r[0] / off, y = r[1] / off;
-    return {value, {section.normal[0] * x, section.normal[0] * y, section.normal[1]}};
-  }
-  // On the axis the normals all round add up to one along it. Next to a shaft every direction is as good.
-  if (Kokkos::fabs(section.normal[1]) > k_on_edge)
-    return {value, {0, 0, Kokkos::copysign(1.0, section.normal[1])}};
-  return {value, {section.normal[0], 0, 0}};
+  const double up = section.normal[1];
+  if (on_axis && Kokkos::fabs(up) > k_on_edge) return {value, {0, 0, Kokkos::copysign(1.0, up)}};
+  return {value, {section.normal[0] * x, section.normal[0] * y, up}};
 }
 
 /// Height of the ground at a point [m], linear in each direction between the places where it is given; beyond
@@ -132,7 +147,7 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
     Vector<double, Dim> beyond, n;
     for (int d = 0; d < Dim; ++d) beyond[d] = Kokkos::fabs(r[d]) - body.half[d];
     out.value = distance_to_product<Dim>(beyond, body.radius, n);
-    for (int d = 0; d < Dim; ++d) n[d] = Kokkos::copysign(n[d], r[d]);
+    for (int d = 0; d < Dim; ++d) n[d] = side_of(r[d]) * n[d];
     out.normal = n;
     out.normal[0] = body.cosine * n[0] - body.sine * n[up];
     out.normal[up] = body.cosine * n[up] + body.sine * n[0];
@@ -144,7 +159,7 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
       Vector<double, 2> share;
       const Vector<double, 2> beyond{plane.value, Kokkos::fabs(r[1]) - body.half[1]};
       out.value = distance_to_product<2>(beyond, 0, share);
-      out.normal = {share[0] * plane.normal[0], Kokkos::copysign(share[1], r[1]), share[0] * plane.normal[1]};
+      out.normal = {share[0] * plane.normal[0], side_of(r[1]) * share[1], share[0] * plane.normal[1]};
     }
   }
   return out;

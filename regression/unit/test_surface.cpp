@@ -244,11 +244,31 @@ TEST_CASE("round-off does not choose the face at an edge or a vertex of a surfac
   const Shape square = polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
   for (const double a : {-1e-13, 0., 1e-13})
     for (const double b : {-1e-13, 0., 1e-13}) {
-      CHECK(is<2>(distance<2>(square, {1 + a, 1 + b}), 0, {1, 0}));
+      CHECK(is<2>(distance<2>(square, {1 + a, 1 + b}), 0, {k_half, k_half}));
+      CHECK(is<2>(distance<2>(square, {1 + a, 0.5 + b}), 0, {1, 0}));
       Vector<double, 2> n;
       distance_to_product<2>({a, b}, 0, n);
       CHECK((n[0] == 1 && n[1] == 0));
     }
+}
+
+TEST_CASE("where several faces are as near the normal is the sum of theirs, whatever round-off says",
+          "[surface]") {
+  const Shape square = polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), wedge = polygon({{0, 0}, {1, 2}, {-1, 2}});
+  const Shape plate = polygon({{-0.1, 0}, {0.1, 0}, {0.1, 9}, {-0.1, 9}});
+  for (const double a : {-1e-13, 0., 1e-13})
+    for (const double b : {-1e-13, 0., 1e-13}) {
+      CHECK(is<2>(distance<2>(square, {0.25 + a, 0.25 + b}), -0.25, {-k_half, -k_half}));
+      CHECK(is<2>(distance<2>(wedge, {a, 1 + b}), -1 / std::sqrt(5.), {0, -1}));
+      CHECK(is<2>(distance<2>(wedge, {a, b}), 0, {0, -1}));
+      for (const Shape& shape : {plate, box({-0.1, 0, 0}, {0.1, 9, 0})})  // they cancel
+        CHECK(is<2>(distance<2>(shape, {a, 4 + b}), -0.1, {0, 0}));
+      CHECK(is<2>(distance<2>(box({0, 0, 0}, {1, 1, 0}), {0.75 + a, 0.25 + b}), -0.25, {0, 0}));
+    }
+  // Outside the normal is the sum of those of the faces; the way from a vertex of several edges is one.
+  const Shape valley = polygon({{-2, -1}, {2, -1}, {2, 2}, {0, 0}, {-2, 2}});
+  CHECK(is<2>(distance<2>(valley, {0, 1}), k_half, {0, 1}));
+  CHECK(is<2>(distance<2>(valley, {0, -0.25}), -0.25, {0, 1}));
 }
 
 TEST_CASE(
