@@ -295,10 +295,9 @@ struct UpdateNodes {
   }
 
   /// Distance [m] of a node from the rigid's own surface, and the normal out of it that contact takes. Where
-  /// the soil's boundary says that the soil is at another face, as in a thin plate, or where several faces
-  /// are equally near, the node looks a second time, from a cell's edge further towards the soil. Where that
-  /// tells no face either the normal is against the boundary's. False where the rigid does not reach into the
-  /// node's cells.
+  /// the soil's boundary says that the soil is at another face, as in a thin plate, or where no face is the
+  /// nearest (the normal is then zero), the node looks a second time, from a cell's edge further towards the
+  /// soil. False where the rigid does not reach into the node's cells.
   KOKKOS_INLINE_FUNCTION bool surface_contact(const Rigid<Dim>& rigid, const Node& node,
                                               const Vector<T, Dim>& boundary, double& distance,
                                               Vector<double, Dim>& out) const {
