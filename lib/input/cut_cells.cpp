@@ -158,7 +158,7 @@ class Levels {
   /// The part that the particle of a cell stands for.
   CellPart particle(long k, long column) const {
     CellPart part = at(k).taken[column];
-    if (!at(k).gone[column]) add(at(k).own.of[column], {}, part);
+    if (!at(k).gone[column]) add(at(k).own.of[column], {}, 1, part);
     return part;
   }
 
@@ -173,20 +173,14 @@ class Levels {
   const Level& at(long k) const { return levels_[(k - grid_.first[2] + k_window) % k_window]; }
   Cell cell_of(long k, long column) const { return {column % width_, column / width_, k}; }
   const CellPart& own_of(const Cell& cell) const { return at(cell[2]).own.of[cell[1] * width_ + cell[0]]; }
-  Cell largest_neighbour(const Cell& cell) const;
-  /// A cell of k_least_part or more that is a neighbour, or a neighbour's neighbour. If there is none, a tiny
-  /// part goes where there is more, and others stay.
-  Cell taker_of(const Cell& cell) const {
-    const Cell next = largest_neighbour(cell);
-    if (own_of(next).volume >= k_least_part || next == cell) return next;
-    const Cell last = largest_neighbour(next);
-    if (own_of(last).volume >= k_least_part) return last;
-    if (own_of(cell).volume >= k_tiny) return cell;
-    return own_of(next).volume >= k_tiny ? next : last;
-  }
-  static void add(const CellPart& part, const Cell& offset, CellPart& to) {
-    to.volume += part.volume;
-    for (int d = 0; d < 3; ++d) to.moment[d] += part.moment[d] + static_cast<double>(offset[d]) * part.volume;
+  /// Whether a cell holds as much as `least`, up to round-off: images in a symmetric shape must both hold it.
+  bool holds(const Cell& cell, double least) const { return own_of(cell).volume >= least - k_round; }
+  std::vector<Cell> largest_neighbours(const Cell& cell) const;
+  std::vector<Cell> takers_of(const Cell& cell) const;
+  static void add(const CellPart& part, const Cell& offset, double share, CellPart& to) {
+    to.volume += share * part.volume;
+    for (int d = 0; d < 3; ++d)
+      to.moment[d] += share * (part.moment[d] + static_cast<double>(offset[d]) * part.volume);
   }
 
   const CellGrid& grid_;
@@ -194,25 +188,53 @@ class Levels {
   Level levels_[k_window];
 };
 
-/// Of the cells that touch a cell the one that holds most, if that is more than the cell itself; else the
-/// cell. Of equal ones the first counts, those below before those above.
-Levels::Cell Levels::largest_neighbour(const Cell& cell) const {
-  Cell best = cell;
-  for (long k = cell[2] - 1; k <= cell[2] + 1; ++k)
-    for (long j = std::max(cell[1] - 1, 0L); j <= std::min(cell[1] + 1, rows_ - 1); ++j)
-      for (long i = std::max(cell[0] - 1, 0L); i <= std::min(cell[0] + 1, width_ - 1); ++i)
-        if (own_of({i, j, k}).volume > own_of(best).volume) best = {i, j, k};
-  return best;
+/// Of the cells that touch a cell those that hold most, if that is more than the cell itself; else the cell.
+/// Several are equal up to round-off where the shape is symmetric.
+std::vector<Levels::Cell> Levels::largest_neighbours(const Cell& cell) const {
+  double most = 0;
+  const auto for_each_neighbour = [&](auto&& f) {
+    for (long k = cell[2] - 1; k <= cell[2] + 1; ++k)
+      for (long j = std::max(cell[1] - 1, 0L); j <= std::min(cell[1] + 1, rows_ - 1); ++j)
+        for (long i = std::max(cell[0] - 1, 0L); i <= std::min(cell[0] + 1, width_ - 1); ++i)
+          f(Cell{i, j, k});
+  };
+  for_each_neighbour([&](const Cell& near) { most = std::max(most, own_of(near).volume); });
+  if (holds(cell, most)) return {cell};
+  std::vector<Cell> largest;
+  for_each_neighbour([&](const Cell& near) {
+    if (holds(near, most)) largest.push_back(near);
+  });
+  return largest;
+}
+
+/// The cells that share a small part equally, so that a symmetric shape has symmetric particles: cells of
+/// k_least_part or more that are neighbours, or neighbours of the largest neighbours; a cell counts as often
+/// as it is found. If there is none, a tiny part goes where there is more, and others stay.
+std::vector<Levels::Cell> Levels::takers_of(const Cell& cell) const {
+  const std::vector<Cell> next = largest_neighbours(cell);
+  if (holds(next.front(), k_least_part) || next.front() == cell) return next;
+  std::vector<Cell> last, large;
+  for (const Cell& neighbour : next) {
+    const std::vector<Cell> found = largest_neighbours(neighbour);
+    last.insert(last.end(), found.begin(), found.end());
+    if (holds(found.front(), k_least_part)) large.insert(large.end(), found.begin(), found.end());
+  }
+  if (!large.empty()) return large;
+  if (holds(cell, k_tiny)) return {cell};
+  return holds(next.front(), k_tiny) ? next : last;
 }
 
 void Levels::join_small(long k) {
   for (const long column : columns(k)) {
     const CellPart& part = at(k).own.of[column];
-    if (part.volume == 0 || part.volume >= k_least_part) continue;
-    const Cell here = cell_of(k, column), to = taker_of(here);
-    at(k).gone[column] = to != here;
-    if (to == here) continue;
-    add(part, {here[0] - to[0], here[1] - to[1], here[2] - to[2]}, at(to[2]).taken[to[1] * width_ + to[0]]);
+    const Cell here = cell_of(k, column);
+    if (part.volume == 0 || holds(here, k_least_part)) continue;
+    const std::vector<Cell> takers = takers_of(here);
+    at(k).gone[column] = takers.front() != here;
+    if (takers.front() == here) continue;
+    for (const Cell& to : takers)
+      add(part, {here[0] - to[0], here[1] - to[1], here[2] - to[2]}, 1.0 / static_cast<double>(takers.size()),
+          at(to[2]).taken[to[1] * width_ + to[0]]);
   }
 }
 

@@ -72,7 +72,7 @@ class CutCells {
   std::vector<char> listed_;   // by column: it is in columns_
 };
 
-/// A cell whose part is smaller than this gives it to a neighbour that holds as much, or to a neighbour's: a
+/// A cell whose part is smaller than this gives it to neighbours that hold as much, or to their neighbours: a
 /// particle so much lighter than those around it would be thrown about by them.
 inline constexpr double k_least_part = 0.125;
 
