@@ -138,7 +138,8 @@ struct FindShift {
     for (int d = 0; d < Dim; ++d) along[d] -= share * near.inward[d];
     return along;
   }
-  /// Keeps a shift [cells] within its bound, and away from sides of the mesh.
+  /// Keeps a shift [cells] within its bound, and away from sides of the mesh. The soil goes on beyond a
+  /// periodic side, which bounds no shift.
   KOKKOS_INLINE_FUNCTION void limit(int p, Vector<T, Dim>& shift) const {
     T largest = 0;
     for (int d = 0; d < Dim; ++d) largest = Kokkos::fmax(largest, Kokkos::fabs(shift[d]));
@@ -149,6 +150,7 @@ struct FindShift {
       const T below = T(cell[d]) + soil.coordinate(p)[d] - half[d].l,
               above = T(places.grid.cells[d] - cell[d]) - soil.coordinate(p)[d] - half[d].l;
       shift[d] *= within;
+      if (places.grid.period[d] > 0) continue;
       shift[d] = Kokkos::fmax(shift[d], -Kokkos::fmax(T(0), below));
       shift[d] = Kokkos::fmin(shift[d], Kokkos::fmax(T(0), above));
     }
