@@ -7,7 +7,9 @@ namespace mpm {
 namespace {
 
 /// The works at node i. The forces are those of UpdateNodes::accelerate; what is missing of the acceleration
-/// that the node has is of walls and contact.
+/// that the node has is of walls and contact. The rank that is responsible for a node counts its works, but
+/// each rank counts that of the water which its own soil displaces there: nodes.displaced is not summed over
+/// ranks.
 template <class Space, class T, int Dim>
 struct WorkAtNodes {
   using S = SoilTerms<Dim>;
@@ -18,8 +20,10 @@ struct WorkAtNodes {
   double dt;
 
   KOKKOS_INLINE_FUNCTION void operator()(int i, NodeWorks& sum) const {
-    const auto& owned = update.owned_nodes;
-    if (control().paused || (owned.extent(0) > 0 && (owned(i / cells) >> (i % cells) & 1) == 0)) return;
+    if (control().paused) return;
+    const auto& owned_nodes = update.owned_nodes;
+    const bool owned = owned_nodes.extent(0) == 0 || (owned_nodes(i / cells) >> (i % cells) & 1) != 0;
+    if (!owned && !in_water) return;
     const double m_i = update.nodes.soil(i, S::mass);
     if (!(m_i > update.at_rest())) return;
     const bool heavy = m_i > update.mass_cut;
@@ -29,11 +33,14 @@ struct WorkAtNodes {
                    v = update.nodes.kinematics(i, NodeKinematics<Dim>::velocity + d);
       const double carried =
           in_water && heavy ? -double(update.nodes.displaced(i, DisplacedTerms::mass)) * update.g[d] : 0;
+      const double way = dt * (v_old + v) / 2;
+      sum.internal -= carried * way;
+      sum.gravity += carried * way;
+      if (!owned) continue;
       const double force = heavy ? double(update.nodes.soil(i, S::force + d)) : 0, weight = m_i * g[d];
       const double damped = -m_i * double(update.braking(T((force + weight) / m_i), T(v_old)));
-      const double way = dt * (v_old + v) / 2;
-      sum.internal += (force - carried) * way;
-      sum.gravity += (weight + carried) * way;
+      sum.internal += force * way;
+      sum.gravity += weight * way;
       sum.damping += damped * way;
       sum.boundary += (m_i * (v - v_old) / dt - force - weight - damped) * way;
     }
