@@ -11,6 +11,15 @@ namespace {
 
 constexpr double k_slack = 1e-6;  // of the mesh spacing: closer to the mesh's boundary is on it
 
+/// How far a body that ends on the mesh's boundary goes on beyond it [m]: further than any point of the mesh
+/// is from another face of the body, so that the end beyond the mesh is the nearest face nowhere, in a mesh
+/// of one cell across neither.
+double beyond_mesh(const MeshConfig& mesh, int dim) {
+  double sum = 0;
+  for (int d = 0; d < dim; ++d) sum += mesh.upper[d] - mesh.lower[d];
+  return sum;
+}
+
 SurfaceInput box(const Shape& shape, const MeshConfig& mesh, int dim) {
   SurfaceInput out;
   const double slack = k_slack * mesh.spacing;
@@ -18,9 +27,8 @@ SurfaceInput box(const Shape& shape, const MeshConfig& mesh, int dim) {
   double shortest = upper[0] - lower[0];
   for (int d = 1; d < dim; ++d) shortest = std::min(shortest, upper[d] - lower[d]);
   for (int d = 0; d < dim && shape.angle == 0; ++d) {
-    const double beyond = mesh.upper[d] - mesh.lower[d];
-    if (lower[d] < mesh.lower[d] + slack) lower[d] -= beyond;
-    if (upper[d] > mesh.upper[d] - slack) upper[d] += beyond;
+    if (lower[d] < mesh.lower[d] + slack) lower[d] -= beyond_mesh(mesh, dim);
+    if (upper[d] > mesh.upper[d] - slack) upper[d] += beyond_mesh(mesh, dim);
   }
   for (int d = 0; d < dim; ++d) {
     out.half[d] = (upper[d] - lower[d]) / 2;
@@ -59,8 +67,8 @@ SurfaceInput polygon(const Shape& shape, const MeshConfig& mesh, int dim) {
   }
   if (dim == 3) {
     double low = shape.width[0], high = shape.width[1];
-    if (low < mesh.lower[1] + slack) low -= mesh.upper[1] - mesh.lower[1];
-    if (high > mesh.upper[1] - slack) high += mesh.upper[1] - mesh.lower[1];
+    if (low < mesh.lower[1] + slack) low -= beyond_mesh(mesh, dim);
+    if (high > mesh.upper[1] - slack) high += beyond_mesh(mesh, dim);
     out.half[1] = (high - low) / 2;
     out.centre[1] = (high + low) / 2 - mesh.lower[1];
   }
@@ -155,7 +163,7 @@ Polygon made_smaller(const Polygon& polygon, double radius) {
 SurfaceInput revolved(const Shape& shape, const MeshConfig& mesh) {
   SurfaceInput out;
   out.kind = SurfaceKind::revolved;
-  const double slack = k_slack * mesh.spacing, beyond = mesh.upper[2] - mesh.lower[2];
+  const double slack = k_slack * mesh.spacing, beyond = beyond_mesh(mesh, 3);
   const auto [low, high] = ends_of(shape);
   const Polygon section =
       section_of(shape, low < mesh.lower[2] + slack ? beyond : 0, high > mesh.upper[2] - slack ? beyond : 0);
