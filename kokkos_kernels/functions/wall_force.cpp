@@ -51,17 +51,25 @@ struct NearWalls {
     const Wall wall = places.grid.wall[d][side];
     return wall == Wall::fixed || (wall == Wall::roller && k == d) ? side : -1;  // others: side_forces
   }
-  /// Adds component k of the forces on a node: of what a node beyond a wall has, internal, twice, and not the
-  /// weight (above).
+  /// Adds component k of the forces on a node. Of what a node beyond a wall has, twice the internal force
+  /// passes that wall, and the image feels the opposite of it and the weight; beyond two walls that both turn
+  /// the force round nothing passes. What a node at walls feels is for the wall normal to k, where that holds
+  /// k, else in equal parts for those that do: no part depends on the order of the axes.
   KOKKOS_INLINE_FUNCTION void add(const Coord<Dim>& node, int k, double internal, double weight,
                                   ForceSum<Dim>& sum) const {
+    int beyond[Dim], at[Dim], walls_beyond = 0, walls_at = 0;
     for (int d = 0; d < Dim; ++d) {
-      const int at = node[d], side = holding_side(d, at, k);
-      if (side < 0) continue;
-      const bool beyond = image_along(places.grid, d, at) != at;
-      sum.of[d][side][k] += beyond ? 2 * internal : internal + weight;
-      break;  // where two sides hold it, the first one
+      const int image = image_along(places.grid, d, node[d]);
+      beyond[d] = image != node[d] ? holding_side(d, node[d], k) : -1;
+      at[d] = holding_side(d, image, k);
+      walls_beyond += beyond[d] >= 0, walls_at += at[d] >= 0;
     }
+    const bool turned = walls_beyond % 2 == 1;
+    for (int d = 0; d < Dim && turned; ++d)
+      if (beyond[d] >= 0) sum.of[d][beyond[d]][k] += 2 * internal / walls_beyond;
+    const double held = (turned ? -internal : internal) + weight;
+    for (int d = 0; d < Dim; ++d)
+      if (at[d] >= 0 && (at[k] < 0 || d == k)) sum.of[d][at[d]][k] += at[k] < 0 ? held / walls_at : held;
   }
   /// The lowest node that a particle of a cell reaches, `first` from the cell.
   template <class Weights>
@@ -94,7 +102,7 @@ struct PressLoads {
 
 /// What particles give the nodes at walls and beyond. A node at a wall is held against its internal force and
 /// weight. Of one beyond, the image's half of the soil takes the internal force, and the image gives as much
-/// back: twice that force passes the wall.
+/// back (NearWalls::add).
 template <class Space, class T, int Dim, ParticleDomain domain>
 struct PressOnWalls {
   using Source = SoilSource<Space, T, Dim, domain>;
