@@ -126,11 +126,11 @@ std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std
 }
 
 template <class Space, class T, int Dim>
-void put_side_table(State<Space, T, Dim>& s, std::vector<double> values, bool first) {
+void put_side_table(State<Space, T, Dim>& s, const std::vector<double>& values, const std::vector<int>& own) {
   using S = SideTerms<Dim>;
   const auto table = Kokkos::create_mirror_view(s.sides.nodes);
   for (std::size_t k = 0; k < values.size(); ++k)
-    table.data()[k] = static_cast<int>(k % S::size) >= S::impulse && !first ? 0 : values[k];
+    table.data()[k] = static_cast<int>(k % S::size) >= S::impulse && own[k / S::size] == 0 ? 0 : values[k];
   copy(s.sides.nodes, table);
 }
 
@@ -144,7 +144,7 @@ void put_side_table(State<Space, T, Dim>& s, std::vector<double> values, bool fi
                                                    bool);                                                \
   template std::vector<double> column_table(const State<Space, T, Dim>&);                                \
   template void put_column_table(State<Space, T, Dim>&, const std::vector<double>&);                     \
-  template void put_side_table(State<Space, T, Dim>&, std::vector<double>, bool);
+  template void put_side_table(State<Space, T, Dim>&, const std::vector<double>&, const std::vector<int>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

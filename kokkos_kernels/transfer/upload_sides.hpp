@@ -45,9 +45,10 @@ std::vector<int> own_side_rows(const State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std::vector<int>& own,
                                         bool first);
-/// Puts a table back; first: with the impulses and works in it, which only one of several ranks may keep.
+/// Puts a table back; own: the rows with whose impulses and works this rank goes on, which only one of
+/// several ranks may keep.
 template <class Space, class T, int Dim>
-void put_side_table(State<Space, T, Dim>& s, std::vector<double> table, bool first);
+void put_side_table(State<Space, T, Dim>& s, const std::vector<double>& table, const std::vector<int>& own);
 
 /// The table of the columns beside sides, row by row (ColumnTerms); all ranks have the same.
 template <class Space, class T, int Dim>

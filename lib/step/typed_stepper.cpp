@@ -385,7 +385,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
     PetscCallCXX(list_saved(state_));
     PetscCallCXX(finish_saved(state_, saved));
   }
-  PetscCallCXX(restore_sides(saved.sides));
+  PetscCallCXX(PetscCall(restore_sides(saved.sides)));
   Failure failure = too_small();
   if (*rebuilt && failure.what.empty()) PetscCall(rebuild(0, &failure));
   PetscCheck(failure.what.empty(), PETSC_COMM_SELF, PETSC_ERR_FP, "The checkpoint's %s",

@@ -79,7 +79,9 @@ class TypedStepper final : public Stepper {
   PetscErrorCode measure_sides(double interval, HistoryRow* row);
   PetscErrorCode gather_sides(std::vector<double>* table) const;
   PetscErrorCode save_sides(SavedSides* saved) const;
-  void restore_sides(const SavedSides& saved);
+  PetscErrorCode restore_sides(const SavedSides& saved);
+  PetscErrorCode find_own_sides(std::vector<int>* own) const;
+  PetscErrorCode put_sides(const std::vector<double>& table);
   PetscErrorCode take_probe_particles(const ProbeState& state, std::vector<ProbeParticle>* particles);
   /// Before and after locate(), for sections: which particles are beyond them, and which of these have left.
   BeyondMask<Space> mark_beyond();

@@ -127,7 +127,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::rebuild_together(double elapsed, Fai
   };
   PetscCallCXX(PetscCall(timers_.run(StepPhase::rebuild, work, [&] { state_.space.fence("mpm::rebuild"); })));
   PetscCall(failed);
-  if (!sides.empty()) PetscCallCXX(put_side_table(state_, sides, rank_of(comm_) == 0));
+  if (failure->what.empty()) PetscCall(put_sides(sides));
   timers_.sample(sampling);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -77,19 +77,31 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_sides(double interval, Histo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// The table of the sides' nodes, of all ranks. What a node keeps that no soil reaches now, and that no rank
-/// therefore answers for, all have known alike since they last met here.
+/// Rows of the sides' nodes that this rank answers for, and on rank 0 those that no soil reaches now, so that
+/// no rank answers for them.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::find_own_sides(std::vector<int>* own) const {
+  PetscFunctionBeginUser;
+  PetscCallCXX(*own = own_side_rows(state_));
+  if (!ranks_ || own->empty()) PetscFunctionReturn(PETSC_SUCCESS);
+  std::vector<int> owners = *own;
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, owners.data(), static_cast<int>(owners.size()), MPI_INT, MPI_SUM, comm_));
+  for (std::size_t row = 0; row < owners.size() && rank_of(comm_) == 0; ++row)
+    (*own)[row] = (*own)[row] || owners[row] == 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The table of the sides' nodes, of all ranks. What a node keeps that no soil reaches now, all have known
+/// alike since they last met here.
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::gather_sides(std::vector<double>* table) const {
   PetscFunctionBeginUser;
   *table = side_table(state_);
   if (!ranks_ || table->empty()) PetscFunctionReturn(PETSC_SUCCESS);
-  const bool first = rank_of(comm_) == 0;
-  std::vector<int> own = own_side_rows(state_), owners = own;
-  const int rows = static_cast<int>(own.size());
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, owners.data(), rows, MPI_INT, MPI_SUM, comm_));
-  for (int row = 0; row < rows && first; ++row) own[row] = own[row] || owners[row] == 0;
-  *table = share_of_side_table(state_, own, first);
+  std::vector<int> own;
+  PetscCall(find_own_sides(&own));
+  *table = share_of_side_table(state_, own, rank_of(comm_) == 0);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, table->data(), static_cast<int>(table->size()), MPI_DOUBLE,
                              MPI_SUM, comm_));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -104,11 +116,24 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save_sides(SavedSides* saved) const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// The table of all ranks, after lists were made. The rank that answers for a node goes on with its impulses
+/// and works, so that the sums of a run that a checkpoint cuts have the same bits.
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::put_sides(const std::vector<double>& table) {
+  PetscFunctionBeginUser;
+  if (table.empty()) PetscFunctionReturn(PETSC_SUCCESS);
+  std::vector<int> own;
+  PetscCall(find_own_sides(&own));
+  PetscCallCXX(put_side_table(state_, table, own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /// Sides of the same kind go on with what they have kept. One that begins to absorb goes on to carry what it
 /// has held till now. So does one with columns where what holds these has become another: they begin anew.
 template <class Space, class T, int Dim>
-void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides& saved) {
-  if (saved.kinds.empty()) return;
+PetscErrorCode TypedStepper<Space, T, Dim>::restore_sides(const SavedSides& saved) {
+  PetscFunctionBeginUser;
+  if (saved.kinds.empty()) PetscFunctionReturn(PETSC_SUCCESS);
   constexpr unsigned k_all = (1u << Dim) - 1;
   constexpr int size = SideTerms<Dim>::size;
   constexpr int size_of_column = ColumnTerms<Dim>::size, vertical = k_vertical<Dim>;
@@ -134,8 +159,9 @@ void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides& saved) {
     if (is_acting(then)) from += count;
     from_column += of_columns;
   }
-  if (state_.sides.in_use()) put_side_table(state_, table, rank_of(comm_) == 0);
-  put_column_table(state_, columns);
+  PetscCall(put_sides(table));
+  PetscCallCXX(put_column_table(state_, columns));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                           \
@@ -144,7 +170,9 @@ void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides& saved) {
   template PetscErrorCode TypedStepper<Space, T, Dim>::measure_sides(double, HistoryRow*);       \
   template PetscErrorCode TypedStepper<Space, T, Dim>::gather_sides(std::vector<double>*) const; \
   template PetscErrorCode TypedStepper<Space, T, Dim>::save_sides(SavedSides*) const;            \
-  template void TypedStepper<Space, T, Dim>::restore_sides(const SavedSides&);
+  template PetscErrorCode TypedStepper<Space, T, Dim>::find_own_sides(std::vector<int>*) const;  \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::put_sides(const std::vector<double>&);    \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::restore_sides(const SavedSides&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm
