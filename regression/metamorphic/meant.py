@@ -1,0 +1,26 @@
+"""Differences of a deck and an image that are meant, each with its reason."""
+import re
+
+def acting_sides_meet(deck):
+    """Whether sides across two axes act by more than a mirror."""
+    sides = [name for name, value in deck.items() if name.startswith("mesh_") and (value in ("friction", "absorbing") or name.endswith("_velocity"))]
+    return len({name[5] for name in sides}) > 1
+
+
+# (image, condition on the deck, columns and fields, the most that is meant, reason)
+MEANT = [
+    ("turn", lambda deck: acting_sides_meet(deck), ".*", float("inf"),
+     "sides with friction, dashpots or a velocity that meet act one after the other at the nodes that they share"),
+    (".*", lambda deck: "loads" in deck, r"_area|load_area", 1e-6,
+     "weights on a face are those of a box of 1e-12 cells, which have fewer digits"),
+    ("restart_ranks", lambda deck: True, r"history (energy|work)_", 1e-12,
+     "at a restart rank 0 goes on with the works of all ranks, which are then summed in another order"),
+    ("units", lambda deck: "power_elastic" in deck.values() or "cam_clay" in deck.values(), ".*", 1e-9,
+     "powers and logarithms of pressures have other round-off in other units"),
+]
+
+
+def is_meant(deck, image, share, where):
+    """Whether a difference, relative to the field's largest value, is one that is meant."""
+    return any(re.fullmatch(images, image) and condition(deck) and re.search(places, where) and share <= most
+               for images, condition, places, most, _ in MEANT)
