@@ -60,8 +60,8 @@ def run_deck(binary, deck, folder, ranks=1, cut=0.0, steps=0):
     def start(*options):
         done = run_program(binary, path, folder, *options, prefix=prefix, status=None)
         if done.returncode:
-            said = [line for line in (done.stderr + done.stdout).splitlines() if line.strip()]
-            raise Refused(f"status {done.returncode}: {next((line for line in said if 'error' in line or 'takes' in line), said[-1:])}")
+            said = [line for line in (done.stderr + done.stdout).splitlines() if line.strip() and ": warning" not in line]
+            raise Refused(f"status {done.returncode}: {' '.join(said[:2] if done.returncode == 2 else said[:3])}")
     if cut:
         start("-time_max_steps", max(1, min(steps - 1, round(cut * steps))), "-checkpoint_interval", 1e6 * deck["time_end"])
         start("-restart", checkpoints(folder)[-1])

@@ -11,7 +11,7 @@ LAWS = {
     "yield_stress_fluid": {"bulk_modulus": E, "shear_modulus": 1e5, "yield_stress": 300.0, "consistency": 20.0, "exponent": 1.0},
     "power_elastic": {"bulk_modulus": E, "pressure_reference": 1e4, "exponent": 0.5, "pressure_min": 1e3, "poisson": NU},
     "j2_hardening": {"young": E, "poisson": NU, "yield_stress": 5e3, "hardening_modulus": 1e5},
-    "cam_clay": {"critical_state_ratio": 1.0, "lambda": 0.2, "kappa": 0.04, "poisson": NU, "specific_volume": 2.0, "ocr": 1.5},
+    "cam_clay": {"critical_state_ratio": 1.0, "lambda": 0.1, "kappa": 0.01, "poisson": NU, "specific_volume": 2.0, "ocr": 1.5},
     "softening_clay": {"young": E, "poisson": 0.4, "su": 3e3, "remoulded_ratio": 0.3, "xi95": 2.0},
 }
 MORE = {  # options that a law may have beside
@@ -72,7 +72,16 @@ class Maker:
         if self.some(0.3):
             self.probes()
         self.timing()
+        if self.some(0.15):
+            self.stages()
         return d
+
+    def stages(self):
+        """Two stages in the place of one, of which the second has other loads."""
+        d = self.deck
+        d.update(stages="first,second", time_end=d["time_end"] / 2, second_damping=0.2)
+        if "gravity" in d and not self.water:
+            d["second_gravity"] = tuple(0.5 * x for x in d["gravity"])
 
     def materials(self, count):
         names = ["clay", "sand"][:count]
@@ -86,6 +95,8 @@ class Maker:
                     values[key] = value
                     if key.endswith("gradient"):
                         values[key.replace("gradient", "datum")] = round(3 * self.h, 4)
+            if "rate_factor" in values:
+                values["rate_reference"] = 0.01
             self.laws[name] = law
             self.deck.update({f"{name}_model": law, f"{name}_density": round(RHO * self.draw.uniform(0.8, 1.2))})
             self.deck.update({f"{name}_{key}": value for key, value in values.items()})
@@ -267,7 +278,7 @@ class Maker:
     def timing(self):
         """A time step of its own, or a Courant number, and times that end the run after about `steps`."""
         d = self.deck
-        stiff = 2.5 * E + max((v for k, v in d.items() if k.endswith("pore_stiffness")), default=0) + (2e6 if "cam_clay" in self.laws.values() else 0)
+        stiff = 2.5 * E + max((v for k, v in d.items() if k.endswith("pore_stiffness")), default=0) + (1e7 if "cam_clay" in self.laws.values() else 0)
         step = 0.2 * self.h / math.sqrt(stiff / (0.8 * RHO))
         step = float(f"{step:.4g}")
         if self.some(0.5):
