@@ -13,14 +13,14 @@ sys.path[:0] = [str(HERE.parents[2] / "scripts"), str(HERE.parents[1]), str(HERE
 
 from decks import text_of  # noqa: E402
 from differences import Scales  # noqa: E402
-from dimensions import (ACCELERATION, ENERGY, FORCE, LENGTH, MOMENTUM, SPEED, STRESS, WHOLE, column_kind, factor,  # noqa: E402
+from dimensions import (ACCELERATION, AREA, ENERGY, FORCE, LENGTH, MOMENTUM, SPEED, STRESS, WHOLE, column_kind, factor,  # noqa: E402
                         field_kind, is_plane, names_of, per_width)
 from folders import checkpoints, fresh, run as run_program  # noqa: E402
 from images import EXACT  # noqa: E402
 from results import Run, read_frame  # noqa: E402
 
 BOUNDS = {"double": 1e-9, "single": 0.05}  # of a field's largest value, as regression/compare.py has them
-DOMAINS = 1e-5  # the same where half lengths follow the soil, which are numbers of single precision in every run
+DOMAINS = 1e-4  # the same where half lengths follow the soil, which are numbers of single precision in every run
 
 
 class Refused(Exception):
@@ -191,7 +191,7 @@ def scales_of(run, deck):
     last = next((read_frame(f)[1] for f in reversed(run.frames)), None)
     s = Scales(run, last)
     energy = max([s.momentum * s.velocity / 2, *(np.abs(v).max() for n, v in run.history.items() if n.startswith(("energy_", "work_")))])
-    out = {STRESS: s.stress, SPEED: s.velocity, MOMENTUM: s.momentum, ENERGY: energy, FORCE: s.force, LENGTH: s.spacing}
+    out = {STRESS: s.stress, SPEED: s.velocity, MOMENTUM: s.momentum, ENERGY: energy, FORCE: s.force, LENGTH: s.spacing, AREA: s.spacing**2}
     return {per_width(u) if is_plane(deck) and u in WHOLE else u: x for u, x in out.items()}, s
 
 
@@ -264,7 +264,7 @@ def compare_frame(run, deck, image, number, other, bound):
                     found.append((np.inf, f"frame {number} {body} {name} is missing"))
                 continue
             units = field_kind(name, deck)[0]
-            size = s.strain if name == "plastic_strain" else sizes.get(units, 0.0)
+            size = s.strain if name in ("plastic_strain", "parted_volume") else sizes.get(units, 0.0)
             share = relative(moved, values[same], size)
             if share > bound:
                 found.append((share, f"frame {number} {body} {name}"))

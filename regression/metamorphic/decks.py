@@ -21,6 +21,7 @@ MORE = {  # options that a law may have beside
     "yield_stress_fluid": {"exponent": 0.5}, "cam_clay": {"pressure_min": 500.0},
 }
 STRENGTH = {"von_mises", "tresca", "softening_clay"}  # laws whose strength is an su
+OFFSETS = (0.11, 0.2, 0.29, 0.37, 0.43, 0.61, 0.71, 0.87)  # cells; a cell owns particles on its lower faces, its mirror image does not
 FLUIDS = {"newtonian", "yield_stress_fluid"}  # without Poisson's ratio
 
 
@@ -42,8 +43,8 @@ class Maker:
         return self.draw.random() < share
 
     def near(self, x):
-        """A length of about x cells, by chance on a line of the mesh [m]."""
-        return round((x if self.some(0.4) else x + self.draw.choice([-1, 1]) * self.draw.uniform(0.02, 0.15)) * self.h, 4)
+        """A length of about x cells [m], on a line of the mesh or where a lattice that begins there has no particle on a line."""
+        return round((math.floor(x) + (0 if self.some(0.4) else self.draw.choice(OFFSETS))) * self.h, 4)
 
     def vector(self, size):
         out = [round(self.draw.uniform(-size, size), 4) for _ in range(self.dim)]

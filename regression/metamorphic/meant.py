@@ -15,8 +15,8 @@ MEANT = [
      "weights on a face are those of a box of 1e-12 cells, which have fewer digits"),
     ("restart_ranks", lambda deck: True, r"history (energy|work)_", 1e-12,
      "at a restart rank 0 goes on with the works of all ranks, which are then summed in another order"),
-    ("units", lambda deck: "power_elastic" in deck.values() or "cam_clay" in deck.values(), ".*", 1e-9,
-     "powers and logarithms of pressures have other round-off in other units"),
+    ("units", lambda deck: {"power_elastic", "cam_clay", "yield_stress_fluid"} & {str(value) for value in deck.values()}, ".*", 1e-9,
+     "powers and logarithms have other round-off in other units"),
 ]
 
 
