@@ -8,7 +8,7 @@ import numpy as np
 from factor import factor, has_reference
 from results import MEAN_FROM, MEAN_TO, WINDOW, mean_over, reference_curve, window_means
 from runout import NORMALS, direction_text, reference_runout, slides, toes
-from units import axis_unit
+from units import axis_unit, is_plane
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -115,7 +115,7 @@ def draw_pushed(axes, run, name, others):
     axes.secondary_xaxis("top", functions=(lambda x: x / width, lambda x: x * width)).set_xlabel(
         "penetration / B" if drawn.footing else "way / B")
     axes.secondary_yaxis("right", functions=(lambda y: y / unit, lambda y: y * unit)).set_ylabel(
-        f"{'bearing capacity factor' if drawn.footing else 'factor'} {drawn.formula()}")
+        f"{'bearing capacity factor' if drawn.footing else 'factor'} {drawn.formula('m' if is_plane(run) else 'm²')}")
     half = "" if not drawn.half else " on the modelled half" if run.text("dim", "2") == "2" else " on the modelled part"
     axes.set(xlabel="penetration (m)" if drawn.footing else f"way in {'xyz'[drawn.axis]} (m)",
              ylabel=f"force of the soil{half} ({unit_text})", title=name)
