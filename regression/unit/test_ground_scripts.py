@@ -306,6 +306,7 @@ class Fields(Folder):
     def test_a_sweep_of_bodies_that_do_not_move_is_over_time(self):
         axes = self.picture_of_sweep("time,base_x,base_force_x", [f"{t},0,{1e8 * t}" for t in range(4)])
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time (s)", "base_force_x (MN/m)"))
+        self.assertEqual(self.picture_of_sweep("time,base_x,base_force_x", []).get_xlabel(), "time (s)")  # no rows yet
         axes = self.picture_of_sweep("time,base_x,soil_mass", [f"{t},0,{7 * t}" for t in range(4)], y="soil_mass")
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time (s)", "soil_mass (kg/m)"))
 
