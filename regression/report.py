@@ -1,9 +1,10 @@
 """docs/verification.md from regression/verification.md.in and the kept results.
 
-A line {{CASE}} of the template becomes the case's section, {{summary}} a table of all cases, {{short}} the list of known
+A line {{CASE}} of the template becomes the case's section, {{summary}} a line for each case, {{short}} the list of known
 shortfalls, {{machines}} what the results were made with.
 """
 
+import math
 import re
 from collections import Counter
 
@@ -14,9 +15,11 @@ TEMPLATE = cases.ROOT / "regression" / "verification.md.in"
 PAGE = cases.ROOT / "docs" / "verification.md"
 IMAGES = cases.ROOT / "docs" / "images"
 RESULTS = {"CPU": "cpu.json", "GPU": "gpu.json"}
+MARKS = {"pass": "", "short": " **short**", "FAIL": " **fails**"}
 
 
-def write():
+def page():
+    """The text of docs/verification.md."""
     results = {label: store.load(cases.ROOT / "regression" / "results" / name) for label, name in RESULTS.items()}
     all_cases = {name: cases.Case(name) for name in cases.names()}
     text = TEMPLATE.read_text()
@@ -25,7 +28,11 @@ def write():
         raise SystemExit(f"regression/verification.md.in has no place for {', '.join(missing)}")
     parts = {name: section(each, results) for name, each in all_cases.items()}
     parts |= {"summary": summary(all_cases, results), "short": shortfalls(all_cases, results), "machines": machines(results)}
-    PAGE.write_text(re.sub(r"\{\{(\w+)\}\}", lambda place: parts[place[1]], text))
+    return re.sub(r"\{\{(\w+)\}\}", lambda place: parts[place[1]], text)
+
+
+def write():
+    PAGE.write_text(page())
     print(f"wrote {PAGE.relative_to(cases.ROOT)}")
 
 
@@ -75,22 +82,68 @@ def answer_text(row):
     if row["answer"] is None:
         return "**no answer**"
     error = f" ({100 * row['error']:.3g} %)" if row["relative"] and not row["at_least"] else ""
-    mark = {"pass": "", "short": " **short**", "FAIL": " **fails**"}[row["verdict"]]
-    return f"{row['answer']:.5g}{error}{mark}"
+    return f"{row['answer']:.5g}{error}{MARKS[row['verdict']]}"
 
 
 def summary(all_cases, results):
-    """A line a case: rows that pass on each machine, and the time of all its variants."""
-    lines = ["| case | " + " | ".join(f"{label} | time" for label in results) + " | in `scripts/test` |",
-             "| --- " + "| --- | --- " * len(results) + "| --- |"]
-    for name, case in all_cases.items():
-        cells = []
-        for kept in results.values():
-            variants = kept["cases"].get(name, {}).values()
-            verdicts = [row["verdict"] for entry in variants for row in entry["rows"]]
-            cells += [passed_text(verdicts), f"{sum(entry['seconds'] for entry in variants):.0f} s" if verdicts else ""]
-        lines.append(f"| {case.title()} (`{name}`) | " + " | ".join(cells) + f" | {'--all' if case.is_long() else 'yes'} |")
-    return "\n".join(lines)
+    """A table for each heading of the template: a line a case, in the order of the page."""
+    lines = []
+    for heading, names in headings(all_cases):
+        lines += [f"**{heading}**", "", "| case | worst answer | error | allowed | measured on | answers that hold | time | in `scripts/test` |",
+                  "| --- " * 8 + "|"] + [summary_line(all_cases[name], results) for name in names] + [""]
+    return "\n".join(lines).rstrip()
+
+
+def headings(all_cases):
+    """[(heading, [names of cases])] of the template, without headings that have no case."""
+    found = []
+    for heading, place in re.findall(r"^## (.*)$|^\{\{(\w+)\}\}$", TEMPLATE.read_text(), re.M):
+        if heading:
+            found.append((heading, []))
+        elif found and place in all_cases:
+            found[-1][1].append(place)
+    return [(heading, names) for heading, names in found if names]
+
+
+def summary_line(case, results):
+    """A case in one line: the answer that takes most of what it is allowed, in all variants, and where it was measured."""
+    variants = {variant: entry for kept in results.values() for variant, entry in kept["cases"].get(case.name, {}).items()}
+    rows = [row for entry in variants.values() for row in entry["rows"]]
+    times = [(label, sum(entry["seconds"] for entry in kept["cases"].get(case.name, {}).values())) for label, kept in results.items()]
+    time = ", ".join(f"{label} {seconds:.0f} s" for label, seconds in times if seconds)
+    worst = max(rows, key=share_of_allowed, default=None)
+    answer = [worst["what"], error_text(worst), allowed_text(worst)] if worst else ["", "", ""]
+    cells = [f"[{case.title()}](#{anchor(case.title())}) (`{case.name}`)", *answer, measured_on(variants),
+             passed_text([row["verdict"] for row in rows]), time, "--all" if case.is_long() else "yes"]
+    return "| " + " | ".join(cells) + " |"
+
+
+def share_of_allowed(row):
+    """Error over tolerance of an answer; infinite where there is no answer, or any error is too large."""
+    if row["error"] is None:
+        return math.inf
+    return row["error"] / row["tolerance"] if row["tolerance"] else math.inf if row["error"] else 0.0
+
+
+def error_text(row):
+    if row["error"] is None:
+        return "**no answer**"
+    return (f"{100 * row['error']:.2g} %" if row["relative"] else f"{row['error']:.2g}") + MARKS[row["verdict"]]
+
+
+def anchor(title):
+    """The anchor that GitHub gives to a heading."""
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+
+
+def measured_on(variants):
+    """The back ends of some variants, with the precision where a back end has one alone."""
+    precisions = {}
+    for backend, precision in (variant.split("-") for variant in sorted(variants)):
+        precisions.setdefault(backend, []).append(precision)
+    order = ["serial", "openmp", "cuda"]
+    return ", ".join(backend if len(found) > 1 else f"{backend} ({found[0]})"
+                     for backend, found in sorted(precisions.items(), key=lambda item: order.index(item[0]))) or "not run"
 
 
 def passed_text(verdicts):

@@ -26,11 +26,11 @@ class Factor:
         """Force on the modelled part at N = 1: N, in 2D N a metre."""
         return self.strength * self.area
 
-    def formula(self):
-        """How it is made, for the axis of a picture."""
+    def formula(self, unit):
+        """How it is made, for the axis of a picture; `unit` is that of the area."""
         if self.footing:
             return "$N_c = F / (s_u B)$"
-        return f"$F / (s_u A)$, $s_u$ = {self.strength / 1e3:.4g} kPa, $A$ = {self.area:.4g}"
+        return f"$F / (s_u A)$, $s_u$ = {self.strength / 1e3:.4g} kPa, $A$ = {self.area:.4g} {unit}"
 
 
 def clays_of(run, bodies):

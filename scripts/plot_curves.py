@@ -7,7 +7,8 @@ import numpy as np
 
 from factor import factor, has_reference
 from results import MEAN_FROM, MEAN_TO, WINDOW, mean_over, reference_curve, window_means
-from runout import NORMALS, run_out, reference_runout, slides
+from runout import NORMALS, direction_text, reference_runout, slides, toes
+from units import axis_unit, is_plane
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -24,10 +25,6 @@ def save(figure, path, **options):
 
 def run_label(run, others):
     return run.folder.resolve().name if others else "this run"
-
-
-def force_unit(run):
-    return "kN/m" if run.text("dim", "2") == "2" and run.text("geometry", "plane_strain") == "plane_strain" else "kN"
 
 
 def rigids_with_force(run):
@@ -85,19 +82,26 @@ def draw_pushed(axes, run, name, others):
     over windows thick."""
     drawn, top = factor(run, name), 0.0
     reference = stored_curve(run, name, drawn)
+    unit_text, size = axis_unit(run, pushed(run, name, drawn)[1], "N")
     for k, (each, colour) in enumerate(zip([run] + others, COLOURS)):
         its = factor(each, name) if name in rigids_with_force(each) else None
         if its is None or its.axis != drawn.axis:
             print(f"plot: {each.folder} has no rigid {name} that is pushed the same way", file=sys.stderr)
             continue
         way, force, weight = pushed(each, name, its)
-        if k == 0:
-            axes.plot(way, force / 1e3, color=colour, lw=0.7, alpha=0.55, label="each row of the history")
-        centres, means = window_means(way, force, weight, WINDOW * its.width)
-        axes.plot(centres, means / 1e3, color=colour, lw=2.2, label=f"{run_label(each, others)}, mean over {WINDOW} B")
-        top = max(top, means.max(initial=0))
+        window = WINDOW * its.width
+        if np.median(weight) > window / 2:  # a window has no rows to take a mean of
+            axes.plot(way, force / size, color=colour, lw=2.2, label=f"{run_label(each, others)}, each row of the history")
+            top = max(top, force.max(initial=0))
+        else:
+            if k == 0:
+                axes.plot(way, force / size, color=colour, lw=0.7, alpha=0.55, label="each row of the history")
+            centres, means = window_means(way, force, weight, window)
+            axes.plot(centres, means / size, color=colour, lw=2.2,
+                      label=f"{run_label(each, others)}, mean over {window:.3g} m of {'penetration' if drawn.footing else 'way'} ({WINDOW} B)")
+            top = max(top, means.max(initial=0))
         report_mean(each, name, its, (way, force, weight), reference if k == 0 else None)
-    unit, width = drawn.unit_force / 1e3, drawn.width
+    unit, width = drawn.unit_force / size, drawn.width
     if reference is not None:
         axes.plot(reference[0] * width, reference[1] * unit, "k.-", lw=0.9, ms=4,
                   label=f"reference solver, d = {run.number('mesh_spacing') / width:.3g} B")
@@ -106,29 +110,31 @@ def draw_pushed(axes, run, name, others):
         axes.axhline((2 + np.pi) * unit, color="0.35", ls="--", lw=1.2, label="$(2 + \\pi) s_u B$, exact for small strain")
         top = max(top, (2 + np.pi) * drawn.unit_force)
     if top > 0:
-        axes.set_ylim(0, 1.2 * top / 1e3)
+        axes.set_ylim(0, 1.2 * top / size)
     axes.set_xlim(left=0)
     axes.secondary_xaxis("top", functions=(lambda x: x / width, lambda x: x * width)).set_xlabel(
         "penetration / B" if drawn.footing else "way / B")
     axes.secondary_yaxis("right", functions=(lambda y: y / unit, lambda y: y * unit)).set_ylabel(
-        f"{'bearing capacity factor' if drawn.footing else 'factor'} {drawn.formula()}")
+        f"{'bearing capacity factor' if drawn.footing else 'factor'} {drawn.formula('m' if is_plane(run) else 'm²')}")
     half = "" if not drawn.half else " on the modelled half" if run.text("dim", "2") == "2" else " on the modelled part"
     axes.set(xlabel="penetration (m)" if drawn.footing else f"way in {'xyz'[drawn.axis]} (m)",
-             ylabel=f"force of the soil{half} ({force_unit(run)})", title=name)
+             ylabel=f"force of the soil{half} ({unit_text})", title=name)
 
 
 def draw_force(axes, run, name, others):
     """Components of the soil's force on a rigid: against the length of its displacement where it moves, else the time."""
     moves = name in run.moving_rigids()
+    unit_text, size = axis_unit(run, run.columns(f"{name}_force_"), "N")
     for each, style in zip([run] + others, STYLES):
         if name not in rigids_with_force(each) or not moves and "time" not in each.history:
             continue
         along = np.linalg.norm(each.columns(f"{name}_"), axis=1) if moves else each.history["time"]
-        for component, colour, axis in zip(each.columns(f"{name}_force_").T / 1e3, COLOURS, "xyz"):
-            axes.plot(along, component, style, color=colour, lw=1.2, label=f"{axis}, {run_label(each, others)}")
+        for component, colour, axis in zip(each.columns(f"{name}_force_").T / size, COLOURS, "xyz"):
+            axes.plot(along, component, style, color=colour, lw=1.2,
+                      label=f"along {axis}, {run_label(each, others)}" if others else f"along {axis}")
     if not moves:
         mark_stages(axes, run)
-    axes.set(xlabel="displacement (m)" if moves else "time (s)", ylabel=f"force of the soil ({force_unit(run)})",
+    axes.set(xlabel="displacement (m)" if moves else "time (s)", ylabel=f"force of the soil ({unit_text})",
              title=name if moves else f"{name} (fixed)")
 
 
@@ -174,18 +180,19 @@ def draw_runout(run, others, time=None):
     if not slides(run):
         return None
     figure, axes = plt.subplots(figsize=(8.2, 5.4), layout="constrained")
-    colours = iter(COLOURS * 10)
+    colours, directions = iter(COLOURS * 10), []
     for each in [run] + others:
         for body in slides(each):
             colour, label = next(colours), f"{body}, {run_label(each, others)}"
-            axes.plot(each.history["time"], run_out(each, body), color=colour, lw=2.2, label=f"{label}: furthest particle")
-            if f"{body}_xq999" in each.history:
-                axes.plot(each.history["time"], run_out(each, body, "xq999"), ":", color=colour, lw=2.2,
-                          label=f"{label}: 99.9th percentile")
+            direction, found = toes(each, body)
+            directions.append(direction_text(direction))
+            for toe, style in zip(found, ["-", ":"]):
+                axes.plot(toe.time, toe.way, style, color=colour, lw=2.2, label=f"{label}: {toe.name}")
+    along = ", along " + directions[0] if len(set(directions)) == 1 else ", along the motion of each body"
     draw_reference_runout(axes, run)
     mark_time(axes, run, time, run.history["time"])
     mark_stages(axes, run)
-    axes.set(xlabel="time (s)", ylabel="run-out (m)", title="run-out of the toe since the start", ylim=(0, None))
+    axes.set(xlabel="time (s)", ylabel="run-out (m)", title="run-out of the toe since the start" + along, ylim=(0, None))
     axes.set_xlim(left=0)
     axes.grid(alpha=0.25)
     axes.legend(fontsize=9, loc="lower right")

@@ -6,15 +6,16 @@ from dataclasses import dataclass
 import matplotlib
 import numpy as np
 
+from outlines import outline
 from plot_curves import COLOURS, save
-from results import extent, read_frame, stage_of
+from results import read_frame, stage_of, units_of
 from runout import grid_velocity, profile, slides, time_of_frame
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 STRESSES = ["xx", "yy", "zz", "xy", "yz", "zx"]
-PORE_PRESSURES = {"pore_pressure": "pore pressure (kPa)", "excess_pore_pressure": "excess pore pressure (kPa)"}
+PORE_PRESSURES = ["pore_pressure", "excess_pore_pressure"]
 DEFAULT_FIELDS = ["grid_velocity", "plastic_strain"]
 
 
@@ -47,8 +48,8 @@ def effective_pressure_of(fields):
     return (-fields["stress"][:, :3].mean(axis=1) - fields["pore_pressure"]) / 1e3
 
 
-def known_fields(datasets):
-    """{name: Field} of all that the datasets {name: array [N] or [N, 3 or 6]} of a body tell."""
+def known_fields(datasets, units=None):
+    """{name: Field} of all that the datasets {name: array [N] or [N, 3 or 6]} of a body tell, with their units {name: unit}."""
     known = {}
     if {"velocity", "grid_velocity"} & datasets.keys():  # older frames hold the particles' own only
         known["grid_velocity"] = Field("velocity of the nodes (m/s)", speed_of("grid_velocity"), False)
@@ -63,14 +64,19 @@ def known_fields(datasets):
         known["mises"] = Field("von Mises stress (kPa)", mises_of, False)
         for k, name in enumerate(STRESSES):
             known[f"stress_{name}"] = Field(f"stress {name} (kPa)", lambda f, k=k: f["stress"][:, k] / 1e3, True)
-    for name, title in PORE_PRESSURES.items():
-        if name in datasets:
-            known[name] = Field(title, lambda f, name=name: f[name] / 1e3, bool((datasets[name] < 0).any()))
     for name, values in datasets.items():
-        if values.ndim == 1 and name not in known:
-            title = "plastic shear strain (-)" if name == "plastic_strain" else name.replace("_", " ")
-            known[name] = Field(title, lambda f, name=name: f[name], bool(name != "plastic_strain" and (values < 0).any()))
+        if name not in known and values.ndim == 1:
+            known[name] = scalar_field(name, values, (units or {}).get(name, ""))
     return known
+
+
+def scalar_field(name, values, unit):
+    """The Field of a dataset with one number a particle: pressures and strengths in kPa."""
+    size = 1e3 if unit == "Pa" or name in PORE_PRESSURES else 1.0
+    text = "kPa" if size > 1 else unit
+    title = "plastic shear strain" if name == "plastic_strain" else name.replace("_", " ")
+    return Field(f"{title} ({text})" if text else title, lambda f, name=name: f[name] / size,
+                 bool(name != "plastic_strain" and (values < 0).any()))
 
 
 def colours_of(name, field):
@@ -138,10 +144,12 @@ class Scene:
         self.run, self.frame = run, frame
         self.dim = int(run.text("dim", "2"))
         self.time, groups = read_frame(frame)
+        self.units = units_of(frame)
         self.groups = {name: fields for name, fields in groups.items() if "position" in fields}
         self.bodies = [name for name, fields in self.groups.items() if len(fields["position"]) and self.is_body(name, fields)]
         stage = stage_of(frame)
-        self.plane, self.where = [0, 1], f"t = {self.time:.4g} s" + (f", stage {stage}" if stage else "")
+        self.plane, self.place = [0, 1], None
+        self.where = f"t = {self.time:.4g} s" + (f", stage {stage}" if stage else "")
         if self.bodies and self.dim == 3:
             self.cut_at(cut or Slice())
         elif cut is not None and self.dim == 2:
@@ -173,6 +181,7 @@ class Scene:
             raise NothingToDraw(f"--slice: no particle of a body is at {'xyz'[cut.axis]} = {place:.4g} m in {self.frame}")
         self.bodies = kept
         self.plane = [axis for axis in range(3) if axis != cut.axis]
+        self.place = place
         self.where += f", {'xyz'[cut.axis]} = {place:.4g} m"
 
     def box(self):
@@ -183,9 +192,13 @@ class Scene:
         margin = 0.02 * (upper - lower).max() or 1
         return lower - margin, upper + margin
 
+    def known(self):
+        """{name: Field} of all that the frame tells of its first body."""
+        return known_fields(self.groups[self.bodies[0]], self.units)
+
     def field(self, name):
         """The Field of a name; NothingToDraw where a body has no such data."""
-        known = known_fields(self.groups[self.bodies[0]])
+        known = self.known()
         if name not in known:
             raise NothingToDraw(f"--field: given \"{name}\", takes of {self.frame}: {', '.join(known)}")
         return known[name]
@@ -207,6 +220,19 @@ class Scene:
         cell = self.run.number("mesh_spacing", 1.0)
         return self.run.number(f"{material}_xi95") * self.run.number(f"{material}_xi95_cell", cell) / cell
 
+    def outline(self, rigid):
+        """Corners [N, 2] of a rigid in the plane seen [m], None where they are not known or its particles lie elsewhere."""
+        points, moved = self.groups[rigid]["position"][:, self.plane], self.run.displacement(rigid, self.time)
+        if not len(points) or moved is None:
+            return None
+        across = 3 - sum(self.plane)
+        corners = outline(self.run, rigid, self.plane, None if self.place is None else self.place - moved[across])
+        if corners is None:
+            return None
+        corners, reach = corners + moved[self.plane], 2.5 * self.size(rigid)
+        ends = [np.abs(end(corners, axis=0) - end(points, axis=0)).max() for end in (np.min, np.max)]
+        return corners if max(ends) <= reach else None
+
     def draw(self, axes, name, limits=None, box=None):
         """Draws a field in colour and the rigids in grey: [(collection, particle's size [m])], the size yet to be set."""
         field, values = self.field(name), self.values(name)
@@ -218,9 +244,12 @@ class Scene:
                                        cmap=colours_of(name, field)), self.size(body)))
         beyond = ["neither", "min", "max", "both"][(values.min() < least) + 2 * (values.max() > most)]
         axes.figure.colorbar(drawn[0][0], ax=axes, shrink=0.8, pad=0.02, extend=beyond)
-        for rigid in self.groups.keys() - set(self.bodies) - {"nodes"}:
-            points = self.groups[rigid]["position"][:, self.plane]
-            drawn.append((axes.scatter(*points.T, color="0.25", marker="s", lw=0), self.size(rigid)))
+        for rigid in sorted(self.groups.keys() - set(self.bodies) - {"nodes"}):
+            corners, points = self.outline(rigid), self.groups[rigid]["position"][:, self.plane]
+            if corners is not None:
+                axes.fill(*corners.T, color="0.25", lw=0, zorder=2)
+            else:
+                drawn.append((axes.scatter(*points.T, color="0.25", marker="s", lw=0), self.size(rigid)))
         lower, upper = box or self.box()
         axes.set(xlim=(lower[0], upper[0]), ylim=(lower[1], upper[1]), title=f"{field.title}, {self.where}",
                  xlabel="xyz"[self.plane[0]] + " (m)", ylabel="xyz"[self.plane[1]] + " (m)", aspect="equal")
@@ -242,7 +271,7 @@ def size_markers(figure, drawn):
 
 def default_fields(scene):
     """The fields that are drawn where none is asked for: those of DEFAULT_FIELDS that the frame has, else its first."""
-    known = known_fields(scene.groups[scene.bodies[0]])
+    known = scene.known()
     found = [name for name in DEFAULT_FIELDS if name in known] or list(known)[:1]
     if not found:
         raise NothingToDraw(f"{scene.frame} holds no field of a body beside the position")
@@ -284,7 +313,8 @@ def draw_profiles(axes, scene, stations=6):
     lower, upper = np.percentile(x, [2, 98])
     for station, colour in zip(np.linspace(lower, upper, stations), COLOURS):
         height, velocity = profile(fields, station, 4 * spacing, scene.plane[1], spacing)
-        axes.plot(velocity, height, ".-", color=colour, label=f"x = {station:.1f} m")
+        if len(height):
+            axes.plot(velocity, height, ".-", color=colour, label=f"x = {station:.1f} m")
     axes.set(xlabel="velocity in x (m/s)", ylabel="height (m)", title="velocity over the height")
     axes.grid(alpha=0.25)
     axes.legend(fontsize=8)
@@ -296,7 +326,7 @@ def draw_velocity(run, time=None, cut=None):
     if not slides(run) or not run.frames:
         return None
     scene = Scene(run, run.frame_near(time_of_frame(run) if time is None else time), cut)
-    if "grid_velocity" not in known_fields(scene.groups[scene.bodies[0]]) or scene.plane[0] != 0:
+    if "grid_velocity" not in scene.known() or scene.plane[0] != 0:
         return None
     lower, upper = scene.box()
     height = min(max(11 * (upper - lower)[1] / (upper - lower)[0], 1.2), 9)

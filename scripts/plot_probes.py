@@ -6,18 +6,19 @@ import matplotlib
 import numpy as np
 
 from plot_curves import COLOURS, STYLES, mark_stages, mark_time, run_label, save
-from raster import read_ascii
+from raster import Raster, read_ascii
+from units import axis_unit
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.colors import LightSource
 
-# What the panels of a probe show: title, and columns behind NAME_. {axis} stands for each axis of the run.
+# What the panels of a probe show: quantity, columns behind NAME_, and SI unit. {axis} stands for each axis of the run.
 PANELS = {
-    "point": [("velocity (m/s)", ["velocity_{axis}"], 1), ("pressure (kPa)", ["pressure", "pore_pressure"], 1e-3)],
-    "particle": [("displacement (m)", ["displacement_{axis}"], 1), ("velocity (m/s)", ["velocity_{axis}"], 1)],
-    "gauge": [("depth (m)", ["depth"], 1), ("speed (m/s)", ["speed", "mean_velocity_{axis}"], 1)],
-    "section": [("mass flux (kg/s)", ["mass_flux"], 1), ("mass that has passed (kg)", ["mass"], 1)],
+    "point": [("velocity", ["velocity_{axis}"], "m/s"), ("pressure", ["pressure", "pore_pressure"], "Pa")],
+    "particle": [("displacement", ["displacement_{axis}"], "m"), ("velocity", ["velocity_{axis}"], "m/s")],
+    "gauge": [("depth", ["depth"], "m"), ("speed", ["speed", "mean_velocity_{axis}"], "m/s")],
+    "section": [("mass flux", ["mass_flux"], "kg/s"), ("mass that has passed", ["mass"], "kg")],
 }
 RASTERS = {"max_depth": ("greatest depth (m)", "YlOrRd"), "max_speed": ("greatest speed (m/s)", "viridis"),
            "arrival_time": ("time of arrival (s)", "viridis_r"), "final_depth": ("depth at the end (m)", "YlOrRd")}
@@ -30,14 +31,16 @@ def columns_of(run, probe, names):
 
 
 def draw_probe(axes, run, others, probe, panel, time):
-    title, names, factor = panel
+    title, names, unit = panel
+    shown = [each.history[f"{probe}_{name}"] for each in [run] + others for name in columns_of(each, probe, names)]
+    text, size = axis_unit(run, np.concatenate(shown or [np.zeros(1)]), unit)
     for each, style in zip([run] + others, STYLES):
         for name, colour in zip(columns_of(each, probe, names), COLOURS):
-            axes.plot(each.history["time"], each.history[f"{probe}_{name}"] * factor, style, color=colour, lw=1.3,
-                      label=name if not others else f"{name}, {run_label(each, others)}")
+            axes.plot(each.history["time"], each.history[f"{probe}_{name}"] / size, style, color=colour, lw=1.3,
+                      label=name.replace("_", " ") + (f", {run_label(each, others)}" if others else ""))
     mark_time(axes, run, time, run.history["time"])
     mark_stages(axes, run)
-    axes.set(xlabel="time (s)", ylabel=title, title=probe)
+    axes.set(xlabel="time (s)", ylabel=f"{title} ({text})", title=probe)
     axes.grid(alpha=0.25)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(fontsize=8)
@@ -81,8 +84,13 @@ def draw_along(run):
     return save(figure, run.folder / "rasters.png")
 
 
+def at_site(terrain, origin):
+    """A terrain in the coordinates of the mesh as one in those of the site, whose origin is x, y, z [m]: heights too."""
+    return Raster(terrain.values + origin[2], terrain.x + origin[0], terrain.y + origin[1], terrain.cell)
+
+
 def shade(axes, terrain):
-    """Shaded relief with contour lines."""
+    """Shaded relief with contour lines of the height."""
     x0, x1, y0, y1 = terrain.extent
     light = LightSource(azdeg=315, altdeg=45).hillshade(terrain.values, dx=terrain.cell, dy=-terrain.cell, vert_exag=1.5)
     axes.imshow(light, cmap="gray", vmin=-0.8, vmax=1.1, origin="lower", extent=(x0, x1, y0, y1), interpolation="bilinear")
@@ -121,8 +129,7 @@ def draw_rasters(run, terrain=None):
         return None
     rasters = {name: read_ascii(path) for name, path in paths.items()}
     if terrain is not None:
-        terrain, origin = read_ascii(terrain), run.numbers("raster_origin", [0, 0, 0])
-        terrain.x, terrain.y = terrain.x + origin[0], terrain.y + origin[1]
+        terrain = at_site(read_ascii(terrain), run.numbers("raster_origin", [0, 0, 0]))
     x0, x1, y0, y1 = rasters["max_depth"].extent
     figure, all_axes = plt.subplots(2, 2, figsize=(12, 11 * (y1 - y0) / (x1 - x0) + 0.6), layout="compressed")
     for axes, name in zip(all_axes.flat, RASTERS):

@@ -45,6 +45,19 @@ class Run:
         """Path of the frame nearest to a time [s], None without frames."""
         return min(self.frames, key=lambda path: abs(time_of(path) - time), default=None)
 
+    def displacement(self, rigid, time):
+        """Displacement [dim] of a rigid at a time [s] since it was placed: rows of the history, linearly between them, with what
+        came before a stage that a reset ended. None without history."""
+        columns = [self.history.get(f"{rigid}_{axis}") for axis in "xyz"[:int(self.text("dim", "2"))]]
+        if "time" not in self.history or any(column is None for column in columns):
+            return None
+        ways = np.column_stack(columns)
+        stages, numbers = self.words("stages"), self.history.get("stage", np.ones(len(ways)))
+        for k in np.flatnonzero(np.diff(numbers) > 0):
+            if self.text(f"{stages[int(numbers[k]) - 1]}_reset", "off") == "on":
+                ways[k + 1:] += ways[k]
+        return np.array([np.interp(time, self.history["time"], way) for way in ways.T])
+
     def moving_rigids(self):
         stages = [f"{stage}_" for stage in self.words("stages")]
         return [name for name in self.words("rigid_bodies")
@@ -91,6 +104,13 @@ def time_of(path):
     """Time of a frame [s]."""
     with h5py.File(path) as file:
         return float(file.attrs["time"])
+
+
+def units_of(path):
+    """{dataset: SI unit} of all groups of a frame; older frames have none."""
+    with h5py.File(path) as file:
+        found = {key: data.attrs["unit"] for group in file.values() for key, data in group.items() if "unit" in data.attrs}
+    return {key: unit.decode() if isinstance(unit, bytes) else str(unit) for key, unit in found.items()}
 
 
 def read_frame(path):

@@ -1,10 +1,15 @@
 """What a slide does: its run-out, the stored curves beside it, and the velocity over its height. Needs numpy and h5py."""
 
 import csv
+from dataclasses import dataclass
 
+import h5py
 import numpy as np
 
 from results import CASES
+
+ALIGNED = np.cos(np.radians(1))  # a direction that an axis has
+MOST_PARTICLES = 2e8             # of all frames that are read for a curve
 
 NORMALS = {"gradient": "normals of the mass gradient", "flat": "the base's own normal"}
 
@@ -21,6 +26,74 @@ def run_out(run, body, column="xmax"):
     column="xq999" of the 99.9th percentile of the particles' x."""
     toe = run.history[f"{body}_{column}"]
     return toe - toe[0]
+
+
+@dataclass
+class Toe:
+    """The toe of a slide: a name, and its way since the start [m] along the direction of motion at some times [s]."""
+    name: str
+    time: np.ndarray
+    way: np.ndarray
+
+
+def heading(run, body):
+    """Horizontal direction [dim - 1] in which the centre of mass of a body has moved from its first row to the last; along x where
+    the history does not tell it."""
+    rows = there(run, body)
+    across = [run.history.get(f"{body}_centre_{axis}") for axis in "xy"[:int(run.text("dim", "2")) - 1]]
+    ahead = np.eye(len(across))[0]
+    if any(column is None for column in across) or not rows.any():
+        return ahead
+    way = np.array([column[rows][-1] - column[rows][0] for column in across])
+    return way / np.linalg.norm(way) if np.linalg.norm(way) > 1e-9 * run.number("mesh_spacing", 1) else ahead
+
+
+def there(run, body):
+    """Rows of the history in which a body is in the run: a stage may place it later."""
+    return run.history.get(f"{body}_mass", np.ones(len(run.history["time"]))) > 0
+
+
+def direction_text(direction):
+    """As "x", "-y" or "(0.97, -0.24)"."""
+    axis = int(np.abs(direction).argmax())
+    if abs(direction[axis]) > ALIGNED:
+        return ("-" if direction[axis] < 0 else "") + "xy"[axis]
+    return "(" + ", ".join(f"{part:.2f}" for part in direction) + ")"
+
+
+def toes(run, body):
+    """The furthest particle, and where it is known the 99.9th percentile, along the direction of motion. Rows of the history tell
+    them along an axis; along others frames do, if they are not too large to read."""
+    direction, frames = heading(run, body), [path for path in run.frames if particles_in(path, body)]
+    if np.abs(direction).max() <= ALIGNED and frames and sum(particles_in(path, body) for path in frames) < MOST_PARTICLES:
+        return direction, toes_of_frames(frames, body, direction)
+    axis = int(np.abs(direction).argmax())
+    rows, name, sign = there(run, body), "xy"[axis], np.sign(direction[axis])
+    columns = [("furthest particle", f"{name}max"), ("99.9th percentile", f"{name}q999")] if sign > 0 else [("furthest particle", f"{name}min")]
+    time = run.history["time"][rows]
+    return sign * np.eye(len(direction))[axis], [
+        Toe(told, time, sign * (run.history[f"{body}_{column}"][rows] - run.history[f"{body}_{column}"][rows][0]))
+        for told, column in columns if f"{body}_{column}" in run.history]
+
+
+def particles_in(path, body):
+    """Number of particles of a body in a frame, 0 where it has none."""
+    with h5py.File(path) as file:
+        return len(file[body]["position"]) if body in file and "position" in file[body] else 0
+
+
+def toes_of_frames(frames, body, direction):
+    """The same from frames: by nearest rank as in the history."""
+    times, furthest, percentile = [], [], []
+    for path in frames:
+        with h5py.File(path) as file:
+            along = file[body]["position"][:, :len(direction)] @ direction
+            times.append(float(file.attrs["time"]))
+        rank = len(along) - len(along) // 1000 - 1
+        furthest.append(along.max())
+        percentile.append(np.partition(along, rank)[rank])
+    return [Toe(name, np.array(times), np.array(way) - way[0]) for name, way in
+            (("furthest particle", furthest), ("99.9th percentile", percentile))]
 
 
 def at_time(run, values, time):

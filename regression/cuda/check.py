@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a build with CUDA must show without a GPU.
 
-    check.py layout BUILD     nvcc and the host compiler lay out views alike: README.md, "Your own PETSc, Kokkos, HDF5"
+    check.py layout BUILD     nvcc and the host compiler lay out views alike: docs/install.md, "Your own PETSc, Kokkos, HDF5"
     check.py start PROGRAM    the program needs no driver to be loaded; without a GPU it runs on the processor, and makes the
                               dry run of a deck for the GPU
 """
@@ -48,7 +48,7 @@ def layout(build):
     status, host, errors = call([program])
     assert status == 0, errors
     print(f"device {device}\nhost   {host}", end="")
-    assert device == host.strip(), "nvcc and the host compiler lay out views differently; take a newer Kokkos (README.md)"
+    assert device == host.strip(), "nvcc and the host compiler lay out views differently; take a newer Kokkos (docs/install.md)"
 
 
 def start(program):

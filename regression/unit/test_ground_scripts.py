@@ -2,14 +2,18 @@
 """scripts/terrain and scripts/random_field: rasters before and after, and fields against what was asked. Needs numpy, scipy,
 h5py and matplotlib; the tests of GeoTIFF need rasterio and are left out without it."""
 
+import contextlib
 import csv
+import importlib.machinery
 import importlib.util
+import io
 import json
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -20,6 +24,14 @@ import fields  # noqa: E402
 import raster  # noqa: E402
 
 HAS_RASTERIO = importlib.util.find_spec("rasterio") is not None
+
+
+def load(script):
+    """A script as a module."""
+    spec = importlib.util.spec_from_loader(script, importlib.machinery.SourceFileLoader(script, str(SCRIPTS / script)))
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def run(script, *words):
@@ -130,7 +142,7 @@ class Terrain(Folder):
     def test_a_depth_on_the_terrain_has_the_volume_of_the_particles(self):
         import h5py
         terrain = self.write(self.plane(20, 20, 1.0, 0.0, 0.0), "t.asc")
-        (self.folder / "t.json").write_text(json.dumps({"origin": [500, 700, 0]}))
+        (self.folder / "t.json").write_text(json.dumps({"origin": [500, 700, 380]}))
         (self.folder / "frames").mkdir()
         (self.folder / "history.csv").write_text("time\n0\n")
         options = {"dim": "3", "bodies": "slide", "mesh_lower": "0,0,90", "mesh_upper": "20,20,120", "mesh_spacing": "1"}
@@ -148,6 +160,15 @@ class Terrain(Folder):
         self.assertAlmostEqual(depth.values.sum(), 80, places=4)
         self.assertEqual(depth.values[:8].sum(), 0)
         self.assertTrue((self.folder / "terrain.png").stat().st_size > 0)
+        script = load("plot_terrain")
+        words = ["plot_terrain", str(self.folder), str(terrain)]
+        with unittest.mock.patch.object(script, "shade") as shade, unittest.mock.patch.object(sys, "argv", words):
+            with contextlib.redirect_stdout(io.StringIO()):
+                script.main()
+        axes, drawn = shade.call_args.args
+        self.assertEqual((axes.get_xlim(), axes.get_ylim()), ((500, 520), (700, 720)))  # of the site, and its heights too
+        self.assertEqual((drawn.x, drawn.y), (500, 700))
+        np.testing.assert_allclose(drawn.values, self.plane(20, 20, 1.0, 0.0, 0.0).values + 380)
         self.refused(run("plot_terrain", self.folder, terrain, "--body", "mud"), "--body: takes a body of the run")
 
     @unittest.skipUnless(HAS_RASTERIO, "no rasterio")
@@ -252,6 +273,42 @@ class Fields(Folder):
         self.assertTrue((self.folder / "out" / "distribution.png").stat().st_size > 0)
         self.assertIn("no column b", run("sweep", *words, "b").stderr)
         self.assertIn("takes COLUMN:last", run("sweep", *words, "a:mean").stderr)
+
+    def picture_of_sweep(self, header, rows, x=None, y=None):
+        """The axes that scripts/sweep draws for two runs with this history."""
+        import matplotlib.pyplot as plt
+        for k in range(2):
+            folder = self.folder / "out" / f"run_{k:04d}"
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "history.csv").write_text("\n".join([header, *rows]) + "\n")
+            (folder / "options.json").write_text(json.dumps({"version": "0", "options": {"dim": "2"}}))
+        sweep = load("sweep")
+        runs = sweep.gather(self.folder / "out", ["su"], [["1"], ["2"]])
+        with unittest.mock.patch.object(plt, "close"):
+            sweep.draw(self.folder / "out", ["su"], runs, x, y)
+        axes = plt.gcf().axes[0]
+        plt.close("all")
+        return axes
+
+    def test_a_sweep_shows_the_force_over_the_way_and_the_way_goes_to_the_right(self):
+        header = "time,base_x,base_y,base_force_x,base_force_y,plate_x,plate_y,plate_force_x,plate_force_y"
+        axes = self.picture_of_sweep(header, [f"{t},0,0,9,9,0,{-0.1 * t},5,{2000 * t}" for t in range(4)])
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("-plate_y (m)", "plate_force_y (kN/m)"))
+        x, y = axes.lines[0].get_data()
+        np.testing.assert_allclose(x, [0, 0.1, 0.2, 0.3])
+        np.testing.assert_allclose(y, [0, 2, 4, 6])
+
+    def test_a_sweep_of_a_body_that_is_pushed_sideways(self):
+        header = "time,pipe_x,pipe_y,pipe_force_x,pipe_force_y"
+        axes = self.picture_of_sweep(header, [f"{t},{0.2 * t},{-0.01 * t},{-3000 * t},1" for t in range(4)])
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("pipe_x (m)", "pipe_force_x (kN/m)"))
+
+    def test_a_sweep_of_bodies_that_do_not_move_is_over_time(self):
+        axes = self.picture_of_sweep("time,base_x,base_force_x", [f"{t},0,{1e8 * t}" for t in range(4)])
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time (s)", "base_force_x (MN/m)"))
+        self.assertEqual(self.picture_of_sweep("time,base_x,base_force_x", []).get_xlabel(), "time (s)")  # no rows yet
+        axes = self.picture_of_sweep("time,base_x,soil_mass", [f"{t},0,{7 * t}" for t in range(4)], y="soil_mass")
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time (s)", "soil_mass (kg/m)"))
 
     def test_what_is_wrong_is_told_in_one_line(self):
         words = {"--name": "su", "--lower": "0,0", "--upper": "4,2", "--spacing": "0.5", "--mean": "1", "--cov": "0.3",

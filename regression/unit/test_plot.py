@@ -154,6 +154,21 @@ class Plot(unittest.TestCase):
         write_run(self.folder, nc=5.5, plate_velocity="0.1,-0.1")
         self.assertIsNone(results.footing(results.Run(self.folder), "plate"))
 
+    def legend_with(self, rows):
+        """Texts of the legend of the footing's force with so many rows of the history over 0.2 B."""
+        write_run(self.folder, nc=5.5)
+        run = results.Run(self.folder)
+        run.history = {name: values[::500 // rows] for name, values in run.history.items()}
+        axes = plot_curves.plt.figure().add_subplot()
+        plot_curves.draw_pushed(axes, run, "plate", [])
+        return [text for text in axes.get_legend_handles_labels()[1] if "this run" in text or "each row" in text]
+
+    def test_a_mean_is_told_where_a_window_holds_rows(self):
+        self.assertEqual(self.legend_with(500), ["each row of the history", "this run, mean over 0.01 m of penetration (0.01 B)"])
+
+    def test_rows_that_are_further_apart_than_a_window_have_no_mean(self):
+        self.assertEqual(self.legend_with(20), ["this run, each row of the history"])
+
     def test_reference_curves(self):
         known = ((0.1, False, 6.97), (0.05, False, 6.10), (0.025, False, 5.72), (0.025, True, 5.66))
         for spacing, fillet, mean in known:

@@ -6,6 +6,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import h5py
 import numpy as np
@@ -82,6 +83,17 @@ class Probes(unittest.TestCase):
         shaded = plot_probes.draw_rasters(run, self.folder / "top.asc").stat().st_size
         self.assertGreater(plain, 10000)
         self.assertNotEqual(plain, shaded)
+
+    def test_contours_have_the_heights_of_the_site(self):
+        run = self.write(dim=3, raster_origin="700,90,380")
+        for name in plot_probes.RASTERS:
+            raster.write_ascii(self.folder / f"raster_{name}.asc", raster.Raster(np.ones((4, 5)), 700, 90, 0.5))
+        raster.write_ascii(self.folder / "top.asc", raster.Raster(np.add.outer(np.arange(6.0), np.arange(7.0)), -0.5, -0.5, 0.5))
+        with unittest.mock.patch.object(plot_probes, "shade") as shade:
+            plot_probes.draw_rasters(run, self.folder / "top.asc")
+        terrain = shade.call_args.args[1]
+        self.assertEqual((terrain.x, terrain.y), (699.5, 89.5))
+        self.assertEqual((terrain.values.min(), terrain.values.max()), (380, 391))
 
     def test_linear_fields_are_exact_along_a_line(self):
         for dim in (2, 3):
