@@ -204,7 +204,7 @@ struct BoundarySource {
     return value < BoundaryTerms<Dim>::volume ? value : -1;
   }
   KOKKOS_INLINE_FUNCTION static constexpr bool takes(int value, int d) {
-    return value == BoundaryTerms<Dim>::area + d || (d == Dim && value == BoundaryTerms<Dim>::area);
+    return value == BoundaryTerms<Dim>::area + (d == Dim ? 0 : d);
   }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.volume; }
   KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.area; }
@@ -396,6 +396,17 @@ inline constexpr int k_slopes_of = [] {
   return Source::dim;
 }();
 
+/// Whether each value is a sum of one kind, so that its unit does not depend on the mesh: the hoop weight T S
+/// of rings goes only where the gradient along the radius goes, and a scalar takes no gradient.
+template <class Source>
+constexpr bool sums_of_one_kind() {
+  for (int value = 0; value < Source::size; ++value)
+    for (int d = 0; d < k_slopes_of<Source>; ++d)
+      if (Source::takes(value, d) && (Source::component(value) < 0 || !Source::takes(value, d == Source::dim ? 0 : d)))
+        return false;
+  return true;
+}
+
 /// The first component of the gradient, from d on, that goes into a value of the term; k_slopes_of if none.
 template <class Source>
 KOKKOS_INLINE_FUNCTION constexpr int first_taken(int value, int d = 0) {
@@ -408,7 +419,7 @@ KOKKOS_INLINE_FUNCTION constexpr int first_taken(int value, int d = 0) {
 template <class Source, class W, int Slopes, class Offset, class Add>
 KOKKOS_INLINE_FUNCTION void give(const typename Source::Point& q, W w, const Vector<W, Slopes>& grad,
                                  [[maybe_unused]] Offset&& offset, Add&& add) {
-  static_assert(Slopes == k_slopes_of<Source>);
+  static_assert(Slopes == k_slopes_of<Source> && sums_of_one_kind<Source>());
   unrolled<Source::size>([&](auto value) {
     constexpr int first = first_taken<Source>(value);
     if constexpr (first == Slopes) {

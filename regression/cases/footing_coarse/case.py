@@ -5,7 +5,6 @@ The same problem on cells twice as large.
 
 from footing_checks import against_reference, draw_curve
 
-DECK = "inputs/footing_coarse.opts"
 RUNS = {"footing": ""}
 LONG = True
 
