@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/subnormals.hpp"
+#include "mpm/about.hpp"
 #include "mpm/devices.hpp"
 #include "mpm/simulation.hpp"
 
@@ -110,6 +111,8 @@ void end_others() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (const mpm::Told told = mpm::told_without_run(argc, argv); told.asked)
+    return std::fputs(told.text.c_str(), stdout) < 0 || std::fflush(stdout) != 0 ? k_system_failure : 0;
   mpm::flush_subnormals();
   std::set_terminate(end_of_exception);
   MPI_Init(&argc, &argv);

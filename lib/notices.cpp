@@ -7,7 +7,8 @@
 
 namespace mpm {
 
-std::vector<std::string> Notices::report(const HistoryRow& row, const Config& config) {
+std::vector<std::string> Notices::report(const HistoryRow& row, const Config& config,
+                                         const std::vector<double>& rigid_zero) {
   std::vector<std::string> lines;
   const auto report = [&](bool happened, const std::string& body, const char* what, const std::string& line) {
     if (happened && told_.insert(body + what).second)
@@ -28,12 +29,13 @@ std::vector<std::string> Notices::report(const HistoryRow& row, const Config& co
                "%ld particles are alone, with hardly any other soil in reach: they carry no stress and fly "
                "freely until they land (column %s_strays; -stray_particles remove or stop does otherwise)",
                body.strays, name.c_str()));
-    report(
-        body.limited > 0, name, " limited",
-        formatted("the volume of %ld particles has come to a bound, a fifth or twice that at the start, and "
-                  "is kept there (column %s_limited); smaller cells or more particles a cell follow the soil "
-                  "further",
-                  body.limited, name.c_str()));
+    report(body.limited > 0, name, " limited",
+           formatted(
+               "the volume of %ld particles has come to a bound, a fifth or twice that at the start, and "
+               "is kept there (column %s_limited): their density is no longer that of the soil; soil that "
+               "comes apart needs a law with a limit of tension (docs/soils.md, Soil that parts), soil that "
+               "is pressed together a stiffer one",
+               body.limited, name.c_str()));
     const long ids = body.particles + body.lost_count + body.merged;
     const long more = ids - particles_.emplace(name, ids).first->second;
     report(config.particle_domain == ParticleDomain::split && more > 0, name, " split",
@@ -58,11 +60,39 @@ std::vector<std::string> Notices::report(const HistoryRow& row, const Config& co
     const Wall above = config.mesh.walls[up][1];  // soil may go on beyond one with dashpots
     report(body.mass > 0 && !is_open(above) && !has_dashpots(above) && body.upper[up] > top && row.step > 0,
            name, " lid",
-           "soil has come to the top of the mesh, which is a lid (" + lid +
-               " is a roller by default): a higher mesh, or " + lid + " free, lets it go on");
+           "soil has come to the top of the mesh, which stops it: a higher mesh, or " + lid +
+               " free, lets it go on");
   }
+  report_rigids(row, config, rigid_zero, &lines);
   report_soil(row, config, &lines);
   return lines;
+}
+
+/// Rigid bodies of which a dynamic one has come into another: where it goes is not known at the start.
+void Notices::report_rigids(const HistoryRow& row, const Config& config,
+                            const std::vector<double>& rigid_zero, std::vector<std::string>* lines) {
+  const int count = static_cast<int>(row.rigids.size());
+  if (count < 2) return;
+  const bool first = !places_;
+  if (first) places_ = std::make_unique<RigidPlaces>(config), parts_.clear();
+  const auto moved_by = [&](int rigid) {
+    Vec3 by = row.rigids[rigid].displacement;
+    for (std::size_t d = 0; d < 3 && !rigid_zero.empty(); ++d) by[d] += rigid_zero[3 * rigid + d];
+    return by;
+  };
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1; b < count; ++b) {
+      const RigidConfig &one = config.rigids[a], &other = config.rigids[b];
+      if (one.absent || other.absent || parts_.contains({a, b})) continue;
+      if (one.motion != Motion::dynamic && other.motion != Motion::dynamic) continue;
+      if (!places_->share_space(a, b, moved_by(a), moved_by(b))) continue;
+      parts_.emplace(a, b);
+      if (!first)
+        lines->push_back(
+            formatted("step %ld, time %.6g s: rigid %s is in rigid %s: rigid bodies do not touch each "
+                      "other",
+                      row.step, row.time, one.name.c_str(), other.name.c_str()));
+    }
 }
 
 /// What the soil as a whole tells of the trust that it deserves.

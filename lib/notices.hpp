@@ -2,12 +2,15 @@
 // What the log tells once: soil that is no longer as the rest of it.
 
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/snapshot.hpp"
 #include "mpm/config.hpp"
+#include "rigid_places.hpp"
 
 namespace mpm {
 
@@ -15,16 +18,22 @@ namespace mpm {
 class Notices {
  public:
   /// A line for each thing that has happened since the last row and was not told before, with advice.
-  std::vector<std::string> report(const HistoryRow& row, const Config& config);
+  /// `rigid_zero`: from where the row counts displacements of rigids [m], three numbers each, or empty.
+  std::vector<std::string> report(const HistoryRow& row, const Config& config,
+                                  const std::vector<double>& rigid_zero = {});
 
-  /// A stage may place particles.
-  void begin_stage() { particles_.clear(); }
+  /// A stage may place particles and rigids.
+  void begin_stage() { particles_.clear(), places_.reset(); }
 
  private:
+  void report_rigids(const HistoryRow& row, const Config& config, const std::vector<double>& rigid_zero,
+                     std::vector<std::string>* lines);
   void report_soil(const HistoryRow& row, const Config& config, std::vector<std::string>* lines);
 
   std::set<std::string> told_;             // what happened, to which body
   std::map<std::string, long> particles_;  // of each body, when its first row was seen
+  std::unique_ptr<RigidPlaces> places_;    // where there are several rigids
+  std::set<std::pair<int, int>> parts_;    // pairs of rigids that had space in common in their first row
   double passed_ = 0;                      // J, the largest energy or work so far
 };
 

@@ -89,7 +89,10 @@ PetscErrorCode Simulation::Body::advance_to(long target) {
     else
       steps = 1;
     Batch batch;
-    PetscCall(stepper->advance(schedule.range(step, steps), &batch));
+    StepRange range = schedule.range(step, steps);
+    range.before = last_dt;
+    PetscCall(stepper->advance(range, &batch));
+    if (batch.steps > 0) last_dt = range.dt;
     ++looks;
     const double took = batch.seconds;
     stepping += took;
@@ -180,7 +183,7 @@ PetscErrorCode Simulation::Body::write_row() {
 /// Tells once of what a user should know, and whether energy comes from nothing.
 PetscErrorCode Simulation::Body::watch(const HistoryRow& row) {
   PetscFunctionBeginUser;
-  for (const std::string& line : notices.report(row, config)) PetscCall(log.line(line));
+  for (const std::string& line : notices.report(row, config, rigid_zero)) PetscCall(log.line(line));
   if (!watching) {
     double wave_energy = 0;
     for (std::size_t b = 0; b < row.bodies.size(); ++b) {

@@ -43,10 +43,11 @@ struct Simulation::Body {
 
   FolderLock lock;  // of the output folder; goes when all is written and closed
 
-  double dt = 0;             // s
+  double dt = 0, last_dt = 0;  // s, of a whole step, and of the step before; 0: there is none
   bool follows = false;      // dt follows the stiffness of the soil and its domains, or is held against them
   bool laws_follow = false;  // the stiffness of some soil changes
   long waves_at = -1;        // step of the last look at the waves
+  WaveWatch waves;           // when the next one is due
   double told_dt = 0;        // s, the last one that the log has
   Schedule schedule;
   std::unique_ptr<Stepper> stepper;
@@ -163,6 +164,8 @@ struct Simulation::Body {
   // simulation_time_step.cpp
   PetscErrorCode choose_time_step();
   PetscErrorCode follow_stiffness(bool now = false);
+  PetscErrorCode look_ahead(double* speed);
+  PetscErrorCode wave_within(double seconds, double closing, double* speed);
   long next_stiffness_check() const;  // the step at which follow_stiffness has something to do
 
   // simulation_element.cpp

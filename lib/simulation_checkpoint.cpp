@@ -83,7 +83,7 @@ PetscErrorCode Simulation::Body::check_restart() {
   const RunState& run = restart->run;
   const bool begins = run.dt_since >= 0 && run.dt_since <= run.step &&
                       run.dt * k_most_steps >= config.time.end && run.dt_since_time >= 0 &&
-                      run.dt_since_time <= run.time;
+                      run.dt_since_time <= run.time && run.last_dt >= 0 && std::isfinite(run.last_dt);
   const bool other_laws = std::find(laws_changed.begin(), laws_changed.end(), 1) != laws_changed.end();
   const bool same_step = begins && dt == run.dt;  // since then, where a change of laws has brought it
   if (other_laws && begins && !same_step) {
@@ -147,10 +147,12 @@ PetscErrorCode Simulation::Body::resume() {
   const std::string changes = changed_machine(*restart, description());
   began = part = restart->run;
   step = began.step;
-  last_row_time = began.last_row_time;
+  last_row_time = began.last_row_time, last_dt = began.last_dt;
   stepping = began.stepping;
   since_rebuild = began.since_rebuild, rebuilds = began.rebuilds;
   longest = began.longest, shortest = began.shortest;
+  waves = began.waves;
+  waves.every = std::max(1L, waves.every);
   probes = std::move(restart->probes), rasters = std::move(restart->rasters);
   PetscCall(adapt_state(laws_changed, {}, restart->state));
   if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
@@ -218,6 +220,7 @@ PetscErrorCode Simulation::Body::write_checkpoint() {
            .dt = dt,
            .dt_since = schedule.begin().step,
            .dt_since_time = schedule.begin().time,
+           .last_dt = last_dt,
            .last_row_time = last_row_time,
            .wall = wall(),
            .stepping = stepping,
@@ -228,6 +231,7 @@ PetscErrorCode Simulation::Body::write_checkpoint() {
            .stage = stage,
            .stage_step = stage_begin.step,
            .stage_time = stage_begin.time,
+           .waves = waves,
            .stage_over = stage_over ? 1 : 0,
            .rigid_zero = rigid_zero,
            .rigid_begin = rigid_begin};

@@ -68,6 +68,7 @@ PetscErrorCode Simulation::Body::open_element() {
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     PetscCall(agree(comm, first ? prepare_output_folder(folder, &removed, false) : PETSC_SUCCESS));
+    PetscCall(place_log_view(report, folder));
     PetscCall(agree(comm, log.open(folder)));
   }
   PetscCall(log.line(format_header(k_version, kokkos_version(), processor_name(), ranks())));

@@ -82,8 +82,9 @@ PetscErrorCode Simulation::Body::take_level_ground(const BodyConfig& body, Model
   const LevelGround ground(config);
   const int components = config.dim == 2 ? 4 : 6;
   for (std::size_t p = 0; p < particles->position.size(); p += config.dim) {
-    const double height = particles->position[p + config.dim - 1];
-    const Sym6 stress = ground.stress(body, height, particles->spacing);
+    Vec3 centre{};
+    std::copy_n(&particles->position[p], config.dim, centre.begin());
+    const Sym6 stress = ground.stress(body, centre, particles->spacing);
     PetscCallCXX(
         particles->stress.insert(particles->stress.end(), stress.begin(), stress.begin() + components));
   }

@@ -178,7 +178,8 @@ PetscErrorCode Simulation::Body::next_stage() {
   apply_changes(changes, config, state);
   if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
   const std::vector<char> changed = changed_laws(before, config);
-  const bool other_soil = changes_soil() || std::find(changed.begin(), changed.end(), 1) != changed.end();
+  const bool other_soil = changes_soil() || std::find(changed.begin(), changed.end(), 1) != changed.end() ||
+                          !(before.water == config.water);
   PetscCall(set_up_stage(std::move(state), present, changed));
   if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
   if (changes_soil()) PetscCall(keep_sections(sections));
@@ -209,7 +210,7 @@ PetscErrorCode Simulation::Body::set_up_stage(SavedState&& state, const Present&
   bool rebuilt = false;
   PetscCall(stepper->restore(std::move(state), since_rebuild, &rebuilt));
   if (rebuilt) since_rebuild = 0;
-  watching = false, waves_at = -1, told_dt = 0, looks = 0;
+  watching = false, waves_at = -1, waves = {.due = step}, told_dt = 0, looks = 0;
   notices.begin_stage();
   part.wall = wall();
   const bool other_laws = std::find(changed.begin(), changed.end(), 1) != changed.end();

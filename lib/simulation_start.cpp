@@ -14,11 +14,13 @@
 #include "memory_need.hpp"
 #include "mesh/background.hpp"
 #include "output/files.hpp"
+#include "output/history_columns.hpp"
 #include "output/measurement_cache.hpp"
 #include "output/performance_json.hpp"
 #include "signals.hpp"
 #include "simulation_body.hpp"
 #include "warnings.hpp"
+#include "warnings_soil.hpp"
 
 namespace mpm {
 Simulation::Simulation() : body_(std::make_unique<Body>()) {}
@@ -43,6 +45,9 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
     PetscCall(b.check_stages());
   else if (!b.is_element())
     PetscCall(b.check_mesh_run());
+  if (b.report.errors.empty() && !b.is_element())
+    if (const std::string fault = equal_columns(b.history_config()); !fault.empty())
+      b.report.errors.push_back(fault);
   if (b.report.errors.empty() && rank_of(comm) == 0) PetscCallCXX(b.check_files());
   PetscCall(b.share_errors());
   if (!b.is_element()) PetscCall(b.check_places());
@@ -54,6 +59,7 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
     PetscCall(b.share_errors());
   }
   if (!b.report.errors.empty()) {
+    if (prefix == nullptr) PetscCall(forget_options(b.report));
     PetscCall(print_errors(comm, b.report));
     b.outcome = Outcome::bad_input;
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -160,6 +166,7 @@ PetscErrorCode Simulation::Body::begin() {
                                    std::string(word_of(config.backend)) + ", " + device_name(config.backend),
                                    ranks())));
   for (const std::string& warning : report.warnings) PetscCall(log.line(warning));
+  if (const std::string note = note_of_touching(config); !note.empty()) PetscCall(log.line(note));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -180,6 +187,7 @@ PetscErrorCode Simulation::Body::start() {
   PetscCall(agree(comm, !first    ? PETSC_SUCCESS
                         : restart ? forget_performance_json(folder)
                                   : prepare_output_folder(folder, &removed)));
+  PetscCall(place_log_view(report, folder));
   PetscCall(agree(comm, log.open(config.output.directory, restart.has_value())));
   if (!lock.left_by().empty())
     PetscCall(log.line("the lock of the folder was left by " + lock.left_by() + ", which is gone"));

@@ -11,8 +11,9 @@ namespace mpm {
 namespace {
 
 constexpr double k_round_off = 1e-12;
-constexpr long k_follow_every =
-    20;  // steps from one measure of the fastest wave to the next; rebuilds do not matter
+constexpr long k_look_every = 20;  // steps from one look at the waves to the next, at most
+constexpr double k_calm =
+    1.15;  // largest growth of the fastest wave's speed for which they are more than one
 constexpr double k_growth = 1.1;  // largest growth of the step from one measure to the next
 constexpr double k_told = 0.2;    // least change of the step that the log tells
 
@@ -55,19 +56,62 @@ PetscErrorCode Simulation::Body::choose_time_step() {
 }
 
 long Simulation::Body::next_stiffness_check() const {
-  return laws_follow ? (step / k_follow_every + 1) * k_follow_every : schedule.last_step();
+  return laws_follow ? std::max(waves.due, step + 1) : schedule.last_step();
 }
 
-/// If the stiffness of some soil changes, every k_follow_every steps, and where domains have changed:
-/// measures the fastest wave and computes dt from it by the Courant number; `now`: at this step too. If the
-/// user has fixed dt, the run fails once that dt is not stable.
+/// Speed of the fastest wave [m/s], once the soil has closed in for a time [s] as fast as it can: at the
+/// speed `closing` [m/s] over the edge of a cell, to which gravity adds.
+PetscErrorCode Simulation::Body::wave_within(double seconds, double closing, double* speed) {
+  PetscFunctionBeginUser;
+  double gravity = 0;
+  for (const double g : config.gravity) gravity += std::fabs(g);
+  PetscCall(stepper->fastest_wave((closing + gravity * seconds) * seconds / config.mesh.spacing, speed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// The fastest wave [m/s] until the next look, and when that is due: as many steps ahead as the soil cannot
+/// become much stiffer in. Soil whose stiffness grows with its pressure becomes many times as stiff within a
+/// step where it closes in fast: the speed is then that at the end of the step.
+PetscErrorCode Simulation::Body::look_ahead(double* speed) {
+  PetscFunctionBeginUser;
+  const auto step_at = [&](double wave) {
+    return config.time.step.value_or(
+        step_of({config.mesh.spacing / wave, viscous_time_step(config)}, config.time.courant, config));
+  };
+  double now = 0, after = 0, closing = 0;
+  PetscCall(stepper->fastest_wave(0, &now));
+  *speed = now;
+  if (!(now > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(stepper->closing_speed(&closing));
+  const bool grew = now > k_calm * waves.speed;
+  long every = grew ? std::max(1L, waves.every / 2) : std::min(k_look_every, 2 * waves.every);
+  for (;; every /= 2) {
+    PetscCall(wave_within(static_cast<double>(every) * step_at(now), closing, &after));
+    if (every == 1 || after <= k_calm * now) break;
+  }
+  waves = {.due = step + every, .every = every, .speed = now};
+  *speed = std::max(now, after);
+  constexpr int k_halvings = 5;  // of the logarithm
+  double low = now;              // too low a speed
+  for (int n = 0; n<k_halvings&& * speed> k_calm * low; ++n) {
+    const double middle = std::sqrt(low * *speed);
+    PetscCall(wave_within(step_at(middle), closing, &after));
+    (after > middle ? low : *speed) = middle;
+  }
+  if (config.time.step) *speed = now;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// If the stiffness of some soil changes, as often as look_ahead() says, and where domains have changed:
+/// computes dt by the Courant number from the fastest wave until the next look; `now`: at this step too. If
+/// the user has fixed dt, the run fails once that dt is not stable.
 PetscErrorCode Simulation::Body::follow_stiffness(bool now) {
   PetscFunctionBeginUser;
-  const bool due = now || domains_changed() || (laws_follow && step % k_follow_every == 0);
+  const bool due = now || domains_changed() || (laws_follow && step >= waves.due);
   if (!follows || !due || waves_at == step) PetscFunctionReturn(PETSC_SUCCESS);
   waves_at = step;
   double speed = 0;
-  PetscCall(stepper->fastest_wave(&speed));
+  PetscCall(laws_follow ? look_ahead(&speed) : stepper->fastest_wave(0, &speed));
   if (!(speed > 0)) PetscFunctionReturn(PETSC_SUCCESS);  // no soil is left
   const StepLimits limits{config.mesh.spacing / speed, viscous_time_step(config)};
   const double largest = step_of(limits, largest_courant(config), config);

@@ -5,11 +5,14 @@
 #include <limits>
 
 #include "common/f_bar.hpp"
+#include "common/material_table.hpp"
 #include "common/text.hpp"
 #include "common/time_table.hpp"
 #include "input/groups.hpp"
 #include "input/shapes.hpp"
 #include "step/stepper.hpp"
+#include "warnings_rigids.hpp"
+#include "warnings_soil.hpp"
 
 namespace mpm {
 namespace {
@@ -70,6 +73,7 @@ struct Stiffness {
       : young(parameter_of(material, "young")), strength(parameter_of(material, "su")) {
     const double gradient = parameter_of(material, "su_gradient"), datum = parameter_of(material, "su_datum"),
                  rigidity = parameter_of(material, "rigidity");
+    if (parameter_of(material, "su_ratio") > 0) strength = std::numeric_limits<double>::quiet_NaN();
     if (gradient > 0) strength += gradient * std::max(0.0, datum - foot);
     if (rigidity > 0) young = rigidity * strength;
     const double growth = parameter_of(material, "young_gradient"),
@@ -136,18 +140,28 @@ const char* option_of_motion(const RigidConfig& rigid) {
                                   : "velocity";
 }
 
+/// A speed that adds inertia to the resistance: of pressure waves, or of shear waves, which in undrained clay
+/// are several times slower.
 void warn_of_speed(const Config& config, const RigidConfig& rigid, Lines& lines) {
-  constexpr double k_most = 0.01;
+  constexpr double k_most = 0.01, k_most_of_shear = 0.05;
   if (rigid.motion != Motion::prescribed) return;
-  double slowest = std::numeric_limits<double>::infinity();
-  for (const BodyConfig& body : config.bodies) slowest = std::min(slowest, wave_speed(config, body));
-  const double share = length_of(rigid.velocity) / slowest;
-  if (share > k_most)
-    lines.push_back(formatted(
-        "warning: -%s_%s: %.4g m/s is %.2g %% of the speed of waves in the soil, %.4g m/s; above %g %% "
-        "inertia adds to the resistance",
-        rigid.name.c_str(), option_of_motion(rigid), length_of(rigid.velocity), 100 * share, slowest,
-        100 * k_most));
+  double slowest = std::numeric_limits<double>::infinity(), shear = slowest;
+  for (const BodyConfig& body : config.bodies) {
+    const MaterialConfig& material = config.materials[body.material];
+    const double wave = wave_speed(config, body), pore = material.pore_stiffness / density_of(config, body);
+    slowest = std::min(slowest, wave);
+    if (const auto ratio = shear_wave_ratio(material); ratio && *ratio > 0)
+      shear = std::min(shear, *ratio * std::sqrt(std::max(0.0, wave * wave - pore)));
+  }
+  const double speed = length_of(rigid.velocity);
+  const bool by_shear = speed <= k_most * slowest && speed > k_most_of_shear * shear;
+  if (speed <= k_most * slowest && !by_shear) return;
+  const double waves = by_shear ? shear : slowest;
+  lines.push_back(formatted(
+      "warning: -%s_%s: %.4g m/s is %.2g %% of the speed of %swaves in the soil, %.4g m/s; above %g %% "
+      "inertia adds to the resistance",
+      rigid.name.c_str(), option_of_motion(rigid), speed, 100 * speed / waves, by_shear ? "shear " : "",
+      waves, 100 * (by_shear ? k_most_of_shear : k_most)));
 }
 
 /// Whether soil is where the rigid goes, along direction d, by the end of the run.
@@ -225,6 +239,7 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
     lines.push_back("warning: -halo_path: not used on one rank, which has no halo");
   warn_of_gravity(config, lines);
   warn_of_water(config, lines);
+  for (const std::string& line : warnings_of_excavations(config)) lines.push_back(line);
   std::vector<char> told(config.materials.size());
   for (const BodyConfig& body : config.bodies) {
     warn_of_tension(body, config.dim, lines);
@@ -245,6 +260,7 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
     warn_of_speed(config, rigid, lines);
     warn_of_walls(config, rigid, bounds, lines);
   }
+  for (const std::string& line : warnings_of_rigids(config)) lines.push_back(line);
   return lines;
 }
 

@@ -102,7 +102,7 @@ struct Rigid {
 };
 
 /// Why a run cannot go on.
-enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone, law };
+enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone, law, state };
 
 /// The first fault that a kernel met.
 struct Fault {

@@ -3,13 +3,13 @@
 
 namespace mpm {
 
-/// What a node of such a side keeps from step to step. Till `dashpot`: the normal impulse that friction has
-/// not used [N s], and how far an absorbing side has drifted [m]. What an absorbing side takes from the soil
+/// What a node of such a side keeps from step to step. Till `dashpot`: the mean normal impulse of a step, which
+/// limits friction [N s], and how far an absorbing side has drifted [m]. What an absorbing side takes from the soil
 /// when it begins: normal and tangential dashpot [kg/s] and spring [N/m], and the static reaction [N]. Since
 /// the host last took them: impulse [N s] and work [J] of the side on the soil.
 template <int Dim>
 struct SideTerms {
-  static constexpr int stock = 0, drift = 1, dashpot = 1 + Dim, spring = 3 + Dim, reaction = 5 + Dim,
+  static constexpr int pressing = 0, drift = 1, dashpot = 1 + Dim, spring = 3 + Dim, reaction = 5 + Dim,
                        impulse = 5 + 2 * Dim, work = 5 + 3 * Dim, size = 6 + 3 * Dim;
 };
 

@@ -23,9 +23,9 @@ struct Surface {
   Vector<double, Dim> centre;  // box, disc; half_plane: a point on it; revolved: of the vertices' heights
   Vector<double, Dim> half;    // box: half its edges; polygon in 3D: half[1] is half the prism's width
   Vector<double, Dim> normal;  // half_plane: outward, of length 1
-  double radius;               // disc; box, revolved: of its corners
+  double radius;               // disc; box, polygon, revolved: of its corners
   double cosine, sine;         // box: of the angle that turns x to the vertical axis
-  int first, count;  // polygon; revolved: vertices of its section, made smaller by the radius; heights:
+  int first, count;  // polygon; revolved: vertices of it or of its section, made smaller by the radius; heights:
                      // on a grid of squares of edge `radius` from `centre` on, x fastest
   int columns;       // heights: in a row
 };

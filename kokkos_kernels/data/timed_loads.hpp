@@ -38,7 +38,7 @@ struct TimedLoad {
   double factor;
 };
 
-/// What a load is on average from t over a step of dt [s]. Called, so that kernels that end a step need no
+/// The mean of a load from t over dt [s]. Called, so that kernels that end a step need no
 /// registers for it.
 MPM_CALLED_FUNCTION inline double mean_of_load(TimedLoad& load, const CurvePoint* points, double t,
                                                double dt) {
@@ -51,7 +51,14 @@ MPM_CALLED_FUNCTION inline double mean_of_load(TimedLoad& load, const CurvePoint
 struct LoadClock {
   double origin, dt;  // s
   long first;
+  double before;  // s, length of the step before the first; 0: there is none
 };
+
+/// Whether a load changes velocities of the soil, which are means over steps: it acts from the middle of the
+/// step before to that of the present one.
+constexpr bool acts_on_soil(LoadTarget target) {
+  return target == LoadTarget::gravity || target == LoadTarget::pressure || target == LoadTarget::traction;
+}
 
 /// All of them, for kernels. `gravity`: of the present step, which kernels read in lieu of State::gravity;
 /// null where gravity follows no table.
@@ -68,7 +75,10 @@ struct LoadsOfStep {
   /// Sets load n for the step that follows `steps` steps of a clock.
   KOKKOS_INLINE_FUNCTION void set(int n, const LoadClock& by, int steps, Rigid<Dim>* rigids) const {
     TimedLoad& load = loads[n];
-    const double value = mean_of_load(load, points, by.origin + double(by.first + steps) * by.dt, by.dt);
+    const double begin = by.origin + double(by.first + steps) * by.dt;
+    const double before = acts_on_soil(load.target) ? (steps == 0 ? by.before : by.dt) / 2 : 0;
+    const double value =
+        mean_of_load(load, points, begin - before, acts_on_soil(load.target) ? before + by.dt / 2 : by.dt);
     const int d = load.component;
     if (load.target == LoadTarget::gravity)
       (*gravity)[d] = static_cast<T>(value);

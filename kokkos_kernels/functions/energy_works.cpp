@@ -6,18 +6,17 @@
 namespace mpm {
 namespace {
 
-/// The works at node i. The forces are those of UpdateNodes::accelerate; what is missing of the acceleration
-/// that the node has is of walls and contact. The rank that is responsible for a node counts its works, but
-/// each rank counts that of the water which its own soil displaces there: nodes.displaced is not summed over
-/// ranks.
+/// The works at node i. The forces are those of UpdateNodes::accelerate; walls and contact give the rest of
+/// the node's acceleration. The rank that is responsible for a node counts its works, but each rank counts that
+/// of the water which its own soil displaces there: nodes.displaced is not summed over ranks.
 template <class Space, class T, int Dim>
 struct WorkAtNodes {
   using S = SoilTerms<Dim>;
   static constexpr int cells = Patch<Dim>::cells;
   UpdateNodes<Space, T, Dim> update;
   ControlView<Space> control;
+  decltype(State<Space, T, Dim>::near_rigid) near_rigid;
   bool in_water;
-  double dt;
 
   KOKKOS_INLINE_FUNCTION void operator()(int i, NodeWorks& sum) const {
     if (control().paused) return;
@@ -27,23 +26,35 @@ struct WorkAtNodes {
     const double m_i = update.nodes.soil(i, S::mass);
     if (!(m_i > update.at_rest())) return;
     const bool heavy = m_i > update.mass_cut;
-    const Vector<T, Dim> g = update.gravity();
+    const Vector<T, Dim> g = update.gravity(), braking = owned ? braking_of(i) : filled<T, Dim>(0);
     for (int d = 0; d < Dim; ++d) {
       const double v_old = update.nodes.soil(i, S::momentum + d) / m_i,
                    v = update.nodes.kinematics(i, NodeKinematics<Dim>::velocity + d);
       const double carried =
           in_water && heavy ? -double(update.nodes.displaced(i, DisplacedTerms::mass)) * update.g[d] : 0;
-      const double way = dt * (v_old + v) / 2;
+      const double way = update.dt * (v_old + v) / 2;
       sum.internal -= carried * way;
       sum.gravity += carried * way;
       if (!owned) continue;
       const double force = heavy ? double(update.nodes.soil(i, S::force + d)) : 0, weight = m_i * g[d];
-      const double damped = -m_i * double(update.braking(T((force + weight) / m_i), T(v_old)));
+      const double damped = -m_i * double(braking[d]);
       sum.internal += force * way;
       sum.gravity += weight * way;
       sum.damping += damped * way;
-      sum.boundary += (m_i * (v - v_old) / dt - force - weight - damped) * way;
+      sum.boundary += (m_i * (v - v_old) / update.dt - force - weight - damped) * way;
     }
+  }
+
+  /// Deceleration of node i by local damping in the step [m/s2].
+  KOKKOS_INLINE_FUNCTION Vector<T, Dim> braking_of(int i) const {
+    const int near = update.rigids.extent(0) > 0 ? near_rigid(i / cells) : 0;
+    Coord<Dim> at = coord_of<Dim>(i);
+    for (int d = 0; d < Dim; ++d) at[d] += update.places.origin(i / cells)[d];
+    const auto node = update.node_of(update.nodes, i, at, near > 0);
+    Vector<T, Dim> v_old, a, brake;
+    update.accelerate(node.soil, node.inv_m, v_old, a);
+    update.advanced(update.nodes, update.rigids.data(), node, v_old, a, false, nullptr, brake);
+    return brake;
   }
 };
 
@@ -136,7 +147,7 @@ void add_node_works(State<Space, T, Dim>& s, double dt) {
   const auto sum = works.of_nodes;
   Kokkos::parallel_reduce(
       "mpm::node_works", nodes,
-      WorkAtNodes<Space, T, Dim>{node_update_of(s, dt), s.control, s.water.is_there(), dt},
+      WorkAtNodes<Space, T, Dim>{node_update_of(s, dt), s.control, s.near_rigid, s.water.is_there()},
       Kokkos::Sum<NodeWorks, typename Space::memory_space>(sum));
   const auto work = works.work;
   const auto rigid_at = works.rigid_at;

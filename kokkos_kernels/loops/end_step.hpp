@@ -27,9 +27,11 @@ struct MovingRigid {
     for (int d = 0; d < Dim; ++d) held[d] = r.held[d];
   }
 
-  /// Acceleration [m/s2] under the force [N] of the soil on it (Eq. 7).
-  KOKKOS_INLINE_FUNCTION double acceleration(int d, double contact) const {
-    return dynamic && !held[d] ? (force[d] + contact) / mass : 0;
+  /// Acceleration [m/s2] under the force [N] of the soil on it (Eq. 7), less local damping as at a node.
+  KOKKOS_INLINE_FUNCTION double acceleration(int d, double contact, double damping) const {
+    if (!dynamic || held[d]) return 0;
+    const double a = (force[d] + contact) / mass, brake = damping * Kokkos::fabs(a);
+    return a - (velocity[d] > 0 ? brake : velocity[d] < 0 ? -brake : 0);
   }
   /// Movement in a step [m] with acceleration a, exactly where the force is constant.
   KOKKOS_INLINE_FUNCTION double movement(int d, double a, double dt) const {
@@ -37,10 +39,10 @@ struct MovingRigid {
   }
   /// Moves by a step. contact [N] is the force of the soil. Returns the largest component of its movement
   /// [m].
-  KOKKOS_INLINE_FUNCTION double move(const Vector<double, Dim>& contact, double dt) {
+  KOKKOS_INLINE_FUNCTION double move(const Vector<double, Dim>& contact, double damping, double dt) {
     double furthest = 0;
     for (int d = 0; d < Dim; ++d) {
-      const double a = acceleration(d, contact[d]), step = movement(d, a, dt);
+      const double a = acceleration(d, contact[d], damping), step = movement(d, a, dt);
       furthest = Kokkos::fmax(furthest, Kokkos::fabs(step));
       pose.displacement[d] += step;
       impulse[d] += dt * contact[d];
@@ -91,7 +93,7 @@ struct EndStep {
   Kokkos::View<double*, Memory> sums, forces;  // N: of each rigid, and what the slots' nodes leave
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   LoadsOfStep<T, Dim> timed;
-  double dt, spacing, margin;
+  double dt, spacing, margin, damping;
   int count, slots, late;  // rigids, slots that leave forces
   bool summed;             // the forces are in `sums` already
 
@@ -105,6 +107,7 @@ struct EndStep {
         dt(step),
         spacing(s.spacing),
         margin(s.p2g.margin),
+        damping(s.damping),
         count(static_cast<int>(s.rigid_points.size())),
         slots(s.near_count),
         late(s.rebuild_late),
@@ -159,7 +162,7 @@ struct EndStep {
         contact[d] = summed ? sums(v) : part[v];
         if (!summed && left.sums != nullptr) left.sums[v] = contact[d];
       }
-      part[r * Dim] = rigid.move(contact, dt) / spacing;
+      part[r * Dim] = rigid.move(contact, damping, dt) / spacing;
       rigid.keep_in(left.rigids[r]);
     }
     team.team_barrier();
@@ -205,7 +208,7 @@ struct EndStep {
       team.team_barrier();  // what was there before is done with
       if (rigid.dynamic) sum_by_warps(team, forces.data(), r * Dim, Dim, part);
       team.team_barrier();
-      for (int d = 0; d < Dim && rigid.dynamic; ++d) a[d] = rigid.acceleration(d, part[d]);
+      for (int d = 0; d < Dim && rigid.dynamic; ++d) a[d] = rigid.acceleration(d, part[d], damping);
     }
     for (int d = 0; d < Dim; ++d) to[d] += rigid.movement(d, a[d], dt);
     return to;

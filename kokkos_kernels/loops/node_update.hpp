@@ -1,6 +1,8 @@
 #pragma once
 // What becomes of a node in a step (function 4): its velocity and acceleration, the walls, and contact.
 
+#include <cmath>
+
 #include "base/lanes.hpp"
 #include "base/serial_team.hpp"
 #include "data/state.hpp"
@@ -50,7 +52,10 @@ struct UpdateNodes {
   const Vector<T, Dim>* timed_g;  // of the present step, where gravity follows a table; else null
   struct NoSides {};
   std::conditional_t<acts, ActingSides<Dim>, NoSides> acting_sides;
-  T dt, inv_dt, damping, mass_cut;
+  T dt, inv_dt;  // s, 1/s: of the change of velocities, from the middle of the step before to that of this one
+  T share;       // -, dt over the length of the step
+  T first;       // -, Interface::first
+  T damping, memory, mass_cut;
   double spacing;
   bool has_boundary, has_friction, has_mass_normals, clears, rings;
 
@@ -95,25 +100,24 @@ struct UpdateNodes {
   /// Gravity in this step [m/s2].
   KOKKOS_INLINE_FUNCTION Vector<T, Dim> gravity() const { return timed_g == nullptr ? g : *timed_g; }
 
-  /// What local damping takes of an acceleration a at the velocity v_old, by number or by lane.
+  /// Deceleration by local damping where the acceleration is a and the velocity was v_old, by number or by
+  /// lane [m/s2].
   template <class R>
   KOKKOS_FORCEINLINE_FUNCTION R braking(R a, R v_old) const {
     const R size = Kokkos::fabs(a), still = k_still<T> * dt * size;
     return damping * size * select(v_old > still, R(1), select(v_old < -still, R(-1), R(0)));
   }
 
-  /// Velocities of a node before and after the step, without walls and contact, by number or by lane. inv_m:
-  /// 1 / its mass
+  /// Velocity of a node before the step, and its acceleration by internal force and gravity, by number or by
+  /// lane. inv_m: 1 / its mass
   template <class R>
   KOKKOS_FORCEINLINE_FUNCTION void accelerate(const R (&soil)[S::size], R inv_m, Vector<R, Dim>& v_old,
-                                              Vector<R, Dim>& v) const {
+                                              Vector<R, Dim>& a) const {
     const Vector<T, Dim> g_now = gravity();
     const R inv_m_force = select(soil[S::mass] > mass_cut, inv_m, R(0));  // on less mass it is round-off
     for (int d = 0; d < Dim; ++d) {
-      v_old[d] = soil[S::momentum + d] * inv_m;           // Eq. (6)
-      R a = soil[S::force + d] * inv_m_force + g_now[d];  // Eq. (8)
-      a -= braking(a, v_old[d]);
-      v[d] = v_old[d] + a * dt;  // Eq. (9)
+      v_old[d] = soil[S::momentum + d] * inv_m;             // Eq. (6)
+      a[d] = soil[S::force + d] * inv_m_force + g_now[d];  // Eq. (8)
     }
   }
 
@@ -125,60 +129,112 @@ struct UpdateNodes {
   struct Node {
     int i;
     Coord<Dim> at;
-    unsigned sides;
+    unsigned sides, acting;  // sides of the mesh that it lies on, and those of them that act
+    int touching;            // rigids that may touch it: the first of the list
     T soil[S::size], boundary[BoundaryTerms<Dim>::size];
     T inv_m;
+
+    /// Whether more than walls may hold it.
+    KOKKOS_INLINE_FUNCTION bool is_held() const { return touching > 0 || acting != 0; }
   };
 
-  /// What becomes of node i, which is `at`, under its sums; bodies: the rigids; near: one of them may touch
-  /// the node. Adds component d of the force on rigid r to force[(r Dim + d) cells], unless it is null.
+  /// Node i, which is `at`, under its sums, with the forces of sides; near: a rigid may touch it.
   template <class Sums>
-  KOKKOS_INLINE_FUNCTION KinematicValues<T, Dim> kinematics(const Sums& sums, const Rigid<Dim>* bodies, int i,
-                                                            const Coord<Dim>& at, bool near,
-                                                            double* force) const {
-    Node node{i, at, 0, {}, {}, 0};
+  KOKKOS_INLINE_FUNCTION Node node_of(const Sums& sums, int i, const Coord<Dim>& at, bool near) const {
+    Node node{i, at, 0, 0, 0, {}, {}, 0};
     for (int n = 0; n < S::size; ++n) node.soil[n] = sums.soil(i, n);  // all asked for at once
     if (near && has_boundary)
       for (int n = 0; n < BoundaryTerms<Dim>::size; ++n) node.boundary[n] = sums.boundary(i, n);
     const T m_i = node.soil[S::mass];
-    Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old;
+    if (!(m_i > at_rest())) return node;
+    node.inv_m = 1 / m_i;
+    node.sides = sides_of(places.grid, at);
+    if (near && m_i > mass_cut) node.touching = static_cast<int>(rigids.extent(0));
+    if constexpr (acts) {
+      node.acting = node.sides & acting_sides.mask;
+      if (node.acting != 0) add_reactions(acting_sides, side_node(node, false), &node.soil[S::force]);
+    }
+    return node;
+  }
+
+  /// Motion of a node after the step; bodies: the rigids. Adds component d of the force on rigid r to
+  /// force[(r Dim + d) cells], unless it is null.
+  template <class Sums>
+  KOKKOS_INLINE_FUNCTION KinematicValues<T, Dim> kinematics(const Sums& sums, const Rigid<Dim>* bodies, int i,
+                                                            const Coord<Dim>& at, bool near,
+                                                            double* force) const {
     MPM_ROLLED
-    for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r)
-      nodes.impulse(r, i) *= k_memory<T>;
-    if (m_i > at_rest()) {
-      node.inv_m = 1 / m_i;
-      node.sides = sides_of(places.grid, at);
-      [[maybe_unused]] unsigned acting = 0;
-      if constexpr (acts) {
-        acting = node.sides & acting_sides.mask;
-        if (acting != 0) add_reactions(acting_sides, side_node(node, acting), &node.soil[S::force]);
-      }
-      accelerate(node.soil, node.inv_m, v_old, v);
-      apply_walls(places.grid, node.sides, v);
-      if constexpr (acts)
-        if (acting != 0) v = by_sides(acting_sides, side_node(node, acting), v_old, v, true);
-      const int touching = near && m_i > mass_cut ? static_cast<int>(rigids.extent(0)) : 0;
-      MPM_ROLLED
-      for (int r = 0; r < touching; ++r)
-        touch(sums, node, bodies[r], r, v, force == nullptr ? force : force + r * Dim * cells);
-      if constexpr (acts)
-        if (acting != 0 && touching > 0) v = by_sides(acting_sides, side_node(node, acting), v_old, v, false);
-      apply_walls(places.grid, node.sides, v);
+    for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r) nodes.impulse(r, i) *= memory;
+    const Node node = node_of(sums, i, at, near);
+    Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old, a, brake;
+    if (node.inv_m > 0) {
+      accelerate(node.soil, node.inv_m, v_old, a);
+      v = advanced(sums, bodies, node, v_old, a, true, force, brake);
     }
     KinematicValues<T, Dim> kinematics;
     for (int d = 0; d < Dim; ++d) {
       kinematics.c[NodeKinematics<Dim>::velocity + d] = v[d];
       kinematics.c[NodeKinematics<Dim>::acceleration + d] =
-          (v[d] - v_old[d]) * inv_dt;  // feels contact and walls
+          (v[d] - v_old[d]) * inv_dt * share;  // feels contact and walls
     }
     return kinematics;
   }
 
+  /// Acceleration a of a node as contact and sides leave it, without damping [m/s2].
+  template <class Sums>
+  KOKKOS_INLINE_FUNCTION Vector<T, Dim> held_acceleration(const Sums& sums, const Rigid<Dim>* bodies,
+                                                          const Node& node, const Vector<T, Dim>& v_old,
+                                                          Vector<T, Dim> a) const {
+    Vector<T, Dim> v;
+    for (int d = 0; d < Dim; ++d) v[d] = v_old[d] + a[d] * dt;
+    constrain(sums, bodies, node, v_old, v, false, nullptr);
+    for (int d = 0; d < Dim; ++d) a[d] = (v[d] - v_old[d]) * inv_dt;
+    return a;
+  }
+
+  /// Velocity of a node with the acceleration a at the end of the step. `brake` [m/s2] is the deceleration by
+  /// local damping. It brakes the acceleration that contact and sides leave, which a rehearsal without damping
+  /// finds: at rest there is none, and each reaction is that of the soil. ends: the step itself, after which
+  /// walls, sides and friction keep what they took; else the rehearsal alone, for `brake`.
+  template <class Sums>
+  KOKKOS_INLINE_FUNCTION Vector<T, Dim> advanced(const Sums& sums, const Rigid<Dim>* bodies, const Node& node,
+                                                 const Vector<T, Dim>& v_old, const Vector<T, Dim>& a,
+                                                 bool ends, double* force, Vector<T, Dim>& brake) const {
+    const bool rehearses = damping > 0 && node.is_held();
+    Vector<T, Dim> v = v_old;
+    for (int d = 0; d < Dim; ++d) brake[d] = rehearses ? T(0) : braking(a[d], v_old[d]);
+    MPM_ROLLED
+    for (int pass = rehearses ? 0 : 1; pass < (ends ? 2 : 1); ++pass) {
+      const bool last = pass == 1;
+      for (int d = 0; d < Dim; ++d) v[d] = v_old[d] + (a[d] - brake[d]) * dt;  // Eq. (9)
+      constrain(sums, bodies, node, v_old, v, last, last ? force : nullptr);
+      for (int d = 0; d < Dim && !last; ++d) brake[d] = braking((v[d] - v_old[d]) * inv_dt, v_old[d]);
+    }
+    return v;
+  }
+
+  /// Applies walls, sides that act and contact to the velocity v of a node.
+  template <class Sums>
+  KOKKOS_INLINE_FUNCTION void constrain(const Sums& sums, const Rigid<Dim>* bodies, const Node& node,
+                                        const Vector<T, Dim>& v_old, Vector<T, Dim>& v, bool keeps,
+                                        double* force) const {
+    apply_walls(places.grid, node.sides, v);
+    if constexpr (acts)
+      if (node.acting != 0) v = by_sides(acting_sides, side_node(node, keeps), v_old, v, true);
+    MPM_ROLLED
+    for (int r = 0; r < node.touching; ++r)
+      touch(sums, node, bodies[r], r, v, keeps, force == nullptr ? force : force + r * Dim * cells);
+    if constexpr (acts)
+      if (node.acting != 0 && node.touching > 0)
+        v = by_sides(acting_sides, side_node(node, keeps), v_old, v, false);
+    apply_walls(places.grid, node.sides, v);
+  }
+
   /// A node on sides that act.
-  KOKKOS_INLINE_FUNCTION SideNode<Dim> side_node(const Node& node, unsigned acting) const {
+  KOKKOS_INLINE_FUNCTION SideNode<Dim> side_node(const Node& node, bool keeps) const {
     const bool counts =
         owned_nodes.extent(0) == 0 || (owned_nodes(node.i / cells) >> (node.i % cells) & 1) != 0;
-    return {node.at, acting, double(node.soil[S::mass]), double(dt), counts};
+    return {node.at, node.acting, double(node.soil[S::mass]), double(dt), double(memory), double(first), counts, keeps};
   }
 
   /// The nodes of a slot far from every rigid.
@@ -195,14 +251,14 @@ struct UpdateNodes {
     using Row = typename Sums::Row;
     for (int k = 0; k < sums.rows; ++k) {
       const auto& soil = sums.of_soil[k];
-      Vector<Row, Dim> v_old, v;
+      Vector<Row, Dim> v_old, a;
       const auto moves = soil[S::mass] > at_rest();
-      accelerate(soil, select(moves, T(1) / soil[S::mass], T(0)), v_old, v);
+      accelerate(soil, select(moves, T(1) / soil[S::mass], T(0)), v_old, a);
       Row kinematics[NodeKinematics<Dim>::size];
       for (int d = 0; d < Dim; ++d) {
-        v[d] = select(moves, v[d], T(0));
-        kinematics[NodeKinematics<Dim>::velocity + d] = v[d];
-        kinematics[NodeKinematics<Dim>::acceleration + d] = (v[d] - v_old[d]) * inv_dt;
+        const Row v = select(moves, v_old[d] + (a[d] - braking(a[d], v_old[d])) * dt, T(0));
+        kinematics[NodeKinematics<Dim>::velocity + d] = v;
+        kinematics[NodeKinematics<Dim>::acceleration + d] = (v - v_old[d]) * inv_dt * share;
       }
       store_groups(kinematics, &nodes.kinematics((slot * sums.rows + k) * Row::k_count, 0));
     }
@@ -210,10 +266,10 @@ struct UpdateNodes {
   }
 
   /// Contact with rigid r; adds the force of the soil on it (Eq. 10) to force[0], force[cells] ..., unless it
-  /// is null.
+  /// is null. keeps: friction uses up normal impulse.
   template <class Sums>
   KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, const Node& node, const Rigid<Dim>& rigid, int r,
-                                    Vector<T, Dim>& v, double* force) const {
+                                    Vector<T, Dim>& v, bool keeps, double* force) const {
     T given[RigidTerms<Dim>::size] = {};  // asked for before the rigid tells whether it matters
     for (int n = 0; n < RigidTerms<Dim>::size && has_mass_normals; ++n) given[n] = sums.rigid(r, node.i, n);
     const T m_i = node.soil[S::mass];
@@ -251,9 +307,12 @@ struct UpdateNodes {
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
       if (gap > Kokkos::fmax(T(rigid.reach), places.grid.spacing / 2)) return;
     }
-    if (has_friction) interface.stock = nodes.impulse(r, node.i) * node.inv_m;
+    if (has_friction) {
+      interface.mean = nodes.impulse(r, node.i) * node.inv_m;
+      interface.fresh = 1 - memory, interface.first = first;
+    }
     const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
-    if (has_friction) nodes.impulse(r, node.i) = interface.stock * m_i;
+    if (has_friction && keeps) nodes.impulse(r, node.i) = interface.mean * m_i;
     for (int d = 0; d < Dim; ++d) {
       v[d] += change[d];
       if (force != nullptr) force[d * cells] -= static_cast<double>(m_i) * change[d] * inv_dt;
@@ -348,9 +407,12 @@ UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, d
                                           .g = {},
                                           .timed_g = s.timed.of_step().gravity,
                                           .acting_sides = {},
-                                          .dt = T(dt),
-                                          .inv_dt = T(1 / dt),
+                                          .dt = T(s.kick * dt),
+                                          .inv_dt = T(1 / (s.kick * dt)),
+                                          .share = T(s.kick),
+                                          .first = s.begins ? T(1 / s.kick) : T(0),
                                           .damping = T(s.damping),
+                                          .memory = T(std::exp(-dt / s.friction_time)),
                                           .mass_cut = T(s.mass_cut),
                                           .spacing = s.spacing,
                                           .has_boundary = s.soil_boundary,

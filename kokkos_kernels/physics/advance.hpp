@@ -8,6 +8,7 @@
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
 #include "physics/cell_mean.hpp"
+#include "physics/gap_room.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/pore_water.hpp"
 #include "physics/ring_domain.hpp"
@@ -116,6 +117,8 @@ struct ParticleLaw {
       add_isotropic(stress, -excess);
     }
   }
+  /// gap_room(), after the law.
+  KOKKOS_INLINE_FUNCTION T room() const { return gap_room<Laws>(soil, p); }
 };
 
 /// A bound of the volume of a particle [m3], which of a ring is one of its section.
@@ -131,8 +134,8 @@ KOKKOS_INLINE_FUNCTION auto volume_bound(T bound, [[maybe_unused]] const Particl
 
 /// One particle's step (Eqs (11)-(13)): strain and stress, volume, velocity, position. The fraction f_bar of
 /// its dilatation is that of its cell, `mean_dilatation` [1/s], or what mean_for() makes of it. law(stress,
-/// increment) changes the stress. domain: PlaneDomain, or RingDomain before the step. Returns the largest
-/// component of the particle's movement [cells].
+/// increment) changes the stress; law.room() is gap_room(). domain: PlaneDomain, or RingDomain before the
+/// step. Returns the largest component of the particle's movement [cells].
 template <class R, class T, int Dim, int Slopes, class Law, class Domain>
 KOKKOS_FORCEINLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law,
                                       const GridSample<R, Dim, Slopes>& t, R mean_dilatation,
@@ -161,8 +164,13 @@ KOKKOS_FORCEINLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law,
     q.x[d] += movement;
     moved = Kokkos::fmax(moved, Kokkos::fabs(movement));
   }
-  q.volume = Kokkos::fmin(volume_bound(by.most_volume, q, domain, by),
-                          Kokkos::fmax(volume_bound(by.least_volume, q, domain, by), q.volume));
+  q.volume = Kokkos::fmax(volume_bound(by.least_volume, q, domain, by), q.volume);
+  const auto most = volume_bound(by.most_volume, q, domain, by);
+  if (!any_of(q.volume > most)) return moved;
+  if constexpr (requires { law.room(); })
+    q.volume = Kokkos::fmin(q.volume, most * law.room());
+  else
+    q.volume = Kokkos::fmin(q.volume, R(most));
   return moved;
 }
 
@@ -183,16 +191,23 @@ KOKKOS_INLINE_FUNCTION auto is_volume_limited(const Particle<R, Dim>& q, const U
            (q.volume < volume_bound(by.most_volume, q, domain, by)));
 }
 
-/// Whether the law of particle p, one of the list Laws, calls the particle's state a failure. Its stress is
-/// then not finite, so that only particles whose stress is not finite need be asked.
+/// Why particle p is not finite: its law, one of the list Laws, calls the particle's state a failure, which
+/// may itself not be finite. The stress is then not finite, so that only particles whose stress is not finite
+/// need be asked.
 template <class Laws = Materials, class Space, class T, int Dim>
-KOKKOS_INLINE_FUNCTION bool has_failed(const Soil<Space, T, Dim>& soil, int p) {
-  bool failed = false;
+KOKKOS_INLINE_FUNCTION FaultKind cause_of(const Soil<Space, T, Dim>& soil, int p) {
+  FaultKind cause = FaultKind::not_finite;
   const AnyMaterial<T>& of = material_in(soil.materials(soil.bodies(soil.body(p)).material));
   of.visit_as(Laws{}, of.which, [&](const auto& law) {
-    if constexpr (can_fail<std::decay_t<decltype(law)>>()) failed = law.failed(soil.state_of(law, p));
+    if constexpr (can_fail<std::decay_t<decltype(law)>>()) {
+      const auto state = soil.state_of(law, p);
+      if (!law.failed(state)) return;
+      T sum = 0;
+      for (int k = 0; k < state.size; ++k) sum += 0 * state[k];  // 0 times what is not finite is not zero
+      cause = sum == 0 ? FaultKind::law : FaultKind::state;
+    }
   });
-  return failed;
+  return cause;
 }
 
 /// What is wrong with a particle that moved by `moved` [cells] in the step: not finite, a volume that the run
@@ -214,7 +229,7 @@ KOKKOS_INLINE_FUNCTION void report_fault(const ControlView<Space>& control, cons
                                          double spacing) {
   FaultKind fault = fault_of(q, moved, by, step_domain<domain>(soil, p));
   if (fault == FaultKind::none) return;
-  if (fault == FaultKind::not_finite && has_failed(soil, p)) fault = FaultKind::law;
+  if (fault == FaultKind::not_finite) fault = cause_of(soil, p);
   const Coord<Dim> cell = coord_of<Dim>(soil.cell(p));
   double position[3] = {};
   for (int d = 0; d < Dim; ++d) position[d] = (double(origin[d]) + cell[d] + q.x[d]) * spacing;

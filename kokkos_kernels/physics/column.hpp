@@ -109,9 +109,12 @@ struct ColumnStep {
   KOKKOS_INLINE_FUNCTION void hold_end(int upper, double* row, double* v) const {
     const Wall kind = ends[upper];
     const Side<Dim>& side = sides[2 * vertical + upper];
-    if (kind == Wall::absorbing) {
-      const SideNode<Dim> node{{}, 0, row[C::mass], dt, false};
-      absorb({row + C::dashpot, row + C::spring, row + C::drift}, vertical, node, side.velocity.c, v);
+    for (int k = 0; k < Dim && kind == Wall::absorbing; ++k) {
+      const int along = k == vertical ? 0 : 1;
+      const Dashpot by(row[C::dashpot + along], row[C::spring + along], row[C::drift + k], dt, row[C::mass],
+                       side.velocity[k]);
+      v[k] = (v[k] + by.a * by.to - by.pull) / (1 + by.a);
+      row[C::drift + k] += dt * (v[k] - by.to);
     }
     for (int k = 0; k < Dim; ++k) {
       const bool all = kind == Wall::fixed || (kind == Wall::driven && side.holds_all);

@@ -40,28 +40,34 @@ KOKKOS_INLINE_FUNCTION T gap_scaling(T gap, T reach, T exponent) {
   return gap < reach ? 1 - Kokkos::pow(gap / reach, exponent) : T(0);
 }
 
-/// What a step leaves of the normal impulse that friction has not used.
-template <class T>
-inline constexpr T k_memory = T(0.998);
-
 /// What a contact needs to know of the interface at a node.
 template <class T>
 struct Interface {
   T shear_speed;   // m/s: shear limit x area x dt / nodal mass, the largest change of the tangential velocity
   T friction;      // -, negative: none
   T pressing = 0;  // m/s: what the soil's own force and weight press towards the rigid x dt / nodal mass
-  T stock = 0;     // m/s: normal impulse not yet used by friction / nodal mass; updated
+  T mean = 0;      // m/s: mean normal impulse of a step, over the steps before / nodal mass; updated
+  T fresh = 1;     // -, share of this step in that mean
+  T first = 0;     // -, in the first step of a run its length over the time in which it changes velocities; else 0
   T gap_scaling = 1;  // -, fraction of the normal correction
   bool separates = true;
   bool within_soil =
       false;  // more than half a cell from the surface: it is not stopped, and nothing presses it
 };
 
+/// Mean normal impulse of a step over those before and this one, by what a contact stopped in this one. In
+/// the first step of a run the soil has been pressed for long, by its forces: an impact has not.
+template <class T>
+KOKKOS_INLINE_FUNCTION T mean_impulse(T before, T fresh, T first, T stop, T pressing) {
+  stop = Kokkos::fmax(T(0), stop);
+  return first > 0 ? first * Kokkos::fmin(stop, Kokkos::fmax(T(0), pressing)) : before + fresh * stop;
+}
+
 /// Correction dV of the soil's velocity v at a node; v_r velocity of the rigid, n inward unit normal. No soil
-/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a fraction of the normal
-/// impulse of this step and of what earlier ones left (`stock`): the impulse of a node rings with the soil's
-/// elastic waves, and a body that sticks on the whole must not slip in each trough. Where it slips the stock
-/// is used up, so that the friction is that of each step.
+/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a fraction of the mean
+/// normal impulse over some steps: the impulse of a node rings with the waves of its cells, and a body that
+/// sticks on the whole must not slip in each trough. The sum of these means is never above that of the
+/// impulses.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v, const Vector<T, Dim>& v_r,
                                                          const Vector<T, Dim>& n, Interface<T>& interface) {
@@ -79,11 +85,10 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
                        (interface.within_soil && -approach < k_leaves * speed);
   T largest = touches ? interface.shear_speed : T(0);
   if (interface.friction >= 0) {
-    interface.stock += Kokkos::fmax(T(0), stop);
-    largest = Kokkos::fmin(interface.shear_speed, interface.friction * interface.stock);
+    interface.mean = mean_impulse(interface.mean, interface.fresh, interface.first, stop, interface.pressing);
+    largest = Kokkos::fmin(interface.shear_speed, interface.friction * interface.mean);
   }
   const T factor = largest >= speed ? T(1) : largest / speed;
-  if (interface.friction > 0) interface.stock -= factor * speed / interface.friction;
   for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - factor * slip[d];
   return change;
 }

@@ -13,7 +13,12 @@ struct SideNode {
   Coord<Dim> at;
   unsigned sides;   // the acting ones that it lies on
   double mass, dt;  // kg, s
+  double memory;    // -, share of the steps before in the mean normal impulse, which limits friction
+  double first;     // -, Interface::first
   bool counts;      // this rank answers for it
+  bool keeps;       // the step itself, not a rehearsal, which leaves no trace
+
+  KOKKOS_INLINE_FUNCTION bool on(int side) const { return sides >> side & 1u; }
 };
 
 /// The force that a side with dashpots gives a node whatever its velocity [N]: the static reaction, and from
@@ -36,35 +41,7 @@ KOKKOS_INLINE_FUNCTION void add_reactions(const ActingSides<Dim>& acting, const 
   }
 }
 
-/// Dashpots [kg/s] and springs [N/m] of a node, normal and tangential, and how far these are stretched [m].
-struct Dashpots {
-  const double *dashpot, *spring;
-  double* drift;
-};
-
-/// Implicit dashpots (Lysmer and Kuhlemeyer 1969) between a node of a side normal to d and what moves with
-/// the velocity V: m (v' - v) = -c dt (v' - V) - s dt u', where springs s hold the drift u' = u + dt (v' -
-/// V).
-template <int Dim>
-KOKKOS_INLINE_FUNCTION void absorb(const Dashpots& by, int d, const SideNode<Dim>& node, const double* to,
-                                   double* v) {
-  for (int k = 0; k < Dim; ++k) {
-    const int along = k == d ? 0 : 1;
-    const double pull = by.spring[along] * node.dt / node.mass,
-                 a = by.dashpot[along] * node.dt / node.mass + pull * node.dt;
-    v[k] = (v[k] + a * to[k] - pull * by.drift[k]) / (1 + a);
-    by.drift[k] += node.dt * (v[k] - to[k]);
-  }
-}
-
-/// Those of a node on a side. kept: SideTerms.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION Dashpots dashpots_of(double* kept) {
-  using S = SideTerms<Dim>;
-  return {kept + S::dashpot, kept + S::spring, kept + S::drift};
-}
-
-/// What they hold on to [m/s]: the side, or the column beside it.
+/// Velocity that dashpots hold on to [m/s]: that of the side, or of the column beside it.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION const double* far_velocity(const ActingSides<Dim>& acting, int side,
                                                   const SideNode<Dim>& node) {
@@ -73,31 +50,118 @@ KOKKOS_INLINE_FUNCTION const double* far_velocity(const ActingSides<Dim>& acting
   return acting.all[side].velocity.c;
 }
 
+/// Adds the impulse [N s] of a side on a node to what the side has given, and its work.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void book(double* kept, const SideNode<Dim>& node, const Vector<T, Dim>& v_old, int k,
+                                 double impulse, double v) {
+  using S = SideTerms<Dim>;
+  if (!node.counts || !node.keeps) return;
+  kept[S::impulse + k] += impulse;
+  kept[S::work] += impulse * (double(v_old[k]) + v) / 2;
+}
+
+/// A dashpot c [kg/s] and a spring s [N/m] on a component of a node's velocity, between the node and what
+/// moves with the velocity V, of the implicit step m (v' - v) = -c dt (v' - V) - s dt u' with the drift u' = u
+/// + dt (v' - V): v' - v = a (V - v') - pull.
+struct Dashpot {
+  double a, pull, to;  // -, m/s, V in m/s
+  KOKKOS_INLINE_FUNCTION Dashpot(double c, double s, double drift, double dt, double mass, double far)
+      : a((c + s * dt) * dt / mass), pull(s * dt / mass * drift), to(far) {}
+};
+/// That of side n on component k of a node. kept: SideTerms.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION Dashpot dashpot_of(const ActingSides<Dim>& acting, int n, int k,
+                                          const SideNode<Dim>& node, const double* kept) {
+  using S = SideTerms<Dim>;
+  const int along = k == n / 2 ? 0 : 1;
+  return {kept[S::dashpot + along], kept[S::spring + along], kept[S::drift + k],
+          node.dt, node.mass, far_velocity(acting, n, node)[k]};
+}
+
+/// Dashpots (Lysmer and Kuhlemeyer 1969) and springs of all sides of a kind at a node, at once, so that
+/// their order does not matter.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION void absorb(const ActingSides<Dim>& acting, Wall kind, const SideNode<Dim>& node,
+                                   const Vector<T, Dim>& v_old, double* v) {
+  using S = SideTerms<Dim>;
+  const auto each = [&](auto&& f) {
+    for (int n = 0; n < 2 * Dim; ++n)
+      if (node.on(n) && acting.all[n].kind == kind) f(n, acting.node(n, node.at));
+  };
+  for (int k = 0; k < Dim; ++k) {
+    double sum = v[k], share = 1;
+    each([&](int n, const double* kept) {
+      const Dashpot by = dashpot_of(acting, n, k, node, kept);
+      sum += by.a * by.to - by.pull, share += by.a;
+    });
+    v[k] = sum / share;
+    each([&](int n, double* kept) {
+      const Dashpot by = dashpot_of(acting, n, k, node, kept);
+      book(kept, node, v_old, k,
+           node.mass * (by.a * (by.to - v[k]) - by.pull) + node.dt * held_force(acting, n, node, k), v[k]);
+      if (node.keeps) kept[S::drift + k] += node.dt * (v[k] - by.to);
+    });
+  }
+}
+
 /// Takes the velocity into the side; the side does not pull.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION void hold_back(const Side<Dim>& side, int d, bool upper, double* v) {
   v[d] = upper ? Kokkos::fmin(v[d], side.velocity[d]) : Kokkos::fmax(v[d], side.velocity[d]);
 }
 
-/// Coulomb friction, as contact_correction() has it: the friction of a step is at most a fraction of the
-/// normal impulse of this step and of what earlier ones have left.
+/// Coulomb friction of a side at a node, as contact_correction() has it.
+template <int Dim>
+struct SideFriction {
+  double mean;   // N s, mean normal impulse of a step
+  double stops;  // -, share of the slip that friction stops
+
+  /// v_old: component of the velocity along the side's normal before the step; v: velocity as it comes to the
+  /// sides; held: that which they leave along their normals [m/s].
+  KOKKOS_INLINE_FUNCTION SideFriction(const Side<Dim>& side, int n, const SideNode<Dim>& node,
+                                      const double* kept, double v_old, const double* v,
+                                      const double* held) {
+    const int d = n / 2;
+    const double into = n % 2 == 1 ? 1 : -1;
+    mean = mean_impulse(node.memory * kept[SideTerms<Dim>::pressing], 1 - node.memory, node.first,
+                        node.mass * into * (v[d] - side.velocity[d]), node.mass * into * (v[d] - v_old));
+    double squares = 0;
+    for (int k = 0; k < Dim; ++k)
+      if (k != d) squares += (held[k] - side.velocity[k]) * (held[k] - side.velocity[k]);
+    const double slip = node.mass * Kokkos::sqrt(squares);  // N s
+    const double area = side.face * Kokkos::fmin(1.0, node.mass / side.unit_mass);
+    const double most = Kokkos::fmin(side.friction * mean, side.shear_limit * area * node.dt);
+    stops = slip > most ? most / slip : 1;
+  }
+};
+
+/// Friction of all sides that have it at a node, at once. Where sides share a component, they stop at most
+/// all of its slip.
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION void apply_friction(const Side<Dim>& side, int d, bool upper,
-                                           const SideNode<Dim>& node, double* kept, double* v) {
-  double& stock = kept[SideTerms<Dim>::stock];
-  const double approach = (v[d] - side.velocity[d]) * (upper ? 1 : -1);
-  stock = double(k_memory<T>) * stock + node.mass * Kokkos::fmax(0.0, approach);
-  hold_back(side, d, upper, v);
-  double squares = 0;
-  for (int k = 0; k < Dim; ++k)
-    if (k != d) squares += (v[k] - side.velocity[k]) * (v[k] - side.velocity[k]);
-  const double speed = Kokkos::sqrt(squares), stops = node.mass * speed;  // N s
-  const double area = side.face * Kokkos::fmin(1.0, node.mass / side.unit_mass);
-  const double most = Kokkos::fmin(side.friction * stock, side.shear_limit * area * node.dt);
-  const double used = Kokkos::fmin(stops, most), left = stops > 0 ? 1 - used / stops : 1;
-  if (side.friction > 0) stock -= used / side.friction;
-  for (int k = 0; k < Dim; ++k)
-    if (k != d) v[k] = side.velocity[k] + left * (v[k] - side.velocity[k]);
+KOKKOS_INLINE_FUNCTION void rub(const ActingSides<Dim>& acting, const SideNode<Dim>& node,
+                                const Vector<T, Dim>& v_old, double* v) {
+  double held[Dim], stops[Dim], slows[Dim], came[Dim];
+  const auto each = [&](auto&& f) {
+    for (int n = 0; n < 2 * Dim; ++n)
+      if (node.on(n) && acting.all[n].kind == Wall::friction) f(n, acting.all[n], acting.node(n, node.at));
+  };
+  for (int k = 0; k < Dim; ++k) held[k] = came[k] = v[k], stops[k] = slows[k] = 0;
+  each([&](int n, const Side<Dim>& side, const double*) { hold_back(side, n / 2, n % 2 == 1, held); });
+  each([&](int n, const Side<Dim>& side, const double* kept) {
+    const SideFriction<Dim> by(side, n, node, kept, double(v_old[n / 2]), came, held);
+    for (int k = 0; k < Dim; ++k)
+      if (k != n / 2) stops[k] += by.stops, slows[k] += by.stops * (held[k] - side.velocity[k]);
+  });
+  for (int k = 0; k < Dim; ++k) v[k] = held[k] - slows[k] / Kokkos::fmax(1.0, stops[k]);
+  each([&](int n, const Side<Dim>& side, double* kept) {
+    const SideFriction<Dim> by(side, n, node, kept, double(v_old[n / 2]), came, held);
+    for (int k = 0; k < Dim; ++k) {
+      const double change = k == n / 2 ? held[k] - came[k]
+                                       : -by.stops * (held[k] - side.velocity[k]) / Kokkos::fmax(1.0, stops[k]);
+      book(kept, node, v_old, k, node.mass * change, v[k]);
+    }
+    if (node.keeps) kept[SideTerms<Dim>::pressing] = by.mean;
+  });
 }
 
 /// Components that a side prescribes.
@@ -109,34 +173,28 @@ KOKKOS_INLINE_FUNCTION void prescribe(const Side<Dim>& side, int d, bool upper, 
     if (k == d || side.holds_all) v[k] = side.velocity[k];
 }
 
-/// What the acting sides make of the velocity v of a node, which was v_old before the step. meets: dashpots
-/// and friction too; else, behind a contact, only what sides prescribe. Where sides meet, those that
-/// prescribe more come later; those with columns come behind others with dashpots, which the columns feel
-/// too.
+/// Velocity that the acting sides make of v_now at a node, which had v_old before the step. meets: dashpots
+/// and friction too; else, behind a contact, only components that sides prescribe. Where sides meet, those
+/// that prescribe more come later; those with columns come behind others with dashpots, which the columns
+/// feel too.
 template <class T, int Dim>
 MPM_CALLED_FUNCTION Vector<T, Dim> by_sides(ActingSides<Dim> acting, SideNode<Dim> node, Vector<T, Dim> v_old,
                                             Vector<T, Dim> v_now, bool meets) {
-  using S = SideTerms<Dim>;
   constexpr Wall k_order[] = {Wall::absorbing, Wall::free_field, Wall::friction, Wall::driven};
-  double v[Dim], before[Dim];
+  double v[Dim];
   for (int k = 0; k < Dim; ++k) v[k] = v_now[k];
-  for (const Wall kind : k_order)
+  for (const Wall kind : k_order) {
+    if (meets && has_dashpots(kind)) absorb(acting, kind, node, v_old, v);
+    if (meets && kind == Wall::friction) rub(acting, node, v_old, v);
     for (int n = 0; n < 2 * Dim; ++n) {
-      if (!(node.sides >> n & 1u) || acting.all[n].kind != kind) continue;
-      const Side<Dim>& side = acting.all[n];
-      double* const kept = acting.node(n, node.at);
+      if (!node.on(n) || acting.all[n].kind != kind) continue;
+      double before[Dim];
       for (int k = 0; k < Dim; ++k) before[k] = v[k];
-      if (meets && has_dashpots(kind))
-        absorb(dashpots_of<Dim>(kept), n / 2, node, far_velocity(acting, n, node), v);
-      if (meets && kind == Wall::friction) apply_friction<T>(side, n / 2, n % 2 == 1, node, kept, v);
-      prescribe(side, n / 2, n % 2 == 1, v);
-      for (int k = 0; k < Dim && node.counts; ++k) {
-        const double carried = meets ? node.dt * held_force(acting, n, node, k) : 0;
-        const double impulse = node.mass * (v[k] - before[k]) + carried;
-        kept[S::impulse + k] += impulse;
-        kept[S::work] += impulse * (double(v_old[k]) + v[k]) / 2;
-      }
+      prescribe(acting.all[n], n / 2, n % 2 == 1, v);
+      for (int k = 0; k < Dim; ++k)
+        book(acting.node(n, node.at), node, v_old, k, node.mass * (v[k] - before[k]), v[k]);
     }
+  }
   for (int k = 0; k < Dim; ++k) v_now[k] = static_cast<T>(v[k]);
   return v_now;
 }

@@ -152,13 +152,14 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
     out.normal[0] = body.cosine * n[0] - body.sine * n[up];
     out.normal[up] = body.cosine * n[up] + body.sine * n[0];
   } else {
-    const Distance<2> plane = distance_to_polygon(vertices, body.first, body.count, x[0], x[up]);
+    Distance<2> plane = distance_to_polygon(vertices, body.first, body.count, x[0], x[up]);
+    plane.value -= body.radius;
     if constexpr (Dim == 2) {
       out = plane;
     } else {
       Vector<double, 2> share;
       const Vector<double, 2> beyond{plane.value, Kokkos::fabs(r[1]) - body.half[1]};
-      out.value = distance_to_product<2>(beyond, 0, share);
+      out.value = distance_to_product<2>(beyond, body.radius, share);
       out.normal = {share[0] * plane.normal[0], side_of(r[1]) * share[1], share[0] * plane.normal[1]};
     }
   }

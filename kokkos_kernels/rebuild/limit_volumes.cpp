@@ -19,7 +19,8 @@ void limit_volumes(State<Space, T, Dim>& s) {
         const T volume = soil.volume(p);
         const VolumeBounds<T> own = own_volume_bounds(start_volume, soil, p);
         if (volume >= own.least && volume <= own.most) return;
-        soil.volume(p) = Kokkos::fmin(own.most, Kokkos::fmax(own.least, volume));
+        const T most = volume > own.most ? own.most * gap_room(soil, p) : own.most;
+        soil.volume(p) = Kokkos::fmin(most, Kokkos::fmax(own.least, volume));
         if (!stops) return;
         const int cell = soil.cell(p);
         const Coord<Dim> from = origin(cell / Patch<Dim>::cells), in = coord_of<Dim>(cell);

@@ -161,11 +161,9 @@ void locate(State<Space, T, Dim>& s) {
           soil.periods(p)[d] += passed > 0 ? 1 : -1;
           c[d] -= passed;
         }
-        const T size = bounded_volume(soil, p, T(spacing));
-        const VolumeBounds<T> own = own_volume_bounds(start_volume, soil, p);
-        const bool limited =
-            size <= least || size >= most || soil.volume(p) <= own.least || soil.volume(p) >= own.most;
-        bool leaves = removes && (is_alone(alone, cell) || limited);
+        bool leaves = removes && (is_alone(alone, cell) ||
+                                  is_volume_at_bound({least, most}, own_volume_bounds(start_volume, soil, p),
+                                                     soil, p, T(spacing)));
         leaves = leaves || !grid.holds(c);
         soil.coordinate(p) = x;
         address(p) = leaves ? -1 : grid.address_of(c, grid.field_of(number(cell / Patch<Dim>::cells)));

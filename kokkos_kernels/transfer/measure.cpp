@@ -126,10 +126,8 @@ BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
           own.m.stored_energy += double(soil.volume(p)) * stored_energy(soil, common.material, p);
           if (water.is_there()) own.m.water_energy += water_energy(soil, water, density, position, p);
           own.m.alone += is_alone(alone, soil.cell(p));
-          const T size = bounded_volume(soil, p, T(position.spacing));
-          const VolumeBounds<T> bounds = own_volume_bounds(start_volume, soil, p);
-          own.m.limited += size <= least || size >= most || soil.volume(p) <= bounds.least ||
-                           soil.volume(p) >= bounds.most;
+          own.m.limited += is_volume_at_bound({least, most}, own_volume_bounds(start_volume, soil, p), soil,
+                                              p, T(position.spacing));
           if (soil.has_domain) own.m.stretched += is_longest(soil.domain(p));
           ++own.m.count;
         }
@@ -157,8 +155,17 @@ KOKKOS_INLINE_FUNCTION double rim_factor(const Soil<Space, T, Dim>& soil, int p,
   return Kokkos::fmax(1.0, rim_scale * sum);
 }
 
+/// lambda + 2 G [Pa] of a law at most, once soil in this state has been compressed by a volume strain.
+template <class Law, class T, int Dim>
+KOKKOS_INLINE_FUNCTION double modulus_after(const Law& law, const SymTensor<T, Dim>& stress,
+                                            const LawState<T, state_size<Law>>& state, double compression) {
+  if constexpr (requires { law.wave_modulus_after(stress, state, T(compression)); })
+    if (compression > 0) return law.wave_modulus_after(stress, state, T(compression));
+  return law.wave_modulus(stress, state);
+}
+
 template <class Space, class T, int Dim>
-double fastest_wave(const State<Space, T, Dim>& s) {
+double fastest_wave(const State<Space, T, Dim>& s, double compression) {
   const auto soil = s.soil.points;
   const double rim_scale = s.rim_scale;
   double fastest = 0;  // m2/s2
@@ -170,14 +177,32 @@ double fastest_wave(const State<Space, T, Dim>& s) {
         SymTensor<T, Dim> stress = soil.stress(p);
         add_isotropic(stress, soil.excess_pore_pressure(material, p));
         material.visit([&](const auto& law) {
-          const double modulus =
-              law.wave_modulus(stress, soil.state_of(law, p)) + double(material.pore_stiffness);
-          largest =
-              Kokkos::fmax(largest, modulus * soil.volume(p) / of.mass * rim_factor(soil, p, rim_scale));
+          const double modulus = modulus_after(law, stress, soil.state_of(law, p), compression) +
+                                 double(material.pore_stiffness);
+          const double volume = soil.volume(p) / gap_room(soil, p);  // as it is once it takes pressure
+          largest = Kokkos::fmax(largest, modulus * volume / of.mass * rim_factor(soil, p, rim_scale));
         });
       },
       Kokkos::Max<double>(fastest));
   return Kokkos::sqrt(Kokkos::fmax(0.0, fastest));
+}
+
+template <class Space, class T, int Dim>
+VelocityRange velocity_range(const State<Space, T, Dim>& s) {
+  const auto soil = s.soil.points;
+  VelocityRange range;
+  for (int d = 0; d < Dim; ++d) {
+    Kokkos::MinMaxScalar<double> ends{0, 0};
+    Kokkos::parallel_reduce(
+        "mpm::velocity_range", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
+        KOKKOS_LAMBDA(int p, Kokkos::MinMaxScalar<double>& sum) {
+          const double v = soil.velocity(p)[d];
+          sum.min_val = Kokkos::fmin(sum.min_val, v), sum.max_val = Kokkos::fmax(sum.max_val, v);
+        },
+        Kokkos::MinMax<double>(ends));
+    range.least[d] = Kokkos::fmin(0.0, ends.min_val), range.most[d] = Kokkos::fmax(0.0, ends.max_val);
+  }
+  return range;
 }
 
 template <class Space, class T, int Dim>
@@ -217,7 +242,8 @@ double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long ra
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                               \
   template BodyMeasure measure(const State<Space, T, Dim>&, int);                                    \
-  template double fastest_wave(const State<Space, T, Dim>&);                                         \
+  template double fastest_wave(const State<Space, T, Dim>&, double);                                 \
+  template VelocityRange velocity_range(const State<Space, T, Dim>&);                                \
   template double ranked_coordinate(const State<Space, T, Dim>&, int, int, long, const BodyMeasure&, \
                                     const OverRanks&);
 MPM_FOR_EACH(MPM_INSTANTIATE)

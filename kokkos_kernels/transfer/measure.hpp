@@ -23,9 +23,18 @@ struct BodyMeasure {
 template <class Space, class T, int Dim>
 BodyMeasure measure(const State<Space, T, Dim>& s, int body);
 
-/// Speed of the fastest wave in any particle as it is now [m/s] (Eq. 14); 0 without particles.
+/// Speed of the fastest wave in any particle [m/s] (Eq. 14), once its soil has been compressed by a volume
+/// strain; 0 without particles.
 template <class Space, class T, int Dim>
-double fastest_wave(const State<Space, T, Dim>& s);
+double fastest_wave(const State<Space, T, Dim>& s, double compression = 0);
+
+/// Range of the velocities of the particles along each axis [m/s], from `least` to `most`, both 0 without
+/// particles. 0, the velocity of a side at rest, is always in it.
+struct VelocityRange {
+  double least[3] = {}, most[3] = {};
+};
+template <class Space, class T, int Dim>
+VelocityRange velocity_range(const State<Space, T, Dim>& s);
 
 /// What a measure asks of the other ranks: numbers summed, the largest one taken, each in its place. Empty on
 /// one rank.

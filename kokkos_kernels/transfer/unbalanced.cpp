@@ -1,57 +1,35 @@
 #include "transfer/unbalanced.hpp"
 
-#include "physics/surface.hpp"
-#include "physics/walls.hpp"
+#include "loops/node_update.hpp"
 
 namespace mpm {
 namespace {
 
 template <class Space, class T, int Dim>
 struct NodeForces {
-  using Memory = typename Space::memory_space;
   using S = SoilTerms<Dim>;
   static constexpr int cells = Patch<Dim>::cells;
 
-  Grid<T, Dim> grid;
-  Kokkos::View<Coord<Dim>*, Memory> origin;
-  NodeField<Space, T, S::size> soil;
-  Kokkos::View<Rigid<Dim>*, Memory> rigids;
-  Kokkos::View<Vertex*, Memory> vertices;
-  Kokkos::View<int*, Memory> near_rigid;
-  Kokkos::View<std::uint64_t*, Memory> owned_nodes;
+  UpdateNodes<Space, T, Dim> update;
+  decltype(State<Space, T, Dim>::near_rigid) near_rigid;
   Vector<double, Dim> gravity;
-  double spacing, mass_cut;
-
-  /// Whether contact may act at a node of a slot: within a cell's diagonal of a surface.
-  KOKKOS_INLINE_FUNCTION bool may_be_touched(int slot, const Coord<Dim>& at) const {
-    if (rigids.extent(0) == 0 || near_rigid(slot) == 0) return false;
-    const double reach = (1 + Kokkos::sqrt(double(Dim))) * spacing;
-    for (int r = 0; r < static_cast<int>(rigids.extent(0)); ++r) {
-      const Rigid<Dim>& rigid = rigids(r);
-      if (!rigid.surface_normal) return true;  // its points tell where it is, not a distance
-      const auto x = rigid.pose.to_body([&](int d) { return grid.coordinate_within(d, at[d], spacing); });
-      if (distance_to(rigid.surface, vertices, x).value <= reach) return true;
-    }
-    return false;
-  }
 
   KOKKOS_INLINE_FUNCTION void operator()(int i, double& unbalanced, double& weight) const {
     const int slot = i / cells;
-    if (owned_nodes.extent(0) > 0 && (owned_nodes(slot) >> (i % cells) & 1) == 0) return;
-    const double m_i = soil(i, S::mass);
-    if (!(m_i > mass_cut)) return;
+    const auto& owned = update.owned_nodes;
+    if (owned.extent(0) > 0 && (owned(slot) >> (i % cells) & 1) == 0) return;
+    const double m_i = update.nodes.soil(i, S::mass);
+    if (!(m_i > update.mass_cut)) return;
     Coord<Dim> at = coord_of<Dim>(i);
-    for (int d = 0; d < Dim; ++d) at[d] += origin(slot)[d];
-    if (may_be_touched(slot, at)) return;
-    Vector<T, Dim> free;  // 0 where a wall holds a component
-    for (int d = 0; d < Dim; ++d) free[d] = 1;
-    apply_walls(grid, sides_of(grid, at), free);
-    for (int d = 0; d < Dim; ++d)
-      for (int side = 0; side < 2; ++side)  // what such a side holds is not known before its step
-        if ((sides_of(grid, at) >> (2 * d + side) & 1u) && is_acting(grid.wall[d][side])) return;
+    for (int d = 0; d < Dim; ++d) at[d] += update.places.origin(slot)[d];
+    const auto node = update.node_of(update.nodes, i, at, update.rigids.extent(0) > 0 && near_rigid(slot) > 0);
+    Vector<T, Dim> v_old, a, free = filled<T, Dim>(1);
+    update.accelerate(node.soil, node.inv_m, v_old, a);
+    if (node.is_held()) a = update.held_acceleration(update.nodes, update.rigids.data(), node, v_old, a);
+    apply_walls(update.places.grid, node.sides, free);  // 0 where a wall holds a component
     double force = 0, heavy = 0;
     for (int d = 0; d < Dim; ++d) {
-      const double w = free[d] * m_i * gravity[d], f = free[d] * double(soil(i, S::force + d)) + w;
+      const double w = free[d] * m_i * gravity[d], f = free[d] * m_i * double(a[d]);
       force += f * f, heavy += w * w;
     }
     unbalanced += Kokkos::sqrt(force), weight += Kokkos::sqrt(heavy);
@@ -61,9 +39,8 @@ struct NodeForces {
 }  // namespace
 
 template <class Space, class T, int Dim>
-UnbalancedForces unbalanced_forces(const State<Space, T, Dim>& s) {
-  const NodeForces<Space, T, Dim> forces{s.grid,       s.patches.origin, s.nodes.soil, s.rigids,  s.vertices,
-                                         s.near_rigid, s.owned_nodes,    s.gravity,    s.spacing, s.mass_cut};
+UnbalancedForces unbalanced_forces(const State<Space, T, Dim>& s, double dt) {
+  const NodeForces<Space, T, Dim> forces{node_update_of(s, dt), s.near_rigid, s.gravity};
   UnbalancedForces sum;
   Kokkos::parallel_reduce("mpm::unbalanced_forces",
                           Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()), forces, sum.force,
@@ -73,7 +50,7 @@ UnbalancedForces unbalanced_forces(const State<Space, T, Dim>& s) {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim) \
-  template UnbalancedForces unbalanced_forces(const State<Space, T, Dim>&);
+  template UnbalancedForces unbalanced_forces(const State<Space, T, Dim>&, double);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

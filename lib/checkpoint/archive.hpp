@@ -22,6 +22,7 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
   archive.value("backend", c.backend), archive.value("precision", c.precision);
   archive.value("strategy", c.strategy), archive.value("step", c.run.step), archive.value("time", c.run.time);
   archive.value("dt", c.run.dt), archive.value("dt_since", c.run.dt_since);
+  archive.value("last_dt", c.run.last_dt);
   archive.value("dt_since_time", c.run.dt_since_time), archive.value("last_row_time", c.run.last_row_time);
   archive.value("wall", c.run.wall), archive.value("stepping", c.run.stepping);
   archive.value("since_rebuild", c.run.since_rebuild), archive.value("rebuilds", c.run.rebuilds);
@@ -30,6 +31,8 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
   archive.value("frames", c.frames);
   archive.value("stage", c.run.stage), archive.value("stage_step", c.run.stage_step);
   archive.value("stage_time", c.run.stage_time), archive.value("stage_over", c.run.stage_over);
+  archive.value("waves_due", c.run.waves.due), archive.value("waves_every", c.run.waves.every);
+  archive.value("waves_speed", c.run.waves.speed);
   archive.list("rigid_zero", c.run.rigid_zero), archive.list("rigid_begin", c.run.rigid_begin);
   archive.value("bound", c.state.bound), archive.value("increment", c.state.increment);
   archive.value("margin", c.state.margin), archive.value("due_in", c.state.due_in);

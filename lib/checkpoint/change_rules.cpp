@@ -63,6 +63,9 @@ constexpr Row k_rules[] = {
     {Owner::run, "gravity_table", k_load},
     {Owner::run, "gravity_table_interpolation", k_load},
     {Owner::run, "damping", k_load},
+    {Owner::run, "strength_factor", k_load},
+    {Owner::run, "water_level", k_stage},
+    {Owner::water_region, "water_level", k_stage},
     // The soil: its laws and their parameters, but what only tells how it begins.
     {Owner::material, "model", {}},
     {Owner::material, "density", {}},
@@ -73,6 +76,7 @@ constexpr Row k_rules[] = {
     {Owner::material, "library", {}},
     {Owner::material, "states", {}},
     {Owner::material, "state_start", {}},
+    {Owner::material, "su_ratio", k_stage},
     {Owner::material, "*", k_load},
     {Owner::body, "material", k_load},
     {Owner::body, "cut_out", k_stage},
@@ -145,6 +149,7 @@ ChangeRule change_rule(const std::string& name, const Config& config) {
   note_longest(config.bodies, low, Owner::body, length, owner);
   note_longest(config.rigids, low, Owner::rigid, length, owner);
   note_longest(config.loads, low, Owner::load, length, owner);
+  note_longest(config.water.regions, low, Owner::water_region, length, owner);
   if (config.dim == 2 && low.starts_with("mesh_z")) return {};
   return change_rule(owner, low.substr(length));
 }

@@ -14,6 +14,8 @@ namespace mpm {
 /// has left through a free side stays until the next rebuild.
 inline bool carries_alike(const Config& config) {
   if (!config.water.level || config.bodies.empty()) return false;
+  for (const WaterRegionConfig& region : config.water.regions)
+    if (region.dry || region.level) return false;
   const Vec3& g = config.gravity;
   const double size = std::hypot(g[0], g[1], g[2]);
   double highest = 0;  // m, against gravity, of the mesh

@@ -1,5 +1,6 @@
 // What must be done before PETSc reads the command line and the options files: it ends the program over a
-// file that it cannot read, and passes over words that belong to no option.
+// file that it cannot read, passes over words that belong to no option, and acts at once on options of its
+// own that load libraries or write files.
 
 #include <algorithm>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include "common/text.hpp"
 #include "input/deck.hpp"
 #include "input/options.hpp"
+#include "input/petsc_names.hpp"
 
 namespace mpm {
 namespace {
@@ -71,14 +73,31 @@ void report_strays(DeckReader& reader) {
   }
 }
 
-/// PETSc's web server, which its start looks for though it is not there.
-void refuse_saws(std::vector<GivenOption>& options, std::vector<std::string>& errors) {
-  const auto first = std::stable_partition(options.begin(), options.end(), [](const GivenOption& option) {
-    return lower_case(option.name).rfind("-saws_", 0) != 0;
-  });
-  for (auto option = first; option != options.end(); ++option)
-    errors.push_back("mpm: " + printable(option->name) + ": given, takes nothing: there is no web server");
-  options.erase(first, options.end());
+/// What is wrong with an option of PETSc; empty where a run passes it on.
+std::string fault_of_petsc(const std::string& key, const GivenOption& option) {
+  if (key.starts_with("saws_")) return "nothing: there is no web server";
+  return petsc_fault(key, option.value.value_or(""));
+}
+
+/// Takes the options of PETSc out of the list: those that are passed on go to report.petsc_words.
+void take_petsc(std::vector<GivenOption>& options, std::vector<std::string>& errors, InputReport& report) {
+  std::vector<GivenOption> ours;
+  for (GivenOption& option : options) {
+    const std::string key = lower_case(option.name).substr(1);
+    if (!is_petsc_name(key)) {
+      ours.push_back(std::move(option));
+      continue;
+    }
+    if (const std::string fault = fault_of_petsc(key, option); !fault.empty()) {
+      errors.push_back("mpm: " + printable(option.name) + ": given \"" +
+                       printable(option.value.value_or("")) + "\", takes " + fault);
+      continue;
+    }
+    if (key == "log_view") report.log_view = option.value.value_or("");
+    report.petsc_words.push_back(option.name);
+    if (option.value) report.petsc_words.push_back(*option.value);
+  }
+  options = std::move(ours);
 }
 
 /// All that the first process was given. `words` are those of PETSc's command line from here on.
@@ -89,7 +108,7 @@ void read_all(const std::vector<std::string>& line, InputReport& report) {
   reader.read_words(line, Source::command_line, "");
   report_strays(reader);
   auto options = reader.take();
-  refuse_saws(options, reader.errors);
+  take_petsc(options, reader.errors, report);
   report.help = reader.help;
   report.file_unread = reader.file_unread;
   report.errors = reader.errors;
@@ -117,7 +136,10 @@ void read_all(const std::vector<std::string>& line, InputReport& report) {
       report.renamed.push_back(name.substr(1));
       report.renamed.push_back(option->former.substr(1));
     }
-  if (report.file_unread) return;
+  if (report.file_unread) {
+    report.petsc_words.clear();
+    return;
+  }
   for (const GivenOption& option : options) {
     report.words.push_back(option.name);
     if (option.value) report.words.push_back(*option.value);
@@ -131,18 +153,18 @@ void prepare_arguments(MPI_Comm comm, int* argc, char*** argv, InputReport& repo
   MPI_Comm_rank(comm, &rank);
   if (rank == 0) read_all({*argv + std::min(1, *argc), *argv + *argc}, report);
   std::vector<std::string> marks = {report.help ? "1" : "", report.file_unread ? "1" : "",
-                                    report.options_file};
-  for (auto* texts : {&report.words, &report.errors, &report.warnings, &report.replaced, &report.renamed,
-                      &report.files, &marks})
+                                    report.options_file, report.log_view};
+  for (auto* texts : {&report.words, &report.petsc_words, &report.errors, &report.warnings, &report.replaced,
+                      &report.renamed, &report.files, &marks})
     share(comm, *texts);
   report.help = !marks[0].empty(), report.file_unread = !marks[1].empty();
-  report.options_file = marks[2];
+  report.options_file = marks[2], report.log_view = marks[3];
   unsetenv("PETSC_OPTIONS"), unsetenv("PETSC_OPTIONS_YAML");  // they have been read
 
   // What PETSc would print of options that were not used, every one of which is reported here.
-  report.words.insert(report.words.begin(), {"-skip_petscrc", "true", "-options_left", "false"});
+  report.petsc_words.insert(report.petsc_words.begin(), {"-skip_petscrc", "true", "-options_left", "false"});
   report.arguments = {*argc > 0 ? **argv : nullptr};
-  for (auto& word : report.words) report.arguments.push_back(word.data());
+  for (auto& word : report.petsc_words) report.arguments.push_back(word.data());
   *argc = static_cast<int>(report.arguments.size());
   report.arguments.push_back(nullptr);
   *argv = report.arguments.data();

@@ -136,7 +136,8 @@ void DeckReader::keep(const std::string& name, const std::optional<std::string>&
                      "\", takes its place without " + before + ", which is another name of the same option");
   const std::string note = "mpm: note: " + name + " is now " + present;
   if (renamed && std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
-  options_.push_back({present, renamed ? name : "", value, source});
+  options_.push_back(
+      {present, renamed ? name : "", value, source, open_names_.empty() ? "" : open_names_.back()});
 }
 
 void DeckReader::read_words(const std::vector<std::string>& words, Source source, const std::string& where) {
@@ -168,9 +169,9 @@ void DeckReader::read_file(const std::string& path, Source source, const std::st
   const std::string text = contents_of(path, fault);
   if (!fault.empty()) return fail(begin + fault);
   files.push_back(path);
-  open_files_.push_back(identity);
+  open_files_.push_back(identity), open_names_.push_back(path);
   read_text(text, path, source);
-  open_files_.pop_back();
+  open_files_.pop_back(), open_names_.pop_back();
 }
 
 void DeckReader::read_file_if_there(const std::string& path, Source source) {
@@ -219,7 +220,22 @@ void DeckReader::read_text(const std::string& text, const std::string& path, Sou
   prefixes_.resize(std::min(open, prefixes_.size()));
 }
 
+/// A line for each value of a deck that a later line of another deck replaced.
+void DeckReader::note_replaced() {
+  std::map<std::string, const GivenOption*> known;
+  for (const GivenOption& option : options_) {
+    if (option.source != Source::deck) continue;
+    const GivenOption*& before = known[lower_case(option.name)];
+    if (before != nullptr && before->file != option.file && before->value != option.value)
+      notes.push_back("mpm: note: " + printable(option.name) + " \"" + printable(option.value.value_or("")) +
+                      "\" of " + printable(option.file) + " replaces \"" +
+                      printable(before->value.value_or("")) + "\" of " + printable(before->file));
+    before = &option;
+  }
+}
+
 std::vector<GivenOption> DeckReader::take() {
+  note_replaced();
   std::stable_sort(options_.begin(), options_.end(),
                    [](const GivenOption& a, const GivenOption& b) { return a.source < b.source; });
   return std::move(options_);

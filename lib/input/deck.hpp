@@ -18,6 +18,7 @@ struct GivenOption {
   std::string former;  // the name as it was given, where that is a former one
   std::optional<std::string> value;
   Source source = Source::command_line;
+  std::string file;  // that holds it; empty where no file does
 };
 
 /// Reads options from words and files, with the files that these include (-options_file), prefixes
@@ -36,7 +37,8 @@ class DeckReader {
   std::vector<GivenOption> take();
 
   std::vector<std::string> errors;
-  std::vector<std::string> notes;   // a whole line for each former name
+  std::vector<std::string>
+      notes;  // a whole line for each former name, and for each value that another deck replaced
   std::vector<std::string> strays;  // words that belong to no option
   std::string last_file;            // the last deck of the command line
   std::vector<std::string> files;   // all that were read
@@ -53,7 +55,10 @@ class DeckReader {
   void fail(const std::string& line);
 
   std::vector<GivenOption> options_;
-  std::vector<std::string> prefixes_, open_files_;
+  void note_replaced();
+
+  std::vector<std::string> prefixes_, open_files_,
+      open_names_;                              // of the files: what identifies them; their names
   std::map<std::string, std::string> aliases_;  // by lower-case name
   std::map<std::string, std::string> names_;    // as given, by file or source and by lower-case name of today
   int files_ = 0;

@@ -1,6 +1,7 @@
 // -element_path: a single material point in lieu of a mesh. A deck for it needs one material.
 
 #include <algorithm>
+#include <string_view>
 
 #include "common/material_table.hpp"
 #include "common/text.hpp"
@@ -19,7 +20,7 @@ void pass_over_mesh(OptionReader& in) {
   all.list(report);
   list_all(all);
   std::vector<std::string> beginnings;
-  for (const char* list : {"bodies", "rigid_bodies", "probes"})
+  for (const char* list : {"bodies", "rigid_bodies", "water_regions", "probes"})
     for (const std::string& name : split(in.given_text(list)))
       if (!name.empty()) beginnings.push_back(name + "_");
   const int count = in.pass_over(all.known(), beginnings);
@@ -42,6 +43,12 @@ void choose_dim(OptionReader& in, Config& config) {
     config.dim = 3;
 }
 
+/// Whether a file that goes on from a state must give a state variable: one that frames have, but for a gap,
+/// which is closed where the file does not tell it.
+bool is_needed(const StateVariable& variable) {
+  return variable.output && std::string_view(variable.name) != "parted_volume";
+}
+
 /// Whether the law of a sound material can start where the path does. A file that gives all state variables
 /// that frames have goes on from a state, as particles of a file do.
 void check_start_of_path(OptionReader& in, Config& config) {
@@ -54,7 +61,7 @@ void check_start_of_path(OptionReader& in, Config& config) {
   const auto variables = state_variables(material);
   bool all_given = !path.state.empty();
   for (std::size_t k = 0; k < variables.size(); ++k)
-    all_given &= !variables[k].output ||
+    all_given &= !is_needed(variables[k]) ||
                  std::any_of(path.state.begin(), path.state.end(),
                              [k](const auto& given) { return given.first == static_cast<int>(k); });
   if (!all_given) check_element_start(in, material, path.height, path.stress);

@@ -37,17 +37,18 @@ void check_field_starts(OptionReader& in, const BodyConfig& body, const Material
     worst[place(named)] = named.key == "young" ? *least : *largest;
   }
   const double foot = bounds.lower[dim - 1], top = bounds.upper[dim - 1];
-  if (may_start(material, foot, body.stress, worst) && may_start(material, top, body.stress, worst)) return;
+  if (may_start(material, foot, body.stress, dim, worst) && may_start(material, top, body.stress, dim, worst))
+    return;
   if (grids.size() == 1) {
-    if (check_start(in, body.name, material, foot, body.stress, worst))
-      check_start(in, body.name, material, top, body.stress, worst);
+    if (check_start(in, body.name, material, foot, body.stress, dim, worst))
+      check_start(in, body.name, material, top, body.stress, dim, worst);
     return;
   }
   for (const NamedGrid& points : grids)
     for (std::size_t n = 0; n < points.grid.values.size(); ++n) {
       OwnValues own{};
       for (const NamedGrid& named : grids) own[place(named)] = named.grid.at(points.grid.place_of(n));
-      if (!check_start(in, body.name, material, foot, body.stress, own)) return;
+      if (!check_start(in, body.name, material, foot, body.stress, dim, own)) return;
     }
 }
 

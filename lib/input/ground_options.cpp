@@ -73,7 +73,15 @@ bool read_surface(OptionReader& in, const SurfaceOption& option, const Option& a
     Raster raster;
     file = pieces[0];
     fault = config.dim == 2 ? takes : read_raster(file, raster);
-    if (fault.empty()) surface = surface_of(raster);
+    if (fault.empty()) {
+      const long block = block_under_mesh(raster, config.mesh.spacing);
+      surface = surface_of(raster, block);
+      if (block > 1)
+        in.note(option.name,
+                formatted("%ld x %ld cells of %.6g m; each block of %ld x %ld of them counts as one, at "
+                          "least 16 along the edge of a cell of the mesh",
+                          raster.columns, raster.rows, raster.cell, block, block));
+    }
   }
   if (!fault.empty()) in.reject(option.name, fault);
   return fault.empty();

@@ -18,6 +18,9 @@ bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh);
 
 /// What sides of the mesh take beside their kind: friction, dashpots, velocities. After the time.
 void read_sides(OptionReader& in, Config& config);
+/// The side against gravity, where no option gives it: soil may leave it (smooth). Where a body reaches it at
+/// the start it stays a roller, as the run says. before: the stage before, or null. After the bodies.
+void choose_lid(OptionReader& in, const Config* before, Config& config);
 /// Rejects sides with dashpots where a material does not tell the speed of its shear waves, and columns of
 /// the free field without a base.
 void check_absorbing(OptionReader& in, const Config& config);
@@ -50,15 +53,16 @@ void prepare_material(MaterialConfig& material, double spacing, double largest_p
 void prepare_for_pressure(double spacing, Config& config);
 
 /// Whether a particle of a sound material may start at a height [m] with a stress [Pa], and with its own
-/// values of the law's parameters where there are some; reports why it may not.
+/// values of the law's parameters where there are some; reports why it may not. `dim`: of the run.
 bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
-                 const Sym6& stress, const OwnValues& own = {});
+                 const Sym6& stress, int dim, const OwnValues& own = {});
 
 /// Whether the particles of a material must be given their own Young's moduli (-NAME_young field).
 bool needs_own_young(const MaterialConfig& material);
 
 /// Whether a particle of a sound material may start so; as check_start, without a report.
-bool may_start(const MaterialConfig& material, double height, const Sym6& stress, const OwnValues& own);
+bool may_start(const MaterialConfig& material, double height, const Sym6& stress, int dim,
+               const OwnValues& own);
 
 /// What particles should be whose own values of a parameter are from `least` to `largest`, as the end of
 /// "takes ..."; empty where their material takes these.
@@ -103,6 +107,13 @@ void check_cut_motion(OptionReader& in, const MeshConfig& mesh, int dim, const R
 
 /// -water_*. Gravity and -device_memory_limit must have been read.
 void read_water(OptionReader& in, Config& config);
+
+/// The options of one region with a level of its own.
+void read_water_region(OptionReader& in, const Config& config, WaterRegionConfig& region);
+/// Rejects more regions than the step knows, and regions where there is no water.
+void check_water_regions(OptionReader& in, const Config& config);
+/// Checks that there is water in a stage if there is in the first one.
+void check_water_kept(OptionReader& in, const Config& first, const Config& now);
 
 /// Lowest and highest height of a shape against gravity [m], where there is gravity. The mesh must be sound.
 std::array<double, 2> heights_of(const Shape& shape, const Config& config);
@@ -177,8 +188,8 @@ void check_stage_changes(OptionReader& in, const Config& config);
 /// where nothing is.
 std::string name_fault(const OptionReader& known, const std::string& name);
 
-/// Checks the values of PETSc's options that PETSc would find wrong only at the end of the run.
-void check_petsc_options(OptionReader& in);
+/// Checks the files of -log_view, which PETSc opens at the end of the run, for this output folder.
+void check_log_view(const std::string& folder, InputReport& report);
 
 /// -element_path and what goes with it. Whether it is given.
 bool read_element_file(OptionReader& in, ElementConfig& element);

@@ -1,6 +1,8 @@
 #pragma once
-// The stress of level ground in layers under its own weight, with water at rest.
+// The stress of level ground under its own weight, with water at rest.
 
+#include <array>
+#include <map>
 #include <vector>
 
 #include "mpm/config.hpp"
@@ -12,30 +14,31 @@ namespace mpm {
 /// where the law has none of these, and of cam_clay, whose ratio depends on what the soil has been through.
 double k0_of(const MaterialConfig& material);
 
-/// The bodies of a configuration whose initial stress is k0, as layers.
+/// The bodies of a configuration whose initial stress is k0. Together they are level ground, as it was before
+/// parts of it are dug out: a body may be cut by others, which fill what they cut.
 class LevelGround {
  public:
-  explicit LevelGround(const Config& config);
+  explicit LevelGround(const Config& config) : config_(config) {}
 
-  /// A layer: a body between two levels.
+  /// A part of a vertical line that is in one body.
   struct Layer {
     int body;          // index into Config::bodies
     double base, top;  // m
     double density;    // kg/m3
   };
-  /// From the highest to the lowest.
-  const std::vector<Layer>& layers() const { return layers_; }
+  /// The layers on a vertical line at a place (of which the height does not count), from the highest to the
+  /// lowest.
+  const std::vector<Layer>& column(const Vec3& place) const;
 
-  /// Effective vertical stress at a height [m], in Pa, compression positive.
-  double vertical(double height) const;
-  /// Effective stress of a particle of a body, of which the centre is at a height and the width is given [m]:
-  /// the mean of its upper and lower edge, so that its weight and the stress are in equilibrium wherever the
-  /// level of water is.
-  Sym6 stress(const BodyConfig& body, double height, double width) const;
+  /// Effective vertical stress at a place [m], in Pa, compression positive.
+  double vertical(const Vec3& place) const;
+  /// Effective stress of a particle of a body, whose centre and width are given [m]: the mean of its upper
+  /// and lower edge, so that its weight and the stress are in equilibrium wherever the level of water is.
+  Sym6 stress(const BodyConfig& body, const Vec3& centre, double width) const;
 
  private:
   const Config& config_;
-  std::vector<Layer> layers_;
+  mutable std::map<std::array<double, 2>, std::vector<Layer>> columns_;  // by x and, in 3D, y [m]
 };
 
 }  // namespace mpm

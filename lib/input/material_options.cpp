@@ -97,6 +97,14 @@ void read_parameters(OptionReader& in, const std::string& name, const ModelOptio
   }
 }
 
+/// The run's -strength_factor, where the material has none of its own.
+void take_strength_factor(const OptionReader& in, const ModelOptions& model, const Config& config,
+                          MaterialConfig& material) {
+  for (std::size_t k = 0; k < model.options.size(); ++k)
+    if (model.options[k].name == "strength_factor" && !in.given(material.name + "_strength_factor"))
+      material.parameters[k] = config.strength_factor;
+}
+
 /// A law's text with the material's own prefix in the place of -NAME_.
 std::string with_prefix(std::string text, const std::string& name) {
   const std::string prefix = "-NAME_";
@@ -235,6 +243,7 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
     const auto errors = in.errors();
     material.model = words[chosen];
     read_parameters(in, name, models[chosen], material.parameters);
+    take_strength_factor(in, models[chosen], config, material);
     material.texts = read_texts(in, name, models[chosen]);
     const bool sound = check_run(in, chosen, config, material) && in.errors() == errors;
     if (sound && is_single_point(config))
@@ -292,21 +301,23 @@ std::string own_parameter_fault(const MaterialConfig& material, const std::strin
 }
 
 bool check_start(OptionReader& in, const std::string& body, const MaterialConfig& material, double height,
-                 const Sym6& stress, const OwnValues& own) {
+                 const Sym6& stress, int dim, const OwnValues& own) {
   const auto law =
       make_material<double>(model_index(material.model), material.parameters, material.object.get());
   const ParameterFault fault =
-      start_fault(law, {.position = {}, .height = height, .stress = stress, .own = own});
+      start_fault(law, {.position = {}, .height = height, .stress = stress, .own = own, .up = dim - 1});
   if (fault.key.empty()) return true;
   const bool of_body = fault.key == "stress";
   in.reject((of_body ? body : material.name) + "_" + fault.key, with_prefix(fault.takes, material.name));
   return false;
 }
 
-bool may_start(const MaterialConfig& material, double height, const Sym6& stress, const OwnValues& own) {
+bool may_start(const MaterialConfig& material, double height, const Sym6& stress, int dim,
+               const OwnValues& own) {
   const auto law =
       make_material<double>(model_index(material.model), material.parameters, material.object.get());
-  return start_fault(law, {.position = {}, .height = height, .stress = stress, .own = own}).key.empty();
+  return start_fault(law, {.position = {}, .height = height, .stress = stress, .own = own, .up = dim - 1})
+      .key.empty();
 }
 
 bool needs_own_young(const MaterialConfig& material) {
@@ -331,6 +342,7 @@ bool has_strength(const MaterialConfig& material) {
   constexpr double k_far = 1e9;  // m
   const int model = model_index(material.model);
   if (model < 0) return false;  // reported
+  if (parameter_of(material, "su_ratio") > 0) return true;
   const AnyMaterial<double> law = make_material<double>(model, material.parameters, material.object.get());
   return strength_at(law, -k_far) > 0 || strength_at(law, k_far) > 0;
 }

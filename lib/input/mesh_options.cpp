@@ -10,11 +10,14 @@ namespace {
 constexpr double k_furthest = 4e9;        // cells from the origin: round-off is 1e-6 of a cell there
 constexpr double k_most_cells = 1 << 30;  // in a direction, so that cells and nodes count in an int
 
+constexpr const char* k_top_default =
+    "roller; at the side against gravity smooth, unless a body reaches it at the start";
+
 void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
   static const std::vector<std::pair<std::string, Wall>> words = {
       {"roller", Wall::roller},     {"fixed", Wall::fixed},         {"free", Wall::free},
-      {"friction", Wall::friction}, {"absorbing", Wall::absorbing}, {"free_field", Wall::free_field},
-      {"periodic", Wall::periodic}};
+      {"friction", Wall::friction}, {"smooth", Wall::friction},     {"absorbing", Wall::absorbing},
+      {"free_field", Wall::free_field}, {"periodic", Wall::periodic}};
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
       const std::string name = side_option(d, side);
@@ -25,8 +28,9 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
       in.word(
           {.name = name,
            .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no velocity "
-                      "into it, and friction along it; dashpots that absorb waves; dashpots to a column that "
-                      "moves as the free field beside; the opposite side, which is periodic too"},
+                      "into it, and friction along it; no velocity into it; dashpots that absorb waves; dashpots to a column that "
+                      "moves as the free field beside; the opposite side, which is periodic too",
+           .standard = d > 0 && side == 1 && in.listing() ? k_top_default : ""},
           words, mesh.walls[d][side]);
     }
 }

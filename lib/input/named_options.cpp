@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <set>
 
 #include "common/text.hpp"
@@ -278,15 +279,24 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
   const auto rigids = read_names(in, {.name = "rigid_bodies", .meaning = "names of the rigid bodies"}, names);
   const auto loads = read_names(
       in, {.name = "loads", .meaning = "names of the loads on parts of the surface of bodies"}, names);
+  const auto regions = read_names(
+      in, {.name = "water_regions", .meaning = "names of boxes in which the water has a level of its own"},
+      names);
   const auto probes = read_names(
       in, {.name = "probes", .meaning = "names of the probes, places of which the history tells"}, names);
   if (!in.listing()) {
-    for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "probes"})
+    for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "water_regions", "probes"})
       leave_out(in, list, names);
     forgive_unlisted(in, names);
   }
   auto errors = in.errors();
   for (const auto& name : materials) read_material(in, name, mesh, config, config.materials.emplace_back());
+  const auto reduces = [](const MaterialConfig& material) {
+    return !std::isnan(parameter_of(material, "strength_factor"));
+  };
+  if (!in.listing() && in.errors() == errors &&
+      std::none_of(config.materials.begin(), config.materials.end(), reduces))
+    in.not_taken("strength_factor", "no material has a strength that it divides");
   const bool sound_materials = mesh && !config.materials.empty() && in.errors() == errors && !in.listing();
   if (sound_materials)
     for (MaterialConfig& material : config.materials) prepare_material(material, mesh->spacing, 0);
@@ -306,6 +316,11 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
     read_load(in, config, config.loads.back());
   }
   check_loads(in, config);
+  for (const auto& name : regions) {
+    config.water.regions.emplace_back().name = name;
+    read_water_region(in, config, config.water.regions.back());
+  }
+  if (mesh && in.errors() == errors) check_water_regions(in, config);
   for (const auto& name : probes) {
     config.probes.emplace_back().name = name;
     read_probe(in, mesh, config, config.probes.back());

@@ -218,6 +218,12 @@ void read_physics(OptionReader& in, Config& config) {
              .unit = "-",
              .range = {.lowest = 0, .highest = 1, .open_highest = true}},
             config.damping);
+  in.number({.name = "strength_factor",
+             .meaning = "what the strength of all materials without a strength_factor of their own is divided "
+                        "by, as in a search for a factor of safety",
+             .unit = "-",
+             .range = {.lowest = 0.01, .highest = 100}},
+            config.strength_factor);
   read_velocity_update(in, config);
   in.word({.name = "particle_domain",
            .meaning = "how the domains of particles follow the soil: fixed: not at all; stretch: each "
@@ -387,6 +393,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   read_rasters(in, sound ? &config.mesh : nullptr, config);
   read_named(in, sound ? &config.mesh : nullptr, config, before);
   read_raster_bodies(in, config, config.rasters);
+  if (sound) choose_lid(in, before, config);
   if (sound) check_absorbing(in, config);
   if (sound && in.errors() == errors) check_periodic(in, config);
   check_revolution(in, config);
@@ -417,6 +424,7 @@ void read_stages(OptionReader& in, const std::vector<Backend>& backends,
     read_all(reader, backends, report.options_file, input.config,
              first ? nullptr : &report.stages.end()[-2].config);
     check_cut_kept(reader, report.stages.front().config, input.config);
+    check_water_kept(reader, report.stages.front().config, input.config);
     check_periodic_kept(reader, input.config.dim, report.stages.front().config.mesh, input.config.mesh);
     input.options = std::move(of_stage.options);
     for (const std::string& key : reader.of_stage())
@@ -427,6 +435,43 @@ void read_stages(OptionReader& in, const std::vector<Backend>& backends,
         if (std::find(to->begin(), to->end(), line) == to->end()) to->push_back(line);
   }
 }
+
+/// Puts the options that are ours into PETSc's database, once for all simulations of a program. The files of
+/// -log_view wait for the output folder.
+PetscErrorCode insert_words(InputReport& report) {
+  PetscFunctionBeginUser;
+  if (*report.inserted) PetscFunctionReturn(PETSC_SUCCESS);
+  *report.inserted = true;
+  std::vector<char*> words;
+  for (std::string& word : report.words) words.push_back(word.data());
+  PetscCall(PetscOptionsInsertArgs(nullptr, static_cast<int>(words.size()), words.data()));
+  if (report.log_view.find(':') != std::string::npos) PetscCall(PetscOptionsClearValue(nullptr, "-log_view"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// What a newcomer needs, before the options.
+constexpr const char* k_usage =
+    "mpm: a material point method for soil, in 2D and 3D\n\n"
+    "  mpm -options_file DECK [-NAME VALUE] ...    runs a deck; what the command line gives takes "
+    "precedence\n"
+    "  mpm -options_file DECK -dry_run             tells particles, memory, steps and run time; writes "
+    "nothing\n"
+    "  mpm -options_file DECK -restart latest      goes on from the last checkpoint\n"
+    "  mpirun -n 4 mpm -options_file DECK          runs on four processes\n"
+    "  mpm --version                               version, commit, libraries, back ends\n\n"
+    "A deck holds one option a line, -NAME VALUE; # begins a comment. Units are SI; a list has commas and "
+    "no\n"
+    "spaces. NAME in an option below stands for a name that -materials, -bodies, -rigid_bodies, -loads or\n"
+    "-probes gives. A mesh (-mesh_lower, -mesh_upper, -mesh_spacing), -time_end, a material and a body are "
+    "all\n"
+    "that a deck needs; inputs/ has decks to begin with. Results go to -output_dir, by default out/ and the\n"
+    "name of the deck: history.csv, frames/ for ParaView, mpm.log. scripts/plot draws them.\n"
+    "Manual: README.md, docs/soils.md (laws), docs/boundaries.md, docs/running.md, docs/verification.md.\n"
+    "Some options of PETSc are taken too, as -log_view (docs/running.md); --kokkos-help lists those of "
+    "Kokkos.\n"
+    "Exit status: 0 finished, 2 wrong input, 3 the computation failed, 75 stopped with a checkpoint, else "
+    "the\n"
+    "system.\n";
 
 PetscErrorCode print_lines(MPI_Comm comm, FILE* file, const std::string& text) {
   PetscFunctionBeginUser;
@@ -453,14 +498,11 @@ PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& back
   OptionReader in;
   config = {};
   if (report.help) {
-    report.help_text =
-        "mpm -options_file DECK [-NAME VALUE] ...\n"
-        "What the command line gives takes precedence over the deck. Units are SI; a list has commas and no "
-        "spaces.\n"
-        "PETSc's own options, as -log_view, are taken too.\n";
+    report.help_text = k_usage;
     in.list(report);
     PetscCallCXX(read_all(in, backends, "", config));
   } else if (!report.file_unread) {
+    PetscCall(insert_words(report));
     PetscCall(in.load(prefix, report));
     const auto before = report.errors.size();
     std::vector<std::string> stages;
@@ -481,7 +523,7 @@ PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& back
     }
     if (!report.stages.empty() && !config.element.file.empty())
       in.reject("stages", "nothing here: -element_path drives a single point");
-    if (prefix == nullptr) PetscCallCXX(check_petsc_options(in));
+    if (prefix == nullptr) PetscCallCXX(check_log_view(config.output.directory, report));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,6 +12,7 @@
 
 #include <petscsys.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -48,28 +49,40 @@ struct InputReport {
   std::vector<std::string>
       replaced;  // in pairs: an option without its dash, a value that a later one replaced
   std::vector<std::string> renamed;  // in pairs: an option without its dash, the former name that was given
-  std::vector<std::string> words;    // PETSc's command line
-  std::vector<char*> arguments;      // that as argv; not of use in a copy
+  std::vector<std::string> words;    // names with their dash and values, of all but PETSc's own options
+  std::vector<std::string> petsc_words;  // PETSc's command line: its own options that a run passes on
+  std::string log_view;                  // the value of -log_view, which may name files
+  std::vector<char*> arguments;          // that as argv; not of use in a copy
+  std::shared_ptr<bool> inserted =
+      std::make_shared<bool>(false);  // words are in PETSc's database; of all copies
 };
 
 /// Reads the command line, the options files (a pipe too), PETSc's own files and PETSC_OPTIONS on the first
-/// process of comm, and gives every process PETSc's arguments in their place, without -help and
-/// -options_file; they live as long as the report. What is on the command line takes precedence over the
+/// process of comm, and leaves of the arguments only PETSc's own options, those that a run passes on; they
+/// live as long as the report. All others wait in report.words for read_options, so that PETSc does not act
+/// on an option before it is known. What is on the command line takes precedence over the
 /// files. Reports files that cannot be read, lines of them that are not "-NAME VALUE", and words that belong
 /// to no option (PETSc would pass over both). Call it on every process of comm after MPI_Init and before
 /// PetscInitialize.
 void prepare_arguments(MPI_Comm comm, int* argc, char*** argv, InputReport& report);
 
-/// Reads every option with this prefix (null for none) from PETSc's database, which is the same on all
-/// processes, and checks them, also against each other. `backends` are those compiled in, the slowest first;
-/// the last is the default. Appends to report.errors; config is valid only where that is empty at the end.
-/// Where report.help holds, fills report.help_text instead; where report.file_unread holds, reads nothing,
-/// since all that is in the file would seem to be missing. Where the run has stages, config and
+/// Puts report.words into PETSc's database, reads every option with this prefix (null for none) from it,
+/// the same on all processes, and checks them, also against each other. `backends` are those compiled in, the
+/// slowest first; the last is the default. Appends to report.errors; config is valid only where that is empty
+/// at the end. Where report.help holds, fills report.help_text instead; where report.file_unread holds, reads
+/// nothing, since all that is in the file would seem to be missing. Where the run has stages, config and
 /// report.options are those of the first one, and report.stages has all. With a null prefix every option that
 /// is neither ours nor PETSc's is an error, so simulations that have a prefix must be read before the one
 /// that has none.
 PetscErrorCode read_options(const char* prefix, const std::vector<Backend>& backends, Config& config,
                             InputReport& report);
+
+/// Takes report.words out of PETSc's database again, and -log_view: a refused run leaves PETSc nothing to do.
+PetscErrorCode forget_options(const InputReport& report);
+
+/// Gives PETSc the files of -log_view, in the output folder, where the value has some. Call it once the
+/// folder is there.
+PetscErrorCode place_log_view(const InputReport& report, const std::string& folder);
 
 /// Prints report.help_text on stdout of the first process.
 PetscErrorCode print_help(MPI_Comm comm, const InputReport& report);

@@ -8,7 +8,18 @@ namespace mpm {
 /// dash).
 const std::vector<std::string>& petsc_names();
 
-/// Whether an option (lower case, without its dash) is PETSc's.
+/// Whether an option (lower case, without its dash) is PETSc's, whether a run takes it or not.
 bool is_petsc_name(const std::string& name);
+
+/// Whether a run passes an option (lower case, without its dash) on to PETSc. Those are few, because PETSc's
+/// others load libraries, write files wherever they are told to, or wait for a debugger.
+bool is_passed_on(const std::string& name);
+
+/// What such an option takes in place of a value; empty where the value is good. What -log_view names is
+/// checked only where the output folder is known.
+std::string petsc_fault(const std::string& name, const std::string& value);
+
+/// The names of the options that are passed on.
+std::vector<std::string> passed_on_names();
 
 }  // namespace mpm

@@ -75,11 +75,13 @@ Edge edge_of(const Polygon& polygon, std::size_t k) {
   return {polygon[k], polygon[(k + 1) % polygon.size()]};
 }
 
-double area_of(const Polygon& polygon) {
+double signed_area_of(const Polygon& polygon) {
   double twice = 0;
   for (std::size_t k = 1; k + 1 < polygon.size(); ++k) twice += turn(polygon[0], polygon[k], polygon[k + 1]);
-  return std::abs(twice) / 2;
+  return twice / 2;
 }
+
+double area_of(const Polygon& polygon) { return std::abs(signed_area_of(polygon)); }
 
 bool is_inside(const std::vector<Edge>& edges, const Point2& point, double slack) {
   bool inside = false;  // a ray towards +x crosses the outline an odd number of times

@@ -17,6 +17,8 @@ struct Edge {
 
 /// Enclosed area [m2] (shoelace formula).
 double area_of(const Polygon& polygon);
+/// Positive where the polygon goes round anticlockwise.
+double signed_area_of(const Polygon& polygon);
 
 /// Edge k of a polygon, from vertex k to the next.
 Edge edge_of(const Polygon& polygon, std::size_t k);

@@ -54,10 +54,11 @@ std::string take_header(const std::map<std::string, double>& header, double byte
   return "";
 }
 
-/// Lines of a surface along an axis: sides, and middles of cells.
-std::vector<double> lines_of(double from, double cell, long count) {
+/// Lines of a surface along an axis: sides, and middles of blocks of cells.
+std::vector<double> lines_of(double from, double cell, long count, long block) {
   std::vector<double> lines{from};
-  for (long k = 0; k < count; ++k) lines.push_back(from + (static_cast<double>(k) + 0.5) * cell);
+  for (long k = 0; k < count; k += block)
+    lines.push_back(from + static_cast<double>(k + std::min(k + block, count)) / 2 * cell);
   lines.push_back(from + static_cast<double>(count) * cell);
   return lines;
 }
@@ -93,15 +94,42 @@ std::string read_raster(const std::string& path, Raster& raster) {
   return "";
 }
 
-std::shared_ptr<const HeightSurface> surface_of(const Raster& raster) {
+namespace {
+
+/// Mean of the values of a block of cells; NaN where one is.
+double mean_of_block(const Raster& raster, long i, long j, long block) {
+  const long right = std::min((i + 1) * block, raster.columns),
+             above = std::min((j + 1) * block, raster.rows);
+  double sum = 0;
+  for (long row = j * block; row < above; ++row)
+    for (long column = i * block; column < right; ++column)
+      sum += raster.values[row * raster.columns + column];
+  return sum / static_cast<double>((right - i * block) * (above - j * block));
+}
+
+}  // namespace
+
+long block_under_mesh(const Raster& raster, double spacing) {
+  constexpr double k_in_cell = 16;  // blocks along the edge of a cell of the mesh
+  const double block = spacing / (k_in_cell * raster.cell);
+  const double most = static_cast<double>(std::max(raster.columns, raster.rows));
+  return block >= 2 ? static_cast<long>(std::min(block, most)) : 1;
+}
+
+std::shared_ptr<const HeightSurface> surface_of(const Raster& raster, long block) {
+  const long columns = (raster.columns + block - 1) / block, rows = (raster.rows + block - 1) / block;
+  std::vector<double> values;
+  values.reserve(columns * rows);
+  for (long j = 0; j < rows; ++j)
+    for (long i = 0; i < columns; ++i) values.push_back(mean_of_block(raster, i, j, block));
   const auto within = [](long k, long count) { return std::min(std::max(k - 1, 0L), count - 1); };
   std::vector<double> heights;
-  heights.reserve((raster.columns + 2) * (raster.rows + 2));
-  for (long j = 0; j < raster.rows + 2; ++j)
-    for (long i = 0; i < raster.columns + 2; ++i)
-      heights.push_back(raster.values[within(j, raster.rows) * raster.columns + within(i, raster.columns)]);
-  return std::make_shared<const HeightSurface>(lines_of(raster.x, raster.cell, raster.columns),
-                                               lines_of(raster.y, raster.cell, raster.rows),
+  heights.reserve((columns + 2) * (rows + 2));
+  for (long j = 0; j < rows + 2; ++j)
+    for (long i = 0; i < columns + 2; ++i)
+      heights.push_back(values[within(j, rows) * columns + within(i, columns)]);
+  return std::make_shared<const HeightSurface>(lines_of(raster.x, raster.cell, raster.columns, block),
+                                               lines_of(raster.y, raster.cell, raster.rows, block),
                                                std::move(heights));
 }
 

@@ -19,7 +19,11 @@ struct Raster {
 std::string read_raster(const std::string& path, Raster& raster);
 
 /// The surface through the values: linear between the middles of cells, level in the outer half of the
-/// outermost ones.
-std::shared_ptr<const HeightSurface> surface_of(const Raster& raster);
+/// outermost ones. Blocks of so many cells along each axis count as one cell, with the mean of their values.
+std::shared_ptr<const HeightSurface> surface_of(const Raster& raster, long block = 1);
+
+/// Edge of the blocks [cells of the raster] under a mesh of this spacing [m]: a surface that is far finer
+/// than the mesh costs time and changes nothing. 1 where the raster is not far finer.
+long block_under_mesh(const Raster& raster, double spacing);
 
 }  // namespace mpm

@@ -4,6 +4,7 @@
 
 #include "common/text.hpp"
 #include "input/petsc_names.hpp"
+#include "input/suggest.hpp"
 
 namespace mpm {
 namespace {
@@ -176,6 +177,7 @@ void OptionReader::section(const std::string& title) {
            : title.starts_with("Each rigid")                                   ? Owner::rigid
            : title.starts_with("Each body")                                    ? Owner::body
            : title.starts_with("Each load")                                    ? Owner::load
+           : title.starts_with("Each water region")                            ? Owner::water_region
                                                                                : Owner::run;
   if (listing_) report_->help_text += "\n" + title + "\n";
 }
@@ -207,6 +209,12 @@ void OptionReader::keep(const Option& option, const std::string& value, bool sta
   report_->options.push_back({"-" + prefix_ + option.name, value, option.unit, standard});
 }
 
+void OptionReader::settle(const std::string& name, const std::string& value, const std::string& warning) {
+  for (EffectiveOption& option : report_->options)
+    if (option.name == "-" + prefix_ + name) option.value = value;
+  if (!warning.empty()) report_->warnings.push_back("warning: -" + prefix_ + name + ": " + warning);
+}
+
 bool OptionReader::fail(const Option& option, const std::string& takes) {
   reject(option.name, takes);
   return false;
@@ -227,6 +235,10 @@ void OptionReader::reject(const std::string& name, const std::string& takes) {
 void OptionReader::warn(const std::string& name, const std::string& what) {
   report_->warnings.push_back("warning: " + dashed(name) + ": given " + quoted(given_text(name)) + ", " +
                               what);
+}
+
+void OptionReader::note(const std::string& name, const std::string& what) {
+  report_->warnings.push_back("mpm: note: " + dashed(name) + ": " + what);
 }
 
 void OptionReader::not_taken(const std::string& name, const std::string& why) {
@@ -356,7 +368,10 @@ bool OptionReader::word(const Option& option, const std::vector<std::string>& wo
   const std::string* given = find(option, takes, option.required ? "" : words.at(index));
   if (!given) return false;
   const auto found = std::find(words.begin(), words.end(), *given);
-  if (found == words.end()) return fail(option, takes);
+  if (found == words.end()) {
+    const auto meant = nearest(*given, words);
+    return fail(option, takes + (meant ? "; the nearest is " + *meant : ""));
+  }
   index = static_cast<int>(found - words.begin());
   keep(option, *given, false);
   return true;
@@ -364,20 +379,27 @@ bool OptionReader::word(const Option& option, const std::vector<std::string>& wo
 
 void OptionReader::report_unknown() {
   std::vector<std::string> known = known_;
-  if (prefix_.empty()) known.insert(known.end(), petsc_names().begin(), petsc_names().end());
+  if (prefix_.empty())
+    for (std::string& name : passed_on_names()) known.push_back(std::move(name));
+  std::vector<std::string> owners;
+  for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "probes"})
+    for (std::string& owner : split(lower_case(given_text(list)))) owners.push_back(std::move(owner));
   warn_of_left_out();
   for (const auto& [name, option] : given_) {
     const auto begins_name = [&name = name](const std::string& beginning) {
       return name.rfind(beginning, 0) == 0;
     };
-    if (!option.unused || read_.count(name) || is_petsc_name(name)) continue;
+    if (!option.unused || read_.count(name) || is_passed_on(name)) continue;
     if (std::any_of(ignored_.begin(), ignored_.end(), begins_name)) continue;
-    const auto meant = nearest(name, known);
+    const auto listed = [this](const char* list) { return split(lower_case(given_text(list))); };
+    const std::string why = why_none(name, listed("bodies"), listed("rigid_bodies"));
     const bool staged = of_stage_.count(name) > 0;
     const std::string as_given = staged ? "-" + option.name : dashed(option.name.substr(prefix_.size()));
     report_->errors.push_back(
         "mpm: " + as_given + ": given " + quoted(option.value) + ", takes nothing: no such option" +
-        (meant ? ", the nearest is -" + prefix_ + (staged ? stage_ : "") + *meant : "; -help lists all"));
+        (why.empty()
+             ? ", the nearest is -" + prefix_ + (staged ? stage_ : "") + most_like(name, known, owners)
+             : "; " + why));
   }
 }
 

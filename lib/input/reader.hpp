@@ -98,6 +98,10 @@ class OptionReader {
   void reject(const std::string& name, const std::string& takes);
   /// Warns of an option that is given: "warning: -NAME: given "...", WHAT".
   void warn(const std::string& name, const std::string& what);
+  /// The default that an option takes which is not given, once others are read, and a warning, unless empty.
+  void settle(const std::string& name, const std::string& value, const std::string& warning);
+  /// Notes for the log what became of an option that is given: "mpm: note: -NAME: WHAT".
+  void note(const std::string& name, const std::string& what);
   /// No unknown option that begins so is reported: what it belongs to was wrong itself.
   void ignore(const std::string& beginning);
   /// The values of an option that later ones replaced.

@@ -27,8 +27,9 @@ void check_revolution(OptionReader& in, const Config& config) {
     const std::string name = side_option(n / 2, n % 2);
     if (side.moves)
       in.reject(name + (side.velocity_table ? "_velocity_table" : "_velocity"), "0" + where);
-    else if (const Wall wall = config.mesh.walls[n / 2][n % 2]; is_acting(wall) && wall != Wall::absorbing)
-      in.reject(name, "roller, fixed, free or absorbing" + where);
+    else if (const Wall wall = config.mesh.walls[n / 2][n % 2]; is_acting(wall) && wall != Wall::absorbing && wall != Wall::friction)
+      in.reject(name, "roller, smooth, fixed, free, friction or absorbing" + where);
+    if (side.shear_limit) in.reject(name + "_shear_limit", "nothing" + where);
   }
   if (config.gravity[0] != 0)
     in.reject(config.gravity_table ? "gravity_table" : "gravity",

@@ -1,11 +1,13 @@
 // What sides of the mesh take beside their kind.
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/material_table.hpp"
 #include "common/text.hpp"
 #include "common/time_table.hpp"
 #include "input/groups.hpp"
+#include "input/shapes.hpp"
 
 namespace mpm {
 namespace {
@@ -18,7 +20,13 @@ constexpr const char* k_keys[] = {"_friction",
                                   "_velocity_table",
                                   "_velocity_table_interpolation"};
 
+/// Whether a side is a friction side without friction.
+bool is_smooth(const OptionReader& in, const std::string& name) {
+  return lower_case(in.given_text(name)) == "smooth";
+}
+
 void read_friction(OptionReader& in, const std::string& name, SideConfig& side) {
+  if (is_smooth(in, name)) return;
   in.number({.name = name + "_friction",
              .meaning = "friction: coefficient of friction, tan of the angle",
              .unit = "-",
@@ -88,6 +96,40 @@ void read_side(OptionReader& in, const Config& config, int d, int side, SideConf
 }
 
 }  // namespace
+
+namespace {
+
+/// Whether a body reaches a side of the mesh where it begins.
+bool reaches_side(const Config& config, int d, int side) {
+  const double slack = 1e-6 * config.mesh.spacing;
+  return std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& body) {
+    const Bounds bounds = bounds_of(body.shape, config.mesh, config.dim);
+    return side == 0 ? bounds.lower[d] <= config.mesh.lower[d] + slack
+                     : bounds.upper[d] >= config.mesh.upper[d] - slack;
+  });
+}
+
+}  // namespace
+
+void choose_lid(OptionReader& in, const Config* before, Config& config) {
+  if (in.listing()) return;
+  int d = 0;
+  for (int k = 1; k < config.dim; ++k)
+    if (std::abs(config.gravity[k]) >= std::abs(config.gravity[d])) d = k;
+  const int side = config.gravity[d] < 0 ? 1 : 0;
+  const std::string name = side_option(d, side);
+  Wall& wall = config.mesh.walls[d][side];
+  if (config.gravity[d] == 0 || in.given(name) || wall != Wall::roller || config.mesh.sides[d][side].moves)
+    return;
+  if (before ? before->mesh.walls[d][side] == Wall::roller : reaches_side(config, d, side)) {
+    in.settle(name, "roller",
+              "roller by default where soil reaches this side at the start, and holds it in tension too, as a "
+              "plane of symmetry does; smooth or free lets the soil go");
+  } else {
+    wall = Wall::friction;
+    in.settle(name, "smooth", "");
+  }
+}
 
 void read_sides(OptionReader& in, Config& config) {
   in.section("Sides of the mesh");

@@ -1,6 +1,7 @@
 // Bodies that stages place and remove.
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "common/text.hpp"
@@ -60,6 +61,15 @@ double pressure_of_mesh(const Config& config, const BodyConfig& body) {
   for (int d = 0; d < config.dim; ++d)
     pressure += std::abs(config.gravity[d]) * (config.mesh.upper[d] - config.mesh.lower[d]);
   return density_of(config, body) * pressure;
+}
+
+/// Whether two materials give the same strength at the same height and vertical stress.
+bool same_strength(const MaterialConfig& one, const MaterialConfig& other) {
+  for (const char* key : {"su", "su_gradient", "su_datum", "su_ratio"}) {
+    const double a = parameter_of(one, key), b = parameter_of(other, key);
+    if (a != b && !(std::isnan(a) && std::isnan(b))) return false;
+  }
+  return one.name == other.name;
 }
 
 /// Names of what cuts a body as it is placed, because it is placed at the same time, in order.
@@ -154,6 +164,7 @@ void follow_stage(const Config& before, Config& now) {
     if (const double density = density_of(before, then); density != now.materials[body.material].density)
       body.density = density;
     body.stress = then.stress, body.largest_pressure = then.largest_pressure;
+    body.keeps_strength = same_strength(before.materials[then.material], now.materials[body.material]);
     if (body.material != then.material)
       body.largest_pressure = std::max(body.largest_pressure, pressure_of_mesh(now, body));
   }

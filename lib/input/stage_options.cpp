@@ -50,7 +50,7 @@ bool begins_alike(const std::string& one, const std::string& other) {
 /// The name of a material, body, rigid, load or probe whose options a stage of this name would take; empty
 /// where there is none.
 std::string named_so(const OptionReader& in, const std::string& stage) {
-  for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "probes"})
+  for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "water_regions", "probes"})
     for (const std::string& name : split(in.given_text(list)))
       if (!name.empty() && begins_alike(name, stage)) return name;
   return "";

@@ -32,8 +32,8 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
   if (body.from_before) return;  // it goes on as it is
   if (body.shape.kind != ShapeKind::particles) {
     const Bounds bounds = bounds_of(body.shape, mesh, config.dim);
-    if (check_start(in, body.name, material, bounds.lower[up], body.stress))
-      check_start(in, body.name, material, bounds.upper[up], body.stress);
+    if (check_start(in, body.name, material, bounds.lower[up], body.stress, config.dim))
+      check_start(in, body.name, material, bounds.upper[up], body.stress, config.dim);
     return;
   }
   const auto keys = own_parameters(state_variables(material));
@@ -54,7 +54,7 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
     OwnValues of_particle{};
     for (std::size_t k = 0; k < keys.size(); ++k)
       if (own[k] != nullptr) of_particle[k] = (*own[k])[p];
-    looks = looks && check_start(in, body.name, material, height, stress, of_particle);
+    looks = looks && check_start(in, body.name, material, height, stress, config.dim, of_particle);
   }
 }
 

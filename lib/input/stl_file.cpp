@@ -86,7 +86,7 @@ std::string read_ascii(std::string_view text, double scale, std::vector<Vec3>& c
 
 std::string read_stl(const std::string& path, double scale, std::shared_ptr<const TriangleSurface>& surface) {
   std::string text;
-  constexpr double k_copies = 10;  // of the triangles' bytes: corners, vertices, edges and the tree
+  constexpr double k_copies = 14;  // of the triangles' bytes: corners, vertices, edges, the tree and the bins
   std::string fault = read_whole(path, k_copies, text);
   if (!fault.empty()) return fault;
   std::vector<Vec3> corners;

@@ -47,6 +47,7 @@ TriangleSurface::TriangleSurface(const std::vector<Vec3>& corners) {
     bounds_.add(boxes.back());
   }
   tree_ = BoxTree(std::move(boxes));
+  bins_ = PlanBins(vertices_, triangles_, bounds_);
   const Vec3 origin = vertices_.empty() ? Vec3{} : vertices_[0];
   for (const auto& v : triangles_)
     volume_ += triple_product(less(vertices_[v[0]], origin), less(vertices_[v[1]], origin),
@@ -58,7 +59,8 @@ bool TriangleSurface::holds(const Vec3& x, double slack) const {
   int winding = 0;
   Box above{x, x};
   above.lower[2] -= slack, above.upper[2] = Box::k_none;
-  tree_.any_near(above, [&](int k) {
+  bins_.visit_at(x[0], x[1], [&](int k) {
+    if (!tree_.boxes()[k].meets(above)) return;
     const auto& v = triangles_[k];
     int side[3];
     for (int c = 0; c < 3; ++c) {
@@ -66,14 +68,13 @@ bool TriangleSurface::holds(const Vec3& x, double slack) const {
       side[c] = from < to ? side_of(vertices_[from], vertices_[to], x)
                           : -side_of(vertices_[to], vertices_[from], x);
     }
-    if (side[0] != side[1] || side[1] != side[2]) return false;
+    if (side[0] != side[1] || side[1] != side[2]) return;
     const Vec3 a = less(vertices_[v[1]], vertices_[v[0]]), b = less(vertices_[v[2]], vertices_[v[0]]),
                r = less(x, vertices_[v[0]]);
     const double normal = a[0] * b[1] - a[1] * b[0];  // its vertical component
     const double height = vertices_[v[0]][2] +
                           (r[0] * (a[2] * b[1] - a[1] * b[2]) + r[1] * (a[0] * b[2] - a[2] * b[0])) / normal;
     if (height > x[2] + (side[0] > 0 ? -slack : slack)) winding += side[0];
-    return false;
   });
   return winding > 0;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "input/box_tree.hpp"
+#include "input/plan_bins.hpp"
 
 namespace mpm {
 
@@ -34,6 +35,7 @@ class TriangleSurface {
   std::vector<Vec3> vertices_;  // m
   std::vector<std::array<int, 3>> triangles_;
   BoxTree tree_;
+  PlanBins bins_;
   Box bounds_;
   double volume_ = 0;
 };

@@ -12,91 +12,22 @@
 #include "common/numbers.hpp"
 #include "common/text.hpp"
 #include "output/files.hpp"
-#include "output/probes.hpp"
+#include "output/history_columns.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr const char* k_axis[3] = {"x", "y", "z"};
-
-/// The columns of the energy balance.
-struct EnergyColumn {
-  const char* name;
-  double EnergyRow::*value;
-};
-constexpr EnergyColumn k_energy_columns[] = {
-    {"energy_kinetic", &EnergyRow::kinetic}, {"energy_internal", &EnergyRow::internal},
-    {"energy_elastic", &EnergyRow::elastic}, {"energy_dissipated", &EnergyRow::dissipated},
-    {"energy_lost", &EnergyRow::lost},       {"work_gravity", &EnergyRow::gravity},
-    {"work_loads", &EnergyRow::loads},       {"work_rigids", &EnergyRow::rigids},
-    {"work_contact", &EnergyRow::contact},   {"work_damping", &EnergyRow::damping},
-    {"work_update", &EnergyRow::update},     {"energy_error", &EnergyRow::error}};
-
-/// Calls f(column) for those of a run: the work of loads where it has some.
-template <class F>
-void for_each_energy(const Config& config, F&& f) {
-  for (const EnergyColumn& column : k_energy_columns)
-    if (column.value != &EnergyRow::loads || !config.loads.empty()) f(column);
-}
 
 /// Appends ",a,b[,c]".
 void append(std::string& row, const Vec3& vector, int dim) {
   for (int d = 0; d < dim; ++d) row += "," + text_of(vector[d]);
 }
 
-/// Appends ",NAMEx,NAMEy[,NAMEz]".
-void append(std::string& header, const std::string& name, int dim) {
-  for (int d = 0; d < dim; ++d) header += "," + name + k_axis[d];
-}
-
-/// Calls f(direction, side) for each side of the mesh that holds soil.
-template <class F>
-void for_each_wall(const Config& config, F&& f) {
-  for (int d = 0; d < config.dim; ++d)
-    for (int side = 0; side < 2; ++side)
-      if (!is_open(config.mesh.walls[d][side])) f(d, side);
-}
-
 }  // namespace
 
 std::string history_header(const Config& config) {
-  std::string header = "step,time,dt,wall_time";
-  for (const BodyConfig& body : config.bodies) {
-    for (int d = 0; d < config.dim; ++d)
-      for (const char* side : {"min", "max"}) header += "," + body.name + "_" + k_axis[d] + side;
-    header += "," + body.name + "_kinetic_energy";
-    append(header, body.name + "_momentum_", config.dim);
-    for (int d = 0; d < config.dim; ++d) header += "," + body.name + "_" + k_axis[d] + "q999";
-    append(header, body.name + "_centre_", config.dim);
-    header += "," + body.name + "_grid_velocity";
-    for (const char* quantity : {"_mass", "_lost_mass", "_lost_energy"}) header += "," + body.name + quantity;
-    append(header, body.name + "_lost_momentum_", config.dim);
-    for (const char* number : {"_strays", "_limited", "_put_back"}) header += "," + body.name + number;
-    if (config.particle_domain != ParticleDomain::fixed) header += "," + body.name + "_stretched";
-    if (config.particle_domain == ParticleDomain::split)
-      for (const char* quantity : {"_particles", "_merged", "_merged_energy"})
-        header += "," + body.name + quantity;
-    if (config.position_correction)
-      for (const char* energy : {"_corrected_energy", "_raised_energy"}) header += "," + body.name + energy;
-  }
-  for (const RigidConfig& rigid : config.rigids)
-    for (const char* quantity : {"_", "_velocity_", "_force_"})
-      append(header, rigid.name + quantity, config.dim);
-  for_each_wall(config, [&](int d, int side) {
-    append(header, std::string("wall_") + k_axis[d] + (side == 0 ? "min" : "max") + "_force_", config.dim);
-  });
-  for (const LoadConfig& load : config.loads) {
-    append(header, load.name + "_force_", config.dim);
-    header += "," + load.name + "_area";
-  }
-  header += ",empty_cells";
-  if (config.output.energy)
-    for_each_energy(config, [&](const EnergyColumn& column) { header += std::string(",") + column.name; });
-  for (const ProbeConfig& probe : config.probes)
-    for (const std::string& column : columns_of(probe, config)) header += "," + column;
-  if (!config.stages.empty()) header += ",stage";
-  if (config.balance) header += ",unbalanced_ratio";
-  return header;
+  std::vector<std::string> names;
+  for (const HistoryColumn& column : history_columns(config)) names.push_back(column.name);
+  return join(names);
 }
 
 std::string format_history_row(const HistoryRow& row, const Config& config) {

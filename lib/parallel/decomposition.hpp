@@ -162,7 +162,7 @@ class Decomposition {
   long exchanges_ = 0;  // that were sent ahead
   Kokkos::View<Control, Staging> seen_;
   GlobalBound bound_;
-  bool present_added_ = false;  // nodes.soil holds the sums over ranks of the soil as it is
+  bool present_added_ = false;  // nodes.soil and its boundary hold the sums over ranks of the soil as it is
   bool forces_shared_ = false;
 
   WorkClock clock_;

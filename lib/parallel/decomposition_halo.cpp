@@ -93,7 +93,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::add_soil(State_& s, const Space& st
     PetscCall(post_bound());
   } else {
     const bool added = s.summed.soil && present_added_;  // where they were measured before the step
-    PetscCall(add(s.space, soil_fields(s, !added, s.soil_boundary), true));
+    PetscCall(add(s.space, soil_fields(s, !added, !added && s.soil_boundary), true));
   }
   note_bound(s, stream);  // for the next step
   ahead_ = Ahead::nothing;
@@ -139,7 +139,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::add_present_soil(State_& s) {
     PetscCall(end_ahead(s, s.space, false));
     ahead_ = Ahead::added;
   } else if (ahead_ == Ahead::nothing) {
-    PetscCall(add(s.space, soil_fields(s, true, false), false));
+    PetscCall(add(s.space, soil_fields(s, true, s.soil_boundary), false));
   }
   clock_.stop();
   present_added_ = true;

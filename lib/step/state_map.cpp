@@ -31,7 +31,11 @@ class BodyLaw {
     std::size_t of_own = 0;  // number among OwnValues
     for (const StateVariable& variable : variables_) {
       const auto found = std::find(before.begin(), before.end(), variable.name);
-      const bool may_own = variable.parameter != nullptr, own = may_own && body.largest_own[of_own];
+      const bool may_own = variable.parameter != nullptr,
+                 by_ratio = may_own && variable.parameter == std::string("su") && body.keeps_strength &&
+                            parameter_of(model_index(config.materials[body.material].model),
+                                         config.materials[body.material].parameters, "su_ratio") > 0,
+                 own = may_own && (body.largest_own[of_own] || by_ratio);
       const bool keeps = found != before.end() && (variable.changes || own);
       const std::size_t column = static_cast<std::size_t>(found - before.begin());
       kept_.push_back(keeps && column < state.columns.size() ? find(state.soil, state.columns[column])
@@ -77,6 +81,7 @@ class Starts {
   ParticleStart at(std::size_t p, double excess) const {
     ParticleStart start;
     for (int d = 0; d < dim_; ++d) start.position[d] = position_[p * dim_ + d];
+    start.up = dim_ - 1;
     start.height = height_ != nullptr ? height_->values[p] : start.position[dim_ - 1];
     for (int k = 0; k < stress_->components; ++k)
       start.stress[k] = stress_->values[p * stress_->components + k] + (k < 3 ? excess : 0);

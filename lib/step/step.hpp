@@ -117,9 +117,9 @@ PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T
 template <class Space, class T, int Dim>
 void sum_present_soil(State<Space, T, Dim>& s) {
   finish_sums(s);
-  if (s.summed.soil) return;
-  reset_nodes(s);
+  if (!s.summed.soil) reset_nodes(s);
   soil_to_nodes(s, s.space);
+  if (s.summed.soil) s.summed.boundary = s.soil_boundary;
 }
 
 /// The velocities of the soil's particles, where XPIC or APIC is chosen: a part of function 5.
@@ -225,7 +225,7 @@ struct Step {
   PetscErrorCode persistent(long* left) const {
     PetscFunctionBeginUser;
     if constexpr (is_device<Space>) {
-      if (!timers.sampling() && can_persist(s)) {
+      if (!timers.sampling() && s.kick == 1 && can_persist(s)) {
         const long most = *left;
         const auto steps = [&] {  // functions 4 to 6, and 1 to 3 of the next step
           const long done = run_persistent_steps(s, dt, most);
@@ -354,6 +354,7 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt,
     case StepForm::overlapped: PetscCall(step.overlapped()); break;
     case StepForm::persistent: PetscCall(step.persistent(left)); break;
   }
+  s.kick = 1, s.begins = false;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -30,6 +30,7 @@ struct StepRange {
   double time = 0, dt = 0;  // s, before the first of them; length of each
   double origin = 0;        // s
   long first = 0;
+  double before = 0;  // s, length of the step before them; 0: they are the first of the run
 };
 
 /// What a batch of steps came to.
@@ -59,7 +60,8 @@ class Stepper {
   virtual PetscErrorCode advance(const StepRange& steps, Batch* batch) = 0;
   /// Bins, patches and lists anew, and the correction of positions. elapsed: time since the last rebuild [s].
   virtual PetscErrorCode rebuild(double elapsed, Failure* failure) = 0;
-  /// Domains that stretch follow the soil, as at a rebuild; lists stay. Between two steps, with no rebuild due.
+  /// Domains that stretch follow the soil, as at a rebuild; lists stay. Between two steps, with no rebuild
+  /// due.
   virtual PetscErrorCode follow_soil() = 0;
   /// Rows of the history at row->time; `interval` [s] is the time since the last call, over which the forces
   /// are a mean.
@@ -75,8 +77,11 @@ class Stepper {
   virtual PetscErrorCode measure_probes(const ProbeState& state, std::vector<double>* values) = 0;
   /// The sums of the columns of the rasters (column_sums.hpp), of all ranks.
   virtual PetscErrorCode sum_columns(std::vector<long>* sums) = 0;
-  /// Speed of the fastest wave in the soil as it is now [m/s].
-  virtual PetscErrorCode fastest_wave(double* speed) = 0;
+  /// Speed of the fastest wave in the soil [m/s], once the soil has been compressed by a volume strain.
+  virtual PetscErrorCode fastest_wave(double compression, double* speed) = 0;
+  /// At most, the speed [m/s] at which opposite sides of a cell close in: what the velocities of soil, rigid
+  /// bodies and sides differ by, summed over the axes.
+  virtual PetscErrorCode closing_speed(double* speed) = 0;
   /// The frame at snapshot->time; on several ranks each has a range of the particles of a body.
   virtual PetscErrorCode snapshot(Snapshot* snapshot) = 0;
   /// Rows of partition.csv, on rank 0: the patches that hold particles, with these and their rank.

@@ -11,13 +11,74 @@ namespace {
 
 constexpr double k_slack = 1e-6;  // of the mesh spacing: closer to the mesh's boundary is on it
 
-/// How far a body that ends on the mesh's boundary goes on beyond it [m]: further than any point of the mesh
-/// is from another face of the body, so that the end beyond the mesh is the nearest face nowhere, in a mesh
-/// of one cell across neither.
+/// How far a body that ends on the mesh's boundary goes on beyond it [m]: further than any point of the mesh is
+/// from another face of the body, so that the end beyond the mesh is the nearest face nowhere, in a mesh of one
+/// cell across neither.
 double beyond_mesh(const MeshConfig& mesh, int dim) {
   double sum = 0;
   for (int d = 0; d < dim; ++d) sum += mesh.upper[d] - mesh.lower[d];
   return sum;
+}
+
+/// Whether an edge lies on the mesh's boundary, beyond which the body goes on.
+bool on_boundary(const Edge& edge, const MeshConfig& mesh, int dim) {
+  const double slack = k_slack * mesh.spacing;
+  bool on = false;
+  for (int k = 0; k < 2; ++k) {
+    const int d = k == 0 ? 0 : dim - 1;
+    for (const double side : {mesh.lower[d], mesh.upper[d]})
+      on = on || (std::abs(edge.from[k] - side) < slack && std::abs(edge.to[k] - side) < slack);
+  }
+  return on;
+}
+
+/// Radius [m] that corners of a polygon, anticlockwise, can be rounded by: half a cell, but no corner recedes
+/// by more than that, and no edge loses more than a share of its length. Corners that point into the body stay
+/// sharp. ends[k]: edge k is no surface, and the corners at it are none.
+double rounding_of(const Polygon& polygon, const std::vector<bool>& ends, double share, double spacing) {
+  const double most = spacing / 2;
+  double radius = most;
+  const std::size_t count = polygon.size();
+  const auto half_turn = [&](std::size_t k) {  // at vertex k, rad; 0 where there is nothing to round
+    const std::size_t before = (k + count - 1) % count;
+    if (ends[before] || ends[k]) return 0.0;
+    const Edge in = edge_of(polygon, before), out = edge_of(polygon, k);
+    const double ax = in.to[0] - in.from[0], ay = in.to[1] - in.from[1], bx = out.to[0] - out.from[0],
+                 by = out.to[1] - out.from[1];
+    return std::max(0.0, std::atan2(ax * by - ay * bx, ax * bx + ay * by) / 2);
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t next = (k + 1) % count;
+    const double recedes = 1 / std::cos(half_turn(k)) - 1;
+    const double lost = std::tan(half_turn(k)) + std::tan(half_turn(next));
+    const double length = std::hypot(polygon[next][0] - polygon[k][0], polygon[next][1] - polygon[k][1]);
+    if (recedes > 1) radius = std::min(radius, most / recedes);
+    if (radius * lost > share * length) radius = share * length / lost;
+  }
+  return radius;
+}
+
+/// Its edges moved inwards by a radius [m], but those that are no surface.
+Polygon made_smaller(const Polygon& polygon, const std::vector<bool>& ends, double radius) {
+  const std::size_t count = polygon.size();
+  const auto inward = [&](std::size_t k) {
+    const Edge edge = edge_of(polygon, k);
+    const double x = edge.to[0] - edge.from[0], y = edge.to[1] - edge.from[1], length = std::hypot(x, y);
+    return Point2{-y / length, x / length};
+  };
+  Polygon smaller;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t before = (k + count - 1) % count;
+    const Point2 a = inward(before), b = inward(k);
+    const double by_a = ends[before] ? 0 : radius, by_b = ends[k] ? 0 : radius;
+    const double cosine = a[0] * b[0] + a[1] * b[1], square = 1 - cosine * cosine;
+    constexpr double k_straight = 1e-9;  // sine squared, less is one line, or an edge that turns back
+    const double of_a = square > k_straight ? (by_a - cosine * by_b) / square : by_a / 2,
+                 of_b = square > k_straight ? (by_b - cosine * by_a) / square : by_b / 2;
+    smaller.push_back(
+        {polygon[k][0] + of_a * a[0] + of_b * b[0], polygon[k][1] + of_a * a[1] + of_b * b[1]});
+  }
+  return smaller;
 }
 
 SurfaceInput box(const Shape& shape, const MeshConfig& mesh, int dim) {
@@ -49,22 +110,18 @@ SurfaceInput box(const Shape& shape, const MeshConfig& mesh, int dim) {
 SurfaceInput polygon(const Shape& shape, const MeshConfig& mesh, int dim) {
   SurfaceInput out;
   out.kind = SurfaceKind::polygon;
-  const int up = dim - 1;
   const double slack = k_slack * mesh.spacing;
-  const auto on_boundary = [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
-    bool on = false;
-    for (int k = 0; k < 2; ++k) {
-      const int d = k == 0 ? 0 : up;
-      for (const double side : {mesh.lower[d], mesh.upper[d]})
-        on = on || (std::abs(a[k] - side) < slack && std::abs(b[k] - side) < slack);
-    }
-    return on;
-  };
-  const std::size_t count = shape.polygon.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto &a = shape.polygon[k], &b = shape.polygon[(k + 1) % count];
-    out.vertices.push_back({a[0] - mesh.lower[0], a[1] - mesh.lower[up], on_boundary(a, b)});
-  }
+  Polygon outline = shape.polygon;
+  if (signed_area_of(outline) < 0) std::reverse(outline.begin(), outline.end());
+  std::vector<bool> ends;
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    ends.push_back(on_boundary(edge_of(outline, k), mesh, dim));
+  constexpr double k_left = 1e-6;  // of an edge, so that none vanishes
+  out.radius = rounding_of(outline, ends, 1 - k_left, mesh.spacing);
+  if (dim == 3) out.radius = std::min(out.radius, (shape.width[1] - shape.width[0]) / 2);
+  const Polygon smaller = made_smaller(outline, ends, out.radius);
+  for (std::size_t k = 0; k < smaller.size(); ++k)
+    out.vertices.push_back({smaller[k][0] - mesh.lower[0], smaller[k][1] - mesh.lower[dim - 1], ends[k]});
   if (dim == 3) {
     double low = shape.width[0], high = shape.width[1];
     if (low < mesh.lower[1] + slack) low -= beyond_mesh(mesh, dim);
@@ -120,46 +177,6 @@ SurfaceInput layer(const Shape& shape, const MeshConfig& mesh, int dim) {
   return heights(*shape.top, mesh);
 }
 
-/// Radius [m] that corners of a convex polygon, anticlockwise, can be rounded by: half a cell, but no corner
-/// recedes by more than that, and no edge loses more than half its length.
-double rounding_of(const Polygon& polygon, double spacing) {
-  const double most = spacing / 2;
-  double radius = most;
-  const std::size_t count = polygon.size();
-  const auto half_turn = [&](std::size_t k) {  // at vertex k, rad
-    const Edge in = edge_of(polygon, (k + count - 1) % count), out = edge_of(polygon, k);
-    const double ax = in.to[0] - in.from[0], ay = in.to[1] - in.from[1], bx = out.to[0] - out.from[0],
-                 by = out.to[1] - out.from[1];
-    return std::atan2(ax * by - ay * bx, ax * bx + ay * by) / 2;
-  };
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t next = (k + 1) % count;
-    const double recedes = 1 / std::cos(half_turn(k)) - 1;
-    const double lost = std::tan(half_turn(k)) + std::tan(half_turn(next));
-    const double length = std::hypot(polygon[next][0] - polygon[k][0], polygon[next][1] - polygon[k][1]);
-    if (recedes > 1) radius = std::min(radius, most / recedes);
-    if (radius * lost > length / 2) radius = length / 2 / lost;
-  }
-  return radius;
-}
-
-/// Its edges moved inwards by a radius [m].
-Polygon made_smaller(const Polygon& polygon, double radius) {
-  const std::size_t count = polygon.size();
-  const auto inward = [&](std::size_t k) {
-    const Edge edge = edge_of(polygon, k);
-    const double x = edge.to[0] - edge.from[0], y = edge.to[1] - edge.from[1], length = std::hypot(x, y);
-    return Point2{-y / length, x / length};
-  };
-  Polygon smaller;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Point2 a = inward((k + count - 1) % count), b = inward(k);
-    const double share = radius / (1 + a[0] * b[0] + a[1] * b[1]);
-    smaller.push_back({polygon[k][0] + share * (a[0] + b[0]), polygon[k][1] + share * (a[1] + b[1])});
-  }
-  return smaller;
-}
-
 SurfaceInput revolved(const Shape& shape, const MeshConfig& mesh) {
   SurfaceInput out;
   out.kind = SurfaceKind::revolved;
@@ -167,8 +184,9 @@ SurfaceInput revolved(const Shape& shape, const MeshConfig& mesh) {
   const auto [low, high] = ends_of(shape);
   const Polygon section =
       section_of(shape, low < mesh.lower[2] + slack ? beyond : 0, high > mesh.upper[2] - slack ? beyond : 0);
-  out.radius = rounding_of(section, mesh.spacing);
-  for (const Point2& vertex : made_smaller(section, out.radius))
+  const std::vector<bool> all(section.size(), false);
+  out.radius = rounding_of(section, all, 0.5, mesh.spacing);
+  for (const Point2& vertex : made_smaller(section, all, out.radius))
     out.vertices.push_back({vertex[0], vertex[1] - shape.centre[2], false});
   for (int d = 0; d < 3; ++d) out.centre[d] = shape.centre[d] - mesh.lower[d];
   return out;

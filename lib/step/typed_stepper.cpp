@@ -28,6 +28,10 @@ namespace {
 // timed takes longer, in a small problem as long as ten.
 constexpr long k_samples_apart = 5000;
 
+/// Cells that the fastest wave crosses in the time for which friction keeps normal impulse: longer than the
+/// impulse of a node rings with the waves of its cells, and shorter than loads change.
+constexpr double k_friction_cells = 10;
+
 /// The reference heights of particles that are created now are their heights [m, absolute]; the last
 /// direction is the vertical one.
 template <int Dim>
@@ -46,6 +50,7 @@ std::vector<std::vector<double>> start_state(const Config& config, const AnyMate
   const std::size_t count = in.position.size() / Dim;
   std::vector<std::vector<double>> state(variables.size(), std::vector<double>(count));
   ParticleStart start;
+  start.up = Dim - 1;
   std::array<const StateField*, k_most_own> own{};
   const auto keys = own_parameters(variables);
   for (const StateField& given : particles.own_parameters)
@@ -191,6 +196,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   if (model.owners.empty() && !config_.p2g.rebuild_interval) state_.rebuild_late = GlobalBound::k_late;
   state_.batches.limit = config_.device_memory_limit.value_or(0) * k_gib;
   state_.damping = config_.damping;
+  goes_on_ = model.from_run;
+  state_.friction_time = k_friction_cells * critical_time_step(config_);
   state_.flip_fraction = config_.flip_fraction;
   if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;
   state_.affine = config_.velocity_update == VelocityUpdate::apic;
@@ -254,11 +261,16 @@ long TypedStepper<Space, T, Dim>::steps_to_rebuild(const Control& control, bool 
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::advance(const StepRange& range, Batch* batch) {
   PetscFunctionBeginUser;
-  const double dt = range.dt;
+  const double dt = step_ = range.dt;
   long steps = range.count;
+  // Velocities are means over a step: from one to the next they change by half of each step's length, and
+  // from rest by half of the first step's.
+  const double before = range.before > 0 || !goes_on_ ? range.before : dt;
+  state_.kick = before == dt ? 1 : (before + dt) / (2 * dt);
+  state_.begins = before == 0;
   state_.time = range.time;
   PetscCall(begin_sides());
-  begin_loads(state_, {range.origin - config_.time.start, dt, range.first});
+  begin_loads(state_, {range.origin - config_.time.start, dt, range.first, before});
   if (ranks_) {
     PetscCall(advance_together(steps, dt, batch));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -481,6 +493,7 @@ Failure TypedStepper<Space, T, Dim>::describe(const Fault& fault) const {
       : fault.kind == FaultKind::volume
           ? "has left 0.2 to 2 times its volume at the start (-stray_particles stop)"
       : fault.kind == FaultKind::law   ? of_law
+      : fault.kind == FaultKind::state ? "has a state variable of its law that is not finite"
       : fault.kind == FaultKind::alone ? "is alone, with no other soil in reach (-stray_particles stop)"
                                        : "moved more than a cell in one step";
   return {who + where + what};

@@ -47,7 +47,8 @@ class TypedStepper final : public Stepper {
   PetscErrorCode sum_sections(std::vector<SectionSum>* sums) override;
   PetscErrorCode measure_probes(const ProbeState& state, std::vector<double>* values) override;
   PetscErrorCode sum_columns(std::vector<long>* sums) override;
-  PetscErrorCode fastest_wave(double* speed) override;
+  PetscErrorCode fastest_wave(double compression, double* speed) override;
+  PetscErrorCode closing_speed(double* speed) override;
   PetscErrorCode snapshot(Snapshot* snapshot) override;
   PetscErrorCode ownership(std::vector<OwnedPatch>* patches) override;
   std::string drain_log() override { return ranks_ ? ranks_->drain_log() : ""; }
@@ -137,6 +138,8 @@ class TypedStepper final : public Stepper {
   double seen_increment_ = 0;  // of the movement bound, when the host looked last [cells]
   double growth_ = 0;          // of the increment a step [cells]
   double stepping_ = 0;        // s of wall time in advance
+  double step_ = 0;            // s, length of the last step
+  bool goes_on_ = false;       // the soil starts from another run, with the velocities of its last step
   double last_increment_ = std::numeric_limits<double>::infinity();  // cells, of all ranks, of the last batch
   std::vector<long> first_;                                          // id of the first particle of each body
   std::vector<long> unused_;                            // ids of each body that no particle has had

@@ -85,7 +85,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::unbalanced_ratio(double time, double
   buoyancy_to_nodes(state_);
   loads_to_nodes(state_);
   if (ranks_) PetscCall(ranks_->add_present_soil(state_));
-  const UnbalancedForces own = unbalanced_forces(state_);
+  if (state_.shear_fraction) PetscCall(strength_to_nodes(state_, ranks_.get()));
+  const UnbalancedForces own = unbalanced_forces(state_, step_ > 0 ? step_ : critical_time_step(config_));
   double sums[2] = {own.force, own.weight};
   if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_));
   *ratio = sums[1] > 0 ? sums[0] / sums[1] : std::numeric_limits<double>::infinity();
@@ -102,11 +103,35 @@ double TypedStepper<Space, T, Dim>::velocity_of(std::size_t r, int d, double pre
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode TypedStepper<Space, T, Dim>::fastest_wave(double* speed) {
+PetscErrorCode TypedStepper<Space, T, Dim>::fastest_wave(double compression, double* speed) {
   PetscFunctionBeginUser;
   collect_soil(state_);
-  *speed = mpm::fastest_wave(state_);
+  *speed = mpm::fastest_wave(state_, compression);
   if (ranks_) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, speed, 1, MPI_DOUBLE, MPI_MAX, comm_));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::closing_speed(double* speed) {
+  PetscFunctionBeginUser;
+  collect_soil(state_);
+  VelocityRange range = velocity_range(state_);
+  const auto widen = [&range](int d, double velocity) {
+    range.least[d] = std::min(range.least[d], velocity), range.most[d] = std::max(range.most[d], velocity);
+  };
+  const auto rigids = mirror_of(state_.rigids);
+  for (int d = 0; d < Dim; ++d) {
+    for (std::size_t r = 0; r < config_.rigids.size(); ++r)
+      widen(d, config_.rigids[r].velocity[d]), widen(d, rigids(r).velocity[d]);
+    for (const auto& pair : config_.mesh.sides)
+      for (const SideConfig& side : pair) widen(d, side.velocity[d]);
+  }
+  if (ranks_) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range.least, 3, MPI_DOUBLE, MPI_MIN, comm_));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range.most, 3, MPI_DOUBLE, MPI_MAX, comm_));
+  }
+  *speed = 0;
+  for (int d = 0; d < Dim; ++d) *speed += range.most[d] - range.least[d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -339,7 +364,8 @@ std::string TypedStepper<Space, T, Dim>::batches_report() const {
   template PetscErrorCode TypedStepper<Space, T, Dim>::measure(double, HistoryRow*);       \
   template PetscErrorCode TypedStepper<Space, T, Dim>::unbalanced_ratio(double, double*);  \
   template void TypedStepper<Space, T, Dim>::set_gravity(double);                          \
-  template PetscErrorCode TypedStepper<Space, T, Dim>::fastest_wave(double*);              \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::fastest_wave(double, double*);      \
+  template PetscErrorCode TypedStepper<Space, T, Dim>::closing_speed(double*);             \
   template PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot*);                \
   template PetscErrorCode TypedStepper<Space, T, Dim>::keep_heights(const Model&);         \
   template PetscErrorCode TypedStepper<Space, T, Dim>::save_for_starts(SavedState*) const; \

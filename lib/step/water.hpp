@@ -21,6 +21,16 @@ Water<Dim> water_of(const Config& config) {
     water.down[d] = config.gravity[d] / water.gravity;
     water.level += config.mesh.lower[d] * water.down[d];
   }
+  for (const WaterRegionConfig& region : config.water.regions) {
+    if (!region.dry && !region.level) continue;
+    WaterRegion<Dim>& own = water.regions[water.region_count++];
+    constexpr double k_dry = -1e12;  // m
+    own.level = region.dry ? k_dry : *region.level + (water.level - *config.water.level);
+    for (int d = 0; d < Dim; ++d) {
+      own.lower[d] = region.lower[d] - config.mesh.lower[d];
+      own.upper[d] = region.upper[d] - config.mesh.lower[d];
+    }
+  }
   return water;
 }
 

@@ -17,6 +17,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 MEAN, DEVIATOR, STATE = 1e-3, 3e-3, 3e-3
 LARGE_INCREMENTS = {"softening_random_ps": 2e-2}  # of the deviator
 MEAN_ONLY = {"power_isotropic"}
+# The independent program forgets the gap of soil that has parted: these are compared up to where it first does.
+PARTS = {"dp_random_3d", "dp_random_ps", "mc_random_3d", "mc_random_ps"}
 FREE_YZ = {"dp_random_3d", "mc_random_3d", "mcc_random_3d", "tresca_random_3d"}  # 3D alone
 
 SAND = dict(young=2e7, poisson=0.3, cohesion=5000, friction_deg=30, dilation_deg=10)
@@ -60,20 +62,24 @@ def deviator_of(table, n):
     return [table[name][n] - (mean if k < 3 else 0) for k, name in enumerate(STRESS)]
 
 
-def misfit(table, right):
+def misfit(table, right, until_it_parts):
     """Differences of the mean, the deviator and the first state variable, each over the file's largest."""
     rows = range(len(right["time"]))
     if len(table["time"]) != len(right["time"]):
         raise RuntimeError(f"{len(table['time'])} rows in lieu of {len(right['time'])}")
     largest = max(abs(x) for n in rows for x in deviator_of(right, n))
     largest_mean = max([largest] + [abs(mean_of(right, n)) for n in rows])
+    if until_it_parts:
+        rows = range(next((n for n in rows if table["parted_volume"][n] > 0), len(rows)))
+        if len(rows) < 2:
+            raise RuntimeError(f"only {len(rows)} rows before the soil parts")
     mean = max(abs(mean_of(table, n) - mean_of(right, n)) for n in rows)
     deviator = max(abs(a - b) for n in rows for a, b in zip(deviator_of(table, n), deviator_of(right, n)))
     state = 0.0
     for brief, full in (("xi", "plastic_strain"), ("Pc", "preconsolidation"), ("v", "specific_volume")):
         if brief in right:
             size = max(max(map(abs, right[brief])), 1e-6)
-            state = max(state, max(abs(a - b) for a, b in zip(table[full], right[brief])) / size)
+            state = max(state, max(abs(table[full][n] - right[brief][n]) for n in rows) / size)
     return mean / largest_mean, deviator / max(largest, 1e-300), state
 
 
@@ -84,7 +90,7 @@ def check(binary, name, file, folder, precision):
     for dim in (3,) if name in FREE_YZ else (2, 3):
         table = run_point(binary, pathlib.Path(folder) / f"{name}_{precision}_{dim}", deck_of(model, **parameters), file,
                           "-element_parts", 40, "-precision", precision, "-dim", dim)
-        mean, deviator, state = misfit(table, right)
+        mean, deviator, state = misfit(table, right, name in PARTS)
         print(f"{name:26s} {precision:6s} {dim}D: mean {mean:.2e}, deviator {deviator:.2e}, state {state:.2e}")
         if not mean <= MEAN:
             faults.append(f"{name} {precision} {dim}D: the mean differs by {mean:.2e}, at most {MEAN}")

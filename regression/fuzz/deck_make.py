@@ -17,7 +17,7 @@ GEOMETRY = ("lower", "upper", "polygon", "width", "centre", "radius", "point", "
 PETSC = [
     "-log_view", "-log_view :log.txt", "-log_view :missing/log.txt", "-options_view", "-options_left", "-malloc_debug",
     "-memory_view", "-objects_dump", "-help", "-version", "-info :info.txt", "-history petsc.txt", "-log_exclude vec", "-nox",
-    "-saws_options", "-options_monitor", "-malloc_dump", "-petsc_unknown 3", "-get_total_flops", "-skip_petscrc",
+    "-saws_options", "-options_monitor", "-dll_append x.so", "-dm_view :dm.txt", "-malloc_dump", "-petsc_unknown 3", "-get_total_flops", "-skip_petscrc",
     "--kokkos-num-threads=1", "--kokkos-num-threads=foo", "--kokkos-help", "--kokkos-device-id=7", "-p2g", "-dim", "- 3",
     "--dim 2", "dim 2", "-unknown_option"]
 ENVIRONMENTS = {

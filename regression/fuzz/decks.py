@@ -134,8 +134,7 @@ def first_line(text):
 
 
 def left_behind(trial, folder):
-    ours = {"deck.opts", *trial.files, "log.txt", "info.txt", "petsc.txt", "cache"}
-    ours |= {f"{name}.{k}" for name in ("info.txt", "petsc.txt") for k in range(trial.ranks)}
+    ours = {"deck.opts", *trial.files, "cache"}
     return sorted({path.relative_to(folder).parts[0] for path in folder.iterdir()} - ours)
 
 

@@ -1,16 +1,17 @@
 """Differences of a deck and an image that are meant, each with its reason."""
 import re
 
-def acting_sides_meet(deck):
-    """Whether sides across two axes act by more than a mirror."""
-    sides = [name for name, value in deck.items() if name.startswith("mesh_") and (value in ("friction", "absorbing") or name.endswith("_velocity"))]
+
+def moving_sides_meet(deck):
+    """Whether sides across two axes move."""
+    sides = [name for name in deck if name.startswith("mesh_") and name.endswith("_velocity")]
     return len({name[5] for name in sides}) > 1
 
 
 # (image, condition on the deck, columns and fields, the most that is meant, reason)
 MEANT = [
-    ("turn", lambda deck: acting_sides_meet(deck), ".*", float("inf"),
-     "sides with friction, dashpots or a velocity that meet act one after the other at the nodes that they share"),
+    ("turn", lambda deck: moving_sides_meet(deck), ".*", float("inf"),
+     "of two sides that move and prescribe the same component of a velocity, that of the last axis prevails"),
     (".*", lambda deck: "loads" in deck, r"_area|load_area", 1e-6,
      "weights on a face are those of a box of 1e-12 cells, which have fewer digits"),
     ("restart_ranks", lambda deck: True, r"history (energy|work)_", 1e-12,

@@ -6,7 +6,9 @@
 c, fortran   a footing with the law and with its UMAT: the same fields and forces, on 1 and 2 ranks, 1 and 2 threads,
              restarted, and started from a frame; then random decks of random states
 probe        what a UMAT is given: numbers, names, places, rotations, strains
-gives_up     PNEWDT, XIT and a stress that is not a number end the run with status 3, the particle, the step and the place
+gives_up     PNEWDT, XIT, and a stress or a state variable that is not a number end the run with status 3, the particle, the step
+             and the place
+ends         a UMAT that ends the program: status 3 and a line with the particle, the step and the place; status 2 at the start
 driver       -element_path: the same paths through a law and through its UMAT, and what the UMAT is given
 refused      options and libraries that are wrong: one line, and nothing is written
 
@@ -256,8 +258,9 @@ class Tests:
     def test_gives_up(self):
         library = self.build(HERE / "probe.c", "probe.so")
         law = "was given up by its UMAT, which set PNEWDT below 1 or called XIT"
+        state = "has a state variable of its law that is not finite"
         for dim in self.dims:
-            for how, words in ((1, [law]), (2, [law]), (3, ["stress", "not finite"])):
+            for how, words in ((1, [law]), (2, [law]), (3, ["stress", "not finite"]), (9, [state]), (10, [state])):
                 for ranks, threads in ((1, 1), (1, 2), (2, 1)):
                     deck, _ = self.block(dim, "-time_step", 1e-3, "-time_end", 1)
                     folder, done = self.run("gives_up", *deck, *self.umat(library, [1e6, 0.3, how, 0.02], 38), status=3,
@@ -267,6 +270,27 @@ class Tests:
                     self.check(len(lines) == 1 and all(word in lines[0] for word in ["of body soil at (", "step", *words]), what)
                     self.check(how != 2 or "umat: strain 0.25 in step 7 of probe" in done.stderr, what)
                     self.check(frames(folder) and contents(frames(folder)[0]), "frames before the failure")
+
+    def test_ends(self):
+        library = self.build(HERE / "probe.c", "probe.so")
+        for dim in self.dims:
+            deck, _ = self.block(dim, "-time_step", 1e-3, "-time_end", 1)
+            for how in (6, 7, 8):
+                for ranks, threads in ((1, 1), (1, 2), (2, 1)):
+                    _, done = self.run("ends", *deck, *self.umat(library, [1e6, 0.3, how, 0.02], 38), status=3, ranks=ranks,
+                                       threads=threads)
+                    lines = [line for line in done.stderr.splitlines() if "ended the program" in line]
+                    words = ("mpm: step ", "the UMAT of material clay", "at particle ", " of the run, at (")
+                    self.check(lines and all(word in lines[0] for word in words),
+                               f"ends {how} in {dim}D, {ranks} ranks, {threads} threads: {done.stderr}")
+            self.refused(f"takes a UMAT that returns to its caller; it ended the program (exit, or STOP in Fortran) when it was called",
+                         *self.umat(library, [1e6, 0.3, 11], 38))
+        (self.base / "loaded.c").write_text("#include <stdlib.h>\n__attribute__((constructor)) static void leave(void) { exit(0); }\n"
+                                            "void umat(void) {}\n")
+        self.refused("(exit, or STOP in Fortran) as it was loaded", *self.umat(self.build(self.base / "loaded.c", "loaded.so"), [1e6, 0.3]))
+        if shutil.which(os.environ.get("FC", "gfortran")):
+            (self.base / "stop.f").write_text("      SUBROUTINE UMAT\n      STOP\n      END\n")
+            self.refused("ended the program", *self.umat(self.build(self.base / "stop.f", "stop.so"), [1e6, 0.3]))
 
     def paths_of(self, dim, size):
         """Paths {name: columns}: by strains, with states that turn, and with stresses that are kept."""
@@ -338,6 +362,13 @@ class Tests:
         lines = self.drive(self.umat(self.base / "none.so", [1e6, 0.3]), path, 2, status=2)
         self.check(len(lines) == 1 and lines[0].startswith("mpm: -clay_library: given"), f"driven without a library: {lines}")
 
+    def object_file(self):
+        """An ELF file of another type: an object file."""
+        (self.base / "object.c").write_text("void umat(void) {}\n")
+        path = self.base / "object.so"
+        subprocess.run([os.environ.get("CC", "cc"), "-c", "-o", path, self.base / "object.c"], check=True)
+        return path
+
     def refused(self, words, *options):
         deck, _ = self.block(2, "-time_end", "1e-3")
         folder, done = self.run("refused", *deck, *options, status=2)
@@ -355,6 +386,15 @@ class Tests:
         (self.base / "open.c").write_text("void missing_(void); void umat(void) { missing_(); }\n")
         self.build(self.base / "bare.c", "bare.so")
         unbound = self.build(self.base / "open.c", "open.so")
+        whole, cuts = library.read_bytes(), {}
+        for size in (3, 40, 1000, len(whole) // 2, len(whole) - 1):
+            cuts[size] = self.base / f"cut_{size}.so"
+            cuts[size].write_bytes(whole[:size])
+            self.refused("it is no ELF file" if size < 4 else "it is cut short: ", *self.umat(cuts[size], elastic))
+        other = self.base / "processor.so"
+        other.write_bytes(whole[:18] + b"\xf3\x00" + whole[20:])  # RISC-V
+        self.refused("it is for another processor", *self.umat(other, elastic))
+        self.refused("not a shared library", *self.umat(self.object_file(), elastic))
         for path, words in ((self.base / "none.so", "takes a shared library, which is a regular file that can be read"),
                             (empty, "takes a shared library, which is a regular file that can be read"),
                             (text, "takes a shared library that can be loaded; "),
@@ -389,7 +429,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("binary", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("tests", nargs="*", default=["c", "fortran", "driver", "probe", "gives_up", "refused"])
+    parser.add_argument("tests", nargs="*", default=["c", "fortran", "driver", "probe", "gives_up", "ends", "refused"])
     parser.add_argument("--decks", type=int, default=60)
     parser.add_argument("--dims", default="2,3")
     args = parser.parse_intermixed_args()

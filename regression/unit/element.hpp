@@ -128,15 +128,20 @@ struct Misfit {
   double mean = 0, deviator = 0, plastic_strain = 0;
 };
 
+/// forgets_gaps: as the file's program does, soil that has parted takes pressure as soon as it is compressed.
 template <class Law, int Dim>
-Misfit replay(const Law& law, const Replay& file, int parts) {
+Misfit replay(const Law& law, const Replay& file, int parts, bool forgets_gaps = false) {
   Point<Law, Dim> point(law, file.rows[0].stress);
   Misfit apart, largest;
   for (std::size_t n = 1; n < file.rows.size(); ++n) {
     Sym by, got{};
     for (int k = 0; k < 6; ++k) by[k] = (file.rows[n].strain[k] - file.rows[n - 1].strain[k]) / parts;
     const double dt = (file.rows[n].time - file.rows[n - 1].time) / parts;
-    for (int part = 0; part < parts; ++part) point.strain(by, dt);
+    for (int part = 0; part < parts; ++part) {
+      point.strain(by, dt);
+      if constexpr (requires { Law::parted; })
+        if (forgets_gaps) point.state[Law::parted] = 0;
+    }
     for (int k = 0; k < sym_size<Dim>; ++k) got[k] = point.stress[k];
     const auto& right = file.rows[n];
     const auto keep = [](double& most, double value) { most = std::fmax(most, std::fabs(value)); };

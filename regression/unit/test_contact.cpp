@@ -103,28 +103,58 @@ TEST_CASE("contact: no pull, no penetration, and shear up to the lesser of its b
   CHECK(std::fabs(in_3d[0] + 0.6) + std::fabs(in_3d[1] + 0.8) + std::fabs(in_3d[2] + 2) < 1e-15);
 }
 
-TEST_CASE("friction spends the normal impulse of all steps, no more and no less", "[contact]") {
+TEST_CASE("friction over many steps is a fraction of the normal impulse of all of them, which comes in few",
+          "[contact]") {
   // the impulse comes in every fourth step only; the driving is less than friction takes on the whole
   Interface<double> interface { k_infinite, 0.5 };
+  interface.fresh = 0.05;
   double normal = 0, tangential = 0, v = 0;
   const auto run = [&](double drive, int steps) {
     normal = tangential = 0;
     for (int step = 0; step < steps; ++step) {
       v += drive;
-      interface.stock *= k_memory<double>;
+      interface.mean *= 1 - interface.fresh;
       const auto change =
           contact_correction<double, 2>({v, step % 4 == 0 ? -4.0 : 0.01}, {0, 0}, {0, -1}, interface);
       v += change[0];
       normal += change[1], tangential -= change[0];
     }
   };
+  run(0.45, 400);  // the mean comes up from nothing
+  CHECK(tangential < 0.5 * normal);
   run(0.45, 400);  // tan = 0.45 < 0.5: it sticks
   CHECK(std::fabs(v) < 1e-12);
   CHECK(std::fabs(tangential - 0.45 * 400) < 1e-9);
-  interface.stock = 0;
-  run(0.6, 400);  // it slides, by what friction does not take
-  CHECK(std::fabs(tangential / normal - 0.5) < 1e-3);
-  CHECK(std::fabs(v - 0.1 * 400) < 0.5);
+  run(0.6, 400);
+  const double before = v;
+  run(0.6, 400);  // it slides, under all that friction gives
+  CHECK(std::fabs(tangential / normal - 0.5) < 1e-12);
+  CHECK(std::fabs(v - before - 0.1 * 400) < 1e-9);
+}
+
+TEST_CASE("soil that has stuck for long has no friction in store, and soil that begins at rest has all of it",
+          "[contact]") {
+  const auto friction_of = [](Interface<double>& interface, double slip) {
+    return -contact_correction<double, 2>({slip, -1}, {0, 0}, {0, -1}, interface)[0];
+  };
+  Interface<double> held { k_infinite, 0.5 };
+  held.fresh = 0.05;
+  for (int step = 0; step < 1000; ++step) {
+    held.mean *= 1 - held.fresh;
+    friction_of(held, 0);
+  }
+  double friction = 0;
+  for (int step = 0; step < 10; ++step) {
+    held.mean *= 1 - held.fresh;
+    friction += friction_of(held, 100);
+  }
+  CHECK(std::fabs(friction - 0.5 * 10) < 1e-12);
+  Interface<double> rests { k_infinite, 0.5 };
+  rests.first = 2, rests.pressing = 1;  // the first step changes velocities by half of the later ones
+  CHECK(std::fabs(friction_of(rests, 100) - 0.5 * 2) < 1e-12);
+  Interface<double> hits { k_infinite, 0.5 };
+  hits.first = 2;
+  CHECK(friction_of(hits, 100) == 0);
 }
 
 TEST_CASE("the inward normal is against the mass gradient, in a roller's plane, and none in the body",

@@ -33,13 +33,13 @@ void check_replay(const std::string& name, const Values& values) {
     CHECK(misfit.deviator < 3e-3);
     CHECK(misfit.plastic_strain < 3e-3);
   };
-  check(replay<Law<double>, 3>(law_of<Law<double>>(values), file, 40), "double 3D");
-  check(replay<Law<float>, 3>(law_of<Law<float>>(values), file, 40), "single 3D");
+  check(replay<Law<double>, 3>(law_of<Law<double>>(values), file, 40, true), "double 3D");
+  check(replay<Law<float>, 3>(law_of<Law<float>>(values), file, 40, true), "single 3D");
   bool flat = true;
   for (const auto& row : file.rows) flat &= row.strain[2] == 0 && row.strain[4] == 0 && row.strain[5] == 0;
   if (!flat) return;
-  check(replay<Law<double>, 2>(law_of<Law<double>>(values), file, 40), "double 2D");
-  check(replay<Law<float>, 2>(law_of<Law<float>>(values), file, 40), "single 2D");
+  check(replay<Law<double>, 2>(law_of<Law<double>>(values), file, 40, true), "double 2D");
+  check(replay<Law<float>, 2>(law_of<Law<float>>(values), file, 40, true), "single 2D");
 }
 
 /// How many stresses after a step from each of many stresses of any size are not finite.
@@ -288,4 +288,62 @@ TEST_CASE("a cut-off holds the largest principal stress, the cap the mean stress
             {{"young", 2e7}, {"poisson", 0.2}, {"cohesion", 5000}, {"friction_deg", 30}, {"tension", 9000}})
             .warning()
             .find("8660.25 Pa") != std::string::npos);
+}
+
+namespace {
+
+/// Largest difference of two laws on random paths, over the largest stress.
+template <class Law>
+double apart(const Values& one, const Values& other) {
+  Point<Law, 3> a(law_of<Law>(one), {}), b(law_of<Law>(other), {});
+  Dice dice{std::mt19937_64(5)};
+  double largest = 0, most = 0;
+  for (int n = 0; n < 500; ++n) {
+    const Sym by = random_sym(dice, 3e-4, false);
+    a.strain(by), b.strain(by);
+    for (int k = 0; k < 6; ++k) {
+      most = std::max(most, std::fabs(a.stress[k] - b.stress[k]));
+      largest = std::max(largest, std::fabs(a.stress[k]));
+    }
+  }
+  CHECK(a.state[0] > 0.01);  // plastic strain
+  return most / largest;
+}
+
+}  // namespace
+
+TEST_CASE("a strength factor divides strengths and tan(friction), and keeps the stiffness",
+          "[frictional_laws]") {
+  constexpr double k_factor = 1.6;
+  const double angle = std::atan(std::tan(30 * k_pi / 180) / k_factor) * 180 / k_pi;
+  Values whole{
+      {"young", 2e7}, {"poisson", 0.3}, {"cohesion", 8000}, {"friction_deg", 30}, {"dilation_deg", 5}},
+      less{{"young", 2e7},
+           {"poisson", 0.3},
+           {"cohesion", 8000 / k_factor},
+           {"friction_deg", angle},
+           {"dilation_deg", 5}};
+  whole.push_back({"strength_factor", k_factor});
+  CHECK(apart<MohrCoulomb<double>>(whole, less) < 1e-9);
+  for (Values* values : {&whole, &less}) values->push_back({"match", DruckerPrager<double>::extension});
+  CHECK(apart<DruckerPrager<double>>(whole, less) < 1e-9);
+  for (Values* values : {&whole, &less}) (*values)[4].second = values == &whole ? 25 : angle;  // dilation
+  CHECK(apart<DruckerPrager<double>>(whole, less) < 1e-9);
+
+  Values clay = k_clay, weak = k_clay;
+  clay.push_back({"strength_factor", k_factor}), weak[2].second /= k_factor;
+  CHECK(apart<Tresca<double>>(clay, weak) < 1e-9);
+  CHECK(apart<VonMises<double>>(clay, weak) < 1e-9);
+  const auto law = law_of<Tresca<double>>(clay);
+  CHECK(std::fabs(law.shear_strength(Point<Tresca<double>, 2>(law, {}).state) * k_factor / 1000 - 1) < 1e-14);
+}
+
+TEST_CASE("a strength by the vertical stress is not below that by the depth", "[frictional_laws]") {
+  const auto clay = law_of<Tresca<double>>(
+      {{"young", 5e5}, {"poisson", 0.49}, {"su", 1000}, {"su_gradient", 100}, {"su_ratio", 0.25}});
+  CHECK(clay.initial_state({.height = -5, .stress = {-9e3, -4e3, -7e3, 0, 0, 0}})[1] == 1500);
+  CHECK(clay.initial_state({.height = -5, .stress = {-9e3, -8e3, -7e3, 0, 0, 0}})[1] == 2000);
+  CHECK(clay.initial_state({.height = -5, .stress = {-9e3, -8e3, -7e3, 0, 0, 0}, .own = {}, .up = 2})[1] ==
+        1750);
+  CHECK(clay.initial_state({.height = -5, .stress = {-9e3, 8e3, -7e3, 0, 0, 0}})[1] == 1500);
 }

@@ -3,6 +3,7 @@
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -188,6 +189,58 @@ TEST_CASE("a point is in a surface of triangles where it is in the solid", "[gro
   CHECK(in_round.holds({0, 0, 0}));
   CHECK(in_round.holds({0, 0, -0.999}));
   CHECK_FALSE(in_round.holds({0, 0, -1.001}));
+}
+
+TEST_CASE("a point is in a prism of thin triangles across the axes where it is in the solid", "[ground]") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> along(-1, 4), across(-1, 3), up(-0.5, 1.5);
+  for (const int strips : {1, 7, 300}) {
+    const double c = std::cos(0.7), s = std::sin(0.7);
+    const auto place = [&](double u, double v, double z) { return Vec3{c * u - s * v, s * u + c * v, z}; };
+    Corners corners;
+    const auto quad = [&](const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& t) {
+      for (const Vec3& x : {p, q, r, p, r, t}) corners.push_back(x);
+    };
+    for (int k = 0; k < strips; ++k) {
+      const double a = 2.0 * k / strips, b = 2.0 * (k + 1) / strips;
+      quad(place(0, a, 1), place(3, a, 1), place(3, b, 1), place(0, b, 1));
+      quad(place(0, a, 0), place(0, b, 0), place(3, b, 0), place(3, a, 0));
+      quad(place(0, b, 0), place(0, a, 0), place(0, a, 1), place(0, b, 1));
+      quad(place(3, a, 0), place(3, b, 0), place(3, b, 1), place(3, a, 1));
+    }
+    quad(place(0, 0, 0), place(3, 0, 0), place(3, 0, 1), place(0, 0, 1));
+    quad(place(3, 2, 0), place(0, 2, 0), place(0, 2, 1), place(3, 2, 1));
+    const TriangleSurface surface(corners);
+    REQUIRE(fault_of(surface) == "");
+    for (int n = 0; n < 20000; ++n) {
+      const double u = along(random), v = across(random), z = up(random);
+      const bool inside = u > 0 && u < 3 && v > 0 && v < 2 && z > 0 && z < 1;
+      if (surface.holds(place(u, v, z), 0) != inside) FAIL("at " << u << ", " << v << ", " << z);
+    }
+  }
+}
+
+TEST_CASE("a raster far finer than the mesh counts by blocks of cells", "[ground]") {
+  Raster raster{50, 30, -1, 2, 0.01, {}};
+  for (long j = 0; j < 30; ++j)
+    for (long i = 0; i < 50; ++i) raster.values.push_back(3 + 0.1 * (i + 0.5) - 0.2 * (j + 0.5));
+  CHECK(block_under_mesh(raster, 0.16) == 1);
+  CHECK(block_under_mesh(raster, 0.319) == 1);
+  CHECK(block_under_mesh(raster, 0.33) == 2);
+  CHECK(block_under_mesh(raster, 1e6) == 50);
+  for (const long block : {1L, 3L, 7L, 50L}) {
+    const auto surface = surface_of(raster, block);
+    CHECK(surface->lines(0).front() == -1);
+    CHECK(std::abs(surface->lines(0).back() + 0.5) < 1e-12);
+    CHECK(surface->lines(0).size() == std::size_t(2 + (50 + block - 1) / block));
+    CHECK(surface->lines(1).size() == std::size_t(2 + (30 + block - 1) / block));
+    for (std::size_t k = 1; k + 1 < surface->lines(0).size() && k + 1 < surface->lines(1).size(); ++k) {
+      const double x = surface->lines(0)[k], y = surface->lines(1)[k];  // a plane goes through all means
+      CHECK(std::abs(surface->at(x, y) - (3 + 0.1 * (x + 1) / 0.01 - 0.2 * (y - 2) / 0.01)) < 1e-9);
+    }
+  }
+  raster.values[40] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(std::isnan(surface_of(raster, 7)->at(raster.x + 0.405, raster.y)));
 }
 
 TEST_CASE("two million triangles are checked and cut", "[ground][.long]") {

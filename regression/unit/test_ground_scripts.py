@@ -122,6 +122,53 @@ class Terrain(Folder):
         self.refused(run("terrain", "release", terrain, self.folder / "b.asc", "--centre", "400,35", "--radii", "20,10",
                          "--depth", 6), "--centre: takes an ellipse")
 
+    def release(self, terrain, area, *words):
+        done = run("terrain", "release", terrain, self.folder / "base.asc", "--polygon", area, *words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return raster.read_ascii(terrain).values - raster.read_ascii(self.folder / "base.asc").values
+
+    def test_a_release_of_polygons_is_as_deep_as_told_within_its_rim(self):
+        terrain = self.write(self.plane(80, 80, 1.0, 0.0, 0.0))
+        (self.folder / "area.csv").write_text("x,y\n510,720\n550,720\n550,750\n510,750\n")
+        (self.folder / "in.json").write_text(json.dumps({"origin": [500, 700, 0]}))
+        depth = self.release(terrain, self.folder / "area.csv", "--depth", 5, "--rim", 10)
+        self.assertEqual((depth.min(), round(depth.max(), 6)), (0, 5))
+        self.assertAlmostEqual(depth[20, 30], 5 * 0.05, places=5)  # 0.5 m from the rim at y = 20
+        self.assertAlmostEqual(depth[35, 30], 5, places=5)
+        self.assertEqual(depth[:20].any() or depth[50:].any() or depth[:, :10].any() or depth[:, 50:].any(), False)
+        # A frustum of a hip roof: the rim of 40 x 30 m, the top of 20 x 10 m, 5 m deep.
+        self.assertAlmostEqual(depth.sum() / (5 / 6 * (40 * 30 + 60 * 40 + 20 * 10)), 1, delta=2e-3)
+        rings = [[[10, 20], [50, 20], [50, 50], [10, 50], [10, 20]], [[25, 30], [35, 30], [35, 40], [25, 40], [25, 30]]]
+        (self.folder / "hole.geojson").write_text(json.dumps(
+            {"type": "FeatureCollection", "features": [{"type": "Feature", "geometry": {"type": "Polygon", "coordinates": rings}}]}))
+        hole = self.release(terrain, self.folder / "hole.geojson", "--depth", 5, "--rim", 1e-6, "--local")
+        self.assertAlmostEqual(hole.sum(), 5 * (40 * 30 - 100), places=3)
+
+    def test_a_release_tells_where_its_polygons_are_not(self):
+        terrain = self.write(self.plane(80, 80, 1.0, 0.0, 0.0))
+        (self.folder / "area.csv").write_text("510,720\n550,720\n550,750\n")
+        refused = lambda *words: self.refused(run("terrain", "release", terrain, self.folder / "b.asc", *words), "takes")  # noqa: E731
+        refused("--polygon", self.folder / "area.csv", "--depth", 5)
+        (self.folder / "line.csv").write_text("510,720\n550,720\n")
+        refused("--polygon", self.folder / "line.csv", "--depth", 5)
+        (self.folder / "bad.geojson").write_text("{}")
+        refused("--polygon", self.folder / "bad.geojson", "--depth", 5)
+        both = run("terrain", "release", terrain, self.folder / "b.asc", "--polygon", "a", "--centre", "1,1", "--depth", 5)
+        self.assertIn("--centre has no place beside --polygon", both.stderr)
+
+    def test_rasters_of_the_site_keep_the_prj_of_the_source(self):
+        source = self.write(self.plane())
+        (self.folder / "in.prj").write_text("PROJCS[...]")
+        _, site = self.convert(source)
+        self.assertEqual(site["prj"], "PROJCS[...]")
+        self.assertFalse((self.folder / "out.prj").exists())  # its origin is shifted
+        self.convert(source, "--origin", "keep")
+        self.assertEqual((self.folder / "out.prj").read_text(), "PROJCS[...]")
+        done = run("terrain", "release", self.folder / "out.asc", self.folder / "base.asc", "--centre", "1030,520", "--radii",
+                   "9,9", "--depth", 2)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.folder / "base.prj").read_text(), "PROJCS[...]")
+
     def test_the_sample_of_matplotlib_is_in_metres(self):
         done = run("terrain", "jacksboro", self.folder / "out.asc")
         if "sample data" in done.stderr:
@@ -142,7 +189,7 @@ class Terrain(Folder):
     def test_a_depth_on_the_terrain_has_the_volume_of_the_particles(self):
         import h5py
         terrain = self.write(self.plane(20, 20, 1.0, 0.0, 0.0), "t.asc")
-        (self.folder / "t.json").write_text(json.dumps({"origin": [500, 700, 380]}))
+        (self.folder / "t.json").write_text(json.dumps({"origin": [500, 700, 380], "prj": "PROJCS[...]"}))
         (self.folder / "frames").mkdir()
         (self.folder / "history.csv").write_text("time\n0\n")
         options = {"dim": "3", "bodies": "slide", "mesh_lower": "0,0,90", "mesh_upper": "20,20,120", "mesh_spacing": "1"}
@@ -157,6 +204,7 @@ class Terrain(Folder):
         self.assertEqual(done.returncode, 0, done.stderr)
         depth = raster.read_ascii(self.folder / "depth.asc")
         self.assertEqual((depth.x, depth.y), (500, 700))
+        self.assertEqual((self.folder / "depth.prj").read_text(), "PROJCS[...]")
         self.assertAlmostEqual(depth.values.sum(), 80, places=4)
         self.assertEqual(depth.values[:8].sum(), 0)
         self.assertTrue((self.folder / "terrain.png").stat().st_size > 0)

@@ -13,6 +13,7 @@
 #include "common/text.hpp"
 #include "input/deck.hpp"
 #include "input/options.hpp"
+#include "input/suggest.hpp"
 #include "output/frames.hpp"
 #include "step/stepper.hpp"
 
@@ -80,14 +81,14 @@ TEST_CASE("a material has its model's parameters in the order of the model's tab
   CHECK(clay.name == "clay");
   CHECK(clay.model == "von_mises");
   CHECK(clay.density == 1500);
-  CHECK(clay.parameters == std::vector<double>{1e6, 0.3, 1000, 2000, 1.5, 0, 0, 0});
+  CHECK(clay.parameters == std::vector<double>{1e6, 0.3, 1000, 2000, 1.5, 0, 0, 0, 0, 1});
 }
 
 TEST_CASE("rigidity takes the place of Young's modulus", "[options]") {
   std::string deck = k_deck;
   deck.erase(deck.find("-clay_young 1e6 "), std::string("-clay_young 1e6 ").size());
   CHECK(config_of(deck + "-clay_rigidity 500").materials.at(0).parameters ==
-        std::vector<double>{0, 0.3, 1000, 0, 0, 500, 0, 0});
+        std::vector<double>{0, 0.3, 1000, 0, 0, 500, 0, 0, 0, 1});
   CHECK(read(deck).report.errors.at(0) ==
         "mpm: -clay_young: not given, takes a number in Pa from 0.001 to 1e+15, or field, or -clay_rigidity "
         "in its "
@@ -322,6 +323,22 @@ TEST_CASE("all mistakes are reported together, each in a line of one form", "[op
   CHECK(errors[3] == "mpm: -claz_su: given \"1\", takes nothing: no such option, the nearest is -clay_su");
 }
 
+TEST_CASE("the known name that is most like another is one of the same thing", "[options]") {
+  const std::vector<std::string> owners = {"soil", "clay", "clay_2"},
+                                 known = {"time_end",      "gravity",    "soil_particles_per_cell",
+                                          "soil_velocity", "clay_young", "clay_density",
+                                          "clay_2_young",  "clay_2_su",  "Clay_poisson"};
+  const auto meant = [&](const std::string& name) { return most_like(name, known, owners); };
+  CHECK(meant("tiem_end") == "time_end");
+  CHECK(meant("soil_cells_of_particles") == "soil_particles_per_cell");
+  CHECK(meant("soil_initial_velocity") == "soil_velocity");
+  CHECK(meant("clay_elastic_young_modulus") == "clay_young");
+  CHECK(meant("clay_2_elastic_young_modulus") == "clay_2_young");
+  CHECK(meant("clay_ratio_of_poisson") == "Clay_poisson");
+  CHECK(meant("simulation_time_end") == "time_end");
+  CHECK(!meant("x").empty());
+}
+
 TEST_CASE("a backend that is not compiled in is refused with those that are", "[options]") {
   const auto errors = read(k_deck + "-backend cuda").report.errors;
   REQUIRE(errors.size() == 1);
@@ -417,7 +434,7 @@ struct Decks {
   }
 };
 
-/// What is left for PETSc of a command line, behind the words that are put before it.
+/// What read_options takes of a command line. Nothing of it is left for PETSc.
 std::string prepared(std::vector<std::string> words, InputReport& report) {
   words.insert(words.begin(), "mpm");
   std::vector<char*> pointers;
@@ -428,10 +445,8 @@ std::string prepared(std::vector<std::string> words, InputReport& report) {
   prepare_arguments(PETSC_COMM_SELF, &argc, &argv, report);
   CHECK(std::string(argv[0]) == "mpm");
   CHECK(argv[argc] == nullptr);
-  constexpr int k_before = 5;
-  std::string left;
-  for (int k = k_before; k < argc; ++k) left += (k > k_before ? " " : "") + std::string(argv[k]);
-  return left;
+  CHECK(argc == 1 + static_cast<int>(report.petsc_words.size()));
+  return join(report.words, " ");
 }
 
 }  // namespace
@@ -443,6 +458,23 @@ TEST_CASE("arguments that PETSc would pass over or die of are taken out and repo
   CHECK(report.help);
   CHECK(report.file_unread);
   CHECK(report.errors.size() == 2);
+}
+
+TEST_CASE("PETSc's start sees none but its own options, and of these only those that are passed on",
+          "[options]") {
+  const Decks decks;
+  const auto deck =
+      decks.write("a.opts", "-malloc_debug\n-dim 2\n-history h.txt\n-log_view :l.txt:ascii_xml\n");
+  InputReport report;
+  CHECK(
+      prepared({"-options_file", deck, "-dll_append", "x.so", "-sf_type", "window", "-memory_view", "maybe"},
+               report) == "-dim 2");
+  CHECK(report.petsc_words == std::vector<std::string>{"-skip_petscrc", "true", "-options_left", "false",
+                                                       "-malloc_debug", "-log_view", ":l.txt:ascii_xml"});
+  REQUIRE(report.errors.size() == 4);
+  CHECK(report.errors[0] ==
+        "mpm: -history: given \"h.txt\", takes nothing: this option of PETSc is not passed on");
+  CHECK(report.errors[3] == "mpm: -memory_view: given \"maybe\", takes true or false");
 }
 
 TEST_CASE("the command line wins over decks, decks over what they include before", "[options]") {

@@ -4,9 +4,9 @@
 #include <array>
 #include <catch2/catch_test_macros.hpp>
 
-#include "physics/materials/any.hpp"
 #include "compare.hpp"
 #include "loops/cpu/host_particles.hpp"
+#include "physics/materials/any.hpp"
 #include "transfer/measure.hpp"
 
 using namespace mpm;
@@ -106,6 +106,18 @@ TEST_CASE("a particle is submerged by its share below the level", "[pore_water]"
   CHECK(std::fabs(water.submerged_share({7, 3.2}, {0.5, 0.5}) - 0.3) < 1e-15);
   CHECK(water.pressure({1, 4}) == 0);
   CHECK(std::fabs(water.pressure({1, 1}) - 2000 * k_g) < 1e-9);
+}
+
+TEST_CASE("a region has its own level, and the last one counts where regions overlap", "[pore_water]") {
+  auto water = water_at<3>(3);
+  water.region_count = 2;
+  water.regions[0] = {.lower = {0, 0, 0}, .upper = {2, 2, 2}, .level = 2};
+  water.regions[1] = {.lower = {1, 0, 0}, .upper = {3, 2, 2}, .level = -1e12};
+  CHECK(std::fabs(water.pressure({0.5, 1, 1}) - 1000 * k_g) < 1e-9);
+  CHECK(water.pressure({1.5, 1, 1}) == 0);
+  CHECK(std::fabs(water.pressure({4, 1, 1}) - 2000 * k_g) < 1e-9);
+  CHECK(water.submerged_share({1.5, 1, 1}, {0.5, 0.5, 0.5}) == 0);
+  CHECK(std::fabs(water.submerged_share({0.5, 1, 1.9}, {0.25, 0.25, 0.25}) - 0.7) < 1e-12);
 }
 
 TEST_CASE("nodes get the water that the particles displace, by every strategy", "[pore_water]") {

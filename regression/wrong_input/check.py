@@ -4,8 +4,8 @@
 Usage: check.py PATH_TO_mpm [WORD ...]   (WORD: only rows whose options hold it)
 
 Each row of wrong_input.tsv is run by itself in an empty folder with base.opts, a deck that is right. Checked are the
-exit status, that stderr has exactly the lines expected, each of which names what was given and what is taken, and that
-a refused run left no file behind. Rows of status 3 are runs that fail on their way: their one line says where and when.
+exit status, that stderr has exactly the lines expected, each of which names what was given and what is taken, that
+a refused or dry run left no file behind, and that a good one wrote into its output folder and the cache only. Rows of status 3 are runs that fail on their way: their one line says where and when.
 Rows of status 0 that expect lines are runs that warn, or that note a former name of an option: each line is on stdout, and in
 the log if there is one.
 
@@ -89,6 +89,7 @@ def check(binary, status, options, fragments):
         folder = pathlib.Path(name)
         result, there = run(binary, options, folder)
         written = sorted(path.name for path in folder.iterdir() if path.name not in there)
+        results = {path.name for path in folder.glob("out/*/*")}
         logs = [path.read_text().splitlines() for path in folder.glob("out/*/mpm.log")]
     faults = [] if result.returncode == status else [f"status {result.returncode}, expected {status}"]
     if status == 0 and fragments:
@@ -96,9 +97,15 @@ def check(binary, status, options, fragments):
             faults += [fault for fault in match([line for line in lines if line.startswith(("warning: ", "mpm: note: "))], fragments)
                        if not fault.startswith("not expected")]
     if status == 0:
+        places = {".cache"} if "-dry_run" in options.split() else {".cache", "out"}
+        faults += [f"written: {path}" for path in written if path not in places]
+        if "-log_view :log.txt" in options and "-dry_run" not in options and "log.txt" not in results:
+            faults.append("log.txt is not in the output folder")
         faults += [f"stderr: {line}" for line in result.stderr.splitlines() if line.startswith("mpm: -")]
-        if "-help" in options and "-mesh_spacing\n" not in result.stdout:
-            faults.append("-help does not list -mesh_spacing")
+        if "-help" in options and not ("-mesh_spacing\n" in result.stdout and result.stdout.startswith("mpm: ")):
+            faults.append("-help does not begin with the program's own words, or does not list -mesh_spacing")
+        if "-version" in options and "\n  back ends   serial" not in result.stdout:
+            faults.append("-version does not list the back ends")
     else:
         lines = result.stderr.splitlines()
         faults += match(lines, fragments)

@@ -103,6 +103,12 @@ struct LawLanes {
     if (one_law && !some_fly && drains && update_light(LightMaterials{}, of, stress, by)) return;
     stress = updated(*this, stress, by);
   }
+  /// gap_room() of the particles, after their laws.
+  [[gnu::noinline]] KOKKOS_FUNCTION R room() const {
+    R factor = 1;
+    for (int l = 0; l < count; ++l) factor.set(l, gap_room(soil, p + l));
+    return factor;
+  }
 
  private:
   /// What becomes of a state variable where all particles are the law's.

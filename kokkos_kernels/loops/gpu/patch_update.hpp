@@ -262,7 +262,7 @@ struct UpdateParticles {
     soil.stress(p) = q.stress;
     FaultKind fault = fault_of(q, own, by, step_domain<domain>(soil, p));
     if (fault != FaultKind::none) {
-      if (fault == FaultKind::not_finite && has_failed<Laws>(soil, p)) fault = FaultKind::law;
+      if (fault == FaultKind::not_finite) fault = cause_of<Laws>(soil, p);
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
       report(control, fault, soil.id(p), position, Dim);

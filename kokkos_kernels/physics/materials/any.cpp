@@ -66,9 +66,9 @@ std::vector<const char*> failures(ModelList<Models...>) {
 /// The state of a particle that is created at a height [m] with a stress [Pa].
 template <class Law>
 auto start_of(const Law& law, double height, const std::array<double, 6>& stress = {},
-              const OwnValues& own = {}) {
+              const OwnValues& own = {}, int up = 1) {
   LawState<double, state_size<Law>> state{};
-  const auto start = law.initial_state({.height = height, .stress = stress, .own = own});
+  const auto start = law.initial_state({.height = height, .stress = stress, .own = own, .up = up});
   for (std::size_t k = 0; k < start.size(); ++k) state[static_cast<int>(k)] = start[k];
   return state;
 }

@@ -4,14 +4,14 @@
 
 #include "physics/materials/cam_clay_return.hpp"
 #include "physics/materials/deviator.hpp"
-#include "physics/materials/material.hpp"
+#include "physics/materials/parting.hpp"
 
 namespace mpm {
 
 /// Modified Cam-Clay (Borja & Lee 1990, Borja 1991): f = q^2/M^2 + P (P - Pc), associated, with the mean
 /// effective pressure P (compression positive), dP = v/kappa P de_v and dPc/Pc = v/(lambda - kappa) de_v^p.
 /// Constant Poisson's ratio, or a constant shear modulus. The surface is a circle in the deviatoric plane.
-/// Steps are done in sub-increments.
+/// Clay without pressure has parted (parting.hpp). Steps are done in sub-increments.
 template <class T>
 struct CamClay {
   using real = T;
@@ -76,13 +76,14 @@ struct CamClay {
     prepare();
   }
 
-  enum : int { preconsolidation, specific_volume, preconsolidation_rest, specific_volume_rest };
-  using State = LawState<T, 4>;
-  static constexpr std::array<StateVariable, 4> state() {
+  enum : int { preconsolidation, specific_volume, preconsolidation_rest, specific_volume_rest, parted };
+  using State = LawState<T, 5>;
+  static constexpr std::array<StateVariable, 5> state() {
     return {{{"preconsolidation", "Pa"},
              {"specific_volume", "-"},
              rest_variable<T>("preconsolidation_rest", "Pa"),
-             rest_variable<T>("specific_volume_rest", "-")}};
+             rest_variable<T>("specific_volume_rest", "-"),
+             parted_variable()}};
   }
   ParameterFault check() const {
     if (!(kappa < lambda)) return {"kappa", "a slope less than -NAME_lambda"};
@@ -112,9 +113,9 @@ struct CamClay {
                                       ", the size of the yield surface through the initial stress"};
     return {};
   }
-  std::array<double, 4> initial_state(const ParticleStart& at) const {
+  std::array<double, 5> initial_state(const ParticleStart& at) const {
     const double by_ratio = Kokkos::fmax(double(least), ocr * surface_through(at.stress));
-    return {preconsolidation_start > 0 ? preconsolidation_start : by_ratio, specific_volume_start, 0, 0};
+    return {preconsolidation_start > 0 ? preconsolidation_start : by_ratio, specific_volume_start, 0, 0, 0};
   }
 
   /// K + 4/3 G [Pa], which gives the speed of the fastest wave (Eq. 14).
@@ -123,8 +124,23 @@ struct CamClay {
     const T bulk_modulus = state[specific_volume] / kappa * Kokkos::fmax(-mean_of(stress), least);
     return bulk_modulus + shear_modulus_of_step(bulk_modulus) * T(4.0 / 3);
   }
+  /// The same, at most, once the soil has been compressed by a volume strain: along the swelling line to the
+  /// preconsolidation pressure, and then along the normal compression line.
+  template <int Dim>
+  KOKKOS_FUNCTION T wave_modulus_after(const SymTensor<T, Dim>& stress, const State& state,
+                                       T compression) const {
+    constexpr T k_most = 20;  // of the logarithm of a pressure, so that what is finite stays finite
+    const T v = state[specific_volume], p = Kokkos::fmax(-mean_of(stress), least);
+    const T to_surface = Kokkos::fmax(T(0), Kokkos::log(state[preconsolidation] / p));
+    const T elastic = v / kappa * compression;
+    const T growth = elastic < to_surface ? elastic : to_surface + (elastic - to_surface) * kappa / lambda;
+    const T bulk_modulus = v / kappa * p * Kokkos::exp(Kokkos::fmin(k_most, growth));
+    return bulk_modulus + shear_modulus_of_step(bulk_modulus) * T(4.0 / 3);
+  }
   /// 0: the strength follows the pressure.
   KOKKOS_FUNCTION T shear_strength(const State&) const { return 0; }
+  /// Volume strain of a gap in all directions, across which the soil takes no pressure.
+  KOKKOS_FUNCTION T free_gap(const State& state) const { return state[parted]; }
   /// Energy that the soil can give back [J/m3]: the integral of P over the elastic volume strain, and of the
   /// shear stress at the present modulus.
   template <int Dim>
@@ -141,7 +157,7 @@ struct CamClay {
   }
 
   template <class R, int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 4>& state,
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 5>& state,
                               const Increment<R, T, Dim>& by) const {
     s = rotated(s, by.spin);
     R square = 0;
@@ -175,7 +191,7 @@ struct CamClay {
 
   /// One sub-increment of strain `e`, of particles that take part.
   template <class R, int Dim>
-  KOKKOS_INLINE_FUNCTION void strain_by(SymTensor<R, Dim>& s, LawState<R, 4>& state,
+  KOKKOS_INLINE_FUNCTION void strain_by(SymTensor<R, Dim>& s, LawState<R, 5>& state,
                                         const SymTensor<R, Dim>& e, const Truth<R>& takes_part) const {
     const R mean = mean_of(s), p = Kokkos::fmax(R(0), -mean), pc = state[preconsolidation];
     const R dilatation = e[0] + e[1] + e[2], v = state[specific_volume], half = growth_of(dilatation / 2),
@@ -183,7 +199,9 @@ struct CamClay {
     add_with_rest_if(takes_part, state[specific_volume], state[specific_volume_rest], v * half * (2 + half));
     const R a = v_middle * inv_kappa, b = v_middle * inv_plastic;
     const ElasticPressure<R> elastic{least};
-    const R rise = elastic.change(p, -a * dilatation), trial = p + rise;
+    const R gap = state[parted], opens = gap + dilatation;
+    const R volume = select(gap > 0, Kokkos::fmin(R(0), opens), dilatation);  // without what closes a gap
+    const R rise = elastic.change(p, -a * volume), trial = p + rise;
     const Truth<R> presses = trial > 0;  // otherwise no pressure is left, and no stress
     const R shear = shear_modulus_of_step(R(a * elastic.slope(p + rise / 2)));
     SymTensor<R, Dim> next = s;
@@ -192,15 +210,17 @@ struct CamClay {
     for (int k = 0; k < 3; ++k) next[k] -= rise + misfit;
     const R square = 3 * second_invariant(next, R(mean - rise - misfit));
     const Truth<R> yields = takes_part & presses & !(square * inv_slope2 + trial * (trial - pc) <= 0);
+    R left = trial;  // pressure; what is below zero has parted the clay
     if (any_of(yields)) {
       const R inv_pc = 1 / pc;
       const CamClayReturn<R> to_surface{
-          {least * inv_pc}, p * inv_pc,     -dilatation, a, b, Kokkos::sqrt(square) * inv_pc,
+          {least * inv_pc}, p * inv_pc,     -volume,   a, b, Kokkos::sqrt(square) * inv_pc,
           trial * inv_pc,   shear * inv_pc, inv_slope2};
       const auto [l, x] = to_surface.solve(yields);  // multiplier times Pc, plastic volume strain
-      const R less = rise - elastic.change(p, a * (-dilatation - x)),
+      const R less = rise - elastic.change(p, a * (-volume - x)),
               softer = 6 * shear * inv_pc * l * inv_slope2;
-      const auto free = !(trial - less > 0);
+      left = select(yields, trial - less, trial);
+      const auto free = !(left > 0);
       const R from = mean_of(next), share = softer / (1 + softer);
       for (int k = 0; k < sym_size<Dim>; ++k) {
         const R back = next[k] + (k < 3 ? less - share * (next[k] - from) : -share * next[k]);
@@ -212,6 +232,9 @@ struct CamClay {
       state[preconsolidation] = select(too_small, R(least), state[preconsolidation]);
       state[preconsolidation_rest] = select(too_small, R(0), state[preconsolidation_rest]);
     }
+    const R softest = a * least;  // Pa, modulus at no pressure; 0 once the law has failed
+    const R parts = select(softest > 0, Kokkos::fmax(R(0), -left) / select(softest > 0, softest, R(1)), R(0));
+    state[parted] = select(takes_part, select(gap > 0, Kokkos::fmax(opens, R(0)), R(0)) + parts, gap);
     for (int k = 0; k < sym_size<Dim>; ++k) s[k] = select(takes_part, select(presses, next[k], R(0)), s[k]);
   }
 };

@@ -11,6 +11,7 @@ struct DruckerPrager : FrictionalSoil<T> {
   using Soil = FrictionalSoil<T>;
   static constexpr const char* k_name = "drucker_prager";
   using Soil::cohesion_of_particle;
+  using Soil::parted;
   using Soil::plastic_strain;
   enum : int { compression, extension, plane_strain };
   T match;
@@ -31,14 +32,14 @@ struct DruckerPrager : FrictionalSoil<T> {
           {{{"compression", compression}, {"extension", extension}, {"plane_strain", plane_strain}}}}}};
     return joined(Soil::template friction_parameters<DruckerPrager>(
                       "largest mean stress, tension positive; none: that of the apex"),
-                  own, Soil::template growth_rows<DruckerPrager>());
+                  own, Soil::template growth_rows<DruckerPrager>(), strength_factor_row<DruckerPrager>());
   }
   /// Called once the parameters are set. Constants of the three cones: de Souza Neto, Peric & Owen 2008, 6.4;
   /// plane strain at failure with any angle of dilation.
   void prepare() {
     Soil::prepare_elasticity();
     bulk_modulus = static_cast<T>(this->reference_young() / (3 * (1 - 2 * double(this->poisson))));
-    const double phi = Soil::radians(this->friction_deg), psi = Soil::radians(this->dilation_deg);
+    const auto [phi, psi, cohesion_share, apex] = Soil::reduced();
     const double s = std::sin(phi), s_flow = std::sin(psi);
     double eta, eta_flow, xi;
     if (match == T(plane_strain)) {
@@ -54,8 +55,8 @@ struct DruckerPrager : FrictionalSoil<T> {
     }
     slope = static_cast<T>(eta);
     flow_slope = static_cast<T>(eta_flow);
-    strength_over_cohesion = static_cast<T>(xi);
-    apex_over_cohesion = static_cast<T>(phi > 0 ? 1 / std::tan(phi) : 0);
+    strength_over_cohesion = static_cast<T>(cohesion_share * xi);
+    apex_over_cohesion = static_cast<T>(apex);
   }
   /// Lines for the log.
   std::string warning() const {
@@ -75,34 +76,54 @@ struct DruckerPrager : FrictionalSoil<T> {
     return lines += line;
   }
 
+  /// Volume strain of a gap in all directions, across which the soil takes no pressure.
+  KOKKOS_FUNCTION T free_gap(const typename Soil::State& state) const { return state[parted]; }
+
   template <class R, int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 3>& state,
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 4>& state,
                               const Increment<R, T, Dim>& by) const {
     const R shear_modulus = this->shear_modulus_of_particle(state),
             bulk = this->of_particle(bulk_modulus, state);
     const bool has_apex = apex_over_cohesion > 0, has_tension = this->tension >= 0;
-    const R c = state[cohesion_of_particle], strength = strength_over_cohesion * c;
-    const R apex = has_apex ? apex_over_cohesion * c : R(this->tension);
-    const R cap = has_tension ? Kokkos::fmin(this->tension, apex) : apex;
     s = rotated(s, by.spin);
     this->add_elastic_to(s, by.strain, state);
 
-    const R p = mean_of(s), r = Kokkos::sqrt(second_invariant(s, p)), f = r + slope * p - strength;
+    const R mean = mean_of(s);
+    R p = mean;
+    if (any_of(state[parted] > 0)) {
+      close_by_mean(p, state[parted], bulk);
+      for (int k = 0; k < 3; ++k) s[k] += p - mean;
+    }
+    R c = state[cohesion_of_particle], tension = this->tension;
+    if (any_of(state[parted] > 0)) {
+      const R left = share_across(state[parted]);
+      c *= left, tension *= left;
+    }
+    const R strength = strength_over_cohesion * c, apex = has_apex ? apex_over_cohesion * c : tension;
+    const R cap = has_tension ? Kokkos::fmin(tension, apex) : apex;
+    const R r = Kokkos::sqrt(second_invariant(s, p)), f = r + slope * p - strength;
     const R beyond = has_apex || has_tension ? p - cap : R(-1);
     const auto yields = Kokkos::fmax(f, beyond) > 0;
     if (!any_of(yields)) return;
-    const R l = Kokkos::fmax(f, R(0)) / (shear_modulus + bulk * slope * flow_slope);
-    R p_new = p - bulk * flow_slope * l, r_new = Kokkos::fmax(r - shear_modulus * l, R(0));
+    // Soil that has parted has no contact, and its shear no dilatancy.
+    const R flow_slope_now = select(state[parted] > 0, R(0), R(flow_slope));
+    const R l = Kokkos::fmax(f, R(0)) / (shear_modulus + bulk * slope * flow_slope_now);
+    R p_new = p - bulk * flow_slope_now * l, r_new = Kokkos::fmax(r - shear_modulus * l, R(0));
     if (has_apex || has_tension) {
       const auto below = (p_new <= cap) & (r - shear_modulus * l >= 0);
       p_new = select(below, p_new, cap);
       const R on_cone = Kokkos::fmax(strength - slope * cap, R(0));
       r_new = select(below, r_new, select(r < on_cone, r, on_cone));
     }
+    const R strain = (r - r_new) / shear_modulus;
+    if (has_apex || has_tension) {
+      const R opening = Kokkos::fmax(R(0), (p - p_new) / bulk - flow_slope_now * strain);
+      state[parted] += select(yields & !(p_new < cap), opening, R(0));
+    }
     const R share = r_new / select(r > 0, r, R(1));
     for (int k = 0; k < sym_size<Dim>; ++k)
       s[k] = select(yields, k < 3 ? p_new + share * (s[k] - p) : share * s[k], s[k]);
-    state[plastic_strain] += select(yields, (r - r_new) / shear_modulus, R(0));
+    state[plastic_strain] += select(yields, strain, R(0));
   }
 };
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "physics/materials/elasticity.hpp"
+#include "physics/materials/parting.hpp"
 
 namespace mpm {
 
@@ -14,10 +15,10 @@ inline constexpr double k_no_tension = -1;
 
 /// What the frictional laws share: elasticity; cohesion, friction and dilation; a cohesion that grows
 /// linearly with depth below a level and belongs to the particle; a tension cut-off, at the apex of the yield
-/// surface where it would be above. Jaumann rate of the Cauchy stress.
+/// surface where it would be above, at which the soil parts (parting.hpp). Jaumann rate of the Cauchy stress.
 template <class T>
-struct FrictionalSoil : Elasticity<T, 2> {
-  T cohesion, friction_deg, dilation_deg, tension, cohesion_gradient, cohesion_datum;
+struct FrictionalSoil : Elasticity<T, 3> {
+  T cohesion, friction_deg, dilation_deg, tension, cohesion_gradient, cohesion_datum, strength_factor;
 
   /// The rows of the table of parameters that the laws share. `tension_meaning`: of the stress that
   /// `tension` limits.
@@ -44,12 +45,18 @@ struct FrictionalSoil : Elasticity<T, 2> {
     return joined(YoungsModulus<T>::template young_rows<Law>(), own);
   }
 
-  enum : int { plastic_strain, cohesion_of_particle, young_of_particle };
-  using State = LawState<T, 3>;
-  static constexpr std::array<StateVariable, 3> state() {
+  enum : int { plastic_strain, cohesion_of_particle, parted, young_of_particle };
+  using State = LawState<T, 4>;
+  static constexpr std::array<StateVariable, 4> state() {
     return {{{"plastic_strain", "-"},  // accumulated engineering plastic shear strain
              {.name = "cohesion", .unit = "Pa", .changes = false, .output = false, .parameter = "cohesion"},
+             parted_variable(),
              YoungsModulus<T>::young_variable()}};
+  }
+  /// Soil without a limit of tension does not part. Only the last variables may be missing.
+  KOKKOS_FUNCTION bool carries(int k) const {
+    if (k < parted) return true;
+    return this->varies() || (k == parted && (friction_deg > 0 || tension >= 0));
   }
   ParameterFault check() const {
     if (dilation_deg > friction_deg)
@@ -58,15 +65,26 @@ struct FrictionalSoil : Elasticity<T, 2> {
       return {"cohesion", "a cohesion in Pa greater than 0 where -NAME_friction_deg is 0"};
     return this->young_fault();
   }
-  std::array<double, 3> initial_state(const ParticleStart& at) const {
+  std::array<double, 4> initial_state(const ParticleStart& at) const {
     const double depth = at.height < cohesion_datum ? cohesion_datum - at.height : 0.0;
-    return {0, at.own[0].value_or(cohesion + cohesion_gradient * depth),
+    return {0, at.own[0].value_or(cohesion + cohesion_gradient * depth), 0,
             this->young_at(at.height, at.own[1])};
   }
   /// Undrained shear strength [Pa]: none, since the strength follows the mean stress.
   KOKKOS_FUNCTION T shear_strength(const State&) const { return 0; }
 
  protected:
+  /// Angles [rad] of friction and dilation of the strength that is left, and its share of the cohesion. The
+  /// apex of the yield surface, c cot(friction), stays where it is.
+  struct Reduced {
+    double friction, dilation, cohesion_share, apex_over_cohesion;
+  };
+  Reduced reduced() const {
+    const double share = strength_factor > 0 ? 1 / double(strength_factor) : 1.0,
+                 whole = radians(friction_deg), phi = share == 1 ? whole : std::atan(share * std::tan(whole)),
+                 psi = radians(dilation_deg);
+    return {phi, psi < phi ? psi : phi, share, whole > 0 ? 1 / std::tan(whole) : 0.0};
+  }
   static double radians(double degrees) { return degrees * (3.14159265358979323846 / 180); }
 
   /// What the log says of angles below one degree, which are likely radians, and of a cut-off above the apex

@@ -62,7 +62,18 @@ struct ParticleStart {
   double height = 0;                 // m, reference height
   std::array<double, 6> stress{};    // Pa: xx yy zz xy yz zx, tension positive
   OwnValues own{};                   // where a file gives the particle values of its own
+  int up = 1;                        // component of the stress that is the vertical one: 2 in 3D
+
+  /// Vertical stress [Pa], compression positive; 0 in tension.
+  double vertical() const { return stress[up] < 0 ? -stress[up] : 0.0; }
 };
+
+/// The row of the table of parameters by which a strength is reduced, as in a search for a factor of safety.
+template <class Law>
+constexpr std::array<Parameter<Law>, 1> strength_factor_row() {
+  return {{{"strength_factor", &Law::strength_factor, "-",
+            "what the strength is divided by: su, or cohesion and tan(friction)", 0.01, 100, 1}}};
+}
 
 /// What a law may know of the run that it is for (its optional member prepare_for).
 struct RunFigures {

@@ -1,6 +1,5 @@
 #pragma once
 #include "physics/materials/friction.hpp"
-#include "physics/materials/mohr_coulomb_return.hpp"
 
 namespace mpm {
 
@@ -11,6 +10,7 @@ struct MohrCoulomb : FrictionalSoil<T> {
   using Soil = FrictionalSoil<T>;
   static constexpr const char* k_name = "mohr_coulomb";
   using Soil::cohesion_of_particle;
+  using Soil::parted;
   using Soil::plastic_strain;
   PyramidShape<T> shape;
   T sc_over_cohesion, apex_over_cohesion;  // -; the latter without friction is 0
@@ -19,15 +19,15 @@ struct MohrCoulomb : FrictionalSoil<T> {
     return joined(Soil::template friction_parameters<MohrCoulomb>(
                       "largest principal stress, tension positive; none: that of the apex, cohesion * "
                       "cot(friction)"),
-                  Soil::template growth_rows<MohrCoulomb>());
+                  Soil::template growth_rows<MohrCoulomb>(), strength_factor_row<MohrCoulomb>());
   }
   /// Called once the parameters are set.
   void prepare() {
     Soil::prepare_elasticity();
-    const double phi = Soil::radians(this->friction_deg), psi = Soil::radians(this->dilation_deg);
+    const auto [phi, psi, cohesion_share, apex] = Soil::reduced();
     shape = PyramidShape<T>::of(std::sin(phi), std::sin(psi), this->poisson);
-    sc_over_cohesion = static_cast<T>(2 * std::cos(phi) / (1 - std::sin(phi)));
-    apex_over_cohesion = static_cast<T>(phi > 0 ? 1 / std::tan(phi) : 0);
+    sc_over_cohesion = static_cast<T>(cohesion_share * (2 * std::cos(phi) / (1 - std::sin(phi))));
+    apex_over_cohesion = static_cast<T>(apex);
   }
   /// Lines for the log.
   std::string warning() const {
@@ -51,13 +51,30 @@ struct MohrCoulomb : FrictionalSoil<T> {
             .apex = at_apex};
   }
 
+  /// Volume strain of a gap in all directions, across which the soil takes no pressure.
+  KOKKOS_FUNCTION T free_gap(const typename Soil::State& state) const {
+    return size_of(state[cohesion_of_particle]).apex ? state[parted] : T(0);
+  }
+
   template <class R, int Dim>
-  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 3>& state,
+  KOKKOS_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 4>& state,
                               const Increment<R, T, Dim>& by) const {
-    s = rotated(s, by.spin);
+    const SymTensor<R, Dim> before = rotated(s, by.spin);
     const R shear_modulus = this->shear_modulus_of_particle(state);
+    PyramidSize<R> size = size_of(state[cohesion_of_particle]);
+    s = before;
     this->add_elastic_to(s, by.strain, state);
-    state[plastic_strain] += return_stress(shape, size_of(state[cohesion_of_particle]), shear_modulus, s);
+    Truth<R> loose = size.apex & (state[parted] > 0);
+    if (any_of(state[parted] > 0)) {
+      const ClosedGap<R, Dim> closed = closed_gap(shape, size.apex, shear_modulus, before, s, state[parted]);
+      s = closed.stress, state[parted] = closed.parted;
+      loose = loose & (state[parted] > 0);
+      const R left = share_across(state[parted]);
+      size = size_of(select(loose, left * state[cohesion_of_particle], state[cohesion_of_particle]));
+    }
+    const PlasticFlow<R> flow = return_stress(shape, size, shear_modulus, loose, s);
+    state[plastic_strain] += flow.strain;
+    state[parted] += flow.opening;
   }
 };
 

@@ -17,6 +17,7 @@ struct PyramidShape {
   T inv_slopes;          // 1 / (1 + k)
   T steepness;           // largest change of k s1 - s3 with sqrt(J2), 2 sqrt((k^2 + k + 1) / 3)
   T contraction;         // nu / (1 + nu)
+  T volume_share;        // (1 - 2 nu) / (1 + nu), 2 G / (3 K)
   T nu, across_cut_off;  // nu, nu / (1 - nu)
   /// Elastic stress of the plastic flow of the plane, over k times the first less the third, and the inverse
   /// of this.
@@ -37,6 +38,7 @@ struct PyramidShape {
             .inv_slopes = t(1 / (1 + k)),
             .steepness = t(2 * std::sqrt((k * k + k + 1) / 3)),
             .contraction = t(contraction),
+            .volume_share = t((1 - 2 * poisson) / (1 + poisson)),
             .nu = t(poisson),
             .across_cut_off = t(poisson / (1 - poisson)),
             .plane = {t((m + h) / plane), t(h / plane), t((h - 1) / plane)},
@@ -170,18 +172,21 @@ KOKKOS_INLINE_FUNCTION void compare_cut_off(const PyramidShape<T>& shape, const 
 
 /// The principal stresses to which trial stresses t outside of the surface return; both in descending order.
 /// No tolerance: of all candidates that one is taken whose worst violation is the least. The cut-off counts
-/// where the pyramid alone has no right candidate.
+/// where the pyramid alone has no right candidate. Returns where s is a candidate of the cut-off.
 template <class R, class T>
-KOKKOS_INLINE_FUNCTION void return_to_pyramid(const PyramidShape<T>& shape, const PyramidSize<R>& size,
-                                              const R (&t)[3], const Truth<R>& returns, R (&s)[3]) {
+KOKKOS_INLINE_FUNCTION Truth<R> return_to_pyramid(const PyramidShape<T>& shape, const PyramidSize<R>& size,
+                                                  const R (&t)[3], const Truth<R>& returns, R (&s)[3]) {
   Candidate<R> best{{t[0], t[1], t[2]}, Kokkos::Experimental::finite_max_v<T>};
   compare_pyramid(shape, size, t, best);
   for (int k = 0; k < 3; ++k) s[k] = best.s[k];
-  if (!size.cuts) return;
-  const auto wrong = best.violation > 0;
-  if (!any_of(wrong & returns)) return;
+  if (!size.cuts) return Truth<R>{};
+  const R of_pyramid = best.violation;
+  const Truth<R> wrong = of_pyramid > 0;
+  if (!any_of(wrong & returns)) return Truth<R>{};
   compare_cut_off(shape, size, t, best);
-  for (int k = 0; k < 3; ++k) s[k] = select(wrong, best.s[k], s[k]);
+  const Truth<R> cut = wrong & (best.violation < of_pyramid);
+  for (int k = 0; k < 3; ++k) s[k] = select(cut, best.s[k], s[k]);
+  return cut;
 }
 
 /// Whether a stress is inside of the surface for any direction of its deviator: a bound without principal
@@ -196,46 +201,81 @@ KOKKOS_INLINE_FUNCTION Truth<R> is_well_inside(const PyramidShape<T>& shape, con
   return below & (mean + T(1.1547005383792515) * r < size.cut_off);
 }
 
-/// A stress on the surface, and the engineering shear strain of the plastic increment that led there,
-/// sqrt(2 de_p : de_p) of its deviator.
+/// What a return to the surface does: the engineering shear strain of its plastic increment,
+/// sqrt(2 de_p : de_p) of its deviator, and the plastic volume strain by which the soil parts.
+template <class R>
+struct PlasticFlow {
+  R strain, opening;
+};
+
+/// A stress on the surface, and the plastic increment that led there.
 template <class R, int Dim>
 struct ReturnedStress {
   SymTensor<R, Dim> stress;
-  R strain;
+  PlasticFlow<R> flow;
 };
+
+/// Volume strain by which soil parts where principal stresses change by `by` [Pa] in a return to the cut-off:
+/// that of the plastic strain, without what the angle of dilation makes of its shear. Each unit of plastic
+/// strain that is compressive has m units across, so that the latter is m - 1 times the sum of them. The
+/// shear of soil that is loose has no dilatancy.
+template <class R, class T>
+KOKKOS_INLINE_FUNCTION R opening_of(const PyramidShape<T>& shape, const R (&by)[3], const R& shear_modulus,
+                                    const Truth<R>& loose) {
+  const R sum = by[0] + by[1] + by[2];
+  R compressive = 0;
+  for (int k = 0; k < 3; ++k) compressive += Kokkos::fmax(R(0), by[k] - shape.contraction * sum);
+  const R dilatancy = select(loose, R(0), (shape.m - 1) * compressive);
+  return Kokkos::fmax(R(0), -(shape.volume_share * sum) - dilatancy) / (2 * shear_modulus);
+}
+
+/// The return of soil that is loose, having parted in all directions, so that its shear has no dilatancy: the
+/// mean stress falls to that of the apex, and the deviator t to what is left of the strength there.
+template <class R, class T>
+KOKKOS_INLINE_FUNCTION void return_loose(const PyramidShape<T>& shape, const PyramidSize<R>& size,
+                                         const R (&t)[3], const Truth<R>& loose, R (&s)[3]) {
+  const R mean = Kokkos::fmin(R(0), size.cut_off), most = size.sc - (shape.k - 1) * mean;
+  const R wanted = shape.k * t[0] - t[2];
+  const R share = Kokkos::fmax(R(0), Kokkos::fmin(R(1), most / select(wanted > 0, wanted, R(1))));
+  for (int k = 0; k < 3; ++k) s[k] = select(loose, mean + share * t[k], s[k]);
+}
 
 /// The return of a stress with this mean that may be outside of the surface, where `may_yield` holds.
 template <class R, class T, int Dim>
 MPM_CALLED_FUNCTION ReturnedStress<R, Dim> returned_stress(const PyramidShape<T>& shape, PyramidSize<R> whole,
                                                            R shear_modulus, SymTensor<R, Dim> stress, R mean,
-                                                           Truth<R> may_yield) {
+                                                           Truth<R> may_yield, Truth<R> loose) {
   const auto principal = principal_of(stress, mean);
   const PyramidSize<R> size = whole.without(mean, shape.k);
   const Sorted3<R> trial = sorted_down(principal.value);
   const Truth<R> returns = may_yield & !(outside(shape, size, trial.value[0], trial.value[2]) <= 0);
-  if (!any_of(returns)) return {stress, R(0)};
+  if (!any_of(returns)) return {stress, {R(0), R(0)}};
   R by[3];
-  return_to_pyramid(shape, size, trial.value, returns, by);
+  Truth<R> cut = return_to_pyramid(shape, size, trial.value, returns, by);
+  if (any_of(loose)) return_loose(shape, size, trial.value, loose, by), cut = cut | loose;
   for (int k = 0; k < 3; ++k) by[k] = select(returns, by[k] - trial.value[k], R(0));
+  const R opening = select(cut, opening_of(shape, by, shear_modulus, loose), R(0));
   const R mean_by = (by[0] + by[1] + by[2]) * T(1.0 / 3);
   R square = 0;
   for (int k = 0; k < 3; ++k) square += (by[k] - mean_by) * (by[k] - mean_by);
   unsort(trial, by);
   add_along_axes(stress, principal, by);
-  return {stress, Kokkos::sqrt(square / 2) / shear_modulus};
+  return {stress, {Kokkos::sqrt(square / 2) / shear_modulus, opening}};
 }
 
-/// Returns a stress to the surface. The stress of a particle that does not yield keeps its bits. The result
-/// is ReturnedStress::strain.
+/// Returns a stress to the surface. The stress of a particle that does not yield keeps its bits. loose: the
+/// soil has parted in all directions.
 template <class R, class T, int Dim>
-KOKKOS_INLINE_FUNCTION R return_stress(const PyramidShape<T>& shape, const PyramidSize<R>& size,
-                                       const R& shear_modulus, SymTensor<R, Dim>& stress) {
+KOKKOS_INLINE_FUNCTION PlasticFlow<R> return_stress(const PyramidShape<T>& shape, const PyramidSize<R>& size,
+                                                    const R& shear_modulus, const Truth<R>& loose,
+                                                    SymTensor<R, Dim>& stress) {
   const R mean = mean_of(stress);
   const Truth<R> may_yield = !is_well_inside(shape, size, stress, mean);
-  if (!any_of(may_yield)) return 0;
-  const ReturnedStress<R, Dim> back = returned_stress(shape, size, shear_modulus, stress, mean, may_yield);
+  if (!any_of(may_yield)) return {R(0), R(0)};
+  const ReturnedStress<R, Dim> back =
+      returned_stress(shape, size, shear_modulus, stress, mean, may_yield, loose);
   stress = back.stress;
-  return back.strain;
+  return back.flow;
 }
 
 }  // namespace mpm

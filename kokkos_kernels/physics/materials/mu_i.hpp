@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "physics/materials/deviator.hpp"
+#include "physics/materials/parting.hpp"
 
 namespace mpm {
 
@@ -44,8 +45,8 @@ struct MuI {
   enum : int { plastic_strain, parted };
   using State = LawState<T, 2>;
   static constexpr std::array<StateVariable, 2> state() {
-    return {{{"plastic_strain", "-"},   // accumulated engineering shear strain that is not elastic
-             {"parted_volume", "-"}}};  // volume strain since the grains parted
+    return {{{"plastic_strain", "-"},  // accumulated engineering shear strain that is not elastic
+             parted_variable()}};
   }
   ParameterFault check() const {
     if (mu_static < mu_dynamic) return {};
@@ -60,6 +61,8 @@ struct MuI {
   }
   /// Undrained shear strength [Pa]; none here: it follows the pressure.
   KOKKOS_FUNCTION T shear_strength(const State&) const { return 0; }
+  /// Volume strain of a gap in all directions, across which the soil takes no pressure.
+  KOKKOS_FUNCTION T free_gap(const State& state) const { return state[parted]; }
   /// Energy that the grains can give back [J/m3].
   template <int Dim>
   KOKKOS_FUNCTION T stored_energy(const SymTensor<T, Dim>& stress, const State&) const {

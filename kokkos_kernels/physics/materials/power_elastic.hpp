@@ -52,6 +52,13 @@ struct PowerElastic {
   KOKKOS_FUNCTION T wave_modulus(const SymTensor<T, Dim>& stress, const LawState<T, 0>&) const {
     return bulk_modulus_at(pressure_offset - mean_of(stress)) * (1 + shear_ratio * 4 / 3);
   }
+  /// The same once the soil has been compressed by a volume strain.
+  template <int Dim>
+  KOKKOS_FUNCTION T wave_modulus_after(const SymTensor<T, Dim>& stress, const LawState<T, 0>&,
+                                       T compression) const {
+    const T x = pressure_offset - mean_of(stress);
+    return bulk_modulus_at(x + growth(x, compression)) * (1 + shear_ratio * 4 / 3);
+  }
   /// Undrained shear strength [Pa]; none here.
   KOKKOS_FUNCTION T shear_strength(const LawState<T, 0>&) const { return 0; }
   /// Energy that the soil can give back [J/m3]: of its volume that of the whole path from P = 0, and of shear

@@ -117,6 +117,21 @@ KOKKOS_INLINE_FUNCTION Principal<R, 3> principal_of(const SymTensor<R, 3>& s, R 
   return of;
 }
 
+/// Normal stresses n_k . s n_k along axes.
+template <class R>
+KOKKOS_INLINE_FUNCTION void along_axes(const SymTensor<R, 2>& s, const Principal<R, 2>& of, R (&along)[3]) {
+  const R mean = (s[0] + s[1]) / 2, half = (s[0] - s[1]) / 2 * of.cos_2a + s[3] * of.sin_2a;
+  along[0] = mean + half, along[1] = mean - half, along[2] = s[2];
+}
+template <class R>
+KOKKOS_INLINE_FUNCTION void along_axes(const SymTensor<R, 3>& s, const Principal<R, 3>& of, R (&along)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    along[k] = 0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) along[k] += s[sym_index<3>(i, j)] * of.axis[i][k] * of.axis[j][k];
+  }
+}
+
 /// Adds sum_k by[k] n_k n_k^T to s. Where two values are nearly equal their axes n_k are arbitrary, but then
 /// their corrections are nearly equal too, so that the sum is smooth.
 template <class R>

@@ -67,7 +67,8 @@ struct SofteningClay : Clay<T> {
           nullptr,
           {{{"von_mises", von_mises}, {"tresca", tresca}}}}});
     return joined(Clay<T>::template clay_parameters<SofteningClay>(), own,
-                  YoungsModulus<T>::template growth_rows<SofteningClay>());
+                  YoungsModulus<T>::template growth_rows<SofteningClay>(),
+                  Clay<T>::template strength_rows<SofteningClay>());
   }
   /// Called once the parameters are set.
   void prepare() {
@@ -99,14 +100,14 @@ struct SofteningClay : Clay<T> {
   }
 
   ParameterFault check() const {
-    if (this->su == 0 && this->su_gradient == 0)
+    if (this->su == 0 && this->su_gradient == 0 && this->su_ratio == 0)
       return {"su", "a strength in Pa greater than 0 where -NAME_su_gradient is 0"};
     if (remoulded_ratio < 1 && !(xi95 > 0))
       return {"xi95", "a plastic shear strain greater than 0 where -NAME_remoulded_ratio is less than 1"};
     if (rate_factor > 0 && !(rate_reference > 0))
       return {"rate_reference", "a rate in 1/s greater than 0 where -NAME_rate_factor is greater than 0"};
     if (const ParameterFault fault = Clay<T>::check(); !fault.key.empty()) return fault;
-    return xi95_cell > 0 ? ParameterFault{} : brittleness_fault(this->su, this->young);
+    return xi95_cell > 0 ? ParameterFault{} : brittleness_fault(this->strength_share * this->su, this->young);
   }
   std::string warning() const {
     if (!(xi95_cell > 0)) return "";
@@ -114,8 +115,9 @@ struct SofteningClay : Clay<T> {
            std::to_string(xi95_cell) + " m";
   }
   ParameterFault start_fault(const ParticleStart& at) const {
+    if (const ParameterFault fault = Clay<T>::start_fault(at); !fault.key.empty()) return fault;
     const auto [xi, su0, own_young] = Clay<T>::initial_state(at);
-    return brittleness_fault(su0, own_young);
+    return brittleness_fault(this->strength_share * su0, own_young);
   }
   std::array<double, 5> initial_state(const ParticleStart& at) const {
     const auto [xi, su0, own_young] = Clay<T>::initial_state(at);
@@ -129,7 +131,7 @@ struct SofteningClay : Clay<T> {
   }
   /// Undrained shear strength [Pa] as softened, at a rate up to the reference.
   KOKKOS_FUNCTION T shear_strength(const State& state) const {
-    return state[strength] * (remoulded_ratio + what_is_left(state[plastic_strain]));
+    return this->strength_share * state[strength] * (remoulded_ratio + what_is_left(state[plastic_strain]));
   }
   /// Energy that the soil can give back [J/m3].
   template <int Dim>
@@ -143,7 +145,7 @@ struct SofteningClay : Clay<T> {
     const auto& e = this->stiffness;
     const R su_p = state[strength], basis = this->basis_of(su_p, state[young_of_particle]);  // Pa
     const R shear_modulus = e.shear_modulus + e.shear_modulus_over_basis * basis;            // Pa
-    const R rapid = su_p * rate_effect(state, by);
+    const R rapid = this->strength_share * su_p * rate_effect(state, by);
     s = rotated(s, by.spin);
     add_elastic(s, by.strain, R(e.lambda + e.lambda_over_basis * basis), shear_modulus);
     const R more = surface == T(tresca) ? return_to_hexagon(s, state, shear_modulus, rapid)
@@ -225,7 +227,7 @@ struct SofteningClay : Clay<T> {
     const R su_now = rapid * (remoulded_ratio + what_is_left(state[plastic_strain]));
     const PyramidSize<R> size{
         .sc = 2 * su_now, .cut_off = T(k_no_tension), .low = T(0), .cuts = false, .apex = {}};
-    return return_stress(hexagon, size, shear_modulus, s);
+    return return_stress(hexagon, size, shear_modulus, Truth<R>{}, s).strain;
   }
 };
 

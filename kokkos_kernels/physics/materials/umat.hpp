@@ -94,7 +94,7 @@ struct Umat {
     return {};
   }
 
-  /// What a particle carries: the wave modulus, or a negative number where the UMAT has given up; total
+  /// What a particle carries: the wave modulus, or a negative number where the UMAT has failed; total
   /// strain (tensor shear strains); specific energies; and the UMAT's own variables.
   enum : int { modulus, strain, energy = strain + 6, own = energy + 3 };
   static constexpr int k_size = own + k_most_states;
@@ -129,6 +129,10 @@ struct Umat {
     std::array<double, k_most_states> own_states{};
     UmatCall call;
     start_call(at, own_states.data(), call);
+    for (int k = 0; k < static_cast<int>(states); ++k)
+      if (!std::isfinite(own_states[k]))
+        return {"library", "a UMAT whose SDVINI sets finite state variables; state " + std::to_string(k + 1) +
+                               " is not finite at the start"};
     if (call.gave_up)
       return {"library",
               "a UMAT that can be called without strain at the start; it set PNEWDT below 1 or called XIT"};
@@ -156,7 +160,7 @@ struct Umat {
     return Kokkos::fmax(state[energy],
                         elastic_energy(stress, k_lame * state[modulus], k_shear * state[modulus]));
   }
-  /// Whether the UMAT has given up a particle; the run then ends.
+  /// Whether the UMAT has given up a particle, or returned a variable that is not finite; the run then ends.
   KOKKOS_FUNCTION bool failed(const State& state) const { return state[modulus] < 0; }
 
   template <int Dim>
@@ -185,10 +189,18 @@ struct Umat {
     for (int k = 0; k < 3; ++k) state[energy + k] = call.energy[k];
     // It never falls: unloading is stiffer than the tangent of a particle that yields.
     const T now = modulus_of(call);
-    state[modulus] = call.gave_up ? T(-1) : now > state[modulus] ? now : state[modulus];
+    const bool failed = call.gave_up || !has_finite_state(state);
+    state[modulus] = failed ? T(-1) : now > state[modulus] ? now : state[modulus];
   }
 
  private:
+  /// Whether what the UMAT returned beside the stress is finite. A variable that is not may leave the stress
+  /// as it is for many steps, and a checkpoint that holds it cannot be read.
+  bool has_finite_state(const State& state) const {
+    bool finite = true;
+    for (int k = energy; k < own + static_cast<int>(states); ++k) finite = finite && std::isfinite(state[k]);
+    return finite;
+  }
   /// Place in Abaqus' order 11 22 33 12 13 23 of component k of a SymTensor.
   template <int Dim>
   static constexpr int place_of(int k) {
@@ -213,6 +225,7 @@ struct Umat {
     const int count = static_cast<int>(states);
     for (int k = 0; k < 6; ++k) call.stress[place_of<3>(k)] = at.stress[k];
     for (int d = 0; d < 3; ++d) call.position[d] = at.position[d];
+    call.at_start = true;
     object->start(call, own_states, count, thread_safe != 0);
     std::array<double, k_most_states> copy{};  // of which the call keeps nothing
     for (int k = 0; k < count; ++k) copy[k] = own_states[k];

@@ -10,6 +10,8 @@
 #include <limits>
 #include <mutex>
 
+#include "physics/materials/shared_object.hpp"
+#include "physics/materials/umat_end.hpp"
 #include "physics/materials/umat_utilities.hpp"
 
 namespace mpm {
@@ -98,6 +100,7 @@ void UmatLibrary::call(UmatCall& c, double* states, int count, bool on_threads) 
   by_columns(c.rotation, drot), by_columns(c.gradient, after);
   for (int d = 0; d < 3; ++d) after[4 * d] += 1;
   const auto lock = lock_unless(on_threads);
+  const WatchedUmat watched({.library = this, .call = &c, .step = kinc});
   try {
     reinterpret_cast<UmatFunction*>(umat)(
         c.stress, count > 0 ? states : &none, ddsdde, &c.energy[0], &c.energy[1], &c.energy[2], &rpl, ddsddt,
@@ -117,6 +120,7 @@ void UmatLibrary::start(UmatCall& at, double* states, int count, bool on_threads
   if (sdvini == nullptr || count == 0 || !state_start.empty()) return;
   const int coordinates = dim, noel = at.id + 1, one = 1;
   const auto lock = lock_unless(on_threads);
+  const WatchedUmat watched({.library = this, .call = &at});
   try {
     reinterpret_cast<SdviniFunction*>(sdvini)(states, at.position, &count, &coordinates, &noel, &one, &one,
                                               &one);
@@ -135,10 +139,16 @@ std::shared_ptr<const UmatLibrary> open_umat(const std::string& material, const 
     takes = "a shared library, which is a regular file that can be read";
     return nullptr;
   }
+  if (const std::string fault = fault_of_shared_object(path.string()); !fault.empty()) {
+    takes = "a shared library that can be loaded; " + fault;
+    return nullptr;
+  }
   keep_umat_utilities();
   // A path with a slash: dlopen does not look for it elsewhere.
   const std::string place = path.has_parent_path() ? path.string() : "./" + path.string();
   auto library = std::make_shared<UmatLibrary>();
+  library->name = material, library->path = texts.library;
+  const WatchedUmat watched({.library = library.get()});  // functions that the library runs as it is loaded
   library->handle = {dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL), [](void* handle) {
                        if (handle != nullptr) dlclose(handle);
                      }};

@@ -20,8 +20,9 @@ struct UmatCall {
   double time = 0, dt = 0;                                    // s, at the start of the step
   double position[3] = {};                                    // m
   int id = 0;                                                 // of the particle, from 0
-  double modulus = 0;    // Pa, result: largest normal stiffness of DDSDDE
-  bool gave_up = false;  // result: PNEWDT below 1, or XIT
+  bool at_start = false;  // before the first step, while the input is checked
+  double modulus = 0;     // Pa, result: largest normal stiffness of DDSDDE
+  bool gave_up = false;   // result: PNEWDT below 1, or XIT
 };
 
 /// An open library. Threads may share it.
@@ -30,6 +31,7 @@ struct UmatLibrary {
   void* umat = nullptr;          // umat_ or umat
   void* sdvini = nullptr;        // sdvini_ or sdvini; null where there is none
   std::string material;          // CMNAME: in capitals, filled to 80 characters
+  std::string name, path;        // of the material, of the file, as the user gave them
   std::vector<double> properties, state_start;
   int dim = 2;
   std::array<double, 3> lower{};  // m, lower corner of the mesh
@@ -46,8 +48,9 @@ struct UmatTexts {
   std::string library, properties, state_start;
 };
 
-/// Opens a library. If it cannot be used the result is null, `key` is the option to change, and `takes` the
-/// end of the message "takes ...".
+/// Opens a library. Where it, or later its UMAT, ends the program (exit, STOP of Fortran, _exit), the status
+/// becomes 2 before the first step and 3 after it, and a line on stderr tells of it. If it cannot be used the
+/// result is null, `key` is the option to change, and `takes` the end of the message "takes ...".
 std::shared_ptr<const UmatLibrary> open_umat(const std::string& material, const UmatTexts& texts, int dim,
                                              const std::array<double, 3>& lower, double spacing,
                                              std::string& key, std::string& takes);

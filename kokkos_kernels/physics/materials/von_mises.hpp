@@ -14,15 +14,17 @@ struct VonMises : Clay<T> {
 
   static constexpr auto parameters() {
     return joined(Clay<T>::template clay_parameters<VonMises>(),
-                  YoungsModulus<T>::template growth_rows<VonMises>());
+                  YoungsModulus<T>::template growth_rows<VonMises>(),
+                  Clay<T>::template strength_rows<VonMises>());
   }
 
   template <class R, int Dim>
   KOKKOS_FORCEINLINE_FUNCTION void update(SymTensor<R, Dim>& s, LawState<R, 3>& state,
                                           const Increment<R, T, Dim>& by) const {
     const typename Clay<T>::Stiffness e = this->stiffness;
-    const R su_p = state[strength], basis = this->basis_of(su_p, state[young_of_particle]);  // Pa
-    const R shear_modulus = e.shear_modulus + e.shear_modulus_over_basis * basis;            // Pa
+    const R basis = this->basis_of(state[strength], state[young_of_particle]);     // Pa
+    const R shear_modulus = e.shear_modulus + e.shear_modulus_over_basis * basis;  // Pa
+    const R su_p = this->strength_share * state[strength];                         // Pa
     s = rotated(s, by.spin);
     add_elastic(s, by.strain, R(e.lambda + e.lambda_over_basis * basis), shear_modulus);
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "physics/materials/deviator.hpp"
+#include "physics/materials/parting.hpp"
 
 namespace mpm {
 
@@ -27,7 +28,8 @@ struct YieldFlowRoot {
 
 /// Fluid with a yield stress (Bingham 1922; Herschel & Bulkley 1926): elastic up to sqrt(J2) = tau_y, so that
 /// rest is rest; beyond, sqrt(J2) = tau_y + k g^n with the rate g of the shear that is not elastic. Backward
-/// Euler in the particle, so that viscosity does not bound the time step. Jaumann rate of the Cauchy stress.
+/// Euler in the particle, so that viscosity does not bound the time step. A fluid that takes no tension and
+/// has parted has no pressure until it has come together again. Jaumann rate of the Cauchy stress.
 template <class T>
 struct YieldStressFluid {
   using real = T;
@@ -64,16 +66,18 @@ struct YieldStressFluid {
     log_consistency = static_cast<T>(std::log(double(consistency)));
   }
 
-  enum : int { plastic_strain };
-  using State = LawState<T, 1>;
-  static constexpr std::array<StateVariable, 1> state() {
-    return {{{"plastic_strain", "-"}}};  // accumulated engineering shear strain that is not elastic
+  enum : int { plastic_strain, parted };
+  using State = LawState<T, 2>;
+  static constexpr std::array<StateVariable, 2> state() {
+    return {{{"plastic_strain", "-"},  // accumulated engineering shear strain that is not elastic
+             parted_variable()}};
   }
+  KOKKOS_FUNCTION bool carries(int k) const { return k != parted || tension == 0; }
   ParameterFault check() const {
     if (shear_modulus >= 10 * yield_stress) return {};
     return {"shear_modulus", "a modulus in Pa of at least 10 times -NAME_yield_stress"};
   }
-  std::array<double, 1> initial_state(const ParticleStart&) const { return {}; }
+  std::array<double, 2> initial_state(const ParticleStart&) const { return {}; }
 
   /// K + 4 G / 3 [Pa], which gives the speed of the fastest wave (Eq. 14).
   template <int Dim>
@@ -82,6 +86,8 @@ struct YieldStressFluid {
   }
   /// sqrt(J2) [Pa] at yield.
   KOKKOS_FUNCTION T shear_strength(const State&) const { return yield_stress; }
+  /// Volume strain of a gap in all directions, across which the soil takes no pressure.
+  KOKKOS_FUNCTION T free_gap(const State& state) const { return state[parted]; }
   /// Energy that the fluid can give back [J/m3].
   template <int Dim>
   KOKKOS_FUNCTION T stored_energy(const SymTensor<T, Dim>& stress, const State&) const {
@@ -117,14 +123,18 @@ struct YieldStressFluid {
   KOKKOS_FUNCTION void update(SymTensor<T, Dim>& s, State& state, const Increment<T, T, Dim>& by) const {
     s = rotated(s, by.spin);
     const T before = mean_of(s), dilatation = by.strain[0] + by.strain[1] + by.strain[2];
-    T mean = before + bulk_modulus * dilatation;
-    if (tension == 0) mean = Kokkos::fmin(mean, T(0));
+    T mean = before + bulk_modulus * (state[parted] + dilatation);
+    if (tension == 0) {
+      state[parted] = Kokkos::fmax(mean, T(0)) / bulk_modulus;
+      mean = Kokkos::fmin(mean, T(0));
+    }
     add_shear(s, by.strain, dilatation, shear_modulus);
     const T trial = shear_stress_of(s, before);
+    const T strength = state[parted] > 0 ? yield_stress * share_across(state[parted]) : yield_stress;
     T share = 1;
-    if (trial > yield_stress) {
-      const Flow flown = flow(trial - yield_stress, by.dt);
-      share = (yield_stress + flown.stress) / trial;
+    if (trial > strength) {
+      const Flow flown = flow(trial - strength, by.dt);
+      share = (strength + flown.stress) / trial;
       state[plastic_strain] += flown.strain;
     }
     s = with_deviator(s, before, share, mean);

@@ -121,6 +121,8 @@ struct BodyConfig {
   bool absent = false;              // a later stage places it
   bool from_before = false;         // it has been in the run before this stage
   bool removed = false;             // this stage or an earlier one removes it
+  /// Its strengths, which follow from the vertical stress by a ratio, stay as they were in the stage before.
+  bool keeps_strength = true;
   /// kg/m3, with which its soil was created, where that is not the density of its present material.
   std::optional<double> density;
 };
@@ -262,10 +264,28 @@ struct RasterConfig {
   Vec3 origin{};                          // m, added to the coordinates in files
 };
 
+/// A box in which the water has a level of its own.
+struct WaterRegionConfig {
+  std::string name;
+  Vec3 lower{}, upper{};        // m
+  std::optional<double> level;  // m; none: that of the water around it
+  bool dry = false;             // in lieu of a level
+
+  bool operator==(const WaterRegionConfig& other) const {
+    return name == other.name && lower == other.lower && upper == other.upper && level == other.level &&
+           dry == other.dry;
+  }
+};
+
 /// Water at rest, in which the soil is submerged.
 struct WaterConfig {
   std::optional<double> level;  // m, of its surface: height against gravity; none: there is no water
   double density = 1000;        // kg/m3
+  std::vector<WaterRegionConfig> regions;  // where they overlap, the last one that has a level counts
+
+  bool operator==(const WaterConfig& other) const {
+    return level == other.level && density == other.density && regions == other.regions;
+  }
 };
 
 /// What drives a component over a row of a path: an increment of strain, the strain since the start that it
@@ -317,6 +337,7 @@ struct Config {
   std::optional<TimeTable> gravity_table;
   WaterConfig water;
   TimeConfig time;
+  double strength_factor = 1;  // -, by which strengths are divided, of materials without their own
   double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
   VelocityUpdate velocity_update = VelocityUpdate::flip;
   int xpic_order = 2;        // -, m of XPIC(m), with xpic

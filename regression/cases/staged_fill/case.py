@@ -19,7 +19,7 @@ from row import Row
 GRAVITY, HEIGHT, DENSITY, PLATE, FORCE, WATER = 10.0, 2.0, 2000.0, 3000.0, 20e3, 4e8
 POISSON = 0.2
 CONSTRAINED = 1e8 * (1 - POISSON) / ((1 + POISSON) * (1 - 2 * POISSON))
-WET = (" -stages first,fill,plated,drained -soil_pore_stiffness 4e8 -drained_soil_pore_stiffness 0 -drained_time_end 6 -drained_damping 0.05")
+WET = (" -stages first,fill,plated,drained -soil_pore_stiffness 4e8 -drained_soil_pore_stiffness 0 -drained_time_end 6")
 CUT = " -rigid_bodies -stages first,fill -upper_lower 0,1.5 -upper_cut_out lower"
 RUNS = {"whole": "", "wet": WET, "cut": CUT}
 LIFT, LOAD = DENSITY * GRAVITY * HEIGHT, PLATE * GRAVITY

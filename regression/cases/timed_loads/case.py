@@ -3,6 +3,7 @@
 Tables give gravity, the velocity of one rigid body, the displacement of another, and the force on a third. Nothing touches
 anything, and no corner of a table falls on a step. At every row, velocities and displacements must be the integrals of the
 tables, for linear and for smooth tables: a step takes the mean of a table over the step, so that impulse and travel are exact.
+The velocity of the soil is that in the middle of the last step.
 The velocity through (0, 0), (1, 1), (2, -1), (3, 0) has the travel 0.5, 0.75, 0.5 and 0 m at 1, 1.5, 2 and 3 s. The position of
 the body that forces move has an error of the order of the step squared, because a step takes its force as constant.
 """
@@ -48,11 +49,12 @@ def gap(answer, exact):
 def check(runs):
     for name, run in runs.items():
         t = run.history["time"]
+        middle = t - np.where(t > 0, run.history["dt"] / 2, 0)
         gravity, velocity, placed, force = (Table(run, option) for option in (
             "gravity_table", "driven_velocity_table", "placed_displacement_table", "pushed_force_table"))
         mass = run.history["block_mass"][:, None]
         yield Row(f"velocity of the block: largest error over the largest velocity, {name}",
-                  gap(run.columns("block_momentum_") / mass, gravity.integral(t)), 0, 1e-12, "integral of the table", single=2e-5)
+                  gap(run.columns("block_momentum_") / mass, gravity.integral(middle)), 0, 1e-12, "integral of the table", single=2e-5)
         yield Row(f"driven body: largest error of the displacement over the largest, {name}",
                   gap(run.columns("driven_"), velocity.integral(t)), 0, 1e-12, "integral of the table")
         yield Row(f"driven body: largest error of the velocity over the largest, {name}",

@@ -1,0 +1,23 @@
+# cmake -D SOURCE=... -D HEADER=... -P GitCommit.cmake: writes the commit of the source folder into a header, if it is another than
+# the header has.
+set(commit "unknown")
+find_package(Git QUIET)
+if(Git_FOUND AND EXISTS ${SOURCE}/.git)
+  execute_process(COMMAND ${GIT_EXECUTABLE} -C ${SOURCE} rev-parse --short=12 HEAD OUTPUT_VARIABLE head RESULT_VARIABLE failed
+                  OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  if(NOT failed)
+    set(commit ${head})
+    execute_process(COMMAND ${GIT_EXECUTABLE} -C ${SOURCE} status --porcelain --untracked-files=no OUTPUT_VARIABLE changes ERROR_QUIET)
+    if(changes)
+      string(APPEND commit ", changed")
+    endif()
+  endif()
+endif()
+set(text "#pragma once\n\nnamespace mpm {\ninline constexpr const char* k_git_commit = \"${commit}\";\n}\n")
+set(former "")
+if(EXISTS ${HEADER})
+  file(READ ${HEADER} former)
+endif()
+if(NOT former STREQUAL text)
+  file(WRITE ${HEADER} "${text}")
+endif()

@@ -1,0 +1,23 @@
+#pragma once
+// What a program tells of itself. It needs neither MPI nor PETSc nor Kokkos to have started.
+
+#include <string>
+
+namespace mpm {
+
+/// Version, commit, libraries, and what the program was built for, as lines.
+std::string version_text();
+
+/// How to begin, where the manual is, and every option by group.
+std::string help_text();
+
+/// The text that the command line asks for in place of a run: that of --version or --help, where one of them
+/// (or -version, -help, -h) is among the words; else empty. Only the first process of a job has a text to
+/// print.
+struct Told {
+  bool asked = false;  // the program then ends with status 0
+  std::string text;
+};
+Told told_without_run(int argc, char** argv);
+
+}  // namespace mpm
