@@ -95,6 +95,13 @@ void end_of_exception() {
   std::_Exit(failure_status);
 }
 
+/// Prints a text that needs no run; the exit status.
+int print(const std::string& text) {
+  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return 0;
+  std::perror("mpm: Cannot write to the terminal");
+  return k_system_failure;
+}
+
 /// A rank that failed alone, as for want of memory, must not leave the others waiting for it for ever.
 void end_others() {
   constexpr int k_patience = 5000;  // ms
@@ -111,8 +118,7 @@ void end_others() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const mpm::Told told = mpm::told_without_run(argc, argv); told.asked)
-    return std::fputs(told.text.c_str(), stdout) < 0 || std::fflush(stdout) != 0 ? k_system_failure : 0;
+  if (const mpm::Told told = mpm::told_without_run(argc, argv); told.asked) return print(told.text);
   mpm::flush_subnormals();
   std::set_terminate(end_of_exception);
   MPI_Init(&argc, &argv);

@@ -75,6 +75,15 @@ double size_of(const Law& law, const Point<Law, 3>& after, const Sym& start, con
   return stress;
 }
 
+/// Modulus [Pa] that makes a stress of state variable k, a strain: the bulk modulus of a volume strain, which
+/// may be far below the shear modulus.
+template <class Law>
+double modulus_of(const Law& law, const Point<Law, 3>& point, int k) {
+  if constexpr (requires { law.bulk_modulus, Law::parted; })
+    if (k == Law::parted) return law.bulk_modulus;
+  return std::fmin(law.wave_modulus(point.stress, point.state), shear_modulus_in(law));
+}
+
 /// What n random states of a law show at worst, relative to the size of the stress. `gains`: work of the
 /// deviator on the strain that is not elastic, below 0.
 struct Worst {
@@ -114,9 +123,7 @@ void try_state(const Law<double>& law, const Law<float>& rough_law, const Sym& s
   }
   for (int k = 0; k < point.state.size && carries(law, k); ++k) {
     finite &= std::isfinite(point.state[k]) && std::isfinite(rough.state[k]);
-    const double modulus = law.wave_modulus(point.stress, point.state);
-    keep(worst.state,
-         std::fabs(double(rough.state[k]) - point.state[k]) * std::fmin(modulus, shear_modulus_in(law)));
+    keep(worst.state, std::fabs(double(rough.state[k]) - point.state[k]) * modulus_of(law, point, k));
   }
   worst.flowing += point.state.size > 0 && point.state[0] > 0;
   worst.not_finite += !finite;

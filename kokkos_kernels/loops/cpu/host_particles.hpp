@@ -272,9 +272,9 @@ struct HostParticles {
     for (int l = 0; l < count; ++l) {
       Vector<T, Dim> x, v;
       for (int d = 0; d < Dim; ++d) x[d] = q.x[d][l], v[d] = q.v[d][l];
-      if (!put_on_walls(grid, in_mesh(origin(slot), coord_of<Dim>(soil.cell(p + l))), x, v)) continue;
+      const bool passed = put_on_walls(grid, in_mesh(origin(slot), coord_of<Dim>(soil.cell(p + l))), x, v);
       for (int d = 0; d < Dim; ++d) q.x[d].set(l, x[d]), q.v[d].set(l, v[d]);
-      Kokkos::atomic_inc(&put_back(soil.body(p + l)));
+      if (passed) Kokkos::atomic_inc(&put_back(soil.body(p + l)));
     }
     return q;
   }
