@@ -50,19 +50,23 @@ struct ColumnStep {
   /// Velocity of a row after the step, and the force of the column on the side.
   KOKKOS_INLINE_FUNCTION void accelerate(const Column<Dim>& column, int r) const {
     double* const row = column.row(r);
-    double v[Dim], v_old[Dim];
+    double v[Dim], v_old[Dim], a[Dim], brake[Dim];
     const double inv_m = row[C::mass] > mass_cut ? 1 / row[C::mass] : 0;
     for (int k = 0; k < Dim; ++k) {
-      v_old[k] = row[C::velocity + k];
+      v_old[k] = row[C::velocity + k], brake[k] = 0;
       const double force = -column.product(r, matrix_along<Dim>(C::stiffness, k), C::displacement + k),
                    weight = (timed_g == nullptr ? g[k] : double((*timed_g)[k])) - row[C::gravity + k];
-      double a = force * inv_m + weight;
-      if (Kokkos::fabs(v_old[k]) > still * dt * Kokkos::fabs(a))
-        a -= damping * Kokkos::fabs(a) * (v_old[k] > 0 ? 1 : -1);
-      v[k] = v_old[k] + a * dt;
+      a[k] = force * inv_m + weight;
     }
-    if (r == 1) hold_end(0, row, v);
-    if (r == column.rows - 2) hold_end(1, row, v);
+    for (int pass = damping > 0 ? 0 : 1; pass < 2; ++pass) {  // as at the nodes beside it, a rehearsal first
+      for (int k = 0; k < Dim; ++k) v[k] = v_old[k] + (a[k] - brake[k]) * dt;
+      if (r == 1) hold_end(0, row, v, pass == 1);
+      if (r == column.rows - 2) hold_end(1, row, v, pass == 1);
+      for (int k = 0; k < Dim && pass == 0; ++k) {
+        const double size = Kokkos::fabs(v[k] - v_old[k]);
+        if (Kokkos::fabs(v_old[k]) > still * size) brake[k] = damping * size / dt * (v_old[k] > 0 ? 1 : -1);
+      }
+    }
     for (int k = 0; k < Dim; ++k) {
       row[C::after + k] = v[k];
       row[C::acceleration + k] = (v[k] - v_old[k]) / dt;
@@ -105,16 +109,17 @@ struct ColumnStep {
   }
 
  private:
-  /// What a mesh's end holds the column with.
-  KOKKOS_INLINE_FUNCTION void hold_end(int upper, double* row, double* v) const {
+  /// What a mesh's end holds the column with. keeps: the step itself, else the rehearsal for damping.
+  KOKKOS_INLINE_FUNCTION void hold_end(int upper, double* row, double* v, bool keeps) const {
     const Wall kind = ends[upper];
     const Side<Dim>& side = sides[2 * vertical + upper];
     for (int k = 0; k < Dim && kind == Wall::absorbing; ++k) {
       const int along = k == vertical ? 0 : 1;
       const Dashpot by(row[C::dashpot + along], row[C::spring + along], row[C::drift + k], dt, row[C::mass],
                        side.velocity[k]);
-      v[k] = (v[k] + by.a * by.to - by.pull) / (1 + by.a);
-      row[C::drift + k] += dt * (v[k] - by.to);
+      const double viscous = keeps ? by.a : 0;
+      v[k] = (v[k] + viscous * by.to - by.pull) / (1 + viscous);
+      if (keeps) row[C::drift + k] += dt * (v[k] - by.to);
     }
     for (int k = 0; k < Dim; ++k) {
       const bool all = kind == Wall::fixed || (kind == Wall::driven && side.holds_all);

@@ -79,7 +79,8 @@ KOKKOS_INLINE_FUNCTION Dashpot dashpot_of(const ActingSides<Dim>& acting, int n,
 }
 
 /// Dashpots (Lysmer and Kuhlemeyer 1969) and springs of all sides of a kind at a node, at once, so that
-/// their order does not matter.
+/// their order does not matter. A rehearsal has the springs alone: at rest dashpots have no force, and local
+/// damping brakes soil and columns alike.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION void absorb(const ActingSides<Dim>& acting, Wall kind, const SideNode<Dim>& node,
                                    const Vector<T, Dim>& v_old, double* v) {
@@ -92,7 +93,8 @@ KOKKOS_INLINE_FUNCTION void absorb(const ActingSides<Dim>& acting, Wall kind, co
     double sum = v[k], share = 1;
     each([&](int n, const double* kept) {
       const Dashpot by = dashpot_of(acting, n, k, node, kept);
-      sum += by.a * by.to - by.pull, share += by.a;
+      const double viscous = node.keeps ? by.a : 0;
+      sum += viscous * by.to - by.pull, share += viscous;
     });
     v[k] = sum / share;
     each([&](int n, double* kept) {
