@@ -16,6 +16,7 @@ ColumnStep<T, Dim> column_step(const State<Space, T, Dim>& s, int side, double d
           .g = s.gravity,
           .timed_g = s.timed.of_step().gravity,
           .dt = dt,
+          .change = s.kick * dt,
           .flip = s.flip_fraction,
           .damping = s.damping,
           .still = k_still<T>,

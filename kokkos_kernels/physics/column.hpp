@@ -41,7 +41,8 @@ struct ColumnStep {
   const Side<Dim>* sides;           // of the mesh, those that act
   Vector<double, Dim> g;            // m/s2
   const Vector<T, Dim>* timed_g;    // of the present step, where gravity follows a table; else null
-  double dt, flip, damping, still;  // s, -, -, -: k_still
+  double dt, change;                // s, length of the step; time over which it changes velocities
+  double flip, damping, still;      // -, -, -: k_still
   double mass_cut;                  // kg, as of nodes
   int xpic;                         // m of XPIC(m), 0 without it
   bool affine;                      // APIC
@@ -59,12 +60,12 @@ struct ColumnStep {
       a[k] = force * inv_m + weight;
     }
     for (int pass = damping > 0 ? 0 : 1; pass < 2; ++pass) {  // as at the nodes beside it, a rehearsal first
-      for (int k = 0; k < Dim; ++k) v[k] = v_old[k] + (a[k] - brake[k]) * dt;
+      for (int k = 0; k < Dim; ++k) v[k] = v_old[k] + (a[k] - brake[k]) * change;
       if (r == 1) hold_end(0, row, v, pass == 1);
       if (r == column.rows - 2) hold_end(1, row, v, pass == 1);
       for (int k = 0; k < Dim && pass == 0; ++k) {
         const double size = Kokkos::fabs(v[k] - v_old[k]);
-        if (Kokkos::fabs(v_old[k]) > still * size) brake[k] = damping * size / dt * (v_old[k] > 0 ? 1 : -1);
+        if (Kokkos::fabs(v_old[k]) > still * size) brake[k] = damping * size / change * (v_old[k] > 0 ? 1 : -1);
       }
     }
     for (int k = 0; k < Dim; ++k) {
@@ -115,11 +116,11 @@ struct ColumnStep {
     const Side<Dim>& side = sides[2 * vertical + upper];
     for (int k = 0; k < Dim && kind == Wall::absorbing; ++k) {
       const int along = k == vertical ? 0 : 1;
-      const Dashpot by(row[C::dashpot + along], row[C::spring + along], row[C::drift + k], dt, row[C::mass],
+      const Dashpot by(row[C::dashpot + along], row[C::spring + along], row[C::drift + k], change, row[C::mass],
                        side.velocity[k]);
       const double viscous = keeps ? by.a : 0;
       v[k] = (v[k] + viscous * by.to - by.pull) / (1 + viscous);
-      if (keeps) row[C::drift + k] += dt * (v[k] - by.to);
+      if (keeps) row[C::drift + k] += change * (v[k] - by.to);
     }
     for (int k = 0; k < Dim; ++k) {
       const bool all = kind == Wall::fixed || (kind == Wall::driven && side.holds_all);

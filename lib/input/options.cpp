@@ -393,7 +393,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   read_rasters(in, sound ? &config.mesh : nullptr, config);
   read_named(in, sound ? &config.mesh : nullptr, config, before);
   read_raster_bodies(in, config, config.rasters);
-  if (sound) choose_lid(in, before, config);
+  if (sound && in.errors() == errors) choose_lid(in, before, config);
   if (sound) check_absorbing(in, config);
   if (sound && in.errors() == errors) check_periodic(in, config);
   check_revolution(in, config);

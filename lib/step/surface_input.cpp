@@ -34,18 +34,19 @@ bool on_boundary(const Edge& edge, const MeshConfig& mesh, int dim) {
 
 /// Radius [m] that corners of a polygon, anticlockwise, can be rounded by: half a cell, but no corner recedes
 /// by more than that, and no edge loses more than a share of its length. Corners that point into the body stay
-/// sharp. ends[k]: edge k is no surface, and the corners at it are none.
+/// sharp. ends[k]: edge k lies on a side of the mesh and is no surface; a corner there is that with the image.
 double rounding_of(const Polygon& polygon, const std::vector<bool>& ends, double share, double spacing) {
   const double most = spacing / 2;
   double radius = most;
   const std::size_t count = polygon.size();
   const auto half_turn = [&](std::size_t k) {  // at vertex k, rad; 0 where there is nothing to round
     const std::size_t before = (k + count - 1) % count;
-    if (ends[before] || ends[k]) return 0.0;
+    if (ends[before] && ends[k]) return 0.0;
     const Edge in = edge_of(polygon, before), out = edge_of(polygon, k);
     const double ax = in.to[0] - in.from[0], ay = in.to[1] - in.from[1], bx = out.to[0] - out.from[0],
                  by = out.to[1] - out.from[1];
-    return std::max(0.0, std::atan2(ax * by - ay * bx, ax * bx + ay * by) / 2);
+    const double turn = std::atan2(ax * by - ay * bx, ax * bx + ay * by);
+    return std::max(0.0, ends[before] || ends[k] ? turn - M_PI / 2 : turn / 2);
   };
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t next = (k + 1) % count;

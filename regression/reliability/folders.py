@@ -41,6 +41,11 @@ def rows(folder):
     return [[x for k, x in enumerate(line.split(",")) if k != skipped] for line in lines]
 
 
+def of_velocities(time, dt):
+    """Times [s] to which the velocities of the soil at each row belong: the middle of the step before it, and the first row's own."""
+    return np.where(time > time[0], time - dt / 2, time)
+
+
 def contents(path):
     """All datasets and attributes of an HDF5 file, as bytes."""
     found = {}

@@ -13,7 +13,7 @@ import sys
 import h5py
 import numpy as np
 
-from folders import fresh, frames, rows, run
+from folders import frames, fresh, of_velocities, rows, run
 from random_decks import draws_of, read_arguments
 from sides import check_repeats, vector
 
@@ -139,11 +139,12 @@ def check_momentum(folder, dim, precision):
     values = {name: np.array([float(line[k]) for line in lines[1:]]) for k, name in enumerate(lines[0])}
     shaken = np.flatnonzero(values["stage"] == 2)
     steps = np.diff(values["time"])[shaken - 1]
+    kicks = np.diff(of_velocities(values["time"], values["dt"]))[shaken - 1]
     sides = [name[:-len("_force_x")] for name in lines[0] if name.startswith("wall_") and name.endswith("_force_x")]
     weight = 9.81 * values["soil_mass"][0]
     for axis in ("x", "xyz"[dim - 1]):
         force = sum(values[f"{side}_force_{axis}"] for side in sides)[shaken]
-        gained = np.cumsum(steps * ((-weight if axis != "x" else 0) - force))
+        gained = np.cumsum(kicks * (-weight if axis != "x" else 0) - steps * force)
         momentum = values[f"soil_momentum_{axis}"]
         error = np.abs(momentum[shaken] - momentum[shaken[0] - 1] - gained).max() / (weight * 0.3)
         assert error < (1e-10 if precision == "double" else 1e-4), f"the momentum along {axis} is {error:.3g} off"

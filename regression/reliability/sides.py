@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from folders import checkpoints, differences, fresh, rows, run
+from folders import checkpoints, differences, fresh, of_velocities, rows, run
 from random_decks import draws_of, read_arguments
 
 HERE = Path(__file__).resolve()
@@ -75,13 +75,13 @@ def check_momentum(folder, gravity, dim, precision, body="soil"):
     lines = rows(folder)
     values = {name: np.array([float(line[k]) for line in lines[1:]]) for k, name in enumerate(lines[0])}
     t = values["time"]
-    once = np.concatenate([[True], np.diff(t) > 0])
     scale = values[f"{body}_mass"][0] * (np.abs(gravity).max() * t[-1] + 0.2)
     sides = [name[:-len("_force_x")] for name in lines[0] if name.startswith("wall_") and name.endswith("_force_x")]
     for d in range(dim):
         axis = "xyz"[d]
         force = sum(values[f"{side}_force_{axis}"] for side in sides)
-        gained = np.cumsum(np.where(once[1:], np.diff(t), 0) * (values[f"{body}_mass"][1:] * gravity[d] - force[1:]))
+        weights = np.diff(of_velocities(t, values["dt"])) * values[f"{body}_mass"][1:] * gravity[d]
+        gained = np.cumsum(weights - np.diff(t) * force[1:])
         error = np.abs(values[f"{body}_momentum_{axis}"][1:] - values[f"{body}_momentum_{axis}"][0] - gained).max() / scale
         assert error < (1e-10 if precision == "double" else 1e-4), f"the momentum along {axis} is {error:.3g} off"
 

@@ -12,7 +12,7 @@ import sys
 
 import numpy as np
 
-from folders import ENVIRONMENT, checkpoints, differences, fresh, rows, run
+from folders import ENVIRONMENT, checkpoints, differences, fresh, of_velocities, rows, run
 from random_decks import draws_of, read_arguments
 
 STEP = 2e-4  # s
@@ -132,8 +132,8 @@ def check_momentum(deck, folder, tolerance):
         momentum = sum(column(folder, f"{name}_momentum_{axis}") for name in deck.names)
         force = sum(column(folder, f"{name}_force_{axis}") for name in deck.loads)
         weight = mass * deck.gravity if k == deck.dim - 1 else 0 * mass
-        impulse = np.cumsum(np.diff(time) * (force + weight)[:-1])
-        steps = np.diff(time) * (np.abs(force) + np.abs(weight))[:-1]
+        impulse = np.cumsum(np.diff(of_velocities(time, STEP)) * (force + weight)[:-1])
+        steps = np.diff(of_velocities(time, STEP)) * (np.abs(force) + np.abs(weight))[:-1]
         size = steps.sum() + np.abs(momentum).max() + 1e-3
         error = np.abs(momentum[1:] - momentum[0] - impulse).max() / size
         allowed = tolerance + CUT * steps.max() / size
