@@ -76,8 +76,12 @@ Polygon made_smaller(const Polygon& polygon, const std::vector<bool>& ends, doub
     constexpr double k_straight = 1e-9;  // sine squared, less is one line, or an edge that turns back
     const double of_a = square > k_straight ? (by_a - cosine * by_b) / square : by_a / 2,
                  of_b = square > k_straight ? (by_b - cosine * by_a) / square : by_b / 2;
-    smaller.push_back(
-        {polygon[k][0] + of_a * a[0] + of_b * b[0], polygon[k][1] + of_a * a[1] + of_b * b[1]});
+    Point2 vertex{polygon[k][0] + of_a * a[0] + of_b * b[0], polygon[k][1] + of_a * a[1] + of_b * b[1]};
+    for (const auto& [end, normal] : {std::pair{ends[before], a}, {ends[k], b}}) {
+      const int across = std::abs(normal[0]) > std::abs(normal[1]) ? 0 : 1;
+      if (end) vertex[across] = polygon[k][across];  // a node on the side is not beyond it by round-off
+    }
+    smaller.push_back(vertex);
   }
   return smaller;
 }
