@@ -102,10 +102,14 @@ void Notices::report_soil(const HistoryRow& row, const Config& config, std::vect
       lines->push_back(formatted("step %ld, time %.6g s: ", row.step, row.time) + line);
   };
   constexpr double k_gaps = 0.01;  // of the cells that hold soil
+  const bool may_split =
+      config.particle_domain != ParticleDomain::split && config.geometry == Geometry::plane_strain;
   report(row.empty_cells > k_gaps * row.filled_cells, " gaps",
          formatted("%ld cells inside the soil hold no particle, and %ld hold some (column empty_cells): the "
-                   "soil comes apart; docs/flow.md tells which options keep it together",
-                   row.empty_cells, row.filled_cells));
+                   "soil comes apart; ",
+                   row.empty_cells, row.filled_cells) +
+             (may_split ? "-analysis flow keeps together soil that flows or is stretched (docs/flow.md)"
+                        : "docs/flow.md tells which options keep it together"));
   if (!config.output.energy) return;
   const EnergyRow& e = row.energy;
   for (const double energy : {e.kinetic, e.internal, e.gravity, e.rigids})

@@ -83,6 +83,9 @@ bool follows_others(const std::string& name) {
   return name.size() > key.size() + 1 && name.compare(name.size() - key.size(), key.size(), key) == 0;
 }
 
+/// Whether an option does nothing but set the defaults of others, which are compared themselves.
+bool sets_others(const std::string& name) { return name == "-analysis"; }
+
 Comparison compare_options(const Checkpoint& checkpoint, const std::vector<EffectiveOption>& now,
                            const Config& config, const std::string& file,
                            const std::vector<std::string>& allowed) {
@@ -91,7 +94,7 @@ Comparison compare_options(const Checkpoint& checkpoint, const std::vector<Effec
   Comparison found;
   const std::string why = ", which holds in the run of " + file;
   const auto may_change = [&](const std::string& name) {
-    return change_rule(name.substr(1), config).restart;
+    return sets_others(name) || change_rule(name.substr(1), config).restart;
   };
   const auto is_allowed = [&](const std::string& name) {
     const auto same = [&](const std::string& word) { return "-" + lower_case(word) == lower_case(name); };

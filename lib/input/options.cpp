@@ -8,6 +8,7 @@
 #include "checkpoint/change_rules.hpp"
 #include "common/text.hpp"
 #include "common/time_table.hpp"
+#include "input/analysis_options.hpp"
 #include "input/courant.hpp"
 #include "input/groups.hpp"
 #include "input/reader.hpp"
@@ -72,6 +73,9 @@ void read_p2g(OptionReader& in, P2GConfig& p2g) {
 /// What goes in batches; `auto` is then `tile`.
 void check_batches(OptionReader& in, Config& config) {
   if (!config.device_memory_limit) return;
+  for (const char* name : {"particle_domain", "velocity_update", "position_correction"})
+    if (set_by_flow(in, config, name))
+      return in.reject("analysis", "penetration where -device_memory_limit sends the soil in batches");
   P2G& strategy = config.p2g.strategy;
   if (strategy == P2G::automatic) strategy = P2G::tile;
   if (strategy != P2G::tile) in.reject("device_memory_limit", "-p2g tile or auto: no other goes in batches");
@@ -160,13 +164,17 @@ void limit_courant(OptionReader& in, Config& config) {
 
 void read_velocity_update(OptionReader& in, Config& config) {
   VelocityUpdate& update = config.velocity_update;
-  in.word({.name = "velocity_update", .meaning = "how particles take their velocity from the nodes"},
+  in.word({.name = "velocity_update",
+           .meaning = "how particles take their velocity from the nodes",
+           .standard = in.listing() ? "flip, or apic with -analysis flow" : ""},
           Words<VelocityUpdate>{{"flip", VelocityUpdate::flip},
                                 {"pic", VelocityUpdate::pic},
                                 {"xpic", VelocityUpdate::xpic},
                                 {"apic", VelocityUpdate::apic}},
           update);
-  const std::string chosen = "-velocity_update is " + std::string(in.given_text("velocity_update"));
+  const std::string chosen = "-velocity_update is " + (set_by_flow(in, config, "velocity_update")
+                                                           ? "apic by -analysis flow"
+                                                           : in.given_text("velocity_update"));
   const bool xpic = update == VelocityUpdate::xpic;
   if (update != VelocityUpdate::flip) config.flip_fraction = 0;
   if (update == VelocityUpdate::flip || xpic)
@@ -191,7 +199,8 @@ void read_velocity_update(OptionReader& in, Config& config) {
 void read_position_correction(OptionReader& in, Config& config) {
   in.word({.name = "position_correction",
            .meaning = "delta: particles of soil that flows move a little, by less than 0.05 cells at each "
-                      "rebuild, from where they crowd to where they leave gaps"},
+                      "rebuild, from where they crowd to where they leave gaps",
+           .standard = in.listing() ? "none, or delta with -analysis flow" : ""},
           Words<bool>{{"none", false}, {"delta", true}}, config.position_correction);
   if (config.position_correction || in.listing())
     in.number(
@@ -224,12 +233,14 @@ void read_physics(OptionReader& in, Config& config) {
              .unit = "-",
              .range = {.lowest = 0.01, .highest = 100}},
             config.strength_factor);
+  read_analysis(in, config);
   read_velocity_update(in, config);
   in.word({.name = "particle_domain",
            .meaning = "how the domains of particles follow the soil: fixed: not at all; stretch: each "
                       "particle has half lengths along the axes that follow its deformation, from 0.1 to 0.5 "
                       "cells; split: that, and particles whose domains become too long are split, and those "
-                      "that crowd are merged again"},
+                      "that crowd are merged again",
+           .standard = in.listing() ? "fixed, or split with -analysis flow" : ""},
           Words<ParticleDomain>{{"fixed", ParticleDomain::fixed},
                                 {"stretch", ParticleDomain::stretch},
                                 {"split", ParticleDomain::split}},
@@ -251,6 +262,7 @@ void read_physics(OptionReader& in, Config& config) {
        .unit = "-",
        .range = {.lowest = 0, .highest = 1}},
       config.f_bar_fraction);
+  note_analysis(in, config);
 }
 
 /// What frames hold.

@@ -14,6 +14,8 @@ An expression is of Python, with numpy as np, of these:
   at(column, time)        value of a column of history.csv at a time [s], linear between its rows
   column(name)            all rows of a column
   frame(time)             {body: {field: array}} of the frame nearest to a time
+  uneven(body, time)      standard deviation of the depth of a column of cells from the mean of both neighbours, over the mean
+                          depth, in 2D (unevenness of regression/flow.py)
   near(value, exact, by)  |value - exact| <= by |exact|
 Each takes `run=NAME` where the deck has several runs; the first one is the default.
 """
@@ -28,7 +30,8 @@ import tempfile
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent.parent / "scripts"))
+sys.path[:0] = [str(HERE.parent.parent / "scripts"), str(HERE.parent)]
+from flow import depths, unevenness  # noqa: E402
 from results import Run, read_frame  # noqa: E402
 
 
@@ -70,11 +73,18 @@ def words_of(results):
     def frame(time, run=first):
         return read_frame(results[run].frame_near(time))[1]
 
+    def uneven(body, time, run=first):
+        of_run, soil = results[run], frame(time, run)[body]
+        cell, per_cell = of_run.number("mesh_spacing"), of_run.number(f"{body}_particles_per_cell")
+        half = soil.get("half_length_x", np.full(len(soil["position"]), cell / (2 * per_cell)))
+        (lower, upper) = (of_run.numbers("mesh_lower"), of_run.numbers("mesh_upper"))
+        return unevenness(depths(soil["position"], soil["volume"], half, lower, cell, round((upper[0] - lower[0]) / cell)))
+
     def near(value, exact, by):
         print(f"    {value:.6g}, exact {exact:.6g}, allowed {100 * by:g} %")
         return abs(value - exact) <= by * abs(exact)
 
-    return {"np": np, "column": column, "at": at, "frame": frame, "near": near}
+    return {"np": np, "column": column, "at": at, "frame": frame, "uneven": uneven, "near": near}
 
 
 def check(binary, deck):
