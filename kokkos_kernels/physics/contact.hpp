@@ -46,8 +46,7 @@ struct Interface {
   T shear_speed;   // m/s: shear limit x area x dt / nodal mass, the largest change of the tangential velocity
   T friction;      // -, negative: none
   T pressing = 0;  // m/s: what the soil's own force and weight press towards the rigid x dt / nodal mass
-  T mean = 0;      // m/s: mean normal impulse of a step, over the steps before / nodal mass, below zero where
-                   // the soil slipped; updated
+  T mean = 0;      // m/s: mean normal impulse of a step, over the steps before / nodal mass; updated
   T fresh = 1;     // -, share of this step in that mean
   T first = 0;     // -, in the first step of a run its length over the time in which it changes velocities; else 0
   T gap_scaling = 1;  // -, fraction of the normal correction
@@ -56,26 +55,19 @@ struct Interface {
       false;  // more than half a cell from the surface: it is not stopped, and nothing presses it
 };
 
-/// Normal impulse of a step that limits friction, by what a contact stopped in this one. Where soil stuck in
-/// the step before, the mean over the steps before and this one, so that soil which sticks on the whole does
-/// not slip in each trough. Where soil slipped, or was not in touch, that of this step alone (before <= 0), so
-/// that the friction of sliding soil is the friction of its normal force, also at nodes that it has just come
-/// to. In the first step of a run the soil has been pressed for long, by its forces: an impact has not.
+/// Mean normal impulse of a step over those before and this one, by what a contact stopped in this one. In
+/// the first step of a run the soil has been pressed for long, by its forces: an impact has not.
 template <class T>
-KOKKOS_INLINE_FUNCTION T limiting_impulse(T before, T fresh, T first, T stop, T pressing) {
+KOKKOS_INLINE_FUNCTION T mean_impulse(T before, T fresh, T first, T stop, T pressing) {
   stop = Kokkos::fmax(T(0), stop);
-  if (first > 0) return first * Kokkos::fmin(stop, Kokkos::fmax(T(0), pressing));
-  return before > 0 ? before + fresh * stop : stop;
-}
-/// What the next step is given of it: below zero where soil slipped.
-template <class T>
-KOKKOS_INLINE_FUNCTION T kept_impulse(T impulse, bool slipped) {
-  return slipped ? -impulse : impulse;
+  return first > 0 ? first * Kokkos::fmin(stop, Kokkos::fmax(T(0), pressing)) : before + fresh * stop;
 }
 
 /// Correction dV of the soil's velocity v at a node; v_r velocity of the rigid, n inward unit normal. No soil
-/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a fraction of
-/// limiting_impulse(): the impulse of a node rings with the waves of its cells.
+/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a fraction of the mean
+/// normal impulse over some steps: the impulse of a node rings with the waves of its cells, and a body that
+/// sticks on the whole must not slip in each trough. The sum of these means is never above that of the
+/// impulses.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v, const Vector<T, Dim>& v_r,
                                                          const Vector<T, Dim>& n, Interface<T>& interface) {
@@ -93,10 +85,8 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
                        (interface.within_soil && -approach < k_leaves * speed);
   T largest = touches ? interface.shear_speed : T(0);
   if (interface.friction >= 0) {
-    const T impulse =
-        limiting_impulse(interface.mean, interface.fresh, interface.first, stop, interface.pressing);
-    largest = Kokkos::fmin(interface.shear_speed, interface.friction * impulse);
-    interface.mean = kept_impulse(impulse, largest < speed);
+    interface.mean = mean_impulse(interface.mean, interface.fresh, interface.first, stop, interface.pressing);
+    largest = Kokkos::fmin(interface.shear_speed, interface.friction * interface.mean);
   }
   const T factor = largest >= speed ? T(1) : largest / speed;
   for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - factor * slip[d];

@@ -115,8 +115,8 @@ KOKKOS_INLINE_FUNCTION void hold_back(const Side<Dim>& side, int d, bool upper, 
 /// Coulomb friction of a side at a node, as contact_correction() has it.
 template <int Dim>
 struct SideFriction {
-  double impulse;  // N s, limiting_impulse()
-  double stops;    // -, share of the slip that friction stops
+  double mean;   // N s, mean normal impulse of a step
+  double stops;  // -, share of the slip that friction stops
 
   /// v_old: component of the velocity along the side's normal before the step; v: velocity as it comes to the
   /// sides; held: that which they leave along their normals [m/s].
@@ -125,14 +125,14 @@ struct SideFriction {
                                       const double* held) {
     const int d = n / 2;
     const double into = n % 2 == 1 ? 1 : -1;
-    impulse = limiting_impulse(node.memory * kept[SideTerms<Dim>::pressing], 1 - node.memory, node.first,
+    mean = mean_impulse(node.memory * kept[SideTerms<Dim>::pressing], 1 - node.memory, node.first,
                         node.mass * into * (v[d] - side.velocity[d]), node.mass * into * (v[d] - v_old));
     double squares = 0;
     for (int k = 0; k < Dim; ++k)
       if (k != d) squares += (held[k] - side.velocity[k]) * (held[k] - side.velocity[k]);
     const double slip = node.mass * Kokkos::sqrt(squares);  // N s
     const double area = side.face * Kokkos::fmin(1.0, node.mass / side.unit_mass);
-    const double most = Kokkos::fmin(side.friction * impulse, side.shear_limit * area * node.dt);
+    const double most = Kokkos::fmin(side.friction * mean, side.shear_limit * area * node.dt);
     stops = slip > most ? most / slip : 1;
   }
 };
@@ -162,7 +162,7 @@ KOKKOS_INLINE_FUNCTION void rub(const ActingSides<Dim>& acting, const SideNode<D
                                        : -by.stops * (held[k] - side.velocity[k]) / Kokkos::fmax(1.0, stops[k]);
       book(kept, node, v_old, k, node.mass * change, v[k]);
     }
-    if (node.keeps) kept[SideTerms<Dim>::pressing] = kept_impulse(by.impulse, by.stops < 1);
+    if (node.keeps) kept[SideTerms<Dim>::pressing] = by.mean;
   });
 }
 
