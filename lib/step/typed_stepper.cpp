@@ -30,7 +30,7 @@ constexpr long k_samples_apart = 5000;
 
 /// Cells that the fastest wave crosses in the time for which friction keeps normal impulse: longer than the
 /// impulse of a node rings with the waves of its cells, and shorter than loads change.
-constexpr double k_friction_cells = 10;
+constexpr double k_friction_cells = 3;
 
 /// The reference heights of particles that are created now are their heights [m, absolute]; the last
 /// direction is the vertical one.
