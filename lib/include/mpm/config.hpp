@@ -37,6 +37,7 @@ struct SideConfig {
   std::optional<double> spring_length;      // m (absorbing)
   Vec3 velocity{};                          // m/s; where a table tells it, its components of largest size
   std::optional<TimeTable> velocity_table;  // m/s
+  bool of_accelerations = false;            // that table is the integral of a record of accelerations
   bool moves = false;
 };
 
