@@ -340,6 +340,8 @@ struct Config {
   TimeConfig time;
   double strength_factor = 1;  // -, by which strengths are divided, of materials without their own
   double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
+  double rayleigh_mass = 0;       // 1/s, alpha of Rayleigh damping
+  double rayleigh_stiffness = 0;  // s, beta of Rayleigh damping
   VelocityUpdate velocity_update = VelocityUpdate::flip;
   int xpic_order = 2;        // -, m of XPIC(m), with xpic
   double flip_fraction = 1;  // -, fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic
