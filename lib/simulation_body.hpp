@@ -163,6 +163,7 @@ struct Simulation::Body {
 
   // simulation_time_step.cpp
   PetscErrorCode choose_time_step();
+  PetscErrorCode tell_damped_step();
   PetscErrorCode follow_stiffness(bool now = false);
   PetscErrorCode look_ahead(double* speed);
   PetscErrorCode wave_within(double seconds, double closing, double* speed);

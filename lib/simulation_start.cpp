@@ -239,6 +239,7 @@ PetscErrorCode Simulation::Body::start() {
     PetscCall(log.print("stable time step: %.6g s by waves alone, %.6g s by viscosity alone: %s governs",
                         waves, viscosity, waves < viscosity ? "the speed of waves" : "the viscosity"));
   }
+  PetscCall(tell_damped_step());
   if (restart) {
     PetscCall(resume());
     wall_start = seconds_now();

@@ -55,6 +55,19 @@ PetscErrorCode Simulation::Body::choose_time_step() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// How much Rayleigh damping shortens the step.
+PetscErrorCode Simulation::Body::tell_damped_step() {
+  PetscFunctionBeginUser;
+  if (!(config.rayleigh_mass > 0 || config.rayleigh_stiffness > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  Config without = config;
+  without.rayleigh_mass = without.rayleigh_stiffness = 0;
+  const StepLimits limits{critical_time_step(config), viscous_time_step(config)};
+  PetscCall(log.print("stable time step: %.6g s, and %.6g s without Rayleigh damping",
+                      step_of(limits, largest_courant(config), config),
+                      step_of(limits, largest_courant(config), without)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 long Simulation::Body::next_stiffness_check() const {
   return laws_follow ? std::max(waves.due, step + 1) : schedule.last_step();
 }

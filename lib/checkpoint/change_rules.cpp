@@ -63,6 +63,7 @@ constexpr Row k_rules[] = {
     {Owner::run, "gravity_table", k_load},
     {Owner::run, "gravity_table_interpolation", k_load},
     {Owner::run, "damping", k_load},
+    {Owner::run, "rayleigh_*", k_load},
     {Owner::run, "strength_factor", k_load},
     {Owner::run, "water_level", k_stage},
     {Owner::water_region, "water_level", k_stage},

@@ -34,6 +34,11 @@ inline Vec3 largest_rate(const TimeTable& table) {
   return largest;
 }
 
+/// End of the option that tells how a side moves.
+inline const char* motion_of(const SideConfig& side) {
+  return side.of_accelerations ? "_acceleration_table" : side.velocity_table ? "_velocity_table" : "_velocity";
+}
+
 /// The tables of a configuration, by their options with dash.
 inline std::vector<std::pair<std::string, const TimeTable*>> tables_of(const Config& config) {
   std::vector<std::pair<std::string, const TimeTable*>> tables;
@@ -42,8 +47,10 @@ inline std::vector<std::pair<std::string, const TimeTable*>> tables_of(const Con
   };
   add("-gravity_table", config.gravity_table);
   for (int d = 0; d < config.dim; ++d)
-    for (int side = 0; side < 2; ++side)
-      add("-" + side_option(d, side) + "_velocity_table", config.mesh.sides[d][side].velocity_table);
+    for (int side = 0; side < 2; ++side) {
+      const SideConfig& of = config.mesh.sides[d][side];
+      add("-" + side_option(d, side) + motion_of(of), of.velocity_table);
+    }
   for (const LoadConfig& load : config.loads) {
     add("-" + load.name + "_pressure_table", load.pressure_table);
     add("-" + load.name + "_traction_table", load.traction_table);

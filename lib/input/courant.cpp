@@ -61,10 +61,14 @@ StepLimits largest_steps(const StepLimits& limits, const Config& config) {
 }
 
 double step_of(const StepLimits& limits, double courant, const Config& config) {
-  if (!std::isfinite(limits.viscous)) return courant * limits.wave;
+  const bool damped = config.rayleigh_mass > 0 || config.rayleigh_stiffness > 0;
+  if (!std::isfinite(limits.viscous) && !damped) return courant * limits.wave;
   const double largest = largest_courant(config), share = courant / largest;
   const StepLimits stable = largest_steps(limits, config);
-  const double rate = 1 / stable.viscous;
+  // Damping of the fastest mode, of the frequency w = 2 / stable.wave, adds its rate xi w = beta w2 / 2 +
+  // alpha / 2.
+  const double rate = 1 / stable.viscous + config.rayleigh_mass / 2 +
+                      2 * config.rayleigh_stiffness / (stable.wave * stable.wave);
   return 2 * share * share / (rate + std::hypot(rate, 2 * share / stable.wave));
 }
 

@@ -24,6 +24,9 @@ void choose_lid(OptionReader& in, const Config* before, Config& config);
 /// Rejects sides with dashpots where a material does not tell the speed of its shear waves, and columns of
 /// the free field without a base.
 void check_absorbing(OptionReader& in, const Config& config);
+/// -rayleigh_*. And, after the sides and the materials, rejects what such damping does not go with.
+void read_rayleigh(OptionReader& in, Config& config);
+void check_rayleigh(OptionReader& in, const Config& config);
 /// Checks what a periodic mesh takes: weight of water across it alone, and rigids that do not end beside its
 /// periodic sides.
 void check_periodic(OptionReader& in, const Config& config);

@@ -343,9 +343,13 @@ PetscErrorCode check_load_faces(MPI_Comm comm, const Config& config, std::vector
     if (surfaces[n].particles == 0)
       lines->push_back(
           formatted("mpm: -%s_lower: given \"%s\", takes a lower corner that with -%s_upper \"%s\" makes "
-                    "a box round some free surface of body %s; no face of its particles is in this one",
+                    "a box round some free surface of body %s; no face of its particles is in this one%s",
                     load.name.c_str(), text_of(load.lower, config.dim).c_str(), load.name.c_str(),
-                    text_of(load.upper, config.dim).c_str(), config.bodies[load.body].name.c_str()));
+                    text_of(load.upper, config.dim).c_str(), config.bodies[load.body].name.c_str(),
+                    config.stage.removed_at.empty()
+                        ? ""
+                        : " at the start; what a stage bares by -STAGE_remove takes a load in a run that begins "
+                          "with the particles of a frame of that stage"));
   }
   if (most > k_most_loads)
     lines->push_back(

@@ -227,6 +227,7 @@ void read_physics(OptionReader& in, Config& config) {
              .unit = "-",
              .range = {.lowest = 0, .highest = 1, .open_highest = true}},
             config.damping);
+  read_rayleigh(in, config);
   in.number({.name = "strength_factor",
              .meaning = "what the strength of all materials without a strength_factor of their own is divided "
                         "by, as in a search for a factor of safety",
@@ -407,6 +408,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   read_raster_bodies(in, config, config.rasters);
   if (sound && in.errors() == errors) choose_lid(in, before, config);
   if (sound) check_absorbing(in, config);
+  check_rayleigh(in, config);
   if (sound && in.errors() == errors) check_periodic(in, config);
   check_revolution(in, config);
   limit_courant(in, config);

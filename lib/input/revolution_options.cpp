@@ -1,6 +1,7 @@
 #include "input/revolution_options.hpp"
 
 #include "common/text.hpp"
+#include "common/time_table.hpp"
 
 namespace mpm {
 
@@ -26,7 +27,7 @@ void check_revolution(OptionReader& in, const Config& config) {
     const SideConfig& side = config.mesh.sides[n / 2][n % 2];
     const std::string name = side_option(n / 2, n % 2);
     if (side.moves)
-      in.reject(name + (side.velocity_table ? "_velocity_table" : "_velocity"), "0" + where);
+      in.reject(name + motion_of(side), "0" + where);
     else if (const Wall wall = config.mesh.walls[n / 2][n % 2]; is_acting(wall) && wall != Wall::absorbing && wall != Wall::friction)
       in.reject(name, "roller, smooth, fixed, free, friction or absorbing" + where);
     if (side.shear_limit) in.reject(name + "_shear_limit", "nothing" + where);

@@ -6,6 +6,7 @@
 #include "common/material_table.hpp"
 #include "common/text.hpp"
 #include "common/time_table.hpp"
+#include "input/acceleration_record.hpp"
 #include "input/groups.hpp"
 #include "input/shapes.hpp"
 
@@ -18,7 +19,11 @@ constexpr const char* k_keys[] = {"_friction",
                                   "_spring_length",
                                   "_velocity",
                                   "_velocity_table",
-                                  "_velocity_table_interpolation"};
+                                  "_velocity_table_interpolation",
+                                  "_acceleration",
+                                  "_acceleration_table",
+                                  "_acceleration_table_interpolation",
+                                  "_acceleration_correction"};
 
 /// Whether a side is a friction side without friction.
 bool is_smooth(const OptionReader& in, const std::string& name) {
@@ -67,15 +72,62 @@ void read_velocity(OptionReader& in, const std::string& name, int dim, double en
   read_timed(in, velocity, true, dim, end, side.velocity, side.velocity_table);
   if (side.velocity_table) side.velocity = largest_of(*side.velocity_table);
   side.moves = side.velocity != Vec3{};
+  if (!side.moves) side.velocity_table.reset();  // of zeros
+}
+
+/// Puts the velocities of a record in lieu of its accelerations.
+void take_record(OptionReader& in, const std::string& name, int dim, BaselineCorrection correction,
+                 const TimeTable& record, SideConfig& side) {
+  IntegratedRecord integrated = integrate(record, correction);
+  side.velocity = largest_of(integrated.velocities);
+  side.of_accelerations = true;
+  for (const double v : side.velocity)
+    if (!k_speed.holds(v)) return in.reject(name, "accelerations of velocities" + k_speed.text() + " m/s");
+  in.note(name, report_of(integrated, correction, dim));
+  side.moves = side.velocity != Vec3{};
+  if (side.moves) side.velocity_table = std::move(integrated.velocities);
+}
+
+/// A corrected record may end before the run: the side is then at rest.
+void read_acceleration(OptionReader& in, const std::string& name, int dim, double end, SideConfig& side) {
+  const auto acceleration = [&](const std::string& meaning) {
+    return Option{.name = name + "_acceleration", .meaning = meaning, .unit = "m/s2", .range = k_speed};
+  };
+  const std::string table = name + "_acceleration_table", word = name + "_acceleration_correction";
+  Vec3 size{};
+  BaselineCorrection correction = BaselineCorrection::linear;
+  if (in.given(table) || in.listing()) {
+    in.vector(acceleration("what the factors of -" + table + " multiply"), dim, size);
+    in.word(
+        {.name = word,
+         .meaning = "what is taken out of the velocities that the record integrates to: nothing; linear: a "
+                    "straight line, so that they end at zero; quadratic: a parabola, so that the "
+                    "displacements do so too"},
+        std::vector<std::pair<std::string, BaselineCorrection>>{{"none", BaselineCorrection::none},
+                                                                {"linear", BaselineCorrection::linear},
+                                                                {"quadratic", BaselineCorrection::quadratic}},
+        correction);
+  }
+  std::optional<TimeTable> record;
+  read_timed(in, acceleration("record of accelerations of the side, which moves by their integral"), true,
+             dim, correction == BaselineCorrection::none ? end : 0, size, record);
+  if (record) take_record(in, table, dim, correction, *record, side);
 }
 
 /// A roller leaves the velocity along it to the soil.
 void check_roller(OptionReader& in, const std::string& name, int dim, int d, const SideConfig& side) {
   for (int k = 0; k < dim; ++k)
     if (k != d && side.velocity[k] != 0)
-      return in.reject(name + (side.velocity_table ? "_velocity_table" : "_velocity"),
-                       std::string("0 but in ") + "xyz"[d] + ", for -" + name +
-                           " is roller, which leaves the velocity along it free");
+      return in.reject(name + motion_of(side), std::string("0 but in ") + "xyz"[d] + ", for -" + name +
+                                                   " is roller, which leaves the velocity along it free");
+}
+
+/// Why a side does not take an option. moves: sides of its kind may move.
+std::string why_not(const OptionReader& in, const std::string& name, const std::string& key, bool moves) {
+  const std::string table = name + "_acceleration_table", word = in.given_text(name);
+  if (moves && key.starts_with("_velocity") && in.given(table)) return "the side moves by -" + table;
+  if (moves && key.starts_with("_acceleration")) return "there is no -" + table;
+  return "-" + name + " is " + (word.empty() ? "roller" : lower_case(word));
 }
 
 void read_side(OptionReader& in, const Config& config, int d, int side, SideConfig& to) {
@@ -84,14 +136,15 @@ void read_side(OptionReader& in, const Config& config, int d, int side, SideConf
   const auto known = in.known().size();
   if (kind == Wall::friction || in.listing()) read_friction(in, name, to);
   if (has_dashpots(kind) || in.listing()) read_absorbing(in, name, to);
-  if ((!is_open(kind) && kind != Wall::free_field) || in.listing())
+  const bool moves = !is_open(kind) && kind != Wall::free_field;
+  if (in.listing() || (moves && !in.given(name + "_acceleration_table")))
     read_velocity(in, name, config.dim, config.time.end, to);
+  if (in.listing() || moves) read_acceleration(in, name, config.dim, config.time.end, to);
   if (in.listing()) return;
-  const std::string word = in.given_text(name);
   const auto& all = in.known();
   for (const char* key : k_keys)
     if (std::find(all.begin() + static_cast<long>(known), all.end(), name + key) == all.end())
-      in.not_taken(name + key, "-" + name + " is " + (word.empty() ? "roller" : lower_case(word)));
+      in.not_taken(name + key, why_not(in, name, key, moves));
   if (kind == Wall::roller) check_roller(in, name, config.dim, d, to);
 }
 

@@ -3,6 +3,7 @@
 
 #include "functions/energy_works.hpp"
 #include "functions/find_strays.hpp"
+#include "functions/rayleigh.hpp"
 #include "functions/split_patches.hpp"
 #include "functions/step_kernels.hpp"
 #include "functions/surface_loads.hpp"
@@ -10,6 +11,7 @@
 #include "loops/interpolation.hpp"
 #include "parallel/decomposition.hpp"
 #include "rebuild/batches.hpp"
+#include "rebuild/rebuild.hpp"
 #include "step/overlap_stream.hpp"
 #include "step/timers.hpp"
 
@@ -97,6 +99,31 @@ void loads_to_nodes(State<Space, T, Dim>& s) {
   add_loads(s);
 }
 
+/// Rayleigh damping to the forces at the nodes, whose sums are those of all ranks. The sums of the soil with
+/// viscous stresses hold its mass and momentum once more, which nothing asks for.
+template <class Space, class T, int Dim>
+PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>& s, Rayleigh<Space, T, Dim>& by,
+                                 Decomposition<Space, T, Dim>* ranks) {
+  PetscFunctionBeginUser;
+  const int nodes = s.patches.node_count();
+  const bool viscous = by.stiffness > 0;
+  ensure(by.force, nodes);
+  if (viscous) {
+    ensure(s.nodes.residual, nodes), ensure(by.sums, nodes), ensure(by.stress, s.soil.points.count);
+    find_viscous_stress(s, by);
+    Kokkos::deep_copy(s.space, by.sums, T(0));
+    const Soil<Space, T, Dim> points = viscous_soil(s, by);
+    with_domain(points, [&](auto domain) {
+      interpolate<SoilSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, s.soil.bins,
+                                                       {points, s.grid.inv_spacing}, by.sums);
+    });
+    show_viscous_forces(s, by);
+    if (ranks) PetscCall(ranks->add_residual(s));
+  }
+  add_rayleigh_forces(s, by, viscous);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /// The soil's strength at the nodes near rigids, where a contact asks for it.
 template <class Space, class T, int Dim>
 PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
@@ -149,6 +176,7 @@ struct Step {
   double dt;                            // s
   Decomposition<Space, T, Dim>* ranks;  // null on one rank
   OverlapStream<Space>* overlap;        // null where there is none
+  Rayleigh<Space, T, Dim>* rayleigh;    // null without it; steps are then separate
 
   /// The paper's step. Function 7, the rebuild, is the caller's, when the movement bound says so. Out of core
   /// functions 3 and 5 take the soil batch by batch, and what function 5 does may be functions 1 and 3 of the
@@ -165,11 +193,17 @@ struct Step {
     }));
     if (ranks) PetscCall(ranks->add_soil(s));  //   the sum over ranks
     PetscCall(complete_nodes(s.space));        //   strength, particles that are alone
+    if (rayleigh)
+      PetscCall(run(StepPhase::soil_to_nodes, [&] { return rayleigh_to_nodes(s, *rayleigh, ranks); }));
     PetscCall(run(StepPhase::nodes, [&] {
       update_nodes(s, dt);                           // 4 velocities, walls, contact
       if (s.loads.in_use()) follow_surfaces(s, dt);  //   work of loads, and their areas
     }));
-    if (s.energy.on) PetscCall(run(StepPhase::energy, [&] { add_node_works(s, dt); }));
+    if (s.energy.on)
+      PetscCall(run(StepPhase::energy, [&] {
+        add_node_works(s, dt);
+        if (rayleigh) add_rayleigh_work(s, *rayleigh, dt);
+      }));
     PetscCall(run(StepPhase::particles, [&] { return update_soil(); }));  // 5 stress, movement
     if (s.energy.on) PetscCall(run(StepPhase::energy, [&] { add_stress_work(s); }));
     PetscCall(run(StepPhase::rigids, [&] { return update_rigids(false); }));  // 6 move the rigid bodies
@@ -337,14 +371,16 @@ struct Step {
 };
 
 /// Advances one explicit step of dt [s], or up to `left` steps where one launch does them. Reduces `left` by
-/// the number of steps done. Does nothing while s.control is paused.
+/// the number of steps done. Does nothing while s.control is paused. rayleigh: null without such damping.
 template <class Space, class T, int Dim>
 PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt,
                     Decomposition<Space, T, Dim>* ranks = nullptr, OverlapStream<Space>* overlap = nullptr,
-                    long* left = nullptr) {
+                    long* left = nullptr, Rayleigh<Space, T, Dim>* rayleigh = nullptr) {
   PetscFunctionBeginUser;
-  const Step<Space, T, Dim> step{s, timers, dt, ranks, overlap};
+  const Step<Space, T, Dim> step{s, timers, dt, ranks, overlap, rayleigh};
   long one = 1;
+  // Its forces need the sums of all the soil and of all ranks before any node moves.
+  if (rayleigh) s.plan.form = StepForm::separate, s.plan.sums_ahead = s.plan.nodes_apart = false;
   if (left == nullptr) left = &one;
   if (s.plan.form != StepForm::persistent) --*left;
   switch (s.plan.form) {

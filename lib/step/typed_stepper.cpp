@@ -189,6 +189,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   }
 
   set_up_correction();
+  set_up_rayleigh();
   state_.p2g.strategy = config_.p2g.strategy, state_.p2g.margin = config_.p2g.margin;
   state_.p2g.mosaic_cells = config_.p2g.mosaic_cells;
   for (int d = 0; d < Dim; ++d) state_.gravity[d] = gravity_on_soil(config_)[d];
@@ -227,6 +228,16 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.keeps_stress = false;
   if (config_.output.energy && failure->what.empty()) PetscCallCXX(PetscCall(begin_energy()));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+void TypedStepper<Space, T, Dim>::set_up_rayleigh() {
+  if (!(config_.rayleigh_mass > 0 || config_.rayleigh_stiffness > 0)) return;
+  rayleigh_ = std::make_unique<Rayleigh<Space, T, Dim>>();
+  std::vector<double> ratios;
+  for (const MaterialConfig& material : config_.materials)
+    ratios.push_back(shear_wave_ratio(material).value_or(0));
+  begin_rayleigh(*rayleigh_, config_.rayleigh_mass, config_.rayleigh_stiffness, ratios);
 }
 
 /// Steps up to the next one that is timed, or that one.
@@ -282,7 +293,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance(const StepRange& range, Batc
     const long most = std::min(steps, until_sample());
     long left = most;
     PetscCall(
-        step<Space, T, Dim>(state_, timers_, dt, nullptr, is_device<Space> ? &overlap_ : nullptr, &left));
+        step<Space, T, Dim>(state_, timers_, dt, nullptr, is_device<Space> ? &overlap_ : nullptr, &left, rayleigh_.get()));
     sample(false);
     steps -= most - left;
     steps_enqueued_ += most - left;

@@ -111,6 +111,7 @@ class TypedStepper final : public Stepper {
   /// it. Collective.
   PetscErrorCode split_and_merge();
   void set_up_correction();
+  void set_up_rayleigh();
   /// Moves particles to an even density, where the run asks for it, after lists were made. elapsed: time
   /// since the correction before [s]. Collective.
   PetscErrorCode correct_positions(double elapsed);
@@ -133,6 +134,7 @@ class TypedStepper final : public Stepper {
   State<Space, T, Dim> state_;
   std::unique_ptr<Decomposition<Space, T, Dim>> ranks_;  // null on one rank
   OverlapStream<Space> overlap_;
+  std::unique_ptr<Rayleigh<Space, T, Dim>> rayleigh_;  // null without such damping
   Timers timers_;
   long steps_enqueued_ = 0, next_sample_ = 20;
   double seen_increment_ = 0;  // of the movement bound, when the host looked last [cells]

@@ -54,7 +54,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::advance_together(long steps, double 
   bool due = false;
   for (; done < steps && !due; ++done) {
     sample(true);
-    PetscCall(step<Space, T, Dim>(state_, timers_, dt, ranks_.get(), is_device<Space> ? &overlap_ : nullptr));
+    PetscCall(step<Space, T, Dim>(state_, timers_, dt, ranks_.get(), is_device<Space> ? &overlap_ : nullptr,
+                                  nullptr, rayleigh_.get()));
     sample(false);
     ++steps_enqueued_;
     BoundReport all;

@@ -33,7 +33,8 @@ OPTIONS = {
     **{name: ("levels", LENGTH) for name in "top base".split()},
     "rate_reference": ("number", RATE), "viscosity": ("number", VISCOSITY), "consistency": ("number", None), "gauge_width": ("number", LENGTH),
     "gravity": ("vector", ACCELERATION), "velocity": ("vector", SPEED), "traction": ("vector", STRESS), "force": ("vector", FORCE),
-    "facing": ("vector", NONE), "normal": ("vector", NONE), "velocity_table": ("table", SPEED), "stress": ("stress", STRESS),
+    "facing": ("vector", NONE), "normal": ("vector", NONE), "velocity_table": ("table", SPEED), "acceleration_table": ("table", ACCELERATION), "acceleration": ("vector", ACCELERATION),
+    "stress": ("stress", STRESS),
     "polygon": ("outline", LENGTH), "width": ("width", LENGTH), "at": ("at", LENGTH), "axis": ("axis", NONE),
 }
 SIDE = re.compile(r"^mesh_([xyz])(min|max)(?:_(\w+))?$")
@@ -81,7 +82,7 @@ def kind_of(option, deck):
         name, _, key = key.partition("_")
         if name in names_of(deck, "probes"):
             key = {"width": "gauge_width", "bodies": "bodies_of_probe"}.get(key, key)
-    if isinstance(value, str) and key in OPTIONS and key not in ("velocity_table", "axis"):
+    if isinstance(value, str) and key in OPTIONS and key not in ("velocity_table", "acceleration_table", "axis"):
         return "word", NONE
     kind, units = OPTIONS[key]
     if key == "consistency":  # Pa s^n

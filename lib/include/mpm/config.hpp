@@ -37,6 +37,7 @@ struct SideConfig {
   std::optional<double> spring_length;      // m (absorbing)
   Vec3 velocity{};                          // m/s; where a table tells it, its components of largest size
   std::optional<TimeTable> velocity_table;  // m/s
+  bool of_accelerations = false;            // that table is the integral of a record of accelerations
   bool moves = false;
 };
 
@@ -339,6 +340,8 @@ struct Config {
   TimeConfig time;
   double strength_factor = 1;  // -, by which strengths are divided, of materials without their own
   double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
+  double rayleigh_mass = 0;       // 1/s, alpha of Rayleigh damping
+  double rayleigh_stiffness = 0;  // s, beta of Rayleigh damping
   VelocityUpdate velocity_update = VelocityUpdate::flip;
   int xpic_order = 2;        // -, m of XPIC(m), with xpic
   double flip_fraction = 1;  // -, fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic
