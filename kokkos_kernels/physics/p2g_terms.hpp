@@ -402,7 +402,8 @@ template <class Source>
 constexpr bool sums_of_one_kind() {
   for (int value = 0; value < Source::size; ++value)
     for (int d = 0; d < k_slopes_of<Source>; ++d)
-      if (Source::takes(value, d) && (Source::component(value) < 0 || !Source::takes(value, d == Source::dim ? 0 : d)))
+      if (Source::takes(value, d) &&
+          (Source::component(value) < 0 || !Source::takes(value, d == Source::dim ? 0 : d)))
         return false;
   return true;
 }
