@@ -188,7 +188,7 @@ class Levels {
   Level levels_[k_window];
 };
 
-/// Of the cells that touch a cell those that hold most, if that is more than the cell itself; else the cell.
+/// The cells that hold most among those that touch a cell, if that is more than it holds; else the cell.
 /// Several are equal up to round-off where the shape is symmetric.
 std::vector<Levels::Cell> Levels::largest_neighbours(const Cell& cell) const {
   double most = 0;
