@@ -6,7 +6,8 @@
 
 namespace mpm {
 
-/// What a user may expect of rigid bodies and they do not do: a line for each ("warning: ...").
+/// Motions and contacts that a user may expect of rigid bodies and that the program has not: a line for
+/// each ("warning: ...").
 std::vector<std::string> warnings_of_rigids(const Config& config);
 
 }  // namespace mpm

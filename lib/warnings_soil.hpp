@@ -9,7 +9,7 @@ namespace mpm {
 /// Excavations of a stage that fill with water: a line for each ("warning: ...").
 std::vector<std::string> warnings_of_excavations(const Config& config);
 
-/// What the log tells of deformable bodies that touch or may meet; empty where none do.
+/// Line of the log for deformable bodies that touch or may meet; empty where none do.
 std::string note_of_touching(const Config& config);
 
 }  // namespace mpm

@@ -3,10 +3,10 @@
 
 namespace mpm {
 
-/// What a node of such a side keeps from step to step. Till `dashpot`: the mean normal impulse of a step, which
-/// limits friction [N s], and how far an absorbing side has drifted [m]. What an absorbing side takes from the soil
-/// when it begins: normal and tangential dashpot [kg/s] and spring [N/m], and the static reaction [N]. Since
-/// the host last took them: impulse [N s] and work [J] of the side on the soil.
+/// Numbers that a node of such a side keeps from step to step: the mean normal impulse of a step, which
+/// limits friction [N s]; the drift of an absorbing side [m]; its normal and tangential dashpots [kg/s] and
+/// springs [N/m], and its static reaction [N], as they were when the side began to absorb; impulse [N s] and
+/// work [J] of the side on the soil since the host last took them.
 template <int Dim>
 struct SideTerms {
   static constexpr int pressing = 0, drift = 1, dashpot = 1 + Dim, spring = 3 + Dim, reaction = 5 + Dim,

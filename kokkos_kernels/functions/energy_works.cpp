@@ -79,14 +79,10 @@ struct StrainOfCells {
       works.strain(p) = strain_of(p);
       mean.add(soil.volume(p), soil.volume(p) * trace(p));
     }
-    if (!(f_bar > 0)) return;
-    if (by_material)
-      return average_by_material(
-          soil, first, last, [&](int p) { return soil.volume(p) * trace(p); },
-          [&](int p, T of_cell) {
-            dilate(p, mean_for(soil.materials(soil.material_of(p)).f_bar_share, of_cell, trace(p)));
-          });
-    for (int p = first; p < last; ++p) dilate(p, mean.value());
+    if (f_bar > 0)
+      bring_together(
+          soil, first, last, by_material, mean, [&](int p) { return trace(p); },
+          [&](int p, T to) { dilate(p, to); });
   }
 
  private:

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// What Rayleigh damping works with. Runs without it have none of this.
+/// Coefficients and fields of Rayleigh damping. Only a run with such damping has them.
 template <class Space, class T, int Dim>
 struct Rayleigh {
   using Memory = typename Space::memory_space;

@@ -43,4 +43,21 @@ KOKKOS_INLINE_FUNCTION T mean_for(T share, T mean, T own) {
   return share * mean + (1 - share) * own;
 }
 
+/// Brings the dilatations of the particles [first, last) of a cell together, as advance() does. mean: over
+/// all of them; trace(p): a particle's own; dilate(p, to): moves it towards `to` by the fraction of F-bar.
+template <class Space, class T, int Dim, class Trace, class Dilate>
+KOKKOS_INLINE_FUNCTION void bring_together(const Soil<Space, T, Dim>& soil, int first, int last,
+                                           bool by_material, const CellMean<T>& mean, const Trace& trace,
+                                           const Dilate& dilate) {
+  if (!by_material) {
+    for (int p = first; p < last; ++p) dilate(p, mean.value());
+    return;
+  }
+  average_by_material(
+      soil, first, last, [&](int p) { return soil.volume(p) * trace(p); },
+      [&](int p, T of_cell) {
+        dilate(p, mean_for(soil.materials(soil.material_of(p)).f_bar_share, of_cell, trace(p)));
+      });
+}
+
 }  // namespace mpm

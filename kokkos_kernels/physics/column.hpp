@@ -65,7 +65,8 @@ struct ColumnStep {
       if (r == column.rows - 2) hold_end(1, row, v, pass == 1);
       for (int k = 0; k < Dim && pass == 0; ++k) {
         const double size = Kokkos::fabs(v[k] - v_old[k]);
-        if (Kokkos::fabs(v_old[k]) > still * size) brake[k] = damping * size / change * (v_old[k] > 0 ? 1 : -1);
+        if (Kokkos::fabs(v_old[k]) > still * size)
+          brake[k] = damping * size / change * (v_old[k] > 0 ? 1 : -1);
       }
     }
     for (int k = 0; k < Dim; ++k) {
@@ -110,14 +111,15 @@ struct ColumnStep {
   }
 
  private:
-  /// What a mesh's end holds the column with. keeps: the step itself, else the rehearsal for damping.
+  /// Applies the constraints of a side at an end of the column to the velocity of its last row. keeps: the
+  /// step itself, else the trial pass for damping.
   KOKKOS_INLINE_FUNCTION void hold_end(int upper, double* row, double* v, bool keeps) const {
     const Wall kind = ends[upper];
     const Side<Dim>& side = sides[2 * vertical + upper];
     for (int k = 0; k < Dim && kind == Wall::absorbing; ++k) {
       const int along = k == vertical ? 0 : 1;
-      const Dashpot by(row[C::dashpot + along], row[C::spring + along], row[C::drift + k], change, row[C::mass],
-                       side.velocity[k]);
+      const Dashpot by(row[C::dashpot + along], row[C::spring + along], row[C::drift + k], change,
+                       row[C::mass], side.velocity[k]);
       const double viscous = keeps ? by.a : 0;
       v[k] = (v[k] + viscous * by.to - by.pull) / (1 + viscous);
       if (keeps) row[C::drift + k] += change * (v[k] - by.to);

@@ -7,11 +7,11 @@
 
 namespace mpm {
 
-/// What is taken out of the velocities that a record integrates to: nothing; a straight line, so that they
-/// end at zero; or a parabola, so that the displacements do so too.
+/// Correction of the velocities that a record integrates to: none; less a straight line, so that the
+/// velocity ends at zero; or less a parabola, so that the displacement ends at zero too.
 enum class BaselineCorrection { none, linear, quadratic };
 
-/// What a record comes to at its end, and its largest accelerations by size.
+/// Velocity and displacement at the end of a record, and its largest accelerations by size.
 struct RecordFigures {
   Vec3 velocity{}, displacement{}, largest{};  // m/s, m, m/s2
 };

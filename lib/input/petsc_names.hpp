@@ -15,8 +15,8 @@ bool is_petsc_name(const std::string& name);
 /// others load libraries, write files wherever they are told to, or wait for a debugger.
 bool is_passed_on(const std::string& name);
 
-/// What such an option takes in place of a value; empty where the value is good. What -log_view names is
-/// checked only where the output folder is known.
+/// The message of what an option of PETSc takes, where its value is refused; empty where the value is good.
+/// The file of -log_view is checked later, when the output folder is known.
 std::string petsc_fault(const std::string& name, const std::string& value);
 
 /// The names of the options that are passed on.

@@ -1,5 +1,5 @@
 #pragma once
-// What a user who gives an option that does not exist may have meant.
+// Suggestions for an option that does not exist: names of options that the user may have meant.
 
 #include <string>
 #include <vector>

@@ -201,8 +201,8 @@ KOKKOS_INLINE_FUNCTION Truth<R> is_well_inside(const PyramidShape<T>& shape, con
   return below & (mean + T(1.1547005383792515) * r < size.cut_off);
 }
 
-/// What a return to the surface does: the engineering shear strain of its plastic increment,
-/// sqrt(2 de_p : de_p) of its deviator, and the plastic volume strain by which the soil parts.
+/// Plastic increment of a return to the surface: its engineering shear strain, sqrt(2 de_p : de_p) of its
+/// deviator, and the plastic volume strain by which the soil parts.
 template <class R>
 struct PlasticFlow {
   R strain, opening;

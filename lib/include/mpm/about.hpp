@@ -1,5 +1,5 @@
 #pragma once
-// What a program tells of itself. It needs neither MPI nor PETSc nor Kokkos to have started.
+// Version, build and help of the program. Printing them needs neither MPI nor PETSc nor Kokkos to have started.
 
 #include <string>
 
