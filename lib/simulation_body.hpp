@@ -103,6 +103,7 @@ struct Simulation::Body {
   double end_of_run() const;
   PetscErrorCode end_stage();
   PetscErrorCode next_stage();
+  PetscErrorCode find_loads(SavedState& state);
   PetscErrorCode set_up_stage(SavedState&& state, const Present& present, const std::vector<char>& changed);
 
   // simulation_stage_bodies.cpp

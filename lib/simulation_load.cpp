@@ -120,12 +120,9 @@ PetscErrorCode Simulation::Body::load(Model* model) {
   }
   std::vector<LoadedSurface> surfaces;
   PetscCall(find_load_faces(comm, config, &model->bodies, &model->face_count, &surfaces));
-  for (std::size_t n = 0; n < surfaces.size(); ++n)
-    PetscCall(log.print(
-        "load %s: on %ld particles of body %s, area %.9g %s, as a vector out of the body (%s)",
-        config.loads[n].name.c_str(), surfaces[n].particles, config.bodies[config.loads[n].body].name.c_str(),
-        surfaces[n].area, config.dim == 2 && config.geometry == Geometry::plane_strain ? "m" : "m2",
-        text_of(surfaces[n].vector, config.dim).c_str()));
+  if (config.stage.number <= 1)
+    for (const int n : loads_from_stage(config, 1))
+      PetscCall(log.line(describe_surface(config, n, surfaces[n])));
   for (const auto& rigid : config.rigids)
     if (!rigid.absent)
       PetscCall(load_shape(is_new(config, rigid) ? "rigid " + rigid.name : "", rigid.shape, {}, {},

@@ -8,6 +8,7 @@
 #include "common/collectives.hpp"
 #include "common/text.hpp"
 #include "simulation_body.hpp"
+#include "step/stage_loads.hpp"
 #include "step/state_map.hpp"
 #include "warnings.hpp"
 
@@ -188,6 +189,19 @@ PetscErrorCode Simulation::Body::next_stage() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// The surfaces of the loads that begin with the stage.
+PetscErrorCode Simulation::Body::find_loads(SavedState& state) {
+  PetscFunctionBeginUser;
+  std::vector<LoadedSurface> surfaces;
+  std::string fault;
+  PetscCall(find_stage_faces(comm, config, &state, &surfaces, &fault));
+  const std::vector<int> loads = loads_from_stage(config, config.stage.number);
+  for (std::size_t n = 0; n < loads.size(); ++n)
+    PetscCall(log.line(describe_surface(config, loads[n], surfaces[n])));
+  if (!fault.empty()) PetscCall(fail(fault));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /// A stepper for the options of the stage with a state.
 PetscErrorCode Simulation::Body::set_up_stage(SavedState&& state, const Present& present,
                                               const std::vector<char>& changed) {
@@ -206,6 +220,8 @@ PetscErrorCode Simulation::Body::set_up_stage(SavedState&& state, const Present&
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(adapt_state(changed, config.stage.place, state));
+  if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(find_loads(state));
   if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
   bool rebuilt = false;
   PetscCall(stepper->restore(std::move(state), since_rebuild, &rebuilt));

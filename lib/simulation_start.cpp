@@ -99,7 +99,7 @@ PetscErrorCode Simulation::Body::check_places() {
   PetscCall(find_overlaps(comm, config, &overlaps));
   report.errors = describe(overlaps, config);
   PetscCall(check_placed());
-  PetscCall(check_load_faces(comm, config, &report.errors));
+  PetscCall(check_load_faces(comm, config, &report.errors, &report.warnings));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

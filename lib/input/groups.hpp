@@ -171,6 +171,8 @@ std::vector<std::string> read_stage_names(OptionReader& in);
 void note_stage_bodies(const OptionReader& in, const std::vector<std::string>& stages, StageConfig& stage);
 /// Number of the stage that places a body or rigid; 0: the run begins with it.
 int placed_at(const StageConfig& stage, const std::string& name);
+/// Whether a body or rigid is in the run in the stage of this number, from 1 on.
+bool is_present(const StageConfig& stage, const std::string& name, int number);
 /// Whether a body or rigid is in the run in a stage.
 void note_presence(const StageConfig& stage, BodyConfig& body);
 void note_presence(const StageConfig& stage, RigidConfig& rigid);

@@ -30,14 +30,14 @@ void read_body_of(OptionReader& in, const Config& config, LoadConfig& load) {
 /// The box in which the surface is at the start.
 void read_box(OptionReader& in, int dim, LoadConfig& load) {
   const auto errors = in.errors();
-  in.vector(
-      {.name = load.name + "_lower",
-       .meaning = "lower corner of a box; the load is on the free surface of the body in it at the start: on "
-                  "the faces of particles that no other particle covers, whose centres are in the box",
-       .unit = "m",
-       .range = k_coordinate,
-       .required = true},
-      dim, load.lower);
+  in.vector({.name = load.name + "_lower",
+             .meaning = "lower corner of a box; the load is on the free surface of the body in it when the "
+                        "load begins: on "
+                        "the faces of particles that no other particle covers, whose centres are in the box",
+             .unit = "m",
+             .range = k_coordinate,
+             .required = true},
+            dim, load.lower);
   in.vector({.name = load.name + "_upper",
              .meaning = "its upper corner",
              .unit = "m",
@@ -49,6 +49,29 @@ void read_box(OptionReader& in, int dim, LoadConfig& load) {
     if (!(load.upper[d] >= load.lower[d]))
       return in.reject(load.name + "_upper", formatted("a corner above -%s_lower, \"%s\"", load.name.c_str(),
                                                        text_of(load.lower, dim).c_str()));
+}
+
+/// The stage at whose beginning the surface is found: the one that brings the body, unless told otherwise.
+void read_stage_of(OptionReader& in, const Config& config, LoadConfig& load) {
+  const Option option{.name = load.name + "_stage",
+                      .meaning =
+                          "the stage at whose beginning the surface is found, where the soil is then, and "
+                          "from which on the load acts: for faces that an excavation bares",
+                      .standard = "the one that the body is in the run from"};
+  int index = 0;
+  if (in.listing()) {
+    in.word(option, std::vector<std::string>{"STAGE"}, index);
+    return;
+  }
+  if (config.stages.empty()) return in.not_taken(option.name, "the run has no stages");
+  if (load.body >= static_cast<int>(config.bodies.size())) return in.ignore(option.name);
+  const std::string& body = config.bodies[load.body].name;
+  load.stage = std::max(1, placed_at(config.stage, body));
+  index = load.stage - 1;
+  if (!in.word(option, config.stages, index)) return;
+  load.stage = index + 1;
+  if (!is_present(config.stage, body, load.stage))
+    in.reject(option.name, "a stage in which body " + body + " is in the run");
 }
 
 void read_facing(OptionReader& in, int dim, LoadConfig& load) {
@@ -72,6 +95,7 @@ void read_load(OptionReader& in, const Config& config, LoadConfig& load) {
   in.section("Each load NAME");
   const int dim = config.dim;
   read_body_of(in, config, load);
+  read_stage_of(in, config, load);
   read_box(in, dim, load);
   read_facing(in, dim, load);
   const Option pressure{

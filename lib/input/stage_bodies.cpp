@@ -91,6 +91,10 @@ int placed_at(const StageConfig& stage, const std::string& name) {
   return stage_of(stage.placed_at, name, 0);
 }
 
+bool is_present(const StageConfig& stage, const std::string& name, int number) {
+  return placed_at(stage, name) <= number && removed_at(stage, name) > number;
+}
+
 void note_stage_bodies(const OptionReader& in, const std::vector<std::string>& stages, StageConfig& stage) {
   for (std::size_t k = 0; k < stages.size(); ++k)
     for (const auto& [key, table] : {std::pair{"_place", &stage.placed_at}, {"_remove", &stage.removed_at}})

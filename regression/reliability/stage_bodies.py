@@ -6,7 +6,7 @@
 
 A deck has two bodies of soil under gravity; stages place up to two lifts of fill, a plate and a pile, remove some of them, change the
 materials of bodies and the parameters of materials, loads and damping. Checked are: mass, which comes and goes with what is placed,
-cut out and removed alone, to the last particle; zeros in the history for what is not there; bit by bit, runs that are cut in two by
+cut out and removed alone, to the last particle; loads on faces that a removal bares and on what is placed; zeros in the history for what is not there; bit by bit, runs that are cut in two by
 a checkpoint at any step, runs that are killed inside a stage, and both on two or three ranks; positions on one rank against those
 on several, to round-off; the dry run, whose stages must be those of the run.
 """
@@ -83,6 +83,23 @@ class Deck:
             if others:
                 self.options += [f"-{name}_cut_out", ",".join(others)]
         self.changes = [[]] + [self.some_changes(draw) for _ in self.stages[1:]]
+        self.add_loads(draw, flat, up)
+
+    def add_loads(self, draw, flat, up):
+        """On the side of `left` that the removal of `right` bares, and on the top of what a stage places."""
+        loads = []
+        if "right" in self.removed and draw.random() < 0.8:
+            loads += ["wall"]
+            self.options += (f"-wall_body left -wall_stage {self.stages[self.removed['right']]} -wall_lower {vector([1.3, *flat, 0.2])} "
+                             f"-wall_upper {vector([1.7, *up, 0.8])} -wall_facing {vector([1.0, *flat, 0.0])}").split()
+        if "fill" in self.placed and draw.random() < 0.5:
+            loads += ["top"]
+            self.options += f"-top_body fill -top_lower {vector([0.0, *flat, 1.4])} -top_upper {vector([1.5, *up, 1.6])}".split()
+        for name in loads:
+            self.options += draw.choice([f"-{name}_pressure {draw.uniform(500, 3000):.6g}".split(),
+                                         [f"-{name}_traction", vector([draw.uniform(-1000, 1000) for _ in range(self.dim)])]])
+        if loads:
+            self.options += ["-loads", ",".join(loads)]
 
     def some_changes(self, draw):
         found = []

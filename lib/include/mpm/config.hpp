@@ -235,11 +235,12 @@ struct OutputConfig {
 /// A load on a part of a body's surface, which moves with it.
 struct LoadConfig {
   std::string name;
-  int body = 0;                                             // index into Config::bodies
-  Vec3 lower{}, upper{};                                    // m, box in which the surface is at the start
-  std::optional<Vec3> facing;                               // direction that its normals have, to 60 degrees
-  double pressure = 0;                                      // Pa, along the normal, into the soil
-  Vec3 traction{};                                          // Pa, of the area at the start
+  int body = 0;                // index into Config::bodies
+  int stage = 1;               // number of that whose beginning finds the surface
+  Vec3 lower{}, upper{};       // m, box in which the surface is then
+  std::optional<Vec3> facing;  // direction that its normals have, to 60 degrees
+  double pressure = 0;         // Pa, along the normal, into the soil
+  Vec3 traction{};             // Pa, of the area at the start
   std::optional<TimeTable> pressure_table, traction_table;  // Pa, instead of them
 };
 
@@ -338,8 +339,8 @@ struct Config {
   std::optional<TimeTable> gravity_table;
   WaterConfig water;
   TimeConfig time;
-  double strength_factor = 1;  // -, by which strengths are divided, of materials without their own
-  double damping = 0;  // -, local (non-viscous) damping factor, 0 <= damping < 1
+  double strength_factor = 1;     // -, by which strengths are divided, of materials without their own
+  double damping = 0;             // -, local (non-viscous) damping factor, 0 <= damping < 1
   double rayleigh_mass = 0;       // 1/s, alpha of Rayleigh damping
   double rayleigh_stiffness = 0;  // s, beta of Rayleigh damping
   VelocityUpdate velocity_update = VelocityUpdate::flip;

@@ -1,0 +1,91 @@
+#include "step/stage_loads.hpp"
+
+#include "checkpoint/particles.hpp"
+#include "common/collectives.hpp"
+#include "common/text.hpp"
+
+namespace mpm {
+namespace {
+
+SavedField* find(SavedPoints& points, const std::string& name) {
+  for (SavedField& field : points.fields)
+    if (field.name == name) return &field;
+  return nullptr;
+}
+
+/// The particles of a state, by body.
+struct SortedSoil {
+  std::vector<std::vector<std::size_t>> rows;  // of the state, of each body's particles
+  std::vector<std::vector<double>> position;   // m, absolute
+  std::vector<SearchedBody> bodies;
+
+  SortedSoil(const Config& config, SavedPoints& soil)
+      : rows(config.bodies.size()), position(config.bodies.size()), bodies(config.bodies.size()) {
+    const int dim = config.dim;
+    const std::vector<double> x = positions_of(soil, config.mesh, dim);
+    const SavedField *const body = find(soil, "body"), *const half = find(soil, "half_length");
+    for (std::size_t p = 0; p < soil.id.size(); ++p) {
+      const auto b = static_cast<std::size_t>(body->values[p]);
+      rows[b].push_back(p);
+      position[b].insert(position[b].end(), &x[p * dim], &x[p * dim] + dim);
+      if (half == nullptr || config.bodies[b].shape.angle != 0) continue;
+      for (int d = 0; d < dim; ++d)
+        bodies[b].width.push_back(2 * config.mesh.spacing * half->values[p * dim + d]);
+    }
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      bodies[b].position = position[b];
+      bodies[b].spacing = config.mesh.spacing / config.bodies[b].shape.particles_per_cell;
+    }
+  }
+};
+
+/// Puts a face into the first field where the particle has none; whether there is room.
+bool store_face(SavedPoints& soil, std::size_t row, int dim, int load, const FreeFace& face) {
+  const int size = dim + 3;
+  for (int k = 0; k < k_most_loads; ++k) {
+    SavedField* const field = find(soil, "face_" + std::to_string(k));
+    if (field == nullptr) return false;
+    double* const numbers = &field->values[row * size];
+    if (numbers[size - 1] != 0) continue;
+    std::copy_n(face.vector.begin(), dim, numbers);
+    numbers[dim] = face.area, numbers[dim + 1] = face.steps, numbers[dim + 2] = load + 1.0;
+    return true;
+  }
+  return false;
+}
+
+std::string no_surface(const Config& config, const LoadConfig& load) {
+  return formatted("stage %s: no free face of body %s is in the box of load %s, from %s to %s",
+                   config.stage.name.c_str(), config.bodies[load.body].name.c_str(), load.name.c_str(),
+                   text_of(load.lower, config.dim).c_str(), text_of(load.upper, config.dim).c_str());
+}
+
+}  // namespace
+
+PetscErrorCode find_stage_faces(MPI_Comm comm, const Config& config, SavedState* state,
+                                std::vector<LoadedSurface>* surfaces, std::string* fault) {
+  PetscFunctionBeginUser;
+  const std::vector<int> loads = loads_from_stage(config, config.stage.number);
+  surfaces->assign(loads.size(), {});
+  if (loads.empty()) PetscFunctionReturn(PETSC_SUCCESS);
+  std::vector<std::vector<FreeFace>> faces;
+  std::optional<SortedSoil> soil;
+  PetscCallCXX(soil.emplace(config, state->soil));
+  PetscCall(find_free_faces(comm, config, soil->bodies, loads, &faces));
+  std::string full;
+  for (std::size_t n = 0; n < loads.size(); ++n) {
+    const LoadConfig& load = config.loads[loads[n]];
+    for (const FreeFace& face : faces[n])
+      if (!store_face(state->soil, soil->rows[load.body][face.particle], config.dim, loads[n], face))
+        full = formatted("stage %s: load %s comes to a particle that has %d loads already",
+                         config.stage.name.c_str(), load.name.c_str(), k_most_loads);
+    (*surfaces)[n] = sum_faces(faces[n], config.dim);
+    PetscCall(sum_surface(comm, &(*surfaces)[n]));
+    if ((*surfaces)[n].particles == 0) *fault = no_surface(config, load);
+  }
+  PetscCall(share_text(comm, &full));
+  if (!full.empty()) *fault = full;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+}  // namespace mpm
