@@ -103,7 +103,8 @@ def launcher():
 
 def environment():
     """Open MPI refuses root, and more ranks than cores, unless told; runs at the same time may clear each other's session
-    folder, so each has one of its own; threads that wait give way to those of other runs."""
+    folder, so each has one of its own; threads and ranks that wait give way to those of other runs. A run on one rank starts
+    in half the time without a daemon beside it."""
     return {"OMPI_MCA_orte_tmpdir_base": tempfile.mkdtemp(dir=SESSIONS.name),
             "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-            "OMP_PROC_BIND": "false", "OMP_WAIT_POLICY": "passive", **os.environ}
+            "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_ess_singleton_isolated": "1", "OMP_PROC_BIND": "false", "OMP_WAIT_POLICY": "passive", **os.environ}
