@@ -62,12 +62,13 @@ class Case:
     def is_long(self):
         return getattr(self.module, "LONG", False)
 
-    def variants(self, backends, precisions):
-        """The (back end, precision) pairs of those asked for in which this case is run."""
-        module = self.module
-        return [(backend, precision)
-                for backend in backends if backend in getattr(module, "BACKENDS", backends)
-                for precision in precisions if precision in getattr(module, "PRECISIONS", precisions)]
+    def variants(self, backends, precisions, in_turn=False):
+        """The (back end, precision) pairs of those asked for in which this case is run; in_turn: as few as have each word."""
+        backends = [word for word in backends if word in getattr(self.module, "BACKENDS", backends)]
+        precisions = [word for word in precisions if word in getattr(self.module, "PRECISIONS", precisions)]
+        if in_turn and backends and precisions:
+            return [(backends[k % len(backends)], precisions[k % len(precisions)]) for k in range(max(len(backends), len(precisions)))]
+        return [(backend, precision) for backend in backends for precision in precisions]
 
     def title(self):
         return self.module.__doc__.split("\n\n")[0].strip()
