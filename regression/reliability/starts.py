@@ -62,8 +62,8 @@ def history(folder, name):
 
 
 class Tests:
-    def __init__(self, binary, base, decks):
-        self.binary, self.base, self.decks = binary, base, decks
+    def __init__(self, binary, base, decks, short):
+        self.binary, self.base, self.decks, self.short = binary, base, decks, short
         self.count = 0
         self.empty = base / "empty.opts"
         self.empty.write_text("\n")
@@ -83,7 +83,8 @@ class Tests:
 
     def test_column(self, precision):
         exact = 1e-13 if precision == "double" else 1e-5
-        for dim, ranks, update in ((2, 1, "flip"), (2, 2, "apic"), (3, 1, "apic"), (3, 2, "flip")):
+        columns = ((2, 1, "flip"), (2, 2, "apic"), (3, 1, "apic"), (3, 2, "flip"))
+        for dim, ranks, update in columns[:2] if self.short else columns:
             base, box = column(dim)
             what = f"{dim}D, {ranks} ranks, {update}, {precision}"
             common = [*base, "-precision", precision, "-velocity_update", update, "-damping", 0.7]
@@ -285,10 +286,11 @@ def main():
     parser.add_argument("--precisions", default="double")
     parser.add_argument("--folder")
     parser.add_argument("--decks", type=int, default=20)
+    parser.add_argument("--short", action="store_true", help="columns in 2D alone")
     given = parser.parse_intermixed_args()
     base = pathlib.Path(given.folder or tempfile.mkdtemp(prefix="mpm_starts_"))
     base.mkdir(parents=True, exist_ok=True)
-    tests = Tests(pathlib.Path(given.binary).absolute(), base.resolve(), given.decks)
+    tests = Tests(pathlib.Path(given.binary).absolute(), base.resolve(), given.decks, given.short)
     for name in given.tests or ("column", "cut", "decks", "refused", "changed"):
         for precision in given.precisions.split(","):
             before = tests.count
