@@ -6,6 +6,7 @@
 
 #include "base/spaces.hpp"
 #include "base/types.hpp"
+#include "data/impulse_terms.hpp"
 #include "data/patches.hpp"
 #include "data/rigid_pose.hpp"
 #include "data/surface.hpp"
@@ -76,7 +77,7 @@ struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, CentreTerms<Dim>::size> centre;  // of the soil, where domains stretch
   NodeField<Space, T, Dim> drift;  // kg cells, mass times the way since domains changed last; likewise
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
-      impulse;  // N s, [rigid][node], normal impulse that friction has not used; kept from step to step
+      impulse;  // N s, [ImpulseTerms::size a rigid][node], kept from step to step
 };
 
 /// A rigid body on the device.

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "data/impulse_terms.hpp"
+
 namespace mpm {
 
 /// One field of points. Every type that a field has goes into a double and back without a change of its bits.
@@ -30,10 +32,10 @@ struct SavedRigid {
   std::array<double, 3> binned{};  // m, displacement when its points were binned; they follow from it
 };
 
-/// Normal impulses at the nodes that friction has not used; nodes that hold none are left out.
+/// What friction keeps of the normal impulses at the nodes; nodes that hold none are left out.
 struct SavedImpulse {
   std::vector<long> address;   // Grid::address_of the cell whose lower corner is the node
-  std::vector<double> values;  // N s, of each rigid [rigids M]
+  std::vector<double> values;  // N s, ImpulseTerms of each rigid [ImpulseTerms::size rigids M]
 };
 
 /// The table of the nodes on sides of the mesh that act (data/sides.hpp), of all ranks.

@@ -78,8 +78,7 @@ struct State {
   Kokkos::View<double*, Memory> density;  // kg/m3, that the soil of each body begins with
   double damping = 0;                     // -
   double kick = 1;                        // -, share of the next step by which it changes velocities
-  bool begins = false;                    // the next step is the first of a run
-  double friction_time = 1;               // s, for which normal impulse stays that friction has not used
+  double friction_time = 1;               // s, over which friction takes the mean normal impulse
   double flip_fraction = 1;               // -, what is not FLIP is PIC, or XPIC
   int xpic_order = 0;                     // m of XPIC(m), 0 without it
   bool affine = false;                    // APIC: Soil::affine is in use; flip_fraction is then 0

@@ -26,7 +26,7 @@ std::vector<Value> on_host(const View& view) {
 template <class Space, class T, int Dim>
 NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s) {
   using Range = Kokkos::RangePolicy<Space>;
-  const int rigids = static_cast<int>(s.rigid_points.size());
+  const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
   const int nodes = s.owned_nodes.extent(0) > 0 ? s.patches.node_count() : 0;
   const auto impulse = s.nodes.impulse;
   const auto owned_nodes = s.owned_nodes;
@@ -38,19 +38,19 @@ NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s) {
       KOKKOS_LAMBDA(int i, int& n, bool last) {
         if ((owned_nodes(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0) return;
         bool any = false;
-        for (int r = 0; r < rigids; ++r) any = any || impulse(r, i) != 0;
+        for (int k = 0; k < numbers; ++k) any = any || impulse(k, i) != 0;
         if (!any) return;
         if (last) which(n) = i;
         ++n;
       },
       found);
   const Kokkos::View<long*, typename Space::memory_space> node("mpm::node", found);
-  const Kokkos::View<T*, typename Space::memory_space> value("mpm::value", std::size_t(found) * rigids);
+  const Kokkos::View<T*, typename Space::memory_space> value("mpm::value", std::size_t(found) * numbers);
   Kokkos::parallel_for(
       "mpm::list_impulses", Range(s.space, 0, found), KOKKOS_LAMBDA(int n) {
         const int i = which(n);
         node(n) = address_of_node<Dim>(number, i);
-        for (int r = 0; r < rigids; ++r) value(n * rigids + r) = impulse(r, i);
+        for (int k = 0; k < numbers; ++k) value(n * numbers + k) = impulse(k, i);
       });
   s.space.fence("mpm::list_impulses");
   return {on_host<long>(node), on_host<T>(value)};
@@ -58,7 +58,7 @@ NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s) {
 
 template <class Space, class T, int Dim>
 void put_impulses(State<Space, T, Dim>& s, const NodeImpulses<T>& impulses) {
-  const int rigids = static_cast<int>(s.rigid_points.size());
+  const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
   const auto node = on_device<Space>("mpm::node", impulses.node);
   const auto value = on_device<Space>("mpm::value", impulses.value);
   const auto impulse = s.nodes.impulse;
@@ -70,7 +70,7 @@ void put_impulses(State<Space, T, Dim>& s, const NodeImpulses<T>& impulses) {
         const int slot = slot_of(node(n) / Patch<Dim>::cells);
         if (slot < 0) return;
         const int i = slot * Patch<Dim>::cells + static_cast<int>(node(n) % Patch<Dim>::cells);
-        for (int r = 0; r < rigids; ++r) impulse(r, i) = value(n * rigids + r);
+        for (int k = 0; k < numbers; ++k) impulse(k, i) = value(n * numbers + k);
       });
   s.space.fence("mpm::put_impulses");
 }

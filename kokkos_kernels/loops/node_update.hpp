@@ -35,8 +35,8 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
 template <class T>
 inline constexpr T k_still = T(1e-6);
 
-/// The node's part of the step. acts: some side of the mesh acts (data/sides.hpp); kernels without that take
-/// fewer registers of a GPU.
+/// The node's part of the step. acts: some side of the mesh acts (data/sides.hpp), or local damping does;
+/// kernels without that take fewer registers of a GPU.
 template <class Space, class T, int Dim, bool acts = true>
 struct UpdateNodes {
   using S = SoilTerms<Dim>;
@@ -52,9 +52,9 @@ struct UpdateNodes {
   const Vector<T, Dim>* timed_g;  // of the present step, where gravity follows a table; else null
   struct NoSides {};
   std::conditional_t<acts, ActingSides<Dim>, NoSides> acting_sides;
-  T dt, inv_dt;  // s, 1/s: of the change of velocities, from the middle of the step before to that of this one
-  T share;       // -, dt over the length of the step
-  T first;       // -, Interface::first
+  T dt,
+      inv_dt;  // s, 1/s: of the change of velocities, from the middle of the step before to that of this one
+  T share;     // -, dt over the length of the step
   T damping, memory, mass_cut;
   double spacing;
   bool has_boundary, has_friction, has_mass_normals, clears, rings;
@@ -104,6 +104,7 @@ struct UpdateNodes {
   /// lane [m/s2].
   template <class R>
   KOKKOS_FORCEINLINE_FUNCTION R braking(R a, R v_old) const {
+    if constexpr (!acts) return R(0);
     const R size = Kokkos::fabs(a), still = k_still<T> * dt * size;
     return damping * size * select(v_old > still, R(1), select(v_old < -still, R(-1), R(0)));
   }
@@ -116,7 +117,7 @@ struct UpdateNodes {
     const Vector<T, Dim> g_now = gravity();
     const R inv_m_force = select(soil[S::mass] > mass_cut, inv_m, R(0));  // on less mass it is round-off
     for (int d = 0; d < Dim; ++d) {
-      v_old[d] = soil[S::momentum + d] * inv_m;             // Eq. (6)
+      v_old[d] = soil[S::momentum + d] * inv_m;            // Eq. (6)
       a[d] = soil[S::force + d] * inv_m_force + g_now[d];  // Eq. (8)
     }
   }
@@ -164,7 +165,8 @@ struct UpdateNodes {
                                                             const Coord<Dim>& at, bool near,
                                                             double* force) const {
     MPM_ROLLED
-    for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r) nodes.impulse(r, i) *= memory;
+    for (int n = 0; n < ImpulseTerms::size * static_cast<int>(rigids.extent(0)) && has_friction; ++n)
+      nodes.impulse(n, i) *= kept_share(n % ImpulseTerms::size, memory);
     const Node node = node_of(sums, i, at, near);
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old, a, brake;
     if (node.inv_m > 0) {
@@ -193,23 +195,23 @@ struct UpdateNodes {
   }
 
   /// Velocity of a node with the acceleration a at the end of the step. `brake` [m/s2] is the deceleration by
-  /// local damping. It brakes the acceleration that contact and sides leave, which a rehearsal without damping
-  /// finds: at rest there is none, and each reaction is that of the soil. ends: the step itself, after which
-  /// walls, sides and friction keep what they took; else the rehearsal alone, for `brake`.
+  /// local damping. It brakes the acceleration that contact and sides leave, which a rehearsal without
+  /// damping finds: at rest there is none, and each reaction is that of the soil. ends: the step itself,
+  /// after which walls, sides and friction keep what they took; else the rehearsal alone, for `brake`.
   template <class Sums>
   KOKKOS_INLINE_FUNCTION Vector<T, Dim> advanced(const Sums& sums, const Rigid<Dim>* bodies, const Node& node,
                                                  const Vector<T, Dim>& v_old, const Vector<T, Dim>& a,
                                                  bool ends, double* force, Vector<T, Dim>& brake) const {
-    const bool rehearses = damping > 0 && node.is_held();
+    brake = filled<T, Dim>(0);
+    if constexpr (acts)
+      if (damping > 0) {
+        const Vector<T, Dim> left = node.is_held() ? held_acceleration(sums, bodies, node, v_old, a) : a;
+        for (int d = 0; d < Dim; ++d) brake[d] = braking(left[d], v_old[d]);
+      }
     Vector<T, Dim> v = v_old;
-    for (int d = 0; d < Dim; ++d) brake[d] = rehearses ? T(0) : braking(a[d], v_old[d]);
-    MPM_ROLLED
-    for (int pass = rehearses ? 0 : 1; pass < (ends ? 2 : 1); ++pass) {
-      const bool last = pass == 1;
-      for (int d = 0; d < Dim; ++d) v[d] = v_old[d] + (a[d] - brake[d]) * dt;  // Eq. (9)
-      constrain(sums, bodies, node, v_old, v, last, last ? force : nullptr);
-      for (int d = 0; d < Dim && !last; ++d) brake[d] = braking((v[d] - v_old[d]) * inv_dt, v_old[d]);
-    }
+    if (!ends) return v;
+    for (int d = 0; d < Dim; ++d) v[d] += (a[d] - brake[d]) * dt;  // Eq. (9)
+    constrain(sums, bodies, node, v_old, v, true, force);
     return v;
   }
 
@@ -234,7 +236,7 @@ struct UpdateNodes {
   KOKKOS_INLINE_FUNCTION SideNode<Dim> side_node(const Node& node, bool keeps) const {
     const bool counts =
         owned_nodes.extent(0) == 0 || (owned_nodes(node.i / cells) >> (node.i % cells) & 1) != 0;
-    return {node.at, node.acting, double(node.soil[S::mass]), double(dt), double(memory), double(first), counts, keeps};
+    return {node.at, node.acting, double(node.soil[S::mass]), double(dt), double(memory), counts, keeps};
   }
 
   /// The nodes of a slot far from every rigid.
@@ -307,12 +309,19 @@ struct UpdateNodes {
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
       if (gap > Kokkos::fmax(T(rigid.reach), places.grid.spacing / 2)) return;
     }
+    const int row = ImpulseTerms::size * r;
     if (has_friction) {
-      interface.mean = nodes.impulse(r, node.i) * node.inv_m;
-      interface.fresh = 1 - memory, interface.first = first;
+      interface.pressed = {nodes.impulse(row + ImpulseTerms::sum, node.i),
+                           nodes.impulse(row + ImpulseTerms::weight, node.i),
+                           nodes.impulse(row + ImpulseTerms::store, node.i) * node.inv_m};
+      interface.fresh = 1 - memory;
     }
     const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
-    if (has_friction && keeps) nodes.impulse(r, node.i) = interface.mean * m_i;
+    if (has_friction && keeps) {
+      nodes.impulse(row + ImpulseTerms::sum, node.i) = interface.pressed.sum;
+      nodes.impulse(row + ImpulseTerms::weight, node.i) = interface.pressed.weight;
+      nodes.impulse(row + ImpulseTerms::store, node.i) = interface.pressed.store * m_i;
+    }
     for (int d = 0; d < Dim; ++d) {
       v[d] += change[d];
       if (force != nullptr) force[d * cells] -= static_cast<double>(m_i) * change[d] * inv_dt;
@@ -410,7 +419,6 @@ UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, d
                                           .dt = T(s.kick * dt),
                                           .inv_dt = T(1 / (s.kick * dt)),
                                           .share = T(s.kick),
-                                          .first = s.begins ? T(1 / s.kick) : T(0),
                                           .damping = T(s.damping),
                                           .memory = T(std::exp(-dt / s.friction_time)),
                                           .mass_cut = T(s.mass_cut),

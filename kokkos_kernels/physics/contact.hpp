@@ -1,6 +1,7 @@
 #pragma once
 // Contact of the soil with a rigid body at a node.
 
+#include "data/impulse_terms.hpp"
 #include "physics/walls.hpp"
 
 namespace mpm {
@@ -40,34 +41,51 @@ KOKKOS_INLINE_FUNCTION T gap_scaling(T gap, T reach, T exponent) {
   return gap < reach ? 1 - Kokkos::pow(gap / reach, exponent) : T(0);
 }
 
+/// What friction at a place keeps of the normal impulses of the steps before, over nodal mass: their sum by
+/// weight, the sum of the weights, and the impulse that it has not used.
+template <class T>
+struct Pressed {
+  T sum = 0, weight = 0, store = 0;
+};
+
+/// Share that a step keeps of one of ImpulseTerms; memory: of the mean. The store fades slowly, so that all
+/// of it serves soil that slides, and none a later contact.
+template <class T>
+KOKKOS_INLINE_FUNCTION T kept_share(int term, T memory) {
+  constexpr T k_longer = 100;
+  return term == ImpulseTerms::store ? 1 - (1 - memory) / k_longer : memory;
+}
+
+/// Normal impulse whose fraction friction may stop in this step; stop: that of this step, fresh: its weight.
+/// The impulse of a node rings with the waves of its cells, and a body that sticks on the whole must not slip
+/// in each trough: friction takes the mean over some steps, from the first step on that soil is there, as far
+/// as it has not used the impulses before. The sum of what it uses is never above that of the impulses.
+template <class T>
+KOKKOS_INLINE_FUNCTION T usable_impulse(Pressed<T>& pressed, T fresh, T stop) {
+  stop = Kokkos::fmax(T(0), stop);
+  pressed.sum += fresh * stop;
+  pressed.weight += fresh;
+  pressed.store += stop;
+  return Kokkos::fmin(pressed.store, pressed.sum / pressed.weight);
+}
+
 /// What a contact needs to know of the interface at a node.
 template <class T>
 struct Interface {
   T shear_speed;   // m/s: shear limit x area x dt / nodal mass, the largest change of the tangential velocity
   T friction;      // -, negative: none
   T pressing = 0;  // m/s: what the soil's own force and weight press towards the rigid x dt / nodal mass
-  T mean = 0;      // m/s: mean normal impulse of a step, over the steps before / nodal mass; updated
-  T fresh = 1;     // -, share of this step in that mean
-  T first = 0;     // -, in the first step of a run its length over the time in which it changes velocities; else 0
-  T gap_scaling = 1;  // -, fraction of the normal correction
+  T fresh = 1;     // -, share of this step in the mean normal impulse
+  Pressed<T> pressed{};  // m/s: normal impulses over nodal mass
+  T gap_scaling = 1;     // -, fraction of the normal correction
   bool separates = true;
   bool within_soil =
       false;  // more than half a cell from the surface: it is not stopped, and nothing presses it
 };
 
-/// Mean normal impulse of a step over those before and this one, by what a contact stopped in this one. In
-/// the first step of a run the soil has been pressed for long, by its forces: an impact has not.
-template <class T>
-KOKKOS_INLINE_FUNCTION T mean_impulse(T before, T fresh, T first, T stop, T pressing) {
-  stop = Kokkos::fmax(T(0), stop);
-  return first > 0 ? first * Kokkos::fmin(stop, Kokkos::fmax(T(0), pressing)) : before + fresh * stop;
-}
-
 /// Correction dV of the soil's velocity v at a node; v_r velocity of the rigid, n inward unit normal. No soil
-/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a fraction of the mean
-/// normal impulse over some steps: the impulse of a node rings with the waves of its cells, and a body that
-/// sticks on the whole must not slip in each trough. The sum of these means is never above that of the
-/// impulses.
+/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a fraction of the usable
+/// normal impulse.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v, const Vector<T, Dim>& v_r,
                                                          const Vector<T, Dim>& n, Interface<T>& interface) {
@@ -85,10 +103,11 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
                        (interface.within_soil && -approach < k_leaves * speed);
   T largest = touches ? interface.shear_speed : T(0);
   if (interface.friction >= 0) {
-    interface.mean = mean_impulse(interface.mean, interface.fresh, interface.first, stop, interface.pressing);
-    largest = Kokkos::fmin(interface.shear_speed, interface.friction * interface.mean);
+    const T normal = usable_impulse(interface.pressed, interface.fresh, stop);
+    largest = Kokkos::fmin(interface.shear_speed, interface.friction * normal);
   }
   const T factor = largest >= speed ? T(1) : largest / speed;
+  if (interface.friction > 0) interface.pressed.store -= factor * speed / interface.friction;
   for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - factor * slip[d];
   return change;
 }

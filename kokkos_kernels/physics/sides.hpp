@@ -13,8 +13,7 @@ struct SideNode {
   Coord<Dim> at;
   unsigned sides;   // the acting ones that it lies on
   double mass, dt;  // kg, s
-  double memory;    // -, share of the steps before in the mean normal impulse, which limits friction
-  double first;     // -, Interface::first
+  double memory;    // -, share that a step keeps of the normal impulses of the steps before
   bool counts;      // this rank answers for it
   bool keeps;       // the step itself, not a rehearsal, which leaves no trace
 
@@ -61,7 +60,8 @@ KOKKOS_INLINE_FUNCTION void book(double* kept, const SideNode<Dim>& node, const 
 }
 
 /// A dashpot c [kg/s] and a spring s [N/m] on a component of a node's velocity, between the node and what
-/// moves with the velocity V, of the implicit step m (v' - v) = -c dt (v' - V) - s dt u' with the drift u' = u
+/// moves with the velocity V, of the implicit step m (v' - v) = -c dt (v' - V) - s dt u' with the drift u' =
+/// u
 /// + dt (v' - V): v' - v = a (V - v') - pull.
 struct Dashpot {
   double a, pull, to;  // -, m/s, V in m/s
@@ -74,8 +74,8 @@ KOKKOS_INLINE_FUNCTION Dashpot dashpot_of(const ActingSides<Dim>& acting, int n,
                                           const SideNode<Dim>& node, const double* kept) {
   using S = SideTerms<Dim>;
   const int along = k == n / 2 ? 0 : 1;
-  return {kept[S::dashpot + along], kept[S::spring + along], kept[S::drift + k],
-          node.dt, node.mass, far_velocity(acting, n, node)[k]};
+  return {kept[S::dashpot + along],        kept[S::spring + along], kept[S::drift + k], node.dt, node.mass,
+          far_velocity(acting, n, node)[k]};
 }
 
 /// Dashpots (Lysmer and Kuhlemeyer 1969) and springs of all sides of a kind at a node, at once, so that
@@ -115,25 +115,29 @@ KOKKOS_INLINE_FUNCTION void hold_back(const Side<Dim>& side, int d, bool upper, 
 /// Coulomb friction of a side at a node, as contact_correction() has it.
 template <int Dim>
 struct SideFriction {
-  double mean;   // N s, mean normal impulse of a step
-  double stops;  // -, share of the slip that friction stops
+  using Terms = SideTerms<Dim>;
+  Pressed<double> pressed;  // m/s
+  double stops;             // -, share of the slip that friction stops
 
-  /// v_old: component of the velocity along the side's normal before the step; v: velocity as it comes to the
-  /// sides; held: that which they leave along their normals [m/s].
+  /// v: velocity as it comes to the sides; held: that which they leave along their normals [m/s].
   KOKKOS_INLINE_FUNCTION SideFriction(const Side<Dim>& side, int n, const SideNode<Dim>& node,
-                                      const double* kept, double v_old, const double* v,
-                                      const double* held) {
+                                      const double* kept, const double* v, const double* held)
+      : pressed{kept_share(ImpulseTerms::sum, node.memory) * kept[Terms::pressed + ImpulseTerms::sum],
+                kept_share(ImpulseTerms::weight, node.memory) * kept[Terms::pressed + ImpulseTerms::weight],
+                kept_share(ImpulseTerms::store, node.memory) * kept[Terms::pressed + ImpulseTerms::store] /
+                    node.mass} {
     const int d = n / 2;
     const double into = n % 2 == 1 ? 1 : -1;
-    mean = mean_impulse(node.memory * kept[SideTerms<Dim>::pressing], 1 - node.memory, node.first,
-                        node.mass * into * (v[d] - side.velocity[d]), node.mass * into * (v[d] - v_old));
+    const double normal =
+        node.mass * usable_impulse(pressed, 1 - node.memory, into * (v[d] - side.velocity[d]));
     double squares = 0;
     for (int k = 0; k < Dim; ++k)
       if (k != d) squares += (held[k] - side.velocity[k]) * (held[k] - side.velocity[k]);
     const double slip = node.mass * Kokkos::sqrt(squares);  // N s
     const double area = side.face * Kokkos::fmin(1.0, node.mass / side.unit_mass);
-    const double most = Kokkos::fmin(side.friction * mean, side.shear_limit * area * node.dt);
+    const double most = Kokkos::fmin(side.friction * normal, side.shear_limit * area * node.dt);
     stops = slip > most ? most / slip : 1;
+    if (side.friction > 0) pressed.store -= stops * slip / (node.mass * side.friction);
   }
 };
 
@@ -142,6 +146,7 @@ struct SideFriction {
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION void rub(const ActingSides<Dim>& acting, const SideNode<Dim>& node,
                                 const Vector<T, Dim>& v_old, double* v) {
+  using S = SideTerms<Dim>;
   double held[Dim], stops[Dim], slows[Dim], came[Dim];
   const auto each = [&](auto&& f) {
     for (int n = 0; n < 2 * Dim; ++n)
@@ -150,19 +155,23 @@ KOKKOS_INLINE_FUNCTION void rub(const ActingSides<Dim>& acting, const SideNode<D
   for (int k = 0; k < Dim; ++k) held[k] = came[k] = v[k], stops[k] = slows[k] = 0;
   each([&](int n, const Side<Dim>& side, const double*) { hold_back(side, n / 2, n % 2 == 1, held); });
   each([&](int n, const Side<Dim>& side, const double* kept) {
-    const SideFriction<Dim> by(side, n, node, kept, double(v_old[n / 2]), came, held);
+    const SideFriction<Dim> by(side, n, node, kept, came, held);
     for (int k = 0; k < Dim; ++k)
       if (k != n / 2) stops[k] += by.stops, slows[k] += by.stops * (held[k] - side.velocity[k]);
   });
   for (int k = 0; k < Dim; ++k) v[k] = held[k] - slows[k] / Kokkos::fmax(1.0, stops[k]);
   each([&](int n, const Side<Dim>& side, double* kept) {
-    const SideFriction<Dim> by(side, n, node, kept, double(v_old[n / 2]), came, held);
+    const SideFriction<Dim> by(side, n, node, kept, came, held);
     for (int k = 0; k < Dim; ++k) {
-      const double change = k == n / 2 ? held[k] - came[k]
-                                       : -by.stops * (held[k] - side.velocity[k]) / Kokkos::fmax(1.0, stops[k]);
+      const double change = k == n / 2
+                                ? held[k] - came[k]
+                                : -by.stops * (held[k] - side.velocity[k]) / Kokkos::fmax(1.0, stops[k]);
       book(kept, node, v_old, k, node.mass * change, v[k]);
     }
-    if (node.keeps) kept[SideTerms<Dim>::pressing] = by.mean;
+    if (!node.keeps) return;
+    kept[S::pressed + ImpulseTerms::sum] = by.pressed.sum;
+    kept[S::pressed + ImpulseTerms::weight] = by.pressed.weight;
+    kept[S::pressed + ImpulseTerms::store] = by.pressed.store * node.mass;
   });
 }
 

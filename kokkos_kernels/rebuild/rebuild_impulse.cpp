@@ -17,8 +17,8 @@ KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>& s) {
 
 template <class Space, class T, int Dim>
 void restore_impulse(State<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& kept) {
-  const int rigids = static_cast<int>(s.rigid_points.size());
-  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", rigids, s.patches.node_count());
+  const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
+  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", numbers, s.patches.node_count());
   const auto old = kept.impulse;
   const auto number = kept.number;
   const auto impulse = s.nodes.impulse;
@@ -29,7 +29,7 @@ void restore_impulse(State<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& 
         const int slot = slot_of(number(i / Patch<Dim>::cells));
         if (slot < 0) return;
         const int now = slot * Patch<Dim>::cells + i % Patch<Dim>::cells;
-        for (int r = 0; r < rigids; ++r) impulse(r, now) = old(r, i);
+        for (int k = 0; k < numbers; ++k) impulse(k, now) = old(k, i);
       });
 }
 

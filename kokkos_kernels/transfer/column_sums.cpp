@@ -1,6 +1,7 @@
 #include "transfer/column_sums.hpp"
 
 #include "base/copy.hpp"
+#include "physics/gap_room.hpp"
 #include "transfer/body_mask.hpp"
 #include "transfer/particle_box.hpp"
 
@@ -59,6 +60,7 @@ struct AddColumns {
     const auto& soil = position.soil;
     if (!counts(0, soil.body(p))) return;
     const ParticleBox<Dim> box = within(box_of(position, p));
+    const double volume = double(soil.volume(p)) / double(gap_room(soil, p));  // of the soil between its gaps
     int first[2], last[2];
     for (int d = 0; d < 2; ++d) {
       const int k = d < axes ? d : 0;
@@ -66,7 +68,7 @@ struct AddColumns {
     }
     for (int j = first[1]; j <= last[1]; ++j)
       for (int i = first[0]; i <= last[0]; ++i) {
-        const double part = double(soil.volume(p)) * share(box, 0, i) * share(box, 1, j) * quanta(i);
+        const double part = volume * share(box, 0, i) * share(box, 1, j) * quanta(i);
         const long column = (long(j) * cells[0] + i) * (1 + Dim);
         if (!(part > 0)) continue;
         Kokkos::atomic_add(&sums(column), static_cast<long>(part + 0.5));

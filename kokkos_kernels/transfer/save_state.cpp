@@ -69,18 +69,18 @@ SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
   const auto impulse = mirror_of(s.nodes.impulse);
   // Of several ranks one answers for a node: what the others have there may be long out of date.
   const auto owned_nodes = mirror_of(s.owned_nodes);
-  const int rigids = static_cast<int>(s.rigid_points.size());
+  const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
   const auto holds_some = [&](int i) {
     if (owned_nodes.extent(0) > 0 && (owned_nodes(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0)
       return false;
-    for (int r = 0; r < rigids; ++r)
-      if (impulse(r, i) != 0 || std::signbit(impulse(r, i))) return true;
+    for (int k = 0; k < numbers; ++k)
+      if (impulse(k, i) != 0 || std::signbit(impulse(k, i))) return true;
     return false;
   };
   for (int i = 0; i < s.patches.node_count(); ++i) {
     if (!holds_some(i)) continue;
     saved.address.push_back(address_of_node<Dim>(number, i));
-    for (int r = 0; r < rigids; ++r) saved.values.push_back(impulse(r, i));
+    for (int k = 0; k < numbers; ++k) saved.values.push_back(impulse(k, i));
   }
   return saved;
 }
@@ -207,15 +207,15 @@ void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved, bool binne
 template <class Space, class T, int Dim>
 void restore_nodes(State<Space, T, Dim>& s, const SavedImpulse& saved) {
   if (!s.has_friction) return;
-  const int rigids = static_cast<int>(s.rigid_points.size());
-  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", rigids, s.patches.node_count());
+  const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
+  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", numbers, s.patches.node_count());
   const auto host = mirror_of(s.nodes.impulse);
   const auto slot_of = mirror_of(s.patches.slot_of);
   for (std::size_t n = 0; n < saved.address.size(); ++n) {
     const int slot = slot_of(saved.address[n] / Patch<Dim>::cells);
     if (slot < 0) continue;
     const int i = slot * Patch<Dim>::cells + static_cast<int>(saved.address[n] % Patch<Dim>::cells);
-    for (int r = 0; r < rigids; ++r) host(r, i) = static_cast<T>(saved.values[n * rigids + r]);
+    for (int k = 0; k < numbers; ++k) host(k, i) = static_cast<T>(saved.values[n * numbers + k]);
   }
   copy(s.nodes.impulse, host);
 }

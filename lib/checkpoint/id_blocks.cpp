@@ -133,25 +133,26 @@ PetscErrorCode bring_together(MPI_Comm comm, SavedState* state) {
   PetscFunctionBeginUser;
   IdBlock block;
   PetscCall(bring_to_blocks(comm, state->particles, ids_without_particle(*state), state->soil, &block));
-  PetscCall(gather_impulse(comm, static_cast<int>(state->rigids.size()), state->impulse));
+  PetscCall(
+      gather_impulse(comm, ImpulseTerms::size * static_cast<int>(state->rigids.size()), state->impulse));
   leave_out_lost(state->soil);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode gather_impulse(MPI_Comm comm, int rigids, SavedImpulse& impulse) {
+PetscErrorCode gather_impulse(MPI_Comm comm, int numbers, SavedImpulse& impulse) {
   PetscFunctionBeginUser;
   PetscMPIInt ranks = 1;
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
   const int own = static_cast<int>(impulse.address.size());
   std::vector<int> counts(ranks), values(ranks);
   PetscCallMPI(MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, comm));
-  for (int r = 0; r < ranks; ++r) values[r] = counts[r] * rigids;
+  for (int r = 0; r < ranks; ++r) values[r] = counts[r] * numbers;
   const auto begin = Traffic::begins(counts), values_begin = Traffic::begins(values);
   std::vector<long> address(begin.back() + counts.back());
-  std::vector<double> all(address.size() * rigids);
+  std::vector<double> all(address.size() * numbers);
   PetscCallMPI(MPI_Allgatherv(impulse.address.data(), own, MPI_LONG, address.data(), counts.data(),
                               begin.data(), MPI_LONG, comm));
-  PetscCallMPI(MPI_Allgatherv(impulse.values.data(), own * rigids, MPI_DOUBLE, all.data(), values.data(),
+  PetscCallMPI(MPI_Allgatherv(impulse.values.data(), own * numbers, MPI_DOUBLE, all.data(), values.data(),
                               values_begin.data(), MPI_DOUBLE, comm));
   std::vector<int> order(address.size());
   std::iota(order.begin(), order.end(), 0);
@@ -160,8 +161,8 @@ PetscErrorCode gather_impulse(MPI_Comm comm, int rigids, SavedImpulse& impulse) 
   for (const int n : order) {
     if (!impulse.address.empty() && impulse.address.back() == address[n]) continue;
     impulse.address.push_back(address[n]);
-    impulse.values.insert(impulse.values.end(), all.begin() + std::size_t(n) * rigids,
-                          all.begin() + std::size_t(n + 1) * rigids);
+    impulse.values.insert(impulse.values.end(), all.begin() + std::size_t(n) * numbers,
+                          all.begin() + std::size_t(n + 1) * numbers);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

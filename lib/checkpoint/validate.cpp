@@ -123,7 +123,7 @@ std::string state_fault(const SavedState& state, const Config& config) {
   for (const long address : state.alone)
     if (!in_mesh(address, config.mesh, config.dim, 0)) return "a checkpoint with a sound alone";
   const std::size_t rigids = config.rigids.size();
-  if (state.impulse.values.size() != state.impulse.address.size() * rigids)
+  if (state.impulse.values.size() != ImpulseTerms::size * state.impulse.address.size() * rigids)
     return "a checkpoint with a sound impulse";
   const int ring = patch_edge(config.dim);
   for (const long address : state.impulse.address)

@@ -181,7 +181,8 @@ void Decomposition<Space, T, Dim>::put_border_first(State_& s, std::vector<int> 
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::exchange_impulses(State_& s, const NodeImpulses<T>& own) {
   PetscFunctionBeginUser;
-  const std::size_t rigids = s.rigid_points.size(), size = sizeof(long) + rigids * sizeof(T);
+  const std::size_t numbers = ImpulseTerms::size * s.rigid_points.size(),
+                    size = sizeof(long) + numbers * sizeof(T);
   std::vector<std::vector<char>> out(size_);
   for (std::size_t n = 0; n < own.node.size(); ++n) {
     std::set<int> reaching;
@@ -190,9 +191,9 @@ PetscErrorCode Decomposition<Space, T, Dim>::exchange_impulses(State_& s, const 
     });
     for (const int r : reaching) {
       const char* const node = reinterpret_cast<const char*>(&own.node[n]);
-      const char* const value = reinterpret_cast<const char*>(&own.value[n * rigids]);
+      const char* const value = reinterpret_cast<const char*>(&own.value[n * numbers]);
       out[r].insert(out[r].end(), node, node + sizeof(long));
-      out[r].insert(out[r].end(), value, value + rigids * sizeof(T));
+      out[r].insert(out[r].end(), value, value + numbers * sizeof(T));
     }
   }
   std::vector<char> in;
@@ -200,10 +201,10 @@ PetscErrorCode Decomposition<Space, T, Dim>::exchange_impulses(State_& s, const 
   NodeImpulses<T> all;
   for (std::size_t at = 0; at < in.size(); at += size) {
     all.node.push_back(0);
-    all.value.resize(all.value.size() + rigids);
+    all.value.resize(all.value.size() + numbers);
     std::copy_n(&in[at], sizeof(long), reinterpret_cast<char*>(&all.node.back()));
-    std::copy_n(&in[at + sizeof(long)], rigids * sizeof(T),
-                reinterpret_cast<char*>(&*(all.value.end() - rigids)));
+    std::copy_n(&in[at + sizeof(long)], numbers * sizeof(T),
+                reinterpret_cast<char*>(&*(all.value.end() - numbers)));
   }
   put_impulses(s, all);
   PetscFunctionReturn(PETSC_SUCCESS);

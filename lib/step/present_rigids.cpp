@@ -48,7 +48,8 @@ void PresentRigids::narrow(SavedState& state) {
   if (all() || state.rigids.size() != others_.size()) return;  // the latter is told
   const std::vector<std::size_t> here = counted(place_.size());
   others_ = state.rigids;
-  state.impulse.values = rearranged(state.impulse.values, 0, 1, others_.size(), place_.size(), place_, here);
+  state.impulse.values =
+      rearranged(state.impulse.values, 0, ImpulseTerms::size, others_.size(), place_.size(), place_, here);
   state.bounds = rearranged(state.bounds, k_saved_bounds, 3, others_.size(), place_.size(), place_, here);
   state.rigids.clear();
   for (const std::size_t r : place_) state.rigids.push_back(others_[r]);
@@ -58,8 +59,9 @@ void PresentRigids::widen(SavedState& state) const {
   if (all()) return;
   const std::vector<std::size_t> here = counted(place_.size());
   state.impulse.values =
-      place_.empty() ? std::vector<double>(state.impulse.address.size() * others_.size())
-                     : rearranged(state.impulse.values, 0, 1, place_.size(), others_.size(), here, place_);
+      place_.empty() ? std::vector<double>(ImpulseTerms::size * state.impulse.address.size() * others_.size())
+                     : rearranged(state.impulse.values, 0, ImpulseTerms::size, place_.size(), others_.size(),
+                                  here, place_);
   state.bounds = rearranged(state.bounds, k_saved_bounds, 3, place_.size(), others_.size(), here, place_);
   std::vector<SavedRigid> rigids = others_;
   for (std::size_t k = 0; k < place_.size(); ++k) rigids[place_[k]] = state.rigids[k];

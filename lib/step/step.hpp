@@ -390,7 +390,7 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt,
     case StepForm::overlapped: PetscCall(step.overlapped()); break;
     case StepForm::persistent: PetscCall(step.persistent(left)); break;
   }
-  s.kick = 1, s.begins = false;
+  s.kick = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

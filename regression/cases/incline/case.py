@@ -18,7 +18,7 @@ IN_3D = (" -dim 3 -mesh_lower 0,0,-0.4 -mesh_upper 4.5,0.8,1 -base_lower 0,0,-0.
          " -mesh_ymin free -mesh_ymax free -mesh_zmin free -mesh_zmax free")
 LONG = True
 INTERFACES = {"shear limit 2 kPa": "-base_shear_limit 2000", "shear limit 6 kPa": "-base_shear_limit 6000",
-              "friction 0.3": "-base_friction 0.3", "friction 0.7": "-base_friction 0.7"}
+              "friction 0.3": "-base_friction 0.3", "friction 0.6": "-base_friction 0.6", "friction 0.7": "-base_friction 0.7"}
 EXACT = {"shear limit 2 kPa": (DRIVE - 2000 / (DENSITY * HEIGHT), 0.002), "friction 0.3": (DRIVE - 0.3 * PUSH, 0.005)}
 RUNS = {f"{name} {dim}".replace(" ", "_"): "-block_file {start} " + options + more for name, options in INTERFACES.items()
         for dim, more in (("2D", ""), ("3D", IN_3D))}
