@@ -47,6 +47,8 @@ PROCESSORS = {  # commands at the same time, in regression/; random decks take u
     "files": ["reliability/kill.py {program} --kills 220", "reliability/kill.py {program} --kills 40 --seed 3 --ranks 2",
               "reliability/faults.py {program} {inject}", "reliability/files.py {program} {inject}",
               "reliability/starts.py {program} --precisions double,single", "fuzz/decks.py {program} --count 10000 --jobs 6"],
+    "images": ["metamorphic/run {program} --count 1000 --seed 3 --each 6 --jobs 16 --minutes 8 --json {out}/images.json"
+               " --keep {out}/differ"],
 }
 
 
@@ -120,7 +122,7 @@ def processor_answers(name, program, given):
 
 def processors(name, program, given):
     inject = (processor_build() or program.parent.parent / "regression") / "libmpm_inject.so"
-    commands = [[sys.executable, *shlex.split(f"regression/{line}".format(program=program, inject=inject))] for line in PROCESSORS[name]]
+    commands = [[sys.executable, *shlex.split(f"regression/{line}".format(program=program, inject=inject, out=given.out))] for line in PROCESSORS[name]]
     return run_together(commands, given.out / "processors.txt", given.clock, settings(1) | {"TMPDIR": str(given.scratch)})
 
 

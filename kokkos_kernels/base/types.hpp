@@ -31,6 +31,16 @@
 #define MPM_SELDOM_FUNCTION [[gnu::noinline]] KOKKOS_FUNCTION
 #endif
 
+/// In lieu of KOKKOS_INLINE_FUNCTION: a function that gives the same bits in every kernel. A compiler that
+/// makes it a part of several kernels fuses other products and sums in each of them.
+#ifdef __CUDA_ARCH__
+#define MPM_SAME_BITS_FUNCTION MPM_CALLED_FUNCTION inline
+#elif defined(__clang__)
+#define MPM_SAME_BITS_FUNCTION [[gnu::noinline]] KOKKOS_FUNCTION inline
+#else
+#define MPM_SAME_BITS_FUNCTION [[gnu::noipa]] KOKKOS_FUNCTION inline
+#endif
+
 namespace mpm {
 
 /// Alignment at which a group of n values is read at once: pairs, and fours up to 16 bytes.

@@ -25,9 +25,10 @@ struct Surface {
   Vector<double, Dim> normal;  // half_plane: outward, of length 1
   double radius;               // disc; box, polygon, revolved: of its corners
   double cosine, sine;         // box: of the angle that turns x to the vertical axis
-  int first, count;  // polygon; revolved: vertices of it or of its section, made smaller by the radius; heights:
-                     // on a grid of squares of edge `radius` from `centre` on, x fastest
+  int first, count;  // polygon; revolved: vertices of it or of its section, made smaller by the radius;
+                     // heights: on a grid of squares of edge `radius` from `centre` on, x fastest
   int columns;       // heights: in a row
+  double round_off;  // m, of places: less tells no direction
 };
 
 }  // namespace mpm

@@ -38,14 +38,6 @@ struct TimedLoad {
   double factor;
 };
 
-/// The mean of a load from t over dt [s]. Called, so that kernels that end a step need no
-/// registers for it.
-MPM_CALLED_FUNCTION inline double mean_of_load(TimedLoad& load, const CurvePoint* points, double t,
-                                               double dt) {
-  const double own = load.own.mean(points, t, dt);
-  return load.target == LoadTarget::force ? own + load.factor * load.gravity.mean(points, t, dt) : own;
-}
-
 /// The times of steps: step k of those that Control::steps counts begins at origin + (first + k) dt. With the
 /// same origin, a step begins at the same bits wherever the host looked at the steps before.
 struct LoadClock {
@@ -58,6 +50,19 @@ struct LoadClock {
 /// step before to that of the present one.
 constexpr bool acts_on_soil(LoadTarget target) {
   return target == LoadTarget::gravity || target == LoadTarget::pressure || target == LoadTarget::traction;
+}
+
+/// The mean of a load over the step that follows `steps` steps of a clock. Two kernels call it: the first
+/// step after the host has looked and the others must take the same bits.
+MPM_SAME_BITS_FUNCTION double mean_of_load(TimedLoad& load, const CurvePoint* points, const LoadClock& by,
+                                           int steps) {
+  const bool on_soil = acts_on_soil(load.target);
+  const double before = on_soil ? (steps == 0 ? by.before : by.dt) / 2 : 0;
+  const double begin = by.origin + double(by.first + steps) * by.dt - before;
+  const double length = on_soil ? before + by.dt / 2 : by.dt;
+  const double own = load.own.mean(points, begin, length);
+  return load.target == LoadTarget::force ? own + load.factor * load.gravity.mean(points, begin, length)
+                                          : own;
 }
 
 /// All of them, for kernels. `gravity`: of the present step, which kernels read in lieu of State::gravity;
@@ -75,10 +80,7 @@ struct LoadsOfStep {
   /// Sets load n for the step that follows `steps` steps of a clock.
   KOKKOS_INLINE_FUNCTION void set(int n, const LoadClock& by, int steps, Rigid<Dim>* rigids) const {
     TimedLoad& load = loads[n];
-    const double begin = by.origin + double(by.first + steps) * by.dt;
-    const double before = acts_on_soil(load.target) ? (steps == 0 ? by.before : by.dt) / 2 : 0;
-    const double value =
-        mean_of_load(load, points, begin - before, acts_on_soil(load.target) ? before + by.dt / 2 : by.dt);
+    const double value = mean_of_load(load, points, by, steps);
     const int d = load.component;
     if (load.target == LoadTarget::gravity)
       (*gravity)[d] = static_cast<T>(value);

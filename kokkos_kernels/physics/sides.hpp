@@ -175,13 +175,33 @@ KOKKOS_INLINE_FUNCTION void rub(const ActingSides<Dim>& acting, const SideNode<D
   });
 }
 
-/// Components that a side prescribes.
+/// Whether a side that comes later prescribes component k of what side n has at a node on `sides`. Then n leaves
+/// it alone: it would take away what the other has given, and behind a contact both would count that again.
 template <int Dim>
-KOKKOS_INLINE_FUNCTION void prescribe(const Side<Dim>& side, int d, bool upper, double* v) {
+KOKKOS_INLINE_FUNCTION bool is_overruled(const ActingSides<Dim>& acting, unsigned sides, int n, int k) {
+  bool overruled = false;
+  for (int m = 0; m < 2 * Dim; ++m) {
+    const Side<Dim>& other = acting.all[m];
+    const bool later = m != n && (m > n || acting.all[n].kind != Wall::driven);
+    const bool holds = other.kind == Wall::driven && (k == m / 2 || other.holds_all);
+    overruled |= (sides >> m & 1u) && later && holds;
+  }
+  return overruled;
+}
+
+/// Components that side n of the `sides` that a node lies on prescribes.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void prescribe(const ActingSides<Dim>& acting, unsigned sides, int n, double* v) {
+  const Side<Dim>& side = acting.all[n];
+  const int d = n / 2;
   if (has_dashpots(side.kind)) return;
-  if (side.kind == Wall::friction) return hold_back(side, d, upper, v);
-  for (int k = 0; k < Dim; ++k)
-    if (k == d || side.holds_all) v[k] = side.velocity[k];
+  for (int k = 0; k < Dim; ++k) {
+    if ((k != d && !side.holds_all) || is_overruled(acting, sides, n, k)) continue;
+    if (side.kind != Wall::friction)
+      v[k] = side.velocity[k];
+    else if (k == d)
+      hold_back(side, d, n % 2 == 1, v);
+  }
 }
 
 /// Velocity that the acting sides make of v_now at a node, which had v_old before the step. meets: dashpots
@@ -201,7 +221,7 @@ MPM_CALLED_FUNCTION Vector<T, Dim> by_sides(ActingSides<Dim> acting, SideNode<Di
       if (!node.on(n) || acting.all[n].kind != kind) continue;
       double before[Dim];
       for (int k = 0; k < Dim; ++k) before[k] = v[k];
-      prescribe(acting.all[n], n / 2, n % 2 == 1, v);
+      prescribe(acting, node.sides, n, v);
       for (int k = 0; k < Dim; ++k)
         book(acting.node(n, node.at), node, v_old, k, node.mass * (v[k] - before[k]), v[k]);
     }

@@ -14,32 +14,34 @@ struct Distance {
   Vector<double, Dim> normal;
 };
 
-inline constexpr double k_on_edge = 1e-9;  // m, less is round-off and tells no direction
+inline constexpr double k_on_edge = 1e-9;  // of a cell or a unit vector, less tells no direction
 
-/// On which side of a plane a point is, by its distance [m]; 0 on the plane.
-KOKKOS_INLINE_FUNCTION double side_of(double x) { return x > k_on_edge ? 1 : (x < -k_on_edge ? -1 : 0); }
+/// On which side of a plane a point is, by its distance; 0 on the plane, and nearer to it than round-off [m].
+KOKKOS_INLINE_FUNCTION double side_of(double x, double round_off) {
+  return x > round_off ? 1 : (x < -round_off ? -1 : 0);
+}
 
 /// A product of n intervals, given by how far the point is beyond each (`beyond` [m], negative inside) and
 /// the outward direction of each; corners rounded by `radius` [m]. On an edge the first of its faces counts;
-/// `share` is zero where several are as near to a point inside.
+/// `share` is zero where several are as near to a point inside. round_off [m]: of places.
 template <int N>
 KOKKOS_INLINE_FUNCTION double distance_to_product(const Vector<double, N>& beyond, double radius,
-                                                  Vector<double, N>& share) {
+                                                  double round_off, Vector<double, N>& share) {
   double outside = 0;
   int nearest = 0;
   for (int d = 0; d < N; ++d) {
     share[d] = Kokkos::fmax(0.0, beyond[d] + radius);
     outside += share[d] * share[d];
-    if (beyond[d] > beyond[nearest] + k_on_edge) nearest = d;
+    if (beyond[d] > beyond[nearest] + round_off) nearest = d;
   }
   outside = Kokkos::sqrt(outside);
-  if (outside > k_on_edge) {
+  if (outside > round_off) {
     for (int d = 0; d < N; ++d) share[d] /= outside;
     return outside - radius;
   }
   bool alone = true;
-  for (int d = 0; d < N; ++d) alone = alone && (d == nearest || beyond[d] < beyond[nearest] - k_on_edge);
-  const bool counts = alone || beyond[nearest] > -k_on_edge;
+  for (int d = 0; d < N; ++d) alone = alone && (d == nearest || beyond[d] < beyond[nearest] - round_off);
+  const bool counts = alone || beyond[nearest] > -round_off;
   for (int d = 0; d < N; ++d) share[d] = counts && d == nearest ? 1 : 0;
   return beyond[nearest];
 }
@@ -49,10 +51,10 @@ KOKKOS_INLINE_FUNCTION void add_or_begin(bool begins, const Vector<double, 2>& v
   for (int d = 0; d < 2; ++d) sum[d] = (begins ? 0 : sum[d]) + v[d];
 }
 
-/// Distance in the plane to a polygon; edges on the mesh's boundary are no surface.
+/// Distance in the plane to a polygon; edges on the mesh's boundary are no surface. round_off [m]: of places.
 template <class Vertices>
 KOKKOS_INLINE_FUNCTION Distance<2> distance_to_polygon(const Vertices& vertices, int first, int count,
-                                                       double x, double z) {
+                                                       double x, double z, double round_off) {
   double least = Kokkos::Experimental::finite_max<double>::value;
   Vector<double, 2> ways, faces;  // from the nearest places; normals of their edges
   double turn = 0;                // twice the area: which way round the polygon goes
@@ -67,16 +69,16 @@ KOKKOS_INLINE_FUNCTION Distance<2> distance_to_polygon(const Vertices& vertices,
     const double along = Kokkos::fmin(1.0, Kokkos::fmax(0.0, ((x - a.x) * ex + (z - a.z) * ez) / length2));
     const Vector<double, 2> way{x - a.x - along * ex, z - a.z - along * ez};
     const double length = Kokkos::sqrt(dot(way, way));
-    if (length > least + k_on_edge) continue;
-    const bool nearer = length < least - k_on_edge;
+    if (length > least + round_off) continue;
+    const bool nearer = length < least - round_off;
     add_or_begin(nearer, way, ways);
     add_or_begin(nearer, {ez / Kokkos::sqrt(length2), -ex / Kokkos::sqrt(length2)}, faces);
     if (nearer) least = length;
   }
-  const bool on_surface = !(least > k_on_edge);
+  const bool on_surface = !(least > round_off);
   const Vector<double, 2>& sum = on_surface ? faces : ways;
   const double length = Kokkos::sqrt(dot(sum, sum)), out = (on_surface ? turn < 0 : inside) ? -1 : 1;
-  const double factor = length > k_on_edge ? out / length : 0;
+  const double factor = length > (on_surface ? k_on_edge : round_off) ? out / length : 0;
   return {on_surface ? 0 : (inside ? -least : least), {factor * sum[0], factor * sum[1]}};
 }
 
@@ -85,8 +87,9 @@ template <class Vertices>
 KOKKOS_INLINE_FUNCTION Distance<3> distance_to_revolved(const Surface<3>& body, const Vertices& vertices,
                                                         const Vector<double, 3>& r) {
   const double off = Kokkos::sqrt(r[0] * r[0] + r[1] * r[1]);
-  const Distance<2> section = distance_to_polygon(vertices, body.first, body.count, off, r[2]);
-  const bool on_axis = !(off > k_on_edge);
+  const Distance<2> section =
+      distance_to_polygon(vertices, body.first, body.count, off, r[2], body.round_off);
+  const bool on_axis = !(off > body.round_off);
   const double x = on_axis ? 0 : r[0] / off, y = on_axis ? 0 : r[1] / off;
   const double value = section.value - body.radius;
   const double up = section.normal[1];
@@ -146,21 +149,22 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
     r[0] = along;
     Vector<double, Dim> beyond, n;
     for (int d = 0; d < Dim; ++d) beyond[d] = Kokkos::fabs(r[d]) - body.half[d];
-    out.value = distance_to_product<Dim>(beyond, body.radius, n);
-    for (int d = 0; d < Dim; ++d) n[d] = side_of(r[d]) * n[d];
+    out.value = distance_to_product<Dim>(beyond, body.radius, body.round_off, n);
+    for (int d = 0; d < Dim; ++d) n[d] = side_of(r[d], body.round_off) * n[d];
     out.normal = n;
     out.normal[0] = body.cosine * n[0] - body.sine * n[up];
     out.normal[up] = body.cosine * n[up] + body.sine * n[0];
   } else {
-    Distance<2> plane = distance_to_polygon(vertices, body.first, body.count, x[0], x[up]);
+    Distance<2> plane = distance_to_polygon(vertices, body.first, body.count, x[0], x[up], body.round_off);
     plane.value -= body.radius;
     if constexpr (Dim == 2) {
       out = plane;
     } else {
       Vector<double, 2> share;
       const Vector<double, 2> beyond{plane.value, Kokkos::fabs(r[1]) - body.half[1]};
-      out.value = distance_to_product<2>(beyond, body.radius, share);
-      out.normal = {share[0] * plane.normal[0], side_of(r[1]) * share[1], share[0] * plane.normal[1]};
+      out.value = distance_to_product<2>(beyond, body.radius, body.round_off, share);
+      out.normal = {share[0] * plane.normal[0], side_of(r[1], body.round_off) * share[1],
+                    share[0] * plane.normal[1]};
     }
   }
   return out;

@@ -11,6 +11,7 @@
 #include "physics/materials/any.hpp"
 #include "physics/pore_water.hpp"
 #include "physics/stretch_domain.hpp"
+#include "physics/surface.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/shift_particle.hpp"
 #include "transfer/velocity_gradients.hpp"
@@ -294,7 +295,7 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
     rigid.separates = rigids[r].separates;
     rigid.reach = rigids[r].reach;
     rigid.exponent = rigids[r].exponent;
-    rigid.surface = surface_of<Dim>(rigids[r].surface);
+    rigid.surface = surface_of<Dim>(rigids[r].surface, s.spacing);
     rigid.surface.first = first_vertex[r];
     rigid.mass_cut = cut * particle_mass;
     return rigid;
@@ -304,7 +305,7 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
 }  // namespace
 
 template <int Dim>
-Surface<Dim> surface_of(const SurfaceInput& in) {
+Surface<Dim> surface_of(const SurfaceInput& in, double spacing) {
   Surface<Dim> out{};
   out.kind = in.kind;
   for (int d = 0; d < Dim; ++d)
@@ -313,11 +314,12 @@ Surface<Dim> surface_of(const SurfaceInput& in) {
   out.cosine = std::cos(in.angle), out.sine = std::sin(in.angle);
   out.count = static_cast<int>(in.vertices.size());
   out.columns = in.columns;
+  out.round_off = k_on_edge * spacing;
   return out;
 }
 
-template Surface<2> surface_of(const SurfaceInput&);
-template Surface<3> surface_of(const SurfaceInput&);
+template Surface<2> surface_of(const SurfaceInput&, double);
+template Surface<3> surface_of(const SurfaceInput&, double);
 
 template <class Space, class T, int Dim>
 Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,

@@ -62,8 +62,9 @@ struct SurfaceInput {
   int columns = 0;  // of heights, in a row
 };
 
+/// spacing [m]: edge of the cells, of which round-off is a share.
 template <int Dim>
-Surface<Dim> surface_of(const SurfaceInput& in);
+Surface<Dim> surface_of(const SurfaceInput& in, double spacing);
 
 /// Particles of one rigid body.
 struct RigidInput {

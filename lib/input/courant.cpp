@@ -33,7 +33,7 @@ double share_by_f_bar(const Config& config) {
 }  // namespace
 
 double largest_courant(const Config& config) {
-  // Of g^2 / S along an axis: with one particle a cell its neighbours add nothing to the nodes of a thin
+  // Largest g^2 / S along an axis: with one particle a cell its neighbours add nothing to the nodes of a thin
   // body, and the particle is at the worst place in its cell, 2 / l + 1 / (1 - l).
   constexpr double k_lone_cell = 6;
   const double apart = share_by_f_bar(config);

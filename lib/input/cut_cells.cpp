@@ -39,7 +39,7 @@ ConvexPiece CutCells::in_cells(const ConvexPiece& piece) const {
   return scaled;
 }
 
-/// Those that begin in this level; what of them is below the first one counts there.
+/// Takes the facets that begin in this level; their part below the first level counts there.
 void CutCells::take_facets() {
   const long at = level_ - grid_.first[2];
   for (std::size_t k = begin_[at]; k < begin_[at + 1]; ++k) {
@@ -51,7 +51,7 @@ void CutCells::take_facets() {
   }
 }
 
-/// Those that no piece below leaves open end at the level before.
+/// Ends the columns that no piece below leaves open at the level before.
 void CutCells::leave_empty_columns() {
   std::erase_if(columns_, [this](long c) {
     if (std::abs(below_[c].area) > k_round) return false;
@@ -246,7 +246,7 @@ bool any_cut_particle(const Facets& facets, const CellGrid& grid, long from, lon
   CutCells cells(facets, grid);
   Levels levels(grid);
   const long width = grid.last[0] - grid.first[0];
-  // What a level takes comes from two levels above and below it, whose takers depend on two more.
+  // A level takes parts of two levels above and below it, whose takers depend on two more.
   for (long k = grid.first[2]; k < to + 2 * k_reach; ++k) {
     const bool near = k >= from - 2 * k_reach;
     LevelParts* const own = near ? &levels.enter(k) : nullptr;

@@ -37,7 +37,7 @@ class EdgeTree {
 
   static bool apart(const Reach& a, const Reach& b);
 
-  /// Of the part `node`, whose edges are first to first + width.
+  /// Searches the part `node`, whose edges are first to first + width.
   template <class Test>
   int first_in(int node, int first, int width, int i, const Reach& reach, Test& test) const {
     if (first >= count_ || first + width <= i + 1 || apart(reach_[node], reach)) return count_;

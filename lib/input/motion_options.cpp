@@ -1,4 +1,4 @@
-// What moves a rigid: each motion takes its own options.
+// Motion of a rigid body: each kind takes its own options.
 
 #include <algorithm>
 

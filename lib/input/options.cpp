@@ -266,7 +266,7 @@ void read_physics(OptionReader& in, Config& config) {
   note_analysis(in, config);
 }
 
-/// What frames hold.
+/// Reads the options of frames.
 void read_frames(OptionReader& in, OutputConfig& output) {
   const auto known = frame_field_names();
   const Option fields{

@@ -1,4 +1,4 @@
-// What a mesh with periodic sides takes of the other options.
+// Checks of the other options in a mesh with periodic sides.
 
 #include "common/text.hpp"
 #include "input/groups.hpp"

@@ -61,7 +61,7 @@ Region::Span Region::span_of_disc(double low, double high) const {
   return {shape_.centre[0] - std::sqrt(square), shape_.centre[0] + std::sqrt(square)};
 }
 
-/// Of the row's points the one furthest behind the face tells.
+/// Finds the span by the row's point that is furthest behind the face.
 Region::Span Region::span_behind(double low, double high) const {
   const Vec3 &n = shape_.normal, &point = shape_.point;
   const auto least = [](double slope, double from, double to) { return std::min(slope * from, slope * to); };

@@ -75,7 +75,7 @@ double part_behind(const Shape& shape, const MeshConfig& mesh, int dim) {
   return share * volume;
 }
 
-/// Of the corners of the box made smaller by its fillet, turned; the fillet reaches out from them.
+/// Bounds of the corners of the box made smaller by its fillet, turned; the fillet reaches out from them.
 Bounds box_bounds(const Shape& shape, int dim) {
   constexpr double k_far = std::numeric_limits<double>::max();
   Bounds bounds;

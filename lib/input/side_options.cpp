@@ -1,4 +1,4 @@
-// What sides of the mesh take beside their kind.
+// Options of the sides of the mesh beside their kind.
 
 #include <algorithm>
 #include <cmath>

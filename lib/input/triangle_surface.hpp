@@ -13,8 +13,8 @@ namespace mpm {
 /// Triangles whose corners are anticlockwise as seen from outside. Vertices at one place are one vertex.
 class TriangleSurface {
  public:
-  /// Of the corners of triangles one after the other [m]. Triangles with two corners at one place are left
-  /// out.
+  /// Builds from the corners of triangles, one after the other [m]. Leaves out triangles with two corners at
+  /// one place.
   explicit TriangleSurface(const std::vector<Vec3>& corners);
 
   int size() const { return static_cast<int>(triangles_.size()); }
@@ -40,7 +40,7 @@ class TriangleSurface {
   double volume_ = 0;
 };
 
-/// What a surface should have been, as the end of "takes ..."; empty where it is closed, faces outwards, and
+/// Fault of a surface, as the end of "takes ..."; empty where it is closed, faces outwards, and
 /// neither crosses nor touches itself. In n log n.
 std::string fault_of(const TriangleSurface& surface);
 

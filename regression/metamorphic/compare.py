@@ -5,16 +5,19 @@ import shlex
 import sys
 from pathlib import Path
 
-import numpy as np
-from scipy.spatial import cKDTree
-
 HERE = Path(__file__).resolve()
 sys.path[:0] = [str(HERE.parents[2] / "scripts"), str(HERE.parents[1]), str(HERE.parents[1] / "reliability")]
 
+from python_modules import need  # noqa: E402
+
+need("numpy", "h5py")
+
+import numpy as np  # noqa: E402
+
 from decks import text_of  # noqa: E402
 from differences import Scales  # noqa: E402
-from dimensions import (ACCELERATION, AREA, ENERGY, FORCE, LENGTH, MOMENTUM, SPEED, STRESS, WHOLE, column_kind, factor,  # noqa: E402
-                        field_kind, is_plane, names_of, per_width)
+from dimensions import (ACCELERATION, AREA, ENERGY, FORCE, LENGTH, MOMENTUM, SPEED, STRESS, WHOLE, column_kind, domain_of,  # noqa: E402
+                        factor, field_kind, is_plane, names_of, per_width)
 from folders import checkpoints, fresh, run as run_program  # noqa: E402
 from images import EXACT  # noqa: E402
 from results import Run, read_frame  # noqa: E402
@@ -213,7 +216,18 @@ def common_rows(run, deck, image, other):
     return first, second
 
 
-def compare_history(run, deck, image, other, bound):
+def nearest(places, points):
+    """Distance from each of the places to the nearest of the points, and which one that is."""
+    far, which = np.empty(len(places)), np.empty(len(places), dtype=int)
+    for first in range(0, len(places), 512):
+        part = slice(first, first + 512)
+        squares = ((places[part, None, :] - points[None, :, :]) ** 2).sum(axis=2)
+        which[part] = squares.argmin(axis=1)
+        far[part] = np.sqrt(squares.min(axis=1))
+    return far, which
+
+
+def compare_history(run, deck, image, other):
     back, found = Back(deck, image), []
     sizes, _ = scales_of(run, deck)
     mine, theirs = common_rows(run, deck, image, other)
@@ -227,9 +241,7 @@ def compare_history(run, deck, image, other, bound):
             if kind != "quantile":
                 found.append((np.inf, f"history {column} is missing"))
             continue
-        share = relative(moved, values[mine], sizes.get(column_kind(column, deck)[0], 0.0))
-        if share > bound:
-            found.append((share, f"history {column}"))
+        found.append((relative(moved, values[mine], sizes.get(column_kind(column, deck)[0], 0.0)), f"history {column}"))
     return found
 
 
@@ -239,7 +251,7 @@ def body_of(groups, image, body):
     return parts[0] if len(parts) == 1 else {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
 
 
-def compare_frame(run, deck, image, number, other, bound):
+def compare_frame(run, deck, image, number, other):
     back, found = Back(deck, image), []
     wanted, given = read_frame(run.frames[number])[1], read_frame(other.frames[number])[1]
     sizes, s = scales_of(run, deck)
@@ -253,7 +265,7 @@ def compare_frame(run, deck, image, number, other, bound):
         same = np.arange(len(fields["position"]))
         if image.must != EXACT and len(same):
             places = back.field("position", theirs)
-            far, same = cKDTree(fields["position"]).query(places)
+            far, same = nearest(places, fields["position"])
             if (np.bincount(same, minlength=len(fields["position"])) != image.copies).any() or far.max() > 0.1 * s.spacing:
                 found.append((far.max() / s.spacing, f"frame {number} {body} position: particles have no image"))
                 continue
@@ -265,22 +277,24 @@ def compare_frame(run, deck, image, number, other, bound):
                 continue
             units = field_kind(name, deck)[0]
             size = s.strain if name in ("plastic_strain", "parted_volume") else sizes.get(units, 0.0)
-            share = relative(moved, values[same], size)
-            if share > bound:
-                found.append((share, f"frame {number} {body} {name}"))
+            found.append((relative(moved, values[same], size), f"frame {number} {body} {name}"))
     return found
 
 
+def bound_of(deck, image):
+    """The largest difference that round-off explains, relative to a field's largest value."""
+    if image.must == EXACT:
+        return 0.0
+    return max(BOUNDS[deck["precision"]], DOMAINS if domain_of(deck) != "fixed" else 0.0)
+
+
 def compare(run, deck, image, other):
-    """[(how far relative to the field's largest value, where)] beyond the bound, the farthest first."""
-    bound = 0.0 if image.must == EXACT else BOUNDS[deck["precision"]]
-    if bound and deck.get("particle_domain", "fixed") != "fixed":
-        bound = max(bound, DOMAINS)
+    """[(how far relative to the field's largest value, where)] of every column and field, the farthest first."""
     if image.rows and len(run.history["step"]) != len(other.history["step"]):
         return [(np.inf, f"history: {len(run.history['step'])} rows and {len(other.history['step'])}")]
     if len(run.frames) != len(other.frames):
         return [(np.inf, f"{len(run.frames)} frames and {len(other.frames)}")]
-    found = compare_history(run, deck, image, other, bound)
+    found = compare_history(run, deck, image, other)
     for number in range(len(run.frames)):
-        found += compare_frame(run, deck, image, number, other, bound)
+        found += compare_frame(run, deck, image, number, other)
     return sorted(found, key=lambda each: -each[0])

@@ -21,16 +21,20 @@ MORE = {  # options that a law may have beside
     "yield_stress_fluid": {"exponent": 0.5}, "cam_clay": {"pressure_min": 500.0},
 }
 STRENGTH = {"von_mises", "tresca", "softening_clay"}  # laws whose strength is an su
+SIDES = tuple(f"mesh_{axis}{end}" for axis in "xyz" for end in ("min", "max"))
 OFFSETS = (0.11, 0.2, 0.29, 0.37, 0.43, 0.61, 0.71, 0.87)  # cells; a cell owns particles on its lower faces, its mirror image does not
 FLUIDS = {"newtonian", "yield_stress_fluid"}  # without Poisson's ratio
+DIVIDED = STRENGTH | {"mohr_coulomb", "drucker_prager"}  # laws with a strength_factor
+FEATURES = ("rayleigh", "accelerations", "strength", "water", "smooth", "analysis")  # that a run can ask for in every deck
 
 
 class Maker:
     """Draws one deck. Lengths in cells until `scaled`; `ground` is the height of the soil at the bottom."""
 
-    def __init__(self, draw, dim, precision):
+    def __init__(self, draw, dim, precision, wanted=()):
         self.draw, self.dim, self.up = draw, dim, dim - 1
-        self.axisymmetric = dim == 2 and draw.random() < 0.2
+        self.has = {name: name in wanted or draw.random() < 0.15 for name in FEATURES}
+        self.axisymmetric = dim == 2 and draw.random() < 0.2 and "accelerations" not in wanted  # whose sides do not move
         self.deck = {"dim": dim, "precision": precision, "backend": "serial", "progress": "off"}
         self.h = draw.choice([0.25, 0.25, 0.1, 0.3])
         self.steps = draw.randint(10, 50) if dim == 2 else draw.randint(8, 25)
@@ -58,10 +62,10 @@ class Maker:
         if self.axisymmetric:
             d["geometry"] = "axisymmetric"
         d.update(mesh_lower=(0.0,) * self.dim, mesh_upper=tuple(n * self.h for n in self.cells), mesh_spacing=self.h)
-        gravity = draw.choice(["down", "down", "any", "none"])
+        gravity = "down" if self.has["water"] else draw.choice(["down", "down", "any", "none"])
         if gravity != "none":
             d["gravity"] = self.down(9.81) if gravity == "down" or self.axisymmetric else tuple(draw.choice([-9.0, -3.0, 2.0, 6.0]) for _ in range(self.dim))
-        self.water = gravity == "down" and self.some(0.2)
+        self.water = self.has["water"]
         self.materials(draw.choice([1, 2]))
         self.numerics()
         self.bodies()
@@ -72,8 +76,14 @@ class Maker:
             self.load()
         if self.some(0.3):
             self.probes()
+        if self.water and self.some(0.5):
+            self.water_region()
         self.timing()
-        if self.some(0.15):
+        if self.has["rayleigh"]:
+            self.rayleigh()
+        if self.has["accelerations"] and not self.axisymmetric:
+            self.accelerations()
+        if self.some(0.5 if self.has["water"] or self.has["strength"] else 0.15):
             self.stages()
         return d
 
@@ -83,13 +93,65 @@ class Maker:
         d.update(stages="first,second", time_end=d["time_end"] / 2, second_damping=0.2)
         if "gravity" in d and not self.water:
             d["second_gravity"] = tuple(0.5 * x for x in d["gravity"])
+        if self.water and self.some(0.7):
+            d["second_water_level"] = self.near(1.5)
+        if "water_regions" in d and self.some(0.5):
+            d["second_pit_water_level"] = self.draw.choice(["dry", self.near(1.0)])
+        if d.get("rayleigh_ratio") and self.some(0.3):
+            d["second_rayleigh_ratio"] = 0.0
+        if self.has["strength"] and self.some(0.6):
+            d["second_strength_factor"] = 1.5
+
+    def water_region(self):
+        """A box whose water has a level of its own; no body that floats may be in it."""
+        d, wide = self.deck, self.deck["mesh_upper"]
+        if d.get("tool_motion") == "dynamic":
+            return
+        middle = tuple(0.0 if self.axisymmetric else self.near(n / 3) for n in self.cells[:self.up])
+        d.update(water_regions="pit", pit_lower=(*middle, 0.0), pit_upper=wide)
+        if self.some(0.8):
+            d["pit_water_level"] = self.draw.choice(["dry", self.near(1.2), self.near(3.1)])
+
+    def rayleigh(self):
+        """Damping of frequencies that the mesh has, whose stiffness shortens the stable step a little."""
+        d, step = self.deck, self.step
+        moves = self.has["accelerations"] or any(name.startswith("mesh_") and name.endswith("_velocity") for name in d)
+        parts = self.draw.choice(["stiffness"] if moves else ["both", "both", "stiffness", "mass"])
+        high, low = float(f"{0.1 / step:.4g}"), float(f"{0.02 / step:.4g}")
+        d.update(rayleigh_ratio=self.draw.choice([0.02, 0.1]), rayleigh_frequencies=(low, high) if parts == "both" else high)
+        if parts != "both" or self.some(0.3):
+            d["rayleigh_parts"] = parts
+
+    def accelerations(self):
+        """Records of accelerations at one or two sides, in components or as factors."""
+        d, draw = self.deck, self.draw
+        sides = [name for name, kind in d.items() if name in SIDES and kind in ("roller", "fixed", "friction", "smooth", "absorbing")]
+        for side in draw.sample(sides, min(len(sides), draw.choice([1, 1, 2]))):
+            d.pop(f"{side}_velocity", None)
+            axis = "xyz".index(side[5])
+            moves = [k == axis or d[side] != "roller" for k in range(self.dim)]
+            length = d["time_end"] * draw.choice([1.0, 1.0, 1.3])
+            size = 0.3 * self.speed / d["time_end"]
+            times = [float(f"{x * length:.5g}") for x in (0.0, 0.21, 0.5, 0.83, 1.0)]
+            times[-1] = max(times[-1], d["time_end"])
+            if self.some(0.4):
+                d[f"{side}_acceleration"] = tuple(float(f"{draw.uniform(-size, size):.4g}") if m else 0.0 for m in moves)
+                rows = [(t, round(draw.uniform(-1, 1), 3)) for t in times]
+            else:
+                rows = [(t, *(float(f"{draw.uniform(-size, size):.4g}") if m else 0.0 for m in moves)) for t in times]
+            d[f"{side}_acceleration_table"] = ",".join(":".join(map(repr, row)) for row in rows)
+            if self.some(0.6):
+                d[f"{side}_acceleration_correction"] = draw.choice(["none", "quadratic", "linear"])
+            if self.some(0.3):
+                d[f"{side}_acceleration_table_interpolation"] = "smooth"
 
     def materials(self, count):
         names = ["clay", "sand"][:count]
         self.deck["materials"] = ",".join(names)
         self.laws = {}
         for name in names:
-            law = self.draw.choice(list(LAWS))
+            law = self.draw.choice([law for law in LAWS if not (self.has["rayleigh"] and law in FLUIDS)
+                                    and (law in DIVIDED or not self.has["strength"])])
             values = dict(LAWS[law])
             for key, value in MORE.get(law, {}).items():
                 if self.some(0.3):
@@ -103,6 +165,12 @@ class Maker:
             self.deck.update({f"{name}_{key}": value for key, value in values.items()})
             if self.some(0.15) and law in ("linear_elastic", "mohr_coulomb", "cam_clay"):
                 self.deck[f"{name}_pore_stiffness"] = 1e6
+            if self.has["strength"] and law in DIVIDED and self.some(0.6):
+                self.deck[f"{name}_strength_factor"] = self.draw.choice([0.8, 1.3])
+            if self.has["strength"] and law in STRENGTH and self.some(0.7):
+                self.deck[f"{name}_su_ratio"] = self.draw.choice([0.25, 0.4])
+        if self.has["strength"] and self.some(0.7):
+            self.deck["strength_factor"] = self.draw.choice([0.9, 1.25])
 
     def numerics(self):
         d, draw = self.deck, self.draw
@@ -123,6 +191,13 @@ class Maker:
             d["output_energy"] = "on"
         if self.some(0.3):
             d["rebuild_margin"] = 0.1
+        if self.has["analysis"]:
+            d["analysis"] = draw.choice(["flow", "flow", "penetration"])
+            for name in ("velocity_update", "particle_domain", "position_correction"):
+                if self.some(0.8):
+                    d.pop(name, None)
+            if "velocity_update" not in d:
+                d.pop("flip_fraction", None)
         if self.water:
             d.update(water_level=self.near(2.5), water_density=1000.0)
 
@@ -156,7 +231,7 @@ class Maker:
             d[f"{name}_particles_per_cell"] = draw.choice([2, 2, 3]) if dim == 2 else 2
             if self.some(0.5):
                 d[f"{name}_velocity"] = self.vector(self.speed)
-            if self.laws[material] in ("cam_clay", "power_elastic") or self.some(0.2):
+            if self.laws[material] in ("cam_clay", "power_elastic") or f"{material}_su_ratio" in d or self.some(0.2):
                 normal = -round(draw.uniform(5e3, 2e4), 1)
                 d[f"{name}_stress"] = (normal, normal if self.some(0.5) else 0.8 * normal, normal) + (0.0,) * (1 if dim == 2 else 3)
         d["bodies"] = ",".join(names)
@@ -233,6 +308,8 @@ class Maker:
     def sides(self):
         d, draw, dim = self.deck, self.draw, self.dim
         plain = ["roller", "roller", "roller", "fixed", "free", "friction"] + ([] if self.water or FLUIDS & set(self.laws.values()) else ["absorbing"])
+        if self.has["smooth"]:
+            plain += ["smooth"] * len(plain)
         if self.axisymmetric:
             plain = [kind for kind in plain if kind != "friction"]
         periodic = not self.axisymmetric and self.some(0.15) and not self.water and d.get("tool_shape", "ball") in ("ball", "disc", "box")
@@ -244,6 +321,8 @@ class Maker:
                     continue
                 if self.axisymmetric and axis == 0 and end == "min":
                     continue
+                if axis == self.up and end == "max" and self.has["smooth"] and self.some(0.5):
+                    continue  # a lid by default where gravity holds soil away from it
                 kind = "free" if axis == self.up and end == "max" else draw.choice([k for k in plain if k != "free" or axis != self.up])
                 d[side] = kind
                 if kind == "friction":
@@ -252,7 +331,7 @@ class Maker:
                         d[f"{side}_shear_limit"] = 500.0
                 if kind == "absorbing" and self.some(0.4):
                     d.update({f"{side}_dashpot_factor": 0.5, f"{side}_spring_length": 10 * self.h})
-                if kind in ("roller", "fixed", "friction") and self.some(0.15) and not self.axisymmetric:
+                if kind in ("roller", "fixed", "friction", "smooth") and self.some(0.15) and not self.axisymmetric:
                     move = [round(draw.uniform(-0.1, 0.1) * self.speed, 4) if k == axis or kind != "roller" else 0.0 for k in range(dim)]
                     d[f"{side}_velocity"] = tuple(move)
 
@@ -281,7 +360,7 @@ class Maker:
         d = self.deck
         stiff = 2.5 * E + max((v for k, v in d.items() if k.endswith("pore_stiffness")), default=0) + (1e7 if "cam_clay" in self.laws.values() else 0)
         step = 0.2 * self.h / math.sqrt(stiff / (0.8 * RHO))
-        step = float(f"{step:.4g}")
+        self.step = step = float(f"{step:.4g}")
         if self.some(0.5):
             d["time_step"] = step
         elif self.some(0.5):
@@ -291,8 +370,9 @@ class Maker:
         d["output_interval"] = d["time_end"] / 2
 
 
-def random_deck(draw, dim, precision):
-    return Maker(draw, dim, precision).make()
+def random_deck(draw, dim, precision, wanted=()):
+    """A deck, with the `wanted` of FEATURES."""
+    return Maker(draw, dim, precision, wanted).make()
 
 
 def text_of(deck):

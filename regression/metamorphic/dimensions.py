@@ -10,15 +10,16 @@ GRADIENT, VISCOSITY, RATE = (-2, -2, 1), (-1, -1, 1), (0, -1, 0)
 FORCE, ENERGY, MOMENTUM, AREA, VOLUME = (1, -2, 1), (2, -2, 1), (1, -1, 1), (2, 0, 0), (3, 0, 0)
 WHOLE = {FORCE, ENERGY, MOMENTUM, AREA, VOLUME, MASS}  # of columns and fields
 
-# Kinds of options: word; number; level (height along the last axis); levels (a level, or an outline); place; vector; outline (points of
-# the first and the last axis); width (lower and upper y); stress; table (time and vector); axis.
+# Kinds of options: word; number; numbers; level (height along the last axis); levels (a level, or an outline); place; vector; outline (points of
+# the first and the last axis); width (lower and upper y); stress; table (time and vector, or time and factor); axis.
 WORDS = ("dim geometry materials bodies rigid_bodies loads probes stages backend precision p2g velocity_update particle_domain "
          "position_correction output_energy model material shape fill cut_out motion separation contact_normal contact_gap_scaling body "
-         "bodies_of_probe kind match surface tension_word progress file tip end place remove")
+         "bodies_of_probe kind match surface tension_word progress file tip end place remove analysis water_regions rayleigh_parts "
+         "acceleration_correction velocity_table_interpolation acceleration_table_interpolation")
 NUMBERS = ("damping flip_fraction xpic_order position_correction_rate f_bar_fraction time_courant time_max_steps particles_per_cell poisson "
            "k0 friction_deg dilation_deg mu_static mu_dynamic inertial_number exponent critical_state_ratio lambda kappa specific_volume ocr "
            "rigidity remoulded_ratio xi95 rate_factor friction dashpot_factor shear_fraction contact_gap_reach contact_gap_exponent "
-           "tip_angle_deg p2g_rebuild_interval rebuild_margin")
+           "tip_angle_deg p2g_rebuild_interval rebuild_margin rayleigh_ratio strength_factor su_ratio")
 OPTIONS = {
     **{name: ("word", NONE) for name in WORDS.split()}, **{name: ("number", NONE) for name in NUMBERS.split()},
     **{name: ("place", LENGTH) for name in "lower upper centre point mesh_lower mesh_upper".split()},
@@ -31,9 +32,10 @@ OPTIONS = {
     **{name: ("number", TIME) for name in "time_end time_step output_interval history_interval checkpoint_interval rate_time".split()},
     **{name: ("level", LENGTH) for name in "su_datum young_datum cohesion_datum water_level".split()},
     **{name: ("levels", LENGTH) for name in "top base".split()},
-    "rate_reference": ("number", RATE), "viscosity": ("number", VISCOSITY), "consistency": ("number", None), "gauge_width": ("number", LENGTH),
+    "rate_reference": ("number", RATE), "rayleigh_frequencies": ("numbers", RATE), "viscosity": ("number", VISCOSITY), "consistency": ("number", None), "gauge_width": ("number", LENGTH),
     "gravity": ("vector", ACCELERATION), "velocity": ("vector", SPEED), "traction": ("vector", STRESS), "force": ("vector", FORCE),
-    "facing": ("vector", NONE), "normal": ("vector", NONE), "velocity_table": ("table", SPEED), "acceleration_table": ("table", ACCELERATION), "acceleration": ("vector", ACCELERATION),
+    "facing": ("vector", NONE), "normal": ("vector", NONE), "velocity_table": ("table", SPEED),
+    "acceleration_table": ("table", ACCELERATION), "acceleration": ("vector", ACCELERATION),
     "stress": ("stress", STRESS),
     "polygon": ("outline", LENGTH), "width": ("width", LENGTH), "at": ("at", LENGTH), "axis": ("axis", NONE),
 }
@@ -90,6 +92,12 @@ def kind_of(option, deck):
     if key == "force" and is_plane(deck):
         units = per_width(units)
     return kind, units
+
+
+def domain_of(deck):
+    """What the domains of particles follow: the option, or what -analysis sets."""
+    flows = deck.get("analysis") == "flow" and deck.get("geometry") is None
+    return deck.get("particle_domain", "split" if flows else "fixed")
 
 
 def is_plane(deck):

@@ -1,7 +1,7 @@
 """Images of a deck that must agree with it: `IMAGES` has a function each, (deck, draw) -> Image, or None where the deck has none."""
 import dataclasses
 
-from dimensions import SIDE, TIME, factor, kind_of, names_of
+from dimensions import SIDE, TIME, domain_of, factor, kind_of, names_of
 
 EXACT, ROUND_OFF = "bits", "round-off"
 
@@ -59,6 +59,8 @@ def moved(kind, value, units, image, dim, name, deck):
 
     if kind in ("word", "number") or (kind == "levels" and isinstance(value, str)):
         return value if kind == "word" or by == 1 else value * by
+    if kind == "numbers":
+        return tuple(x * by for x in value) if isinstance(value, tuple) else value * by
     if kind == "axis":
         return "xyz"[axis_of("xyz".index(value))]
     if kind == "level" or (kind == "levels" and not isinstance(value, tuple)):
@@ -78,6 +80,8 @@ def moved(kind, value, units, image, dim, name, deck):
     if kind == "table":
         rows = [tuple(float(x) for x in row.split(":")) for row in value.split(",")]
         t = factor(TIME, image.scales)
+        if len(rows[0]) == 2:  # factors of a vector
+            return ",".join(f"{row[0] * t!r}:{row[1]!r}" for row in rows)
         return ",".join(":".join(repr(x) for x in (row[0] * t, *(signs[k] * row[1 + axes[k]] * by for k in range(dim)))) for row in rows)
     if kind == "at":
         if deck[name.replace("_at", "_kind")] == "section":
@@ -119,7 +123,7 @@ def is_upright(deck):
     probes = [deck[f"{name}_kind"] for name in names_of(deck, "probes")]
     rings = [name for name in names_of(deck, "bodies") if deck.get(f"{name}_fill") == "cut" and deck[f"{name}_shape"] == "ball"]
     return bool(rings or shapes(deck) & {"layer", "cylinder", "cone"} or "water_level" in deck or "gauge" in probes or deck.get("geometry")
-                or any(name.endswith("gradient") and value for name, value in deck.items()) or "k0" in deck.values())
+                or any(name.endswith(("gradient", "su_ratio")) and value for name, value in deck.items()) or "k0" in deck.values())
 
 
 def has_prism(deck):
@@ -258,7 +262,7 @@ def outline(deck, draw):
 
 def thin(deck, draw):
     """Plane strain as a slab of one cell between two rollers in 3D."""
-    if deck["dim"] == 3 or deck.get("geometry") or "time_step" not in deck or "split" in deck.values():
+    if deck["dim"] == 3 or deck.get("geometry") or "time_step" not in deck or domain_of(deck) == "split":
         return None
     if set(deck.get(f"{body}_particles_per_cell") for body in names_of(deck, "bodies")) - {deck["ground_particles_per_cell"]}:
         return None
@@ -274,6 +278,9 @@ def thin(deck, draw):
         elif kind == "vector":
             by = h if name.endswith("_force") else 1
             value = (value[0] * by, 0.0, value[1] * by)
+        elif kind == "table":
+            rows = [row.split(":") for row in value.split(",")]
+            value = ",".join(":".join(row if len(row) == 2 else [*row[:2], "0.0", row[2]]) for row in rows)
         elif kind == "stress":
             value = (value[0], value[2], value[1], 0.0, 0.0, value[3])
         elif kind == "axis":
@@ -321,7 +328,7 @@ def watched(deck, draw):
         out["output_energy"] = "off" if deck.get("output_energy") == "on" else "on"
     if draw.random() < 0.5:
         return Image(out, EXACT, rows=False)
-    out["history_interval"] = deck["history_interval"] / 2
+    out["history_interval"] = deck["history_interval"] / draw.choice([2, 1000])  # the host looks more often, or after each step
     rigids = "|".join(names_of(deck, "rigid_bodies")) or "wall_..."
     return Image(out, EXACT, rows=False, skips=f"(wall_....|{rigids})_force_.")  # means since the last row
 

@@ -4,7 +4,7 @@ import re
 
 def moving_sides_meet(deck):
     """Whether sides across two axes move."""
-    sides = [name for name in deck if name.startswith("mesh_") and name.endswith("_velocity")]
+    sides = [name for name in deck if name.startswith("mesh_") and name.endswith(("_velocity", "_velocity_table", "_acceleration_table"))]
     return len({name[5] for name in sides}) > 1
 
 

@@ -2,7 +2,7 @@
 from dimensions import names_of
 
 ROUND_OFF = 1e-11
-LISTS = ("rigid_bodies", "loads", "probes", "bodies", "materials")
+LISTS = ("rigid_bodies", "loads", "probes", "water_regions", "bodies", "materials")
 DIMENSIONED = ("pressure_min", "water_density")  # have defaults with units
 NEEDED = ("dim", "mesh_lower", "mesh_upper", "mesh_spacing", "time_end", "backend", "p2g", "materials", "bodies", "history_interval", "output_interval")
 

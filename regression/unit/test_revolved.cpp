@@ -38,7 +38,7 @@ Distance<3> distance(const Shape& shape, const MeshConfig& mesh, const Vec3& x) 
                                                                                          in.vertices.size());
   Vector<double, 3> from;
   for (int d = 0; d < 3; ++d) from[d] = x[d] - mesh.lower[d];
-  return distance_to(surface_of<3>(in), vertices, from);
+  return distance_to(surface_of<3>(in, mesh.spacing), vertices, from);
 }
 
 /// Points all over the surface, `apart` [m] or less.

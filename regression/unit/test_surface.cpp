@@ -24,10 +24,9 @@ MeshConfig mesh_of() {
 
 /// Signed distance of a shape at x [m], by way of what a run uploads.
 template <int Dim>
-Distance<Dim> distance(const Shape& shape, Vector<double, Dim> x) {
-  const MeshConfig mesh = mesh_of();
+Distance<Dim> distance(const Shape& shape, Vector<double, Dim> x, const MeshConfig& mesh = mesh_of()) {
   const SurfaceInput in = surface_input(shape, mesh, Dim);
-  Surface<Dim> surface = surface_of<Dim>(in);
+  Surface<Dim> surface = surface_of<Dim>(in, mesh.spacing);
   const Kokkos::View<const Vertex*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> vertices(in.vertices.data(),
                                                                                          in.vertices.size());
   for (int d = 0; d < Dim; ++d) x[d] -= mesh.lower[d];
@@ -243,14 +242,35 @@ TEST_CASE("soil pressed into a thin plate is stopped by the face that it is at",
   });
 }
 
+TEST_CASE("a surface is the same in any unit of length", "[surface]") {
+  for (const double unit : {1e-9, 1e-6, 1e3}) {
+    const auto scaled = [&](Vec3 x) { return Vec3{unit * x[0], unit * x[1], unit * x[2]}; };
+    MeshConfig mesh = mesh_of();
+    mesh.lower = scaled(mesh.lower), mesh.upper = scaled(mesh.upper), mesh.spacing *= unit;
+    const std::vector<std::array<double, 2>> outline{{0, 0}, {2, 0}, {2, 1}, {0, 1}};
+    std::vector<std::array<double, 2>> small = outline;
+    for (auto& vertex : small) vertex[0] *= unit, vertex[1] *= unit;
+    for (const double x : {-0.4, -0.03, 0.03, 0.4, 1.3, 1.97, 2.03})
+      for (const double y : {-0.03, 0.03, 0.45, 0.97, 1.03}) {
+        const Distance<2> of_box = distance<2>(box({0, 0}, {2, 1}), {x, y});
+        const Distance<2> in_unit = distance<2>(box({0, 0}, scaled({2, 1})), {unit * x, unit * y}, mesh);
+        CHECK(is<2>({in_unit.value / unit, in_unit.normal}, of_box.value, of_box.normal));
+        const Distance<2> of_outline = distance<2>(polygon(outline), {x, y});
+        const Distance<2> small_one = distance<2>(polygon(small), {unit * x, unit * y}, mesh);
+        CHECK(is<2>({small_one.value / unit, small_one.normal}, of_outline.value, of_outline.normal));
+      }
+  }
+}
+
 TEST_CASE("round-off does not choose the face at an edge or a vertex of a surface", "[surface]") {
   const Shape square = polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
   for (const double a : {-1e-13, 0., 1e-13})
     for (const double b : {-1e-13, 0., 1e-13}) {
-      CHECK(is<2>(distance<2>(square, {1 + a, 1 + b}), k_round * (std::sqrt(2.) - 1), {k_half, k_half}, 1e-11));
+      CHECK(
+          is<2>(distance<2>(square, {1 + a, 1 + b}), k_round * (std::sqrt(2.) - 1), {k_half, k_half}, 1e-11));
       CHECK(is<2>(distance<2>(square, {1 + a, 0.5 + b}), 0, {1, 0}));
       Vector<double, 2> n;
-      distance_to_product<2>({a, b}, 0, n);
+      distance_to_product<2>({a, b}, 0, 1e-10, n);
       CHECK((n[0] == 1 && n[1] == 0));
     }
 }

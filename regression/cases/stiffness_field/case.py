@@ -93,7 +93,7 @@ def exact_period():
 
 
 def exact_settlement(height):
-    """Of the soil that was at this height above the base, m."""
+    """Settlement of the soil that was at this height above the base, m."""
     z, dz = np.linspace(HEIGHT - height, HEIGHT, 20001, retstep=True)
     modulus = (YOUNG + GROWTH * z) * (1 - POISSON) / ((1 + POISSON) * (1 - 2 * POISSON))
     strain = 1 - np.exp(-WEIGHT * z / modulus)
