@@ -89,13 +89,29 @@ def at_site(terrain, origin):
     return Raster(terrain.values + origin[2], terrain.x + origin[0], terrain.y + origin[1], terrain.cell)
 
 
-def shade(axes, terrain):
-    """Shaded relief with contour lines of the height."""
-    x0, x1, y0, y1 = terrain.extent
+def cut_to(terrain, window):
+    """The cells of a terrain in a window x0, x1, y0, y1 [m], and those beside them; all where none lies in it."""
+    x0, x1, y0, y1 = window
+    x, y = terrain.centres()
+    columns = np.flatnonzero((x > x0 - terrain.cell) & (x < x1 + terrain.cell))
+    rows = np.flatnonzero((y > y0 - terrain.cell) & (y < y1 + terrain.cell))
+    if len(columns) < 2 or len(rows) < 2:
+        return terrain
+    values = terrain.values[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
+    return Raster(values, terrain.x + columns[0] * terrain.cell, terrain.y + rows[0] * terrain.cell, terrain.cell)
+
+
+def shade(axes, terrain, window):
+    """Shaded relief with contour lines of the height, and their labels, in a window x0, x1, y0, y1 [m]."""
     light = LightSource(azdeg=315, altdeg=45).hillshade(terrain.values, dx=terrain.cell, dy=-terrain.cell, vert_exag=1.5)
-    axes.imshow(light, cmap="gray", vmin=-0.8, vmax=1.1, origin="lower", extent=(x0, x1, y0, y1), interpolation="bilinear")
-    lines = axes.contour(*terrain.centres(), terrain.values, levels=12, colors="0.25", linewidths=0.4)
-    axes.clabel(lines, fontsize=6, fmt="%.0f")
+    axes.imshow(light, cmap="gray", vmin=-0.8, vmax=1.1, origin="lower", extent=terrain.extent, interpolation="bilinear")
+    seen = cut_to(terrain, window)
+    lines = axes.contour(*seen.centres(), seen.values, levels=12, colors="0.25", linewidths=0.4)
+    axes.set(xlim=window[:2], ylim=window[2:])  # labels are placed where they are seen
+    x0, x1, y0, y1 = window
+    for label in axes.clabel(lines, fontsize=6, fmt="%.0f m"):
+        u, v = (label.get_position()[0] - x0) / (x1 - x0), (label.get_position()[1] - y0) / (y1 - y0)
+        label.set_visible(0.04 < u < 0.96 and 0.04 < v < 0.96)  # the frame would cut off digits
 
 
 def seen_part(name, rasters, least):
@@ -109,7 +125,7 @@ def draw_map(axes, run, name, rasters, terrain):
     title, colours = RASTERS[name]
     least = run.number("raster_threshold_depth", 0.1 * run.number("mesh_spacing"))
     if terrain is not None:
-        shade(axes, terrain)
+        shade(axes, terrain, rasters[name].extent)
     seen = seen_part(name, rasters, least)
     top = float(np.quantile(seen.compressed(), 0.99)) if seen.count() else 1
     image = axes.imshow(seen, cmap=colours, origin="lower", extent=rasters[name].extent, vmin=0, vmax=top,

@@ -213,7 +213,7 @@ class Terrain(Folder):
         with unittest.mock.patch.object(script, "shade") as shade, unittest.mock.patch.object(sys, "argv", words):
             with contextlib.redirect_stdout(io.StringIO()):
                 script.main()
-        axes, drawn = shade.call_args.args
+        axes, drawn, _ = shade.call_args.args
         self.assertEqual((axes.get_xlim(), axes.get_ylim()), ((500, 520), (700, 720)))  # of the site, and its heights too
         self.assertEqual((drawn.x, drawn.y), (500, 700))
         np.testing.assert_allclose(drawn.values, self.plane(20, 20, 1.0, 0.0, 0.0).values + 380)

@@ -95,6 +95,21 @@ class Probes(unittest.TestCase):
         self.assertEqual((terrain.x, terrain.y), (699.5, 89.5))
         self.assertEqual((terrain.values.min(), terrain.values.max()), (380, 391))
 
+    def test_contours_are_those_of_the_window(self):
+        hill = raster.Raster(np.add.outer(np.zeros(40), 10.0 * np.arange(40)), 0, 0, 10)  # 0 to 390 m over 400 m
+        axes = plot_probes.plt.figure().add_subplot()
+        plot_probes.shade(axes, hill, (100, 200, 50, 250))
+        seen = plot_probes.cut_to(hill, (100, 200, 50, 250))
+        self.assertEqual(seen.extent, (90, 210, 40, 260))
+        self.assertEqual((seen.values.min(), seen.values.max()), (90, 200))
+        labels = [text for text in axes.texts if text.get_visible()]
+        self.assertGreater(len(labels), 3)
+        for label in labels:
+            x, y = label.get_position()
+            self.assertTrue(100 < x < 200 and 50 < y < 250)
+            self.assertAlmostEqual(float(label.get_text().removesuffix(" m")), x - 5, delta=1)
+        self.assertIs(plot_probes.cut_to(hill, (900, 950, 0, 50)), hill)
+
     def test_linear_fields_are_exact_along_a_line(self):
         for dim in (2, 3):
             with self.subTest(dim=dim):
