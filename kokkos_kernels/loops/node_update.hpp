@@ -300,8 +300,8 @@ struct UpdateNodes {
     interface.pressing = pressing * dt;
     interface.separates = rigid.separates;
     // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
-    // well, the body would act thicker than it is.
-    interface.within_soil = rigid.surface_normal && distance > spacing / 2;
+    // well, the body would act thicker than it is. Round-off does not choose where a node lies half a cell away.
+    interface.within_soil = rigid.surface_normal && distance > spacing / 2 + rigid.surface.round_off;
     if (rigid.reach > 0) {
       const T depth = surface_depth(node.boundary[BoundaryTerms<Dim>::volume] / places.grid.spacing, area);
       const T gap = static_cast<T>(distance) + depth * places.grid.spacing;

@@ -99,7 +99,10 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
   const T speed = Kokkos::sqrt(dot(slip, slip));
   constexpr T k_leaves = T(0.1);  // of the slip: a node in the soil that moves away faster is not in touch
   constexpr T k_along = T(1e-6);  // of the slip: a motion along the face is along it but for round-off
-  const bool touches = !interface.separates || approach > k_along * speed || interface.pressing > 0 ||
+  // Of the slip: forces that balance at a node press it by round-off alone, towards the rigid or away.
+  constexpr T k_balanced = sizeof(T) == sizeof(double) ? T(1e-10) : T(1e-6);
+  const bool touches = !interface.separates || approach > k_along * speed ||
+                       interface.pressing > k_balanced * speed ||
                        (interface.within_soil && -approach < k_leaves * speed);
   T largest = touches ? interface.shear_speed : T(0);
   if (interface.friction >= 0) {

@@ -12,8 +12,8 @@ def moving_sides_meet(deck):
 MEANT = [
     ("turn", lambda deck: moving_sides_meet(deck), ".*", float("inf"),
      "of two sides that move and prescribe the same component of a velocity, that of the last axis prevails"),
-    (".*", lambda deck: "loads" in deck, r"_area|load_area", 1e-6,
-     "weights on a face are those of a box of 1e-12 cells, which have fewer digits"),
+    (".*", lambda deck: "loads" in deck, ".*", 1e-6,
+     "weights on a face are those of a box of 1e-12 cells, which have fewer digits, and so have the forces and what they move"),
     ("restart_ranks", lambda deck: True, r"history (energy|work)_", 1e-12,
      "at a restart rank 0 goes on with the works of all ranks, which are then summed in another order"),
     ("units", lambda deck: {"power_elastic", "cam_clay", "yield_stress_fluid"} & {str(value) for value in deck.values()}, ".*", 1e-9,
