@@ -40,13 +40,13 @@ class Cover {
   }
   void order() { points_.order(); }
   /// Whether some particle is where the neighbour of a face would be, at x; axes: those of its lattice.
-  bool holds(const Vec3& x, const Vec3& width, const std::array<Vec3, 3>& axes) const {
-    constexpr double k_shifted = 0.75;  // of the width: in deformed soil, and where cells are cut
+  /// shifted: how far from there, over the width, in deformed soil and where cells are cut.
+  bool holds(const Vec3& x, const Vec3& width, const std::array<Vec3, 3>& axes, double shifted = 0.75) const {
     return points_.any_near(x, [&](int n) {
       Vec3 way{};
       for (int d = 0; d < config_.dim; ++d) way[d] = points_[n][d] - x[d];
       for (int d = 0; d < config_.dim; ++d) {
-        const double reach = std::max(k_shifted * width[d], width_[n][d] / 2 + k_slack * width[d]);
+        const double reach = std::max(shifted * width[d], width_[n][d] / 2 + k_slack * width[d]);
         if (!(std::fabs(along(way, axes[d])) < reach)) return false;
       }
       return true;
@@ -158,29 +158,32 @@ class Finder {
   static Vec3 beyond(const Vec3& x, const Vec3& axis, double way) {
     return {x[0] + way * axis[0], x[1] + way * axis[1], x[2] + way * axis[2]};
   }
-  /// Of the bodies of which each rank has a part: places and widths of the particles that nothing here covers
-  /// on all sides.
+  /// Of the bodies of which each rank has a part: places and widths of the particles that may be the
+  /// neighbour of another rank's. Where all sides of a particle have neighbours of its own lattice here, it
+  /// is none.
   std::vector<double> open_particles() const {
-    Cover own(config_, widest_);
-    for (const SearchedBody& body : bodies_)
-      if (!body.on_all_ranks) add(body, own);
-    own.order();
     std::vector<double> open;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       if (bodies_[b].on_all_ranks) continue;
+      Cover own(config_, widest_);
+      add(bodies_[b], own);
+      own.order();
       const auto axes = axes_of(config_.bodies[b].shape, config_.dim);
       for (std::size_t p = 0; p < bodies_[b].count(config_.dim); ++p) {
         const Vec3 x = bodies_[b].at(p, config_.dim), width = bodies_[b].width_of(p, config_.dim);
-        if (!is_near_some(x)) continue;
-        bool covered = true;
-        for (int n = 0; n < 2 * config_.dim && covered; ++n) {
-          const double way = width[n / 2] * (n % 2 == 0 ? -1 : 1);
-          covered = own.holds(beyond(x, axes[n / 2], way), width, axes);
-        }
-        if (!covered) open.insert(open.end(), {x[0], x[1], x[2], width[0], width[1], width[2]});
+        if (is_near_some(x) && !is_inside(own, x, width, axes))
+          open.insert(open.end(), {x[0], x[1], x[2], width[0], width[1], width[2]});
       }
     }
     return open;
+  }
+  bool is_inside(const Cover& own, const Vec3& x, const Vec3& width, const std::array<Vec3, 3>& axes) const {
+    constexpr double k_in_lattice = 0.25;
+    for (int n = 0; n < 2 * config_.dim; ++n) {
+      const double way = width[n / 2] * (n % 2 == 0 ? -1 : 1);
+      if (!own.holds(beyond(x, axes[n / 2], way), width, axes, k_in_lattice)) return false;
+    }
+    return true;
   }
   /// Numbers of all ranks, in the order of ranks, on every rank.
   PetscErrorCode share(std::vector<double>* numbers) const {
