@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "checkpoint/changes.hpp"
+#include "checkpoint/earlier.hpp"
 #include "checkpoint/folder.hpp"
 #include "common/collectives.hpp"
 #include "common/text.hpp"
@@ -62,6 +63,7 @@ PetscErrorCode Simulation::Body::read_restart() {
     report.errors = found.lines;
     if (!report.errors.empty()) PetscFunctionReturn(PETSC_SUCCESS);
     option_changes = found.changes;
+    complete_earlier(config, restart->state);
     fault = state_fault(restart->state, config);
     if (fault.empty()) fault = probes_fault();
     if (fault.empty()) apply_changes(option_changes, config, restart->state);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "checkpoint/changes.hpp"
+#include "checkpoint/earlier.hpp"
 #include "data/column_terms.hpp"
 #include "data/side_terms.hpp"
 #include "mesh/background.hpp"
@@ -72,18 +73,13 @@ std::string points_fault(const SavedPoints& points, const Config& config, const 
 bool sound_sides(const SavedSides& sides, const Config& config) {
   if (sides.kinds.empty()) return sides.values.empty() && sides.columns.empty();  // no run has written it
   if (sides.kinds.size() != 2 * static_cast<std::size_t>(config.dim)) return false;
-  std::size_t rows = 0, columns = 0;
-  for (std::size_t n = 0; n < sides.kinds.size(); ++n) {
-    if (sides.kinds[n] < 0 || sides.kinds[n] > static_cast<long>(k_last_wall)) return false;
-    const Wall kind = static_cast<Wall>(sides.kinds[n]);
-    const int of_side = side_rows(config.mesh.cells, config.dim, static_cast<int>(n / 2));
-    if (is_acting(kind)) rows += of_side;
-    if (kind == Wall::free_field) columns += of_side;
-  }
+  for (const long kind : sides.kinds)
+    if (kind < 0 || kind > static_cast<long>(k_last_wall)) return false;
+  const SavedSideRows rows = rows_of_sides(sides, config);
   const std::size_t terms = config.dim == 2 ? SideTerms<2>::size : SideTerms<3>::size;
   const std::size_t column_terms = config.dim == 2 ? ColumnTerms<2>::size : ColumnTerms<3>::size;
   const auto finite = [](double x) { return std::isfinite(x); };
-  return sides.values.size() == rows * terms && sides.columns.size() == columns * column_terms &&
+  return sides.values.size() == rows.acting * terms && sides.columns.size() == rows.columns * column_terms &&
          std::all_of(sides.values.begin(), sides.values.end(), finite) &&
          std::all_of(sides.columns.begin(), sides.columns.end(), finite);
 }

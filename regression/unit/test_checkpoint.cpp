@@ -13,9 +13,11 @@
 #include "checkpoint/change_rules.hpp"
 #include "checkpoint/changes.hpp"
 #include "checkpoint/checkpoint.hpp"
+#include "checkpoint/earlier.hpp"
 #include "checkpoint/folder.hpp"
 #include "checkpoint/id_blocks.hpp"
 #include "checkpoint/sealed_file.hpp"
+#include "data/side_terms.hpp"
 
 using namespace mpm;
 namespace fs = std::filesystem;
@@ -93,7 +95,7 @@ Checkpoint some_checkpoint() {
   c.state.rigids = {{{1, 2, 0}, {3, 4, 0}, {5, 6, 0}, {7, 8, 0}},
                     {{-1, -2, 0}, {-3, -4, 0}, {-5, -6, 0}, {-7, -8, 0}}};
   c.state.bounds = {0.25, 0.5, 0.75}, c.state.owners = {0, 2, 1, 0};
-  if (rank_of_this() == 0) c.state.impulse = {{7, 5}, {70, 71, 50, 51}};
+  if (rank_of_this() == 0) c.state.impulse = {{7, 5}, {70, 71, 72, 73, 74, 75, 50, 51, 52, 53, 54, 55}};
   return c;
 }
 
@@ -172,7 +174,7 @@ TEST_CASE("a checkpoint reads as it was written, whichever rank had which point"
   CHECK(read.state.bounds == std::vector<double>{0.25, 0.5, 0.75});
   CHECK(read.state.owners == std::vector<long>{0, 2, 1, 0});
   CHECK(read.state.impulse.address == std::vector<long>{5, 7});
-  CHECK(read.state.impulse.values == std::vector<double>{50, 51, 70, 71});
+  CHECK(read.state.impulse.values == std::vector<double>{50, 51, 52, 53, 54, 55, 70, 71, 72, 73, 74, 75});
   CHECK(!fs::exists(path + ".tmp"));
 }
 
@@ -378,4 +380,27 @@ TEST_CASE("a state that no kernel could take is refused", "[checkpoint]") {
   CHECK(refused([](SavedState& s) { s.rigids[0].velocity[0] = HUGE_VAL; }));
   CHECK(refused([](SavedState& s) { s.rigids.clear(); }));
   CHECK(refused([](SavedState& s) { s.impulse.address = {5}; }));
+}
+
+TEST_CASE("a checkpoint of version 0.1 has its unused normal impulses where friction keeps them now",
+          "[checkpoint]") {
+  Config config;
+  config.dim = 2;
+  config.mesh.cells = {4, 3, 1};
+  SavedState state;
+  state.rigids.resize(2);
+  state.impulse = {{7}, {50, 51}};
+  state.sides.kinds = {0, 0, static_cast<long>(Wall::friction), 0};
+  const std::size_t earlier = SideTerms<2>::size + 1 - ImpulseTerms::size, rows = 4 + 3;
+  for (std::size_t k = 0; k < rows * earlier; ++k) state.sides.values.push_back(static_cast<double>(k));
+  complete_earlier(config, state);
+  CHECK(state.impulse.values == std::vector<double>{0, 0, 50, 0, 0, 51});
+  REQUIRE(state.sides.values.size() == rows * SideTerms<2>::size);
+  const double* const second = &state.sides.values[SideTerms<2>::size];
+  CHECK(second[SideTerms<2>::pressed + ImpulseTerms::store] == static_cast<double>(earlier));
+  CHECK(second[SideTerms<2>::drift] == static_cast<double>(earlier + 1));
+  const SavedState now = state;
+  complete_earlier(config, state);
+  CHECK(state.impulse.values == now.impulse.values);
+  CHECK(state.sides.values == now.sides.values);
 }
