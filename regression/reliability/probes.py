@@ -83,6 +83,13 @@ def soil_of(path, bodies):
         return float(file.attrs["time"]), *(np.concatenate([group[key][()] for group in groups]) for key in ("position", "mass", "volume"))
 
 
+def gap_of(path, bodies):
+    """Volume strain by which particles have parted, 0 where their law has none."""
+    with h5py.File(path) as file:
+        groups = [file[name] for name in bodies if name in file]
+        return np.concatenate([group["parted_volume"][()] if "parted_volume" in group else np.zeros(len(group["volume"])) for group in groups])
+
+
 def check_sections(folder, options, kinds, precision, stages):
     """Mass beyond sections by the frames, to the half width of a particle."""
     values = table(folder)
@@ -137,7 +144,9 @@ def raster_values(folder):
 
 def check_rasters(folder, options):
     depth, speed, arrival, final, area = raster_values(folder)
-    _, position, _, volume = soil_of(sorted(folder.glob("frames/*.h5"))[-1], option(options, "-raster_bodies", "one,two").split(","))
+    bodies, frame = option(options, "-raster_bodies", "one,two").split(","), sorted(folder.glob("frames/*.h5"))[-1]
+    _, position, _, volume = soil_of(frame, bodies)
+    volume = volume * np.exp(-np.minimum(gap_of(frame, bodies), 4))  # depths leave out the gaps of soil that has parted
     upper = float(option(options, "-mesh_upper").split(",")[0])
     if len(volume) and position[:, 0].max() < upper - 0.15:
         held = final.sum() * area
