@@ -35,6 +35,10 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
 template <class T>
 inline constexpr T k_still = T(1e-6);
 
+/// Share of the largest component of a velocity below which another one is round-off.
+template <class T>
+inline constexpr T k_beside = sizeof(T) == sizeof(double) ? T(1e-10) : T(1e-5);
+
 /// The node's part of the step. acts: some side of the mesh acts (data/sides.hpp), or local damping does;
 /// kernels without that take fewer registers of a GPU.
 template <class Space, class T, int Dim, bool acts = true>
@@ -55,7 +59,9 @@ struct UpdateNodes {
   T dt,
       inv_dt;  // s, 1/s: of the change of velocities, from the middle of the step before to that of this one
   T share;     // -, dt over the length of the step
-  T damping, memory, mass_cut;
+  T damping;
+  T fresh;  // -, weight of a step in the mean normal impulse
+  T mass_cut;
   double spacing;
   bool has_boundary, has_friction, has_mass_normals, clears, rings;
 
@@ -103,10 +109,21 @@ struct UpdateNodes {
   /// Deceleration by local damping where the acceleration is a and the velocity was v_old, by number or by
   /// lane [m/s2].
   template <class R>
-  KOKKOS_FORCEINLINE_FUNCTION R braking(R a, R v_old) const {
-    if constexpr (!acts) return R(0);
-    const R size = Kokkos::fabs(a), still = k_still<T> * dt * size;
-    return damping * size * select(v_old > still, R(1), select(v_old < -still, R(-1), R(0)));
+  KOKKOS_FORCEINLINE_FUNCTION Vector<R, Dim> braking(const Vector<R, Dim>& a,
+                                                     const Vector<R, Dim>& v_old) const {
+    Vector<R, Dim> brake;
+    for (int d = 0; d < Dim; ++d) brake[d] = R(0);
+    if constexpr (acts) {
+      if (!(damping > 0)) return brake;
+      R fastest = Kokkos::fabs(v_old[0]);
+      for (int d = 1; d < Dim; ++d) fastest = Kokkos::fmax(fastest, Kokkos::fabs(v_old[d]));
+      for (int d = 0; d < Dim; ++d) {
+        const R size = Kokkos::fabs(a[d]),
+                still = Kokkos::fmax(k_still<T> * dt * size, k_beside<T> * fastest);
+        brake[d] = damping * size * select(v_old[d] > still, R(1), select(v_old[d] < -still, R(-1), R(0)));
+      }
+    }
+    return brake;
   }
 
   /// Velocity of a node before the step, and its acceleration by internal force and gravity, by number or by
@@ -166,7 +183,7 @@ struct UpdateNodes {
                                                             double* force) const {
     MPM_ROLLED
     for (int n = 0; n < ImpulseTerms::size * static_cast<int>(rigids.extent(0)) && has_friction; ++n)
-      nodes.impulse(n, i) *= kept_share(n % ImpulseTerms::size, memory);
+      nodes.impulse(n, i) *= kept_share(n % ImpulseTerms::size, fresh);
     const Node node = node_of(sums, i, at, near);
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old, a, brake;
     if (node.inv_m > 0) {
@@ -204,10 +221,8 @@ struct UpdateNodes {
                                                  bool ends, double* force, Vector<T, Dim>& brake) const {
     brake = filled<T, Dim>(0);
     if constexpr (acts)
-      if (damping > 0) {
-        const Vector<T, Dim> left = node.is_held() ? held_acceleration(sums, bodies, node, v_old, a) : a;
-        for (int d = 0; d < Dim; ++d) brake[d] = braking(left[d], v_old[d]);
-      }
+      if (damping > 0)
+        brake = braking(node.is_held() ? held_acceleration(sums, bodies, node, v_old, a) : a, v_old);
     Vector<T, Dim> v = v_old;
     if (!ends) return v;
     for (int d = 0; d < Dim; ++d) v[d] += (a[d] - brake[d]) * dt;  // Eq. (9)
@@ -236,7 +251,7 @@ struct UpdateNodes {
   KOKKOS_INLINE_FUNCTION SideNode<Dim> side_node(const Node& node, bool keeps) const {
     const bool counts =
         owned_nodes.extent(0) == 0 || (owned_nodes(node.i / cells) >> (node.i % cells) & 1) != 0;
-    return {node.at, node.acting, double(node.soil[S::mass]), double(dt), double(memory), counts, keeps};
+    return {node.at, node.acting, double(node.soil[S::mass]), double(dt), double(fresh), counts, keeps};
   }
 
   /// The nodes of a slot far from every rigid.
@@ -256,9 +271,10 @@ struct UpdateNodes {
       Vector<Row, Dim> v_old, a;
       const auto moves = soil[S::mass] > at_rest();
       accelerate(soil, select(moves, T(1) / soil[S::mass], T(0)), v_old, a);
+      const Vector<Row, Dim> brake = braking(a, v_old);
       Row kinematics[NodeKinematics<Dim>::size];
       for (int d = 0; d < Dim; ++d) {
-        const Row v = select(moves, v_old[d] + (a[d] - braking(a[d], v_old[d])) * dt, T(0));
+        const Row v = select(moves, v_old[d] + (a[d] - brake[d]) * dt, T(0));
         kinematics[NodeKinematics<Dim>::velocity + d] = v;
         kinematics[NodeKinematics<Dim>::acceleration + d] = (v - v_old[d]) * inv_dt * share;
       }
@@ -300,7 +316,8 @@ struct UpdateNodes {
     interface.pressing = pressing * dt;
     interface.separates = rigid.separates;
     // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
-    // well, the body would act thicker than it is. Round-off does not choose where a node lies half a cell away.
+    // well, the body would act thicker than it is. Round-off does not choose where a node lies half a cell
+    // away.
     interface.within_soil = rigid.surface_normal && distance > spacing / 2 + rigid.surface.round_off;
     if (rigid.reach > 0) {
       const T depth = surface_depth(node.boundary[BoundaryTerms<Dim>::volume] / places.grid.spacing, area);
@@ -314,7 +331,7 @@ struct UpdateNodes {
       interface.pressed = {nodes.impulse(row + ImpulseTerms::sum, node.i),
                            nodes.impulse(row + ImpulseTerms::weight, node.i),
                            nodes.impulse(row + ImpulseTerms::store, node.i) * node.inv_m};
-      interface.fresh = 1 - memory;
+      interface.fresh = fresh;
     }
     const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
     if (has_friction && keeps) {
@@ -420,7 +437,7 @@ UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, d
                                           .inv_dt = T(1 / (s.kick * dt)),
                                           .share = T(s.kick),
                                           .damping = T(s.damping),
-                                          .memory = T(std::exp(-dt / s.friction_time)),
+                                          .fresh = T(-std::expm1(-dt / s.friction_time)),
                                           .mass_cut = T(s.mass_cut),
                                           .spacing = s.spacing,
                                           .has_boundary = s.soil_boundary,

@@ -41,19 +41,19 @@ KOKKOS_INLINE_FUNCTION T gap_scaling(T gap, T reach, T exponent) {
   return gap < reach ? 1 - Kokkos::pow(gap / reach, exponent) : T(0);
 }
 
-/// What friction at a place keeps of the normal impulses of the steps before, over nodal mass: their sum by
-/// weight, the sum of the weights, and the impulse that it has not used.
+/// Normal impulses of the steps before at a place, over nodal mass: their sum by weight, the sum of the
+/// weights, and the impulse that friction has not used.
 template <class T>
 struct Pressed {
   T sum = 0, weight = 0, store = 0;
 };
 
-/// Share that a step keeps of one of ImpulseTerms; memory: of the mean. The store fades slowly, so that all
-/// of it serves soil that slides, and none a later contact.
+/// Share that a step keeps of one of ImpulseTerms; fresh: weight of the step in the mean. The store fades
+/// slowly, so that all of it serves soil that slides, and none of it a contact much later.
 template <class T>
-KOKKOS_INLINE_FUNCTION T kept_share(int term, T memory) {
+KOKKOS_INLINE_FUNCTION T kept_share(int term, T fresh) {
   constexpr T k_longer = 100;
-  return term == ImpulseTerms::store ? 1 - (1 - memory) / k_longer : memory;
+  return 1 - (term == ImpulseTerms::store ? fresh / k_longer : fresh);
 }
 
 /// Normal impulse whose fraction friction may stop in this step; stop: that of this step, fresh: its weight.
@@ -99,7 +99,7 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
   const T speed = Kokkos::sqrt(dot(slip, slip));
   constexpr T k_leaves = T(0.1);  // of the slip: a node in the soil that moves away faster is not in touch
   constexpr T k_along = T(1e-6);  // of the slip: a motion along the face is along it but for round-off
-  // Of the slip: forces that balance at a node press it by round-off alone, towards the rigid or away.
+  // Share of the slip by which round-off presses a node whose forces balance, towards the rigid or away.
   constexpr T k_balanced = sizeof(T) == sizeof(double) ? T(1e-10) : T(1e-6);
   const bool touches = !interface.separates || approach > k_along * speed ||
                        interface.pressing > k_balanced * speed ||

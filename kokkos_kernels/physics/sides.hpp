@@ -13,7 +13,7 @@ struct SideNode {
   Coord<Dim> at;
   unsigned sides;   // the acting ones that it lies on
   double mass, dt;  // kg, s
-  double memory;    // -, share that a step keeps of the normal impulses of the steps before
+  double fresh;     // -, weight of a step in the mean normal impulse
   bool counts;      // this rank answers for it
   bool keeps;       // the step itself, not a rehearsal, which leaves no trace
 
@@ -122,14 +122,13 @@ struct SideFriction {
   /// v: velocity as it comes to the sides; held: that which they leave along their normals [m/s].
   KOKKOS_INLINE_FUNCTION SideFriction(const Side<Dim>& side, int n, const SideNode<Dim>& node,
                                       const double* kept, const double* v, const double* held)
-      : pressed{kept_share(ImpulseTerms::sum, node.memory) * kept[Terms::pressed + ImpulseTerms::sum],
-                kept_share(ImpulseTerms::weight, node.memory) * kept[Terms::pressed + ImpulseTerms::weight],
-                kept_share(ImpulseTerms::store, node.memory) * kept[Terms::pressed + ImpulseTerms::store] /
+      : pressed{kept_share(ImpulseTerms::sum, node.fresh) * kept[Terms::pressed + ImpulseTerms::sum],
+                kept_share(ImpulseTerms::weight, node.fresh) * kept[Terms::pressed + ImpulseTerms::weight],
+                kept_share(ImpulseTerms::store, node.fresh) * kept[Terms::pressed + ImpulseTerms::store] /
                     node.mass} {
     const int d = n / 2;
     const double into = n % 2 == 1 ? 1 : -1;
-    const double normal =
-        node.mass * usable_impulse(pressed, 1 - node.memory, into * (v[d] - side.velocity[d]));
+    const double normal = node.mass * usable_impulse(pressed, node.fresh, into * (v[d] - side.velocity[d]));
     double squares = 0;
     for (int k = 0; k < Dim; ++k)
       if (k != d) squares += (held[k] - side.velocity[k]) * (held[k] - side.velocity[k]);
@@ -175,8 +174,9 @@ KOKKOS_INLINE_FUNCTION void rub(const ActingSides<Dim>& acting, const SideNode<D
   });
 }
 
-/// Whether a side that comes later prescribes component k of what side n has at a node on `sides`. Then n leaves
-/// it alone: it would take away what the other has given, and behind a contact both would count that again.
+/// Whether a side that comes later prescribes component k of what side n has at a node on `sides`. Then n
+/// leaves it alone: it would take away what the other has given, and behind a contact both would count that
+/// again.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION bool is_overruled(const ActingSides<Dim>& acting, unsigned sides, int n, int k) {
   bool overruled = false;

@@ -108,7 +108,7 @@ namespace {
 /// Leaves of the normal impulses what a step keeps of them.
 void fade(Interface<double>& interface) {
   double* const terms[] = {&interface.pressed.sum, &interface.pressed.weight, &interface.pressed.store};
-  for (int n = 0; n < ImpulseTerms::size; ++n) *terms[n] *= kept_share(n, 1 - interface.fresh);
+  for (int n = 0; n < ImpulseTerms::size; ++n) *terms[n] *= kept_share(n, interface.fresh);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ struct NodeOnSides {
   }
   double* of(int n) { return kept.data() + n * SideTerms<Dim>::size; }
   Vector<double, Dim> meet(double mass, double dt, const Vector<double, Dim>& v) {
-    const SideNode<Dim> node{{}, sides, mass, dt, 0.9, true, true};
+    const SideNode<Dim> node{{}, sides, mass, dt, 0.1, true, true};
     return by_sides<double, Dim>({sides, all.data(), kept.data(), nullptr}, node, v, v, true);
   }
 };
