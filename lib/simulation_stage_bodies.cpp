@@ -118,20 +118,14 @@ PetscErrorCode Simulation::Body::look_at_present(const SavedState& state, Presen
   const Bounds bounds = bounds_of_placed(config);
   const auto position = positions_of(state.soil, config.mesh, dim);
   const auto body = numbers_of(state.soil, "body");
-  std::vector<double> own, all;  // rows of body and position
+  std::vector<double> all;  // rows of body and position
   for (std::size_t p = 0; p < body.size(); ++p) {
     const double* const x = &position[p * dim];
     bool near = true;
     for (int d = 0; d < dim; ++d) near = near && x[d] >= bounds.lower[d] && x[d] <= bounds.upper[d];
-    if (near) own.push_back(body[p]), own.insert(own.end(), x, x + dim);
+    if (near) all.push_back(body[p]), all.insert(all.end(), x, x + dim);
   }
-  const char* const bytes = reinterpret_cast<const char*>(own.data());
-  std::vector<char> in;
-  PetscCall(exchange_records(
-      comm, (1 + dim) * sizeof(double),
-      std::vector<std::vector<char>>(ranks(), {bytes, bytes + own.size() * sizeof(double)}), &in));
-  all.resize(in.size() / sizeof(double));
-  std::copy(in.begin(), in.end(), reinterpret_cast<char*>(all.data()));
+  PetscCall(share_records(comm, &all));
   for (std::size_t at = 0; at < all.size(); at += 1 + dim) {
     auto& of_body = present->soil[static_cast<std::size_t>(all[at])];
     of_body.insert(of_body.end(), &all[at + 1], &all[at + 1] + dim);

@@ -67,4 +67,21 @@ PetscErrorCode exchange_records(MPI_Comm comm, std::size_t size, const std::vect
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode share_bytes(MPI_Comm comm, std::size_t size, std::vector<char>* bytes) {
+  PetscFunctionBeginUser;
+  const int ranks = size_of(comm), own = static_cast<int>(bytes->size() / size);
+  std::vector<int> counts(ranks), begins(ranks);
+  PetscCallMPI(MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, comm));
+  std::exclusive_scan(counts.begin(), counts.end(), begins.begin(), 0);
+  std::vector<char> all(size * (begins.back() + counts.back()));
+  MPI_Datatype record;
+  PetscCallMPI(MPI_Type_contiguous(static_cast<int>(size), MPI_BYTE, &record));
+  PetscCallMPI(MPI_Type_commit(&record));
+  PetscCallMPI(
+      MPI_Allgatherv(bytes->data(), own, record, all.data(), counts.data(), begins.data(), record, comm));
+  PetscCallMPI(MPI_Type_free(&record));
+  *bytes = std::move(all);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 }  // namespace mpm

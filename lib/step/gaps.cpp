@@ -96,13 +96,7 @@ Gaps count_gaps(const std::vector<FilledPatch>& patches, const std::array<int, 3
 
 PetscErrorCode gather_patches(MPI_Comm comm, std::vector<FilledPatch>* patches) {
   PetscFunctionBeginUser;
-  const char* const bytes = reinterpret_cast<const char*>(patches->data());
-  const std::vector<std::vector<char>> out(size_of(comm),
-                                           {bytes, bytes + patches->size() * sizeof(FilledPatch)});
-  std::vector<char> in;
-  PetscCall(exchange_records(comm, sizeof(FilledPatch), out, &in));
-  patches->resize(in.size() / sizeof(FilledPatch));
-  std::copy(in.begin(), in.end(), reinterpret_cast<char*>(patches->data()));
+  PetscCall(share_records(comm, patches));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -425,12 +425,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::split_and_merge() {
   std::vector<int> all;  // ids of the particles of all ranks that are split
   for (const Splitting& splitting : own) all.push_back(splitting.id);
   if (ranks_) {
-    const char* const bytes = reinterpret_cast<const char*>(all.data());
-    const std::vector<std::vector<char>> out(size_of(comm_), {bytes, bytes + all.size() * sizeof(int)});
-    std::vector<char> in;
-    PetscCall(exchange_records(comm_, sizeof(int), out, &in));
-    all.resize(in.size() / sizeof(int));
-    std::copy(in.begin(), in.end(), reinterpret_cast<char*>(all.data()));
+    PetscCall(share_records(comm_, &all));
     std::sort(all.begin(), all.end());
   }
   PetscCheck(ids() + static_cast<long>(all.size()) <= std::numeric_limits<int>::max(), comm_,

@@ -42,13 +42,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::take_probe_particles(const ProbeStat
   PetscFunctionBeginUser;
   PetscCallCXX(*particles = particles_in(state_, regions_of(config_, state)));
   if (!ranks_) PetscFunctionReturn(PETSC_SUCCESS);
-  const char* const bytes = reinterpret_cast<const char*>(particles->data());
-  const std::vector<std::vector<char>> out(size_of(comm_),
-                                           {bytes, bytes + particles->size() * sizeof(ProbeParticle)});
-  std::vector<char> in;
-  PetscCall(exchange_records(comm_, sizeof(ProbeParticle), out, &in));
-  particles->resize(in.size() / sizeof(ProbeParticle));
-  std::copy(in.begin(), in.end(), reinterpret_cast<char*>(particles->data()));
+  PetscCall(share_records(comm_, particles));
   std::sort(particles->begin(), particles->end(), [](const ProbeParticle& a, const ProbeParticle& b) {
     return std::tie(a.region, a.id) < std::tie(b.region, b.id);
   });

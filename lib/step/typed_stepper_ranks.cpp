@@ -211,12 +211,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::gather_strays(SavedState* saved) con
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, saved->lost.data(), static_cast<int>(saved->lost.size()),
                              MPI_DOUBLE, MPI_SUM, comm_));
-  const char* const bytes = reinterpret_cast<const char*>(saved->alone.data());
-  std::vector<std::vector<char>> out(size_of(comm_), {bytes, bytes + saved->alone.size() * sizeof(long)});
-  std::vector<char> in;
-  PetscCall(exchange_records(comm_, sizeof(long), out, &in));
-  saved->alone.resize(in.size() / sizeof(long));
-  std::copy(in.begin(), in.end(), reinterpret_cast<char*>(saved->alone.data()));
+  PetscCall(share_records(comm_, &saved->alone));
   std::sort(saved->alone.begin(), saved->alone.end());
   saved->alone.erase(std::unique(saved->alone.begin(), saved->alone.end()), saved->alone.end());
   PetscFunctionReturn(PETSC_SUCCESS);
