@@ -6,6 +6,7 @@
 
 #include "base/half_length.hpp"
 #include "base/types.hpp"
+#include "data/face_terms.hpp"
 #include "data/patches.hpp"
 #include "physics/materials/stored.hpp"
 
@@ -43,16 +44,8 @@ struct History {
   int pore = -1;                            // column of the excess pore pressure [Pa]; -1: there is none
 };
 
-/// What a particle keeps of the surface of one load (data/surface_loads.hpp): its area as a vector out of the
-/// soil [m2]; the area at the start [m2], and over it the size of the vector then, which is more than 1 where
-/// the surface goes in steps of particles; and the number of the load, from 1 on, 0 where there is none.
-template <int Dim>
-struct FaceTerms {
-  static constexpr int area = 0, start = Dim, steps = Dim + 1, load = Dim + 2, size = Dim + 3;
-};
 template <int Dim>
 using Face = Vector<double, FaceTerms<Dim>::size>;
-inline constexpr int k_most_faces = 3;  // of a particle
 
 /// The soil: the particles of all deformable bodies.
 template <class Space, class T, int Dim>

@@ -32,7 +32,7 @@ struct SavedRigid {
   std::array<double, 3> binned{};  // m, displacement when its points were binned; they follow from it
 };
 
-/// What friction keeps of the normal impulses at the nodes; nodes that hold none are left out.
+/// Normal impulses at the nodes, as friction keeps them; nodes that hold none are left out.
 struct SavedImpulse {
   std::vector<long> address;   // Grid::address_of the cell whose lower corner is the node
   std::vector<double> values;  // N s, ImpulseTerms of each rigid [ImpulseTerms::size rigids M]

@@ -2,6 +2,7 @@
 
 #include "common/collectives.hpp"
 #include "common/revolution.hpp"
+#include "data/face_terms.hpp"
 #include "input/groups.hpp"
 #include "input/point_bins.hpp"
 
@@ -95,7 +96,7 @@ class Finder {
     std::vector<double> open;  // particles here that others may cover on other ranks, and their widths
     if (size_of(comm_) > 1) PetscCallCXX(open = open_particles());
     for (const SearchedBody& body : bodies_) add(body, *cover_);
-    PetscCall(share(&open));
+    PetscCall(share_records(comm_, &open));
     for (std::size_t k = 0; k < open.size(); k += 6)
       PetscCallCXX(cover_->add({open[k], open[k + 1], open[k + 2]}, {open[k + 3], open[k + 4], open[k + 5]}));
     PetscCallCXX(cover_->order());
@@ -130,7 +131,7 @@ class Finder {
       numbers.insert(numbers.end(), marked.at.begin(), marked.at.end());
       numbers.insert(numbers.end(), marked.count.begin(), marked.count.end());
     }
-    if (!bodies_[load.body].on_all_ranks) PetscCall(share(&numbers));
+    if (!bodies_[load.body].on_all_ranks) PetscCall(share_records(comm_, &numbers));
     for (std::size_t k = 0; k < numbers.size(); k += 6) {
       PetscCallCXX(places->add({numbers[k], numbers[k + 1], numbers[k + 2]}));
       PetscCallCXX(counts->push_back({numbers[k + 3], numbers[k + 4], numbers[k + 5]}));
@@ -184,19 +185,6 @@ class Finder {
       if (!own.holds(beyond(x, axes[n / 2], way), width, axes, k_in_lattice)) return false;
     }
     return true;
-  }
-  /// Numbers of all ranks, in the order of ranks, on every rank.
-  PetscErrorCode share(std::vector<double>* numbers) const {
-    PetscFunctionBeginUser;
-    if (size_of(comm_) == 1) PetscFunctionReturn(PETSC_SUCCESS);
-    const char* const bytes = reinterpret_cast<const char*>(numbers->data());
-    const std::vector<std::vector<char>> out(size_of(comm_),
-                                             {bytes, bytes + numbers->size() * sizeof(double)});
-    std::vector<char> in;
-    PetscCall(exchange_records(comm_, sizeof(double), out, &in));
-    numbers->resize(in.size() / sizeof(double));
-    std::copy(in.begin(), in.end(), reinterpret_cast<char*>(numbers->data()));
-    PetscFunctionReturn(PETSC_SUCCESS);
   }
   bool is_face(const LoadConfig& load, const Marked& of, const std::array<Vec3, 3>& axes, int axis,
                double sign) const {
@@ -268,6 +256,15 @@ Vec3 SearchedBody::width_of(std::size_t p, int dim) const {
   Vec3 all{spacing, spacing, spacing};
   if (!width.empty()) std::copy_n(&width[p * dim], dim, all.begin());
   return all;
+}
+
+std::vector<double> numbers_of(const FreeFace& face, int dim, int load) {
+  const FacePlaces places = face_places(dim);
+  std::vector<double> numbers(places.size);
+  std::copy_n(face.vector.begin(), dim, numbers.begin() + places.area);
+  numbers[places.start] = face.area, numbers[places.steps] = face.steps;
+  numbers[places.load] = load + 1;
+  return numbers;
 }
 
 PetscErrorCode find_free_faces(MPI_Comm comm, const Config& config, const std::vector<SearchedBody>& bodies,

@@ -30,6 +30,9 @@ struct FreeFace {
   double steps = 1;          // size of the vector over the area
 };
 
+/// The numbers of a face as a particle keeps them [FacePlaces::size]; load: an index into config.loads.
+std::vector<double> numbers_of(const FreeFace& face, int dim, int load);
+
 /// Finds for each of some loads (indices into config.loads) the faces of its body's particles that no other
 /// particle covers and that are in its box. On several ranks each has a part of the particles. Collective.
 PetscErrorCode find_free_faces(MPI_Comm comm, const Config& config, const std::vector<SearchedBody>& bodies,

@@ -2,6 +2,7 @@
 
 #include "common/collectives.hpp"
 #include "common/text.hpp"
+#include "data/face_terms.hpp"
 #include "input/groups.hpp"
 #include "input/shapes.hpp"
 
@@ -93,7 +94,7 @@ PetscErrorCode find_load_faces(MPI_Comm comm, const Config& config, std::vector<
   *face_count = 0;
   surfaces->assign(config.loads.size(), {});
   if (config.loads.empty()) PetscFunctionReturn(PETSC_SUCCESS);
-  const int dim = config.dim, width = dim + 3;
+  const int dim = config.dim, width = face_places(dim).size;
   const std::vector<int> loads = loads_from_stage(config, 1);
   const std::vector<SearchedBody> soil = searched(config, *bodies, 1);
   std::vector<std::vector<FreeFace>> faces;
@@ -104,10 +105,10 @@ PetscErrorCode find_load_faces(MPI_Comm comm, const Config& config, std::vector<
   for (std::size_t n = 0; n < loads.size(); ++n) {
     const int body = config.loads[loads[n]].body;
     for (const FreeFace& face : faces[n]) {
-      auto& numbers = found[body][face.particle];
-      numbers.insert(numbers.end(), face.vector.begin(), face.vector.begin() + dim);
-      numbers.insert(numbers.end(), {face.area, face.steps, loads[n] + 1.0});
-      most = std::max(most, numbers.size() / width);
+      auto& all = found[body][face.particle];
+      const std::vector<double> numbers = numbers_of(face, dim, loads[n]);
+      all.insert(all.end(), numbers.begin(), numbers.end());
+      most = std::max(most, all.size() / width);
     }
     (*surfaces)[loads[n]] = sum_faces(faces[n], dim);
     if (!soil[body].on_all_ranks) PetscCall(sum_surface(comm, &(*surfaces)[loads[n]]));
@@ -115,7 +116,7 @@ PetscErrorCode find_load_faces(MPI_Comm comm, const Config& config, std::vector<
   *face_count = static_cast<int>(most);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, face_count, 1, MPI_INT, MPI_MAX, comm));
   if (const int later = most_of_later_stages(config); later > 0)
-    *face_count = std::max(*face_count, std::min(*face_count + later, k_most_loads));
+    *face_count = std::max(*face_count, std::min(*face_count + later, k_most_faces));
   for (std::size_t b = 0; b < bodies->size() && *face_count > 0; ++b) {
     BodyParticles& body = (*bodies)[b];
     body.faces.clear();
@@ -136,10 +137,10 @@ PetscErrorCode check_load_faces(MPI_Comm comm, const Config& config, std::vector
   int most = 0;
   std::vector<LoadedSurface> surfaces;
   PetscCall(find_load_faces(comm, config, &bodies, &most, &surfaces));
-  if (most > k_most_loads)
+  if (most > k_most_faces)
     errors->push_back(
         formatted("mpm: -loads: given loads of which %d are on one particle, takes at most %d on each", most,
-                  k_most_loads));
+                  k_most_faces));
   for (std::size_t n = 0; n < surfaces.size(); ++n) {
     const LoadConfig& load = config.loads[n];
     if (load.stage > 1) {

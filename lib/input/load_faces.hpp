@@ -18,8 +18,6 @@ struct LoadedSurface {
   Vec3 vector{};    // m2, out of the body
 };
 
-inline constexpr int k_most_loads = 3;  // of a particle: k_most_faces
-
 /// Indices of the loads whose surface is found when a stage begins (from 1 on, as for a run without stages).
 std::vector<int> loads_from_stage(const Config& config, int stage);
 

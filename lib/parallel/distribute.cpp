@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "common/collectives.hpp"
+#include "data/face_terms.hpp"
 #include "input/shapes.hpp"
 #include "parallel/partition.hpp"
 #include "transfer/velocity_gradients.hpp"
@@ -36,7 +37,7 @@ std::vector<Field> fields_of(BodyParticles& body, int dim, int faces) {
                                {&body.mass, 1},
                                {&body.reference_height, 1},
                                {&body.velocity_gradient, dim * dim},
-                               {&body.faces, faces * (dim + 3)},
+                               {&body.faces, faces * face_places(dim).size},
                                {&body.domain, dim * (dim + 1) / 2}};
   for (auto* list : {&body.state, &body.own_parameters})
     for (StateField& field : *list) fields.push_back({&field.values, 1});

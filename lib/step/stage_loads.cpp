@@ -3,6 +3,7 @@
 #include "checkpoint/particles.hpp"
 #include "common/collectives.hpp"
 #include "common/text.hpp"
+#include "data/face_terms.hpp"
 
 namespace mpm {
 namespace {
@@ -41,14 +42,14 @@ struct SortedSoil {
 
 /// Puts a face into the first field where the particle has none; whether there is room.
 bool store_face(SavedPoints& soil, std::size_t row, int dim, int load, const FreeFace& face) {
-  const int size = dim + 3;
-  for (int k = 0; k < k_most_loads; ++k) {
+  const FacePlaces places = face_places(dim);
+  for (int k = 0; k < k_most_faces; ++k) {
     SavedField* const field = find(soil, "face_" + std::to_string(k));
     if (field == nullptr) return false;
-    double* const numbers = &field->values[row * size];
-    if (numbers[size - 1] != 0) continue;
-    std::copy_n(face.vector.begin(), dim, numbers);
-    numbers[dim] = face.area, numbers[dim + 1] = face.steps, numbers[dim + 2] = load + 1.0;
+    double* const kept = &field->values[row * places.size];
+    if (kept[places.load] != 0) continue;
+    const std::vector<double> numbers = numbers_of(face, dim, load);
+    std::copy(numbers.begin(), numbers.end(), kept);
     return true;
   }
   return false;
@@ -78,7 +79,7 @@ PetscErrorCode find_stage_faces(MPI_Comm comm, const Config& config, SavedState*
     for (const FreeFace& face : faces[n])
       if (!store_face(state->soil, soil->rows[load.body][face.particle], config.dim, loads[n], face))
         full = formatted("stage %s: load %s comes to a particle that has %d loads already",
-                         config.stage.name.c_str(), load.name.c_str(), k_most_loads);
+                         config.stage.name.c_str(), load.name.c_str(), k_most_faces);
     (*surfaces)[n] = sum_faces(faces[n], config.dim);
     PetscCall(sum_surface(comm, &(*surfaces)[n]));
     if ((*surfaces)[n].particles == 0) *fault = no_surface(config, load);
