@@ -16,7 +16,7 @@ import numpy as np  # noqa: E402
 
 from decks import text_of  # noqa: E402
 from differences import Scales  # noqa: E402
-from dimensions import (ACCELERATION, AREA, ENERGY, FORCE, LENGTH, MOMENTUM, SPEED, STRESS, WHOLE, column_kind, domain_of,  # noqa: E402
+from dimensions import (ACCELERATION, AREA, ENERGY, FORCE, LENGTH, MASS, MOMENTUM, SPEED, STRESS, VOLUME, WHOLE, column_kind, domain_of,  # noqa: E402
                         factor, field_kind, is_plane, names_of, per_width)
 from folders import checkpoints, fresh, run as run_program  # noqa: E402
 from images import EXACT  # noqa: E402
@@ -92,8 +92,13 @@ class Back:
     def by(self, units):
         """Factor of a quantity with these units of the deck."""
         out = 1 / factor(units, self.image.scales)
-        wide = self.image.deck["dim"] > self.dim and units in {per_width(u) for u in WHOLE} - {LENGTH, SPEED, ACCELERATION}
-        return out / self.image.width if wide else out
+        whole = {per_width(u) for u in WHOLE} - {LENGTH, SPEED, ACCELERATION}
+        fluxes = {(length, time - 1, mass) for length, time, mass in (per_width(VOLUME), per_width(MASS))}
+        return out / self.image.width if self.image.deck["dim"] > self.dim and units in whole | fluxes else out
+
+    def areas(self, values, copies=1):
+        """Areas of a plane deck by those of a slab, which are of its width, and of so many particles across it."""
+        return values / self.image.width * copies if self.image.deck["dim"] > self.dim else values
 
     def axis(self, name):
         return "xyz"[self.to["xyz".index(name)]]
@@ -136,6 +141,8 @@ class Back:
         if any(v is None for v in values):
             return None
         values = self.joined(kind, column, end, values, [history.get(f"{body}_mass") for body in bodies]) if len(bodies) > 1 else values[0]
+        if values is not None and kind == "number" and column.endswith("_area"):
+            values = self.areas(values)
         return None if values is None else sign * (values * self.by(units) - shift)
 
     @staticmethod
@@ -163,6 +170,8 @@ class Back:
         values = groups[wanted] * self.by(units)
         if self.image.copies > 1 and name in ("volume", "mass"):
             values = values * self.image.copies
+        if name.startswith("load_area"):
+            values = self.areas(values, self.image.copies)
         if kind == "vector" and name[-2] == "_":
             return values * self.sign["xyz".index(name[-1])]
         if kind == "level":
