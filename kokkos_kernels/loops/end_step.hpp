@@ -5,11 +5,12 @@
 #include "base/serial_team.hpp"
 #include "data/state.hpp"
 #include "device/warp.hpp"
+#include "physics/local_damping.hpp"
 
 namespace mpm {
 
-/// What a step changes of a rigid, and by what.
-template <int Dim>
+/// Motion of a rigid body in a step. T: precision of the soil's forces on it.
+template <class T, int Dim>
 struct MovingRigid {
   RigidPose<Dim> pose;
   Vector<double, Dim> velocity, impulse, force;  // as Rigid has them
@@ -28,10 +29,13 @@ struct MovingRigid {
   }
 
   /// Acceleration [m/s2] under the force [N] of the soil on it (Eq. 7), less local damping as at a node.
-  KOKKOS_INLINE_FUNCTION double acceleration(int d, double contact, double damping) const {
-    if (!dynamic || held[d]) return 0;
-    const double a = (force[d] + contact) / mass, brake = damping * Kokkos::fabs(a);
-    return a - (velocity[d] > 0 ? brake : velocity[d] < 0 ? -brake : 0);
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> acceleration(const Vector<double, Dim>& contact, double damping,
+                                                          double dt) const {
+    Vector<double, Dim> a{};
+    for (int d = 0; d < Dim; ++d) a[d] = dynamic && !held[d] ? (force[d] + contact[d]) / mass : 0;
+    const Vector<double, Dim> brake = local_damping<T>(damping, dt, a, velocity);
+    for (int d = 0; d < Dim; ++d) a[d] -= brake[d];
+    return a;
   }
   /// Movement in a step [m] with acceleration a, exactly where the force is constant.
   KOKKOS_INLINE_FUNCTION double movement(int d, double a, double dt) const {
@@ -40,13 +44,14 @@ struct MovingRigid {
   /// Moves by a step. contact [N] is the force of the soil. Returns the largest component of its movement
   /// [m].
   KOKKOS_INLINE_FUNCTION double move(const Vector<double, Dim>& contact, double damping, double dt) {
+    const Vector<double, Dim> a = acceleration(contact, damping, dt);
     double furthest = 0;
     for (int d = 0; d < Dim; ++d) {
-      const double a = acceleration(d, contact[d], damping), step = movement(d, a, dt);
+      const double step = movement(d, a[d], dt);
       furthest = Kokkos::fmax(furthest, Kokkos::fabs(step));
       pose.displacement[d] += step;
       impulse[d] += dt * contact[d];
-      velocity[d] += dt * a;
+      velocity[d] += dt * a[d];
     }
     return furthest;
   }
@@ -147,15 +152,15 @@ struct EndStep {
   KOKKOS_INLINE_FUNCTION StepEnd move(const Team& team, StepEnd found, const Left& left, bool clears,
                                       double* part) const {
     const int values = Dim * count, parts = warps(team.team_size()), rank = team.team_rank();
-    MovingRigid<Dim> rigid{};
-    if (rank < count) rigid = MovingRigid<Dim>(left.rigids[rank]);
+    MovingRigid<T, Dim> rigid{};
+    if (rank < count) rigid = MovingRigid<T, Dim>(left.rigids[rank]);
     const Noted noted = noted_movements(team, left.movements, clears);
     if (!summed) sum_by_warps(team, left.forces, 0, values, part);
     keep(team, largest_of_warp(noted.largest()), part + values);
     team.team_barrier();  // also: no thread looks at `paused` any more
     MPM_ROLLED
     for (int r = rank; r < count; r += team.team_size()) {
-      if (r > rank) rigid = MovingRigid<Dim>(left.rigids[r]);
+      if (r > rank) rigid = MovingRigid<T, Dim>(left.rigids[r]);
       Vector<double, Dim> contact;
       for (int d = 0; d < Dim; ++d) {
         const int v = r * Dim + d;
@@ -202,13 +207,15 @@ struct EndStep {
   template <bool Dynamic, class Team>
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> next_displacement(const Team& team, int r, const Rigid<Dim>& of,
                                                                double* part) const {
-    const MovingRigid<Dim> rigid(of);
+    const MovingRigid<T, Dim> rigid(of);
     Vector<double, Dim> a{}, to = rigid.pose.displacement;
     if constexpr (Dynamic) {
       team.team_barrier();  // what was there before is done with
       if (rigid.dynamic) sum_by_warps(team, forces.data(), r * Dim, Dim, part);
       team.team_barrier();
-      for (int d = 0; d < Dim && rigid.dynamic; ++d) a[d] = rigid.acceleration(d, part[d], damping);
+      Vector<double, Dim> contact{};
+      for (int d = 0; d < Dim && rigid.dynamic; ++d) contact[d] = part[d];
+      a = rigid.acceleration(contact, damping, dt);
     }
     for (int d = 0; d < Dim; ++d) to[d] += rigid.movement(d, a[d], dt);
     return to;

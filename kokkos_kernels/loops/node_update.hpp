@@ -10,6 +10,7 @@
 #include "loops/particle_to_node.hpp"
 #include "loops/window.hpp"
 #include "physics/contact.hpp"
+#include "physics/local_damping.hpp"
 #include "physics/sides.hpp"
 #include "physics/surface.hpp"
 
@@ -29,15 +30,6 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
   if (boundary) clear(&nodes.boundary(slot * cells, 0), cells * BoundaryTerms<Dim>::size);
   for (int r = 0; r < rigids; ++r) clear(&nodes.rigid(r, slot * cells, 0), cells * RigidTerms<Dim>::size);
 }
-
-/// A node's velocity over its change in a step below which local damping leaves it alone: that small it is
-/// round-off, whose sign differs with the order of sums.
-template <class T>
-inline constexpr T k_still = T(1e-6);
-
-/// Share of the largest component of a velocity below which another one is round-off.
-template <class T>
-inline constexpr T k_beside = sizeof(T) == sizeof(double) ? T(1e-10) : T(1e-5);
 
 /// The node's part of the step. acts: some side of the mesh acts (data/sides.hpp), or local damping does;
 /// kernels without that take fewer registers of a GPU.
@@ -111,19 +103,7 @@ struct UpdateNodes {
   template <class R>
   KOKKOS_FORCEINLINE_FUNCTION Vector<R, Dim> braking(const Vector<R, Dim>& a,
                                                      const Vector<R, Dim>& v_old) const {
-    Vector<R, Dim> brake;
-    for (int d = 0; d < Dim; ++d) brake[d] = R(0);
-    if constexpr (acts) {
-      if (!(damping > 0)) return brake;
-      R fastest = Kokkos::fabs(v_old[0]);
-      for (int d = 1; d < Dim; ++d) fastest = Kokkos::fmax(fastest, Kokkos::fabs(v_old[d]));
-      for (int d = 0; d < Dim; ++d) {
-        const R size = Kokkos::fabs(a[d]),
-                still = Kokkos::fmax(k_still<T> * dt * size, k_beside<T> * fastest);
-        brake[d] = damping * size * select(v_old[d] > still, R(1), select(v_old[d] < -still, R(-1), R(0)));
-      }
-    }
-    return brake;
+    return local_damping<T>(acts ? damping : T(0), dt, a, v_old);
   }
 
   /// Velocity of a node before the step, and its acceleration by internal force and gravity, by number or by

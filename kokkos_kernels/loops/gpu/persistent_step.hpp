@@ -251,7 +251,7 @@ struct PersistentStep {
   /// What the host and the next launch need of steps that all teams have ended for themselves.
   KOKKOS_INLINE_FUNCTION void leave(const Member& team, const Progress& at) const {
     for (int r = team.team_rank(); r < end.count; r += team.team_size())
-      MovingRigid<Dim>(at.bodies[r]).keep_in(nodes.rigids(r));
+      MovingRigid<T, Dim>(at.bodies[r]).keep_in(nodes.rigids(r));
     Kokkos::single(Kokkos::PerTeam(team), [&] {
       at.found.keep_in(update.control());
       update.control().steps += at.step;
