@@ -231,7 +231,10 @@ struct UpdateNodes {
   KOKKOS_INLINE_FUNCTION SideNode<Dim> side_node(const Node& node, bool keeps) const {
     const bool counts =
         owned_nodes.extent(0) == 0 || (owned_nodes(node.i / cells) >> (node.i % cells) & 1) != 0;
-    return {node.at, node.acting, double(node.soil[S::mass]), double(dt), double(fresh), counts, keeps};
+    unsigned ends = node.sides;
+    for (int d = 0; d < Dim; ++d)
+      if (places.grid.period[d] > 0) ends &= ~(3u << (2 * d));
+    return {node.at, node.acting, ends, double(node.soil[S::mass]), double(dt), double(fresh), counts, keeps};
   }
 
   /// The nodes of a slot far from every rigid.

@@ -12,12 +12,20 @@ template <int Dim>
 struct SideNode {
   Coord<Dim> at;
   unsigned sides;   // the acting ones that it lies on
+  unsigned ends;    // all that it lies on and that end the mesh, as sides_of
   double mass, dt;  // kg, s
   double fresh;     // -, weight of a step in the mean normal impulse
   bool counts;      // this rank answers for it
   bool keeps;       // the step itself, not a rehearsal, which leaves no trace
 
   KOKKOS_INLINE_FUNCTION bool on(int side) const { return sides >> side & 1u; }
+  /// Share of a cell's face that the node has of a side: half of it along each other side that it lies on.
+  KOKKOS_INLINE_FUNCTION double share_of(int side) const {
+    double share = 1;
+    for (int d = 0; d < Dim; ++d)
+      if (d != side / 2 && (ends >> (2 * d) & 3u) != 0) share /= 2;
+    return share;
+  }
 };
 
 /// The force that a side with dashpots gives a node whatever its velocity [N]: the static reaction, and from
@@ -133,7 +141,7 @@ struct SideFriction {
     for (int k = 0; k < Dim; ++k)
       if (k != d) squares += (held[k] - side.velocity[k]) * (held[k] - side.velocity[k]);
     const double slip = node.mass * Kokkos::sqrt(squares);  // N s
-    const double area = side.face * Kokkos::fmin(1.0, node.mass / side.unit_mass);
+    const double area = side.face * Kokkos::fmin(node.share_of(n), node.mass / side.unit_mass);
     const double most = Kokkos::fmin(side.friction * normal, side.shear_limit * area * node.dt);
     stops = slip > most ? most / slip : 1;
     if (side.friction > 0) pressed.store -= stops * slip / (node.mass * side.friction);

@@ -68,7 +68,7 @@ template <int Dim>
 struct NodeOnSides {
   std::array<Side<Dim>, 2 * Dim> all{};
   std::array<double, 2 * Dim * SideTerms<Dim>::size> kept{};
-  unsigned sides = 0;
+  unsigned sides = 0, ends = 0;
 
   void add(int n, const Side<Dim>& side) {
     all[n] = side, sides |= 1u << n;
@@ -77,7 +77,7 @@ struct NodeOnSides {
   }
   double* of(int n) { return kept.data() + n * SideTerms<Dim>::size; }
   Vector<double, Dim> meet(double mass, double dt, const Vector<double, Dim>& v) {
-    const SideNode<Dim> node{{}, sides, mass, dt, 0.1, true, true};
+    const SideNode<Dim> node{{}, sides, ends, mass, dt, 0.1, true, true};
     return by_sides<double, Dim>({sides, all.data(), kept.data(), nullptr}, node, v, v, true);
   }
 };
@@ -137,6 +137,9 @@ TEST_CASE("the shear limit of a side bounds the shear impulse of a step by its a
   node.add(2, side);
   const auto v = node.meet(2, 1e-2, {5, -10, -0.2});  // half of a full node
   CHECK(std::fabs(2 * (5 - v[0]) - 30 * 0.25 * 1e-2) < 1e-14);
+  node.ends = 0b010101;  // in a corner of the mesh its area is a quarter at most, however dense the soil is
+  const auto w = node.meet(1.2, 1e-2, {5, -10, -0.2});
+  CHECK(std::fabs(1.2 * (5 - w[0]) - 30 * 0.5 / 4 * 1e-2) < 1e-14);
 }
 
 TEST_CASE("dashpots of a side are implicit, and of two sides that meet add up", "[sides]") {
