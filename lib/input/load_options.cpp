@@ -51,7 +51,7 @@ void read_box(OptionReader& in, int dim, LoadConfig& load) {
                                                        text_of(load.lower, dim).c_str()));
 }
 
-/// The stage at whose beginning the surface is found: the one that brings the body, unless told otherwise.
+/// Stage at whose beginning the surface is found; by default the one that places the body.
 void read_stage_of(OptionReader& in, const Config& config, LoadConfig& load) {
   const Option option{.name = load.name + "_stage",
                       .meaning =
