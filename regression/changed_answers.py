@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What became of the answers of the suite since an earlier revision of its results, as a table in Markdown.
+"""Table in Markdown of the answers of the suite that changed since an earlier revision of its results.
 
     changed_answers.py REVISION [--least 0.1]
 

@@ -11,7 +11,7 @@ struct FacePlaces {
 };
 constexpr FacePlaces face_places(int dim) { return {0, dim, dim + 1, dim + 2, dim + 3}; }
 
-/// The same for a dimension that the program is compiled for.
+/// Places for a dimension that the program is compiled for.
 template <int Dim>
 struct FaceTerms {
   static constexpr int area = face_places(Dim).area, start = face_places(Dim).start,

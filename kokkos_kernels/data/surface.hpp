@@ -28,7 +28,7 @@ struct Surface {
   int first, count;  // polygon; revolved: vertices of it or of its section, made smaller by the radius;
                      // heights: on a grid of squares of edge `radius` from `centre` on, x fastest
   int columns;       // heights: in a row
-  double round_off;  // m, of places: less tells no direction
+  double round_off;  // m, of places: less has no direction
 };
 
 }  // namespace mpm

@@ -118,7 +118,7 @@ void update_and_end(State<Space, T, Dim>& s, double dt) {
 template <class Space, class T, int Dim>
 bool can_persist(const State<Space, T, Dim>& s) {
   // What friction keeps of the impulse at a node changes whenever it is read, and so does what sides that act
-  // keep; local damping takes a second look at contact, for which the launch has no registers. The strengths
+  // keep; local damping computes contact twice, for which the launch has no registers. The strengths
   // are summed before the nodes, not ahead with the soil.
   const bool independent = !s.shear_fraction && !s.has_friction && !s.sides.in_use() && s.damping == 0 &&
                            !(s.rigid_dynamic && s.mass_normals);

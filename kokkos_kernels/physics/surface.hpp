@@ -14,7 +14,7 @@ struct Distance {
   Vector<double, Dim> normal;
 };
 
-inline constexpr double k_on_edge = 1e-9;  // of a cell or a unit vector, less tells no direction
+inline constexpr double k_on_edge = 1e-9;  // of a cell or a unit vector, less has no direction
 
 /// On which side of a plane a point is, by its distance; 0 on the plane, and nearer to it than round-off [m].
 KOKKOS_INLINE_FUNCTION double side_of(double x, double round_off) {

@@ -159,9 +159,8 @@ class Finder {
   static Vec3 beyond(const Vec3& x, const Vec3& axis, double way) {
     return {x[0] + way * axis[0], x[1] + way * axis[1], x[2] + way * axis[2]};
   }
-  /// Of the bodies of which each rank has a part: places and widths of the particles that may be the
-  /// neighbour of another rank's. Where all sides of a particle have neighbours of its own lattice here, it
-  /// is none.
+  /// Places and widths of the particles, of bodies that ranks share, that may be neighbours of particles of
+  /// other ranks: all but those that have neighbours of their own lattice here on all sides.
   std::vector<double> open_particles() const {
     std::vector<double> open;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {

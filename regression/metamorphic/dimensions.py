@@ -95,7 +95,7 @@ def kind_of(option, deck):
 
 
 def domain_of(deck):
-    """What the domains of particles follow: the option, or what -analysis sets."""
+    """Kind of the particles' domains: the option, or the one that -analysis sets."""
     flows = deck.get("analysis") == "flow" and deck.get("geometry") is None
     return deck.get("particle_domain", "split" if flows else "fixed")
 

@@ -236,7 +236,7 @@ struct OutputConfig {
 struct LoadConfig {
   std::string name;
   int body = 0;                // index into Config::bodies
-  int stage = 1;               // number of that whose beginning finds the surface
+  int stage = 1;               // number of the stage that its surface is found at
   Vec3 lower{}, upper{};       // m, box in which the surface is then
   std::optional<Vec3> facing;  // direction that its normals have, to 60 degrees
   double pressure = 0;         // Pa, along the normal, into the soil
