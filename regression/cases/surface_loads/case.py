@@ -6,7 +6,7 @@ soil is compressed, which adds an error of the size of the strain, here $10^{-9}
 under a pressure all round, with the stress $-p$ at the start. The forces on the faces and those of the stress cancel at every node,
 so nothing moves, and the pressure has no sum. *Turned*: a pressure on one side of a box that is turned by 30°; its force is $p$
 times the side, along its normal. *Impulse* and *pressed*: a traction and a pressure that follow tables, on a body that touches nothing. Its momentum
-is the integral of the table times the area. *Cylinder*: a thick cylinder, inner radius 1 m and outer radius 2 m, under an inner
+is the integral of the table up to half a step before, as velocities are means over a step, times the area. *Cylinder*: a thick cylinder, inner radius 1 m and outer radius 2 m, under an inner
 pressure of 10 kPa, in plane strain (Lamé).
 """
 
@@ -89,7 +89,8 @@ def check(runs):
     for name, exact, tolerance, source in (
             ("impulse", lambda t: area * integral(TRACTION, t), 1e-12, "integral of the table"),
             ("pressed", lambda t: -1e3 * area * np.column_stack([0 * t, integral(PRESSED, t)[:, 0]]), 1e-6, "integral of the table; the side deforms")):
-        momentum, exact = runs[name].columns("soil_momentum_"), exact(runs[name].history["time"])
+        history = runs[name].history
+        momentum, exact = runs[name].columns("soil_momentum_"), exact(np.maximum(history["time"] - history["dt"] / 2, 0))
         yield Row(f"{name}: largest error of the momentum over the largest", np.abs(momentum - exact).max() / np.abs(exact).max(), 0, tolerance, source,
                   single=1e-4)
     start, end = first_frame(runs["cylinder"], "soil"), last_frame(runs["cylinder"], "soil")
