@@ -1,8 +1,8 @@
 #include "functions/position_correction.hpp"
 
+#include "base/ensure.hpp"
 #include "loops/particle_to_node.hpp"
 #include "physics/surface.hpp"
-#include "rebuild/rebuild.hpp"
 
 namespace mpm {
 namespace {

@@ -1,7 +1,7 @@
 #include "functions/split_patches.hpp"
 
+#include "base/ensure.hpp"
 #include "physics/walls.hpp"
-#include "rebuild/rebuild.hpp"
 
 namespace mpm {
 

@@ -1,8 +1,8 @@
 #include "functions/surface_loads.hpp"
 
+#include "base/ensure.hpp"
 #include "base/small_matrix.hpp"
 #include "loops/particle_to_node.hpp"
-#include "rebuild/rebuild.hpp"
 
 namespace mpm {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/ensure.hpp"
 #include "base/spaces.hpp"
 #include "data/state.hpp"
 #include "functions/follow_soil.hpp"
@@ -100,17 +101,6 @@ std::size_t scratch_of_point(Points_& points) {
     widest = std::max(widest, sizeof(PartOf<typename std::decay_t<decltype(field)>::value_type>));
   });
   return widest;
-}
-
-/// Makes a view hold at least n entries; its content is lost when it grows. What has grown once may grow
-/// again, and gets some room for it.
-template <class View>
-void ensure(View& view, std::size_t n) {
-  if (view.extent(0) >= n) return;
-  const std::string label = view.label();
-  const bool grows = view.extent(0) > 0;
-  view = View();  // the old memory goes before the new one comes
-  view = View(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), grows ? n + n / 16 : n);
 }
 
 }  // namespace mpm
