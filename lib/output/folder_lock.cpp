@@ -101,7 +101,8 @@ Answer lock(int descriptor) {
 
 /// Whether the name still means the open file: who held it may have removed it meanwhile.
 bool is_still(int descriptor, const std::string& path) {
-  struct stat open {}, named {};
+  struct stat open = {};
+  struct stat named = {};
   return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
          open.st_dev == named.st_dev;
 }
