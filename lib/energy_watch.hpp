@@ -9,8 +9,8 @@
 namespace mpm {
 
 /// Looks at the rows of the history. Soil has the kinetic and elastic energy that it began with, and what
-/// gravity, water and the rigids do on it; more kinetic energy than that by half of what has ever passed is a fault
-/// of the computation.
+/// gravity, water and the rigids do on it; more kinetic energy than that by half of what has ever passed is a
+/// fault of the computation.
 class EnergyWatch {
  public:
   /// Begins anew with the soil as it is now. wave_energy [J]: what the soil would have at the speed of its

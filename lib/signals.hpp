@@ -19,8 +19,8 @@ class SignalsWait {
   ~SignalsWait();
 };
 
-/// From now on to the end of the program none of the signals does anything: the run has been told to stop, and
-/// its last checkpoint is being written.
+/// From now on to the end of the program none of the signals does anything: the run has been told to stop,
+/// and its last checkpoint is being written.
 void ignore_signals();
 
 /// The signal that came, 0 for none.

@@ -7,8 +7,8 @@ namespace mpm {
 namespace {
 
 /// The works at node i. The forces are those of UpdateNodes::accelerate; walls and contact give the rest of
-/// the node's acceleration. The rank that is responsible for a node counts its works, but each rank counts that
-/// of the water which its own soil displaces there: nodes.displaced is not summed over ranks.
+/// the node's acceleration. The rank that is responsible for a node counts its works, but each rank counts
+/// that of the water which its own soil displaces there: nodes.displaced is not summed over ranks.
 template <class Space, class T, int Dim>
 struct WorkAtNodes {
   using S = SoilTerms<Dim>;

@@ -136,8 +136,7 @@ void sum_drift(State<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
   sum_at_home(s, CentreSource<Space, T, Dim>{soil}, s.nodes.centre);
   Kokkos::parallel_for(
-      "mpm::drift", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
-      KOKKOS_LAMBDA(int p) {
+      "mpm::drift", Kokkos::RangePolicy<Space>(s.space, 0, soil.count), KOKKOS_LAMBDA(int p) {
         for (int d = 0; d < Dim; ++d) soil.begun(p)[d] = soil.coordinate(p)[d] - soil.begun(p)[d];
       });
   sum_at_home(s, ResidualSource<Space, T, Dim>{soil, soil.begun}, s.nodes.drift);

@@ -36,8 +36,7 @@ struct HeldVelocities {
     for (int d = 0; d < Dim; ++d) at[d] += from[d];
     const unsigned sides = sides_of(places.grid, at);
     for (int n = 0; n < 2 * Dim; ++n)
-      if (sides >> n & 1u & acting_sides.mask >> n)
-        prescribe(acting_sides, sides & acting_sides.mask, n, v);
+      if (sides >> n & 1u & acting_sides.mask >> n) prescribe(acting_sides, sides & acting_sides.mask, n, v);
     for (int d = 0; d < Dim; ++d)
       for (int side = 0; side < 2; ++side) {
         if (!(sides >> (2 * d + side) & 1u)) continue;

@@ -74,7 +74,7 @@ void update_nodes(State<Space, T, Dim>& s, double dt, const Space& stream) {
   if (s.sides.has_columns()) advance_columns(s, dt);
   if constexpr (is_device<Space>)
     s.sides.in_use() || s.damping > 0 ? update_nodes_by_teams<true>(s, dt, stream)
-                     : update_nodes_by_teams<false>(s, dt, stream);
+                                      : update_nodes_by_teams<false>(s, dt, stream);
   else
     update_nodes_on_host(s, dt);
 }

@@ -37,15 +37,15 @@ template <class T, int Dim>
 struct ColumnStep {
   using C = ColumnTerms<Dim>;
   static constexpr int vertical = k_vertical<Dim>;
-  Wall ends[2];                     // of the mesh, along the vertical
-  const Side<Dim>* sides;           // of the mesh, those that act
-  Vector<double, Dim> g;            // m/s2
-  const Vector<T, Dim>* timed_g;    // of the present step, where gravity follows a table; else null
-  double dt, change;                // s, length of the step; time over which it changes velocities
-  double flip, damping, still;      // -, -, -: k_still
-  double mass_cut;                  // kg, as of nodes
-  int xpic;                         // m of XPIC(m), 0 without it
-  bool affine;                      // APIC
+  Wall ends[2];                   // of the mesh, along the vertical
+  const Side<Dim>* sides;         // of the mesh, those that act
+  Vector<double, Dim> g;          // m/s2
+  const Vector<T, Dim>* timed_g;  // of the present step, where gravity follows a table; else null
+  double dt, change;              // s, length of the step; time over which it changes velocities
+  double flip, damping, still;    // -, -, -: k_still
+  double mass_cut;                // kg, as of nodes
+  int xpic;                       // m of XPIC(m), 0 without it
+  bool affine;                    // APIC
   int d;
 
   /// Velocity of a row after the step, and the force of the column on the side.

@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// Weight along an axis below which round-off may decide whether a particle reaches a node [-]: particles on a
-/// lattice are just at the end of their reach of many nodes.
+/// Weight along an axis below which round-off may decide whether a particle reaches a node [-]: particles on
+/// a lattice are just at the end of their reach of many nodes.
 inline constexpr double k_reached = 1e-6;
 
 /// Weights of the three nodes that a particle reaches along one axis.

@@ -14,8 +14,8 @@ namespace mpm {
 double largest_courant(const Config& config);
 
 /// Where domains stretch, a particle of half lengths l_d is stable up to c dt / d = 2 / sqrt(sum of A_d (1 +
-/// damping)), A_d = 1 / l_d, or 2 + 8 l_d beyond a quarter of a cell, where neighbours may be too far to add to
-/// a node (A = 6 of a lone particle at a half). This number times the sum of A_d is 1 where that is
+/// damping)), A_d = 1 / l_d, or 2 + 8 l_d beyond a quarter of a cell, where neighbours may be too far to add
+/// to a node (A = 6 of a lone particle at a half). This number times the sum of A_d is 1 where that is
 /// largest_courant: a wave that is faster by its root allows largest_courant.
 double rim_scale(const Config& config);
 

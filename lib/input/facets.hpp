@@ -18,8 +18,8 @@ bool has_facets(const Shape& shape);
 /// to 1, and its heights are the third coordinate.
 class Facets {
  public:
-  /// Facets of a shape that has them. Curved shapes have so many facets that each is about as wide as `width` [m],
-  /// at least 64 around, and the radius that gives their volume.
+  /// Facets of a shape that has them. Curved shapes have so many facets that each is about as wide as `width`
+  /// [m], at least 64 around, and the radius that gives their volume.
   Facets(const Shape& shape, const MeshConfig& mesh, int dim, double width);
 
   std::size_t size() const { return flats_.size() + triangles() + rasters_[0].count + rasters_[1].count; }

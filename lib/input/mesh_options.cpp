@@ -15,8 +15,8 @@ constexpr const char* k_top_default =
 
 void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
   static const std::vector<std::pair<std::string, Wall>> words = {
-      {"roller", Wall::roller},     {"fixed", Wall::fixed},         {"free", Wall::free},
-      {"friction", Wall::friction}, {"smooth", Wall::friction},     {"absorbing", Wall::absorbing},
+      {"roller", Wall::roller},         {"fixed", Wall::fixed},      {"free", Wall::free},
+      {"friction", Wall::friction},     {"smooth", Wall::friction},  {"absorbing", Wall::absorbing},
       {"free_field", Wall::free_field}, {"periodic", Wall::periodic}};
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
@@ -28,7 +28,8 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
       in.word(
           {.name = name,
            .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no velocity "
-                      "into it, and friction along it; no velocity into it; dashpots that absorb waves; dashpots to a column that "
+                      "into it, and friction along it; no velocity into it; dashpots that absorb waves; "
+                      "dashpots to a column that "
                       "moves as the free field beside; the opposite side, which is periodic too",
            .standard = d > 0 && side == 1 && in.listing() ? k_top_default : ""},
           words, mesh.walls[d][side]);

@@ -28,7 +28,8 @@ void check_revolution(OptionReader& in, const Config& config) {
     const std::string name = side_option(n / 2, n % 2);
     if (side.moves)
       in.reject(name + motion_of(side), "0" + where);
-    else if (const Wall wall = config.mesh.walls[n / 2][n % 2]; is_acting(wall) && wall != Wall::absorbing && wall != Wall::friction)
+    else if (const Wall wall = config.mesh.walls[n / 2][n % 2];
+             is_acting(wall) && wall != Wall::absorbing && wall != Wall::friction)
       in.reject(name, "roller, smooth, fixed, free, friction or absorbing" + where);
     if (side.shear_limit) in.reject(name + "_shear_limit", "nothing" + where);
   }

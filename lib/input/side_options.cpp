@@ -175,9 +175,10 @@ void choose_lid(OptionReader& in, const Config* before, Config& config) {
   if (config.gravity[d] == 0 || in.given(name) || wall != Wall::roller || config.mesh.sides[d][side].moves)
     return;
   if (before ? before->mesh.walls[d][side] == Wall::roller : reaches_side(config, d, side)) {
-    in.settle(name, "roller",
-              "roller by default where soil reaches this side at the start, and holds it in tension too, as a "
-              "plane of symmetry does; smooth or free lets the soil go");
+    in.settle(
+        name, "roller",
+        "roller by default where soil reaches this side at the start, and holds it in tension too, as a "
+        "plane of symmetry does; smooth or free lets the soil go");
   } else {
     wall = Wall::friction;
     in.settle(name, "smooth", "");

@@ -16,8 +16,8 @@
 namespace mpm {
 namespace {
 
-/// What a run writes into its lock behind the first line, by the first word of each line: host, boot, process,
-/// birth, since.
+/// What a run writes into its lock behind the first line, by the first word of each line: host, boot,
+/// process, birth, since.
 using Record = std::map<std::string, std::string>;
 constexpr const char* k_first_line = "mpm lock of the run that writes into this folder\n";
 
@@ -103,8 +103,8 @@ Answer lock(int descriptor) {
 bool is_still(int descriptor, const std::string& path) {
   struct stat open = {};
   struct stat named = {};
-  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
-         open.st_dev == named.st_dev;
+  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         open.st_ino == named.st_ino && open.st_dev == named.st_dev;
 }
 
 PetscErrorCode write_record(int descriptor, const std::string& path) {
@@ -132,7 +132,8 @@ PetscErrorCode FolderLock::take(const std::string& folder, std::string* other) {
     const Record before = read_record(file, &foreign);
     if (foreign) *other = "the file " + path_ + ", which is no lock of this program";
     if (!foreign && (answer == Answer::others || (answer == Answer::no_locks && may_live(before))))
-      *other = in_words(before) + (answer == Answer::no_locks ? "; remove " + path_ + " if it has ended" : "");
+      *other =
+          in_words(before) + (answer == Answer::no_locks ? "; remove " + path_ + " if it has ended" : "");
     if (!other->empty()) {
       ::close(file);
       PetscFunctionReturn(PETSC_SUCCESS);

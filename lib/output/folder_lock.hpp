@@ -1,7 +1,7 @@
 #pragma once
-// One run at a time in an output folder. While it lasts, a run holds a lock of the system on the file mpm.lock
-// in the folder, which the system lets go with the process, however that ends; the text in the file tells
-// other runs whose it is. Everything here is called on one rank.
+// One run at a time in an output folder. While it lasts, a run holds a lock of the system on the file
+// mpm.lock in the folder, which the system lets go with the process, however that ends; the text in the file
+// tells other runs whose it is. Everything here is called on one rank.
 
 #include <petscsys.h>
 

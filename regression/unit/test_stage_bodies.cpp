@@ -212,8 +212,9 @@ TEST_CASE("soil that a law cannot start from is told by its place", "[stage_bodi
   const Config one = stage_of(report, 0), two = stage_of(report, 1);
   SavedState state =
       state_of(one, {"plastic_strain", "strength"}, {"plastic_strain,strength", "plastic_strain,strength"});
-  const SavedState fresh = state_of(two, {"column_0", "column_1", "column_2", "column_3", "column_4"},
-                                    {"preconsolidation,specific_volume,parted_volume", "plastic_strain,strength"});
+  const SavedState fresh =
+      state_of(two, {"column_0", "column_1", "column_2", "column_3", "column_4"},
+               {"preconsolidation,specific_volume,parted_volume", "plastic_strain,strength"});
   for (SavedField& field : state.soil.fields)
     if (field.name == "stress") field.values.assign(16, 1000);  // tension
   CHECK(map_state(two, changed_laws(one, two), fresh, state).find("the particle of body soil at") == 0);

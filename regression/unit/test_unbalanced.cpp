@@ -53,7 +53,8 @@ TEST_CASE("level ground that carries its weight has no unbalanced force, and hal
   });
 }
 
-TEST_CASE("a plate on level ground leaves it in balance, and holds soil that is pressed into it", "[unbalanced]") {
+TEST_CASE("a plate on level ground leaves it in balance, and holds soil that is pressed into it",
+          "[unbalanced]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     INFO(B::name());

@@ -101,7 +101,11 @@ PointLaw point_law(const PointMaterial& material, bool single, int dim) {
 
 PointState point_start(const PointMaterial& of, int dim, const std::array<double, 6>& stress) {
   const auto material = make_material<double>(of.which, of.parameters, of.object.get());
-  const ParticleStart start{.position = position_at(of.height, dim), .height = of.height, .stress = stress, .own = {}, .up = dim - 1};
+  const ParticleStart start{.position = position_at(of.height, dim),
+                            .height = of.height,
+                            .stress = stress,
+                            .own = {},
+                            .up = dim - 1};
   PointState point{.stress = stress, .state = initial_state(material, start)};
   point.state.resize(state_variables(of.which).size());  // those that its particles do not carry are 0
   return point;

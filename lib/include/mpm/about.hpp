@@ -1,5 +1,6 @@
 #pragma once
-// Version, build and help of the program. Printing them needs neither MPI nor PETSc nor Kokkos to have started.
+// Version, build and help of the program. Printing them needs neither MPI nor PETSc nor Kokkos to have
+// started.
 
 #include <string>
 
