@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+"""Checks that clang-format 14 leaves all sources as they are. Exit status 77 where there is no clang-format 14.
+
+    format.py        names the sources that differ
+    format.py --fix  reformats them
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+MAJOR = "14"  # Debian 12's; others format some lines differently
+FOLDERS = ("app", "lib", "kokkos_kernels", "regression")
+# Sources that are formatted with their next change.
+LATER = ("kokkos_kernels/transfer/unbalanced.cpp", "kokkos_kernels/transfer/unbalanced.hpp", "lib/common/time_table.hpp",
+         "lib/input/options.cpp", "lib/step/follow_soil.hpp", "lib/step/surface_input.cpp")
+
+
+def clang_format():
+    for name in (f"clang-format-{MAJOR}", "clang-format"):
+        if shutil.which(name):
+            version = subprocess.run([name, "--version"], capture_output=True, text=True).stdout
+            if re.search(rf"version {MAJOR}\.", version):
+                return name
+    return None
+
+
+tool = clang_format()
+if tool is None:
+    print(f"no clang-format {MAJOR}")
+    sys.exit(77)
+root = pathlib.Path(__file__).parents[1]
+sources = [str(f) for folder in FOLDERS for f in sorted((root / folder).rglob("*"))
+           if f.suffix in (".hpp", ".cpp", ".h", ".c") and str(f.relative_to(root)) not in LATER]
+if "--fix" in sys.argv:
+    sys.exit(subprocess.run([tool, "-i", *sources]).returncode)
+# Its warnings name each line that differs.
+text = subprocess.run([tool, "--dry-run", *sources], capture_output=True, text=True).stderr
+differ = sorted(set(re.findall(r"^(\S+?):\d+:\d+: warning", text, re.M)))
+print("\n".join(f"{pathlib.Path(f).relative_to(root)}: differs; regression/format.py --fix" for f in differ)
+      or f"{len(sources)} sources are formatted")
+sys.exit(bool(differ or "error" in text))
