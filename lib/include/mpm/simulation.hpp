@@ -11,7 +11,7 @@ namespace mpm {
 /// How a simulation ended, as the exit status of the program.
 enum class Outcome : int { finished = 0, bad_input = 2, failed = 3, stopped = 75 };
 
-inline constexpr const char* k_version = "0.1.0";
+inline constexpr const char* k_version = "0.2.0";
 
 struct InputReport;
 
