@@ -1,5 +1,5 @@
 #pragma once
-// What a user chooses at run time and the kernels obey: plain enumerations, whose words are the options'
+// Choices of the user at run time that the kernels obey: plain enumerations, whose words are the options'
 // words.
 
 #include <utility>
@@ -22,11 +22,11 @@ constexpr const char* word_of(P2G how) {
   return "";
 }
 
-/// What holds at one side of the mesh (-mesh_xmin ...): roller, no velocity normal to the side; fixed, no
+/// Condition at one side of the mesh (-mesh_xmin ...): roller, no velocity normal to the side; fixed, no
 /// velocity; free, nothing; friction, a roller with friction along it; absorbing, dashpots; free_field,
 /// dashpots between the soil and a column of it that moves as the ground beside; periodic, the opposite side.
-/// Kernels know a roller or fixed side that moves as driven, and periodic sides as free ones of a mesh with a
-/// period (Grid). Checkpoints hold these numbers.
+/// In kernels a roller or fixed side that moves is `driven`, and periodic sides are free sides of a mesh with
+/// a period (Grid). Checkpoints hold these numbers.
 enum class Wall { periodic = -1, roller, fixed, free, friction, absorbing, driven, free_field };
 inline constexpr Wall k_last_wall = Wall::free_field;
 /// Whether the soil goes on beyond a side as its mirror image; beyond sides that act, it moves as the side's
@@ -41,20 +41,20 @@ constexpr bool is_open(Wall wall) { return wall == Wall::free || wall == Wall::p
 /// How particles take their velocity from the nodes (-velocity_update).
 enum class VelocityUpdate { flip, pic, xpic, apic };
 
-/// What a 2D run is a section of (-geometry): of a body without end along z, or of a body of revolution about
+/// Body that a 2D run is a section of (-geometry): a body without end along z, or a body of revolution about
 /// the axis x = 0.
 enum class Geometry { plane_strain, axisymmetric };
 
 /// How the domains of particles follow the deformation of the soil (-particle_domain): not at all, by half
 /// lengths of their own along each axis, or so that particles whose domains become too long are split too.
-/// Kernels of a step know the first two, and `ring`: fixed, and revolved about the axis (Geometry).
+/// Kernels of a step have the first two, and `ring`: fixed, and revolved about the axis (Geometry).
 enum class ParticleDomain { fixed, stretch, split, ring };
 /// Bounds of the half lengths [cells] of domains that stretch. Up to a half, a particle reaches three nodes
 /// along an axis, also where it has drifted by half a cell. The shorter a domain, the shorter the stable time
 /// step; where particles begin shorter than the least, they bound it.
 inline constexpr double k_least_half_length = 0.1, k_most_half_length = 0.5;
 
-/// What becomes of particles that are alone, or whose volume leaves its bounds (-stray_particles).
+/// Treatment of particles that are alone, or whose volume leaves its bounds (-stray_particles).
 enum class StrayRule { keep, remove, stop };
 
 /// The strategy that `auto` stands for.

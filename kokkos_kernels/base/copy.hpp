@@ -30,7 +30,7 @@ void copy(const Space& space, const To& to, const From& from) {
   static_assert(k_same_bytes<To, From>);
   Kokkos::deep_copy(space, bytes_of<char>(to), bytes_of<const char>(from));
 }
-/// The same; all that was launched before has ended, and the copy is there.
+/// Copies as above, after every kernel that was launched before has ended, and waits for the copy.
 template <class To, class From>
 void copy(const To& to, const From& from) {
   static_assert(k_same_bytes<To, From>);

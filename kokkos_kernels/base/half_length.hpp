@@ -47,7 +47,7 @@ struct RingDomain {
   KOKKOS_INLINE_FUNCTION const HalfLength<T>& operator[](int) const { return half; }
 };
 
-/// What a particle's domain is: the same along all axes and for the whole body, its own along each axis, or a
+/// Type of a particle's domain: the same along all axes and for the whole body, its own along each axis, or a
 /// ring.
 template <class T, int Dim, ParticleDomain domain>
 using DomainOf = std::conditional_t<

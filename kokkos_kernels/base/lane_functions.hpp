@@ -6,7 +6,7 @@
 
 namespace mpm::impl {
 
-/// What exp and log take of the format of a real type.
+/// Constants of the format of a real type, for exp and log.
 template <class T>
 struct RealFormat;
 template <>

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-// nvcc knows vectors, but not in functions of host and device.
+// nvcc has vectors, but not in functions of host and device.
 #if defined(__CUDACC__) || !defined(__GNUC__)
 #define MPM_PLAIN_LANES
 #endif
@@ -18,7 +18,7 @@
 #define MPM_SHUFFLES
 #endif
 #endif
-/// Of a lambda: it is part of its caller, however many kernels a source has.
+/// Inlines a lambda into its caller, however many kernels a source has.
 #ifdef MPM_PLAIN_LANES
 #define MPM_INLINE_LAMBDA
 #else
@@ -140,7 +140,7 @@ template <class R>
 using RealOf = typename impl::RealOf<R>::type;
 template <class R>
 inline constexpr bool is_lanes = !std::is_same_v<R, RealOf<R>>;
-/// What a comparison gives: bool, or the truth by lane.
+/// Result of a comparison: bool, or the truth by lane.
 template <class R>
 using Truth = decltype(std::declval<R>() < std::declval<R>());
 

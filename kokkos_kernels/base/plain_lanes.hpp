@@ -1,6 +1,6 @@
 #pragma once
-// What lanes are made of where the compiler has no vectors of its own for functions that a GPU could call
-// (nvcc): an array, with loops that the host's compiler may turn into vectors.
+// Lanes where the compiler has no vectors of its own for functions that a GPU could call (nvcc): an array,
+// with loops that the host's compiler may turn into vectors.
 
 #include <Kokkos_Core.hpp>
 

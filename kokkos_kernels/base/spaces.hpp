@@ -41,9 +41,9 @@ bool has_threads(const Space& space) {
   return !is_device<Space> && space.concurrency() > 1;
 }
 
-/// The same policy, for a kernel of a time step: its functor travels as an argument of the launch. Without
-/// the hint Kokkos sends a large functor through constant memory on CUDA, where each launch waits for the one
-/// before it.
+/// Policy for a kernel of a time step: the functor travels as an argument of the launch. Without the hint
+/// Kokkos sends a large functor through constant memory on CUDA, where each launch waits for the one before
+/// it.
 template <class Policy>
 auto light(const Policy& policy) {
   return Kokkos::Experimental::require(policy, Kokkos::Experimental::WorkItemProperty::HintLightWeight);

@@ -9,7 +9,7 @@ struct CurvePoint {
   double time, value;  // s; the quantity's unit
 };
 
-/// What a step takes of a curve: its mean value, or its mean rate of change.
+/// Quantity that a step takes from a curve: its mean value, or its mean rate of change.
 enum class CurveUse : int { value, rate };
 
 /// A curve through points whose times increase: straight between them, or smooth, by 3 x^2 - 2 x^3 with x

@@ -1,5 +1,5 @@
 #pragma once
-// What particles and nodes take of the device's memory, from their types alone.
+// Device memory of particles and nodes, from their types alone.
 
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
@@ -16,7 +16,7 @@ struct Footprint {
     return sizeof(DomainMoments<T, Dim>) + sizeof(Vector<T, Dim>) + sizeof(T) +
            (on_device ? sizeof(Vector<float, Dim>) : sizeof(Vector<T, Dim>));  // StoredLength
   }
-  /// And of a node.
+  /// Bytes of a node for domains that stretch.
   static constexpr double domain_node = grown * sizeof(T) * (CentreTerms<Dim>::size + Dim);
   /// More where the mesh is periodic.
   static constexpr double periods = sizeof(Vector<T, Dim>);
@@ -37,10 +37,10 @@ struct Footprint {
   static constexpr double node =
       grown * (sizeof(T) * (SoilTerms<Dim>::size + NodeKinematics<Dim>::size + BoundaryTerms<Dim>::size) +
                sizeof(int));
-  /// Of a rigid, with what sorts it.
+  /// Bytes of a point of a rigid, with the memory that sorts it.
   static constexpr double rigid_point =
       2 * sizeof(Vector<T, Dim>) + sizeof(Vector<double, Dim>) + 3 * sizeof(int) + sizeof(long);
-  /// Of the patch table, for every patch of the mesh and of the ring round it.
+  /// Bytes of the patch table, for every patch of the mesh and of the ring round it.
   static constexpr double patch = 2 * sizeof(int);
   static constexpr double window =
       grown * double(sizeof(T) * SoilTerms<Dim>::size * Patch<Dim>::window) / Patch<Dim>::cells;

@@ -1,5 +1,5 @@
 #pragma once
-// What a State holds of the memory of the device.
+// Device memory that a State holds.
 
 #include <cstddef>
 

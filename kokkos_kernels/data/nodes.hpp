@@ -23,18 +23,20 @@ template <int Dim>
 struct SoilTerms {
   static constexpr int mass = 0, momentum = 1, force = 1 + Dim, size = 1 + 2 * Dim;
 };
-/// What soil near a rigid also gives a node: its boundary as a vector out of it [m2] and its volume [m3].
+/// Terms that soil near a rigid gives a node in addition: the soil's boundary as a vector out of it [m2] and
+/// its volume [m3].
 template <int Dim>
 struct BoundaryTerms {
   static constexpr int area = 0, volume = Dim, size = Dim + 1;
 };
-/// What soil near a rigid gives a node where the shear limit is a fraction of its strength: strength times
-/// volume [Pa m3], and volume [m3], so that their ratio is the mean strength there, whatever becomes of other
-/// sums.
+/// Terms that soil near a rigid gives a node where the shear limit is a fraction of the soil's strength:
+/// strength times volume [Pa m3], and volume [m3]. Their ratio is the mean strength there, whatever happens
+/// to other sums.
 struct StrengthTerms {
   static constexpr int strength = 0, volume = 1, size = 2;
 };
-/// What soil gives a node where domains stretch: mass [kg], and mass times the way from the node [kg cells].
+/// Terms that soil gives a node where domains stretch: mass [kg], and mass times the way from the node [kg
+/// cells].
 template <int Dim>
 struct CentreTerms {
   static constexpr int mass = 0, way = 1, size = 1 + Dim;
@@ -57,7 +59,7 @@ struct alignas(group_alignment<T, NodeKinematics<Dim>::size>) KinematicValues {
   KOKKOS_INLINE_FUNCTION const T& operator[](int k) const { return c[k]; }
 };
 
-/// What particles and rigids give the nodes.
+/// Sums at the nodes over particles and rigids.
 template <class Space, class T, int Dim>
 struct NodeSums {
   NodeField<Space, T, SoilTerms<Dim>::size> soil;
@@ -119,7 +121,7 @@ inline constexpr int due = 1,  // the bound passed the margin, a rebuild is due,
     not_co_resident = 4;       // the device did not hold all teams of such a launch at once
 }  // namespace Pause
 
-/// What controls the steps until the host reads it again. A step does nothing while `paused`.
+/// Variables that control the steps until the host reads them again. A step does nothing while `paused`.
 struct Control {
   double bound;      // cells that any point can have moved since the last rebuild
   double increment;  // of the last step
@@ -131,7 +133,7 @@ struct Control {
   Fault fault;
 };
 
-/// What teams of one launch that wait for each other read at once.
+/// Values that teams of one launch read at once while they wait for each other.
 struct alignas(8) Signal {
   int ended;   // steps that run_persistent_steps has ended
   int paused;  // Pause, after the last of them; before, Pause::last if the step at hand is to be the last
@@ -147,8 +149,8 @@ struct LaunchBarrier {
 };
 
 /// Whether lists must be rebuilt `late` steps after the one that these are of [cells]; speeds may grow by
-/// half until then. Several ranks know of each other only so late; one rank rebuilds at the same steps all
-/// the same.
+/// half until then. Several ranks have each other's figures only that late; one rank rebuilds at the same
+/// steps nevertheless.
 KOKKOS_INLINE_FUNCTION bool rebuild_due(double bound, double increment, double margin, int late) {
   constexpr double k_growth = 1.5;
   return !(bound + late * k_growth * increment <= margin);
@@ -172,7 +174,7 @@ struct MovementPlaces {
   KOKKOS_INLINE_FUNCTION double noted(int place) const { return Kokkos::bit_cast<double>(bits[place]); }
   KOKKOS_INLINE_FUNCTION void begin(int place) const { bits[place] = 0; }
 };
-/// Those of `turns` steps.
+/// Movements of `turns` steps.
 template <class Space, int turns = 1>
 struct Movements {
   static constexpr int places = MovementPlaces<Space>::places;

@@ -9,8 +9,7 @@ namespace mpm {
 /// this much room beyond the margin.
 inline constexpr double k_most_shift = 0.05;
 
-/// Soil that flows, as the laws tell it: a column of History that holds the plastic shear strain, or one of
-/// these.
+/// Soil that flows, by its law: a column of History that holds the plastic shear strain, or one of these.
 struct Flow {
   static constexpr int never = -2;   // the law has no plastic strain
   static constexpr int always = -1;  // a fluid without strength

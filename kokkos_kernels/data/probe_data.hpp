@@ -1,5 +1,5 @@
 #pragma once
-// What probes measure, as plain data on the host. Lengths are from the mesh's lower corner.
+// Measurements of probes, as plain data on the host. Lengths are from the mesh's lower corner.
 
 #include <array>
 #include <vector>
@@ -32,7 +32,7 @@ struct SectionPlane {
   std::vector<int> bodies;  // indices; empty: all
 };
 
-/// What is beyond a plane and what passes it, towards growing coordinates.
+/// Soil beyond a plane, and soil that passes it towards growing coordinates.
 struct SectionSum {
   double mass = 0;                        // kg, beyond
   double initial_volume = 0;              // m3, of that mass by the density that its soil began with

@@ -25,7 +25,7 @@ struct RigidPose {
     for (int d = 0; d < Dim; ++d) point[d] = x(d) - displacement[d];
     return point;
   }
-  /// The same pose for lengths in cells; spacing is in m.
+  /// This pose for lengths in cells; spacing is in m.
   KOKKOS_INLINE_FUNCTION RigidPose in_cells(double spacing) const {
     RigidPose pose;
     for (int d = 0; d < Dim; ++d) pose.displacement[d] = displacement[d] / spacing;

@@ -1,5 +1,5 @@
 #pragma once
-// What nodes on sides of the mesh that act keep, as numbers in a table.
+// Terms of the nodes on sides of the mesh that act, as numbers in a table.
 
 #include "data/impulse_terms.hpp"
 

@@ -44,8 +44,8 @@ struct Sides {
       columns;                            // by Side::column_row; allocated where a side is free_field
   std::array<Side<Dim>, 2 * Dim> host{};  // as the run began
   std::array<double, 2 * Dim> dashpot_factor{}, spring_length{};  // -, m (0: no springs)
-  unsigned unknown = 0;                  // sides with dashpots that, and whose reactions, are not known yet
-  std::array<unsigned, 2 * Dim> held{};  // bit k: component k that the side held before it absorbed
+  unsigned unknown = 0;                      // sides whose dashpots and reactions have yet to be computed
+  std::array<unsigned, 2 * Dim> held{};      // bit k: component k that the side held before it absorbed
   std::array<unsigned, 2 * Dim> mirrored{};  // bit k: component k that then turned round in a mirror
   bool in_use() const { return mask != 0; }
   bool has_columns() const { return columns.extent(0) > 0; }

@@ -30,7 +30,7 @@ struct SoilBatch {
   Kokkos::View<char*, typename Space::memory_space> scratch;  // dilatations, by these numbers too
 };
 
-/// Calls f(home, there, use) for the fields that the update of the particles looks at.
+/// Calls f(home, there, use) for the fields that the update of the particles reads.
 template <class Home, class There, class F>
 void for_each_of_step(Home& home, There& there, F&& f) {
   for_each_field_of(
@@ -41,8 +41,8 @@ void for_each_of_step(Home& home, There& there, F&& f) {
   f(home.cell, there.cell, Use::reads);
 }
 
-/// What the batches cost, summed over the steps that were done. Those that were sampled, each copy and
-/// kernel waited for, tell what these take alone.
+/// Cost of the batches, summed over the steps that were done. In sampled steps the host waits for each copy
+/// and kernel, which gives the time of each alone.
 struct BatchCost {
   long steps = 0, sampled = 0;
   double copied_in = 0, copied_out = 0;                        // bytes, in all steps

@@ -15,7 +15,7 @@ struct SplitPatches {
     int first, middle, last;  // common [first, middle), others [middle, last)
   };
   Kokkos::View<int*, typename Space::memory_space> slots;
-  std::vector<Range> parts;  // border and inner, or one part; none: not known
+  std::vector<Range> parts;  // border and inner, or one part; none: not made yet
 
   /// Whether some of the parts together are this one.
   bool holds(const Part<Space>& part) const {

@@ -56,7 +56,7 @@ struct State {
   Nodes<Space, T, Dim> nodes;
   NodeSums<Space, T, Dim> next_sums, last_sums;  // of run_persistent_steps, which sets last_sums to zero
   bool next_zero = false;                        // `next_sums` fits and is zero
-  bool co_resident = true;  // as far as is known the device holds all teams of run_persistent_steps at once
+  bool co_resident = true;  // all teams of run_persistent_steps have fit on the device at once so far
   Kokkos::View<std::uint64_t*, Memory>
       owned_nodes;  // by slot, a bit a node: this rank answers for it; of extent 0 on one rank
   ControlView<Space> control, never_paused;
@@ -106,7 +106,7 @@ struct State {
 /// Dilatation rates of particles [1/s].
 template <class Space, class T>
 using Dilatations = Kokkos::View<T*, typename Space::memory_space, Kokkos::MemoryUnmanaged>;
-/// Those that a step works with, in State::scratch.
+/// Dilatations that a step works with, in State::scratch.
 template <class Space, class T, int Dim>
 Dilatations<Space, T> dilatations_of(const State<Space, T, Dim>& s) {
   return Dilatations<Space, T>(reinterpret_cast<T*>(s.scratch.data()), s.soil.points.count);

@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// What has left the run through a free side, or was removed: of one body, on this rank, since the start.
+/// Soil of one body that left the run through a free side or was removed, on this rank, since the start.
 struct Lost {
   double count = 0, mass = 0, kinetic_energy = 0;  // -, kg, J
   double momentum[3] = {};                         // kg m/s

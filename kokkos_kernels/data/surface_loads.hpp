@@ -22,7 +22,7 @@ struct SurfaceLoads {
   Kokkos::View<int*, Memory> loaded;           // by slot: its place among those with loads, from 1 on; else 0
   int loaded_count = 0;
   Windows<Space> windows;  // of these slots
-  // Of each particle's faces along one axis: their places and boxes, as those of particles, and forces [N].
+  // Faces of each particle along one axis: their places and boxes, as for particles, and their forces [N].
   Kokkos::View<Vector<T, Dim>*, Memory> coordinate, force;
   Kokkos::View<Vector<StoredLength<Space, T>, Dim>*, Memory> half_length;
 

@@ -39,7 +39,7 @@ struct TimedLoad {
 };
 
 /// The times of steps: step k of those that Control::steps counts begins at origin + (first + k) dt. With the
-/// same origin, a step begins at the same bits wherever the host looked at the steps before.
+/// same origin, a step begins at the same bits, whichever steps before it the host has waited for.
 struct LoadClock {
   double origin, dt;  // s
   long first;

@@ -6,8 +6,8 @@
 namespace mpm {
 
 /// A value that other teams of the same launch may write, as it is now in the memory that all of them see.
-/// What a team wrote before it, and before fence_of_teams, is there for this thread then, and for the threads
-/// that wait for this one.
+/// Everything that a team wrote before this value and before fence_of_teams is then visible to this thread,
+/// and to the threads that wait for it.
 KOKKOS_INLINE_FUNCTION unsigned acquire_of_others(const unsigned* value) {
   KOKKOS_IF_ON_DEVICE((unsigned seen; asm volatile("ld.acquire.gpu.u32 %0, [%1];"
                                                    : "=r"(seen)

@@ -1,6 +1,6 @@
 #pragma once
-// What kernels ask of a GPU itself: the lanes of a warp, what other teams wrote, its cache. On the host most
-// of it only compiles.
+// Functions of the GPU itself: the lanes of a warp, values that other teams wrote, the cache. On the host
+// most of them only compile.
 
 #include <Kokkos_Core.hpp>
 
@@ -45,7 +45,7 @@ KOKKOS_INLINE_FUNCTION void fence_of_teams() {
   KOKKOS_IF_ON_HOST((Kokkos::memory_fence();))
 }
 
-/// What the lanes wrote to scratch memory is there for all of them.
+/// Makes the lanes' writes to scratch memory visible to all of them.
 KOKKOS_INLINE_FUNCTION void sync_warp() { KOKKOS_IF_ON_DEVICE((__syncwarp();)) }
 
 /// Asks a GPU to fetch what p points at into its second cache.
