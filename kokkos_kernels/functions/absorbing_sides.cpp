@@ -14,13 +14,13 @@ namespace {
 // Sums are whole numbers, which have the same value in any order of particles, threads and ranks.
 constexpr double k_resolution = 1e12;  // of the largest term of one particle
 
-/// What the nodes of absorbing sides sum: mass times the speed of pressure and of shear waves [kg m/s],
-/// volume [m3], volume times the normal gradient of the weight [m3/cell], mass [kg]. The sum of the gradients
-/// is the area of the node's part of the side (Gauss). Of rings that is so with the divergence of a vector
-/// along the radius, dS/dr + S/r.
+/// Sums at the nodes of absorbing sides: mass times the speed of pressure and of shear waves [kg m/s], volume
+/// [m3], volume times the normal gradient of the weight [m3/cell], mass [kg]. The sum of the gradients is the
+/// area of the node's part of the side (Gauss). For rings this holds with the divergence of a vector along
+/// the radius, dS/dr + S/r.
 enum SideSum { k_pressure_waves, k_shear_waves, k_volume, k_area, k_mass, k_sums };
 
-/// What particles give the nodes of absorbing sides.
+/// Source of the sums at the nodes of absorbing sides.
 template <class Space, class T, int Dim>
 struct GiveSides {
   using Memory = typename Space::memory_space;
@@ -33,7 +33,7 @@ struct GiveSides {
   Sum sums;
   double unit[k_sums];
 
-  /// What a particle gives, without its weight at the node.
+  /// Terms of a particle, without its weight at the node.
   KOKKOS_INLINE_FUNCTION void terms_of(int p, double (&terms)[k_sums]) const {
     const auto of = soil.properties(p);
     const SideModuli moduli = side_moduli(soil, shear_ratio(of.material), p);
@@ -223,7 +223,7 @@ void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_r
         if (length > 0)
           table(row, S::spring + k) = std::max(0.0, area) * impedance * impedance / density / length;
       }
-      // A mirror gives the force on the nodes beyond back, so that twice that force has passed the side.
+      // A mirror returns the force on the nodes beyond it, so twice that force has passed the side.
       for (int k = 0; k < Dim; ++k)
         if (s.sides.mirrored[n] >> k & 1u) table(row, S::reaction + k) -= mirrored(row, k) * unit_force;
     }

@@ -1,4 +1,4 @@
-// What columns of the free field take from the soil when their side begins.
+// Start of the columns of the free field: the terms that they take from the soil when their side begins.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr double k_resolution = 1e12;  // of the largest term of one particle
 /// Their units: kg, m3, Pa m3.
 enum Unit { k_mass, k_volume, k_energy, k_units };
 
-/// What particles give the columns.
+/// Source of the sums in the columns.
 template <class Space, class T, int Dim>
 struct GiveColumns {
   using Memory = typename Space::memory_space;

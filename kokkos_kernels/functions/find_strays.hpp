@@ -1,5 +1,5 @@
 #pragma once
-// What becomes of soil that has left the others.
+// Strays: soil that has left the rest of the soil.
 
 #include "data/state.hpp"
 

@@ -39,7 +39,7 @@ struct WayOfNodes {
       for (int j = 0; j < Dim; ++j) xx[i][j] += w * at[i] * at[j], ux[i][j] += w * way[i] * at[j];
     }
   }
-  /// The deformation gradient; I where the nodes do not tell it.
+  /// The deformation gradient; I where the nodes do not determine it.
   KOKKOS_INLINE_FUNCTION void deformation(double (&f)[Dim][Dim]) const {
     double spread[Dim][Dim], inverse[Dim][Dim], back[Dim][Dim];
     for (int i = 0; i < Dim; ++i)

@@ -1,7 +1,7 @@
 #pragma once
 // The velocity with which the nodes move the particles, for what a run shows. FLIP's particles carry noise
-// that no node feels, so that their own velocities neither tell rest from motion nor make a picture; nor do
-// those of light nodes, which follow one particle.
+// that no node feels, so their own velocities do not distinguish rest from motion and make no clear picture.
+// Velocities of light nodes do not either, because such a node follows one particle.
 //
 // The velocity of a particle is sum S v_i with the nodal velocity of Eq. (6), momentum over mass, without
 // walls and contact. The sums at the nodes must be those of the particles where they are now:

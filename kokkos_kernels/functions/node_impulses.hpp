@@ -1,6 +1,6 @@
 #pragma once
-// The friction's impulses at nodes, when ranks come to reach other nodes than before: the rank that answered
-// for a node before a rebuild tells those that reach it afterwards.
+// The friction's impulses at nodes, when ranks come to reach other nodes than before: the rank that was
+// responsible for a node before a rebuild sends its impulses to the ranks that reach it afterwards.
 
 #include <vector>
 
@@ -16,7 +16,7 @@ struct NodeImpulses {
   std::vector<T> value;    // N s [rigids][of each node: node after node]
 };
 
-/// Those of the nodes that this rank answers for (State::owned_nodes) and that are not zero.
+/// Impulses that are not zero, of the nodes that this rank is responsible for (State::owned_nodes).
 template <class Space, class T, int Dim>
 NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s);
 

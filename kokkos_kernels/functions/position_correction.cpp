@@ -43,7 +43,7 @@ struct CompareVolumes {
   }
 };
 
-/// What a particle sees of the nodes.
+/// Sums over the nodes that a particle reaches.
 template <class T, int Dim>
 struct Surroundings {
   T lowest = 1;               // least share of a node that is filled

@@ -17,7 +17,7 @@ template <class Space, class T, int Dim>
 using CorrectionVectors =
     Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged>;
 
-/// What the particles give the nodes, by particle; in s.scratch.
+/// Vector that each particle gives the nodes, by particle; in s.scratch.
 template <class Space, class T, int Dim>
 CorrectionVectors<Space, T, Dim> shares_of(const State<Space, T, Dim>& s) {
   return CorrectionVectors<Space, T, Dim>(reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()),
@@ -30,7 +30,7 @@ CorrectionVectors<Space, T, Dim> shifts_of(const State<Space, T, Dim>& s) {
   return CorrectionVectors<Space, T, Dim>(reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()) + count, count);
 }
 
-/// What the correction knows of a node: of particle sums BoundaryTerms, then these.
+/// Terms of a node for the correction: BoundaryTerms as sums over particles, then these.
 template <int Dim>
 struct FillTerms {
   static constexpr int filled = 0;  // -, f_i, share of its volume that is filled

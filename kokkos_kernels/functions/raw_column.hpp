@@ -10,10 +10,10 @@ namespace mpm {
 
 inline constexpr int k_rows_reached = 4;  // rows that the particles of a cell reach, from the one below it on
 
-/// What the rows of columns sum, with gradients by cells: mass, and the matrices of ColumnTerms. What goes
-/// with the mean dilatation of a cell (F-bar) is the product of two sums, which the row of its lower node
-/// keeps: of the volume, that times the gradient of each row, and times the part of the bulk modulus that
-/// goes with the mean the force of each row, and that on the side.
+/// Sums of the rows of columns, with gradients per cell: mass, and the matrices of ColumnTerms. The stiffness
+/// by the mean dilatation of a cell (F-bar) is a product of two sums over the cell's particles. The row of
+/// the cell's lower node keeps them: the volume; the volume times the gradient of each row; and, with the
+/// part of the bulk modulus that acts on the mean, the force of each row and the force on the side.
 template <int Dim>
 struct ColumnSum {
   using C = ColumnTerms<Dim>;
@@ -39,7 +39,7 @@ struct RawColumn {
   void add(int i, int j, int matrix, double value) {
     if (double* const to = element(i, j, matrix)) *to += value;
   }
-  /// What the mean dilatations of cells give the stiffness and the force on the side.
+  /// Adds the part of the mean dilatations of cells to the stiffness and to the force on the side.
   void add_means() {
     for (int c = 0; c < static_cast<int>(sums.size()); ++c) {
       const std::vector<double> of = sums[c];

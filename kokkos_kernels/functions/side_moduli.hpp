@@ -14,7 +14,7 @@ struct SideModuli {
   double wave, shear, pore;
 };
 
-/// Those of particle p. shear_ratio [-]: speed of shear waves over that of pressure waves in its material.
+/// Moduli of particle p. shear_ratio [-]: speed of shear waves over that of pressure waves in its material.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION SideModuli side_moduli(const Soil<Space, T, Dim>& soil, double shear_ratio, int p) {
   const AnyMaterial<T>& material = material_in(soil.materials(soil.properties(p).material));

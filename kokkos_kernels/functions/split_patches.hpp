@@ -12,7 +12,7 @@ bool wants_split(const State<Space, T, Dim>& s) {
   return is_device<Space> && s.plan.form != StepForm::persistent && s.plan.form != StepForm::out_of_core;
 }
 
-/// Makes State::split from the present lists, when it is known which particles are alone. On `stream`, for
+/// Makes State::split from the present lists, after the search for particles that are alone. On `stream`, for
 /// which the host waits.
 template <class Space, class T, int Dim>
 void split_patches(State<Space, T, Dim>& s, const Space& stream);

@@ -42,8 +42,8 @@ template <class Space, class T, int Dim>
 void update_and_end(State<Space, T, Dim>& s, double dt);
 
 /// Whether the next steps are to be persistent, many in one launch: functions 4 to 6, and 1 to 3 of the next
-/// step. They can be where the sums of this step are there, no contact has friction, and no rigid moves by
-/// the force on it while the mass gradient tells its normals, and that pays where patches are few.
+/// step. Persistent steps need the sums of this step. They exclude contact with friction, and rigids that
+/// move by the force on them while their normals come from the mass gradient. They pay where patches are few.
 template <class Space, class T, int Dim>
 bool can_persist(const State<Space, T, Dim>& s);
 /// Launches as many of the next `most` steps as one launch may do; returns how many it will do, if the steps
@@ -57,14 +57,14 @@ void resume_single_steps(State<Space, T, Dim>& s);
 
 /// 5. Strains, stresses and material properties; velocities and positions of the soil (Eqs (11)-(13)). Leaves
 /// the furthest movement of a particle in s.control. Where sums_ahead, adds the soil as it then is to the
-/// nodes. dt [s]. aside: the stream of the patches that are not common, where State::split tells them.
+/// nodes. dt [s]. aside: the stream of the patches that are not common, where State::split lists them.
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt, const Space& aside);
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt) {
   update_particles(s, dt, s.space);
 }
-/// The same for some of the slots, where sums_ahead.
+/// update_particles for some of the slots, where sums_ahead.
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside);
 

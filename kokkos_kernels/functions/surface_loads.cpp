@@ -29,7 +29,7 @@ struct LoadedParticles {
   KOKKOS_INLINE_FUNCTION int load_of(int p, int k) const {
     return static_cast<int>(soil.faces[k](p)[FaceTerms<Dim>::load]) - 1;
   }
-  /// Of all faces of particle p along an axis [m2].
+  /// Area of all faces of particle p along an axis [m2].
   KOKKOS_INLINE_FUNCTION double area_along(int p, int axis) const {
     double area = 0;
     for (int k = 0; k < soil.face_count; ++k)

@@ -1,5 +1,5 @@
 #pragma once
-// What XPIC and APIC do in addition to update_particles, before it and with the nodes of the same step. FLIP
+// Work of XPIC and APIC in addition to update_particles, before it and with the nodes of the same step. FLIP
 // and PIC need neither.
 
 #include "base/spaces.hpp"
@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// What XPIC has left of the particles' velocities [m/s, by particle]; in s.scratch.
+/// Residual r_p of the particles' velocities after the passes of XPIC so far [m/s]; in s.scratch.
 template <class Space, class T, int Dim>
 auto residual_of(const State<Space, T, Dim>& s) {
   return Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged>(

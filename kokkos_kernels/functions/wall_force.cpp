@@ -80,7 +80,7 @@ struct NearWalls {
   }
 };
 
-/// What loads on faces give such nodes: forces, as the internal ones.
+/// Source of the forces of loads on faces at such nodes, in the same way as the internal forces.
 template <class Space, class T, int Dim>
 struct PressLoads {
   LoadSource<Space, T, Dim> source;
@@ -100,9 +100,9 @@ struct PressLoads {
   }
 };
 
-/// What particles give the nodes at walls and beyond. A node at a wall is held against its internal force and
-/// weight. Of one beyond, the image's half of the soil takes the internal force, and the image gives as much
-/// back (NearWalls::add).
+/// Source of the forces at nodes on walls and beyond them. A node at a wall is held against its internal
+/// force and weight. For a node beyond, the image's half of the soil takes the internal force, and the image
+/// gives as much back (NearWalls::add).
 template <class Space, class T, int Dim, ParticleDomain domain>
 struct PressOnWalls {
   using Source = SoilSource<Space, T, Dim, domain>;

@@ -1,5 +1,5 @@
 #pragma once
-// What the soil presses the sides of the mesh with.
+// Forces of the soil on the sides of the mesh.
 
 #include <array>
 

@@ -60,7 +60,7 @@ struct MovingRigid {
   }
 };
 
-/// What the end of a step changes of Control, beside the count of steps.
+/// Values of Control that the end of a step changes, beside the count of steps.
 struct StepEnd {
   double bound, increment;
   int due_in, paused;
@@ -122,7 +122,7 @@ struct EndStep {
   /// Doubles that a team of so many threads needs.
   int room(int threads) const { return Dim * count + warps(threads); }
 
-  /// What a step has left for its end: the rigids, the forces of the slots' nodes on them, the movements of
+  /// Input of the end of a step: the rigids, the forces of the slots' nodes on them, the movements of
   /// particles, and where the forces on the rigids go [N], unless it is null.
   struct Left {
     Rigid<Dim>* rigids;
@@ -157,7 +157,7 @@ struct EndStep {
     const Noted noted = noted_movements(team, left.movements, clears);
     if (!summed) sum_by_warps(team, left.forces, 0, values, part);
     keep(team, largest_of_warp(noted.largest()), part + values);
-    team.team_barrier();  // also: no thread looks at `paused` any more
+    team.team_barrier();  // also: no thread reads `paused` any more
     MPM_ROLLED
     for (int r = rank; r < count; r += team.team_size()) {
       if (r > rank) rigid = MovingRigid<T, Dim>(left.rigids[r]);
@@ -233,7 +233,7 @@ struct EndStep {
       return Kokkos::fmax(most, Kokkos::fmax(last[0], last[1]));
     }
   };
-  /// Those noted at the places of a thread.
+  /// Movements noted at the places of a thread.
   template <class Team>
   KOKKOS_INLINE_FUNCTION static Noted noted_movements(const Team& team,
                                                       const MovementPlaces<Space>& movements, bool clears) {
@@ -259,8 +259,8 @@ struct EndStep {
       if (rank % k_warp == 0) part[v] = sum;
     }
   }
-  /// What a thread sums of a force, number `rank` of those that share the slots, in an order that is always
-  /// the same.
+  /// Part of a force that a thread sums, number `rank` of the threads that share the slots, in an order that
+  /// is always the same.
   KOKKOS_INLINE_FUNCTION double sum_of_thread(const double* of_slots, int value, int rank,
                                               int threads) const {
     // Slots that a thread asks the memory for at once. On a processor one after the other, so that slots that

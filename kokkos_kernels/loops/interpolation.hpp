@@ -1,5 +1,5 @@
 #pragma once
-// What the step asks of an interpolation.
+// Interface of an interpolation to the step.
 
 #include "data/state.hpp"
 #include "loops/particle_to_node.hpp"

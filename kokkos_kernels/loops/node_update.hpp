@@ -1,5 +1,5 @@
 #pragma once
-// What becomes of a node in a step (function 4): its velocity and acceleration, the walls, and contact.
+// Update of a node in a step (function 4): its velocity and acceleration, the walls, and contact.
 
 #include <cmath>
 
@@ -66,7 +66,7 @@ struct UpdateNodes {
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
       update(sums, slot * cells + k, true, force + k);
       if (owned_nodes.extent(0) == 0 || (owned_nodes(slot) >> k & 1) != 0) return;
-      for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank tells it
+      for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank reports it
     });
     team.team_barrier();
     leave_forces(team, force, n);
@@ -245,7 +245,7 @@ struct UpdateNodes {
     if (clears) clear_sums(team, nodes, slot, false, 0);
   }
 
-  /// The same, far from walls too and without friction, for the lanes of a processor: a row at once.
+  /// Updates nodes far from rigids and walls, without friction, for the lanes of a processor: a row at once.
   template <class Team, class Sums>
   void update_rows(const Team& team, const Sums& sums, int slot) const {
     using Row = typename Sums::Row;
@@ -271,7 +271,7 @@ struct UpdateNodes {
   template <class Sums>
   KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, const Node& node, const Rigid<Dim>& rigid, int r,
                                     Vector<T, Dim>& v, bool keeps, double* force) const {
-    T given[RigidTerms<Dim>::size] = {};  // asked for before the rigid tells whether it matters
+    T given[RigidTerms<Dim>::size] = {};  // read before the test of the rigid, to hide the latency
     for (int n = 0; n < RigidTerms<Dim>::size && has_mass_normals; ++n) given[n] = sums.rigid(r, node.i, n);
     const T m_i = node.soil[S::mass];
     Vector<T, Dim> n, v_r, boundary;

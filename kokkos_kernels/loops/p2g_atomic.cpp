@@ -3,7 +3,7 @@
 
 namespace mpm {
 
-/// Brings a point to where it is now, if its source knows.
+/// Brings a point to where it is now, if its source can.
 template <class Source>
 KOKKOS_INLINE_FUNCTION void move_point([[maybe_unused]] const Source& source, [[maybe_unused]] int p) {
   if constexpr (requires { source.move(p); }) source.move(p);

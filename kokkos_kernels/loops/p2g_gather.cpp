@@ -60,8 +60,8 @@ struct GatherByNode {
     return which == 0 || (at != own && image_along(grid, d, at) == own);
   }
 
-  /// What the particles in the list of a node at `at` give, with the signs of its image. False if there are
-  /// none.
+  /// Adds the terms of the particles in the list of a node at `at`, with the signs of its image. False if
+  /// there are none.
   KOKKOS_INLINE_FUNCTION bool add_list(int node, const Coord<Dim>& at, T (&sum)[Source::size]) const {
     T sign[Source::size];
     for (int v = 0; v < Source::size; ++v) {

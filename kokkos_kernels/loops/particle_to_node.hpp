@@ -98,7 +98,7 @@ KOKKOS_INLINE_FUNCTION void for_each_cell_of_block(const Grid<T, Dim>& grid, lon
       }
 }
 
-/// Where nodes are: what a particle needs to know to find its own.
+/// Places of the nodes, by which a particle finds its own nodes.
 template <class Space, class T, int Dim>
 struct NodePlaces {
   using Memory = typename Space::memory_space;
@@ -141,7 +141,7 @@ struct Stencil {
     for (int d = 1; d < Dim; ++d) w += which[d][k[d]], p += place[d][k[d]];
     return neighbours(slot, w) * Patch<Dim>::cells + p;
   }
-  /// What the node k steps from the first has of a component of a vector, or of a scalar (-1), of node().
+  /// Sign that a component of a vector, or a scalar (-1), of node() has at the node k steps from the first.
   KOKKOS_INLINE_FUNCTION T sign(const Vector<int, Dim>& k, int component) const {
     if (component < 0) return 1;
     T sign = 1;
@@ -171,7 +171,7 @@ KOKKOS_INLINE_FUNCTION void for_each_node_at(const Vector<T, Dim>& x, int cell, 
     });
   });
 }
-/// The same for every node of particle p.
+/// Calls f for every node of particle p.
 template <Kind kind, class Points_, class Domain, class Space, class T, int Dim, class F>
 KOKKOS_INLINE_FUNCTION void for_each_node(const Points_& points, const Domain& domain,
                                           const NodePlaces<Space, T, Dim>& places, int p, F&& f) {

@@ -59,8 +59,8 @@ template <class T>
 constexpr std::size_t scratch_bytes(int values) {
   return (values * sizeof(T) + 15) / 16 * 16;
 }
-/// Scratch memory of a team, taken piece by piece; each begins at a multiple of 16 bytes. Asked for at once:
-/// a piece's place is then known when the kernel is compiled.
+/// Scratch memory of a team, taken piece by piece; each begins at a multiple of 16 bytes. All pieces are
+/// taken at once, so that the compiler computes their places.
 class Scratch {
  public:
   template <class Team>

@@ -21,7 +21,7 @@ template <class Law, class R, class T, int Dim, int N>
                                                        const Increment<R, T, Dim>& by) {
   law.update(stress, state, by);
 }
-/// The same where only some lanes are active. The others take the values of an active lane, so that no
+/// Calls the law where only some lanes are active. The others take the values of an active lane, so that no
 /// iteration goes on for what is no particle of the law.
 template <class Law, class R, class T, int Dim, int N, class Active>
 KOKKOS_FUNCTION void called_in_some_lanes(const Law& law, SymTensor<R, Dim>& stress, LawState<R, N>& state,
@@ -84,7 +84,7 @@ KOKKOS_INLINE_FUNCTION void update_lanes(const Law& law, SymTensor<R, Dim>& stre
 }
 
 /// The laws of the particles [p, p + count), as many as R has lanes at most, with their state in memory.
-/// Those that fly freely, being alone, carry no stress, nor an excess pore pressure, and keep their state.
+/// Particles that fly freely, being alone, carry no stress and no excess pore pressure, and keep their state.
 template <class R, class Space, class T, int Dim>
 struct LawLanes {
   const Soil<Space, T, Dim>& soil;
@@ -111,7 +111,7 @@ struct LawLanes {
   }
 
  private:
-  /// What becomes of a state variable where all particles are the law's.
+  /// New value of a state variable where all particles are the law's.
   struct AllChange {
     KOKKOS_FORCEINLINE_FUNCTION R operator()(const R& after, const R&) const { return after; }
   };

@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// What becomes of the nodes of a slot: a row at once where neither walls nor rigids are near.
+/// Updates the nodes of a slot: a row at once where neither walls nor rigids are near.
 template <class Space, class T, int Dim>
 struct HostNodes {
   static constexpr int cells = Patch<Dim>::cells, edge = Patch<Dim>::edge;
@@ -23,7 +23,7 @@ struct HostNodes {
   HostNodes(const State<Space, T, Dim>& s, double dt)
       : update(node_update_of(s, dt)), soil(s), in_windows(s.summed.in_windows), has_near(s.near_count > 0) {}
 
-  /// Asks for what a slot to come needs.
+  /// Prefetches the sums of a later slot.
   void fetch_sums(int slot) const {
     if (in_windows) soil.soil.nodes.fetch_windows(slot);
   }

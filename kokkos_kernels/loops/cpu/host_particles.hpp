@@ -22,7 +22,7 @@ struct HostParticles {
   using Samples = HostSamples<T, Dim, k_room, slopes>;
   static constexpr int k_node = Samples::k_node;
   using Node = typename Samples::Node;
-  /// What the particles of some cells take from the nodes, in their order.
+  /// Samples of the nodes for the particles of some cells, in their order.
   struct alignas(R) Stage {
     Samples samples;
     T mean[k_room + W];    // 1/s, dilatation rate of the particle's cell; first the particle's term of it
@@ -242,7 +242,7 @@ struct HostParticles {
     moved = Kokkos::fmax(moved, own);
   }
 
-  /// What advance() asks of the domains of a block's particles.
+  /// Domains of a block's particles, in the form that advance() takes.
   KOKKOS_FORCEINLINE_FUNCTION auto domain_at([[maybe_unused]] int p, [[maybe_unused]] int count) const {
     if constexpr (rings)
       return domains_of<domain, R, Dim>(soil, p, count, bodies_of<R>(soil, p, count));
@@ -250,8 +250,8 @@ struct HostParticles {
       return PlaneDomain{};
   }
 
-  // What few blocks need is in functions of its own, which take and return values, so that the others keep
-  // theirs in registers.
+  // Code that few blocks need is in separate functions that take and return values, so that the other blocks
+  // keep their values in registers.
 
   /// 1 where a particle of the block is alone, else 0.
   [[gnu::noinline]] KOKKOS_FUNCTION R which_are_alone(int p, int count) const {

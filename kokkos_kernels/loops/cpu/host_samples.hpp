@@ -1,5 +1,5 @@
 #pragma once
-// What the particles of some cells take from the nodes, on a processor: written particle by particle, read by
+// Samples of the nodes for the particles of some cells, on a processor: written particle by particle, read by
 // lane.
 
 #include "base/lanes.hpp"

@@ -1,6 +1,6 @@
 #pragma once
-// What the soil gives the nodes on a processor where many threads are at work: its terms in each patch's
-// window, and its boundary near a rigid.
+// Sums of the soil at the nodes on a processor with many threads: its terms in each patch's window, and its
+// boundary near a rigid.
 
 #include "loops/cpu/host_sums.hpp"
 #include "loops/interpolation.hpp"
@@ -52,7 +52,7 @@ struct HostSoil {
     soil.give_nodes(slot);
     if (has_boundary_at(slot)) boundary.give_nodes(slot);
   }
-  /// Those of a slot, in the windows as yet or at the nodes.
+  /// Takes the sums of a slot, which are still in the windows or already at the nodes.
   void take(int slot, bool in_windows, SlotSums<Space, T, Dim>& sums) const {
     const auto take = [&](const auto& nodes, auto& to) {
       in_windows ? void(nodes.take(slot, to)) : nodes.load(slot, to);

@@ -18,7 +18,7 @@ std::array<int, Patch<Dim>::neighbours> places_around_in_order(const Coord<Dim>&
   return places;
 }
 
-/// What the nodes of a patch take from the windows of the patches round it, in which they lie too.
+/// Sums of the nodes of a patch from the windows of the patches round it, in which these nodes lie too.
 template <class Source>
 struct NodesOfWindows {
   using T = typename Source::real;
@@ -64,7 +64,7 @@ struct NodesOfWindows {
     });
     return room;
   }
-  /// What the nodes of a slot have.
+  /// Loads the sums of the nodes of a slot.
   void load(int slot, Rows& sums) const {
     for (int r = 0; r < rows; ++r) load_groups(&out(slot * Patch<Dim>::cells + r * edge, 0), sums[r]);
   }

@@ -190,8 +190,8 @@ KOKKOS_FORCEINLINE_FUNCTION BodyProperties<R> body_of(const Points_& points, int
   else
     return in_all_lanes(points);
 }
-/// Those of the bodies of `count` points from p on, by lane. A function that is called: where all points of a
-/// patch are of one body, nobody needs it.
+/// Properties of the bodies of `count` points from p on, by lane. Not inlined, because it is not needed where
+/// all points of a patch are of one body.
 template <class R, class Points_>
 [[gnu::noinline]] KOKKOS_FUNCTION BodyProperties<R> bodies_of(const Points_& points, int p, int count) {
   BodyProperties<R> body = body_of<R>(points, p);

@@ -1,5 +1,5 @@
 #pragma once
-// What a team of a device does to the particles of a patch (function 5), and to the nodes of the next step.
+// Update of the particles of a patch by a team of a device (function 5), and of the nodes of the next step.
 
 #include "data/state.hpp"
 #include "device/warp.hpp"
@@ -62,7 +62,7 @@ struct UpdateParticles {
   using Images = std::conditional_t<kind == PatchKind::common, NoImages, WindowImages<T, Dim>>;
   static constexpr int cells = Patch<Dim>::cells, window = Patch<Dim>::window;
   static constexpr int threads = team_threads<Space>;
-  /// What is left of a tile where nothing is summed.
+  /// Stand-in for a tile where nothing is summed.
   struct Nothing {
     KOKKOS_INLINE_FUNCTION explicit Nothing(Scratch&) {}
     KOKKOS_INLINE_FUNCTION void set_node(int, int) const {}
@@ -229,7 +229,7 @@ struct UpdateParticles {
           dilatation(p) = mean_for(soil.materials(soil.material_of(p)).f_bar_share, of_cell, dilatation(p));
         });
   }
-  /// What average_dilatation has found for particle p in this cell of the patch [1/s].
+  /// Result of average_dilatation for particle p in this cell of the patch [1/s].
   KOKKOS_INLINE_FUNCTION T mean_dilatation(const T* mean, int place, int p) const {
     return averages_by_material() ? dilatation(p) : mean[place];
   }

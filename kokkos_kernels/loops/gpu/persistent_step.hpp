@@ -31,11 +31,12 @@ inline constexpr int k_patience = 20'000;
 /// the first step, the launch ends with that step. The last team decides this. The part of the last team goes
 /// to the team that begins first, so that it is never one of those that have not begun.
 ///
-/// From the second step on, each team ends the step for itself, on rigids of its own, as soon as all teams
-/// are done with their parts: all come to the same. That spares the way of the last team's answer through the
-/// memory, three times the latency of the second cache. What a step leaves for its end is kept in turns,
-/// since a team may begin the next step before another has read it. Where loads follow tables, and with laws
-/// that may ask for the time, all wait for the last team in each step.
+/// From the second step on, each team ends the step for itself, on its own copy of the rigids, as soon as all
+/// teams have done their parts; all teams compute the same values. No team then waits for the answer of the
+/// last team through memory, which would take three times the latency of the L2 cache. The input of the end
+/// of a step is kept in turns, because a team may begin the next step before another team has read it. Where
+/// loads follow tables, and with laws that may ask for the time, all teams wait for the last team in each
+/// step.
 template <class Space, class T, int Dim, bool WithNodes, class Laws, ParticleDomain domain>
 struct PersistentStep {
   static constexpr int threads = team_threads<Space>;
@@ -52,7 +53,7 @@ struct PersistentStep {
   EndStep<Space, T, Dim> end;
   Rigids rigids;
   int rigid_count, rigid_teams, steps;
-  // Of the step at hand, of the next one, and of the last one, which are set to zero. They take turns.
+  // Sums of the step at hand, of the next step, and of the last step, which are set to zero. They take turns.
   Kokkos::Array<Sums, 3> sums;
   Kokkos::View<LaunchBarrier, typename Space::memory_space> launch_barrier;
   Movements<Space, 3> movements;  // where WithNodes
@@ -64,7 +65,7 @@ struct PersistentStep {
            Update::bytes();
   }
 
-  /// What a team knows of its slot in all steps.
+  /// Figures of a team's slot, the same in all steps.
   struct Slot {
     int number, near;  // near: a rigid, as in State::near_rigid
     Coord<Dim> from;
@@ -145,7 +146,7 @@ struct PersistentStep {
       if (end.timed.count > 0) return;
       at.by_all = true;
       at.found = StepEnd(update.control());
-      at.found.fault = false;  // another team may have met one in the next step; movements tell of it
+      at.found.fault = false;  // another team may have met one in the next step; its movements report it
       copy_rigids(team, at.bodies);
     }
   }
@@ -248,7 +249,7 @@ struct PersistentStep {
     });
   }
 
-  /// What the host and the next launch need of steps that all teams have ended for themselves.
+  /// Stores the results of the steps for the host and the next launch, after every team has ended its steps.
   KOKKOS_INLINE_FUNCTION void leave(const Member& team, const Progress& at) const {
     for (int r = team.team_rank(); r < end.count; r += team.team_size())
       MovingRigid<T, Dim>(at.bodies[r]).keep_in(nodes.rigids(r));
@@ -314,7 +315,7 @@ struct PersistentStep {
     nodes.leave_forces(team, force, slot.near - 1 + force_turn(at) * end.slots);
   }
 
-  /// To scratch memory, where a node may look at one value of theirs after the other.
+  /// Copies the rigids to scratch memory, where a node may read their values one after the other.
   KOKKOS_INLINE_FUNCTION void copy_rigids(const Member& team, Rigid<Dim>* bodies) const {
     const int count = nodes.value_count / Dim;
     using Word = std::uint64_t;

@@ -42,8 +42,8 @@ class Tile {
   // The stage keeps of an entry, in units that are read at once and lie apart: for each axis, the first one
   // last, the weight of the first node and that of the last, with the derivative of the last, of which the
   // others follow; of rings also the derivative of the first and the hoop weights; the point; x where the
-  // source asks for it. The sign of the first weight tells where the
-  // first node is: it is negative for node 0 of the cell, and positive for node -1.
+  // source asks for it. The sign of the first weight gives the place of the first node: negative for node 0
+  // of the cell, positive for node -1.
   static constexpr int k_unit = 16 / sizeof(T), k_units = (k_values + k_unit - 1) / k_unit;
   struct alignas(16) Unit {
     T c[k_unit];
@@ -154,7 +154,7 @@ class Tile {
   struct Weight {
     T w, g;
   };
-  /// Those of the three nodes that a particle reaches, of an entry's values for the axis.
+  /// Weight of node k of the three that a particle reaches, from an entry's values for the axis.
   KOKKOS_INLINE_FUNCTION static Weight weight(const T* axis, int k) {
     const T w_0 = Kokkos::fabs(axis[0]);
     return k == 0   ? Weight{w_0, axis[2] - 1}
@@ -226,7 +226,7 @@ class Tile {
     for (int k = 0; k < k_point; ++k) values[k + k_half] = value[k_weights + k];
     Point q;
     memcpy(&q, values, sizeof q);
-    // What of each value goes with the weight along the row, and what with its derivative.
+    // Parts of each value that go with the weight along the row, and with its derivative.
     T along[size] = {}, slope[size] = {};
     [[maybe_unused]] T hoop[k_rings ? size : 1] = {};
     unrolled<size>([&](auto v) {
@@ -259,8 +259,8 @@ class Tile {
   }
 };
 
-/// A team gives the points of a slot to the nodes. number_of(n): of the image of node n of the window, as
-/// `images` tells it; cell_begin(c): the first point of cell c of the patch.
+/// A team gives the points of a slot to the nodes. number_of(n): number of the image of node n of the window,
+/// by `images`; cell_begin(c): the first point of cell c of the patch.
 template <class Source, class Team, class Number, class Begin, class Images, class Field>
 KOKKOS_INLINE_FUNCTION void sum_patch(const Team& team, Scratch scratch, const Source& source,
                                       const Number& number_of, const Begin& cell_begin, const Images& images,
