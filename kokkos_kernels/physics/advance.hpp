@@ -1,5 +1,5 @@
 #pragma once
-// What one step does to one particle (Eqs (11)-(13)), or to as many as an instruction of a processor takes at
+// Update of one particle in a step (Eqs (11)-(13)), or of as many as an instruction of a processor takes at
 // once. The real type R of a particle is T, or lanes of T; parameters are T.
 
 #include <type_traits>
@@ -15,7 +15,7 @@
 
 namespace mpm {
 
-/// What the step of particle p asks of its domain.
+/// Domain of particle p in the form that a step takes.
 template <ParticleDomain domain, class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION auto step_domain([[maybe_unused]] const Soil<Space, T, Dim>& soil,
                                         [[maybe_unused]] int p) {
@@ -25,7 +25,7 @@ KOKKOS_INLINE_FUNCTION auto step_domain([[maybe_unused]] const Soil<Space, T, Di
     return PlaneDomain{};
 }
 
-/// What a particle samples of the nodes.
+/// Sample of the nodes at a particle.
 template <class T, int Dim, int Slopes = Dim>
 struct GridSample {
   T kinematics[NodeKinematics<Dim>::size];  // m/s, m/s2
@@ -63,7 +63,7 @@ struct UpdateScalars {
   bool f_bar_by_material = false;  // State::f_bar_by_material
 };
 
-/// What a step changes of a particle.
+/// Values of a particle that a step changes.
 template <class T, int Dim>
 struct Particle {
   Vector<T, Dim> x, v;       // cells, m/s
@@ -77,7 +77,7 @@ template <class Space, class T, int Dim, class Laws>
 struct ParticleLaw {
   const Soil<Space, T, Dim>& soil;
   int p, material;
-  int which;  // index of the law in Materials, or -1 where only the material tells it. A kernel that is given
+  int which;  // index of the law in Materials, or -1 where only the material has it. A kernel that is given
               // the index need not read it from memory before it reads the parameters.
   bool flies;
 
@@ -210,8 +210,8 @@ KOKKOS_INLINE_FUNCTION FaultKind cause_of(const Soil<Space, T, Dim>& soil, int p
   return cause;
 }
 
-/// What is wrong with a particle that moved by `moved` [cells] in the step: not finite, a volume that the run
-/// does not allow, or so fast that the computation cannot be trusted.
+/// Fault of a particle that moved by `moved` [cells] in the step: not finite, a volume that the run does not
+/// allow, or so fast that the computation cannot be trusted.
 template <class T, int Dim, class Domain>
 KOKKOS_INLINE_FUNCTION FaultKind fault_of(const Particle<T, Dim>& q, T moved, const UpdateScalars<T>& by,
                                           const Domain& domain) {

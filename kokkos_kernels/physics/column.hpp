@@ -32,7 +32,7 @@ KOKKOS_INLINE_FUNCTION int matrix_along(int first, int k) {
   return first + (k == k_vertical<Dim> ? 0 : ColumnTerms<Dim>::band);
 }
 
-/// What a step does with the columns of a side normal to direction d.
+/// A step of the columns of a side normal to direction d.
 template <class T, int Dim>
 struct ColumnStep {
   using C = ColumnTerms<Dim>;
@@ -84,7 +84,7 @@ struct ColumnStep {
     for (int k = 0; k < Dim; ++k) column.row(r)[C::after + k] = any ? column.row(r - 1)[C::after + k] : 0;
   }
 
-  /// What XPIC leaves of the velocities behind pass `pass`; the first one takes them all.
+  /// Residual of the velocities after pass `pass` of XPIC; the first pass takes them all.
   KOKKOS_INLINE_FUNCTION void filter(const Column<Dim>& column, int r, int pass) const {
     const int from = pass == 0 ? C::velocity : left_behind(pass - 1), to = left_behind(pass);
     for (int k = 0; k < Dim; ++k)

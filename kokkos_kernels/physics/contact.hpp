@@ -69,7 +69,7 @@ KOKKOS_INLINE_FUNCTION T usable_impulse(Pressed<T>& pressed, T fresh, T stop) {
   return Kokkos::fmin(pressed.store, pressed.sum / pressed.weight);
 }
 
-/// What a contact needs to know of the interface at a node.
+/// Interface at a node, as the contact takes it.
 template <class T>
 struct Interface {
   T shear_speed;   // m/s: shear limit x area x dt / nodal mass, the largest change of the tangential velocity

@@ -1,11 +1,11 @@
 #pragma once
-// Domains of particles, and what is kept of those that follow the soil (-particle_domain stretch). Such a
+// Domains of particles, and the moments of domains that follow the soil (-particle_domain stretch). Such a
 // domain begins as the square of its lattice and deforms with the soil to a parallelogram (parallelepiped).
-// What a particle keeps of it are three times the second moments of its area about its centre,
-// M = sum_k r_k r_k^T with r_k = F r_k0 the vectors from the centre to the middles of the sides, a symmetric
-// tensor [cells^2]. The shape functions take the box along the axes of the mesh that has the same second
-// moment along each axis, l_d = sqrt(M_dd). Moments and half lengths change between steps
-// (functions/follow_soil.hpp), so that a step only reads the half lengths.
+// A particle keeps three times the second moments of its area about its centre, M = sum_k r_k r_k^T with r_k
+// = F r_k0 the vectors from the centre to the middles of the sides, a symmetric tensor [cells^2]. The shape
+// functions take the box along the axes of the mesh that has the same second moment along each axis, l_d =
+// sqrt(M_dd). Moments and half lengths change between steps (functions/follow_soil.hpp), so that a step only
+// reads the half lengths.
 
 #include "base/half_length.hpp"
 #include "base/types.hpp"
@@ -79,7 +79,8 @@ KOKKOS_INLINE_FUNCTION DomainOf<T, Dim, domain> domain_of(const Soil<Space, T, D
   else
     return with_inverses<T>(soil.half_length(p));
 }
-/// The same where only the run knows whether domains stretch, for what is not done in every step.
+/// Domain of a particle where only the run decides whether domains stretch, for work that is not done in
+/// every step.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION HalfLengths<T, Dim> any_domain_of(const Soil<Space, T, Dim>& soil, int p) {
   if (soil.has_domain) return with_inverses<T>(soil.half_length(p));
@@ -114,7 +115,7 @@ void with_box_or_ring(const Soil<Space, T, Dim>& soil, F&& f) {
     if (soil.rings) return f(std::integral_constant<ParticleDomain, ParticleDomain::ring>{});
   f(std::integral_constant<ParticleDomain, ParticleDomain::stretch>{});
 }
-/// The same by what the soil has.
+/// Calls f with the kind of domain that the soil has.
 template <class Space, class T, int Dim, class F>
 void with_domain(const Soil<Space, T, Dim>& soil, F&& f) {
   if constexpr (Dim == 2)

@@ -1,5 +1,6 @@
 #pragma once
-// What one particle gives one node. Physics is written here once; the strategies are loop shapes around it.
+// Terms that one particle gives one node. Physics is written here once; the strategies are loop shapes around
+// it.
 
 #include <cstddef>
 #include <type_traits>
@@ -15,11 +16,11 @@
 namespace mpm {
 
 // A Point holds what a particle gives, as plain T, so that a strategy may keep it value by value. Each value
-// of a node's term goes with the weight, or with components of its gradient, which takes(value, d) tells:
+// of a node's term goes with the weight, or with components of its gradient, as takes(value, d) says:
 //   S factor(q, value)   or   sum over d of dS/dx_d slope(q, value, d)
 // Where the particles are rings, d goes up to Dim, and the last one stands for the hoop weight T S.
 // component(value) is the direction of a value that is a component of a vector, -1 of a scalar; with `kind`
-// it tells the sign of its image in a wall.
+// it determines the sign of the value's image in a wall.
 
 /// Numbers of a point that lie behind its half lengths, which the weights alone need: how many they are, and
 /// the first of them. T: the type of the numbers.
@@ -108,7 +109,7 @@ struct AffineSource : SoilSource<Space_, T, Dim, domain_> {
     for (int k = 0; k < Dim * Dim; ++k) q.affine[k] = q.mass * this->points.affine(p)[k];
     return q;
   }
-  /// What comes to the term of a node with weight w, `offset` [cells] from the particle.
+  /// Additions to the term of a node with weight w, `offset` [cells] from the particle.
   template <class W, class Add>
   KOKKOS_INLINE_FUNCTION static void give_more(const Point& q, W w, const Vector<W, Dim>& offset, Add&& add) {
     for (int d = 0; d < Dim; ++d) {

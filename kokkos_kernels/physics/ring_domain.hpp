@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// What a step asks of the domain of a particle that is no ring: nothing.
+/// Domain of a particle that is no ring, of which a step needs nothing.
 struct PlaneDomain {};
 
 /// The part of a ring that is on the outer side of the axis: its centre and half length [cells].
@@ -69,7 +69,7 @@ KOKKOS_INLINE_FUNCTION RadialWeights<T> radial_weights(T x, const RingDomain<T>&
   return a;
 }
 
-/// The same for a particle that has drifted from its cell by half a cell at most, as axis_weights_near.
+/// Radial weights of a particle that has drifted from its cell by half a cell at most, as axis_weights_near.
 template <class T>
 KOKKOS_INLINE_FUNCTION RadialWeights<T> radial_weights_near(T x, const RingDomain<T>& ring) {
   const RadialPart<T> part = radial_part(x, ring);
@@ -173,7 +173,7 @@ KOKKOS_INLINE_FUNCTION T revolved_length([[maybe_unused]] T x, const Domain& dom
   else
     return T(1);
 }
-/// What the bounds of volumes hold for, of particle p: its volume [m3], of a ring its section times 1 m.
+/// Volume of particle p that the bounds of volumes limit [m3]: for a ring, its section times 1 m.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION T bounded_volume(const Soil<Space, T, Dim>& soil, int p, [[maybe_unused]] T spacing) {
   if constexpr (Dim == 2)

@@ -49,7 +49,7 @@ KOKKOS_INLINE_FUNCTION AxisWeights<T> axis_weights(T x, HalfLengthOf<T> half) {
   return weights_from<T>(static_cast<int>(low), x - low, half);
 }
 
-/// The same for a particle that has drifted from its cell, [0, 1), by half a cell at most: nodes -1 to 2 hold
+/// Weights of a particle that has drifted from its cell, [0, 1), by half a cell at most: nodes -1 to 2 hold
 /// all that it reaches, and `first` is -1 or 0. A third node that it does not reach makes room for that.
 template <class T>
 KOKKOS_INLINE_FUNCTION AxisWeights<T> axis_weights_near(T x, HalfLengthOf<T> half) {

@@ -1,6 +1,5 @@
 #pragma once
-// What sides of the mesh with friction, dashpots or a motion of their own do to a node on them
-// (docs/boundaries.md).
+// Sides of the mesh with friction, dashpots or a motion of their own, at a node on them (docs/boundaries.md).
 
 #include "data/sides.hpp"
 #include "physics/contact.hpp"

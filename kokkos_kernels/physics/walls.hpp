@@ -56,14 +56,15 @@ KOKKOS_INLINE_FUNCTION int image_along(const Grid<T, Dim>& grid, int d, int at) 
   return at;
 }
 
-/// What values of a node are, which tells the sign that they have at its image.
+/// Kind of a node's values, which determines their sign at its image.
 enum class Kind {
   geometry,  // scalars and vectors in space, as a boundary's area: normal components change sign
   motion     // scalars and velocities, momenta, forces: at a fixed side all components do
 };
 
-/// What a node at `at` along d has of the values of its image along d, which is itself inside: 1, or -1 where
-/// component k of a vector turns. 0 at a wall where what soil and image have of it cancels. k < 0: a scalar.
+/// Factor from the values of the image along d of a node at `at` to those of the node itself: 1 inside, or -1
+/// where component k of a vector turns. 0 at a wall where the parts of soil and image cancel. k < 0: a
+/// scalar.
 template <Kind kind, class T, int Dim>
 KOKKOS_INLINE_FUNCTION T image_sign(const Grid<T, Dim>& grid, int d, int at, int k) {
   if (k < 0 || (at > 0 && at < grid.cells[d])) return 1;
@@ -158,7 +159,7 @@ struct NoImages {
   /// Place in the window of the image of node n.
   KOKKOS_INLINE_FUNCTION int operator()(int n) const { return n; }
 };
-/// And for a patch anywhere, at `origin`.
+/// Images of a window for a patch anywhere, at `origin`.
 template <class T, int Dim>
 struct WindowImages {
   static constexpr int k_place_bits = 16;

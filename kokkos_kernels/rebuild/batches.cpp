@@ -26,7 +26,7 @@ double copy_in(const Space& space, const State<Space, T, Dim>& s, const SoilBatc
   });
   return bytes;
 }
-/// And back what a step changes.
+/// Copies the fields that a step changes back to the host; returns their bytes.
 template <class Space, class T, int Dim>
 double copy_out(const Space& space, const State<Space, T, Dim>& s, const SoilBatch<Space, T, Dim>& batch) {
   double bytes = 0;

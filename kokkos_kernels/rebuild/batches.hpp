@@ -12,7 +12,7 @@ template <class Space, class T, int Dim>
 void store_soil(State<Space, T, Dim>& s, int count, std::size_t needed_scratch);
 
 /// Cuts the soil into batches that fit beside all else under the limit. To be called after a rebuild. Where
-/// even the lowest limit is higher, there are none: s.batches.least tells it.
+/// the limit is below the lowest possible one, s.batches.least, there are no batches.
 template <class Space, class T, int Dim>
 void plan_batches(State<Space, T, Dim>& s);
 

@@ -15,7 +15,7 @@ struct VolumeBounds {
   T least, most;
 };
 
-/// Those of particle p: k_least_volume and k_most_volume times its volume at the start. start_volume:
+/// Bounds of particle p: k_least_volume and k_most_volume times its volume at the start. start_volume:
 /// Strays::start_volume
 template <class Start, class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION VolumeBounds<T> own_volume_bounds(const Start& start_volume,

@@ -18,8 +18,8 @@ struct Leaver {
   int particle, rank;
 };
 
-/// Those whose patch (ParticleSet::address) the table `owner` gives to another rank than `own`, in the order
-/// of the particles.
+/// Particles whose patch (ParticleSet::address) the table `owner` gives to another rank than `own`, in the
+/// order of the particles.
 template <class Space, class T, int Dim>
 std::vector<Leaver> find_leavers(State<Space, T, Dim>& s,
                                  const Kokkos::View<int*, typename Space::memory_space>& owner, int own);

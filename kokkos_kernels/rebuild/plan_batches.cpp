@@ -159,7 +159,7 @@ void plan_batches(State<Space, T, Dim>& s) {
   b.least = beside + least;
   if (b.limit < b.least) return;
 
-  // What is beside the batches may grow a little without that they need other room.
+  // Data beside the batches may grow a little before the batches need other room.
   const double free = std::max(least, b.limit - beside * 17 / 16);
   const double a_particle = bytes_of(s, 1 << 20) / double(1 << 20);
   b.places = static_cast<int>(std::clamp(free / a_particle / std::max(largest, k_worth<Space>),

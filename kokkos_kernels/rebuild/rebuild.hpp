@@ -64,8 +64,8 @@ void mark_near_rigids(State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void average_pressure(State<Space, T, Dim>& s);
 
-/// What the sort moves of a value at a time, so that its scratch memory stays small: a particle's vector, or
-/// as much of a tensor.
+/// Part of a value that the sort moves at a time, so that its scratch memory stays small: a particle's
+/// vector, or as much of a tensor.
 template <class Value>
 struct SortedPart {
   using type = Value;

@@ -1,5 +1,4 @@
-// What the strategies of the paper need beside the bins: expanded lists of particles by node, and blocks by
-// colour.
+// Lists of the paper's strategies beside the bins: expanded lists of particles by node, and blocks by colour.
 
 #include <limits>
 #include <stdexcept>

@@ -145,7 +145,7 @@ void permute_fields(const Space& space, ParticleSet<Space, Points_>& set, const 
   permute_fields(space, set.points, set.order, scratch);
 }
 
-/// What holds points: how many of them have a slot, and these slots.
+/// Slots that hold points, and the number of points with a slot.
 template <class Space, class Points_, int Dim>
 void list_held(const Space& space, ParticleSet<Space, Points_>& set, const Patches<Space, Dim>& patches) {
   constexpr int cells = Patch<Dim>::cells;
@@ -263,7 +263,7 @@ KOKKOS_INLINE_FUNCTION void average_pressure_of(const Soil<Space, T, Dim>& soil,
     for (int d = 0; d < 3; ++d) soil.stress(p)[d] += change;
   }
 }
-/// The same for the excess pore pressure, of the particles that have one: with the stress and it, effective
+/// Averages the excess pore pressure of the particles that have one. With it and the stress, the effective
 /// stress is averaged too.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION void average_pore_pressure_of(const Soil<Space, T, Dim>& soil, int first, int last,

@@ -1,5 +1,5 @@
 #pragma once
-// What splitting and merging of particles share: bounds of their masses and domains, and how a particle
+// Common part of splitting and merging of particles: bounds of their masses and domains, and how a particle
 // between locate() and the sort is brought to another place.
 
 #include "data/particles.hpp"

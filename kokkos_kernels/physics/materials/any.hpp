@@ -34,7 +34,7 @@ struct OneOf<T, ModelList<Models...>> {
   KOKKOS_INLINE_FUNCTION void visit(F&& f) const {
     visit_as(ModelList<Models...>{}, which, f);
   }
-  /// The same where the caller knows which model it is, and that it is of some list.
+  /// Calls f with the model where the caller gives its index, which is in some list.
   template <template <class> class... Some, class F>
   KOKKOS_INLINE_FUNCTION void visit_as(ModelList<Some...>, int known, F&& f) const {
     (void)((known == model_index_in<Some>(Materials{}) ? (call(f, as<Some>()), true) : false) || ...);
@@ -69,7 +69,8 @@ KOKKOS_INLINE_FUNCTION const AnyMaterial<T>& material_in(const StoredMaterial<T>
 template <class T>
 AnyMaterial<T> make_material(int which, const std::vector<double>& parameters, const void* object = nullptr);
 
-/// The object of a material, where its law has one, else null. Where it cannot be made, fault tells why.
+/// The object of a material, where its law has one, else null. Where it cannot be made, `fault` gives the
+/// reason.
 std::shared_ptr<const void> make_object(int which, const LawSetup& setup, ParameterFault& fault);
 
 /// The most state variables of any law; on a device those that run on processors alone do not count.
@@ -81,11 +82,11 @@ static_assert(most_state(Materials{}, true) <= k_most_state_on_device &&
                   most_state(Materials{}, false) <= k_most_state_on_host,
               "a law has more state variables than there is room for");
 
-/// What is wrong with the parameters of a material together.
+/// Fault of the parameters of a material together.
 ParameterFault parameter_fault(const AnyMaterial<double>& material);
 
-/// What is wrong with a particle that is created so (the optional member start_fault of a law). The key
-/// "stress" is an option of the particle's body, all others are options of the material.
+/// Fault of a particle that is created so (the optional member start_fault of a law). The key "stress" is an
+/// option of the particle's body, all others are options of the material.
 ParameterFault start_fault(const AnyMaterial<double>& material, const ParticleStart& at);
 
 /// The parameters of a material for one run (the optional member prepare_for of a law). To do it again
@@ -100,8 +101,8 @@ std::vector<StateVariable> state_variables(const AnyMaterial<double>& material);
 /// infinite where the waves alone count.
 double largest_time_step(const AnyMaterial<double>& material, double spacing, double density, int dim);
 
-/// What the log says of the parameters of a material (the optional member `warning` of a law): lines, in
-/// which -NAME_ stands for the prefix of the material's options; empty where there is nothing to say.
+/// Warnings for the log about the parameters of a material (the optional member `warning` of a law): lines,
+/// in which -NAME_ stands for the prefix of the material's options; empty where there is nothing to say.
 std::string warning_of(const AnyMaterial<double>& material);
 
 /// Values of the state variables that a particle carries which is created now.

@@ -17,7 +17,7 @@ struct CamClay {
   using real = T;
   static constexpr const char* k_name = "cam_clay";
   static constexpr bool k_called_update = true, k_stiffness_changes = true;
-  /// What a failed particle is said to have; see failed().
+  /// Message about a failed particle, the end of "a particle ..."; see failed().
   static constexpr const char* k_failure =
       "has a specific volume of 1.02 or less, or strained by more than 0.0064 in one step: cam_clay does not "
       "hold there";
@@ -124,8 +124,8 @@ struct CamClay {
     const T bulk_modulus = state[specific_volume] / kappa * Kokkos::fmax(-mean_of(stress), least);
     return bulk_modulus + shear_modulus_of_step(bulk_modulus) * T(4.0 / 3);
   }
-  /// The same, at most, once the soil has been compressed by a volume strain: along the swelling line to the
-  /// preconsolidation pressure, and then along the normal compression line.
+  /// Upper bound of the wave modulus after the soil has been compressed by a volume strain: along the
+  /// swelling line to the preconsolidation pressure, and then along the normal compression line.
   template <int Dim>
   KOKKOS_FUNCTION T wave_modulus_after(const SymTensor<T, Dim>& stress, const State& state,
                                        T compression) const {
@@ -179,7 +179,7 @@ struct CamClay {
         strain_by(s, state, part, true);
     } while (any_of(parts > T(++n)));
     if (!any_of(too_many)) return;
-    state[specific_volume] = select(too_many, R(0), state[specific_volume]);  // failed() tells it
+    state[specific_volume] = select(too_many, R(0), state[specific_volume]);  // failed() finds it
     state[specific_volume_rest] = select(too_many, R(0), state[specific_volume_rest]);
   }
 

@@ -22,7 +22,7 @@ struct ElasticPressure {
     if (!any_of(!above)) return growth;
     return select(above, growth, change_on_line(from, bounded));
   }
-  /// The same where the change begins or ends on the line.
+  /// The change where it begins or ends on the line.
   MPM_SELDOM_FUNCTION R change_on_line(const R& from, const R& by) const {
     const R ratio = from / least;
     const R at = select(from >= least, Kokkos::log(ratio), ratio - 1) + by;

@@ -5,7 +5,7 @@
 
 namespace mpm {
 
-/// What the laws of clay in undrained loading share: elasticity, and a strength that grows linearly with
+/// Common part of the laws of clay in undrained loading: elasticity, and a strength that grows linearly with
 /// depth below a level and belongs to the particle. Young's modulus is one value, or the particle's own, or
 /// `rigidity` times the strength of the particle.
 template <class T>
@@ -80,8 +80,8 @@ struct Clay : YoungsModulus<T> {
             "a vertical stress in compression where -NAME_su_ratio gives the strength and -NAME_su is 0"};
   }
 
-  /// What the stiffness of a particle grows with, where Young's modulus is not one value: its own, or its
-  /// strength.
+  /// Factor of a particle's stiffness where Young's modulus is not one value: the particle's own modulus, or
+  /// its strength.
   template <class R>
   KOKKOS_INLINE_FUNCTION R basis_of(const R& strength_of_particle, const R& own_young) const {
     return this->varies() ? own_young : strength_of_particle;

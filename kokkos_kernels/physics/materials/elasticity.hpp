@@ -70,7 +70,7 @@ struct YoungsModulus {
   }
 };
 
-/// The same with the elastic constants. Variable: place of Young's modulus among the state variables.
+/// Young's modulus with the elastic constants. Variable: place of Young's modulus among the state variables.
 template <class T, int Variable>
 struct Elasticity : YoungsModulus<T> {
   T lambda, shear_modulus;  // Pa, of reference_young()

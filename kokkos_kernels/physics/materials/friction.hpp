@@ -13,7 +13,7 @@ namespace mpm {
 /// The value of a parameter `tension` for which its word `none` is given.
 inline constexpr double k_no_tension = -1;
 
-/// What the frictional laws share: elasticity; cohesion, friction and dilation; a cohesion that grows
+/// Common part of the frictional laws: elasticity; cohesion, friction and dilation; a cohesion that grows
 /// linearly with depth below a level and belongs to the particle; a tension cut-off, at the apex of the yield
 /// surface where it would be above, at which the soil parts (parting.hpp). Jaumann rate of the Cauchy stress.
 template <class T>
@@ -87,8 +87,8 @@ struct FrictionalSoil : Elasticity<T, 3> {
   }
   static double radians(double degrees) { return degrees * (3.14159265358979323846 / 180); }
 
-  /// What the log says of angles below one degree, which are likely radians, and of a cut-off above the apex
-  /// [Pa] of the yield surface; a line each.
+  /// Warnings for the log about angles below one degree, which are likely radians, and about a cut-off above
+  /// the apex [Pa] of the yield surface; a line each.
   std::string friction_warning(double apex) const {
     std::string lines;
     const auto add = [&lines](const char* form, auto... values) {

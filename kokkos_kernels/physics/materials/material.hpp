@@ -1,6 +1,6 @@
 #pragma once
-// What every law shares: its tables of parameters and of state variables, what its update is given, and the
-// rotation of stress. docs/CONTRIBUTING.md tells how a law is written.
+// Common part of all laws: tables of parameters and of state variables, the input of an update, and the
+// rotation of stress. docs/CONTRIBUTING.md says how to write a law.
 
 #include <array>
 #include <string>
@@ -40,8 +40,8 @@ struct TextOption {
   bool list_of_numbers = false;  // numbers with commas between them, which the option reader checks
 };
 
-/// What an object of a law is made from (the optional members Object and make_object of a law): what does not
-/// fit into the law itself, which kernels copy.
+/// Input from which the object of a law is made (the optional members Object and make_object of a law). The
+/// object holds data that do not fit into the law itself, which kernels copy.
 struct LawSetup {
   std::string material;            // name
   std::vector<std::string> texts;  // values of the options of texts(), in its order
@@ -75,13 +75,13 @@ constexpr std::array<Parameter<Law>, 1> strength_factor_row() {
             "what the strength is divided by: su, or cohesion and tan(friction)", 0.01, 100, 1}}};
 }
 
-/// What a law may know of the run that it is for (its optional member prepare_for).
+/// Figures of the run for a law (its optional member prepare_for).
 struct RunFigures {
   double spacing = 0;           // m, edge of the mesh's cells
-  double largest_pressure = 0;  // Pa, largest initial mean stress in compression of its soil; 0: not known
+  double largest_pressure = 0;  // Pa, largest initial mean stress in compression of its soil; 0: unknown
 };
 
-/// What is wrong with the parameters of a law together.
+/// Fault of the parameters of a law together.
 struct ParameterFault {
   std::string key;    // option key of the parameter to change; empty: nothing is wrong
   std::string takes;  // the end of "takes ..."; -NAME_ stands for the prefix of the material's options
@@ -103,7 +103,7 @@ struct Clock {
   KOKKOS_INLINE_FUNCTION double now() const { return start + dt * load_of_others(steps); }
 };
 
-/// What a step does to a particle, as its law sees it. R: the real type T, or lanes of it.
+/// Increment of a particle in a step, the input of its law. R: the real type T, or lanes of it.
 template <class R, class T, int Dim>
 struct Increment {
   SymTensor<R, Dim> strain;  // -, tensor shear strains, with the cell's fraction of dilatation (F-bar)
@@ -120,7 +120,7 @@ template <class Law>
 inline constexpr int state_size = static_cast<int>(Law::state().size());
 
 /// Whether the particles of a law carry its state variable k: all do, unless the law has a member `carries`
-/// that tells it by the parameters. Only the last variables of a table may be missing.
+/// that decides it by the parameters. Only the last variables of a table may be missing.
 template <class Law>
 KOKKOS_INLINE_FUNCTION bool carries(const Law& law, int k) {
   if constexpr (requires { law.carries(k); }) return law.carries(k);
@@ -180,7 +180,7 @@ constexpr bool can_fail() {
   };
 }
 
-/// What a law makes of a particle.
+/// Particle after the update of its law.
 template <class Law, int Dim>
 struct Updated {
   SymTensor<typename Law::real, Dim> stress;
@@ -254,7 +254,7 @@ KOKKOS_INLINE_FUNCTION void add_with_rest(R& sum, R& rest, const R& increment) {
     sum = next;
   }
 }
-/// The same where a condition holds.
+/// Adds the increment where a condition holds.
 template <class R>
 KOKKOS_INLINE_FUNCTION void add_with_rest_if(const Truth<R>& condition, R& sum, R& rest, const R& increment) {
   R next = sum, next_rest = rest;

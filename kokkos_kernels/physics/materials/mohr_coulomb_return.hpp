@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-/// What the return takes of the angles and of Poisson's ratio. f = k s1 - s3 - sc, flow (m, 0, -1).
+/// Coefficients of the return from the angles and Poisson's ratio. f = k s1 - s3 - sc, flow (m, 0, -1).
 template <class T>
 struct PyramidShape {
   T k, m;                // (1 + sin) / (1 - sin) of the angles of friction and dilation
@@ -57,7 +57,7 @@ struct PyramidSize {
   bool cuts;      // there is a cut-off
   Truth<R> apex;  // it is at the apex of the pyramid
 
-  /// The same surface for stresses from which a mean [Pa] is subtracted.
+  /// This surface for stresses from which a mean [Pa] is subtracted.
   KOKKOS_INLINE_FUNCTION PyramidSize without(const R& mean, RealOf<R> k) const {
     return {sc - (k - 1) * mean, cut_off - mean, low - mean, cuts, apex};
   }

@@ -1,6 +1,6 @@
 #pragma once
 // Soil that has parted at its limit of tension: it takes no pressure until compression has used up the volume
-// strain by which it parted. docs/soils.md, "Soil that parts", tells the rules.
+// strain by which it parted. docs/soils.md, "Soil that parts", has the rules.
 
 #include "physics/materials/mohr_coulomb_return.hpp"
 
@@ -35,7 +35,7 @@ struct ClosedGap {
   R parted;
 };
 
-/// The same for laws that limit the largest principal stress, where soil may have parted in one or two
+/// Closed gap for laws that limit the largest principal stress, where soil may have parted in one or two
 /// directions and still be pressed in the others: a principal direction of the stress before the step that
 /// was not pressed is open, and takes no pressure while a gap is left. `trial`: the elastic trial; whole: the
 /// soil parts in all directions at once, so that no direction at all is pressed. Compression closes the gap

@@ -14,7 +14,7 @@ struct PointState {
   std::vector<double> state;       // all state variables of the law, in the order of its table
 };
 
-/// What one update does to a point. There is no spin.
+/// Increment of a point in one update. There is no spin.
 struct PointIncrement {
   std::array<double, 6> strain{};  // -, tensor shear strains
   double dt = 1;                   // s
@@ -37,7 +37,7 @@ struct PointMaterial {
 };
 
 /// The law of a material. In 2D the shear components yz and zx stay as they are. A law that asks for the
-/// place of its particle is told the first particle, at the point's height.
+/// place of its particle gets the first particle, at the point's height.
 PointLaw point_law(const PointMaterial& material, bool single, int dim);
 
 /// A point that is created with a stress [Pa].

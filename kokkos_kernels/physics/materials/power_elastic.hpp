@@ -52,7 +52,7 @@ struct PowerElastic {
   KOKKOS_FUNCTION T wave_modulus(const SymTensor<T, Dim>& stress, const LawState<T, 0>&) const {
     return bulk_modulus_at(pressure_offset - mean_of(stress)) * (1 + shear_ratio * 4 / 3);
   }
-  /// The same once the soil has been compressed by a volume strain.
+  /// The wave modulus after the soil has been compressed by a volume strain.
   template <int Dim>
   KOKKOS_FUNCTION T wave_modulus_after(const SymTensor<T, Dim>& stress, const LawState<T, 0>&,
                                        T compression) const {

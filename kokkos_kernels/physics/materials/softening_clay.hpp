@@ -165,7 +165,7 @@ struct SofteningClay : Clay<T> {
   }
 
   /// Soil of strength su0 [Pa] and one or its own Young's modulus [Pa] must not soften faster than it
-  /// unloads: 3 su0 R (1-d)/xi95 < G. Less than 0: the modulus is not known yet.
+  /// unloads: 3 su0 R (1-d)/xi95 < G. Less than 0: the modulus is unknown as yet.
   ParameterFault brittleness_fault(double su0, double young) const {
     if (young < 0) return {};
     const double ratio = rigidity_of_shear(su0, young), largest = 1 + k_most_decades * rate_factor;

@@ -1,5 +1,5 @@
 #pragma once
-// What the tables of the laws say, for code that does not see the laws.
+// Contents of the laws' tables, for code that does not include the laws.
 
 #include <array>
 #include <optional>
@@ -21,7 +21,7 @@ struct StateVariable {
 };
 
 /// Values that a particle has of its own, of the parameters of StateVariable::parameter in the order of the
-/// law's table, in their units; none where the material tells it.
+/// law's table, in their units; none where the material gives it.
 inline constexpr int k_most_own = 2;
 using OwnValues = std::array<std::optional<double>, k_most_own>;
 
@@ -38,8 +38,8 @@ bool stiffness_changes(int which);
 /// Whether the model of this index in Materials runs on processors in double precision alone.
 bool on_host_in_double(int which);
 
-/// What a particle is said to have that the model of this index in Materials calls failed; empty where no
-/// state is a failure.
+/// Message about a particle that the model of this index in Materials calls failed, the end of "a particle
+/// ..."; empty where no state is a failure.
 const char* failure_of(int which);
 
 /// All state variables of the model of this index in Materials; a material may do without some.

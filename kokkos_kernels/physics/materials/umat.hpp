@@ -33,7 +33,7 @@ struct Umat {
   static constexpr const char* k_name = "umat";
   static constexpr bool k_scalar_update = true, k_stiffness_changes = true, k_host_double = true,
                         k_takes_place = true;
-  /// What a failed particle is said to have; see failed().
+  /// Message about a failed particle, the end of "a particle ..."; see failed().
   static constexpr const char* k_failure =
       "was given up by its UMAT, which set PNEWDT below 1 or called XIT (a smaller -time_courant "
       "takes smaller steps)";
@@ -94,8 +94,8 @@ struct Umat {
     return {};
   }
 
-  /// What a particle carries: the wave modulus, or a negative number where the UMAT has failed; total
-  /// strain (tensor shear strains); specific energies; and the UMAT's own variables.
+  /// State of a particle: the wave modulus, or a negative number where the UMAT has failed; total strain
+  /// (tensor shear strains); specific energies; and the UMAT's own variables.
   enum : int { modulus, strain, energy = strain + 6, own = energy + 3 };
   static constexpr int k_size = own + k_most_states;
   using State = LawState<T, k_size>;
@@ -148,7 +148,7 @@ struct Umat {
   KOKKOS_FUNCTION T wave_modulus(const SymTensor<T, Dim>&, const State& state) const {
     return state[modulus];
   }
-  /// 0: only the UMAT knows it.
+  /// 0: only the UMAT has it.
   KOKKOS_FUNCTION T shear_strength(const State&) const { return 0; }
   /// Energy that the soil can give back [J/m3], at most: SSE, which few UMATs compute, or that of an elastic
   /// material of this wave modulus whose Poisson's ratio is 0.495, if that is more. A run whose kinetic

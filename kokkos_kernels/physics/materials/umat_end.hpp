@@ -13,8 +13,8 @@ struct RunningUmat {
 };
 
 /// Watches code of the user in its scope. Where the code ends the program, the program does not end with the
-/// code's status, which may be 0, but with 2 before the first step and 3 after it, and tells so on stderr.
-/// Another rank of a run is then ended by its launcher.
+/// code's status, which may be 0, but with 2 before the first step and 3 after it, and reports this on
+/// stderr. Another rank of a run is then ended by its launcher.
 class WatchedUmat {
  public:
   explicit WatchedUmat(const RunningUmat& running);

@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// What one call of a UMAT is given and gives back. Abaqus' order 11 22 33 12 13 23, engineering shear
-/// strains, tension positive; in 2D the first four.
+/// Arguments of one call of a UMAT, in and out. Abaqus' order 11 22 33 12 13 23, engineering shear strains,
+/// tension positive; in 2D the first four.
 struct UmatCall {
   double stress[6] = {};            // Pa, turned with the material already
   double strain[6] = {};            // -, total strain before the step, turned likewise
@@ -49,13 +49,13 @@ struct UmatTexts {
 };
 
 /// Opens a library. Where it, or later its UMAT, ends the program (exit, STOP of Fortran, _exit), the status
-/// becomes 2 before the first step and 3 after it, and a line on stderr tells of it. If it cannot be used the
-/// result is null, `key` is the option to change, and `takes` the end of the message "takes ...".
+/// becomes 2 before the first step and 3 after it, and a line on stderr reports it. If the library cannot be
+/// used, the result is null, `key` is the option to change, and `takes` the end of the message "takes ...".
 std::shared_ptr<const UmatLibrary> open_umat(const std::string& material, const UmatTexts& texts, int dim,
                                              const std::array<double, 3>& lower, double spacing,
                                              std::string& key, std::string& takes);
 
-/// What XIT throws through the frames of a UMAT to the call that it ends.
+/// Exception that XIT throws through the frames of a UMAT to the call that it ends.
 struct UmatExit {};
 
 }  // namespace mpm

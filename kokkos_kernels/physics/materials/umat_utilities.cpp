@@ -119,7 +119,7 @@ void sprinc_(const double* s, double* ps, const int* lstr, const int* ndi, const
   principal(t, ps, axis);
 }
 
-/// The same with their directions: AN(K, I) is component I of the direction of PS(K).
+/// Principal values with their directions: AN(K, I) is component I of the direction of PS(K).
 void sprind_(const double* s, double* ps, double* an, const int* lstr, const int* ndi, const int* nshr) {
   Matrix3 t, axis;
   unpack(s, *lstr, *ndi, *nshr, t);

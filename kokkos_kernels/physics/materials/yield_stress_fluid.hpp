@@ -94,7 +94,7 @@ struct YieldStressFluid {
     return elastic_energy(stress, lambda, shear_modulus);
   }
 
-  /// What flow of a step dt [s] makes of an elastic trial that is `beyond` [Pa] the yield stress.
+  /// Result of the flow in a step dt [s], from an elastic trial that is `beyond` [Pa] the yield stress.
   struct Flow {
     T stress;  // Pa, k g^n: what stays of `beyond`
     T strain;  // -, g dt
