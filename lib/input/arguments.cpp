@@ -1,4 +1,4 @@
-// What must be done before PETSc reads the command line and the options files: it ends the program over a
+// Checks before PETSc reads the command line and the options files, because PETSc ends the program over a
 // file that it cannot read, passes over words that belong to no option, and acts at once on options of its
 // own that load libraries or write files.
 
@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-/// The same texts on every process: those of the first.
+/// Gives every process the texts of the first.
 void share(MPI_Comm comm, std::vector<std::string>& texts) {
   std::string all;
   for (const auto& text : texts) all += text + '\0';
@@ -73,7 +73,7 @@ void report_strays(DeckReader& reader) {
   }
 }
 
-/// What is wrong with an option of PETSc; empty where a run passes it on.
+/// Fault of an option of PETSc; empty where a run passes it on.
 std::string fault_of_petsc(const std::string& key, const GivenOption& option) {
   if (key.starts_with("saws_")) return "nothing: there is no web server";
   return petsc_fault(key, option.value.value_or(""));
@@ -161,7 +161,7 @@ void prepare_arguments(MPI_Comm comm, int* argc, char*** argv, InputReport& repo
   report.options_file = marks[2], report.log_view = marks[3];
   unsetenv("PETSC_OPTIONS"), unsetenv("PETSC_OPTIONS_YAML");  // they have been read
 
-  // What PETSc would print of options that were not used, every one of which is reported here.
+  // Keeps PETSc from printing options that were not used, because every one of them is reported here.
   report.petsc_words.insert(report.petsc_words.begin(), {"-skip_petscrc", "true", "-options_left", "false"});
   report.arguments = {*argc > 0 ? **argv : nullptr};
   for (auto& word : report.petsc_words) report.arguments.push_back(word.data());

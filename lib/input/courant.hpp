@@ -22,7 +22,7 @@ double rim_scale(const Config& config);
 /// The Courant number of a run whose user gives none: 0.5, or 95 % of the largest one if that is less.
 double standard_courant(const Config& config);
 
-/// What bounds the time step: the step at a Courant number of 1, by waves, and the largest one by an explicit
+/// Bounds of the time step: the step at a Courant number of 1, by waves, and the largest one by an explicit
 /// viscosity away from the rim of a body (viscous_time_step); infinite where there is none.
 struct StepLimits {
   double wave, viscous;  // s

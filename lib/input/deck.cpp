@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t k_most_bytes = std::size_t(64) << 20;  // of a deck: an endless file is none
 constexpr int k_most_files = 1000;                           // decks that include one another
-constexpr int k_most_faults = 10;                            // lines told of one deck
+constexpr int k_most_faults = 10;                            // lines reported for one deck
 
 /// The words of a line of a deck, without its comment; a word may hold spaces in double quotes.
 std::vector<std::string> words_of(const std::string& line) {
@@ -75,7 +75,7 @@ std::string contents_of(const std::string& path, std::string& fault) {
   return fault.empty() ? all : std::string();
 }
 
-/// What names a file, so that one that includes itself is known.
+/// Identity of a file, by which a file that includes itself is found.
 std::string identity_of(const std::string& path) {
   std::error_code error;
   const auto whole = std::filesystem::canonical(path, error);

@@ -1,6 +1,6 @@
 #pragma once
-// What decks, PETSc's own files, the environment and the command line give, as one list of options. PETSc
-// would end the program over a file that it cannot read, and does not read pipes on several ranks.
+// Options of decks, PETSc's own files, the environment and the command line, as one list. PETSc would end the
+// program over a file that it cannot read, and does not read pipes on several ranks.
 
 #include <map>
 #include <optional>

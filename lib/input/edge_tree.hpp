@@ -7,9 +7,9 @@
 
 namespace mpm {
 
-/// A balanced tree over the edges in their order. Each part of it knows how far its edges reach in several
+/// A balanced tree over the edges in their order. Each part of it holds how far its edges reach in several
 /// directions, some of them across where most of the outline runs, so that the teeth of a comb that lies
-/// askew are told apart too.
+/// askew are distinguished too.
 class EdgeTree {
  public:
   explicit EdgeTree(const Polygon& polygon);

@@ -11,7 +11,7 @@
 namespace mpm {
 namespace {
 
-constexpr double k_point_cell = 1;  // m, edge of the cells for which a point stands, unless the law knows it
+constexpr double k_point_cell = 1;  // m, edge of the cells for which a point stands, unless the law has it
 
 /// The options of a run of a mesh that are given, which a single point does not use.
 void pass_over_mesh(OptionReader& in) {
@@ -44,7 +44,7 @@ void choose_dim(OptionReader& in, Config& config) {
 }
 
 /// Whether a file that goes on from a state must give a state variable: one that frames have, but for a gap,
-/// which is closed where the file does not tell it.
+/// which is closed where the file does not give it.
 bool is_needed(const StateVariable& variable) {
   return variable.output && std::string_view(variable.name) != "parted_volume";
 }

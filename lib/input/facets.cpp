@@ -199,7 +199,7 @@ double Facets::volume() const {
     ConvexPiece piece = (*this)[k].between(0, mesh_.lower[0], mesh_.upper[0]);
     if (dim_ == 3 && piece.count > 0) piece = piece.between(1, mesh_.lower[1], mesh_.upper[1]);
     if (piece.count == 0) continue;
-    // What is beyond the mesh in height counts as its side.
+    // A part beyond the mesh in height counts as on the mesh's side.
     ConvexPiece below, rest, inside, above;
     piece.split(2, mesh_.lower[up], below, rest);
     rest.split(2, mesh_.upper[up], inside, above);

@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-/// Whether facets_of() knows the surface of a shape.
+/// Whether facets_of() can make the surface of a shape.
 bool has_facets(const Shape& shape);
 
 /// Pieces, anticlockwise as seen from outside: from above, an upper side has a positive area and a lower one

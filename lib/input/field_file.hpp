@@ -35,7 +35,8 @@ bool has_dataset(const std::string& path, const std::string& key);
 /// is well.
 std::string read_field(const std::string& path, const std::string& key, int dim, GridField& field);
 
-/// The same of a field that does not reach to the sides of what is to have its values.
+/// Fault of a field that does not reach to the sides of the region that takes its values, as the end of
+/// "takes ..."; empty where it does.
 std::string uncovered(const GridField& field, const Bounds& bounds, double slack);
 
 }  // namespace mpm

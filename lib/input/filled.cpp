@@ -117,7 +117,7 @@ bool Filled::soil_holds(const Vec3& x) const {
 
 void Filled::enter_row(double low, double high) {
   low -= moved_[dim_ - 1], high -= moved_[dim_ - 1];
-  const double reach = shape_.fill == Fill::cell ? mesh_.spacing : 0;  // holds_cell() looks at whole cells
+  const double reach = shape_.fill == Fill::cell ? mesh_.spacing : 0;  // holds_cell() tests whole cells
   for (Region& region : region_) region.enter_row(low - reach, high + reach);
   for (Region& hole : holes_) hole.enter_row(low, high);
 }

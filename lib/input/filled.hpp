@@ -1,6 +1,6 @@
 #pragma once
-// What a body or rigid occupies at the start: its shape without what is cut out, or the places of the
-// particles that a file lists.
+// Space that a body or rigid occupies at the start: its shape without the parts that are cut out, or the
+// places of the particles that a file lists.
 
 #include <unordered_map>
 #include <vector>
@@ -35,10 +35,11 @@ class Filled {
  public:
   /// `shape` must outlive it; `cut_out` are shapes that it has no particles in.
   Filled(const Shape& shape, const std::vector<Shape>& cut_out, const MeshConfig& mesh, int dim);
-  /// Of a file, which must be sound.
+  /// Makes the space of the particles of a file, which must be sound.
   Filled(const Shape& shape, const ParticleSource& source, const std::vector<Shape>& cut_out,
          const MeshConfig& mesh, int dim);
-  /// Of soil that has moved from its shape: the places of its particles [m, packed by dim].
+  /// Makes the space of soil that has moved from its shape, from the places of its particles [m, packed by
+  /// dim].
   Filled(const Shape& shape, std::vector<double> position, const MeshConfig& mesh, int dim);
 
   /// Moves all of it by a displacement [m].

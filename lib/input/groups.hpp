@@ -16,15 +16,16 @@ namespace mpm {
 /// -mesh_*. Whether the mesh is sound, so that shapes can be checked against it.
 bool read_mesh(OptionReader& in, int dim, MeshConfig& mesh);
 
-/// What sides of the mesh take beside their kind: friction, dashpots, velocities. After the time.
+/// Reads properties of sides of the mesh beside their kind: friction, dashpots, velocities. After the time.
 void read_sides(OptionReader& in, Config& config);
 /// The side against gravity, where no option gives it: soil may leave it (smooth). Where a body reaches it at
 /// the start it stays a roller, as the run says. before: the stage before, or null. After the bodies.
 void choose_lid(OptionReader& in, const Config* before, Config& config);
-/// Rejects sides with dashpots where a material does not tell the speed of its shear waves, and columns of
+/// Rejects sides with dashpots where a material does not give the speed of its shear waves, and columns of
 /// the free field without a base.
 void check_absorbing(OptionReader& in, const Config& config);
-/// -rayleigh_*. And, after the sides and the materials, rejects what such damping does not go with.
+/// Reads -rayleigh_*. check_rayleigh, after the sides and the materials, rejects input that excludes such
+/// damping.
 void read_rayleigh(OptionReader& in, Config& config);
 void check_rayleigh(OptionReader& in, const Config& config);
 /// Checks what a periodic mesh takes: weight of water across it alone, and rigids that do not end beside its
@@ -45,14 +46,14 @@ void make_law_object(OptionReader& in, const MeshConfig& mesh, int dim, Material
 /// A parameter of a material by its key; NaN where its model has none of that name.
 double parameter_of(const MaterialConfig& material, const std::string& key);
 
-/// What the law of a material says of its parameters for the log.
+/// Warnings of the law of a material about its parameters, for the log.
 std::vector<std::string> warnings_of_law(const MaterialConfig& material);
 
 /// Sets the parameters of a sound material that depend on the mesh's spacing [m] and the largest initial mean
-/// stress in compression of its soil [Pa]; 0 where it is not known yet.
+/// stress in compression of its soil [Pa]; 0 where it is unknown as yet.
 void prepare_material(MaterialConfig& material, double spacing, double largest_pressure);
 
-/// The same for all materials, each with the largest pressure of its bodies.
+/// Calls prepare_material for all materials, each with the largest pressure of its bodies.
 void prepare_for_pressure(double spacing, Config& config);
 
 /// Whether a particle of a sound material may start at a height [m] with a stress [Pa], and with its own
@@ -67,8 +68,8 @@ bool needs_own_young(const MaterialConfig& material);
 bool may_start(const MaterialConfig& material, double height, const Sym6& stress, int dim,
                const OwnValues& own);
 
-/// What particles should be whose own values of a parameter are from `least` to `largest`, as the end of
-/// "takes ..."; empty where their material takes these.
+/// Fault of particles whose own values of a parameter are from `least` to `largest`, as the end of "takes
+/// ..."; empty where their material takes these values.
 std::string own_parameter_fault(const MaterialConfig& material, const std::string& key, double least,
                                 double largest);
 
@@ -113,7 +114,7 @@ void read_water(OptionReader& in, Config& config);
 
 /// The options of one region with a level of its own.
 void read_water_region(OptionReader& in, const Config& config, WaterRegionConfig& region);
-/// Rejects more regions than the step knows, and regions where there is no water.
+/// Rejects more regions than a step can have, and regions where there is no water.
 void check_water_regions(OptionReader& in, const Config& config);
 /// Checks that there is water in a stage if there is in the first one.
 void check_water_kept(OptionReader& in, const Config& first, const Config& now);
@@ -140,7 +141,7 @@ void read_start(OptionReader& in, int dim, BodyConfig& body);
 
 /// Where a body's particles are, if a file lists them.
 ParticleSource source_of(const BodyConfig& body);
-/// The same with the state variables of the body's law.
+/// The particle source with the state variables of the body's law.
 ParticleSource source_of(const BodyConfig& body, const Config& config);
 
 /// Reads the particles that a file lists, and checks them; the table is empty where they are wrong.
@@ -181,16 +182,16 @@ void read_stage_bodies(OptionReader& in, const Config& config, StageConfig& stag
 /// Checks that a stage cuts out of bodies, as they are placed, what the first one does: their particles keep
 /// their ids.
 void check_cut_kept(OptionReader& in, const Config& first, const Config& now);
-/// What bodies keep from the stage before: their masses, and what is known of their initial stress. Before
+/// Copies from the stage before what bodies keep: their masses, and the data of their initial stress. Before
 /// prepare_for_pressure, which takes the largest pressures.
 void follow_stage(const Config& before, Config& now);
-/// What the stage of a reader owns; rigids and gravity have been read.
+/// Reads the options that the stage of a reader owns, after rigids and gravity.
 void read_stage(OptionReader& in, Config& config);
 /// Checks that the options that the stage of a reader gives may change at a stage.
 void check_stage_changes(OptionReader& in, const Config& config);
 
-/// What is wrong with a name that is to begin options beside those that `known` has read or listed; empty
-/// where nothing is.
+/// Fault of a name that is to begin options beside those that `known` has read or listed; empty where there
+/// is none.
 std::string name_fault(const OptionReader& known, const std::string& name);
 
 /// Checks the files of -log_view, which PETSc opens at the end of the run, for this output folder.
@@ -199,8 +200,8 @@ void check_log_view(const std::string& folder, InputReport& report);
 /// -element_path and what goes with it. Whether it is given.
 bool read_element_file(OptionReader& in, ElementConfig& element);
 
-/// What a single material point needs beside: the one material, the file of its path, and that its law can
-/// start there. Options of a run of a mesh are passed over.
+/// Reads the input of a single material point: the one material and the file of its path. Checks that the law
+/// can start there. Options of a run of a mesh are passed over.
 void read_element(OptionReader& in, Config& config);
 
 /// -materials with one name, and that material.

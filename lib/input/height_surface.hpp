@@ -44,7 +44,7 @@ LayerBounds bounds_between(const HeightSurface& top, const HeightSurface& base, 
 /// Lowest and highest height in the mesh [m].
 std::array<double, 2> heights_of(const HeightSurface& surface, const MeshConfig& mesh, int dim);
 
-/// What a surface should have been for a mesh, as the end of "takes ...": it covers the mesh as seen from
+/// Fault of a surface for a mesh, as the end of "takes ...". A sound surface covers the mesh as seen from
 /// above, has a height everywhere there, and is in the mesh. Empty where all is well.
 std::string fault_of(const HeightSurface& surface, const MeshConfig& mesh, int dim);
 

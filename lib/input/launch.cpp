@@ -38,7 +38,7 @@ std::string whole_number(const std::string& value, long lowest, long highest) {
   return "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
 }
 
-/// What a setting takes; empty where the value is that.
+/// Values that a setting takes; empty where the value is one of them.
 std::string fault_of(Takes takes, const std::string& value, int devices) {
   const std::string word = lower_case(value);
   const auto is_one_of = [&](const std::vector<std::string>& words) {

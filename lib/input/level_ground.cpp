@@ -24,7 +24,7 @@ double friction_of(const MaterialConfig& material) {
 /// Parts of a vertical line that are in a shape [m].
 using Spans = std::vector<std::array<double, 2>>;
 
-/// Whether spans_of knows a shape.
+/// Whether spans_of can treat a shape.
 bool has_spans(const Shape& shape) {
   if (shape.kind == ShapeKind::box) return shape.angle == 0 && shape.fillet == 0;
   return shape.kind == ShapeKind::layer || shape.kind == ShapeKind::polygon;
@@ -64,7 +64,7 @@ bool hold(const Spans& spans, double height) {
                      [=](const auto& span) { return height > span[0] && height < span[1]; });
 }
 
-/// What keeps a body from the stress of level ground, as the end of "takes ..."; empty where nothing does.
+/// Reason why a body cannot have the stress of level ground, as the end of "takes ..."; empty where it can.
 std::string fault_of(const Config& config, const BodyConfig& body) {
   const int up = config.dim - 1;
   bool down = config.gravity[up] < 0;
@@ -78,7 +78,7 @@ std::string fault_of(const Config& config, const BodyConfig& body) {
   return "";
 }
 
-/// Places over the ground that a check looks at: the middles of cells of half the mesh's, or larger ones.
+/// Places over the ground that a check tests: the middles of cells of half the mesh's, or larger ones.
 std::vector<Vec3> places_over(const Bounds& bounds, double spacing, int dim) {
   constexpr double k_most[] = {4000, 250};  // along an axis, in 2D and in 3D
   std::array<long, 2> count{1, 1};

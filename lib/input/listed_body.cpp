@@ -1,4 +1,4 @@
-// What a body takes from a file that lists its particles, and what from options.
+// A body from a file that lists its particles, and from options.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ bool will_be_removed(const std::string& file, const std::string& folder) {
          (path.parent_path() == own / "frames" && is_written_name(name, true));
 }
 
-/// What the numbers of a file must be for the arithmetic to have room; empty where they are.
+/// Fault of the numbers of a file, which must leave room for arithmetic; empty where they do.
 std::string beyond_bounds(const ParticleTable& table, const Config& config, const MeshConfig& mesh) {
   const int dim = config.dim;
   const double cell = std::pow(mesh.spacing, dim) * revolved_length(config, mesh.upper[0]),
@@ -54,7 +54,8 @@ std::string beyond_bounds(const ParticleTable& table, const Config& config, cons
   return "";
 }
 
-/// What the file lacks where the material asks for each particle's own Young's modulus; empty otherwise.
+/// Fault of a file that lacks each particle's own Young's modulus where the material asks for it; empty
+/// otherwise.
 std::string missing_young(const BodyConfig& body, const Config& config, const ParticleTable& table) {
   if (body.material >= static_cast<int>(config.materials.size())) return "";  // reported
   const MaterialConfig& material = config.materials[body.material];

@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// What a load is on, of all ranks.
+/// Surface that a load is on, over all ranks.
 struct LoadedSurface {
   long particles = 0;
   double area = 0;  // m2 (m in 2D)

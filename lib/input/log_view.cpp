@@ -29,7 +29,7 @@ std::vector<Viewer> viewers_of(const std::string& value) {
   return viewers;
 }
 
-/// What is wrong with the name of a file of the output folder; empty where nothing is.
+/// Fault of the name of a file of the output folder; empty where there is none.
 std::string fault_of(const std::string& name, const std::string& folder, const InputReport& report) {
   namespace fs = std::filesystem;
   if (name == "." || name == ".." || name.find('/') != std::string::npos || has_control(name))

@@ -152,7 +152,7 @@ void reject_others(OptionReader& in, const std::string& name, const ModelOptions
   }
 }
 
-/// What the law itself says of its parameters.
+/// Checks the parameters together by the law itself.
 void check_together(OptionReader& in, int model, const MaterialConfig& material) {
   const ParameterFault fault =
       parameter_fault(make_material<double>(model, material.parameters, material.object.get()));

@@ -18,7 +18,8 @@ bool is_name(const std::string& word) {
          std::isalpha(static_cast<unsigned char>(word[0])) && std::all_of(word.begin(), word.end(), plain);
 }
 
-/// The names in use so far (lower case, since options know no case), and the words that no name may be.
+/// The names in use so far (lower case, since case does not matter in options), and the words that no name
+/// may be.
 struct Names {
   std::set<std::string> used, reserved;
 
@@ -28,7 +29,7 @@ struct Names {
     for (const char* free : {"wall", "rigid", "rebuild"}) reserved.erase(free);
     for (const auto& option : petsc_names()) reserved.insert(split(option, '_')[0]);
   }
-  /// What is wrong with a name; empty where nothing is.
+  /// Fault of a name; empty where there is none.
   std::string fault(const std::string& name) const {
     const std::string key = lower_case(name);
     if (!is_name(name)) return "names of letters, digits and _ that begin with a letter, as sand,clay";
@@ -150,7 +151,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
   if (sound_materials && in.errors() == errors && !body.k0) check_starts(in, *mesh, config, listed, body);
 }
 
-/// Whether the step knows the distance to the surface of a shape.
+/// Whether the step can compute the distance to the surface of a shape.
 bool has_distance(const Shape& shape) { return shape.kind != ShapeKind::stl; }
 
 void read_contact_normal(OptionReader& in, RigidConfig& rigid) {

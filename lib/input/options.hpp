@@ -34,7 +34,7 @@ struct StageInput {
   std::vector<EffectiveOption> options;  // in force in the stage
 };
 
-/// What reading the input found.
+/// Findings of the reading of the input.
 struct InputReport {
   std::vector<std::string> errors;    // each a whole line without its end: mpm: -NAME: given "...", takes ...
   std::vector<std::string> warnings;  // each a whole line without its end: warning: ..., mpm: note: ...
@@ -60,10 +60,9 @@ struct InputReport {
 /// Reads the command line, the options files (a pipe too), PETSc's own files and PETSC_OPTIONS on the first
 /// process of comm, and leaves of the arguments only PETSc's own options, those that a run passes on; they
 /// live as long as the report. All others wait in report.words for read_options, so that PETSc does not act
-/// on an option before it is known. What is on the command line takes precedence over the
-/// files. Reports files that cannot be read, lines of them that are not "-NAME VALUE", and words that belong
-/// to no option (PETSc would pass over both). Call it on every process of comm after MPI_Init and before
-/// PetscInitialize.
+/// on an option before it is known. The command line takes precedence over the files. Reports files that
+/// cannot be read, lines of them that are not "-NAME VALUE", and words that belong to no option (PETSc would
+/// pass over both). Call it on every process of comm after MPI_Init and before PetscInitialize.
 void prepare_arguments(MPI_Comm comm, int* argc, char*** argv, InputReport& report);
 
 /// Puts report.words into PETSc's database, reads every option with this prefix (null for none) from it,

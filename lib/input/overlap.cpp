@@ -144,7 +144,7 @@ struct Things {
     const auto& list = is_body(b) ? body.cut_out_bodies : body.cut_out;
     return std::find(list.begin(), list.end(), is_body(b) ? b : b - bodies) != list.end();
   }
-  /// What it fills as it is placed.
+  /// Space that it fills as it is placed.
   std::unique_ptr<Filled> as_placed(int n) const {
     if (!is_body(n))
       return std::make_unique<Filled>(config.rigids[n - bodies].shape, std::vector<Shape>{}, config.mesh,
@@ -155,7 +155,7 @@ struct Things {
       return std::make_unique<Filled>(body.shape, source_of(body), holes, config.mesh, config.dim);
     return std::make_unique<Filled>(body.shape, holes, config.mesh, config.dim);
   }
-  /// What it fills when the stage begins.
+  /// Space that it fills when the stage begins.
   std::unique_ptr<Filled> as_it_is(int n, const Present& present) const {
     if (is_placed(n)) return as_placed(n);
     if (is_body(n))

@@ -18,14 +18,15 @@ struct Overlap {
 };
 
 /// Finds the overlaps of all shapes, with what is cut out of them. Bodies that touch, within half a particle
-/// (a whole one where a file lists the particles), do not overlap. Each pair whose bounds meet is looked at
-/// by sample points half a particle apart, 5e7 at most, so that it takes a second at most; in more cells than
-/// that an overlap of a few particles may be missed. Collective on comm: each rank looks at a part of the
+/// (a whole one where a file lists the particles), do not overlap. Each pair whose bounds meet is tested at
+/// sample points half a particle apart, 5e7 at most, so that it takes a second at most; in more cells than
+/// that an overlap of a few particles may be missed. Collective on comm: each rank tests a part of the
 /// points, and all get the same overlaps.
 PetscErrorCode find_overlaps(MPI_Comm comm, const Config& config, std::vector<Overlap>* overlaps);
 
-/// Of a stage after the first: overlaps of what it places with each other and with rigid bodies that have
-/// never moved, which are known from the start. `fixed`: of each rigid, whether it is one of these.
+/// Finds the overlaps that a stage after the first will have and that follow from the start: overlaps of the
+/// bodies that it places with each other and with rigid bodies that have not moved by then. `fixed`: of each
+/// rigid, whether it has not.
 PetscErrorCode find_overlaps_of_placed(MPI_Comm comm, const Config& config, const std::vector<char>& fixed,
                                        std::vector<Overlap>* overlaps);
 
@@ -36,7 +37,7 @@ struct Present {
   std::vector<Vec3> rigids;
 };
 
-/// The same when the stage begins, of what it places with all that is there.
+/// Finds the overlaps when a stage begins, of the bodies that it places with all that is there.
 PetscErrorCode find_overlaps_at_stage(MPI_Comm comm, const Config& config, const Present& present,
                                       std::vector<Overlap>* overlaps);
 
@@ -48,7 +49,7 @@ std::vector<char> cut_at_stage(const Config& config, int body, const Present& pr
 /// The overlaps that are found when a stage begins, in one line.
 std::string describe_at_stage(const std::vector<Overlap>& overlaps, const Config& config);
 
-/// A line of text for each overlap (10 at most) that names the option which cuts. `given` tells the text of
+/// A line of text for each overlap (10 at most) that names the option which cuts. `given` returns the text of
 /// an option.
 std::vector<std::string> describe(const std::vector<Overlap>& overlaps, const Config& config);
 

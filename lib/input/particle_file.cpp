@@ -41,7 +41,7 @@ struct GroupReader {
     }
     return values;
   }
-  /// The same of what may be missing; but where `needed`, the frame's -output_fields left it out.
+  /// Reads a field that may be missing; but where `needed`, the frame's -output_fields left it out.
   void read_if_there(const char* field, int components, int kept, bool needed, std::vector<double>& values) {
     if (has(field))
       values = read(field, components, kept);

@@ -55,7 +55,7 @@ double mean_density(const ParticleTable& table, double of_material);
 /// cannot be read.
 long listed_particles(const std::string& path, const std::string& group);
 
-/// Takes out the particles whose centre is in one of the shapes, and tells how many.
+/// Takes out the particles whose centre is in one of the shapes, and returns their number.
 long cut_particles(const std::vector<Shape>& cut_out, const MeshConfig& mesh, int dim, ParticleTable& table);
 
 }  // namespace mpm

@@ -11,8 +11,8 @@ namespace {
 constexpr double k_slack = 1e-6;  // cells
 constexpr double k_reach = 2;     // cells, further than a rigid acts on soil
 
-/// The option that tells how a rigid moves along a direction; empty where it does not. Forces may move a
-/// dynamic one along any.
+/// The option that makes a rigid move along a direction; empty where it does not. Forces may move a dynamic
+/// one along any.
 std::string moving_option(const RigidConfig& rigid, int d) {
   if (rigid.motion == Motion::dynamic) return rigid.name + "_motion";
   if (rigid.motion == Motion::fixed || rigid.velocity[d] == 0) return "";
@@ -21,7 +21,7 @@ std::string moving_option(const RigidConfig& rigid, int d) {
                                                 : "_velocity");
 }
 
-/// Whether a shape is the same wherever it is looked at along direction d.
+/// Whether a shape has the same section everywhere along direction d.
 bool goes_through(const Shape& shape, const MeshConfig& mesh, int dim, int d) {
   const double slack = k_slack * mesh.spacing;
   const auto spans = [&](double low, double high) {

@@ -28,8 +28,8 @@ double distance2(const Edge& edge, const Point2& point) {
   return squared(point[0] - edge.from[0] - t * dx) + squared(point[1] - edge.from[1] - t * dy);
 }
 
-/// Whether the boxes round two edges are further apart than `slack` [m]. Edges on one line are not told apart
-/// by their turns, which are round-off there.
+/// Whether the boxes round two edges are further apart than `slack` [m]. Edges on one line are not
+/// distinguished by their turns, which are round-off there.
 bool boxes_apart(const Edge& a, const Edge& b, double slack) {
   for (int d = 0; d < 2; ++d) {
     const auto [a_low, a_high] = std::minmax({a.from[d], a.to[d]});

@@ -31,7 +31,7 @@ std::string read_header(Words& words, std::map<std::string, double>& header, std
   }
 }
 
-/// What the header says, checked against what the file can hold.
+/// Takes the header, checked against the size of the file.
 std::string take_header(const std::map<std::string, double>& header, double bytes, Raster& raster) {
   const auto value = [&](const char* key) { return header.count(key) ? header.at(key) : NAN; };
   for (const char* key : {"ncols", "nrows", "cellsize"})

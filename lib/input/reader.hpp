@@ -28,14 +28,13 @@ struct Range {
 };
 inline constexpr Range k_positive{.lowest = 0, .open_lowest = true};
 inline constexpr Range k_not_negative{.lowest = 0};
-// What arithmetic is left room for: products of these are finite.
+// Ranges that leave room for arithmetic: products of such numbers are finite.
 inline constexpr Range k_coordinate{.lowest = -1e9, .highest = 1e9};                  // m
 inline constexpr Range k_speed{.lowest = -1e6, .highest = 1e6};                       // m/s, m/s2
 inline constexpr Range k_stress{.lowest = -1e15, .highest = 1e15};                    // Pa, N
 inline constexpr Range k_density{.lowest = 0, .highest = 1e10, .open_lowest = true};  // kg/m3
 
-/// All that is to be known of an option but its value. The default is what the variable holds before it is
-/// read.
+/// Description of an option without its value. The default is what the variable holds before it is read.
 struct Option {
   std::string name;     // without its dash
   std::string meaning;  // for -help

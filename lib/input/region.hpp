@@ -1,5 +1,6 @@
 #pragma once
-// What is inside a shape. "Inside" includes the boundary, with a slack, so that round-off never decides.
+// Test whether a point is inside a shape. "Inside" includes the boundary, with a slack, so that round-off
+// never decides.
 
 #include <optional>
 #include <vector>

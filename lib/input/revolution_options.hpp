@@ -7,7 +7,7 @@ namespace mpm {
 
 /// -geometry.
 void read_geometry_of(OptionReader& in, Config& config);
-/// What mesh, gravity and particles must be where the geometry is axisymmetric. After all of them.
+/// Checks mesh, gravity and particles where the geometry is axisymmetric. After all of them.
 void check_revolution(OptionReader& in, const Config& config);
 
 }  // namespace mpm

@@ -50,7 +50,7 @@ double integral(double a, double b, StepPhase&& f) {
   return sum * k_step * k_pi / 2 * (b - a) / 2;
 }
 
-/// What turns about a vertical axis: its radius at heights, and heights where it has a given radius.
+/// Profile that turns about a vertical axis: its radius at heights, and heights where it has a given radius.
 class Profile {
  public:
   explicit Profile(const Shape& shape) : shape_(shape) {

@@ -65,7 +65,7 @@ bool check_overlaps(OptionReader& in, const std::string& name, const Shape& shap
     grid.first[d] = std::lround(std::floor((bounds.lower[d] - mesh.lower[d]) / mesh.spacing));
     grid.last[d] = std::lround(std::ceil((bounds.upper[d] - mesh.lower[d]) / mesh.spacing));
   }
-  const double free = free_host_memory();  // what does not fit into it is told with all that is needed
+  const double free = free_host_memory();  // a shape that does not fit is reported with all memory needed
   if (free > 0 && static_cast<double>(grid.columns()) * k_column_bytes > free / 2) return true;
   const auto cell = overfull_cell(Facets(shape, mesh, 3, mesh.spacing), grid);
   if (cell)
@@ -92,7 +92,7 @@ void check_shape(OptionReader& in, const std::string& name, const Shape& shape, 
                                                                            text_of(mesh.upper, dim) + cut);
     }
   check_cut_fillet(in, name, shape, mesh, cuts, dim);
-  // What does not fit into memory is told with all that is needed.
+  // A shape that does not fit into memory is reported with all memory that the run needs.
   if (const double free = free_host_memory(); free > 0 && fill_bytes(shape, mesh, dim) > free / 2) return;
   if (!check_overlaps(in, name, shape, mesh)) return;
   if (!holds_particle(shape, mesh, dim))
@@ -115,7 +115,7 @@ void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& confi
   const double cells =
       listed ? 0 : shape_volume(body.shape, mesh, config.dim) / std::pow(mesh.spacing, config.dim);
   const bool too_many = cells * std::pow(body.shape.particles_per_cell, config.dim) > k_most_particles;
-  // The latter is told with what the memory holds.
+  // Too many particles are reported with the memory that they need.
   if ((body.cut_out.empty() && body.cut_out_bodies.empty()) || too_many) return;
   bool left = false;
   if (listed) {

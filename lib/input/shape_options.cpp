@@ -227,7 +227,8 @@ bool read_geometry(OptionReader& in, const std::string& name, const Config& conf
   return whole;
 }
 
-/// The kind of shape and its geometry; whether it is known, so that what was given for it has a meaning.
+/// Reads the kind of shape and its geometry. Returns whether the kind is valid, so that its other options
+/// have a meaning.
 bool read_kind(OptionReader& in, const std::string& name, const Config& config, bool listed, Shape& shape) {
   const int dim = config.dim;
   std::vector<std::string> words, fitting;

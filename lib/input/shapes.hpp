@@ -68,7 +68,7 @@ struct Bounds {
   Vec3 lower{}, upper{};  // m; the third component is 0 in 2D
 };
 Bounds bounds_of(const Shape& shape, const MeshConfig& mesh, int dim);
-/// What of them is in the mesh.
+/// Part of the bounds that is in the mesh.
 Bounds within(Bounds bounds, const MeshConfig& mesh, int dim);
 
 /// The sides of the mesh that a shape reaches beyond, and so is cut by: [direction][0 lower, 1 upper].

@@ -199,7 +199,7 @@ void read_sides(OptionReader& in, Config& config) {
 
 namespace {
 
-/// Columns of the free field stand on a base that tells how they are held.
+/// Checks that columns of the free field stand on a base, which holds them.
 void check_columns(OptionReader& in, const Config& config, int d, int side) {
   const int vertical = config.dim - 1;
   const std::string name = side_option(d, side), base = side_option(vertical, 0);

@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-/// Number of the stage that a table tells of a body or rigid; `none` where it tells of none.
+/// Number of the stage that a table gives for a body or rigid; `none` where it gives none.
 int stage_of(const std::map<std::string, int>& table, const std::string& name, int none) {
   const auto found = table.find(lower_case(name));
   return found == table.end() ? none : found->second;
@@ -26,7 +26,8 @@ struct Chosen {
   std::vector<int>&bodies, &rigids;
 };
 
-/// Reads a list of bodies and rigids. `fault` tells why a name has no place there, as the end of "takes ...".
+/// Reads a list of bodies and rigids. `fault` returns why a name has no place there, as the end of "takes
+/// ...".
 void read_list(OptionReader& in, const Option& option, const Config& config, const Chosen& chosen,
                const std::function<std::string(const std::string&)>& fault) {
   std::vector<std::string> bodies, rigids, names;
@@ -55,7 +56,7 @@ void read_list(OptionReader& in, const Option& option, const Config& config, con
 }
 
 /// The largest mean stress [Pa] that soil of a body may have under the weight of the mesh's whole height: of
-/// soil whose stress is not known before it gets a new material.
+/// soil whose stress is unknown before it gets a new material.
 double pressure_of_mesh(const Config& config, const BodyConfig& body) {
   double pressure = 0;
   for (int d = 0; d < config.dim; ++d)

@@ -14,7 +14,7 @@ namespace mpm {
 PetscErrorCode make_folder(const std::string& folder);
 
 /// Makes the output folder and its `frames`, and removes what an earlier run left there (own_files.hpp),
-/// nothing else. Call it once the input is known to be valid. `removed` [number of files] is for the log; it
+/// nothing else. Call it after the input has been found valid. `removed` [number of files] is for the log; it
 /// may be null. Without `frames` that folder is not made.
 PetscErrorCode prepare_output_folder(const std::string& folder, int* removed, bool with_frames = true);
 
@@ -37,7 +37,7 @@ PetscErrorCode bring_to_disk(const std::string& path);
 /// message.
 PetscErrorCode write_all(int descriptor, std::string_view contents, const std::string& path);
 
-/// Closes a file descriptor and sets it to -1; nothing where it is -1. The system may tell only now that a
+/// Closes a file descriptor and sets it to -1; nothing where it is -1. The system may report only now that a
 /// write failed; `path` is for the message.
 PetscErrorCode close_file(int* descriptor, const std::string& path);
 

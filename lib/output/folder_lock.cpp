@@ -16,7 +16,7 @@
 namespace mpm {
 namespace {
 
-/// What a run writes into its lock behind the first line, by the first word of each line: host, boot,
+/// Record that a run writes into its lock behind the first line, by the first word of each line: host, boot,
 /// process, birth, since.
 using Record = std::map<std::string, std::string>;
 constexpr const char* k_first_line = "mpm lock of the run that writes into this folder\n";
@@ -78,7 +78,7 @@ std::string in_words(Record record) {
   return "process " + record["process"] + " on " + record["host"] + ", since " + record["since"];
 }
 
-/// Whether the process of a record may be running, as far as this machine knows.
+/// Whether the process of a record may be running, as far as this machine can find out.
 bool may_live(Record record) {
   const Record own = own_record();
   if (record["process"].empty()) return false;

@@ -1,7 +1,7 @@
 #pragma once
 // One run at a time in an output folder. While it lasts, a run holds a lock of the system on the file
 // mpm.lock in the folder, which the system lets go with the process, however that ends; the text in the file
-// tells other runs whose it is. Everything here is called on one rank.
+// names the run that holds it. Everything here is called on one rank.
 
 #include <petscsys.h>
 
@@ -19,8 +19,8 @@ class FolderLock {
 
   /// Takes the lock of a folder that is there; nothing where it is held already. `other`: the run that has
   /// it, in words; empty if it is ours now. A lock that was left by a run that is gone is taken over. Where
-  /// the file system knows no locks the text decides: its process is looked for if it was of this machine,
-  /// and taken to live if it was not. Fails where the file cannot be made.
+  /// the file system has no locks the text decides: its process is looked for if it was of this machine, and
+  /// taken to live if it was not. Fails where the file cannot be made.
   PetscErrorCode take(const std::string& folder, std::string* other);
   /// Removes the file and lets the lock go.
   void release();

@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-/// What of a snapshot is written, and how.
+/// Fields of a snapshot that are written, and their form.
 struct FrameStyle {
   std::vector<std::string> fields{};  // of bodies and rigids beside the position; empty for all
   int compression = 0;                // level of HDF5's deflate filter, 0 to 9
@@ -71,7 +71,7 @@ inline std::vector<std::string> frame_field_names() {
     if (!is_position(field) && field.of != Of::nodes) names.push_back(field.name);
   return names;
 }
-/// The same for a message, in which numbered names are told by the first and the last: "state_1 to state_9".
+/// The list for a message, which names only the first and the last of numbered names: "state_1 to state_9".
 std::string frame_field_list();
 
 }  // namespace mpm

@@ -110,8 +110,8 @@ PetscErrorCode reserve_whole(hid_t group, const std::string& path, Precision pre
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// The same in pieces of known size. Zeros stand for them in this file, and are taken back from the memory
-/// that it is in, if the system can do that: nobody reads them.
+/// Reserves a dataset in pieces of known size. Zeros stand for them in this file, and are taken back from the
+/// memory that it is in, if the system can do that: nobody reads them.
 PetscErrorCode reserve_pieces(hid_t group, const std::string& path, Precision precision, int compression,
                               std::span<FrameSlab> slabs, int descriptor) {
   PetscFunctionBeginUser;

@@ -37,7 +37,7 @@ PetscErrorCode pack_slab(const std::string& path, const std::vector<double>& val
                          FrameSlab* slab, std::string* bytes);
 
 /// The file without the numbers of the slabs, as a descriptor to read from, which the caller closes; and
-/// where the slabs belong. Their sizes are known.
+/// where the slabs belong. The slabs have their sizes.
 PetscErrorCode lay_out_frame(const std::string& path, const Snapshot& snapshot, Precision precision,
                              const FrameStyle& style, int* descriptor, std::vector<FrameSlab>* slabs);
 

@@ -64,7 +64,7 @@ std::string format_grid(const FrameEntry& frame, const FrameEntry::Group& group,
   return text + "        </Grid>\n";
 }
 
-/// What the index says of a group of a frame that is there; false where it cannot be read.
+/// Reads the entry of the index for a group of a frame that is there; false where it cannot be read.
 bool read_group(hid_t file, FrameEntry::Group& group) {
   Handle opened(H5Gopen2(file, group.name.c_str(), H5P_DEFAULT), H5Gclose);
   if (opened.id < 0) return false;

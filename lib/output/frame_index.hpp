@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// What the index says of one frame.
+/// Entry of the index for one frame.
 struct FrameEntry {
   struct Group {
     std::string name;
@@ -24,7 +24,7 @@ struct FrameEntry {
 /// field but position, which is always 8.
 std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes);
 
-/// What the index says of a frame of an earlier part of the run; nothing where it is no longer there.
+/// Entry of the index for a frame of an earlier part of the run; nothing where the frame is no longer there.
 std::optional<FrameEntry> read_entry(const std::string& folder, const std::string& name,
                                      const std::vector<std::string>& groups);
 

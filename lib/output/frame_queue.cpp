@@ -34,7 +34,7 @@ PetscErrorCode FrameQueue::wait() {
   if (!result_.valid()) PetscFunctionReturn(PETSC_SUCCESS);
   const PetscErrorCode failed = result_.get();
   snapshot_ = {};
-  if (failed) PetscFunctionReturn(failed);  // it has been told where it failed
+  if (failed) PetscFunctionReturn(failed);  // it was reported where it failed
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

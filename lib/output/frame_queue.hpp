@@ -17,9 +17,10 @@ class FrameQueue {
   PetscErrorCode resume(const Config& config, long count, MPI_Comm comm = PETSC_COMM_SELF);
   /// Takes a frame.
   PetscErrorCode write(Snapshot&& snapshot);
-  /// Waits until the frame on its way is written, and lets its memory go. What failed with it is told now.
+  /// Waits until the frame on its way is written, and lets its memory go. A failure of this frame is reported
+  /// now.
   PetscErrorCode wait();
-  /// The same, and brings all to the disk.
+  /// Waits, and brings all frames to the disk.
   PetscErrorCode settle();
   /// Frames taken.
   long count() const { return count_; }

@@ -78,7 +78,7 @@ PetscErrorCode pack_slabs(MPI_Comm comm, const std::string& path, int compressio
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What this rank writes of the slabs. Numbers that have to be changed first are kept in `single`.
+/// Stretches of the slabs that this rank writes. Numbers that have to be changed first are kept in `single`.
 std::vector<Stretch> stretches_of(const std::vector<FrameSlab>& slabs,
                                   const std::map<std::size_t, std::string>& packed,
                                   std::list<std::vector<float>>* single) {

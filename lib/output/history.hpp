@@ -29,8 +29,8 @@ struct HistoryMark {
   bool operator==(const HistoryMark&) const = default;
 };
 
-/// What has been written of a file, of at most `bytes`; the text of it to `text`, unless it is null. All zero
-/// where it cannot be read.
+/// Mark of the written part of a file, of at most `bytes`; its text goes to `text`, unless that is null. All
+/// zero where it cannot be read.
 HistoryMark mark_of(const std::string& path, long bytes, std::string* text);
 
 /// The open file. Rows are whole: each is one write, and one that does not fit the disk is taken back.
@@ -45,7 +45,7 @@ class History {
   PetscErrorCode open(const Config& config, const std::string& rows = "");
   /// Appends one row. An error (full disk) names the file, and what stands there stays whole.
   PetscErrorCode write(const HistoryRow& row);
-  /// What has been written so far, brought to the disk.
+  /// Brings the rows written so far to the disk, and marks their end.
   PetscErrorCode settle(HistoryMark* mark) const;
   PetscErrorCode close();
 

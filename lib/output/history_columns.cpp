@@ -14,7 +14,7 @@ constexpr const char* k_axis[3] = {"x", "y", "z"};
 class Columns {
  public:
   Columns(std::vector<HistoryColumn>& all, int dim) : all_(all), dim_(dim) {}
-  /// Those that follow belong to this owner.
+  /// Begins the columns of this owner.
   void begin(const std::string& list, const std::string& kind, const std::string& owner) {
     list_ = list, kind_ = kind, owner_ = owner;
   }

@@ -9,7 +9,7 @@ namespace mpm {
 
 class LinearFit {
  public:
-  /// Of so many functions of `dim` coordinates.
+  /// Fits so many functions of `dim` coordinates.
   LinearFit(int dim, int fields) : size_(dim + 1), fields_(fields) {}
 
   /// A point at r [cells from the place] with the values of the functions there.
@@ -22,7 +22,8 @@ class LinearFit {
     }
   }
 
-  /// Values at the place; where the points do not tell a slope, as on one line, their mean. 0 without points.
+  /// Values at the place; where the points do not determine a slope, as on one line, their mean. 0 without
+  /// points.
   std::vector<double> value() const {
     constexpr double k_spread = 0.01;  // cells2, least variance of the points along an axis
     std::vector<double> mean(static_cast<std::size_t>(fields_)), fitted(mean.size());

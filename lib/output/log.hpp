@@ -26,9 +26,9 @@ std::string format_rate(double per_second);   // "12.3 M/s"
 std::string format_progress(
     const ProgressState& s);  // "step 1200  t = 0.072 s  3.6 %  12.3 M/s  2 min 05 s left"
 
-/// Program, date, machine (host, processor, cores, ranks) and versions of the libraries (this text knows
-/// PETSc, MPI and HDF5; the version of Kokkos is given, as is the device's name). Collective on nothing; one
-/// rank calls it.
+/// Program, date, machine (host, processor, cores, ranks) and versions of the libraries (the function finds
+/// those of PETSc, MPI and HDF5; the caller gives the version of Kokkos and the device's name). Collective on
+/// nothing; one rank calls it.
 std::string format_header(const std::string& version, const std::string& kokkos_version,
                           const std::string& device, int ranks);
 
@@ -46,7 +46,7 @@ class Log {
   PetscErrorCode open(const std::string& folder, bool goes_on = false);
   /// Text of one or more lines; the last line end may be left out.
   PetscErrorCode line(const std::string& text);
-  /// The same by a format as of printf.
+  /// Writes a line by a format as of printf.
   PetscErrorCode print(const char* format, ...) __attribute__((format(printf, 2, 3)));
   /// Text of a line that says why the run failed: to stderr instead of stdout, and to the file.
   PetscErrorCode error(const std::string& text);

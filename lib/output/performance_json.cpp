@@ -13,7 +13,7 @@ class Members {
   explicit Members(int indent) : indent_(indent, ' ') {}
   void text(const char* name, const std::string& value) { add(name, json_text(value)); }
   void number(const char* name, double value) { add(name, json_number(value)); }
-  /// A number that is 0 where it is not known.
+  /// Adds a number that is 0 where it is unknown.
   void known(const char* name, double value) { add(name, value > 0 ? json_number(value) : "null"); }
   /// A value that is JSON already.
   void add(const char* name, const std::string& value) {
@@ -63,9 +63,9 @@ std::string json_of(const RankFigures& r) {
   return m.object();
 }
 
-/// What ran, and where.
+/// Adds the program and the machine.
 void add_run(const Performance& p, Members* m) {
-  m->text("program", "mpm");  // first: by it own_files.cpp knows the file
+  m->text("program", "mpm");  // first: own_files.cpp recognises the file by it
   m->text("version", p.version);
   m->text("outcome", p.outcome);
   m->number("dim", p.dim);

@@ -9,8 +9,8 @@
 
 namespace mpm {
 
-/// The report as JSON, in SI units with the unit in the name; docs/running.md lists the members. What is not
-/// known is null.
+/// The report as JSON, in SI units with the unit in the name; docs/running.md lists the members. Unknown
+/// values are null.
 std::string performance_json(const Performance& p);
 
 /// Writes FOLDER/performance.json, whole or not at all. On one rank.

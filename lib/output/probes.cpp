@@ -15,7 +15,7 @@ namespace {
 constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* k_axis[3] = {"x", "y", "z"};
 constexpr const char* k_stress[6] = {"xx", "yy", "zz", "xy", "yz", "zx"};
-constexpr double k_reach = 1.5;  // cells, of a point to the particles that tell of it
+constexpr double k_reach = 1.5;  // cells, of a point to the particles that its values come from
 
 int stress_size(const Config& config) { return config.dim == 2 ? 4 : 6; }
 
@@ -37,7 +37,7 @@ void add_state(std::vector<std::string>& columns, const std::string& name, const
   if (has_pore_pressure(config)) columns.push_back(name + "_pore_pressure");
 }
 
-/// The same as numbers: those of a particle, or fitted ones.
+/// Adds the state as numbers, of a particle or fitted.
 void add_state(std::vector<double>& values, const Config& config, std::span<const double> velocity,
                std::span<const double> stress, double pore_pressure) {
   for (int d = 0; d < config.dim; ++d) values.push_back(velocity[d]);

@@ -28,19 +28,19 @@ inline constexpr double k_never = -1;
 struct Rasters {
   std::vector<double> most_depth, most_speed;  // m, m/s
   std::vector<double> arrival;                 // s; k_never
-  std::vector<double> depth;                   // m, when the soil was last looked at; no checkpoint has it
+  std::vector<double> depth;                   // m, at the last update; no checkpoint has it
 
   /// No soil has come yet.
   void begin(const Config& config);
   /// Takes the depth from the sums of all ranks (column_sums).
   void look(const Config& config, const std::vector<long>& sums);
-  /// The same, at a time [s] whose depth and speed count.
+  /// Updates the rasters at a time [s] whose depth and speed count.
   void update(const Config& config, double time, const std::vector<long>& sums);
   /// Writes raster_*.asc, or rasters.csv in 2D, to the folder. On one rank.
   PetscErrorCode write(const Config& config, const std::string& folder) const;
 };
 
-/// What is wrong with rasters of a checkpoint; empty if nothing.
+/// Whether rasters of a checkpoint are sound.
 bool are_sound(const Rasters& rasters, const Config& config);
 
 }  // namespace mpm

@@ -78,7 +78,7 @@ PetscErrorCode start_file(const std::string& path, int layout, const std::vector
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What this rank has of a stretch. Collective where the stretch is shared.
+/// Writes this rank's part of a stretch. Collective where the stretch is shared.
 PetscErrorCode write_stretch(MPI_File file, const Stretch& stretch, const std::string& path) {
   PetscFunctionBeginUser;
   MPI_Datatype row;  // counts are of rows, so that they stay below 2^31

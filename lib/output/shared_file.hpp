@@ -14,7 +14,7 @@ namespace mpm {
 struct Stretch {
   long long offset = 0, size = 0;  // bytes, on every rank the same; none where size is 0
   bool shared = true;              // among the ranks; else one of them has all of it, the others no rows
-  // Of it this rank has `rows` of `width` bytes each, which go to `place`.
+  // This rank has `rows` of the stretch, of `width` bytes each, which go to `place`.
   long long place = 0, rows = 0;
   int width = 1;
   const void* data = nullptr;
@@ -25,8 +25,8 @@ struct Stretch {
 PetscErrorCode open_layout(std::string* name, int* descriptor);
 
 /// Writes `path` and brings it to the disk. Rank 0 gives the layout, and makes room for all of the file
-/// before any number is written, so that a full disk is told to it. If this fails it does on every rank, and
-/// there is no file. Collective.
+/// before any number is written, so that a full disk is reported to it. If this fails it does on every rank,
+/// and there is no file. Collective.
 PetscErrorCode write_shared_file(MPI_Comm comm, const std::string& path, int layout,
                                  const std::vector<Stretch>& stretches);
 
