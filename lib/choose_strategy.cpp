@@ -1,6 +1,6 @@
 // `-p2g auto`: every strategy makes the first steps on a copy of the problem, and the fastest makes the run.
-// What was found clearly is kept for problems of the same size on the same device, so that the same options
-// give the same strategy again, and with it the same bits.
+// A clear result is kept for problems of the same size on the same device, so that the same options give the
+// same strategy again, and with it the same bits.
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -25,15 +25,16 @@ namespace {
 /// something else.
 constexpr int k_autotune = 3;
 
-/// Those worth trying, the one that a tie goes to first: `sequential` is one thread, `atomic` on one thread a
-/// slower `sequential`.
+/// Strategies worth trying; a tie goes to the first. `sequential` uses one thread; on one thread `atomic` is
+/// a slower `sequential`.
 std::vector<P2G> candidates(Backend backend) {
   std::vector<P2G> all = {P2G::tile, P2G::gather, P2G::mosaic};
   all.push_back(backend == Backend::serial ? P2G::sequential : P2G::atomic);
   return all;
 }
 
-/// Processes that wanted to run, of the last minute, per core of the machine; 0 where it does not tell.
+/// Processes that wanted to run, of the last minute, per core of the machine; 0 where the machine does not
+/// report it.
 double machine_load() {
   double load = 0;
   const long cores = ::sysconf(_SC_NPROCESSORS_ONLN);
@@ -48,7 +49,8 @@ class Contestant {
     times.strategy = strategy;
   }
 
-  /// Makes its copy. It is out of the autotune where that fails, as where its lists do not fit into memory.
+  /// Makes the contestant's copy of the problem. The strategy leaves the autotune where that fails, for
+  /// example because its lists do not fit into memory.
   void set_up(Model model) {
     stepper_ = make_stepper(config_, comm_);
     Failure failure;
@@ -134,7 +136,7 @@ std::string figures_of(const std::vector<Contestant>& all) {
   return told;
 }
 
-/// What the log tells of a choice.
+/// Text of the log on a choice.
 std::string report_choice(const StrategyChoice& choice, const std::vector<Contestant>& all, double load) {
   std::string text = "strategies on the first steps: " + figures_of(all) + " a step; ";
   for (const Contestant& each : all)

@@ -44,9 +44,9 @@ void leave_cuda_out() {
 }
 #endif
 
-/// What several ranks on a node must not each take whole, where the user has not chosen: a device each, in
-/// turn (--kokkos-device-id, KOKKOS_DEVICE_ID), and a part of the cores (OMP_NUM_THREADS,
-/// KOKKOS_NUM_THREADS). One of them speaks for all of what Kokkos warns of.
+/// Divides a node among its ranks where the user has not chosen: a device each, in turn (--kokkos-device-id,
+/// KOKKOS_DEVICE_ID), and a part of the cores (OMP_NUM_THREADS, KOKKOS_NUM_THREADS). One rank prints the
+/// warnings of Kokkos for all of them.
 void share_node() {
   MPI_Comm node = MPI_COMM_NULL;
   int world = 0, rank = 0, size = 1;
@@ -76,7 +76,8 @@ void start_kokkos(int* argc, char** argv) {
   starts = false;
 }
 
-/// Whether Kokkos can start as every process is told to; the first that cannot says why.
+/// Whether Kokkos can start with the settings of every process; the first process for which it cannot prints
+/// the reason.
 bool can_launch(int argc, char** argv) {
   const auto faults = launch_faults(argc, argv, gpu_count());
   int rank = 0, size = 1;

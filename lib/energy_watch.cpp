@@ -22,7 +22,7 @@ long lost_of(const HistoryRow& row) {
 }
 
 /// The most work [J] that gravity, of which a component is at most `gravity` [m/s2] in size, does on a body
-/// between two rows. It may turn between them, so that what the centre has moved does not tell it.
+/// between two rows. Gravity may turn between them, so it does not follow from the movement of the centre.
 double most_work(const BodyRow& now, const BodyRow& before, double interval, double gravity, int d) {
   const double mass = std::max(now.mass, before.mass), gain = std::fabs(gravity) * interval;
   if (mass == 0) return 0;
@@ -43,7 +43,7 @@ void EnergyWatch::begin(const HistoryRow& row, double wave_energy) {
 
 void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
   const auto add = [&](double work) { available_ += work, passed_ += std::fabs(work); };
-  const Vec3 gravity = gravity_on_soil(config);  // of other water the rows tell the energy
+  const Vec3 gravity = gravity_on_soil(config);  // the rows hold the energy of other water
   for (std::size_t b = 0; b < row.bodies.size(); ++b) {
     for (int d = 0; d < config.dim && config.gravity_table; ++d)
       add(most_work(row.bodies[b], last_.bodies[b], row.time - last_.time, gravity[d], d));
@@ -62,7 +62,7 @@ void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
 std::string EnergyWatch::check(const HistoryRow& row, const Config& config) {
   constexpr double k_slack = 0.5;  // of what has passed: forces are means over the rows
   const double now = kinetic_energy_of(row);
-  if (lost_of(row) != lost_of(last_)) {  // the centre tells no work where soil has left
+  if (lost_of(row) != lost_of(last_)) {  // the centre gives no work where soil has left
     const double passed = passed_, least = least_;
     begin(row, 0);
     passed_ = std::max(passed, passed_), least_ = least;

@@ -8,15 +8,15 @@
 
 namespace mpm {
 
-/// Looks at the rows of the history. Soil has the kinetic and elastic energy that it began with, and what
-/// gravity, water and the rigids do on it; more kinetic energy than that by half of what has ever passed is a
-/// fault of the computation.
+/// Checks the energy in the rows of the history. Soil has the kinetic and elastic energy that it began with,
+/// and what gravity, water and the rigids do on it; more kinetic energy than that by half of what has ever
+/// passed is a fault of the computation.
 class EnergyWatch {
  public:
   /// Begins anew with the soil as it is now. wave_energy [J]: what the soil would have at the speed of its
   /// fastest wave; less than 1e-10 of it is round-off.
   void begin(const HistoryRow& row, double wave_energy);
-  /// What is wrong; empty if nothing.
+  /// Fault of a row; empty if there is none.
   std::string check(const HistoryRow& row, const Config& config);
 
  private:

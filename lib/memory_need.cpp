@@ -70,7 +70,7 @@ double cells_in(const Shape& shape, const Config& config) {
   return shape_volume(shape, config.mesh, config.dim) / std::pow(config.mesh.spacing, config.dim);
 }
 
-/// What the bodies and rigids have, and the cells that soil fills.
+/// Counts the particles of bodies and rigids, and the cells that soil fills.
 double count_particles(const Config& config, MemoryNeed& need) {
   double cells = 0;
   for (const BodyConfig& body : config.bodies) {
@@ -138,10 +138,10 @@ MemoryNeed need_here(const Config& config, MPI_Comm comm, bool shared) {
   return need;
 }
 
-/// What -device_memory_limit asks that cannot be, as a line for the user; empty if there is nothing.
+/// Fault of -device_memory_limit, as a line for the user; empty if there is none.
 static std::string limit_fault(const Config& config, MPI_Comm comm) {
   if (!config.device_memory_limit) return {};
-  constexpr double k_sure = 0.8;  // of an estimate; what is nearer is known once the particles are there
+  constexpr double k_sure = 0.8;  // of an estimate; a closer figure follows once the particles are there
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
   const double least = k_sure * memory_need(config).nodes / k_gib, free = free_memory(config.backend) / k_gib;

@@ -22,7 +22,7 @@ struct MemoryNeed {
 };
 MemoryNeed memory_need(const Config& config);
 
-/// Bytes that are free where a backend's kernels run; 0 where the system does not tell.
+/// Bytes that are free where a backend's kernels run; 0 where the system does not report them.
 double free_memory(Backend backend);
 
 /// Why a run cannot fit, as a line for the user; empty if it can.

@@ -68,7 +68,7 @@ std::vector<std::string> Notices::report(const HistoryRow& row, const Config& co
   return lines;
 }
 
-/// Rigid bodies of which a dynamic one has come into another: where it goes is not known at the start.
+/// Rigid bodies of which a dynamic one has come into another: its way is unknown at the start.
 void Notices::report_rigids(const HistoryRow& row, const Config& config,
                             const std::vector<double>& rigid_zero, std::vector<std::string>* lines) {
   const int count = static_cast<int>(row.rigids.size());
@@ -95,7 +95,7 @@ void Notices::report_rigids(const HistoryRow& row, const Config& config,
     }
 }
 
-/// What the soil as a whole tells of the trust that it deserves.
+/// Notices about the soil as a whole that lower the trust in the run.
 void Notices::report_soil(const HistoryRow& row, const Config& config, std::vector<std::string>* lines) {
   const auto report = [&](bool happened, const char* what, const std::string& line) {
     if (happened && told_.insert(what).second)

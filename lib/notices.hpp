@@ -1,5 +1,5 @@
 #pragma once
-// What the log tells once: soil that is no longer as the rest of it.
+// Notices that the log prints once: soil that is no longer as the rest of it.
 
 #include <map>
 #include <memory>
@@ -14,11 +14,11 @@
 
 namespace mpm {
 
-/// Looks at the rows of the history for what happens the first time in a run.
+/// Searches the rows of the history for events that happen the first time in a run.
 class Notices {
  public:
-  /// A line for each thing that has happened since the last row and was not told before, with advice.
-  /// `rigid_zero`: from where the row counts displacements of rigids [m], three numbers each, or empty.
+  /// A line for each event since the last row that was not reported before, with advice. `rigid_zero`: from
+  /// where the row counts displacements of rigids [m], three numbers each, or empty.
   std::vector<std::string> report(const HistoryRow& row, const Config& config,
                                   const std::vector<double>& rigid_zero = {});
 

@@ -13,7 +13,7 @@ namespace mpm {
 class RigidPlaces {
  public:
   explicit RigidPlaces(const Config& config);
-  /// Whether two of them have space in common once they have moved by these displacements [m]. Looks at the
+  /// Whether two of them have space in common once they have moved by these displacements [m]. Tests the
   /// points of a grid in what their bounds have in common.
   bool share_space(int a, int b, const Vec3& by_a, const Vec3& by_b);
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int k_signals[] = {SIGTERM, SIGINT, SIGUSR1};
 
-// What a handler may touch has to be global.
+// Variables of the handler, which have to be global.
 volatile std::sig_atomic_t caught = 0, waiting = 0;
 struct timespec caught_at;
 

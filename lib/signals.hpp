@@ -1,5 +1,5 @@
 #pragma once
-// Being told to stop a run: SIGTERM, SIGINT and SIGUSR1, as batch systems and users send them before a limit.
+// Signals that stop a run: SIGTERM, SIGINT and SIGUSR1, as batch systems and users send them before a limit.
 // The first one asks the run to write a checkpoint and end; a second one ends the program at once, as if it
 // had never been caught.
 
@@ -19,8 +19,8 @@ class SignalsWait {
   ~SignalsWait();
 };
 
-/// From now on to the end of the program none of the signals does anything: the run has been told to stop,
-/// and its last checkpoint is being written.
+/// From now on to the end of the program none of the signals does anything: the run is stopping, and its last
+/// checkpoint is being written.
 void ignore_signals();
 
 /// The signal that came, 0 for none.

@@ -76,7 +76,7 @@ PetscErrorCode Simulation::Body::fail(const std::string& what) {
 /// domains change they end too, for the time step follows these.
 PetscErrorCode Simulation::Body::advance_to(long target) {
   PetscFunctionBeginUser;
-  // s of wall time between two looks at the steps, which cost time on a device only, and whether to stop
+  // s of wall time between two tests for a stop. On a device a test waits for the steps, which costs time.
   const double k_look_every = config.backend == Backend::cuda ? 0.5 : 0.05;
   long estimate = 1, batch_limit = 1;
   while (step < target) {
@@ -180,7 +180,7 @@ PetscErrorCode Simulation::Body::write_row() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Tells once of what a user should know, and whether energy comes from nothing.
+/// Reports notices once, and whether energy comes from nothing.
 PetscErrorCode Simulation::Body::watch(const HistoryRow& row) {
   PetscFunctionBeginUser;
   for (const std::string& line : notices.report(row, config, rigid_zero)) PetscCall(log.line(line));
@@ -237,7 +237,7 @@ PetscErrorCode Simulation::Body::write_partition() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What this part of the run, or of its stage, came to. Where it did no step the stepper may not be set up,
+/// Performance of this part of the run, or of its stage. Where it did no step the stepper may not be set up,
 /// and is not asked. Collective.
 Performance Simulation::Body::performance() const {
   Performance p{.stepping = stepping - part.stepping,
@@ -271,7 +271,7 @@ Performance Simulation::Body::performance() const {
 }
 
 /// The report at the end of the log, and performance.json, which scripts read. The file is written even where
-/// no step was done: its outcome then tells that the run has ended.
+/// no step was done: its outcome then says that the run has ended.
 PetscErrorCode Simulation::Body::report_performance() {
   PetscFunctionBeginUser;
   const Performance p = performance();

@@ -1,6 +1,6 @@
 #pragma once
-// What a simulation holds while it runs. Its functions: simulation_start.cpp up to the first step
-// (particles from files: simulation_from_file.cpp), simulation.cpp from there to the end.
+// State of a simulation while it runs. Its functions: simulation_start.cpp up to the first step (particles
+// from files: simulation_from_file.cpp), simulation.cpp from there to the end.
 
 #include <chrono>
 #include <optional>
@@ -46,7 +46,7 @@ struct Simulation::Body {
   double dt = 0, last_dt = 0;  // s, of a whole step, and of the step before; 0: there is none
   bool follows = false;      // dt follows the stiffness of the soil and its domains, or is held against them
   bool laws_follow = false;  // the stiffness of some soil changes
-  long waves_at = -1;        // step of the last look at the waves
+  long waves_at = -1;        // step of the last computation of wave speeds
   WaveWatch waves;           // when the next one is due
   double told_dt = 0;        // s, the last one that the log has
   Schedule schedule;
@@ -73,7 +73,7 @@ struct Simulation::Body {
   std::vector<OptionChange> option_changes;  // that -restart_change allows
   std::vector<char> laws_changed;            // of each body, by them
   std::vector<std::string> passed_over;      // checkpoints that are damaged, as lines for the log
-  std::string stopped_by;                    // what told the run to stop; empty if nothing did
+  std::string stopped_by;                    // signal or limit that stopped the run; empty if none did
   long checkpointed = -1;                    // step of the last checkpoint
   EnergyWatch energy;
   bool watching = false;    // energy has begun

@@ -160,7 +160,7 @@ PetscErrorCode Simulation::Body::resume() {
   if (outcome != Outcome::finished) PetscFunctionReturn(PETSC_SUCCESS);
   bool rebuilt = false;
   const PetscErrorCode unfit = stepper->restore(std::move(restart->state), since_rebuild, &rebuilt);
-  if (unfit == PETSC_ERR_ARG_SIZ) {  // told; only a checkpoint that somebody has altered gets here
+  if (unfit == PETSC_ERR_ARG_SIZ) {  // reported; only a checkpoint that somebody has altered gets here
     outcome = Outcome::bad_input;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -266,7 +266,7 @@ PetscErrorCode Simulation::Body::forget_later() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Whether any rank was told to stop, or the time on the clock is up. Collective.
+/// Whether any rank has had a signal to stop, or the time limit is reached. Collective.
 PetscErrorCode Simulation::Body::look_for_stop(bool* stop) {
   PetscFunctionBeginUser;
   constexpr int k_clock = 1 << 20;  // more than any signal

@@ -123,8 +123,8 @@ PetscErrorCode Simulation::Body::tell_need() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What each stage takes, if it takes all of its time and the soil is as stiff as at its start; the trial is
-/// of the first one, whose time a step grows with the particles.
+/// Prints the cost of each stage, if the stage takes all of its time and the soil is as stiff as at its
+/// start. The trial is of the first stage; the time of a step grows with the particles.
 PetscErrorCode Simulation::Body::tell_stages() {
   PetscFunctionBeginUser;
   const double device = stepper->memory() / ranks();  // of the first, measured

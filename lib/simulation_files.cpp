@@ -1,4 +1,5 @@
-// What a run reads and where it writes: that it destroys no input and no file of others, and is alone.
+// Files of a run: checks that the run destroys no input and no file of others, and is alone in its output
+// folder.
 
 #include <sys/stat.h>
 #include <unistd.h>

@@ -22,7 +22,8 @@ void take_masses(ParticleTable&& table, const Config& config, double density, Bo
   if (!has_mass)
     for (const double volume : table.volume) table.mass.push_back(density * volume);
   if (has_mass) particles.particle_mass = table.mass.front();
-  // What a file of the user's own tells may be anything; what a run left has changed since it was created.
+  // A file of the user's own may hold any values; particles that a run left have changed since they were
+  // created.
   const bool from_run = !table.origin.empty();
   for (std::size_t p = 0; p < table.volume.size(); ++p)
     for (double volume : {table.mass[p] / density, from_run ? table.mass[p] / density : table.volume[p]}) {
@@ -36,7 +37,7 @@ void take_masses(ParticleTable&& table, const Config& config, double density, Bo
   particles.mass = std::move(table.mass);
 }
 
-/// What the file tells in the place of the material, and what it does not tell, for the log.
+/// Text for the log on values that the file gives in the place of the material, and on values that it lacks.
 std::string missing(const ParticleTable& table, const BodyConfig& body) {
   std::string text;
   const auto add = [&](const std::string& line) { text += "\n  " + line; };

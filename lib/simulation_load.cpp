@@ -150,7 +150,7 @@ static PetscErrorCode take_volumes(MPI_Comm comm, std::vector<double>&& volume, 
 }
 
 /// Particles of a shape's lattice, or this rank's part of them. Their positions are absolute, as in a file.
-/// name: for the log; empty: it has been told.
+/// name: for the log; empty: the log has it already.
 PetscErrorCode Simulation::Body::load_shape(const std::string& name, const Shape& shape,
                                             const std::vector<Shape>& cut_out, LatticePart part,
                                             BodyParticles* particles) {

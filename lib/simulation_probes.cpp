@@ -49,8 +49,8 @@ PetscErrorCode Simulation::Body::write_rasters() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What is wrong with what probes and rasters know in the checkpoint of a restart, as the end of "takes ...";
-/// empty if nothing.
+/// Fault of the probes and rasters in the checkpoint of a restart, as the end of "takes ..."; empty if there
+/// is none.
 std::string Simulation::Body::probes_fault() const {
   const ProbeState& state = restart->probes;
   const std::size_t count = config.probes.size();

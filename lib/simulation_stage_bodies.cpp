@@ -91,7 +91,7 @@ bool Simulation::Body::changes_soil() const {
   return !stage.remove.empty() || !stage.place.empty() || !stage.place_rigids.empty();
 }
 
-/// Overlaps that are known from the start, of what later stages place.
+/// Checks bodies that later stages place for overlaps that can be found at the start.
 PetscErrorCode Simulation::Body::check_placed() {
   PetscFunctionBeginUser;
   std::vector<char> fixed(config.rigids.size(), 1);
@@ -109,7 +109,7 @@ PetscErrorCode Simulation::Body::check_placed() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What is there when the stage begins, near what it places.
+/// Collects the soil and rigids that are near the bodies of a stage when the stage begins.
 PetscErrorCode Simulation::Body::look_at_present(const SavedState& state, Present* present) {
   PetscFunctionBeginUser;
   const int dim = config.dim;

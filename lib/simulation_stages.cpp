@@ -79,7 +79,7 @@ Config Simulation::Body::history_config() const {
   return all;
 }
 
-/// Whether the event that ends the stage has come, as a row of the history tells.
+/// Whether the event that ends the stage has come, by a row of the history.
 void Simulation::Body::look_for_end(const HistoryRow& row) {
   const StageConfig& ends = config.stage;
   if (step == stage_begin.step) return;

@@ -68,7 +68,7 @@ PetscErrorCode Simulation::set_from_options(MPI_Comm comm, const char* prefix, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What a run of a mesh needs of the machine and the program.
+/// Checks that the machine and the program allow a run of this mesh.
 PetscErrorCode Simulation::Body::check_mesh_run() {
   PetscFunctionBeginUser;
   if (report.errors.empty()) PetscCall(check_device());

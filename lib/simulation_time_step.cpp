@@ -11,11 +11,11 @@ namespace mpm {
 namespace {
 
 constexpr double k_round_off = 1e-12;
-constexpr long k_look_every = 20;  // steps from one look at the waves to the next, at most
+constexpr long k_look_every = 20;  // steps between two computations of wave speeds, at most
 constexpr double k_calm =
     1.15;  // largest growth of the fastest wave's speed for which they are more than one
 constexpr double k_growth = 1.1;  // largest growth of the step from one measure to the next
-constexpr double k_told = 0.2;    // least change of the step that the log tells
+constexpr double k_told = 0.2;    // least change of the step that the log reports
 
 /// Why a fixed time step is no longer stable. speed [m/s]: that of the fastest wave, which counts for more
 /// where a particle's domain is short.

@@ -133,7 +133,7 @@ void warn_of_thin(const Config& config, const RigidConfig& rigid, const Bounds& 
                   rigid.name.c_str(), across, cells, k_least));
 }
 
-/// The option that tells how a rigid moves, without its name.
+/// The option that makes a rigid move, without the rigid's name.
 const char* option_of_motion(const RigidConfig& rigid) {
   return rigid.displacement_table ? "displacement_table"
          : rigid.velocity_table   ? "velocity_table"
@@ -185,8 +185,8 @@ bool is_wall(const Config& config, int d, int side) {
          });
 }
 
-/// Walls beside the way of a rigid that penetrates, told by the nearest. A wall that the rigid reaches is a
-/// plane of symmetry: it is the rigid's middle.
+/// Warns of walls beside the way of a rigid that penetrates, by the nearest wall. A wall that the rigid
+/// reaches is a plane of symmetry: it is the rigid's middle.
 void warn_of_walls(const Config& config, const RigidConfig& rigid, const Bounds& bounds, Lines& lines) {
   constexpr double k_least = 3;  // widths, from the middle
   if (rigid.motion == Motion::fixed || length_of(rigid.velocity) == 0) return;

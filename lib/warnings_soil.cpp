@@ -10,8 +10,8 @@
 namespace mpm {
 namespace {
 
-/// Whether two bodies have nodes in common at the start: less than a cell is between their bounds. Where the
-/// particles of a file are is not known here.
+/// Whether two bodies have nodes in common at the start: less than a cell is between their bounds. The places
+/// of a file's particles are unknown here.
 bool touch(const Config& config, const BodyConfig& a, const BodyConfig& b) {
   if (a.shape.kind == ShapeKind::particles || b.shape.kind == ShapeKind::particles) return true;
   const Bounds one = bounds_of(a.shape, config.mesh, config.dim),

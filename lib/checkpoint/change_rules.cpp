@@ -45,7 +45,7 @@ constexpr Row k_rules[] = {
     {Owner::run, "restart_change", k_anew},
     {Owner::run, "wall_time_limit", k_anew},
     {Owner::run, "progress", k_anew},
-    // What ends a stage.
+    // Options that end a stage.
     {Owner::run, "end", k_anew},
     {Owner::run, "end_*", k_anew},
     {Owner::run, "unbalanced_ratio", k_anew},
@@ -58,7 +58,7 @@ constexpr Row k_rules[] = {
     {Owner::run, "stray_particles", k_stage},
     {Owner::run, "position_correction", k_stage},
     {Owner::run, "position_correction_rate", k_stage},
-    // What loads the soil and holds it.
+    // Options that load the soil and hold it.
     {Owner::run, "gravity", k_load},
     {Owner::run, "gravity_table", k_load},
     {Owner::run, "gravity_table_interpolation", k_load},
@@ -67,7 +67,7 @@ constexpr Row k_rules[] = {
     {Owner::run, "strength_factor", k_load},
     {Owner::run, "water_level", k_stage},
     {Owner::water_region, "water_level", k_stage},
-    // The soil: its laws and their parameters, but what only tells how it begins.
+    // The soil: its laws and their parameters, except options that only say how it begins.
     {Owner::material, "model", {}},
     {Owner::material, "density", {}},
     {Owner::material, "k0", {}},

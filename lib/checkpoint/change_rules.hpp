@@ -23,7 +23,7 @@ struct ChangeRule {
 /// The rule of an option; `key`: its name without dash, and without the name of its owner and the underscore
 /// after that.
 ChangeRule change_rule(Owner owner, const std::string& key);
-/// The same by the whole name of an option of a configuration, without dash.
+/// The rule by the whole name of an option of a configuration, without dash.
 ChangeRule change_rule(const std::string& name, const Config& config);
 
 }  // namespace mpm

@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-/// The same text, or lists of the same numbers: 0.1 is .1.
+/// Whether two texts are equal, or are lists of equal numbers: 0.1 is .1.
 bool same_value(const std::string& a, const std::string& b) {
   if (a == b) return true;
   const auto one = split(a), other = split(b);
@@ -34,7 +34,7 @@ std::string value_of(const std::string& name, const std::vector<EffectiveOption>
   return "";
 }
 
-/// What a checkpoint says of a body's file that gives the particles their own values of parameters.
+/// Note in a checkpoint on a body's file that gives the particles their own values of parameters.
 std::string own_parameter_note(const BodyConfig& body, const Config& config) {
   std::string note;
   for (const std::string& key : given_parameters(body, state_variables(config.materials[body.material])))
@@ -42,7 +42,7 @@ std::string own_parameter_note(const BodyConfig& body, const Config& config) {
   return note;
 }
 
-/// What a file holds, in place of its name.
+/// Keeps the contents of a file in place of its name.
 void keep_contents(const std::string& option, const std::string& path, const std::string& note,
                    std::vector<EffectiveOption>& options) {
   std::ifstream file(path, std::ios::binary);
@@ -77,7 +77,7 @@ std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>&
   return kept;
 }
 
-/// Whether the default of an option follows other options, whose own changes are told.
+/// Whether the default of an option follows other options, whose own changes are reported.
 bool follows_others(const std::string& name) {
   const std::string key = "_f_bar_fraction";  // of a material
   return name.size() > key.size() + 1 && name.compare(name.size() - key.size(), key.size(), key) == 0;

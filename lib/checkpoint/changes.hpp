@@ -1,5 +1,5 @@
 #pragma once
-// What may change between a run and its continuation.
+// Changes between a run and its continuation, and whether they are allowed.
 
 #include <string>
 #include <vector>
@@ -22,7 +22,7 @@ struct OptionChange {
   std::string name, before, after;  // with its dash; "none" where it is not given
 };
 
-/// What of the options a restart compares and what it found.
+/// Result of a comparison of the options at a restart.
 struct Comparison {
   std::vector<std::string> lines;     // one for each option that contradicts the checkpoint
   std::vector<OptionChange> changes;  // those that -restart_change allows
@@ -35,21 +35,21 @@ Comparison compare_options(const Checkpoint& checkpoint, const std::vector<Effec
                            const Config& config, const std::string& file,
                            const std::vector<std::string>& allowed = {});
 
-/// What differs between the options in force before and now.
+/// Differences between the options in force before and now.
 std::vector<OptionChange> changes_between(const std::vector<EffectiveOption>& before,
                                           const std::vector<EffectiveOption>& now);
 
 /// Gives rigids whose motion or velocity changed the velocity that the options now say.
 void apply_changes(const std::vector<OptionChange>& changes, const Config& config, SavedState& state);
 
-/// Of each body, whether the changes are of its material, or of the material's parameters.
+/// Whether the changes are of a body's material, or of the material's parameters; one entry a body.
 std::vector<char> changed_laws(const std::vector<OptionChange>& changes, const Config& config);
 
-/// What goes on otherwise than it was and so gives other bits; empty if nothing. `now` tells the machine and
-/// the options with which the run goes on.
+/// Changes of the machine or its use that give other bits; empty if there are none. `now` holds the machine
+/// and the options with which the run goes on.
 std::string changed_machine(const Checkpoint& then, const Checkpoint& now);
 
-/// What is wrong with the state for this mesh and these bodies ("takes ..."); empty if nothing.
+/// Fault of the state for this mesh and these bodies ("takes ..."); empty if there is none.
 std::string state_fault(const SavedState& state, const Config& config);
 
 }  // namespace mpm

@@ -18,7 +18,7 @@
 namespace mpm {
 
 /// The progress of a run.
-/// Where the time step follows the stiffness of the soil: when the program looks at its waves.
+/// Schedule of the computation of wave speeds, where the time step follows the stiffness of the soil.
 struct WaveWatch {
   long due = 0, every = 1;  // step of the next look; steps from the last one to it
   double speed = 0;         // m/s, of the fastest wave at the last look; 0: there was none

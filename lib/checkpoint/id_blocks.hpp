@@ -22,8 +22,8 @@ void leave_out_lost(SavedPoints& points);
 /// of what is not placed.
 long ids_without_particle(const SavedState& state);
 
-/// What a checkpoint of this state would give each rank: its block of the particles, and all impulses.
-/// Collective.
+/// Brings the state into the form that a checkpoint of it would give each rank: its block of the particles,
+/// and all impulses. Collective.
 PetscErrorCode bring_together(MPI_Comm comm, SavedState* state);
 
 /// Brings the impulses of all ranks together, in order of address, on every rank. A node that several ranks

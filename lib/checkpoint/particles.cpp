@@ -22,7 +22,7 @@ std::string value_of(const Checkpoint& c, const std::string& name) {
   return "";
 }
 
-/// The mesh of the checkpoint's run; false where its options do not tell it.
+/// Reads the mesh of the checkpoint's run; false where its options do not give it.
 bool read_mesh(const Checkpoint& c, MeshConfig& mesh) {
   const auto vector = [&](const char* name, Vec3& to) {
     const auto pieces = split(value_of(c, name));
@@ -125,8 +125,8 @@ std::string column_of(const Checkpoint& c, const std::string& body, const std::s
   return "";
 }
 
-/// The same of the variable that is each particle's own value of a parameter; empty where the body's
-/// particles had no values of their own.
+/// Column of the variable that is each particle's own value of a parameter; empty where the body's particles
+/// had no values of their own.
 std::string column_of_own(const Checkpoint& c, const std::string& body, const std::string& parameter,
                           const BodyRows& rows) {
   const std::string note = own_parameter_words(parameter);

@@ -84,7 +84,7 @@ bool sound_sides(const SavedSides& sides, const Config& config) {
          std::all_of(sides.columns.begin(), sides.columns.end(), finite);
 }
 
-/// What is wrong with the account of bodies that are placed at a stage, and of their state variables.
+/// Fault of the account of bodies that are placed at a stage, and of their state variables.
 std::string bodies_fault(const SavedState& state, const Config& config) {
   const std::size_t bodies = config.bodies.size();
   const auto negative = [](long count) { return count < 0; };

@@ -145,7 +145,8 @@ PetscErrorCode write_alone(const std::string& path, Checkpoint& checkpoint, IdBl
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Every rank makes the same layout, and so knows where its rows go; that of rank 0 becomes the file.
+/// Every rank makes the same layout, which gives the place of its rows; the layout of rank 0 becomes the
+/// file.
 PetscErrorCode lay_out(const std::string& path, Checkpoint& checkpoint, IdBlock& soil, int* layout,
                        SharedRows* shared) {
   PetscFunctionBeginUser;

@@ -29,8 +29,7 @@ struct Equation {
   }
 };
 
-/// What a part of a row wants: strain increments where the strain governs, and the equations' sums at its
-/// end.
+/// Goals of a part of a row: strain increments where the strain governs, and the equations' sums at its end.
 struct Part {
   Sym6 strain{};
   std::vector<double> goal;
@@ -89,7 +88,7 @@ class Solver {
     bool sound = false;
   };
 
-  /// What turns a misfit of an equation into a stress.
+  /// Factor from a misfit of an equation to a stress.
   double to_stress(const Equation& equation) const { return equation.of_strain ? modulus_ : 1; }
 
   Trial try_strain(const Part& part, const DrivenPoint& point, const Sym6& increment) const {
@@ -212,7 +211,7 @@ Equation equation_of(const ElementSum& sum, double change, const DrivenPoint& po
   return equation;
 }
 
-/// What a row governs beside strains. The point's goals become those of the row.
+/// Equations that a row governs beside strains. The point's goals become those of the row.
 std::vector<Equation> equations_of(const ElementRow& row, const std::vector<ElementSum>& sums,
                                    DrivenPoint& point) {
   std::vector<Equation> equations;

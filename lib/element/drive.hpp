@@ -15,8 +15,8 @@ namespace mpm {
 struct DrivenPoint {
   PointState now;
   Sym6 strain{};  // -, since the start, tensor shear strains
-  /// What the row before governed, as the path wanted it at its end: the stress components [Pa], then the
-  /// sums of stresses [Pa] and of strains since the start [-].
+  /// Goals of the row before at its end: the stress components [Pa], then the sums of stresses [Pa] and of
+  /// strains since the start [-].
   std::vector<std::optional<double>> goals{};
   double time = 0;  // s
 };

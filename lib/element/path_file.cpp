@@ -70,7 +70,7 @@ bool component_name(const std::string& name) {
   return std::any_of(std::begin(k_components), std::end(k_components), is);
 }
 
-/// What is wrong with the names of a header.
+/// Fault of the names of a header.
 std::string fault_of_names(const std::vector<std::string>& names, const std::vector<StateVariable>& state) {
   std::vector<std::string> known = {"time", "dt"};
   for (const char* prefix : {"e", "de", "ds", "s"})
@@ -189,7 +189,8 @@ bool in_sums(const ElementRow& row, const std::vector<ElementSum>& sums, int c) 
   return false;
 }
 
-/// What drives component c over a row. `known` is its strain as far as strains alone have driven it.
+/// Reads what drives component c over a row; returns a fault. `known` is the strain of c as long as strains
+/// alone have driven it.
 std::string read_component(const Row& row, const Columns& columns, int c, int parts,
                            std::optional<double>& known, const std::vector<ElementSum>& sums,
                            ElementRow& to) {

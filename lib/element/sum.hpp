@@ -13,8 +13,8 @@ namespace mpm {
 /// and factors before them, as dsxx+dsyy+dszz or dsyy-0.5*dsxx. None where the name is no such sum.
 std::optional<ElementSum> parse_sum(const std::string& name);
 
-/// What is wrong with the sums that a row governs; empty where nothing is. A row governs as many sums as it
-/// leaves components free, and none of its stresses and sums follows from the others.
+/// Fault of the sums that a row governs; empty where there is none. A row governs as many sums as it leaves
+/// components free, and none of its stresses and sums follows from the others.
 std::string fault_of_sums(const ElementRow& row, const std::vector<ElementSum>& sums);
 
 }  // namespace mpm

@@ -17,7 +17,7 @@ double patch_count(const MeshConfig& mesh, int dim);
 /// most `ranks`, with the smallest area between them.
 std::array<int, 3> ranks_along(int ranks, const std::array<int, 3>& patches);
 
-/// Owns a DMDA and tells what kernels need of it.
+/// Owns a DMDA and gives the figures that kernels need of it.
 class BackgroundMesh {
  public:
   BackgroundMesh() = default;

@@ -69,8 +69,8 @@ template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::add_forces(State_& s) {
   PetscFunctionBeginUser;
   if (!forces_shared_) PetscFunctionReturn(PETSC_SUCCESS);
-  // The forces are there since the nodes are: where ghost sums have been sent ahead nobody waits for inner
-  // patches.
+  // The forces are complete when the nodes are updated. Where ghost sums were sent ahead, the side stream
+  // sums the forces without waiting for the inner patches.
   const Space& space = sent_ahead() ? side_.space() : s.space;
   sum_forces(s, space);
   const auto sums = Kokkos::create_mirror_view(s.rigid_force);

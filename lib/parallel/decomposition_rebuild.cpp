@@ -25,8 +25,8 @@ void fill(View& view, const std::vector<Value>& values) {
   copy(Kokkos::subview(view, Kokkos::make_pair(std::size_t(0), values.size())), host);
 }
 
-// Of a rank in SavedState::bounds: bound, increment, whether a report is under way, the two numbers of it,
-// sum, and the two numbers of the next report.
+// Numbers of a rank in SavedState::bounds: bound, increment, whether a report is under way, the two numbers
+// of it, sum, and the two numbers of the next report.
 constexpr int k_bounds = k_saved_bounds;
 constexpr double k_worth = 0.02;  // least gain in balance for which patches change hands
 
@@ -55,8 +55,9 @@ PetscErrorCode Decomposition<Space, T, Dim>::rebuild(State_& s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Gives patches to other ranks where that mends the balance of the work since it was judged last. What is
-/// too short to measure is kept for the next time; until the first time the particles tell the balance.
+/// Gives patches to other ranks where that mends the balance of the work since it was judged last. Work that
+/// is too short to measure is kept for the next time; until the first time the balance is that of the
+/// particles.
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::rebalance(State_& s) {
   constexpr double k_measurable = 0.05;  // s of work a rank
@@ -81,7 +82,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::rebalance(State_& s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// figures: work [s] and particles of each rank; timed: the work tells what a particle costs.
+/// figures: work [s] and particles of each rank; timed: the work gives the cost of a particle.
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::choose_owners(State_& s, const std::vector<double>& figures,
                                                            double imbalance, bool timed) {
@@ -210,8 +211,8 @@ PetscErrorCode Decomposition<Space, T, Dim>::exchange_impulses(State_& s, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What differs from rank to rank goes to SavedState::bounds, k_bounds numbers and three a rigid of each
-/// rank.
+/// Saves the numbers that differ from rank to rank in SavedState::bounds: k_bounds numbers and three a rigid
+/// of each rank.
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::save(SavedState* saved) const {
   PetscFunctionBeginUser;
@@ -229,8 +230,8 @@ PetscErrorCode Decomposition<Space, T, Dim>::save(SavedState* saved) const {
   const int width = static_cast<int>(own.size());
   saved->bounds.resize(std::size_t(size_) * width);
   PetscCallMPI(MPI_Allgather(own.data(), width, MPI_DOUBLE, saved->bounds.data(), width, MPI_DOUBLE, comm_));
-  // For other numbers of ranks: the largest increments of the steps that are still to be looked at, as one
-  // rank sums them, and when the first of them lets lists be rebuilt.
+  // For other numbers of ranks: the largest increments of the steps that have yet to be tested, as one rank
+  // sums them, and when the first of them lets lists be rebuilt.
   double late[GlobalBound::k_late] = {report && report->bound > 0 ? report->increment : 0,
                                       seen_().bound > 0 ? seen_().increment : 0, saved->increment};
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, late, GlobalBound::k_late, MPI_DOUBLE, MPI_MAX, comm_));

@@ -44,7 +44,7 @@ std::vector<Field> fields_of(BodyParticles& body, int dim, int faces) {
   return fields;
 }
 
-/// Of a body of which every rank has all particles: this rank's part.
+/// Keeps this rank's part of a body of which every rank has all particles.
 void keep_part(LatticePart part, int dim, int faces, BodyParticles& body) {
   const long count = static_cast<long>(body.position.size()) / dim;
   const long from = count * part.number / part.of, to = count * (part.number + 1) / part.of;
@@ -112,10 +112,10 @@ PetscErrorCode count_loads(MPI_Comm comm, const PatchGrid& grid, double spacing,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What follows from all particles of a body, before most of them go.
+/// Computes the velocity gradients, which need all particles of a body, before most of the particles go.
 void take_gradients(const Config& config, BodyParticles& body) {
   if (config.velocity_update != VelocityUpdate::apic || body.velocity.empty()) return;
-  if (!body.velocity_gradient.empty()) return;  // a checkpoint tells them
+  if (!body.velocity_gradient.empty()) return;  // a checkpoint has them
   std::vector<double> cells = body.position;
   for (double& x : cells) x /= config.mesh.spacing;
   std::array<int, 3> period{};

@@ -1,6 +1,6 @@
 #pragma once
 // The exchange of nodal values between ranks by MPI, through PetscSF on lists of owners, or by messages from
-// and to a device's memory, of which a PetscSF without CUDA knows nothing.
+// and to a device's memory, which a PetscSF without CUDA cannot use.
 
 #include <petscsf.h>
 
@@ -26,7 +26,7 @@ class NodeExchange {
   /// Starts and ends an exchange of `width` values of type `real` an entry.
   PetscErrorCode start(MPI_Datatype real, int width, const void* out, void* in);
   PetscErrorCode finish();
-  /// The same by a message a neighbour.
+  /// The exchange by one message to each neighbour.
   PetscErrorCode start_messages(MPI_Datatype real, int width, const void* out, void* in);
   PetscErrorCode finish_messages();
 

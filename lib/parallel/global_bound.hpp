@@ -19,7 +19,7 @@ struct BoundReport {
 class GlobalBound {
  public:
   /// Steps between what a report says and the step that it decides on: the report posted in a step is of the
-  /// step before the last one, whose end nobody has to wait for, and is looked at one step later.
+  /// step before the last one, whose end nobody has to wait for, and is read one step later.
   static constexpr int k_late = 3;
 
   GlobalBound() = default;
@@ -28,8 +28,8 @@ class GlobalBound {
 
   /// Starts the reduction of this rank's report.
   PetscErrorCode post(MPI_Comm comm, const BoundReport& own);
-  /// Ends the reduction of the last report but one; `known` is false where there is no such report. The bound
-  /// is the sum of the largest increments, as on one rank; without a step since the lists were built it is 0.
+  /// Ends the reduction of the last report but one; `known`: whether there is such a report. The bound is the
+  /// sum of the largest increments, as on one rank; without a step since the lists were built it is 0.
   PetscErrorCode last_but_one(bool* known, BoundReport* all);
   /// The last report of this rank, if its reduction is under way.
   std::optional<BoundReport> pending() const {
@@ -37,7 +37,7 @@ class GlobalBound {
     if (!r.posted) return std::nullopt;
     return BoundReport{r.own[0], r.own[1], r.own[2]};
   }
-  /// The sum of the largest increments since the lists were built, as far as reports are known.
+  /// The sum of the largest increments since the lists were built, as far as reports have arrived.
   double sum() const { return sum_; }
   void set_sum(double sum) { sum_ = sum; }
   /// Steps to a rebuild that was already due in the checkpoint of a restart; 0: none.

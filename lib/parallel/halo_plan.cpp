@@ -28,7 +28,7 @@ std::uint64_t reached_from(const std::array<int, 3>& offset, int dim) {
   return mask;
 }
 
-/// What each rank reaches of a patch.
+/// Nodes of a patch that each rank reaches.
 using Reach = std::vector<std::pair<int, std::uint64_t>>;  // by rank, rising
 
 class Planner {
@@ -75,7 +75,7 @@ class Planner {
     return masks_[(offset[2] + 1) * 9 + (offset[1] + 1) * 3 + offset[0] + 1];
   }
 
-  /// Whether all patches round n are in the grid, and where their numbers tell.
+  /// Whether all patches round n are in the grid, so that their numbers are n plus an offset.
   bool inside(long n) const {
     const std::array<int, 3> at = grid_.place(grid_.in_first_field(n));
     bool in = true;
@@ -96,7 +96,7 @@ class Planner {
     return true;
   }
 
-  /// What the ranks reach of patch n.
+  /// Nodes of patch n that the ranks reach.
   const Reach& reach_of(long n) {
     reach_.clear();
     grid_.for_each_around(n, [&](long other, const std::array<int, 3>& offset) {

@@ -21,7 +21,7 @@ std::vector<double> loads_of(const Owners& owners, const Loads& loads, int ranks
 /// where `before` is not empty. A patch without load goes to the part of the nearest one that has some.
 Owners cut_graph(const PatchGrid& grid, const Loads& loads, int ranks, const Owners& before);
 
-/// The same on every rank of comm, computed on rank 0. Collective.
+/// Cuts the graph on rank 0 and gives every rank of comm the result. Collective.
 PetscErrorCode cut_graph(MPI_Comm comm, const PatchGrid& grid, const Loads& loads, const Owners& before,
                          Owners* owners);
 

@@ -159,7 +159,7 @@ void PeerMemory::wait_for(int rank, long number) const {
     if (n > k_spins) sched_yield();
 }
 
-/// What was open of the others first: CUDA wants it so.
+/// Closes the memory of other ranks first, as CUDA requires.
 PetscErrorCode PeerMemory::close_memory() {
   PetscFunctionBeginUser;
 #ifdef KOKKOS_ENABLE_CUDA

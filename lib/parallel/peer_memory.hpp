@@ -25,9 +25,9 @@ class PeerMemory {
   char* own() const { return own_; }
   PetscErrorCode of(int rank, char** memory);
 
-  /// Tells `rank` that what it gets from here is there up to message `number`.
+  /// Reports to `rank` that its messages from this rank are complete up to message `number`.
   void notify(int rank, long number);
-  /// Waits until `rank` has told so.
+  /// Waits until `rank` has reported it.
   void wait_for(int rank, long number) const;
 
  private:

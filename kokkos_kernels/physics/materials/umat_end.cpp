@@ -18,7 +18,7 @@ thread_local RunningUmat running;  // exit runs its handlers on the thread that 
   for (;;) syscall(SYS_exit_group, status);
 }
 
-/// Tells that the code of the user ended the program, and ends it. Does nothing at any other end.
+/// Reports that the code of the user ended the program, and ends it. Does nothing at any other end.
 void end_with_line() {
   const RunningUmat was = running;
   if (was.library == nullptr) return;

@@ -29,13 +29,13 @@ struct TimeTable {
   std::string file;  // CSV; empty where the option itself lists the points
 };
 
-/// What a side of the mesh takes beside its kind.
+/// Properties of a side of the mesh beside its kind.
 struct SideConfig {
   double friction = 0;                      // - (friction)
   std::optional<double> shear_limit;        // Pa (friction)
   double dashpot_factor = 1;                // - (absorbing)
   std::optional<double> spring_length;      // m (absorbing)
-  Vec3 velocity{};                          // m/s; where a table tells it, its components of largest size
+  Vec3 velocity{};                          // m/s; where a table gives it, its components of largest size
   std::optional<TimeTable> velocity_table;  // m/s
   bool of_accelerations = false;            // that table is the integral of a record of accelerations
   bool moves = false;
@@ -138,7 +138,7 @@ struct RigidConfig {
   std::string name;
   Shape shape;
   Motion motion = Motion::fixed;
-  /// m/s: the velocity (prescribed) or the initial velocity (dynamic). Where a table tells it, its component
+  /// m/s: the velocity (prescribed) or the initial velocity (dynamic). Where a table gives it, its component
   /// of largest size in the table.
   Vec3 velocity{};
   std::optional<TimeTable> velocity_table;      // m/s (prescribed)
@@ -158,7 +158,7 @@ struct RigidConfig {
   bool absent = false;              // not in the run in this stage: a later one places it, or it was removed
 };
 
-/// Courant numbers above this are known to be unstable (the energy of an elastic bar grows at 0.7).
+/// Courant numbers above this are unstable (the energy of an elastic bar grows at 0.7).
 inline constexpr double k_largest_courant = 0.6;
 
 struct TimeConfig {
@@ -169,7 +169,7 @@ struct TimeConfig {
   std::optional<long> max_steps;
 };
 
-/// What ends a stage of a run, before its time_end at the latest.
+/// Event that ends a stage of a run, at its time_end at the latest.
 enum class StageEnd { time, equilibrium, displacement };
 
 /// A stage of a run.
@@ -223,10 +223,10 @@ struct OutputConfig {
   bool energy = false;                    // the history has an energy balance
   double interval = 0;                    // s between frames
   double history_interval = 0;            // s between rows of the history
-  std::optional<double> raster_interval;  // s between looks at the soil for the rasters; none: there are none
+  std::optional<double> raster_interval;  // s between updates of the rasters; none: there are no rasters
   Progress progress = Progress::automatic;
   std::optional<double>
-      checkpoint_interval;                // s between checkpoints; none: only when the run is told to stop
+      checkpoint_interval;  // s between checkpoints; none: only when a signal or the time limit stops the run
   std::optional<double> wall_time_limit;  // s of wall time after which the run stops
   std::string restart;                    // the checkpoint to go on from, or "latest"; empty: from the start
   std::vector<std::string> restart_change;  // names of options, without dash, that may differ from its own
@@ -246,7 +246,7 @@ struct LoadConfig {
 
 enum class ProbeKind { point, particle, gauge, section };
 
-/// A place where the history tells of the soil.
+/// A place at which the history reports the soil.
 struct ProbeConfig {
   std::string name;
   ProbeKind kind = ProbeKind::point;
@@ -290,8 +290,8 @@ struct WaterConfig {
   }
 };
 
-/// What drives a component over a row of a path: an increment of strain, the strain since the start that it
-/// ends with, an increment of stress, or nothing of its own, so that sums of components decide its strain.
+/// Drive of a component over a row of a path: an increment of strain, the strain since the start that it ends
+/// with, an increment of stress, or nothing of its own, so that sums of components decide its strain.
 enum class Drive { strain, total_strain, stress, free };
 
 /// A weighted sum of increments of stress, or of strain, that rows of a path may govern.
@@ -325,7 +325,7 @@ struct ElementConfig {
 
 inline constexpr double k_gib = 1024.0 * 1024 * 1024;  // bytes
 
-/// Everything that a run needs to know.
+/// The whole input of a run.
 struct Config {
   int dim = 2;
   Geometry geometry = Geometry::plane_strain;  // in 2D
@@ -360,9 +360,9 @@ struct Config {
   RasterConfig rasters;
   ElementConfig element;
   StageConfig stage;                // which stage these options are of
-  bool balance = false;             // the history tells the unbalanced ratio
+  bool balance = false;             // the history has the unbalanced ratio
   std::vector<std::string> stages;  // names of all stages, in order; empty: the run has none
-  bool dry_run = false;             // tell what the run would take, and do not run
+  bool dry_run = false;             // print what the run would take, and do not run
 };
 
 /// Density with which the soil of a body was created [kg/m3]: its particles keep their masses where a stage

@@ -16,7 +16,7 @@ inline constexpr const char* k_version = "0.2.0";
 struct InputReport;
 
 /// A run of the material point method. A non-zero PetscErrorCode means that the system failed (a full disk,
-/// lost MPI); everything that a user can mend is told in one line and kept in outcome(). MPI, Kokkos and
+/// lost MPI); every fault that a user can mend is reported in one line and kept in outcome(). MPI, Kokkos and
 /// PETSc are up before, and stay up until it is gone.
 class Simulation {
  public:
