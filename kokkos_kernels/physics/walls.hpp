@@ -216,7 +216,7 @@ KOKKOS_INLINE_FUNCTION void turn_sums(const Team& team, const WindowImages<T, Di
   constexpr int size = Source::size;
   constexpr Kind kind = Source::kind;
   constexpr int across = Patch<Dim>::window_edge, plane = Patch<Dim>::window / across;
-  unrolled<Dim>([&](auto d) {  // the kernel's arguments are read at places that the compiler knows
+  unrolled<Dim>([&](auto d) {  // the kernel's arguments are read at constant places
     constexpr int step = power(across, d);
     if (d > 0) team.team_barrier();
     unrolled<4>([&](auto row) {  // the nodes beyond and at the lower wall, at and beyond the upper one

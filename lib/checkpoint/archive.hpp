@@ -15,7 +15,7 @@ namespace mpm {
 ///   list(path, vector)            numbers that every rank holds whole
 ///   text(path, string)            any length
 ///   points(path, points, block)  a set of points, of which each rank holds a block
-/// `soil` tells the block of the particles.
+/// `soil`: the block of the particles.
 template <class Archive>
 void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& soil) {
   archive.value("version", c.version), archive.value("dim", c.dim), archive.value("ranks", c.ranks);

@@ -21,7 +21,7 @@ struct Spread {
   double balance() const { return mean > 0 ? most / mean : 1.0; }
 };
 
-/// What several ranks did since the run began or went on.
+/// Figures of several ranks since the run began or went on.
 struct RankFigures {
   int ranks = 0;
   Spread particles, neighbours, halo_nodes;
@@ -31,7 +31,7 @@ struct RankFigures {
   std::string halo_path;       // how ghost sums travel, in words
 };
 
-/// What a run came to. After a restart the figures are of the steps since then, but for rebuilds.
+/// Performance of a run. After a restart the figures are of the steps since then, but for rebuilds.
 struct Performance {
   std::vector<FunctionTime> functions{};
   double wall = 0;                               // s, since the first step
@@ -45,7 +45,7 @@ struct Performance {
   double bandwidth = 0;                          // bytes/s of the device's copy; 0 if not known
   std::optional<RankFigures> between_ranks{};    // none on one rank
 
-  // What only performance.json tells: the log has it elsewhere.
+  // Members that only performance.json has, because the log has them elsewhere.
   std::string version, outcome;    // outcome: finished, stopped or failed
   std::string backend, precision;  // words of the options
   std::string processor;           // of rank 0
