@@ -35,7 +35,8 @@ PetscErrorCode Simulation::Body::update_rasters() {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// The rasters so far, with the depth as it is now. Of a run that failed it is that of the last look.
+/// Writes the rasters so far, with the depth as it is now; in a run that failed, with the depth of the last
+/// update.
 PetscErrorCode Simulation::Body::write_rasters() {
   PetscFunctionBeginUser;
   if (rasters.most_depth.empty()) PetscFunctionReturn(PETSC_SUCCESS);

@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// Makes a view hold at least n entries; its content is lost when it grows. What has grown once may grow
-/// again, and gets some room for it.
+/// Makes a view hold at least n entries; its content is lost when it grows. A view that has grown once may
+/// grow again, and gets some room for it.
 template <class View>
 void ensure(View& view, std::size_t n) {
   if (view.extent(0) >= n) return;

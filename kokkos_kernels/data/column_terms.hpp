@@ -9,9 +9,9 @@ template <int Dim>
 inline constexpr int k_vertical = Dim - 1;
 
 /// A column is elastic ground that varies with the height alone, computed as the soil of the run is: by its
-/// particles as they were when the side began, with their weights then. What they give is summed to matrices
-/// between the rows: the element (i, j) is number j - i + `reach` of its band in row i. Of each matrix there
-/// are two, number 0 for movement along the vertical, number 1 for movement along the level.
+/// particles as they were when the side began, with their weights then. Their terms are summed to matrices
+/// between the rows: the element (i, j) is number j - i + `reach` of its band in row i. Each matrix exists
+/// twice: number 0 for movement along the vertical, number 1 for movement along the level.
 template <int Dim>
 struct ColumnTerms {
   static constexpr int reach = 3, band = 2 * reach + 1, matrix = 2 * band;

@@ -1,6 +1,6 @@
 #pragma once
 // All that a run needs to go on to the same bits, on the host, as plain data whatever the execution space,
-// real type and dimension. What was binned stays binned: a point is saved by the cell of its bin and its
+// real type and dimension. Points stay in their bins: a point is saved by the cell of its bin and its
 // coordinate from there, so that going on does not need the rebuild that the run would not have made here.
 
 #include <array>

@@ -38,8 +38,8 @@ struct Strays {
   bool known = false;                          // `alone` is of the present lists
   Kokkos::View<int*, Memory> put_back;         // by body: particles that were put back at a wall
   double least_volume = 0, most_volume = 0;    // m3, of any particle
-  /// By body: a particle's volume over its mass at the start [m3/kg], 0 where a file gave both. Of extent 0
-  /// where all particles have the same volume at the start and do not split.
+  /// By body: a particle's volume over its mass at the start [m3/kg], 0 where a file gave both. Empty where
+  /// all particles have the same volume at the start and do not split.
   Kokkos::View<double*, Memory> start_volume;
   std::vector<Lost> lost;  // by body
 };

@@ -8,9 +8,9 @@ namespace mpm {
 enum class SurfaceKind : int { box, polygon, disc, half_plane, revolved, heights };
 
 /// A vertex of a polygon in the plane of x and the vertical axis [m from the mesh's lower corner], and
-/// whether the edge that begins there lies on the mesh's boundary, where no soil can be behind it. Of what is
-/// revolved: of its section, distance from the axis and height above the centre. Of heights: z is one of
-/// them.
+/// whether the edge that begins there lies on the mesh's boundary, where no soil can be behind it. For a
+/// revolved body, a vertex of its section: distance from the axis and height above the centre. For a surface
+/// of heights, z is one of them.
 struct Vertex {
   double x, z;
   bool outside;

@@ -1,6 +1,6 @@
 #pragma once
-// Loads on parts of bodies' surfaces, which move with them: pressures and tractions. What each particle keeps
-// of the surface is in Soil::faces.
+// Loads on parts of bodies' surfaces, which move with them: pressures and tractions. Soil::faces has each
+// particle's part of the surface.
 
 #include "data/particles.hpp"
 

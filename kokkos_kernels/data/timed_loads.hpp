@@ -28,8 +28,8 @@ struct TimedNumber {
 
 enum class LoadTarget : int { gravity, velocity, force, side, pressure, traction };
 
-/// A component of what follows a table: own + factor * gravity. Of a rigid's force the factor is the mass
-/// whose weight it carries [kg]; 0 elsewhere.
+/// A component of a quantity that follows a table: own + factor * gravity. For a rigid's force, the factor is
+/// the mass whose weight the force carries [kg]; 0 elsewhere.
 struct TimedLoad {
   LoadTarget target;
   int rigid, component;  // of a side, 2 direction + 1 for the upper one stands for the rigid; or the number

@@ -5,11 +5,11 @@
 namespace mpm {
 namespace {
 
-/// A particle is alone where its nodes hold less than this many times its mass. What so few particles are
-/// held together by depends on where they are in a cell, and at most places there no time step of the soil is
-/// stable for them (docs/method.md, "Strays"). The nodes of a particle at the corner of a body hold at least
-/// n^Dim times its mass, n particles along a cell's edge. in_cell: that number of particles, as many as fill
-/// a cell.
+/// A particle is alone where its nodes hold less than this many times its mass. The stiffness between so few
+/// particles depends on where they are in a cell, and at most places there no time step of the soil is stable
+/// for them (docs/method.md, "Strays"). The nodes of a particle at the corner of a body hold at least n^Dim
+/// times its mass, n particles along a cell's edge. in_cell: that number of particles, as many as fill a
+/// cell.
 KOKKOS_INLINE_FUNCTION double alone_below(double in_cell) {
   constexpr double k_share = 0.9, k_least = 1.5;
   return Kokkos::fmax(k_least, k_share * in_cell);

@@ -51,10 +51,10 @@ struct NearWalls {
     const Wall wall = places.grid.wall[d][side];
     return wall == Wall::fixed || (wall == Wall::roller && k == d) ? side : -1;  // others: side_forces
   }
-  /// Adds component k of the forces on a node. Of what a node beyond a wall has, twice the internal force
-  /// passes that wall, and the image feels the opposite of it and the weight; beyond two walls that both turn
-  /// the force round nothing passes. What a node at walls feels is for the wall normal to k, where that holds
-  /// k, else in equal parts for those that do: no part depends on the order of the axes.
+  /// Adds component k of the forces on a node. For a node beyond a wall, twice the internal force passes that
+  /// wall, and the image feels the opposite of the internal force and the weight. Beyond two walls that both
+  /// turn the force round nothing passes. The force at a node on walls goes to the wall normal to k, where
+  /// that wall holds k, else in equal parts to the walls that do: no part depends on the order of the axes.
   KOKKOS_INLINE_FUNCTION void add(const Coord<Dim>& node, int k, double internal, double weight,
                                   ForceSum<Dim>& sum) const {
     int beyond[Dim], at[Dim], walls_beyond = 0, walls_at = 0;

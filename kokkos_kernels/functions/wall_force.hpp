@@ -9,7 +9,7 @@ namespace mpm {
 
 /// Force of the soil [N] on each side of the mesh, [direction][lower or upper], as its stress and weight are
 /// now, in water in excess of the hydrostatic pressure; on a roller the part normal to it, on a free side
-/// none. Of the soil of this rank.
+/// none. Only from the soil of this rank.
 using WallForces = std::array<std::array<std::array<double, 3>, 2>, 3>;
 template <class Space, class T, int Dim>
 WallForces wall_forces(const State<Space, T, Dim>& s);

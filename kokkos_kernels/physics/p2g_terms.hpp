@@ -179,7 +179,7 @@ struct ShareSource {
 
 /// The soil's boundary at a node, sum grad S V_p, of rings with T S V_p in the radial component: by Gauss'
 /// theorem the integral of S_i n over it, n out of the soil. Summed over the nodes along a face it is the
-/// face's area, however the face cuts the cells. And its volume there, sum S V_p.
+/// face's area, however the face cuts the cells. The source also sums the soil's volume there, sum S V_p.
 template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
 struct BoundarySource {
   using Space = Space_;

@@ -28,9 +28,9 @@ struct Comparison {
   std::vector<OptionChange> changes;  // those that -restart_change allows
 };
 
-/// Compares the options of a configuration with those of the checkpoint; `file` is its name. What may change
-/// at any restart (change_rules.hpp) is not compared; options whose names (without dash) are in `allowed` may
-/// change too.
+/// Compares the options of a configuration with those of the checkpoint; `file` is its name. Options that may
+/// change at any restart (change_rules.hpp) are not compared; options whose names (without dash) are in
+/// `allowed` may change too.
 Comparison compare_options(const Checkpoint& checkpoint, const std::vector<EffectiveOption>& now,
                            const Config& config, const std::string& file,
                            const std::vector<std::string>& allowed = {});

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// Reads -analysis and puts its defaults into `config`. What the deck gives is read later and prevails.
+/// Reads -analysis and puts its defaults into `config`. Values of the deck are read later and prevail.
 void read_analysis(OptionReader& in, Config& config);
 
 /// Notes in one line of the log which defaults -analysis has set, and which options the deck gives itself.

@@ -39,8 +39,8 @@ void check_periodic_kept(OptionReader& in, int dim, const MeshConfig& first, con
 void read_material(OptionReader& in, const std::string& name, const MeshConfig* mesh, const Config& config,
                    MaterialConfig& material);
 
-/// The object that the model of a material makes from its texts, for a mesh and a dimension, and what the law
-/// then says of its parameters together. Of a single point that is done once its path decides the dimension.
+/// The object that the model of a material makes from its texts, for a mesh and a dimension, and the law's
+/// check of its parameters together. For a single point, call it after the path has decided the dimension.
 void make_law_object(OptionReader& in, const MeshConfig& mesh, int dim, MaterialConfig& material);
 
 /// A parameter of a material by its key; NaN where its model has none of that name.

@@ -54,8 +54,8 @@ bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim,
 /// The options that name files of a shape, without its name, and these files.
 std::vector<std::pair<std::string, std::string>> files_of(const Shape& shape);
 
-/// The shapes that are cut out of a body as it is placed: those of what is placed at the same time. What is
-/// placed earlier or later cuts when the later of the two is placed (overlap.hpp).
+/// The shapes that are cut out of a body as it is placed: those of bodies and rigids that are placed at the
+/// same time. A shape that is placed earlier or later cuts when the later of the two is placed (overlap.hpp).
 std::vector<Shape> cut_out_of(const Config& config, const BodyConfig& body);
 
 /// Volume [m3] (area [m2] in 2D) of a shape, or of the part of it in the mesh where sides of the mesh cut it;

@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// The known name that is most like `name`, by letters and by words between underscores. Of an option of a
-/// material, a body or another named thing, it is one of the same thing. There must be a known name.
+/// The known name that is most like `name`, by letters and by words between underscores. For an option of a
+/// material, a body or another named thing, it is an option of the same thing. There must be a known name.
 std::string most_like(const std::string& name, const std::vector<std::string>& known,
                       const std::vector<std::string>& owners);
 
