@@ -20,12 +20,12 @@ namespace {
 
 constexpr int k_system_failure = 1;  // exit status of what neither the input nor the computation explains
 
-/// What the program ends with where the system failed. Memory that runs out before the first step is a matter
-/// of the input, later of the computation.
+/// Exit status where the system failed. Memory that runs out before the first step is a matter of the input,
+/// later of the computation.
 std::atomic_int failure_status{k_system_failure};
 std::atomic_bool begun{false};  // the steps
 
-/// Tells the first failure in one line.
+/// Prints the first failure in one line.
 void tell_failure(bool memory, const char* message) {
   static std::atomic_flag told;
   if (told.test_and_set()) return;
@@ -55,7 +55,7 @@ PetscErrorCode tell_in_one_line(MPI_Comm, int, const char*, const char*, PetscEr
   return error;
 }
 
-/// The same of PETSc's start, where only an option of its own can be wrong.
+/// Prints a failure of PETSc's start, where only an option of PETSc can be wrong.
 PetscErrorCode tell_of_start(MPI_Comm, int, const char*, const char*, PetscErrorCode error,
                              PetscErrorType type, const char* message, void*) {
   int rank = 0;
