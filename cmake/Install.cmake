@@ -13,7 +13,7 @@ install(FILES kokkos_kernels/base/choices.hpp DESTINATION ${CMAKE_INSTALL_INCLUD
 install(DIRECTORY inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN "*.opts"
   PATTERN "umat/*.f" PATTERN "umat/*.c" PATTERN "umat/ABA_PARAM.INC")
 install(FILES kokkos_kernels/physics/materials/umat_symbols.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
-install(FILES README.md LICENSE TYPE DOC)
+install(FILES README.md LICENSE CHANGELOG.md CITATION.cff TYPE DOC)
 
 # Prefixes of the dependencies, for find_package(mpm). HDF5 that pkg-config found needs none.
 cmake_path(GET METIS_INCLUDE_DIR PARENT_PATH METIS_PREFIX)
