@@ -7,7 +7,10 @@ namespace mpm {
 
 double patch_count(const MeshConfig& mesh, int dim) {
   double count = 1;
-  for (int d = 0; d < dim; ++d) count *= (mesh.cells[d] + patch_edge(dim) - 1) / patch_edge(dim) + 2;
+  for (int d = 0; d < dim; ++d) {
+    const int along = (mesh.cells[d] + patch_edge(dim) - 1) / patch_edge(dim) + 2;  // with the ring
+    count *= along;
+  }
   return count;
 }
 
