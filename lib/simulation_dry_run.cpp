@@ -96,7 +96,7 @@ PetscErrorCode Simulation::Body::tell_need() {
   PetscCall(log.print("particles     %ld in %d patches, on %d rank%s", stepper->particles(),
                       stepper->patches(), ranks(), ranks() == 1 ? "" : "s"));
   PetscCall(log.print("memory        %.4g MB on the device, about %.4g MB beside on the host, a rank",
-                      stepper->memory() / ranks() / 1e6, need.host / ranks() / 1e6));
+                      static_cast<double>(stepper->memory()) / ranks() / 1e6, need.host / ranks() / 1e6));
   PetscCall(log.print("time step     %.9g s, Courant number %.4f", dt, dt / critical_time_step(config)));
   PetscCall(log.print("steps         %ld to %g s", schedule.last_step(), end));
   PetscCall(log.print(
@@ -127,7 +127,7 @@ PetscErrorCode Simulation::Body::tell_need() {
 /// start. The trial is of the first stage; the time of a step grows with the particles.
 PetscErrorCode Simulation::Body::tell_stages() {
   PetscFunctionBeginUser;
-  const double device = stepper->memory() / ranks();  // of the first, measured
+  const double device = static_cast<double>(stepper->memory()) / ranks();  // of the first, measured
   const MemoryNeed first = memory_need(config);
   double most = 0, seconds = 0;
   long steps = 0;
