@@ -77,6 +77,7 @@ struct State {
   Water<Dim> water{};                     // hydrostatic, in which the soil is submerged
   Kokkos::View<double*, Memory> density;  // kg/m3, that the soil of each body begins with
   double damping = 0;                     // -
+  bool rayleigh = false;                  // Rayleigh damping is in use
   double kick = 1;                        // -, share of the next step by which it changes velocities
   double friction_time = 1;               // s, over which friction takes the mean normal impulse
   double flip_fraction = 1;               // -, what is not FLIP is PIC, or XPIC

@@ -3,6 +3,7 @@
 // does what several do in large problems. The program has them for GPUs (persistent_step.cpp); the tests have
 // them for processors too, so that they are tested where there is no GPU.
 
+#include "data/features_of.hpp"
 #include "functions/step_kernels.hpp"
 #include "loops/gpu/persistent_step.hpp"
 
@@ -117,15 +118,10 @@ void update_and_end(State<Space, T, Dim>& s, double dt) {
 
 template <class Space, class T, int Dim>
 bool can_persist(const State<Space, T, Dim>& s) {
-  // What friction keeps of the impulse at a node changes whenever it is read, and so does what sides that act
-  // keep; local damping computes contact twice, for which the launch has no registers. The strengths
-  // are summed before the nodes, not ahead with the soil.
-  const bool independent = !s.shear_fraction && !s.has_friction && !s.sides.in_use() && s.damping == 0 &&
-                           !(s.rigid_dynamic && s.mass_normals);
   const bool summed = s.summed.soil && s.summed.boundary == s.soil_boundary && s.summed.rigids;
   const bool pays = s.co_resident || s.patches.slots <= persistent::k_most_patches;
   if constexpr (sums_fit<Space, T, Dim>)
-    return pays && independent && summed && s.xpic_order == 0 && !s.affine && persistent::has_room<true>(s);
+    return pays && summed && can(StepWay::many_steps, features_of(s)) && persistent::has_room<true>(s);
   return false;
 }
 

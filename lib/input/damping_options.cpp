@@ -91,8 +91,6 @@ void read_rayleigh(OptionReader& in, Config& config) {
 void check_rayleigh(OptionReader& in, const Config& config) {
   if (in.listing() || !(config.rayleigh_mass > 0 || config.rayleigh_stiffness > 0)) return;
   const std::string name = "rayleigh_ratio";
-  if (config.device_memory_limit)
-    return in.reject(name, "0 where -device_memory_limit sends the soil in batches");
   for (const MaterialConfig& material : config.materials)
     if (!shear_wave_ratio(material))
       return in.reject(name, "0 where material " + material.name +

@@ -28,6 +28,10 @@ void check_absorbing(OptionReader& in, const Config& config);
 /// damping.
 void read_rayleigh(OptionReader& in, Config& config);
 void check_rayleigh(OptionReader& in, const Config& config);
+/// Chooses the strategy that goes in batches, where -device_memory_limit asks for them and -p2g is auto.
+void choose_batches(Config& config);
+/// Rejects the features that exclude batches (StepWay::in_batches), where -device_memory_limit asks for them.
+void check_batches(OptionReader& in, const Config& config);
 /// Checks what a periodic mesh takes: weight of water across it alone, and rigids that do not end beside its
 /// periodic sides.
 void check_periodic(OptionReader& in, const Config& config);
@@ -109,7 +113,7 @@ void read_motion(OptionReader& in, int dim, double end, RigidConfig& rigid);
 /// Checks that a rigid does not move across a plane of symmetry that cuts it.
 void check_cut_motion(OptionReader& in, const MeshConfig& mesh, int dim, const RigidConfig& rigid);
 
-/// -water_*. Gravity and -device_memory_limit must have been read.
+/// -water_*. Gravity must have been read.
 void read_water(OptionReader& in, Config& config);
 
 /// The options of one region with a level of its own.
@@ -154,8 +158,6 @@ void check_density(OptionReader& in, const BodyConfig& body, const Config& confi
 
 /// The options of one load on a surface; the bodies and the time have been read.
 void read_load(OptionReader& in, const Config& config, LoadConfig& load);
-/// Rejects loads where the step cannot have them.
-void check_loads(OptionReader& in, const Config& config);
 
 /// The options of one probe. A null mesh is unsound; the bodies have been read.
 void read_probe(OptionReader& in, const MeshConfig* mesh, const Config& config, ProbeConfig& probe);

@@ -112,10 +112,4 @@ void read_load(OptionReader& in, const Config& config, LoadConfig& load) {
     in.reject(pressure.name, "a pressure in Pa, or -" + traction.name + " is given, or a table of either");
 }
 
-void check_loads(OptionReader& in, const Config& config) {
-  if (config.loads.empty()) return;
-  if (config.device_memory_limit)
-    in.reject("loads", "nothing where -device_memory_limit sends the soil in batches");
-}
-
 }  // namespace mpm

@@ -316,7 +316,6 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
     config.loads.emplace_back().name = name;
     read_load(in, config, config.loads.back());
   }
-  check_loads(in, config);
   for (const auto& name : regions) {
     config.water.regions.emplace_back().name = name;
     read_water_region(in, config, config.water.regions.back());

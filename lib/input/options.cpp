@@ -70,24 +70,6 @@ void read_p2g(OptionReader& in, P2GConfig& p2g) {
              p2g.rebuild_interval);
 }
 
-/// What goes in batches; `auto` is then `tile`.
-void check_batches(OptionReader& in, Config& config) {
-  if (!config.device_memory_limit) return;
-  for (const char* name : {"particle_domain", "velocity_update", "position_correction"})
-    if (set_by_flow(in, config, name))
-      return in.reject("analysis", "penetration where -device_memory_limit sends the soil in batches");
-  P2G& strategy = config.p2g.strategy;
-  if (strategy == P2G::automatic) strategy = P2G::tile;
-  if (strategy != P2G::tile) in.reject("device_memory_limit", "-p2g tile or auto: no other goes in batches");
-  if (config.particle_domain == ParticleDomain::split)
-    in.reject("device_memory_limit",
-              "-particle_domain fixed or stretch: batches have no room for more particles");
-  if (config.velocity_update == VelocityUpdate::xpic || config.velocity_update == VelocityUpdate::apic)
-    in.reject("device_memory_limit", "-velocity_update flip or pic: no other goes in batches");
-  if (config.position_correction)
-    in.reject("device_memory_limit", "-position_correction none: batches are not corrected");
-}
-
 void read_partition(OptionReader& in, PartitionConfig& partition) {
   in.section("Several ranks");
   in.word({.name = "partition",
@@ -228,12 +210,13 @@ void read_physics(OptionReader& in, Config& config) {
              .range = {.lowest = 0, .highest = 1, .open_highest = true}},
             config.damping);
   read_rayleigh(in, config);
-  in.number({.name = "strength_factor",
-             .meaning = "what the strength of all materials without a strength_factor of their own is divided "
-                        "by, as in a search for a factor of safety",
-             .unit = "-",
-             .range = {.lowest = 0.01, .highest = 100}},
-            config.strength_factor);
+  in.number(
+      {.name = "strength_factor",
+       .meaning = "what the strength of all materials without a strength_factor of their own is divided "
+                  "by, as in a search for a factor of safety",
+       .unit = "-",
+       .range = {.lowest = 0.01, .highest = 100}},
+      config.strength_factor);
   read_analysis(in, config);
   read_velocity_update(in, config);
   in.word({.name = "particle_domain",
@@ -399,16 +382,15 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   read_time(in, config.time);
   read_physics(in, config);
   read_sides(in, config);
-  check_batches(in, config);
+  choose_batches(config);
   read_output(in, options_file, config.time.end, config.output);
-  if (config.output.energy && config.device_memory_limit)
-    in.reject("output_energy", "off where -device_memory_limit sends the soil in batches");
   read_rasters(in, sound ? &config.mesh : nullptr, config);
   read_named(in, sound ? &config.mesh : nullptr, config, before);
   read_raster_bodies(in, config, config.rasters);
   if (sound && in.errors() == errors) choose_lid(in, before, config);
   if (sound) check_absorbing(in, config);
   check_rayleigh(in, config);
+  check_batches(in, config);
   if (sound && in.errors() == errors) check_periodic(in, config);
   check_revolution(in, config);
   limit_courant(in, config);

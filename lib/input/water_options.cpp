@@ -28,8 +28,6 @@ void read_water(OptionReader& in, Config& config) {
     in.reject("water_level", "a -gravity other than 0, which gives water its pressure");
   if (!in.listing() && config.water.level && in.given("gravity_table"))
     in.reject("water_level", "no -gravity_table: water at rest needs a constant -gravity");
-  if (!in.listing() && config.water.level && config.device_memory_limit)
-    in.reject("water_level", "no -device_memory_limit: submerged soil does not go in batches");
   if (config.water.level || in.listing())
     in.number({.name = "water_density", .meaning = "its density", .unit = "kg/m3", .range = k_density},
               config.water.density);

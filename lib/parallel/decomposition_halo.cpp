@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/copy.hpp"
+#include "data/features_of.hpp"
 #include "loops/particle_to_node.hpp"
 #include "parallel/decomposition.hpp"
 
@@ -10,8 +11,7 @@ namespace mpm {
 
 template <class Space, class T, int Dim>
 bool Decomposition<Space, T, Dim>::overlaps(const State_& s) const {
-  return config_.halo_overlap && !s.water.is_there() && !s.energy.on && !s.loads.in_use() &&
-         chosen(s.p2g.strategy) == P2G::tile;
+  return config_.halo_overlap && can(StepWay::overlapped, features_of(s));
 }
 
 /// The sums of soil and of its boundary, which only the nodes near a rigid read.

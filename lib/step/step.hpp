@@ -379,8 +379,6 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt,
   PetscFunctionBeginUser;
   const Step<Space, T, Dim> step{s, timers, dt, ranks, overlap, rayleigh};
   long one = 1;
-  // Its forces need the sums of all the soil and of all ranks before any node moves.
-  if (rayleigh) s.plan.form = StepForm::separate, s.plan.sums_ahead = s.plan.nodes_apart = false;
   if (left == nullptr) left = &one;
   if (s.plan.form != StepForm::persistent) --*left;
   switch (s.plan.form) {

@@ -235,6 +235,7 @@ template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::set_up_rayleigh() {
   if (!(config_.rayleigh_mass > 0 || config_.rayleigh_stiffness > 0)) return;
   rayleigh_ = std::make_unique<Rayleigh<Space, T, Dim>>();
+  state_.rayleigh = true;
   std::vector<double> ratios;
   for (const MaterialConfig& material : config_.materials)
     ratios.push_back(shear_wave_ratio(material).value_or(0));

@@ -1,0 +1,42 @@
+#pragma once
+// Features of a State that limit how its steps may be done.
+
+#include <iterator>
+#include <utility>
+
+#include "base/step_features.hpp"
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// The features of a run as they are until the next rebuild.
+template <class Space, class T, int Dim>
+Features features_of(const State<Space, T, Dim>& s) {
+  using F = Feature;
+  const std::pair<F, bool> all[] = {{F::other_strategy, chosen(s.p2g.strategy) != P2G::tile},
+                                    {F::xpic, s.xpic_order > 0},
+                                    {F::apic, s.affine},
+                                    {F::splits, s.soil.points.splits},
+                                    {F::correction, s.correction.on},
+                                    {F::submerged, s.water.is_there()},
+                                    {F::energy, s.energy.on},
+                                    {F::loads, s.loads.in_use()},
+                                    {F::rayleigh, s.rayleigh},
+                                    {F::damping, s.damping > 0},
+                                    {F::shear_fraction, s.shear_fraction},
+                                    {F::friction, s.has_friction},
+                                    {F::acting_sides, s.sides.in_use()},
+                                    {F::columns, s.sides.has_columns()},
+                                    {F::gravity_table, s.timed.moves_gravity},
+                                    {F::side_table, s.timed.moves_sides},
+                                    {F::pushed_mass_normals, s.rigid_dynamic && s.mass_normals},
+                                    {F::revolved, s.soil.points.rings},
+                                    {F::ranks, s.owned_nodes.extent(0) > 0},
+                                    {F::batches, s.batches.in_use()}};
+  static_assert(std::size(all) == static_cast<std::size_t>(F::count));
+  Features features;
+  for (const auto& [feature, on] : all) features.put(feature, on);
+  return features;
+}
+
+}  // namespace mpm
