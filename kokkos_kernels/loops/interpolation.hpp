@@ -28,4 +28,16 @@ Interpolation<Source> interpolation_of(const State<Space, T, Dim>& s, const Bins
   return it;
 }
 
+/// Interpolation of one source by the strategy that the user chose.
+template <class Source, class Space, class T, int Dim>
+void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>& bins, const Source& source,
+                 const NodeField<Space, T, Source::size>& out, const Space& space) {
+  particle_to_node(strategy, interpolation_of(s, bins, source, out, space));
+}
+template <class Source, class Space, class T, int Dim>
+void interpolate(const State<Space, T, Dim>& s, P2G strategy, const Bins<Space>& bins, const Source& source,
+                 const NodeField<Space, T, Source::size>& out) {
+  interpolate(s, strategy, bins, source, out, s.space);
+}
+
 }  // namespace mpm

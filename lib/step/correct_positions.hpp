@@ -2,7 +2,8 @@
 // The correction of positions at a rebuild, after lists were made.
 
 #include "functions/position_correction.hpp"
-#include "step/step.hpp"
+#include "loops/interpolation.hpp"
+#include "step/to_nodes.hpp"
 
 namespace mpm {
 

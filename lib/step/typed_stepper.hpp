@@ -8,10 +8,13 @@
 
 #include "common/material_table.hpp"
 #include "functions/energy_works.hpp"
+#include "functions/find_strays.hpp"
 #include "functions/grid_velocity.hpp"
 #include "functions/position_correction.hpp"
+#include "functions/step_kernels.hpp"
 #include "functions/wall_force.hpp"
 #include "parallel/kept_by_id.hpp"
+#include "rebuild/batches.hpp"
 #include "rebuild/merge_particles.hpp"
 #include "rebuild/split_particles.hpp"
 #include "step/present_rigids.hpp"

@@ -6,6 +6,13 @@
 #include <stdexcept>
 
 #include "clouds.hpp"
+#include "functions/energy_works.hpp"
+#include "functions/find_strays.hpp"
+#include "functions/split_patches.hpp"
+#include "functions/surface_loads.hpp"
+#include "functions/velocity_update.hpp"
+#include "loops/interpolation.hpp"
+#include "rebuild/batches.hpp"
 #include "step/step.hpp"
 
 namespace mpm::test {

@@ -1,0 +1,245 @@
+// One time step, in the paper's words.
+
+#include "step/step.hpp"
+
+#include "functions/energy_works.hpp"
+#include "functions/find_strays.hpp"
+#include "functions/split_patches.hpp"
+#include "functions/step_kernels.hpp"
+#include "functions/surface_loads.hpp"
+#include "functions/velocity_update.hpp"
+#include "rebuild/batches.hpp"
+#include "rebuild/rebuild.hpp"
+
+namespace mpm {
+namespace {
+
+/// A step: its state, its length, and what it works with.
+template <class Space, class T, int Dim>
+struct Step {
+  State<Space, T, Dim>& s;
+  Timers& timers;
+  double dt;                            // s
+  Decomposition<Space, T, Dim>* ranks;  // null on one rank
+  OverlapStream<Space>* overlap;        // null where there is none
+  Rayleigh<Space, T, Dim>* rayleigh;    // null without it; steps are then separate
+
+  /// The paper's step. Function 7, the rebuild, is the caller's, when the movement bound says so. Out of core
+  /// functions 3 and 5 take the soil batch by batch, and what function 5 does may be functions 1 and 3 of the
+  /// next step.
+  PetscErrorCode separate() const {
+    PetscFunctionBeginUser;
+    PetscCall(run(StepPhase::reset, [&] { reset(); }));  // 1 initialise nodal variables
+    PetscCall(
+        run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, s.space); }));  // 2 rigid bodies to nodes
+    PetscCall(run(StepPhase::soil_to_nodes, [&] {
+      sum_soil(s.space);     // 3 soil to nodes
+      buoyancy_to_nodes(s);  //   and what water carries of it
+      loads_to_nodes(s);     //   and the loads on its surface
+    }));
+    if (ranks) PetscCall(ranks->add_soil(s));  //   the sum over ranks
+    PetscCall(complete_nodes(s.space));        //   strength, particles that are alone
+    if (rayleigh)
+      PetscCall(run(StepPhase::soil_to_nodes, [&] { return rayleigh_to_nodes(s, *rayleigh, ranks); }));
+    PetscCall(run(StepPhase::nodes, [&] {
+      update_nodes(s, dt);                           // 4 velocities, walls, contact
+      if (s.loads.in_use()) follow_surfaces(s, dt);  //   work of loads, and their areas
+    }));
+    if (s.energy.on)
+      PetscCall(run(StepPhase::energy, [&] {
+        add_node_works(s, dt);
+        if (rayleigh) add_rayleigh_work(s, *rayleigh, dt);
+      }));
+    PetscCall(run(StepPhase::particles, [&] { return update_soil(); }));  // 5 stress, movement
+    if (s.energy.on) PetscCall(run(StepPhase::energy, [&] { add_stress_work(s); }));
+    PetscCall(run(StepPhase::rigids, [&] { return update_rigids(false); }));  // 6 move the rigid bodies
+    if (s.energy.on)
+      PetscCall(run(StepPhase::energy, [&] { add_rigid_work(s, !ranks || ranks->counts_forces()); }));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+  /// Function 5 goes on to functions 1 and 3 of the next step, so that these are here behind a rebuild alone.
+  /// The overlap stream moves the rigids and updates the nodes near them, while the main stream updates the
+  /// other nodes. The main stream learns of a pause one step late; the rebuild discards what it computed
+  /// then.
+  PetscErrorCode fused() const {
+    PetscFunctionBeginUser;
+    const bool ends = s.plan.form == StepForm::persistent && !timers.sampling();
+    const bool parts = has_stream(), parted = parts && s.summed.soil;
+    const Space& stream = parted ? overlap->fork(s.space) : joined();
+    PetscCall(run(StepPhase::reset, [&] { reset(); }));
+    PetscCall(run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
+    PetscCall(run(StepPhase::soil_to_nodes, [&] { sum_soil(stream); }));
+    if (ranks) PetscCall(ranks->add_soil(s, stream));
+    PetscCall(complete_nodes(stream));
+    PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt, stream); }));
+    if (parted) overlap->join(s.space);
+    if (parted && !ranks) sum_forces(s, stream);
+    PetscCall(run(StepPhase::particles, [&] { update_patches_and(ends); }));
+    if (!ends) PetscCall(run(StepPhase::rigids, [&] { return update_rigids(parts && !ranks); }));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+  /// The sums at nodes that ranks share are made first, and travel while the inner patches are computed: in
+  /// function 3, or where function 5 goes on to the sums of the next step there.
+  PetscErrorCode overlapped() const {
+    PetscFunctionBeginUser;
+    const bool parts = has_stream(), parted = parts && s.summed.soil, moves = parts && s.plan.sums_ahead;
+    const Space& stream = parted ? overlap->fork(s.space) : joined();
+    PetscCall(run(StepPhase::reset, [&] { reset(); }));
+    PetscCall(run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
+    PetscCall(run(StepPhase::soil_to_nodes, [&] { return send_soil(); }));
+    PetscCall(ranks->add_soil(s, stream));
+    PetscCall(complete_nodes(stream));
+    PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt, stream); }));
+    if (parted) overlap->join(s.space);
+    if (parted && moves && !ranks->forces_shared()) sum_forces(s, stream);
+    PetscCall(
+        run(StepPhase::particles, [&] { return s.plan.sums_ahead ? update_and_send() : update_soil(); }));
+    PetscCall(run(StepPhase::rigids, [&] { return update_rigids(moves); }));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+  /// Does up to `left` steps in one launch where the sums of the first step are there, else one step. Reduces
+  /// `left` by the number of steps done.
+  PetscErrorCode persistent(long* left) const {
+    PetscFunctionBeginUser;
+    if constexpr (is_device<Space>) {
+      if (!timers.sampling() && s.kick == 1 && can_persist(s)) {
+        const long most = *left;
+        const auto steps = [&] {  // functions 4 to 6, and 1 to 3 of the next step
+          const long done = run_persistent_steps(s, dt, most);
+          *left -= done;
+          return done;
+        };
+        joined();
+        PetscCall(timers.run_many(StepPhase::persistent, most, steps, [&] { s.space.fence("mpm::step"); }));
+        PetscFunctionReturn(PETSC_SUCCESS);
+      }
+    }
+    --*left;
+    PetscCall(fused());
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+ private:
+  /// Runs one function of the paper and times it. work() returns an error code or nothing.
+  template <class Work>
+  PetscErrorCode run(StepPhase f, Work&& work) const {
+    PetscFunctionBeginUser;
+    PetscErrorCode failed = PETSC_SUCCESS;
+    const auto all = [&] {
+      if constexpr (std::is_void_v<decltype(work())>)
+        work();
+      else
+        failed = work();
+    };
+    PetscCall(timers.run(f, all, [&] { s.space.fence("mpm::step"); }));
+    PetscCall(failed);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+  /// Whether nodes near rigids may go to the overlap stream. Functions that are timed have the device for
+  /// themselves.
+  bool has_stream() const { return overlap && s.plan.nodes_apart && !s.shear_fraction && !timers.sampling(); }
+  /// The state's own stream, behind all work of the overlap stream.
+  const Space& joined() const {
+    if (overlap) overlap->join(s.space);
+    return s.space;
+  }
+
+  void reset() const {
+    if (!s.summed.soil) reset_nodes(s);
+  }
+  void sum_soil(const Space& stream) const {
+    if (ranks) finish_sums(s);
+    soil_to_nodes(s, stream);
+  }
+  /// What only some runs ask of the nodes: the soil's strength, and which particles are alone till a rebuild.
+  PetscErrorCode complete_nodes(const Space& stream) const {
+    PetscFunctionBeginUser;
+    if (s.shear_fraction) PetscCall(strength_to_nodes(s, ranks));
+    if (!s.strays.known) mark_strays(s, stream);
+    if (wants_split(s) && s.split.parts.empty()) split_patches(s, stream);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Function 5 of a part of the soil, or of all of it. The overlap stream takes the patches that are not
+  /// common.
+  template <class... Some>
+  void update_patches(const Some&... part) const {
+    const bool aside = overlap && s.split.has_others() && !timers.sampling();
+    update_particles(s, dt, part..., aside ? overlap->fork(s.space) : s.space);
+    if (aside) overlap->join(s.space);
+  }
+  /// Function 5, and with the same launch the end of the step where `ends`.
+  void update_patches_and(bool ends) const {
+    if constexpr (is_device<Space>)
+      if (ends) return update_and_end(s, dt);
+    update_patches();
+  }
+  PetscErrorCode update_soil() const {
+    PetscFunctionBeginUser;
+    PetscCall(update_velocities(s, ranks));
+    if (s.batches.in_use())
+      update_by_batches(s, dt);
+    else
+      update_patches();
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Under the forces of all ranks.
+  PetscErrorCode update_rigids(bool on_stream) const {
+    PetscFunctionBeginUser;
+    if (ranks) PetscCall(ranks->add_forces(s));
+    move_rigids(s, dt, on_stream ? overlap->fork(s.space) : s.space);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Function 3, the border first, unless its sums have been sent already.
+  PetscErrorCode send_soil() const {
+    PetscFunctionBeginUser;
+    finish_sums(s);
+    if (!ranks->sent_ahead()) {
+      soil_to_nodes(s, ranks->border(s));
+      PetscCall(ranks->send_ahead(s));
+    }
+    soil_to_nodes(s, ranks->inner(s));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Function 5 with the sums of the next step, the border first.
+  PetscErrorCode update_and_send() const {
+    PetscFunctionBeginUser;
+    const Part<Space> border = ranks->border(s);
+    update_particles(s, dt, border, border.space);
+    PetscCall(ranks->send_ahead(s));
+    update_patches(ranks->inner(s));
+    ranks->join(s);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+};
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Decomposition<Space, T, Dim>* ranks,
+                    OverlapStream<Space>* overlap, long* left, Rayleigh<Space, T, Dim>* rayleigh) {
+  PetscFunctionBeginUser;
+  const Step<Space, T, Dim> step{s, timers, dt, ranks, overlap, rayleigh};
+  long one = 1;
+  if (left == nullptr) left = &one;
+  if (s.plan.form != StepForm::persistent) --*left;
+  switch (s.plan.form) {
+    case StepForm::separate:
+    case StepForm::out_of_core: PetscCall(step.separate()); break;
+    case StepForm::fused: PetscCall(step.fused()); break;
+    case StepForm::overlapped: PetscCall(step.overlapped()); break;
+    case StepForm::persistent: PetscCall(step.persistent(left)); break;
+  }
+  s.kick = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                \
+  template PetscErrorCode step(State<Space, T, Dim>&, Timers&, double, Decomposition<Space, T, Dim>*, \
+                               OverlapStream<Space>*, long*, Rayleigh<Space, T, Dim>*);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

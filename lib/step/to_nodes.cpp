@@ -1,0 +1,156 @@
+// From particles to nodes, functions 2 and 3 of a step and those that some runs have beside them.
+
+#include "step/to_nodes.hpp"
+
+#include "functions/find_strays.hpp"
+#include "functions/step_kernels.hpp"
+#include "functions/surface_loads.hpp"
+#include "functions/velocity_update.hpp"
+#include "loops/interpolation.hpp"
+#include "rebuild/batches.hpp"
+#include "rebuild/rebuild.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& stream) {
+  if (s.summed.rigids) return;
+  for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
+    const auto& set = s.rigid_points[r];
+    if (set.points.surface_normal) continue;
+    const NodeField<Space, T, RigidTerms<Dim>::size> out =
+        Kokkos::subview(s.nodes.rigid, r, Kokkos::ALL, Kokkos::ALL);
+    interpolate<RigidSource<Space, T, Dim>>(s, strategy_of_rigids<Space>(s.p2g.strategy), set.bins,
+                                            {set.points, s.rigids, r, s.patches.origin, s.spacing}, out,
+                                            stream);
+  }
+}
+
+/// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
+/// needs it. Both may be there already.
+template <class Space, class T, int Dim>
+void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& points, const Bins<Space>& bins,
+                   const Space& space) {
+  const P2G how = s.p2g.strategy;
+  with_domain(points, [&](auto domain) {
+    if (s.affine)
+      interpolate<AffineSource<Space, T, Dim, domain()>>(s, how, bins, {{points, s.grid.inv_spacing}},
+                                                         s.nodes.soil, space);
+    else if (!s.summed.soil)
+      interpolate<SoilSource<Space, T, Dim, domain()>>(s, how, bins, {points, s.grid.inv_spacing},
+                                                       s.nodes.soil, space);
+    if (s.soil_boundary && !s.summed.boundary)
+      interpolate<BoundarySource<Space, T, Dim, domain()>>(
+          s, how, bins, {points, s.grid.inv_spacing, s.near_rigid}, s.nodes.boundary, space);
+  });
+}
+template <class Space, class T, int Dim>
+void soil_to_nodes(const State<Space, T, Dim>& s, const Space& stream) {
+  for_all_soil(s, [&](const auto& set) { soil_to_nodes(s, set.points, set.bins, stream); });
+}
+template <class Space, class T, int Dim>
+void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
+  soil_to_nodes(s, s.soil.points, bins_of(s.soil.bins, part), part.space);
+}
+
+template <class Space, class T, int Dim>
+void buoyancy_to_nodes(State<Space, T, Dim>& s) {
+  if (!s.water.is_there()) return;
+  if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.displaced, T(0));
+  for_all_soil(s, [&](const auto& set) {
+    with_box_or_ring(set.points, [&](auto domain) {
+      interpolate<DisplacedSource<Space, T, Dim, domain()>>(
+          s, s.p2g.strategy, set.bins, {set.points, s.water, s.density, s.patches.origin, s.spacing},
+          s.nodes.displaced);
+    });
+  });
+  add_buoyancy(s);
+}
+
+template <class Space, class T, int Dim>
+void loads_to_nodes(State<Space, T, Dim>& s) {
+  if (!s.loads.in_use()) return;
+  Kokkos::deep_copy(s.space, s.nodes.load, T(0));
+  for (int axis = 0; axis < Dim; ++axis)
+    interpolate<LoadSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, place_faces(s, axis),
+                                           s.nodes.load);
+  add_loads(s);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>& s, Rayleigh<Space, T, Dim>& by,
+                                 Decomposition<Space, T, Dim>* ranks) {
+  PetscFunctionBeginUser;
+  const int nodes = s.patches.node_count();
+  const bool viscous = by.stiffness > 0;
+  ensure(by.force, nodes);
+  if (viscous) {
+    ensure(s.nodes.residual, nodes), ensure(by.sums, nodes), ensure(by.stress, s.soil.points.count);
+    find_viscous_stress(s, by);
+    Kokkos::deep_copy(s.space, by.sums, T(0));
+    const Soil<Space, T, Dim> points = viscous_soil(s, by);
+    with_domain(points, [&](auto domain) {
+      interpolate<SoilSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, s.soil.bins,
+                                                       {points, s.grid.inv_spacing}, by.sums);
+    });
+    show_viscous_forces(s, by);
+    if (ranks) PetscCall(ranks->add_residual(s));
+  }
+  add_rayleigh_forces(s, by, viscous);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
+  PetscFunctionBeginUser;
+  if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.strength, T(0));
+  for_all_soil(s, [&](const auto& set) {
+    with_box_or_ring(set.points, [&](auto domain) {
+      interpolate<StrengthSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, set.bins,
+                                                           {set.points, s.near_rigid}, s.nodes.strength);
+    });
+  });
+  if (ranks) PetscCall(ranks->add_strength(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+void sum_present_soil(State<Space, T, Dim>& s) {
+  finish_sums(s);
+  if (!s.summed.soil) reset_nodes(s);
+  soil_to_nodes(s, s.space);
+  if (s.summed.soil) s.summed.boundary = s.soil_boundary;
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
+  PetscFunctionBeginUser;
+  for (int pass = 0; pass < s.xpic_order; ++pass) {
+    if (pass > 0) {
+      Kokkos::deep_copy(s.space, s.nodes.residual, T(0));
+      with_box_or_ring(s.soil.points, [&](auto domain) {
+        interpolate<ResidualSource<Space, T, Dim, domain()>>(
+            s, s.p2g.strategy, s.soil.bins, {s.soil.points, residual_of(s)}, s.nodes.residual);
+      });
+      if (ranks) PetscCall(ranks->add_residual(s));
+    }
+    xpic_pass(s, pass);
+  }
+  if (s.affine) take_affine(s);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim)                                                             \
+  template void rigids_to_nodes(const State<Space, T, Dim>&, const Space&);                        \
+  template void soil_to_nodes(const State<Space, T, Dim>&, const Space&);                          \
+  template void soil_to_nodes(const State<Space, T, Dim>&, const Part<Space>&);                    \
+  template void buoyancy_to_nodes(State<Space, T, Dim>&);                                          \
+  template void loads_to_nodes(State<Space, T, Dim>&);                                             \
+  template PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>&, Rayleigh<Space, T, Dim>&,       \
+                                            Decomposition<Space, T, Dim>*);                        \
+  template PetscErrorCode strength_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*); \
+  template void sum_present_soil(State<Space, T, Dim>&);                                           \
+  template PetscErrorCode update_velocities(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm

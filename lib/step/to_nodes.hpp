@@ -1,0 +1,50 @@
+#pragma once
+// From particles to nodes: functions 2 and 3 of a step, and those that some runs have beside them.
+
+#include "data/state.hpp"
+#include "functions/rayleigh.hpp"
+#include "parallel/decomposition.hpp"
+
+namespace mpm {
+
+/// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not tell them.
+/// They may be there already.
+template <class Space, class T, int Dim>
+void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& stream);
+
+/// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
+/// needs it. Both may be there already. Of all the soil, or of a part of it.
+template <class Space, class T, int Dim>
+void soil_to_nodes(const State<Space, T, Dim>& s, const Space& stream);
+template <class Space, class T, int Dim>
+void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part);
+
+/// The weight of the water that the soil displaces, to the forces at the nodes. Of this rank's soil: the sum
+/// over ranks is that of the forces.
+template <class Space, class T, int Dim>
+void buoyancy_to_nodes(State<Space, T, Dim>& s);
+
+/// Loads on surfaces to the nodes, and to the forces there. Of this rank's soil, likewise.
+template <class Space, class T, int Dim>
+void loads_to_nodes(State<Space, T, Dim>& s);
+
+/// Rayleigh damping to the forces at the nodes, whose sums are those of all ranks. The sums of the soil with
+/// viscous stresses hold its mass and momentum once more, which nothing asks for.
+template <class Space, class T, int Dim>
+PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>& s, Rayleigh<Space, T, Dim>& by,
+                                 Decomposition<Space, T, Dim>* ranks);
+
+/// The soil's strength at the nodes near rigids, where a contact asks for it.
+template <class Space, class T, int Dim>
+PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks);
+
+/// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own.
+/// The lists hold, as they do for that step: s.control must not be paused.
+template <class Space, class T, int Dim>
+void sum_present_soil(State<Space, T, Dim>& s);
+
+/// The velocities of the soil's particles, where XPIC or APIC is chosen: a part of function 5.
+template <class Space, class T, int Dim>
+PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks);
+
+}  // namespace mpm
