@@ -16,25 +16,25 @@ bool all_equal(const std::vector<double>& x) {
 }
 
 /// Masses and volumes: one figure for all particles where they are the same.
-void take_masses(ParticleTable&& table, const Config& config, double density, BodyParticles& particles) {
-  particles.particle_volume = table.volume.front();
-  const bool has_mass = !table.mass.empty();
+void take_masses(bool from_run, const Config& config, double density, BodyParticles& particles) {
+  auto &volume = particles.volume, &mass = particles.mass;
+  particles.particle_volume = volume.front();
+  const bool has_mass = !mass.empty();
   if (!has_mass)
-    for (const double volume : table.volume) table.mass.push_back(density * volume);
-  if (has_mass) particles.particle_mass = table.mass.front();
-  // A file of the user's own may hold any values; particles that a run left have changed since they were
-  // created.
-  const bool from_run = !table.origin.empty();
-  for (std::size_t p = 0; p < table.volume.size(); ++p)
-    for (double volume : {table.mass[p] / density, from_run ? table.mass[p] / density : table.volume[p]}) {
-      volume /= revolved_length(config, table.position[p * config.dim]);
-      particles.least_volume = particles.most_volume > 0 ? std::min(particles.least_volume, volume) : volume;
-      particles.most_volume = std::max(particles.most_volume, volume);
+    for (const double v : volume) mass.push_back(density * v);
+  if (has_mass) particles.particle_mass = mass.front();
+  // Volumes in a file of the user's own may be anything; those that a run left have changed since creation.
+  for (std::size_t p = 0; p < volume.size(); ++p)
+    for (double v : {mass[p] / density, from_run ? mass[p] / density : volume[p]}) {
+      v /= revolved_length(config, particles.position[p * config.dim]);
+      particles.least_volume = particles.most_volume > 0 ? std::min(particles.least_volume, v) : v;
+      particles.most_volume = std::max(particles.most_volume, v);
     }
-  if (!all_equal(table.volume)) particles.volume = std::move(table.volume);
-  if (all_equal(table.mass)) return;
-  particles.least_mass = *std::min_element(table.mass.begin(), table.mass.end());
-  particles.mass = std::move(table.mass);
+  if (all_equal(volume)) volume.clear();
+  if (all_equal(mass))
+    mass.clear();
+  else
+    particles.least_mass = *std::min_element(mass.begin(), mass.end());
 }
 
 /// Text for the log on values that the file gives in the place of the material, and on values that it lacks.
@@ -81,18 +81,13 @@ PetscErrorCode Simulation::Body::load_file(const BodyConfig& body, BodyParticles
                   static_cast<long>(table.volume.size()), body.shape.file.c_str(), origin.c_str(), volume,
                   config.dim == 2 && config.geometry == Geometry::plane_strain ? "m2" : "m3", mass) +
         missing(table, body)));
-  *from_run = *from_run || !table.origin.empty();
+  const bool left_by_run = !table.origin.empty();
+  *from_run = *from_run || left_by_run;
   particles->spacing = config.mesh.spacing / body.shape.particles_per_cell;
-  particles->velocity = std::move(table.velocity);
-  particles->stress = std::move(table.stress);
-  particles->state = std::move(table.state);
-  particles->reference_height = std::move(table.reference_height);
-  particles->own_parameters = std::move(table.own_parameters);
-  if (config.velocity_update == VelocityUpdate::apic)
-    particles->velocity_gradient = std::move(table.velocity_gradient);
-  if (config.particle_domain != ParticleDomain::fixed) particles->domain = std::move(table.domain);
-  particles->position = table.position;
-  PetscCallCXX(take_masses(std::move(table), config, density, *particles));
+  if (config.velocity_update != VelocityUpdate::apic) table.velocity_gradient.clear();
+  if (config.particle_domain == ParticleDomain::fixed) table.domain.clear();
+  PetscCallCXX(static_cast<ParticleColumns&>(*particles) = std::move(table));
+  PetscCallCXX(take_masses(left_by_run, config, density, *particles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

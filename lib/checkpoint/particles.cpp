@@ -140,6 +140,17 @@ std::string column_of_own(const Checkpoint& c, const std::string& body, const st
   return "";
 }
 
+/// Reads a column of a body. scale: the cell's edge of the checkpoint's run over that of this one.
+void read_column(BodyRows& body, const ParticleColumn& column, int dim, double scale, ParticleTable& table) {
+  const int width = width_of(column.width, dim, 0);
+  if (column.carried == Carried::checkpoints && !body.has(column.saved, width)) return;
+  std::vector<double>& values = table.*column.values;
+  values = body.read(column.saved, width);
+  if (column.per_cell == 0) return;
+  const double factor = std::pow(scale, -column.per_cell);
+  for (double& value : values) value *= factor;
+}
+
 }  // namespace
 
 std::string read_checkpoint_particles(const ParticleSource& source, const MeshConfig& mesh, int dim,
@@ -155,10 +166,10 @@ std::string read_checkpoint_particles(const ParticleSource& source, const MeshCo
   if (!read_mesh(c, there)) return "a checkpoint whose options tell its mesh";
   if (fault = find_body(c, source.group, body); !fault.empty()) return fault;
 
-  table.position = body.read("coordinate", dim);
+  for (const ParticleColumn& column : k_particle_columns)
+    if (wanted(column, source)) read_column(body, column, dim, there.spacing / mesh.spacing, table);
   for (std::size_t p = 0; p < table.position.size() / dim; ++p)
     put_in_mesh(c.state.soil.address[body.rows[p]], there, dim, &table.position[p * dim]);
-  table.volume = body.read("volume", 1), table.mass = body.read("mass", 1);
   for (const std::string& name : source.state) {
     const std::string column = column_of(c, source.group, name, body);
     if (!column.empty()) table.state.push_back({name, body.read(column.c_str(), 1)});
@@ -166,20 +177,8 @@ std::string read_checkpoint_particles(const ParticleSource& source, const MeshCo
   for (const std::string& key : source.parameters)
     if (const auto own = column_of_own(c, source.group, key, body); !own.empty())
       table.own_parameters.push_back({key, body.read(own.c_str(), 1)});
-  table.reference_height = body.read("reference_height", 1);
-  if (source.velocity) table.velocity = body.read("velocity", dim);
-  if (source.stress) table.stress = body.read("stress", dim == 2 ? 4 : 6);
   if (source.stress && body.has(k_excess_pore_pressure, 1))
     add_pressure(body.read(k_excess_pore_pressure, 1), dim, table.stress);
-  if (source.velocity && body.has("affine", dim * dim)) {
-    table.velocity_gradient = body.read("affine", dim * dim);
-    for (double& g : table.velocity_gradient) g *= mesh.spacing / there.spacing;
-  }
-  if (const int moments = dim * (dim + 1) / 2; body.has("domain", moments)) {
-    table.domain = body.read("domain", moments);
-    const double scale = there.spacing / mesh.spacing;
-    for (double& moment : table.domain) moment *= scale * scale;
-  }
   table.origin = "checkpoint of step " + std::to_string(c.run.step) + ", " + text_of(c.run.time) + " s";
   return body.fault;
 }

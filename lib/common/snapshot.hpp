@@ -5,15 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "data/particle_columns.hpp"
 #include "mpm/config.hpp"
 
 namespace mpm {
-
-/// A state variable of the law of a body, of each of its particles.
-struct StateField {
-  std::string name;
-  std::vector<double> values;  // [N], in the unit of the law's table
-};
 
 /// The particles of one body or rigid at one time, in the order of their creation. Vectors are padded to
 /// three components, symmetric tensors to six (xx, yy, zz, xy, yz, zx). All but position and velocity are

@@ -4,21 +4,6 @@
 #include "input/particle_file.hpp"
 
 namespace mpm {
-namespace {
-
-/// Keeps the rows that are not marked. Every row has equally many components; there may be none.
-void keep_rows(const std::vector<char>& out, std::vector<double>& field) {
-  const std::size_t components = field.size() / out.size();
-  std::size_t kept = 0;
-  for (std::size_t row = 0; row < out.size(); ++row) {
-    if (out[row]) continue;
-    for (std::size_t c = 0; c < components; ++c) field[kept++] = field[row * components + c];
-  }
-  field.resize(kept);
-}
-
-}  // namespace
-
 long cut_particles(const std::vector<Shape>& cut_out, const MeshConfig& mesh, int dim, ParticleTable& table) {
   if (cut_out.empty() || table.position.empty()) return 0;
   std::vector<Region> holes;
@@ -34,11 +19,7 @@ long cut_particles(const std::vector<Shape>& cut_out, const MeshConfig& mesh, in
     }
     count += out[row];
   }
-  for (auto* field : {&table.position, &table.velocity, &table.stress, &table.volume, &table.mass,
-                      &table.reference_height, &table.velocity_gradient, &table.domain})
-    keep_rows(out, *field);
-  for (auto* list : {&table.state, &table.own_parameters})
-    for (StateField& field : *list) keep_rows(out, field.values);
+  remove_rows(out, table);
   return count;
 }
 

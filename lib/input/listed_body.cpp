@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "common/material_table.hpp"
 #include "common/revolution.hpp"
@@ -23,35 +24,40 @@ bool will_be_removed(const std::string& file, const std::string& folder) {
          (path.parent_path() == own / "frames" && is_written_name(name, true));
 }
 
-/// Fault of the numbers of a file, which must leave room for arithmetic; empty where they do.
-std::string beyond_bounds(const ParticleTable& table, const Config& config, const MeshConfig& mesh) {
-  const int dim = config.dim;
-  const double cell = std::pow(mesh.spacing, dim) * revolved_length(config, mesh.upper[0]),
-               far = k_coordinate.highest;
-  struct Field {
-    const char* name;
-    const std::vector<double>& values;
-    int components;
-    double most;
-  };
-  constexpr double k_largest_state = 1e12;   // whatever its unit
+/// Largest magnitude of the numbers of a column.
+double most_of(Bound bound, const Config& config, const MeshConfig& mesh) {
   constexpr double k_largest_domain = 1e12;  // cells2
-  std::vector<Field> fields = {{"velocity", table.velocity, dim, k_speed.highest},
-                               {"velocity_gradient", table.velocity_gradient, dim * dim, k_speed.highest},
-                               {"domain", table.domain, dim * (dim + 1) / 2, k_largest_domain},
-                               {"stress", table.stress, dim == 2 ? 4 : 6, k_stress.highest},
-                               {"volume", table.volume, 1, 10 * cell},
-                               {"mass", table.mass, 1, 10 * cell * k_density.highest},
-                               {"reference_height", table.reference_height, 1, far}};
+  const double cell = std::pow(mesh.spacing, config.dim) * revolved_length(config, mesh.upper[0]);
+  switch (bound) {
+    case Bound::none: break;
+    case Bound::speed: return k_speed.highest;
+    case Bound::stress: return k_stress.highest;
+    case Bound::volume: return 10 * cell;
+    case Bound::mass: return 10 * cell * k_density.highest;
+    case Bound::coordinate: return k_coordinate.highest;
+    case Bound::domain: return k_largest_domain;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+/// Particles with numbers for which the arithmetic has room, as the end of "takes ..."; empty where all are.
+std::string beyond_bounds(const ParticleTable& table, const Config& config, const MeshConfig& mesh) {
+  constexpr double k_largest_state = 1e12;  // whatever its unit
+  const auto fault_of = [](const char* name, const std::vector<double>& values, int width, double most) {
+    for (std::size_t n = 0; n < values.size(); ++n)
+      if (!(std::abs(values[n]) <= most))
+        return std::string("particles whose ") + name + " is at most " + text_of(most) +
+               "; that of particle " + std::to_string(n / width) + " is " + text_of(values[n]);
+    return std::string();
+  };
+  std::string fault;
+  for (const ParticleColumn& column : k_particle_columns)
+    if (fault.empty() && column.bound != Bound::none)
+      fault = fault_of(column.name, table.*column.values, width_of(column.width, config.dim, 0),
+                       most_of(column.bound, config, mesh));
   for (const StateField& state : table.state)
-    fields.push_back({state.name.c_str(), state.values, 1, k_largest_state});
-  for (const Field& field : fields)
-    for (std::size_t n = 0; n < field.values.size(); ++n)
-      if (!(std::abs(field.values[n]) <= field.most))
-        return std::string("particles whose ") + field.name + " is at most " + text_of(field.most) +
-               "; that of particle " + std::to_string(n / field.components) + " is " +
-               text_of(field.values[n]);
-  return "";
+    if (fault.empty()) fault = fault_of(state.name.c_str(), state.values, 1, k_largest_state);
+  return fault;
 }
 
 /// Fault of a file that lacks each particle's own Young's modulus where the material asks for it; empty

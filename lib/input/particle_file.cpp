@@ -174,10 +174,15 @@ std::string read_group(hid_t file, const ParticleSource& source, int dim, Partic
   Handle opened(H5Gopen2(file, source.group.c_str(), H5P_DEFAULT), H5Gclose);
   if (opened.id < 0) return "a file with the group " + source.group;
   GroupReader in{opened.id, source.group};
-  table.position = in.read("position", 3, dim);
-  table.volume = in.read("volume", 1, 1);
-  if (source.velocity) in.read_if_there("velocity", 3, dim, frame, table.velocity);
-  if (source.stress) in.read_if_there("stress", 6, dim == 2 ? 4 : 6, frame, table.stress);
+  for (const ParticleColumn& column : k_particle_columns) {
+    if (column.carried == Carried::checkpoints || !wanted(column, source)) continue;
+    std::vector<double>& values = table.*column.values;
+    const int width = width_of(column.width, 3, 0), kept = width_of(column.width, dim, 0);
+    if (column.carried == Carried::always)
+      values = in.read(column.name, width, kept);
+    else
+      in.read_if_there(column.name, width, kept, frame, values);
+  }
   std::vector<double> pore_pressure;
   if (!table.stress.empty()) in.read_if_there("pore_pressure", 1, 1, false, pore_pressure);
   add_pressure(pore_pressure, dim, table.stress);  // total stress becomes effective
@@ -198,13 +203,18 @@ std::string read_group(hid_t file, const ParticleSource& source, int dim, Partic
     in.read_if_there(key.c_str(), 1, 1, frame && has_own(opened.id, key), field.values);
     if (!field.values.empty()) table.own_parameters.push_back(std::move(field));
   }
-  in.read_if_there("mass", 1, 1, frame, table.mass);
-  in.read_if_there("reference_height", 1, 1, frame, table.reference_height);
   if (frame) table.origin = "frame of step " + std::to_string(step) + ", " + text_of(time) + " s";
   return in.fault;
 }
 
 }  // namespace
+
+bool wanted(const ParticleColumn& column, const ParticleSource& source) {
+  const auto values = column.values;
+  if (values == &ParticleColumns::velocity || values == &ParticleColumns::velocity_gradient)
+    return source.velocity;
+  return values == &ParticleColumns::stress ? source.stress : column.carried != Carried::never;
+}
 
 std::string read_particles(const ParticleSource& source, const MeshConfig& mesh, int dim,
                            ParticleTable& table) {

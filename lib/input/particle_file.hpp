@@ -9,21 +9,11 @@
 
 namespace mpm {
 
-/// The particles of one body. Vectors have dim components, stresses 4 in 2D and 6 in 3D (xx yy zz xy yz zx);
-/// what the file does not have is empty.
-struct ParticleTable {
-  std::vector<double> position;            // m [dim N]
-  std::vector<double> velocity;            // m/s [dim N]
-  std::vector<double> stress;              // Pa, effective, tension positive [4 N or 6 N]
-  std::vector<StateField> state;           // state variables that the source asked for and the file has
-  std::vector<StateField> own_parameters;  // of the source's parameters, that the file has
-  std::vector<double> volume;              // m3 (m2 in 2D), present [N]
-  std::vector<double> mass;                // kg [N]; empty: the material's density times the volume
-  std::vector<double> reference_height;    // m, of the particle's creation [N]; empty: it is created now
-  std::vector<double> velocity_gradient;   // m/s a cell of the mesh, C_p of APIC [dim^2 N]
-  std::vector<double> domain;              // cells2 of the mesh, moments of domains [dim (dim + 1) / 2 N]
+/// The particles of one body in a file; a column that the file does not have is empty. `state` and
+/// `own_parameters` are those that the source asked for.
+struct ParticleTable : ParticleColumns {
   long put_inside = 0;  // particles that were less than half a cell outside the mesh, as a run may leave them
-  std::string origin;   // "frame of step 12, 0.5 s"; empty for a file of the user's own
+  std::string origin{};  // "frame of step 12, 0.5 s"; empty for a file of the user's own
 };
 
 /// Where a body's particles are, and what of them is asked for.
@@ -33,6 +23,9 @@ struct ParticleSource {
   std::vector<std::string> state{};       // the state variables that the body's law changes
   std::vector<std::string> parameters{};  // that each particle may have its own values of
 };
+
+/// Whether options leave a column to the file.
+bool wanted(const ParticleColumn& column, const ParticleSource& source);
 
 /// Reads the particles of a body from an HDF5 file: a checkpoint, a frame, or a file laid out as one, with a
 /// group that holds `position` (N x 3) and `volume` (N), and where they are there `velocity` (N x 3),

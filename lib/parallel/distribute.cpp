@@ -24,33 +24,14 @@ long patch_of(const std::vector<double>& position, std::size_t p, const PatchGri
   return grid.number(at);
 }
 
-/// The fields of a body's particles, and how many numbers of each a particle has.
-struct Field {
-  std::vector<double>* values;
-  int width;
-};
-std::vector<Field> fields_of(BodyParticles& body, int dim, int faces) {
-  std::vector<Field> fields = {{&body.position, dim},
-                               {&body.velocity, dim},
-                               {&body.stress, dim == 2 ? 4 : 6},
-                               {&body.volume, 1},
-                               {&body.mass, 1},
-                               {&body.reference_height, 1},
-                               {&body.velocity_gradient, dim * dim},
-                               {&body.faces, faces * face_places(dim).size},
-                               {&body.domain, dim * (dim + 1) / 2}};
-  for (auto* list : {&body.state, &body.own_parameters})
-    for (StateField& field : *list) fields.push_back({&field.values, 1});
-  return fields;
-}
-
 /// Keeps this rank's part of a body of which every rank has all particles.
 void keep_part(LatticePart part, int dim, int faces, BodyParticles& body) {
   const long count = static_cast<long>(body.position.size()) / dim;
   const long from = count * part.number / part.of, to = count * (part.number + 1) / part.of;
-  for (const auto& [values, width] : fields_of(body, dim, faces))
-    if (!values->empty())
-      *values = std::vector<double>(values->begin() + from * width, values->begin() + to * width);
+  for_each_column(body, dim, faces, [&](std::vector<double>& values, int width) {
+    if (!values.empty())
+      values = std::vector<double>(values.begin() + from * width, values.begin() + to * width);
+  });
 }
 
 /// Counts the particles of a body over all ranks; their ids follow each other from `first` on, which moves
@@ -91,11 +72,18 @@ PetscErrorCode send_to_owners(MPI_Comm comm, const PatchGrid& grid, double spaci
   std::vector<int> to;
   for (std::size_t p = 0; p < body->id.size(); ++p)
     to.push_back(owners[patch_of(body->position, p, grid, spacing)]);
-  for (const auto& [values, width] : fields_of(*body, grid.dim, faces)) {
+  const auto send = [&](std::vector<double>* values, int width) -> PetscErrorCode {
+    PetscFunctionBeginUser;
     int present = !values->empty();  // on some rank: this one may have no particle yet
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &present, 1, MPI_INT, MPI_MAX, comm));
     if (present) PetscCall(send_rows(comm, to, width, values));
-  }
+    PetscFunctionReturn(PETSC_SUCCESS);
+  };
+  PetscErrorCode failed = PETSC_SUCCESS;
+  for_each_column(*body, grid.dim, faces, [&](std::vector<double>& values, int width) {
+    if (failed == PETSC_SUCCESS) failed = send(&values, width);
+  });
+  PetscCall(failed);
   PetscCall(send_rows(comm, to, 1, &body->id));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,21 +9,6 @@
 #include "step/typed_stepper.hpp"
 
 namespace mpm {
-namespace {
-
-/// The rows of a field that are not marked.
-template <class Number>
-void keep_rows(const std::vector<char>& out, std::vector<Number>& field) {
-  if (field.empty()) return;
-  const std::size_t components = field.size() / out.size();
-  std::size_t kept = 0;
-  for (std::size_t row = 0; row < out.size(); ++row)
-    for (std::size_t c = 0; c < components && out[row] == 0; ++c) field[kept++] = field[row * components + c];
-  field.resize(kept);
-}
-
-}  // namespace
-
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::leave_out(Model* model) {
   PetscFunctionBeginUser;
@@ -39,12 +24,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::leave_out(Model* model) {
     }
     unused_[b] = std::count(out.begin(), out.end(), 1);
     if (unused_[b] == 0) continue;
-    for (auto* field : {&body.position, &body.velocity, &body.stress, &body.volume, &body.mass, &body.faces,
-                        &body.reference_height, &body.velocity_gradient, &body.domain})
-      keep_rows(out, *field);
-    for (auto* list : {&body.state, &body.own_parameters})
-      for (StateField& field : *list) keep_rows(out, field.values);
-    keep_rows(out, body.id);
+    remove_rows(out, body);
+    remove_rows(out, body.id);
   }
   if (size_of(comm_) > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, unused_.data(), static_cast<int>(unused_.size()), MPI_LONG,

@@ -1,0 +1,109 @@
+#pragma once
+// Columns of numbers that a set of particles has on the host: one table, which files, starts from
+// checkpoints, cuts, ranks and the start of a run walk. A new vector of every particle is one row of it.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "data/face_terms.hpp"
+
+namespace mpm {
+
+/// A state variable of the law of a body, of each of its particles.
+struct StateField {
+  std::string name;
+  std::vector<double> values;  // [N], in the unit of the law's table
+};
+
+/// The particles of a body. A column is empty where its values are not given, or are the same for all.
+struct ParticleColumns {
+  std::vector<double> position{};  // m [dim N]
+  std::vector<double> velocity{};  // m/s [dim N]
+  std::vector<double> stress{};    // Pa, effective, tension positive, xx yy zz xy yz zx [4 N; 6 N in 3D]
+  std::vector<double> volume{};    // m3, present (m2 in 2D) [N]
+  std::vector<double> mass{};      // kg [N]
+  std::vector<double> reference_height{};   // m, absolute, of a particle's creation [N]
+  std::vector<double> velocity_gradient{};  // m/s a cell of the mesh, C_p of APIC [dim^2 N]
+  std::vector<double> domain{};  // cells2 of the mesh, moments of domains that stretch [dim (dim + 1) / 2 N]
+  std::vector<double> faces{};   // surfaces of loads [FaceTerms::size for each face of a particle, N]
+  std::vector<StateField> state{};           // state variables of the law
+  std::vector<StateField> own_parameters{};  // parameters of which each particle has its own value
+};
+
+/// How many numbers a particle has in a column.
+enum class Width { scalar, vector, stress, matrix, moments, faces };
+constexpr int width_of(Width width, int dim, int faces) {
+  switch (width) {
+    case Width::scalar: return 1;
+    case Width::vector: return dim;
+    case Width::stress: return dim == 2 ? 4 : 6;
+    case Width::matrix: return dim * dim;
+    case Width::moments: return dim * (dim + 1) / 2;
+    case Width::faces: return faces * face_places(dim).size;
+  }
+  return 0;
+}
+
+/// Where a column comes from when another run's particles start this one.
+enum class Carried {
+  always,       // frames, checkpoints and the user's files have it
+  where_kept,   // frames and checkpoints of a run have it, the user's files may
+  checkpoints,  // checkpoints of a run that needed it alone
+  never         // the run makes it anew
+};
+
+/// Bounds of magnitude that the arithmetic has room for.
+enum class Bound { none, speed, stress, volume, mass, coordinate, domain };
+
+/// A row of the table.
+struct ParticleColumn {
+  const char* name;   // of the data set in a frame or a file of the user's
+  const char* saved;  // of the field in a checkpoint
+  std::vector<double> ParticleColumns::*values;
+  Width width;
+  Carried carried;
+  int per_cell;  // power of the cell's edge by which a value goes from one mesh to another
+  Bound bound;
+};
+
+inline constexpr ParticleColumn k_particle_columns[] = {
+    {"position", "coordinate", &ParticleColumns::position, Width::vector, Carried::always, 0, Bound::none},
+    {"volume", "volume", &ParticleColumns::volume, Width::scalar, Carried::always, 0, Bound::volume},
+    {"velocity", "velocity", &ParticleColumns::velocity, Width::vector, Carried::where_kept, 0, Bound::speed},
+    {"stress", "stress", &ParticleColumns::stress, Width::stress, Carried::where_kept, 0, Bound::stress},
+    {"mass", "mass", &ParticleColumns::mass, Width::scalar, Carried::where_kept, 0, Bound::mass},
+    {"reference_height", "reference_height", &ParticleColumns::reference_height, Width::scalar,
+     Carried::where_kept, 0, Bound::coordinate},
+    {"velocity_gradient", "affine", &ParticleColumns::velocity_gradient, Width::matrix, Carried::checkpoints,
+     1, Bound::speed},
+    {"domain", "domain", &ParticleColumns::domain, Width::moments, Carried::checkpoints, -2, Bound::domain},
+    {"faces", "", &ParticleColumns::faces, Width::faces, Carried::never, 0, Bound::none},
+};
+
+/// Calls f(values, width) for every column, state variables and own parameters included.
+template <class F>
+void for_each_column(ParticleColumns& particles, int dim, int faces, F&& f) {
+  for (const ParticleColumn& column : k_particle_columns)
+    f(particles.*column.values, width_of(column.width, dim, faces));
+  for (auto* list : {&particles.state, &particles.own_parameters})
+    for (StateField& field : *list) f(field.values, 1);
+}
+
+/// Removes the marked rows of a column, whose rows have equally many numbers; there may be none.
+template <class Number>
+void remove_rows(const std::vector<char>& marked, std::vector<Number>& column) {
+  if (column.empty()) return;
+  const std::size_t width = column.size() / marked.size();
+  std::size_t kept = 0;
+  for (std::size_t row = 0; row < marked.size(); ++row)
+    for (std::size_t c = 0; c < width && marked[row] == 0; ++c) column[kept++] = column[row * width + c];
+  column.resize(kept);
+}
+
+/// Removes the marked particles.
+inline void remove_rows(const std::vector<char>& marked, ParticleColumns& particles) {
+  for_each_column(particles, 1, 1, [&](std::vector<double>& column, int) { remove_rows(marked, column); });
+}
+
+}  // namespace mpm
