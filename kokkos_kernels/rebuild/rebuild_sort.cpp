@@ -96,7 +96,7 @@ void permute(const Space& space, const Field& field, const Order& order, int cou
   using Range = Kokkos::RangePolicy<Space>;
   using Value = typename Field::value_type;
   using Part = PartOf<Value>;
-  constexpr int parts = sizeof(Value) / sizeof(Part);
+  constexpr int parts = sizeof(Value) / sizeof(Part);  // NOLINT(bugprone-sizeof-expression): may be 1
   Part* const sorted = reinterpret_cast<Part*>(scratch.data());
   Part* const whole = reinterpret_cast<Part*>(field.data());
   for (int k = 0; k < parts; ++k) {
@@ -193,7 +193,7 @@ void sort_points(State<Space, T, Dim>& s) {
 /// cell along each axis), and the movement till then.
 template <int Dim>
 double far_from_patch(double margin) {
-  constexpr double half = Patch<Dim>::edge / 2 + 1, step_beyond_margin = 0.5;
+  constexpr double half = 0.5 * Patch<Dim>::edge + 1, step_beyond_margin = 0.5;
   return std::sqrt(static_cast<double>(Dim)) * (half + 1) + margin + step_beyond_margin;
 }
 
