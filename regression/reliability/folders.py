@@ -3,6 +3,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 import zlib
@@ -19,15 +20,26 @@ ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_R
                "MALLOC_PERTURB_": "165"}
 
 
+def launcher(ranks):
+    return ("mpirun", "-n", str(ranks), "--bind-to", "none") if ranks > 1 else ()
+
+
 def command(binary, deck, folder, *options):
-    return [str(binary), "-options_file", str(deck), "-output_dir", str(folder), "-progress", "off",
-            *map(str, options)]
+    """deck: an options file, or None."""
+    file = [] if deck is None else ["-options_file", str(deck)]
+    return [str(binary), *file, "-output_dir", str(folder), "-progress", "off", *map(str, options)]
 
 
-def run(binary, deck, folder, *options, status=0, environment=None, prefix=()):
+def run(binary, deck, folder, *options, status=0, environment=None, prefix=(), timeout=1800):
     """Runs to the end and checks the exit status; returns what was printed (stdout, stderr)."""
-    done = subprocess.run([*prefix, *command(binary, deck, folder, *options)], capture_output=True, text=True,
-                          errors="replace", env={**ENVIRONMENT, **(environment or {})}, timeout=1800)
+    with subprocess.Popen([*prefix, *command(binary, deck, folder, *options)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          errors="replace", env={**ENVIRONMENT, **(environment or {})}, start_new_session=True) as process:
+        try:
+            out, told = process.communicate(timeout=timeout)
+        except BaseException:
+            os.killpg(process.pid, signal.SIGKILL)  # the launcher and its ranks
+            raise
+    done = subprocess.CompletedProcess(process.args, process.returncode, out, told)
     if status is not None and done.returncode != status:
         raise AssertionError(f"exit status {done.returncode} instead of {status} of {options}:\n"
                              f"{done.stdout[-1500:]}\n{done.stderr}")
@@ -39,6 +51,12 @@ def rows(folder):
     lines = (pathlib.Path(folder) / "history.csv").read_text().splitlines()
     skipped = lines[0].split(",").index("wall_time")
     return [[x for k, x in enumerate(line.split(",")) if k != skipped] for line in lines]
+
+
+def history(folder):
+    """{column: array [rows]}, without the column of the wall time."""
+    head, *lines = rows(folder)
+    return dict(zip(head, np.array(lines, dtype=float).reshape(-1, len(head)).T))
 
 
 def of_velocities(time, dt):

@@ -18,15 +18,11 @@ import sys
 import tempfile
 import time
 
-from folders import (ENVIRONMENT, checkpoints, command, differences, faults_of_folder, fresh, rows, run)
+from folders import ENVIRONMENT, checkpoints, command, differences, faults_of_folder, fresh, launcher, rows, run
 
 HERE = pathlib.Path(__file__).parent
 OPTIONS = ("-backend", "serial", "-p2g", "gather")
 INTERVAL = 10  # steps between checkpoints in small.opts
-
-
-def launcher(ranks):
-    return ("mpirun", "-n", str(ranks), "--bind-to", "none") if ranks > 1 else ()
 
 
 def options(ranks):

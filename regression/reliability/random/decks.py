@@ -1,0 +1,10 @@
+"""The kinds of random decks: their names, each that of a module, and the classes there."""
+import importlib
+
+KINDS = {"loads": "Loads", "sides": "Sides", "tractions": "Tractions"}
+
+
+def kind_of(name):
+    if name not in KINDS:
+        raise SystemExit(f"{name} is no kind of decks; kinds: {', '.join(sorted(KINDS))}")
+    return getattr(importlib.import_module(name), KINDS[name])
