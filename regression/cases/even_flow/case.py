@@ -3,7 +3,7 @@
 The dam break of the case `dam_break` with `-position_correction delta`, beside the same runs without it.
 The depth of a column of cells may differ from the mean of both neighbours by 2 % of the mean depth (standard deviation; columns of two cells
 or more), and the share of a node's volume that particles fill may scatter by as much inside the fluid. The correction may add no energy to
-speak of, and no momentum: mass times velocity is what gravity and the walls have made of it (`reliability/correction.py`).
+speak of, and no momentum: mass times velocity is what gravity and the walls have made of it (`reliability/random/run correction`).
 """
 
 import importlib.util

@@ -1,7 +1,8 @@
 """The kinds of random decks: their names, each that of a module, and the classes there."""
 import importlib
 
-KINDS = {"loads": "Loads", "sides": "Sides", "tractions": "Tractions"}
+KINDS = {"correction": "Correction", "free_field": "FreeField", "loads": "Loads", "periodic": "Periodic", "probes": "Probes",
+         "sides": "Sides", "stiffness": "Stiffness", "tractions": "Tractions"}
 
 
 def kind_of(name):
