@@ -37,7 +37,8 @@ def start(binary, folder, ranks):
 
 def kill(process):
     """SIGKILL to a process and its children."""
-    children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    children = children.read_text().split() if process.poll() is None else []
     process.kill()
     for child in children:
         with contextlib.suppress(ProcessLookupError):  # it ended with its launcher

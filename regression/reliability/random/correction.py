@@ -10,7 +10,8 @@ import dataclasses
 import h5py
 import numpy as np
 
-from deck import Deck, frames, history, rows, vector
+from deck import Deck, vector
+from folders import frames, history, rows
 from sides import check_side_forces
 
 END = 0.3  # s

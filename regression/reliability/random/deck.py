@@ -1,18 +1,12 @@
 """The base of all random decks: how one is drawn, run, cut by a checkpoint, and repeated on ranks and by other strategies."""
 import collections
 import dataclasses
-import sys
-from pathlib import Path
 
 import numpy as np
 
-HERE = Path(__file__).resolve()
-sys.path += [str(HERE.parents[1]), str(HERE.parents[2]), str(HERE.parents[3] / "scripts")]
-
-from differences import largest  # noqa: E402
-from folders import checkpoints, differences, frames, fresh, history, launcher, rows, run  # noqa: E402
-from results import Run  # noqa: E402
-
+from differences import largest
+from folders import checkpoints, differences, frames, fresh, launcher, rows, run
+from results import Run
 
 
 def vector(values):
@@ -30,7 +24,7 @@ def flat_table(value):
 
 @dataclasses.dataclass(frozen=True)
 class Machine:
-    """What computes a run."""
+    """Back end, strategy, ranks and threads of a run."""
     backend: str
     strategy: str
     ranks: int = 1
@@ -85,7 +79,7 @@ class Deck:
 
     @classmethod
     def fault_of_all(cls, noted, count):
-        """What is wrong with all decks together, from what they noted."""
+        """The fault of all decks together, from what they noted; empty if none."""
         return ""
 
     def __str__(self):
@@ -95,8 +89,6 @@ class Deck:
         draw, backends = self.draw, [word for word in self.backends if word in self.given.backends] or self.given.backends
         backend, count = draw.choice(backends), draw.choice(ranks)
         strategy, threads = draw.choice(self.strategies), draw.choice(self.threads)
-        if strategy == "sequential" and "auto" in self.strategies:
-            backend = "serial"
         return Machine(backend, strategy, count, threads if backend == "openmp" else 1, draw.choice(self.partitions))
 
     def bound(self, double, single):
@@ -150,7 +142,7 @@ class Deck:
     # ------------------------------------------------------------------------------------------ checks
 
     def check(self, folder):
-        """What the physics demands of each run."""
+        """Demands of the physics, of each run."""
 
     def check_other(self, folder, whole, what):
         """A run on other ranks or by another strategy, against the first."""

@@ -1,8 +1,9 @@
 """The kinds of random decks: their names, each that of a module, and the classes there."""
 import importlib
 
-KINDS = {"correction": "Correction", "free_field": "FreeField", "loads": "Loads", "periodic": "Periodic", "probes": "Probes",
-         "sides": "Sides", "stiffness": "Stiffness", "tractions": "Tractions"}
+KINDS = {"axisymmetric": "Axisymmetric", "correction": "Correction", "energy": "Energy", "free_field": "FreeField", "ground": "Ground",
+         "level": "Level", "loads": "Loads", "periodic": "Periodic", "probes": "Probes", "sides": "Sides", "stage_bodies": "StageBodies",
+         "stages": "Stages", "stiffness": "Stiffness", "symmetry": "Symmetry", "tractions": "Tractions"}
 
 
 def kind_of(name):

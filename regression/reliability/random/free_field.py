@@ -8,8 +8,8 @@ sides have made of it.
 import h5py
 import numpy as np
 
-from deck import Deck, check_impulse, frames, history, vector
-from folders import of_velocities
+from deck import Deck, check_impulse, vector
+from folders import frames, history, of_velocities
 
 H = 0.5  # m, edge of a cell
 OFF_COLUMN = {"double": 1e-6, "single": 0.02}  # of the largest displacement
@@ -25,7 +25,7 @@ def table(draw, size, free, end):
 
 
 def positions(path):
-    """Of all particles, m."""
+    """Positions of all particles, m."""
     with h5py.File(path) as file:
         return np.concatenate([file[name]["position"][()].astype(float) for name in file if "position" in file[name]])
 
@@ -38,7 +38,7 @@ class FreeField(Deck):
         self.make_level() if self.level else self.make_slope()
 
     def base_motion(self):
-        """What shakes the ground: its base, or gravity. The first component along the vertical is that of a roller."""
+        """Motion of the ground's base, or gravity. The first component along the vertical is that of a roller."""
         draw, axis, size = self.draw, self.up, SPEED[self.precision]
         kind = draw.choice(["fixed", "absorbing", "absorbing", "roller", "gravity"])
         free = [kind != "roller"] * (self.dim - 1) + [True]

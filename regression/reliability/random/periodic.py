@@ -10,8 +10,8 @@ import dataclasses
 import h5py
 import numpy as np
 
-from deck import Deck, check_impulse, frames, history, vector
-from folders import of_velocities
+from deck import Deck, check_impulse, vector
+from folders import frames, history, of_velocities
 import particles
 
 SPACING, DENSITY, YOUNG = 0.25, 1500.0, 1e6  # m, kg/m3, Pa: powers of two and sums of them keep their bits

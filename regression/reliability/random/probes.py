@@ -8,7 +8,8 @@ two stages.
 import h5py
 import numpy as np
 
-from deck import Deck, frames, history, vector
+from deck import Deck, vector
+from folders import frames, history
 
 END = 0.12  # s
 DENSITY = 1800  # kg/m3

@@ -6,8 +6,8 @@ lists often. Some decks have two stages, in which the kinds differ.
 """
 import numpy as np
 
-from deck import Deck, check_impulse, history, vector
-from folders import of_velocities
+from deck import Deck, check_impulse, vector
+from folders import history, of_velocities
 
 END = 0.15  # s
 

@@ -9,8 +9,11 @@ along x must give its particles moduli that differ. Wrong fields are refused in 
 import h5py
 import numpy as np
 
-from deck import Deck, frames, largest, Run, rows, vector
+from deck import Deck, vector
+from differences import largest
 from fields import write_field
+from folders import frames, rows
+from results import Run
 
 H = 0.5  # m, edge of a cell
 LAWS = ["linear_elastic", "von_mises -soil_su {su}", "tresca -soil_su {su}",

@@ -6,8 +6,8 @@ balance, its row must hold. In some decks stages change the loads.
 """
 import numpy as np
 
-from deck import Deck, check_impulse, flat_table, history, rounded
-from folders import of_velocities
+from deck import Deck, check_impulse, flat_table, rounded
+from folders import history, of_velocities
 from loads import table_options
 
 STEP = 2e-4  # s

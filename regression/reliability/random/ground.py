@@ -1,22 +1,18 @@
-#!/usr/bin/env python3
-"""Random ground: bodies from closed triangle surfaces and layers, whose particles must have the volume of the shape.
+"""Ground: bodies from closed triangle surfaces and layers, whose particles must have the volume of the shape.
 
-    ground.py MPM [--count 60] [--seed 1] [--folder FOLDER] [--dims 2,3]
-
-A deck has one to four layers between random levels, polylines and rasters (which may touch), or a ball, a wedge or a tilted box of triangles, with
-one to four particles a cell in each direction, on 1 to 3 ranks, and makes a few steps under gravity. Some take their strength from a field. Each run must end well with the exact volume,
-to 1e-3, in the history's masses and the first frame; the particles of several ranks must be those of one; and no particle is outside its shape's bounds.
+A deck has one to four layers between random levels, polylines and rasters (which may touch), or a ball, a wedge or a tilted box of
+triangles, with one to four particles a cell in each direction, and makes a few steps under gravity. Some take their strength from a
+field. Each run must end well with the exact volume, to 1e-3, in the history's masses and the first frame, and the strengths of the field;
+several ranks must have the particles of one. With each deck goes a file of ground of which bytes are changed, taken out or put in: the
+program takes it, or refuses it with one line.
 """
-import argparse
 import pathlib
-import random
-import sys
-import tempfile
 
 import h5py
 import numpy as np
 
-from folders import frames, fresh, rows, run
+from deck import Deck
+from folders import frames, rows
 
 DENSITY = 1700.0
 
@@ -193,88 +189,68 @@ def write_field(path, draw, dim):
         data.attrs["lower"], data.attrs["spacing"] = lower, spacing
 
 
-def deck(draw, folder, dim):
-    options, bodies = {}, {}
-    while not bodies:
-        options, bodies = solid(draw, folder) if dim == 3 and draw.random() < 0.4 else layers(draw, folder, dim)
-    per_cell = draw.choice([1, 2, 2, 3, 4]) if dim == 2 else draw.choice([1, 2, 2, 3])
-    spacing = draw.choice([0.25, 0.5])
-    upper = "6,4,6" if dim == 3 else "6,6"
-    words = ["-dim", dim, "-mesh_lower", "0,0,0" if dim == 3 else "0,0", "-mesh_upper", upper, "-mesh_spacing", spacing, "-gravity",
-             "0,0,-9.81" if dim == 3 else "0,-9.81", "-materials", "clay", "-clay_model", draw.choice(["von_mises", "linear_elastic"]),
-             "-clay_density", DENSITY, "-clay_young", 1e7, "-clay_poisson", 0.3, "-time_end", 1, "-time_max_steps", draw.randint(1, 30), "-bodies",
-             ",".join(bodies)]
-    if "von_mises" in words:
-        words += ["-clay_su", draw.choice([1e3, 1e5])]
-    field = folder / "field.h5"
-    field.unlink(missing_ok=True)
-    if "von_mises" in words and draw.random() < 0.7:
-        write_field(field, draw, dim)
-    for name in bodies:
-        words += [f"-{name}_material", "clay", f"-{name}_particles_per_cell", per_cell]
-        words += [f"-{name}_field", field] if field.exists() else []
-    return [str(word) for word in words + options], bodies, spacing / per_cell
+class Ground(Deck):
+    strategies = ("tile", "tile", "tile", "sequential", "atomic", "mosaic", "gather")
+    restarts, several, others = 0.1, 0.6, 0.0
 
+    def make(self):
+        self.options, self.bodies, self.width = self.draw_ground(self.dim)
 
-class Tests:
-    def __init__(self, binary, base):
-        self.binary, self.base, self.checks = binary, base, 0
-        self.empty = base / "empty.opts"
-        self.empty.write_text("\n")
+    def draw_ground(self, dim):
+        """Options, {body: exact volume [m3]}, and the edge of a particle [m]."""
+        draw, folder, bodies = self.draw, self.folder, {}
+        while not bodies:
+            options, bodies = solid(draw, folder) if dim == 3 and draw.random() < 0.4 else layers(draw, folder, dim)
+        per_cell = draw.choice([1, 2, 2, 3, 4]) if dim == 2 else draw.choice([1, 2, 2, 3])
+        spacing, law = draw.choice([0.25, 0.5]), draw.choice([["von_mises", "-clay_su", draw.choice([1e3, 1e5])], ["linear_elastic"]])
+        upper, gravity = ("6,6", "0,-9.81") if dim == 2 else ("6,4,6", "0,0,-9.81")
+        words = ["-dim", dim, "-mesh_lower", ",".join(["0"] * dim), "-mesh_upper", upper, "-mesh_spacing", spacing, "-gravity", gravity,
+                 "-materials", "clay", "-clay_density", DENSITY, "-clay_young", 1e7, "-clay_poisson", 0.3, "-clay_model", *law,
+                 "-time_end", 1, "-time_max_steps", draw.randint(1, 30), "-bodies", ",".join(bodies)]
+        field = folder / "field.h5"
+        field.unlink(missing_ok=True)
+        if len(law) > 1 and draw.random() < 0.7:
+            write_field(field, draw, dim)
+        for name in bodies:
+            words += [f"-{name}_material", "clay", f"-{name}_particles_per_cell", per_cell]
+            words += [f"-{name}_field", field] if field.exists() else []
+        return [str(word) for word in words + options], bodies, spacing / per_cell
 
-    def run(self, name, options, ranks):
-        folder = self.base / name
-        fresh(folder)
-        prefix = ("mpirun", "-n", str(ranks), "--bind-to", "none") if ranks > 1 else ()
-        result = run(self.binary, self.empty, folder, *options, prefix=prefix, status=None)
-        return folder, result
-
-    def check(self, good, what):
-        self.checks += 1
-        if not good:
-            sys.exit(f"ground.py: {what}")
-
-    def deck(self, seed, k, dim):
-        draw = random.Random(f"{seed}-{k}-{dim}")
-        files = self.base / "files"
-        files.mkdir(exist_ok=True)
-        options, bodies, width = deck(draw, files, dim)
-        folder, result = self.run("whole", options, 1)
-        about = f"deck {k} of seed {seed} in {dim}D: {' '.join(options)}"
-        self.check(result.returncode == 0, f"{about}\n{result.stderr}")
+    def check(self, folder):
         header, first, *_ = rows(folder)
         with h5py.File(frames(folder)[0]) as frame:
-            for name, volume in bodies.items():
-                mass = float(first[header.index(f"{name}_mass")])
-                held = frame[name]["volume"][()]
-                self.check(abs(mass / DENSITY / volume - 1) < 1e-3, f"{about}\n{name}: mass {mass / DENSITY}, exact volume {volume}")
-                self.check(abs(held.sum() / volume - 1) < 1e-3, f"{about}\n{name}: volume {held.sum()}, exact {volume}")
-                self.check(held.min() > 0 and held.max() < 2.5 * width ** dim, f"{about}\n{name}: volumes {held.min()} to {held.max()}")
-                if f"-{name}_field" in options:
+            for name, volume in self.bodies.items():
+                mass, held = float(first[header.index(f"{name}_mass")]), frame[name]["volume"][()]
+                assert abs(mass / DENSITY / volume - 1) < 1e-3, f"{name}: mass {mass / DENSITY}, exact volume {volume}"
+                assert abs(held.sum() / volume - 1) < 1e-3, f"{name}: volume {held.sum()}, exact {volume}"
+                assert held.min() > 0 and held.max() < 2.5 * self.width**self.dim, f"{name}: volumes {held.min()} to {held.max()}"
+                if f"-{name}_field" in self.options:
                     x = frame[name]["position"][()]
-                    exact = STRENGTH[0] + x @ (STRENGTH[1:] if dim == 3 else STRENGTH[[1, 3, 2]] * [1, 1, 0])
-                    self.check(np.allclose(frame[name]["su"][()], exact, rtol=1e-6), f"{about}\n{name}: strengths of the field")
-        ranks = draw.choice([1, 2, 3])
-        if ranks > 1:
-            other, result = self.run("parts", options, ranks)
-            self.check(result.returncode == 0, f"{about} on {ranks} ranks\n{result.stderr}")
-            with h5py.File(frames(folder)[0]) as one, h5py.File(frames(other)[0]) as many:
-                for name in bodies:
-                    for field in ("position", "volume", "mass", *(["su"] if f"-{name}_field" in options else [])):
-                        self.check(np.array_equal(one[name][field][()], many[name][field][()]), f"{about} on {ranks} ranks: {name}/{field}")
+                    exact = STRENGTH[0] + x @ (STRENGTH[1:] if self.dim == 3 else STRENGTH[[1, 3, 2]] * [1, 1, 0])
+                    assert np.allclose(frame[name]["su"][()], exact, rtol=1e-6), f"{name}: strengths of the field"
 
+    def check_other(self, folder, whole, what):
+        self.check(folder)
+        with h5py.File(frames(whole)[0]) as one, h5py.File(frames(folder)[0]) as many:
+            for name in self.bodies:
+                for field in ("position", "volume", "mass", *(["su"] if f"-{name}_field" in self.options else [])):
+                    assert np.array_equal(one[name][field][()], many[name][field][()]), f"{what}: {name}/{field}"
 
-    def spoiled(self, seed, k):
-        """A file of which bytes are changed, taken out or put in: the run is refused with one line, or takes it."""
-        draw = random.Random(f"{seed}-{k}-spoiled")
-        files = self.base / "files"
-        files.mkdir(exist_ok=True)
-        options, _, _ = deck(draw, files, 3)
-        used = [pathlib.Path(word) for word in options if word.startswith(str(files))]
+    def compare(self, whole):
+        options, _, _ = self.draw_ground(3) if "3" in self.given.dims else ([], 0, 0)
+        used = [pathlib.Path(word) for word in options if word.startswith(str(self.folder))]
         if not used:
             return
-        path = draw.choice(used)
-        content = bytearray(path.read_bytes())
+        path = self.draw.choice(used)
+        path.write_bytes(self.spoiled(bytearray(path.read_bytes())))
+        _, done = self.launch("spoiled", "-dry_run", options=options, status=None)
+        lines = done.stderr.strip().splitlines()
+        good = done.returncode == 0 or (done.returncode == 2 and 1 <= len(lines) <= 4 and all(
+            line.startswith("mpm: -") and ", takes " in line for line in lines))
+        assert good, f"spoiled file {path.name}: status {done.returncode}\n{done.stderr[-1500:]}\n{' '.join(options)}"
+
+    def spoiled(self, content):
+        draw = self.draw
         for _ in range(draw.choice([1, 1, 3, 30])):
             at = draw.randrange(len(content))
             what = draw.choice(["change", "cut", "out", "in"])
@@ -287,31 +263,4 @@ class Tests:
             else:
                 content[at:at] = draw.choice([b"0", b"9e9", b"-", b"nan", b"\0", b" vertex ", b"\n", bytes(draw.randrange(256) for _ in range(9))])
             content = content or bytearray(b"x")
-        path.write_bytes(bytes(content))
-        _, result = self.run("spoiled", [*options, "-dry_run"], 1)
-        lines = result.stderr.strip().splitlines()
-        good = result.returncode == 0 or (result.returncode == 2 and 1 <= len(lines) <= 4 and all(
-            line.startswith("mpm: -") and ", takes " in line for line in lines))
-        self.check(good, f"spoiled file {k} of seed {seed}: status {result.returncode}\n{result.stderr[-2000:]}\n{' '.join(options)}")
-
-
-def main():
-    parser = argparse.ArgumentParser(usage=__doc__.split("\n\n")[1].strip(), description=__doc__.split("\n")[0])
-    parser.add_argument("binary", type=pathlib.Path)
-    parser.add_argument("--count", type=int, default=60)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--dims", default="2,3")
-    parser.add_argument("--folder", type=pathlib.Path)
-    arguments = parser.parse_args()
-    dims = [int(dim) for dim in arguments.dims.split(",")]
-    with tempfile.TemporaryDirectory() as name:
-        tests = Tests(arguments.binary.resolve(), (arguments.folder or pathlib.Path(name)).resolve())
-        for k in range(arguments.count):
-            tests.deck(arguments.seed, k, dims[k % len(dims)])
-            if 3 in dims:
-                tests.spoiled(arguments.seed, k)
-    print(f"{arguments.count} random decks of ground and as many spoiled files, {tests.checks} checks passed")
-
-
-if __name__ == "__main__":
-    main()
+        return bytes(content)
