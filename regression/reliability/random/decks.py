@@ -1,9 +1,11 @@
 """The kinds of random decks: their names, each that of a module, and the classes there."""
 import importlib
 
-KINDS = {"axisymmetric": "Axisymmetric", "correction": "Correction", "energy": "Energy", "free_field": "FreeField", "ground": "Ground",
-         "level": "Level", "loads": "Loads", "periodic": "Periodic", "probes": "Probes", "sides": "Sides", "stage_bodies": "StageBodies",
-         "stages": "Stages", "stiffness": "Stiffness", "symmetry": "Symmetry", "tractions": "Tractions"}
+KINDS = {"axisymmetric": "Axisymmetric", "collapses": "Collapses", "correction": "Correction",
+         "energy": "Energy", "free_field": "FreeField", "ground": "Ground", "level": "Level", "loads": "Loads",
+         "periodic": "Periodic", "probes": "Probes", "sides": "Sides", "soils": "Soils", "stage_bodies": "StageBodies",
+         "stages": "Stages", "stiffness": "Stiffness", "symmetry": "Symmetry", "tractions": "Tractions",
+         "water": "Water"}
 
 
 def kind_of(name):

@@ -1,7 +1,6 @@
-"""Decks of soil that flows: the collapse of a clay column in nine variants, and random collapses, slides and impacts.
+"""Options of soil that flows: the collapse of a clay column in nine variants, and random collapses, slides and impacts.
 
-A deck is a Deck: its options, its ranks and its threads. `random_deck(seed, k)` gives the k-th of a seed, always the same.
-Lengths below are in m, counted from the mesh's lower corner until `Deck.text` shifts them.
+Lengths below are in m, counted from the mesh's lower corner until `Options.value` shifts them.
 """
 import dataclasses
 import math
@@ -24,22 +23,18 @@ VARIANTS = {
     "small steps": {"time_courant": 0.1},
     "block thrown at a wall": {"dam_lower": (0.5, 0.5), "dam_upper": (1.5, 1.5), "dam_velocity": (8, 0)}}
 
-# What a core of 2020 does in a second, roughly: particles times steps. Decks are drawn until one takes 1 to 5 s.
+# What a core of 2020 does in a second, roughly: particles times steps. Decks are drawn until one takes long enough, and not too long.
 UPDATES_PER_SECOND = {2: 2.0e6, 3: 0.5e6}
-MOST_SECONDS, LEAST_SECONDS = 4.0, 0.5
 PLACES = ("lower", "upper", "centre", "point")  # options that are places, which the origin shifts
 
 
 @dataclasses.dataclass
-class Deck:
+class Options:
     name: str
     options: dict  # {name without dash: number, word or tuple}
     origin: tuple = (0, 0, 0)  # m, the mesh's lower corner
-    ranks: int = 1
-    threads: int = 1
     lift: float = 0.0  # share of the weight that water carries
     loaded: bool = False  # by what gives energy beside gravity
-    frames: bool = False  # of the start and the end
     ground: object = None  # of water_decks.py: what the particles' file is made from
 
     @property
@@ -61,9 +56,8 @@ class Deck:
             value = [x + self.origin[self.dim - 1] for x in value]
         return ",".join(f"{x:.15g}" for x in value)
 
-    def text(self):
-        """The options file."""
-        return "".join(f"-{name} {self.value(name)}\n" for name in self.options)
+    def words(self):
+        return [word for name in self.options for word in (f"-{name}", self.value(name))]
 
     def bodies(self):
         return self.options["bodies"].split(",")
@@ -73,21 +67,17 @@ class Deck:
         return [[float(x) for x in self.value(f"mesh_{end}").split(",")] for end in ("lower", "upper")]
 
 
-def named_decks():
-    return [Deck(name, {**COLLAPSE, **changes}) for name, changes in VARIANTS.items()]
-
-
 # ---------------------------------------------------------------------------------------------- random decks
 
 
 class Draw:
     """The random numbers of a deck, and what has been drawn of it so far."""
 
-    def __init__(self, seed, k, attempt):
-        self.random = random.Random(f"{seed} {k}")  # what it is does not hang on how long it would take
+    def __init__(self, seed, attempt):
+        self.random = random.Random(seed)  # what it is does not hang on how long it would take
         self.dim = self.random.choices((2, 3), (0.7, 0.3))[0]
         self.kind = self.one(collapse=5, slide=3, impact=4)
-        self.random.seed(f"{seed} {k} {attempt}")
+        self.random.seed(f"{seed} {attempt}")
         self.cell = self.logarithmic(0.02, 0.5)  # m
         self.options = {}
 
@@ -132,21 +122,8 @@ def draw_method(draw):
         o["time_courant"] = draw.uniform(0.1, 0.4)
     if draw.some(0.2):
         o["damping"] = draw.uniform(0, 0.5)
-
-
-def draw_machine(draw):
-    """Back end, precision, strategy, ranks: (ranks, threads)."""
-    o = draw.options
-    o.update(backend=draw.one(serial=1, openmp=1), precision=draw.one(double=3, single=1),
-             p2g=draw.one(sequential=1, atomic=1, mosaic=2, gather=2, tile=4, auto=1))
-    if o["p2g"] == "sequential":
-        o["backend"] = "serial"
     if draw.some(0.3):
         o["rebuild_margin"] = draw.uniform(0.05, 0.5)
-    ranks = draw.random.choices((1, 2, 3, 4), (6, 2, 1, 1))[0]
-    if ranks > 1:
-        o["partition"] = draw.one(box=1, metis=1)
-    return ranks, 2 if o["backend"] == "openmp" and draw.some(0.5) else 1
 
 
 def draw_sides(draw):
@@ -275,31 +252,30 @@ def set_time(draw, particles, speed):
     return end * wave / (courant * draw.cell), fastest / wave
 
 
-def random_deck(seed, k):
-    """The k-th random deck of a seed: drawn until it takes a second or a few on one core."""
+def random_options(seed, dims, precision, least, most):
+    """Options that a text gives: drawn until a run takes from `least` to `most` seconds on one core."""
     draw_kind = {"collapse": draw_collapse, "slide": draw_slide, "impact": draw_impact}
     for attempt in range(10000):
-        draw = Draw(seed, k, attempt)
+        draw = Draw(f"{seed} {attempt // 1000}", attempt)
+        if draw.dim not in dims:
+            continue
         draw_soil(draw)
         particles, speed = draw_kind[draw.kind](draw)
         steps, mach = set_time(draw, particles, speed)
         draw_method(draw)
         draw_sides(draw)
-        ranks, threads = draw_machine(draw)
         cells = math.prod(round(x / draw.cell) for x in draw.options["mesh_upper"])
         seconds = steps * (particles + 0.3 * cells) / UPDATES_PER_SECOND[draw.dim]
-        if LEAST_SECONDS < seconds < MOST_SECONDS and mach < 0.5:
-            break
-    else:
-        raise RuntimeError(f"no deck {k} of seed {seed} takes {LEAST_SECONDS} to {MOST_SECONDS} s")
-    return Deck(f"{k}: {draw.kind}", order(draw.options), origin(draw), ranks, threads)
+        if least < seconds < most and mach < 0.5:
+            return Options(draw.kind, order(draw.options), origin(draw, precision))
+    raise RuntimeError(f"no deck of {seed} takes {least} to {most} s")
 
 
-def origin(draw):
+def origin(draw, precision):
     """The mesh's lower corner: 0, or anywhere, nearer where positions are in single precision."""
     if draw.some(0.5):
         return (0, 0, 0)
-    far = (50 if draw.options["precision"] == "single" else 1000) * draw.cell
+    far = (50 if precision == "single" else 1000) * draw.cell
     return tuple(draw.uniform(-far, far) for _ in range(draw.dim))
 
 

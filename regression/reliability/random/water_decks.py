@@ -5,16 +5,12 @@ with the effective stresses that carry the soil above, less the water that it di
 """
 import dataclasses
 import math
-import pathlib
-import random
-import sys
 
 import h5py
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-import particles  # noqa: E402
-from collapse_decks import Deck, order  # noqa: E402
+from collapse_decks import Options, order
+import particles
 
 G = 9.81  # m/s2
 NAMES = ("lower", "middle", "upper")  # layers from the base up
@@ -124,9 +120,8 @@ class Layer:
 class Ground:
     """What a ground deck is made of."""
 
-    def __init__(self, seed, k):
-        dice = self.dice = random.Random(f"ground {seed} {k}")
-        self.dim = dice.choice([2, 2, 3])
+    def __init__(self, dice, dims):
+        self.dice, self.dim = dice, dice.choice(dims)
         self.kind = dice.choice(["rest", "plate", "plate"])
         self.cell = log_uniform(dice, 0.1, 1)
         self.wide = dice.randint(6, 14) if self.dim == 2 else dice.randint(4, 6)
@@ -180,7 +175,7 @@ class Ground:
         return y, layer, -(np.cumsum(weight) - weight / 2), weight.sum()
 
     def write(self, path):
-        y, layer, vertical, _ = self.rows()
+        _, _, vertical, _ = self.rows()
         extent = [self.wide * self.cell, self.across * self.cell][:self.dim - 1]
         with h5py.File(path, "w") as file:
             for each in self.layers:
@@ -229,26 +224,10 @@ def draw_method(o, dice):
         o["damping"] = round(dice.uniform(0.02, 0.3), 3)
 
 
-def draw_machine(o, dice):
-    o.update(backend=dice.choice(["serial", "openmp"]), precision=dice.choice(["double", "double", "single"]),
-             p2g=dice.choice(["sequential", "atomic", "mosaic", "gather", "tile", "tile", "auto"]))
-    if o["p2g"] == "sequential":
-        o["backend"] = "serial"
-    ranks = dice.choice([1, 1, 2, 3])
-    if ranks > 1:
-        o["partition"] = dice.choice(["box", "metis"])
-    return ranks, 2 if o["backend"] == "openmp" and dice.random() < 0.5 else 1
-
-
-def ground_deck(seed, k):
-    """The k-th random deck of level ground of a seed."""
-    ground = Ground(seed, k)
+def ground_options(dice, dims):
+    ground = Ground(dice, dims)
     o = ground.options()
-    draw_method(o, ground.dice)
-    ranks, threads = draw_machine(o, ground.dice)
+    draw_method(o, dice)
     laws = ", ".join(f"{each.law['model']} {'undrained' if 'pore_stiffness' in each.law else 'drained'}" for each in ground.layers)
-    deck = Deck(f"{k}: ground, {ground.kind}, {laws}, water to {ground.level / ground.height:.2f}"
-                f"{' over all' if ground.covered else ''}", order(o), ranks=ranks,
-                threads=threads)
-    deck.ground, deck.loaded, deck.frames = ground, ground.kind == "plate", True
-    return deck
+    name = f"ground, {ground.kind}, {laws}, water to {ground.level / ground.height:.2f}{' over all' if ground.covered else ''}"
+    return Options(name, order(o), loaded=ground.kind == "plate", ground=ground)
