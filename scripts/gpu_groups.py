@@ -42,11 +42,11 @@ PROCESSOR_ANSWERS = {  # back ends, threads and runs at a time, cases: the longe
 }
 PROCESSOR_ANSWERS["quick"] = ("serial,openmp", 1, 14, [*ANSWERS["contact"], *ANSWERS["quick"], "shear_band", "landslide_coarse"])
 PROCESSORS = {  # commands at the same time, in regression/; random decks take up to 4 ranks of 2 threads
-    "soil": ["reliability/collapses.py {program} --count 200 --jobs 4", "reliability/water.py {program} --count 60 --jobs 2",
-             "reliability/courant.py {program} --jobs 2"],
+    "soil": ["reliability/random/run collapses {program} --count 200 --jobs 4", "reliability/random/run water {program} --count 60 --jobs 2",
+             "reliability/random/run courant {program} --jobs 2"],
     "files": ["reliability/kill.py {program} --kills 220", "reliability/kill.py {program} --kills 40 --seed 3 --ranks 2",
               "reliability/faults.py {program} {inject}", "reliability/files.py {program} {inject}",
-              "reliability/starts.py {program} --precisions double,single", "fuzz/decks.py {program} --count 10000 --jobs 6"],
+              "reliability/random/run starts {program} --count 40", "fuzz/decks.py {program} --count 10000 --jobs 6"],
     "images": ["metamorphic/run {program} --count 1000 --seed 3 --each 6 --jobs 16 --minutes 8 --json {out}/images.json"
                " --keep {out}/differ"],
 }

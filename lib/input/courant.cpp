@@ -23,7 +23,7 @@ double viscous_share(const Config& config) {
   return share * 2 / most;
 }
 
-/// Share of the limit that is left without F-bar. Measured (regression/reliability/courant.py): particles of
+/// Share of the limit that is left without F-bar. Measured (regression/reliability/random/run courant): particles of
 /// a cell that dilate apart are stiffer.
 double share_by_f_bar(const Config& config) {
   constexpr double k_without_f_bar = 0.94, k_has_f_bar = 0.5;

@@ -1,10 +1,10 @@
 """The kinds of random decks: their names, each that of a module, and the classes there."""
 import importlib
 
-KINDS = {"axisymmetric": "Axisymmetric", "collapses": "Collapses", "correction": "Correction",
-         "energy": "Energy", "free_field": "FreeField", "ground": "Ground", "level": "Level", "loads": "Loads",
+KINDS = {"axisymmetric": "Axisymmetric", "collapses": "Collapses", "compression": "Compression", "correction": "Correction",
+         "courant": "Courant", "energy": "Energy", "free_field": "FreeField", "ground": "Ground", "level": "Level", "loads": "Loads",
          "periodic": "Periodic", "probes": "Probes", "sides": "Sides", "soils": "Soils", "stage_bodies": "StageBodies",
-         "stages": "Stages", "stiffness": "Stiffness", "symmetry": "Symmetry", "tractions": "Tractions",
+         "stages": "Stages", "starts": "Starts", "stiffness": "Stiffness", "symmetry": "Symmetry", "tractions": "Tractions",
          "water": "Water"}
 
 
