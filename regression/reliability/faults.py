@@ -18,7 +18,7 @@ import time
 import numpy as np
 
 from folders import (ENVIRONMENT, change_sealed, checkpoints, command, contents, differences, faults_of_folder, frames, fresh,
-                     is_whole, rows, run)
+                     is_whole, launcher, rows, run)
 
 HERE = pathlib.Path(__file__).parent
 DECK = HERE / "small.opts"
@@ -117,8 +117,7 @@ class Checks:
         assert not differences(self.whole, folder)
 
     def go_on_ranks(self, ranks, folder, *options, **how):
-        return run(self.binary, DECK, folder, *OPTIONS, *options, **how,
-                   prefix=("mpirun", "-n", str(ranks), "--bind-to", "none"))
+        return run(self.binary, DECK, folder, *OPTIONS, *options, **how, prefix=launcher(ranks))
 
     def check_several_ranks(self):
         """Several ranks go on to the same bits too, and another number of ranks goes on up to round-off."""

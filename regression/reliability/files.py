@@ -21,12 +21,12 @@ import h5py
 import numpy as np
 
 from folders import (ENVIRONMENT, change_sealed, checkpoints, command, differences, faults_of_folder, frames, fresh, is_whole,
-                     rows, run)
+                     launcher, rows, run)
 
 HERE = pathlib.Path(__file__).parent
 DECK = HERE / "small.opts"
 OPTIONS = ("-backend", "serial", "-p2g", "gather", "-time_max_steps", 120)
-RANKS = ("mpirun", "-n", "2", "--bind-to", "none")
+RANKS = launcher(2)
 PATIENCE = 120  # s, for what must not wait for ever
 
 
