@@ -11,6 +11,7 @@ from folders import history
 
 END = 0.2  # s
 LARGEST = {"velocity": 0.4, "displacement": 0.03, "force": 500}
+FASTEST = 5.0  # m/s, of displacements between two times of a table: waves of the soil have 30 m/s
 
 
 def table_options(draw, folder, name, times, values):
@@ -34,6 +35,8 @@ class Table:
         times[0], times[-1] = min(times[0], draw.choice([0.0, -0.03])), max(times[-1], END * draw.choice([1, 1.5]))
         columns = 1 if factors_of is not None else dim
         values = np.array([[draw.uniform(-1, 1) * (1 if factors_of is not None else largest) for _ in range(columns)] for _ in times])
+        if name.endswith("displacement"):
+            values *= min(1, FASTEST / np.abs(np.diff(values, axis=0) / np.diff(times)[:, None]).max())
         self.options = table_options(draw, folder, name, times, values)
         self.times, self.smooth = np.array(times), "smooth" in self.options
         self.values = values * np.array(factors_of) if factors_of is not None else values
