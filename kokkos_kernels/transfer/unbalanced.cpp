@@ -22,7 +22,8 @@ struct NodeForces {
     if (!(m_i > update.mass_cut)) return;
     Coord<Dim> at = coord_of<Dim>(i);
     for (int d = 0; d < Dim; ++d) at[d] += update.places.origin(slot)[d];
-    const auto node = update.node_of(update.nodes, i, at, update.rigids.extent(0) > 0 && near_rigid(slot) > 0);
+    const auto node =
+        update.node_of(update.nodes, i, at, update.rigids.extent(0) > 0 && near_rigid(slot) > 0);
     Vector<T, Dim> v_old, a, free = filled<T, Dim>(1);
     update.accelerate(node.soil, node.inv_m, v_old, a);
     if (node.is_held()) a = update.held_acceleration(update.nodes, update.rigids.data(), node, v_old, a);

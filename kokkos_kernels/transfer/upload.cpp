@@ -285,8 +285,9 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
       rigid.held[d] = rigids[r].held[d];
     }
     const double particle_mass = rigids[r].density * rigids[r].particle_volume;
-    rigid.mass = rigids[r].revolved_volume > 0 ? rigids[r].density * rigids[r].revolved_volume
-                                               : particle_mass * (rigids[r].position.size() / Dim);
+    rigid.mass = rigids[r].revolved_volume > 0
+                     ? rigids[r].density * rigids[r].revolved_volume
+                     : particle_mass * static_cast<double>(rigids[r].position.size() / Dim);
     rigid.dynamic = rigids[r].dynamic;
     rigid.shear_limit = rigids[r].shear_limit;
     rigid.shear_fraction = rigids[r].shear_fraction > 0 ? rigids[r].shear_fraction : -1;

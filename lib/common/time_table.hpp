@@ -36,7 +36,9 @@ inline Vec3 largest_rate(const TimeTable& table) {
 
 /// End of the option that tells how a side moves.
 inline const char* motion_of(const SideConfig& side) {
-  return side.of_accelerations ? "_acceleration_table" : side.velocity_table ? "_velocity_table" : "_velocity";
+  return side.of_accelerations ? "_acceleration_table"
+         : side.velocity_table ? "_velocity_table"
+                               : "_velocity";
 }
 
 /// The tables of a configuration, by their options with dash.

@@ -23,8 +23,8 @@ double viscous_share(const Config& config) {
   return share * 2 / most;
 }
 
-/// Share of the limit that is left without F-bar. Measured (regression/reliability/random/run courant): particles of
-/// a cell that dilate apart are stiffer.
+/// Share of the limit that is left without F-bar. Measured (regression/reliability/random/run courant):
+/// particles of a cell that dilate apart are stiffer.
 double share_by_f_bar(const Config& config) {
   constexpr double k_without_f_bar = 0.94, k_has_f_bar = 0.5;
   return f_bar_range(config).least < k_has_f_bar ? k_without_f_bar : 1;

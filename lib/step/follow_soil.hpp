@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// Deforms the domains of particles with their soil, where the run asks for it. Before locate(), or between two
-/// steps, whose sums of the next step it drops. ranks: null on one rank. Collective.
+/// Deforms the domains of particles with their soil, where the run asks for it. Before locate(), or between
+/// two steps, whose sums of the next step it drops. ranks: null on one rank. Collective.
 template <class Space, class T, int Dim>
 PetscErrorCode follow_soil(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks = nullptr) {
   PetscFunctionBeginUser;

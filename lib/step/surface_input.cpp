@@ -11,9 +11,9 @@ namespace {
 
 constexpr double k_slack = 1e-6;  // of the mesh spacing: closer to the mesh's boundary is on it
 
-/// How far a body that ends on the mesh's boundary goes on beyond it [m]: further than any point of the mesh is
-/// from another face of the body, so that the end beyond the mesh is the nearest face nowhere, in a mesh of one
-/// cell across neither.
+/// How far a body that ends on the mesh's boundary goes on beyond it [m]: further than any point of the mesh
+/// is from another face of the body, so that the end beyond the mesh is the nearest face nowhere, in a mesh
+/// of one cell across neither.
 double beyond_mesh(const MeshConfig& mesh, int dim) {
   double sum = 0;
   for (int d = 0; d < dim; ++d) sum += mesh.upper[d] - mesh.lower[d];
@@ -33,8 +33,9 @@ bool on_boundary(const Edge& edge, const MeshConfig& mesh, int dim) {
 }
 
 /// Radius [m] that corners of a polygon, anticlockwise, can be rounded by: half a cell, but no corner recedes
-/// by more than that, and no edge loses more than a share of its length. Corners that point into the body stay
-/// sharp. ends[k]: edge k lies on a side of the mesh and is no surface; a corner there is that with the image.
+/// by more than that, and no edge loses more than a share of its length. Corners that point into the body
+/// stay sharp. ends[k]: edge k lies on a side of the mesh and is no surface; a corner there is that with the
+/// image.
 double rounding_of(const Polygon& polygon, const std::vector<bool>& ends, double share, double spacing) {
   const double most = spacing / 2;
   double radius = most;
