@@ -3,7 +3,7 @@
 
 namespace mpm {
 
-/// The forms of a step. lib/step/step.hpp lists what each does.
+/// The forms of a step. lib/step/step.cpp lists the functions of each.
 enum class StepForm {
   separate,    // the paper's functions one after the other
   fused,       // particles pass through memory once: function 5 goes on to functions 1 and 3 of the next step

@@ -5,7 +5,7 @@
 //
 // The velocity of a particle is sum S v_i with the nodal velocity of Eq. (6), momentum over mass, without
 // walls and contact. The sums at the nodes must be those of the particles where they are now:
-// sum_present_soil (lib/step/step.hpp).
+// sum_present_soil (lib/step/to_nodes.hpp).
 
 #include <vector>
 
