@@ -23,7 +23,7 @@ struct Points {
   Kokkos::View<int*, Memory> id;                     // order of creation
 };
 
-/// What all particles of a body share.
+/// Properties that all particles of a body share.
 template <class T>
 struct BodyProperties {
   T mass;                     // kg, of one particle, where the particles have none of their own
@@ -90,8 +90,8 @@ struct Soil : Points<Space, T, Dim> {
   }
   /// Index of the material of particle p.
   KOKKOS_INLINE_FUNCTION int material_of(int p) const { return bodies(body(p)).material; }
-  /// The values of the state variables of particle p, whose law this is; 0 where it does not carry one, and
-  /// where no update asks for it.
+  /// The values of the state variables of particle p, whose law this is; 0 where the law does not carry one,
+  /// and where no update uses it.
   template <class Law>
   KOKKOS_INLINE_FUNCTION LawState<T, state_size<Law>> state_of(const Law& law, int p) const {
     LawState<T, state_size<Law>> state{};
@@ -105,7 +105,7 @@ struct Soil : Points<Space, T, Dim> {
   KOKKOS_INLINE_FUNCTION T excess_pore_pressure(const Material& of, int p) const {
     return history.pore >= 0 && of.pore_stiffness > 0 ? history.column[history.pore](p) : T(0);
   }
-  /// What its body gives particle p, with its own mass.
+  /// Properties of the body of particle p, with the particle's own mass.
   KOKKOS_INLINE_FUNCTION BodyProperties<T> properties(int p) const {
     BodyProperties<T> of = bodies(body(p));
     of.mass = mass_of(p, of);
@@ -125,7 +125,7 @@ struct RigidPoints : Points<Space, T, Dim> {
   bool surface_normal = false;  // contact does not ask for their mass at the nodes
 };
 
-/// What the update of the particles (function 5) does with a field.
+/// Use of a field by the update of the particles (function 5).
 enum class Use { none, reads, changes };
 
 /// Calls f(name, use, field...) for every field that holds one entry a particle, but cell and id, of some

@@ -29,7 +29,7 @@ struct AddColumns {
     first = static_cast<int>(Kokkos::fmax(0.0, from)), last = static_cast<int>(Kokkos::fmin(most, to));
   }
 
-  /// What of a box is over the grid: a particle at a side of the mesh has all of its volume there.
+  /// Part of a box that is over the grid: a particle at a side of the mesh has all of its volume there.
   KOKKOS_INLINE_FUNCTION ParticleBox<Dim> within(ParticleBox<Dim> box) const {
     for (int d = 0; d < axes; ++d) {
       const double low = Kokkos::fmax(box.centre[d] - box.half[d], lower[d]);

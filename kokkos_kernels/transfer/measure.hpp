@@ -36,8 +36,7 @@ struct VelocityRange {
 template <class Space, class T, int Dim>
 VelocityRange velocity_range(const State<Space, T, Dim>& s);
 
-/// What a measure asks of the other ranks: numbers summed, the largest one taken, each in its place. Empty on
-/// one rank.
+/// Reductions over ranks that a measure calls: sums and maxima, number by number. Empty on one rank.
 struct OverRanks {
   std::function<void(int*, int)> sum;
   std::function<void(double*)> largest;

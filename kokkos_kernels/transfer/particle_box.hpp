@@ -12,7 +12,7 @@ struct ParticleBox {
   double centre[Dim], half[Dim];
 };
 
-/// Of a ring it is the part outside of the axis.
+/// The box of a particle. The box of a ring ends at the axis.
 template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION ParticleBox<Dim> box_of(const Positions<Space, T, Dim>& position, int p) {
   ParticleBox<Dim> box;

@@ -13,7 +13,7 @@ template <class Space, class T, int Dim>
 std::vector<ProbeParticle> particles_in(const State<Space, T, Dim>& s,
                                         const std::vector<ProbeRegion>& regions);
 
-/// What nearest_particle finds: the square of its distance [m2], infinite where there is no particle.
+/// Result of nearest_particle: the square of the distance [m2], infinite where there is no particle.
 struct NearestParticle {
   double square;
   int id;

@@ -67,7 +67,7 @@ SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
   if (!s.has_friction) return saved;
   const auto number = mirror_of(s.patches.number);
   const auto impulse = mirror_of(s.nodes.impulse);
-  // Of several ranks one answers for a node: what the others have there may be long out of date.
+  // One of several ranks owns a node: the values of the others may be long out of date.
   const auto owned_nodes = mirror_of(s.owned_nodes);
   const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
   const auto holds_some = [&](int i) {
@@ -85,7 +85,7 @@ SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
   return saved;
 }
 
-/// What has left the run, and which cells hold particles that are alone.
+/// Saves the sums over particles that left the run, and the cells whose particles are alone.
 template <class Space, class T, int Dim>
 void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
   const auto put_back = mirror_of(s.strays.put_back);

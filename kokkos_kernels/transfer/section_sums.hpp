@@ -1,13 +1,13 @@
 #pragma once
-// What is beyond planes, and what passes them.
+// Mass and volume of soil beyond planes, and their fluxes through the planes.
 
 #include "data/probe_data.hpp"
 #include "data/state.hpp"
 
 namespace mpm {
 
-/// Sums over the particles of this rank. Of a particle whose domain a plane cuts, the part beyond counts.
-/// What passes is a mean over a strip of one cell around the plane.
+/// Sums over the particles of this rank. The part of a particle's domain that is beyond the plane counts. The
+/// flux is a mean over a strip of one cell around the plane.
 template <class Space, class T, int Dim>
 SectionSum section_sum(const State<Space, T, Dim>& s, const SectionPlane& plane);
 

@@ -325,9 +325,9 @@ template Surface<3> surface_of(const SurfaceInput&, double);
 template <class Space, class T, int Dim>
 Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
              const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids) {
-  // Of a particle's mass. A node's weight falls with the square of its gradient, so a node that is left out
-  // with 1e-14 would have felt a ten-millionth of a particle's force, and with 1e-12 a millionth; a rigid
-  // holds a node that it reaches by a thousandth of a cell.
+  // Shares of a particle's mass. A node's weight falls with the square of its gradient, so a node that is
+  // left out with 1e-14 would have felt a ten-millionth of a particle's force, and with 1e-12 a millionth; a
+  // rigid holds a node that it reaches by a thousandth of a cell.
   constexpr double k_cut = sizeof(T) == sizeof(double) ? 1e-14 : 1e-12, k_rigid_cut = 1e-6;
   s.grid.spacing = static_cast<T>(grid.spacing);
   s.grid.inv_spacing = static_cast<T>(1 / grid.spacing);

@@ -26,7 +26,7 @@ template <class Space, class T, int Dim>
 void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<SideInput>& sides,
                   double density);
 
-/// What the acting sides have done since the host last took it, of the nodes that this rank answers for.
+/// Impulse and work of the acting sides since the host last took them, at the nodes that this rank owns.
 struct SideWork {
   WallForces impulse{};  // N s, of the soil on each side
   double work = 0;       // J, of the sides on the soil

@@ -13,8 +13,8 @@ namespace mpm {
 PetscMPIInt rank_of(MPI_Comm comm);
 PetscMPIInt size_of(MPI_Comm comm);
 
-/// What one rank did alone, as it ended there, on every rank. Where it failed, the rank that failed has said
-/// why; the others fail without a word.
+/// Makes the outcome of work that one rank did alone known on every rank. Where it failed, that rank has
+/// printed why; the others fail without a message.
 PetscErrorCode agree(MPI_Comm comm, PetscErrorCode own);
 
 /// The text of the lowest rank that has one, on every rank; empty if none has.

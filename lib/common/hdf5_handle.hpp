@@ -27,7 +27,7 @@ inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 /// open at once: HDF5 (1.10) crashes where it cannot have that memory for a new file.
 void keep_hdf5_memory();
 
-/// What made HDF5's last call fail.
+/// Cause of the failure of HDF5's last call.
 struct Hdf5Fault {
   std::string what;     // empty: nothing failed
   std::string cause;    // in HDF5's words

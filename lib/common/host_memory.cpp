@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-/// What a limit on the process's memory (ulimit -v) leaves; infinite where there is none.
+/// Bytes that a limit on the process's memory (ulimit -v) leaves; infinite where there is none.
 static double free_in_process() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return HUGE_VAL;

@@ -1,5 +1,5 @@
 #pragma once
-// What the tables of the laws say of a material, by the word of its model.
+// Entries of the tables of the laws for a material, by the word of its model.
 
 #include <optional>
 #include <string>
@@ -20,7 +20,7 @@ std::vector<StateVariable> state_variables(const std::string& model);
 /// of particles gives them), in the order of OwnValues.
 std::vector<std::string> own_parameters(const std::vector<StateVariable>& variables);
 
-/// Those of them of which a field or a file gives the particles of a body their own.
+/// Parameters of which a field or a file gives each particle of a body its own value.
 std::vector<std::string> given_parameters(const BodyConfig& body,
                                           const std::vector<StateVariable>& variables);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a run starts from: its particles, and on several ranks the owners of its patches.
+// Start of a run: its particles, and on several ranks the owners of its patches.
 
 #include <array>
 #include <string>
@@ -25,7 +25,7 @@ struct BodyParticles : ParticleColumns {
   std::vector<char> left_out{};  // [N] 1: it has an id and is not in the run; empty where all are in it
 };
 
-/// Everything that a stepper starts from.
+/// Input of a stepper: particles and owners of patches.
 struct Model {
   std::array<int, 3> patches{};  // with the ring outside the mesh
   std::vector<BodyParticles> bodies, rigids;

@@ -5,7 +5,7 @@
 
 namespace mpm {
 
-/// What a path should have been, as the end of "takes ..."; empty where it is a regular file or nothing.
+/// Fault of a path, as the end of "takes ..."; empty where it is a regular file or nothing.
 std::string irregular_fault(const std::string& path);
 
 }  // namespace mpm

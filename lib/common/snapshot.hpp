@@ -1,5 +1,5 @@
 #pragma once
-// What the run hands to its outputs, on the host, whatever the backend, precision and dimension.
+// Frames and rows of a run, on the host, whatever the backend, precision and dimension.
 
 #include <array>
 #include <string>

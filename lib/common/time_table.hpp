@@ -12,7 +12,7 @@
 
 namespace mpm {
 
-/// Of each component the value of largest size.
+/// Value of largest size of each component.
 inline Vec3 largest_of(const TimeTable& table) {
   Vec3 largest{};
   for (const Vec3& value : table.values)
@@ -21,7 +21,7 @@ inline Vec3 largest_of(const TimeTable& table) {
   return largest;
 }
 
-/// Of each component the rate of change of largest size [1/s].
+/// Rate of change of largest size of each component [1/s].
 inline Vec3 largest_rate(const TimeTable& table) {
   constexpr double k_smooth = 1.5;  // the slope in the middle over the mean slope
   Vec3 largest{};

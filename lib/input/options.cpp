@@ -445,7 +445,7 @@ PetscErrorCode insert_words(InputReport& report) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What a newcomer needs, before the options.
+/// Usage for a newcomer, before the options.
 constexpr const char* k_usage =
     "mpm: a material point method for soil, in 2D and 3D\n\n"
     "  mpm -options_file DECK [-NAME VALUE] ...    runs a deck; what the command line gives takes "

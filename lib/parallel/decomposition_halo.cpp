@@ -23,8 +23,8 @@ auto Decomposition<Space, T, Dim>::soil_fields(const State_& s, bool soil, bool 
   return fields;
 }
 
-/// Packs the sums, and sends them behind that as far as the device can, or where nothing runs behind: all
-/// the way.
+/// Packs the sums, and sends them as far as the device can do so on the same stream; a processor sends them
+/// at once.
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::send(const Space& space, const Fields& fields) {
   PetscFunctionBeginUser;
@@ -170,9 +170,9 @@ PetscErrorCode Decomposition<Space, T, Dim>::send_ahead(State_& s) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What the events of the last exchange that was measured tell of all. A device was held up from when it had
-/// nothing left but to wait for the ghost sums until they were added; the host, which waits beside it, is no
-/// measure of that.
+/// Estimates the cost of all exchanges from the events of the last one that was measured. A device was held
+/// up from when it had nothing left but to wait for the ghost sums until they were added; the host, which
+/// waits beside it, is no measure of that.
 template <class Space, class T, int Dim>
 void Decomposition<Space, T, Dim>::measure_ahead() {
   const double held = k_measured_each * std::max(0.0, seconds_between(idle_, over_));

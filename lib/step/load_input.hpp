@@ -1,5 +1,5 @@
 #pragma once
-// What follows tables in time, from the configuration to the kernels.
+// Loads and motions that follow tables in time, from the configuration to the kernels.
 
 #include <vector>
 

@@ -20,7 +20,8 @@ class PresentRigids {
   void narrow(SavedState& state);
   /// A state of these rigids becomes one of all.
   void widen(SavedState& state) const;
-  /// The same of the rows of the history, and of a frame, where those that are not there have no particles.
+  /// Widens rows of the history, and the groups of a frame, where rigids that are not in the run have no
+  /// particles.
   void widen(std::vector<RigidRow>& rows) const;
   void widen(std::vector<ParticleSnapshot>& groups) const;
 

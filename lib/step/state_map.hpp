@@ -1,5 +1,5 @@
 #pragma once
-// What becomes of the state variables of soil whose law or parameters change between two steps, and particles
+// Mapping of the state variables of soil whose law or parameters change between two steps, and of particles
 // that join the soil there.
 
 #include <string>

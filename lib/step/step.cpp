@@ -155,7 +155,8 @@ struct Step {
     if (ranks) finish_sums(s);
     soil_to_nodes(s, stream);
   }
-  /// What only some runs ask of the nodes: the soil's strength, and which particles are alone till a rebuild.
+  /// Completes the nodes in runs that need it: the soil's strength, the particles that are alone until a
+  /// rebuild, and the patches that go to the overlap stream.
   PetscErrorCode complete_nodes(const Space& stream) const {
     PetscFunctionBeginUser;
     if (s.shear_fraction) PetscCall(strength_to_nodes(s, ranks));

@@ -33,7 +33,7 @@ struct StepRange {
   double before = 0;  // s, length of the step before them; 0: they are the first of the run
 };
 
-/// What a batch of steps came to.
+/// Result of a batch of steps.
 struct Batch {
   long steps = 0;        // done
   bool rebuild = false;  // the movement bound passed the margin: rebuild before the next step
@@ -69,9 +69,9 @@ class Stepper {
   /// Mean unbalanced force over mean weight of the nodes, at a time [s]; infinite where no node is free to
   /// tell.
   virtual PetscErrorCode unbalanced_ratio(double time, double* ratio) = 0;
-  /// What probes know at the start of the run, the same on every rank.
+  /// Finds the state of the probes at the start of the run, the same on every rank.
   virtual PetscErrorCode begin_probes(ProbeState* state) = 0;
-  /// What is beyond the sections, with what has left there, and passes them; of all ranks.
+  /// Sums the soil beyond the sections, with soil that has left there, and the fluxes; over all ranks.
   virtual PetscErrorCode sum_sections(std::vector<SectionSum>* sums) = 0;
   /// The columns of all probes in a row of the history.
   virtual PetscErrorCode measure_probes(const ProbeState& state, std::vector<double>* values) = 0;
@@ -89,7 +89,7 @@ class Stepper {
   /// After the soil was changed between two steps: the energy balance goes on with what is dissipated and
   /// what the update takes as they were in `before`. Collective.
   virtual PetscErrorCode keep_balance(const EnergyRow& before) = 0;
-  /// What the log should tell of the rebuilds since the last call.
+  /// Lines for the log on the rebuilds since the last call.
   virtual std::string drain_log() = 0;
   /// None on one rank. Collective.
   virtual std::optional<RankFigures> rank_figures() const = 0;
@@ -104,7 +104,7 @@ class Stepper {
   virtual int patches() const = 0;           // active ones
   virtual std::size_t memory() const = 0;    // bytes on the device
   virtual std::string strategy() const = 0;  // the word of -p2g that runs
-  /// What the log should tell of the batches of -device_memory_limit, and of their cost so far.
+  /// Line for the log on the batches of -device_memory_limit, and on their cost so far.
   virtual std::string batches_report() const = 0;
 };
 

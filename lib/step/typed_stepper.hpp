@@ -70,13 +70,13 @@ class TypedStepper final : public Stepper {
   std::size_t body_of(int id) const;
   /// Why the soil cannot go in batches, if it should and cannot.
   Failure too_small() const;
-  /// What advance and rebuild are on several ranks.
+  /// Advance and rebuild on several ranks.
   PetscErrorCode advance_together(long steps, double dt, Batch* batch);
   PetscErrorCode rebuild_together(double elapsed, Failure* failure);
   /// The failure of the lowest rank that has one, on every rank.
   PetscErrorCode share(Failure* failure) const;
   PetscErrorCode sum_soil();
-  /// What sides of the mesh that act need: at the start, before steps, for a row, around a rebuild on several
+  /// Work for sides of the mesh that act: at the start, before steps, for a row, around a rebuild on several
   /// ranks, and for checkpoints.
   void set_up_sides(GridInput* grid);
   PetscErrorCode begin_sides();
@@ -93,8 +93,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode save_sections(SavedState* saved) const;
   void restore_sections(const SavedState& saved);
   void set_gravity(double time);
-  /// What loads on surfaces need: at the start, for what is measured at a time, for a row, and for
-  /// checkpoints.
+  /// Work for loads on surfaces: at the start, for measures at a time, for a row, and for checkpoints.
   void set_up_loads(const Model& model);
   void set_loads(double time);
   PetscErrorCode measure_loads(HistoryRow* row) const;
@@ -124,7 +123,7 @@ class TypedStepper final : public Stepper {
   PetscErrorCode leave_out(Model* model);
   /// Which fields of the saved soil hold the state variables of which law.
   void name_columns(SavedState* saved) const;
-  /// What a start from a checkpoint needs and a restart has already.
+  /// Saves the fields that a start from a checkpoint needs beside those of a restart.
   PetscErrorCode save_for_starts(SavedState* saved) const;
   double velocity_of(std::size_t rigid, int d, double present, double time) const;
   void sample(bool on);

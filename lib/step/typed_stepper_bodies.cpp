@@ -1,5 +1,4 @@
-// What the stepper knows of bodies that are not all in the run: ids without a particle, and whose law is in
-// which column.
+// Bodies that are not all in the run: ids without a particle, and the columns of their laws.
 
 #include <algorithm>
 #include <numeric>
@@ -9,6 +8,7 @@
 #include "step/typed_stepper.hpp"
 
 namespace mpm {
+
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::leave_out(Model* model) {
   PetscFunctionBeginUser;

@@ -1,4 +1,4 @@
-// What the stepper tells of the soil as a whole: its energy balance, and cells without soil inside it.
+// Reports on the soil as a whole: its energy balance, and cells without soil inside it.
 
 #include <algorithm>
 

@@ -55,7 +55,7 @@ void TypedStepper<Space, T, Dim>::restore_load_work(double work) {
   Kokkos::deep_copy(state_.loads.work, ranks_ && rank_of(comm_) > 0 ? 0 : work);
 }
 
-/// What the loads are in a row of the history.
+/// Measures the loads for a row of the history.
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::measure_loads(HistoryRow* row) const {
   PetscFunctionBeginUser;

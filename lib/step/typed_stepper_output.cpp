@@ -1,4 +1,4 @@
-// What the stepper tells of the state: rows of the history, frames, the cost of batches.
+// Reports on the state: rows of the history, frames, the cost of batches.
 
 #include <algorithm>
 

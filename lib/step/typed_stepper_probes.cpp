@@ -1,4 +1,4 @@
-// What the stepper tells of probes and columns of soil.
+// Reports on probes and columns of soil.
 
 #include <algorithm>
 #include <limits>
@@ -149,7 +149,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save_sections(SavedState* saved) con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What has left goes to the first rank.
+/// Restores the soil that has left beyond the sections, on the first rank.
 template <class Space, class T, int Dim>
 void TypedStepper<Space, T, Dim>::restore_sections(const SavedState& saved) {
   const bool first = !ranks_ || rank_of(comm_) == 0;

@@ -1,4 +1,4 @@
-// What the stepper does together with those of the other ranks.
+// Functions that the steppers of all ranks do together.
 
 #include <algorithm>
 #include <limits>
@@ -187,7 +187,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure_body(int b, BodyRow* body) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What has left the run, and how many particles were put back on a wall.
+/// Notes soil that has left the run, and the number of particles that were put back on a wall.
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::note_out_of_order(int b, BodyRow* body) {
   PetscFunctionBeginUser;
@@ -205,7 +205,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::note_out_of_order(int b, BodyRow* bo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What has left on all ranks, and all cells whose particles are alone, on every rank.
+/// Gathers, on every rank, the soil that has left on all ranks, and all cells whose particles are alone.
 template <class Space, class T, int Dim>
 PetscErrorCode TypedStepper<Space, T, Dim>::gather_strays(SavedState* saved) const {
   PetscFunctionBeginUser;

@@ -1,4 +1,4 @@
-// What the materials of a configuration say of its time step.
+// Speeds of waves in the materials of a configuration, which limit its time step.
 
 #include <algorithm>
 #include <cmath>
