@@ -3,7 +3,6 @@
 // checkpoints, cuts, ranks and the start of a run walk. A new vector of every particle is one row of it.
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "data/face_terms.hpp"
@@ -31,8 +30,9 @@ struct ParticleColumns {
   std::vector<StateField> own_parameters{};  // parameters of which each particle has its own value
 };
 
-/// How many numbers a particle has in a column.
+/// Numbers of a particle in a column, by kind.
 enum class Width { scalar, vector, stress, matrix, moments, faces };
+/// Count of these numbers; faces: loads that a particle is on at most.
 constexpr int width_of(Width width, int dim, int faces) {
   switch (width) {
     case Width::scalar: return 1;
@@ -45,13 +45,16 @@ constexpr int width_of(Width width, int dim, int faces) {
   return 0;
 }
 
-/// Where a column comes from when another run's particles start this one.
+/// Files that hold a column when particles of another run or of the user start this one.
 enum class Carried {
   always,       // frames, checkpoints and the user's files have it
   where_kept,   // frames and checkpoints of a run have it, the user's files may
   checkpoints,  // checkpoints of a run that needed it alone
   never         // the run makes it anew
 };
+
+/// Options of a body by which it gives a column to all of its particles, in the place of a file.
+enum class GivenBy { none, velocity, stress };
 
 /// Bounds of magnitude that the arithmetic has room for.
 enum class Bound { none, speed, stress, volume, mass, coordinate, domain };
@@ -63,31 +66,37 @@ struct ParticleColumn {
   std::vector<double> ParticleColumns::*values;
   Width width;
   Carried carried;
+  GivenBy given_by;
   int per_cell;  // power of the cell's edge by which a value goes from one mesh to another
   Bound bound;
 };
 
 inline constexpr ParticleColumn k_particle_columns[] = {
-    {"position", "coordinate", &ParticleColumns::position, Width::vector, Carried::always, 0, Bound::none},
-    {"volume", "volume", &ParticleColumns::volume, Width::scalar, Carried::always, 0, Bound::volume},
-    {"velocity", "velocity", &ParticleColumns::velocity, Width::vector, Carried::where_kept, 0, Bound::speed},
-    {"stress", "stress", &ParticleColumns::stress, Width::stress, Carried::where_kept, 0, Bound::stress},
-    {"mass", "mass", &ParticleColumns::mass, Width::scalar, Carried::where_kept, 0, Bound::mass},
+    {"position", "coordinate", &ParticleColumns::position, Width::vector, Carried::always, GivenBy::none, 0,
+     Bound::none},
+    {"volume", "volume", &ParticleColumns::volume, Width::scalar, Carried::always, GivenBy::none, 0,
+     Bound::volume},
+    {"velocity", "velocity", &ParticleColumns::velocity, Width::vector, Carried::where_kept,
+     GivenBy::velocity, 0, Bound::speed},
+    {"stress", "stress", &ParticleColumns::stress, Width::stress, Carried::where_kept, GivenBy::stress, 0,
+     Bound::stress},
+    {"mass", "mass", &ParticleColumns::mass, Width::scalar, Carried::where_kept, GivenBy::none, 0,
+     Bound::mass},
     {"reference_height", "reference_height", &ParticleColumns::reference_height, Width::scalar,
-     Carried::where_kept, 0, Bound::coordinate},
+     Carried::where_kept, GivenBy::none, 0, Bound::coordinate},
     {"velocity_gradient", "affine", &ParticleColumns::velocity_gradient, Width::matrix, Carried::checkpoints,
-     1, Bound::speed},
-    {"domain", "domain", &ParticleColumns::domain, Width::moments, Carried::checkpoints, -2, Bound::domain},
-    {"faces", "", &ParticleColumns::faces, Width::faces, Carried::never, 0, Bound::none},
+     GivenBy::velocity, 1, Bound::speed},
+    {"domain", "domain", &ParticleColumns::domain, Width::moments, Carried::checkpoints, GivenBy::none, -2,
+     Bound::domain},
+    {"faces", "", &ParticleColumns::faces, Width::faces, Carried::never, GivenBy::none, 0, Bound::none},
 };
 
 /// Calls f(values, width) for every column, state variables and own parameters included.
 template <class F>
-void for_each_column(ParticleColumns& particles, int dim, int faces, F&& f) {
-  for (const ParticleColumn& column : k_particle_columns)
-    f(particles.*column.values, width_of(column.width, dim, faces));
+void for_each_column(ParticleColumns& particles, F&& f) {
+  for (const ParticleColumn& column : k_particle_columns) f(particles.*column.values, column.width);
   for (auto* list : {&particles.state, &particles.own_parameters})
-    for (StateField& field : *list) f(field.values, 1);
+    for (StateField& field : *list) f(field.values, Width::scalar);
 }
 
 /// Removes the marked rows of a column, whose rows have equally many numbers; there may be none.
@@ -103,7 +112,7 @@ void remove_rows(const std::vector<char>& marked, std::vector<Number>& column) {
 
 /// Removes the marked particles.
 inline void remove_rows(const std::vector<char>& marked, ParticleColumns& particles) {
-  for_each_column(particles, 1, 1, [&](std::vector<double>& column, int) { remove_rows(marked, column); });
+  for_each_column(particles, [&](std::vector<double>& column, Width) { remove_rows(marked, column); });
 }
 
 }  // namespace mpm

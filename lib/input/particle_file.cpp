@@ -210,10 +210,9 @@ std::string read_group(hid_t file, const ParticleSource& source, int dim, Partic
 }  // namespace
 
 bool wanted(const ParticleColumn& column, const ParticleSource& source) {
-  const auto values = column.values;
-  if (values == &ParticleColumns::velocity || values == &ParticleColumns::velocity_gradient)
-    return source.velocity;
-  return values == &ParticleColumns::stress ? source.stress : column.carried != Carried::never;
+  if (column.given_by == GivenBy::velocity) return source.velocity;
+  if (column.given_by == GivenBy::stress) return source.stress;
+  return column.carried != Carried::never;
 }
 
 std::string read_particles(const ParticleSource& source, const MeshConfig& mesh, int dim,

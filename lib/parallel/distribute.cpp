@@ -28,7 +28,8 @@ long patch_of(const std::vector<double>& position, std::size_t p, const PatchGri
 void keep_part(LatticePart part, int dim, int faces, BodyParticles& body) {
   const long count = static_cast<long>(body.position.size()) / dim;
   const long from = count * part.number / part.of, to = count * (part.number + 1) / part.of;
-  for_each_column(body, dim, faces, [&](std::vector<double>& values, int width) {
+  for_each_column(body, [&](std::vector<double>& values, Width kind) {
+    const int width = width_of(kind, dim, faces);
     if (!values.empty())
       values = std::vector<double>(values.begin() + from * width, values.begin() + to * width);
   });
@@ -80,8 +81,8 @@ PetscErrorCode send_to_owners(MPI_Comm comm, const PatchGrid& grid, double spaci
     PetscFunctionReturn(PETSC_SUCCESS);
   };
   PetscErrorCode failed = PETSC_SUCCESS;
-  for_each_column(*body, grid.dim, faces, [&](std::vector<double>& values, int width) {
-    if (failed == PETSC_SUCCESS) failed = send(&values, width);
+  for_each_column(*body, [&](std::vector<double>& values, Width kind) {
+    if (failed == PETSC_SUCCESS) failed = send(&values, width_of(kind, grid.dim, faces));
   });
   PetscCall(failed);
   PetscCall(send_rows(comm, to, 1, &body->id));
