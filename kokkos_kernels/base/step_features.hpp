@@ -9,26 +9,26 @@ namespace mpm {
 
 /// Features of a run that some way of doing a step cannot serve.
 enum class Feature {
-  other_strategy,  // from particles to nodes, than `tile`
-  xpic,            // asks for the nodal sums again
-  apic,            // likewise
-  splits,          // particles with long domains are split
-  correction,      // of particles' positions
-  submerged,       // soil displaces water, whose weight nodes carry
-  energy,          // the balance reads nodal sums between functions 4 and 5
-  loads,           // on surfaces, which read them too
-  rayleigh,        // damping forces need the sums of all the soil before any node moves
-  damping,         // local: computes contact twice
-  shear_fraction,  // contact by the soil's strength, whose sums are made before the nodes move
-  friction,        // of rigid bodies: changes what a node keeps of the normal impulse whenever it is read
-  acting_sides,    // of the mesh: likewise
-  columns,         // of free-field sides, which move beside the sides on the main stream
-  gravity_table,   // set where the rigid bodies move, when no node may be updated
-  side_table,      // likewise
-  pushed_mass_normals,  // a rigid body that forces move, with normals of its mass gradient
-  revolved,             // particles are rings
-  ranks,                // several
-  batches,              // of soil that the device's memory does not hold
+  other_strategy,       // strategy from particles to nodes other than `tile`
+  xpic,                 // XPIC, which reads the nodal sums again
+  apic,                 // APIC, which has sums of its own
+  splits,               // particles that are split where their domains are long
+  correction,           // correction of the particles' positions
+  submerged,            // soil that displaces water, whose weight goes to the nodes
+  energy,               // energy balance, which reads nodal sums between functions 4 and 5
+  loads,                // loads on surfaces, which read nodal sums between functions 4 and 5
+  rayleigh,             // Rayleigh damping, whose forces need the sums of all soil before any node moves
+  damping,              // local damping, which computes contact twice
+  shear_fraction,       // contact by the soil's strength, whose sums are made before the nodes move
+  friction,             // friction of rigid bodies, which changes a node's normal impulses when it reads them
+  acting_sides,         // sides that act, which change what their nodes keep when they read it
+  columns,              // free-field columns, which move beside the sides on the main stream
+  gravity_table,        // gravity by a table, set where rigid bodies move, when no node may be updated
+  side_table,           // motion of a side by a table, set likewise
+  pushed_mass_normals,  // rigid body that forces move, with normals of its mass gradient
+  revolved,             // body of revolution, whose particles are rings
+  ranks,                // several ranks
+  batches,              // soil that goes through the device's memory in batches
   count
 };
 
@@ -53,6 +53,7 @@ static_assert(static_cast<int>(Feature::count) <= 32);
 enum class StepWay {
   sums_ahead,   // function 5 goes on to functions 1 and 3 of the next step
   nodes_apart,  // function 4 has a kernel of its own for the nodes near rigid bodies
+  nodes_aside,  // this kernel runs on the overlap stream
   overlapped,   // sums at nodes that ranks share travel while inner patches are computed
   in_batches,   // the soil passes through the device's memory in batches
   one_launch,   // the end of a step goes with function 5
@@ -67,6 +68,7 @@ constexpr Features excluding(StepWay way) {
     case StepWay::sums_ahead:
       return {F::other_strategy, F::xpic, F::apic, F::submerged, F::energy, F::loads, F::rayleigh};
     case StepWay::nodes_apart: return {F::gravity_table, F::side_table, F::columns, F::rayleigh};
+    case StepWay::nodes_aside: return excluding(StepWay::nodes_apart) | Features{F::shear_fraction};
     case StepWay::overlapped: return {F::other_strategy, F::submerged, F::energy, F::loads, F::rayleigh};
     case StepWay::in_batches:
       return {F::other_strategy, F::xpic,   F::apic,  F::splits,  F::correction,

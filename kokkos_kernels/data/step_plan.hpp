@@ -20,6 +20,8 @@ struct StepPlan {
   bool writes_sums = false;
   /// Function 4 has a kernel of its own for the nodes near rigids.
   bool nodes_apart = false;
+  /// This kernel may run on the overlap stream.
+  bool nodes_aside = false;
 };
 
 }  // namespace mpm

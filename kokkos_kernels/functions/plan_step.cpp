@@ -19,6 +19,7 @@ StepPlan plan_step(const State<Space, T, Dim>& s) {
   // Patches far from rigids need few registers: where they are many, a launch of their own is faster.
   plan.nodes_apart = is_device<Space> && !few && !s.rigid_points.empty() && s.near_count > 0 &&
                      can(StepWay::nodes_apart, features);
+  plan.nodes_aside = plan.nodes_apart && can(StepWay::nodes_aside, features);
   if (batches)
     plan.form = StepForm::out_of_core;
   else if (plan.sums_ahead)

@@ -1,7 +1,5 @@
 // Options that a run whose soil goes through the device's memory in batches cannot have.
 
-#include <array>
-
 #include "base/step_features.hpp"
 #include "input/analysis_options.hpp"
 #include "input/groups.hpp"
@@ -9,36 +7,47 @@
 namespace mpm {
 namespace {
 
-/// A feature that a Config may have, the option that is refused, and what this option takes.
+/// A feature that batches exclude, whether a run has it, the option that is refused, and the text of what
+/// this option takes.
 struct Refusal {
   Feature feature;
-  bool on;
+  bool (*on)(const Config&);
   const char* option;
   const char* takes;
 };
 
-std::array<Refusal, 9> refusals_of(const Config& config) {
-  using F = Feature;
-  const VelocityUpdate update = config.velocity_update;
-  const char* const limit = "device_memory_limit";
-  const char* const update_takes = "-velocity_update flip or pic: no other goes in batches";
-  return {{{F::other_strategy, config.p2g.strategy != P2G::tile, limit,
-            "-p2g tile or auto: no other goes in batches"},
-           {F::splits, config.particle_domain == ParticleDomain::split, limit,
-            "-particle_domain fixed or stretch: batches have no room for more particles"},
-           {F::xpic, update == VelocityUpdate::xpic, limit, update_takes},
-           {F::apic, update == VelocityUpdate::apic, limit, update_takes},
-           {F::correction, config.position_correction, limit,
-            "-position_correction none: batches are not corrected"},
-           {F::energy, config.output.energy, "output_energy",
-            "off where -device_memory_limit sends the soil in batches"},
-           {F::submerged, config.water.level.has_value(), "water_level",
-            "no -device_memory_limit: submerged soil does not go in batches"},
-           {F::loads, !config.loads.empty(), "loads",
-            "nothing where -device_memory_limit sends the soil in batches"},
-           {F::rayleigh, config.rayleigh_mass > 0 || config.rayleigh_stiffness > 0, "rayleigh_ratio",
-            "0 where -device_memory_limit sends the soil in batches"}}};
+constexpr const char* k_limit = "device_memory_limit";
+constexpr const char* k_updates = "-velocity_update flip or pic: no other goes in batches";
+
+constexpr Refusal k_refusals[] = {
+    {Feature::other_strategy, [](const Config& c) { return c.p2g.strategy != P2G::tile; }, k_limit,
+     "-p2g tile or auto: no other goes in batches"},
+    {Feature::splits, [](const Config& c) { return c.particle_domain == ParticleDomain::split; }, k_limit,
+     "-particle_domain fixed or stretch: batches have no room for more particles"},
+    {Feature::xpic, [](const Config& c) { return c.velocity_update == VelocityUpdate::xpic; }, k_limit,
+     k_updates},
+    {Feature::apic, [](const Config& c) { return c.velocity_update == VelocityUpdate::apic; }, k_limit,
+     k_updates},
+    {Feature::correction, [](const Config& c) { return c.position_correction; }, k_limit,
+     "-position_correction none: batches are not corrected"},
+    {Feature::energy, [](const Config& c) { return c.output.energy; }, "output_energy",
+     "off where -device_memory_limit sends the soil in batches"},
+    {Feature::submerged, [](const Config& c) { return c.water.level.has_value(); }, "water_level",
+     "no -device_memory_limit: submerged soil does not go in batches"},
+    {Feature::loads, [](const Config& c) { return !c.loads.empty(); }, "loads",
+     "nothing where -device_memory_limit sends the soil in batches"},
+    {Feature::rayleigh, [](const Config& c) { return c.rayleigh_mass > 0 || c.rayleigh_stiffness > 0; },
+     "rayleigh_ratio", "0 where -device_memory_limit sends the soil in batches"},
+};
+
+/// Features of the table of refusals.
+constexpr Features refused() {
+  Features all;
+  for (const Refusal& each : k_refusals) all.put(each.feature);
+  return all;
 }
+static_assert(refused().bits == excluding(StepWay::in_batches).bits,
+              "a row for each feature that batches exclude");
 
 }  // namespace
 
@@ -51,8 +60,8 @@ void check_batches(OptionReader& in, const Config& config) {
   for (const char* name : {"particle_domain", "velocity_update", "position_correction"})
     if (set_by_flow(in, config, name))
       return in.reject("analysis", "penetration where -device_memory_limit sends the soil in batches");
-  for (const Refusal& each : refusals_of(config))
-    if (each.on && excluding(StepWay::in_batches).has(each.feature)) in.reject(each.option, each.takes);
+  for (const Refusal& each : k_refusals)
+    if (each.on(config)) in.reject(each.option, each.takes);
 }
 
 }  // namespace mpm

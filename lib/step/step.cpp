@@ -141,7 +141,7 @@ struct Step {
 
   /// Whether nodes near rigids may go to the overlap stream. Functions that are timed have the device for
   /// themselves.
-  bool has_stream() const { return overlap && s.plan.nodes_apart && !s.shear_fraction && !timers.sampling(); }
+  bool has_stream() const { return overlap && s.plan.nodes_aside && !timers.sampling(); }
   /// The state's own stream, behind all work of the overlap stream.
   const Space& joined() const {
     if (overlap) overlap->join(s.space);

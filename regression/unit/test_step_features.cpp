@@ -92,6 +92,7 @@ TEST_CASE("the plan of the steps does nothing that a pair of features excludes",
         INFO("features " << a << ", " << b);
         CHECK(plan.sums_ahead == (ahead && can(StepWay::sums_ahead, features)));
         CHECK((!plan.nodes_apart || can(StepWay::nodes_apart, features)));
+        CHECK((!plan.nodes_aside || (plan.nodes_apart && can(StepWay::nodes_aside, features))));
         CHECK((plan.form != StepForm::persistent || can(StepWay::one_launch, features)));
         CHECK((plan.form == StepForm::out_of_core) == features.has(Feature::batches));
       }
