@@ -55,8 +55,8 @@ PetscErrorCode read_places(MPI_Comm comm, const Config& config, std::vector<Body
 std::string later_warning(const Config& config, const LoadConfig& load) {
   return formatted(
       "warning: -%s_lower: with the soil as it is at the start, without the bodies that stages to %s remove, "
-      "no "
-      "face of body %s is in the box of load %s; the run ends at stage %s if no soil has moved into the box",
+      "no face of body %s is in the box of load %s; the run ends at stage %s if no soil has moved into the "
+      "box",
       load.name.c_str(), config.stages[load.stage - 1].c_str(), config.bodies[load.body].name.c_str(),
       load.name.c_str(), config.stages[load.stage - 1].c_str());
 }

@@ -29,8 +29,8 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
           {.name = name,
            .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no velocity "
                       "into it, and friction along it; no velocity into it; dashpots that absorb waves; "
-                      "dashpots to a column that "
-                      "moves as the free field beside; the opposite side, which is periodic too",
+                      "dashpots to a column that moves as the free field beside; the opposite side, which "
+                      "is periodic too",
            .standard = d > 0 && side == 1 && in.listing() ? k_top_default : ""},
           words, mesh.walls[d][side]);
     }
