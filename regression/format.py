@@ -6,24 +6,14 @@
 """
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 
-MAJOR = "14"  # Debian 12's; others format some lines differently
+from clang_tools import MAJOR, find_tool
+
 FOLDERS = ("app", "lib", "kokkos_kernels", "regression")
 
-
-def clang_format():
-    for name in (f"clang-format-{MAJOR}", "clang-format"):
-        if shutil.which(name):
-            version = subprocess.run([name, "--version"], capture_output=True, text=True).stdout
-            if re.search(rf"version {MAJOR}\.", version):
-                return name
-    return None
-
-
-tool = clang_format()
+tool = find_tool("clang-format")
 if tool is None:
     print(f"no clang-format {MAJOR}")
     sys.exit(77)

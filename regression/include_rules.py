@@ -2,7 +2,7 @@
 """Checks which folder includes which, against the table below (docs/CONTRIBUTING.md, "The tree").
 
     include_rules.py              the tree; one line for each include that breaks a rule
-    include_rules.py --self-test  made-up trees: what breaks a rule is found, what does not is not
+    include_rules.py --self-test  trees made up for the test: faults are found, and a tree without one has none
 """
 import pathlib
 import re

@@ -15,24 +15,15 @@ import json
 import pathlib
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 import time
 
-MAJOR = "14"  # Debian 12's; others have other checks
+from clang_tools import MAJOR, find_tool
+
 FOLDERS = ("lib/common/", "lib/checkpoint/", "lib/element/", "lib/mesh/", "lib/output/")
 ROOTS = ("kokkos_kernels/", "lib/include/", "lib/", "kokkos_kernels/base/")
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-
-
-def clang_tidy():
-    for name in (f"clang-tidy-{MAJOR}", "clang-tidy"):
-        if shutil.which(name):
-            version = subprocess.run([name, "--version"], capture_output=True, text=True).stdout
-            if re.search(rf"version {MAJOR}\.", version):
-                return name
-    return None
 
 
 def flags_of(command, build):
@@ -67,7 +58,7 @@ def main():
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--jobs", type=int, default=2)
     args = parser.parse_args()
-    tool, build = clang_tidy(), args.build.resolve()
+    tool, build = find_tool("clang-tidy"), args.build.resolve()
     if tool is None:
         print(f"no clang-tidy {MAJOR}")
         return 77

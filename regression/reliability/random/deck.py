@@ -95,7 +95,7 @@ class Deck:
         return double if self.exact else single
 
     def note(self, what, value):
-        """A number of which the runner tells the median and the largest of all decks."""
+        """Notes a number; the runner prints the median and the largest of all decks."""
         self.noted[what].append(float(value))
 
     # ------------------------------------------------------------------------------------------ runs
