@@ -8,9 +8,10 @@ import sys
 import tempfile
 
 sys.dont_write_bytecode = True
+
+from mpm_regression import folders  # noqa: E402
+
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE / "reliability"))
-import folders  # noqa: E402
 
 FLOW = ("-analysis", "flow")
 SET = ("-velocity_update", "apic", "-particle_domain", "split", "-position_correction", "delta")

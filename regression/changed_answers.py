@@ -10,8 +10,8 @@ import argparse
 import json
 import subprocess
 
-import case as cases
-import store
+from mpm_regression import cases
+from mpm_regression import store
 
 RESULTS = ["regression/results/cpu.json", "regression/results/gpu.json"]
 

@@ -17,13 +17,11 @@ import tempfile
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-import case as cases  # noqa: E402
-import differences  # noqa: E402
-from benchmark_runs import performance  # noqa: E402
-from compare import BOUNDS  # noqa: E402
-from results import Run, read_frame  # noqa: E402
+from mpm_regression import cases, differences  # noqa: E402
+from mpm_regression.compare import BOUNDS  # noqa: E402
+from mpm_tools.bench.runs import performance  # noqa: E402
+from mpm_tools.results import Run, read_frame  # noqa: E402
 
 STRATEGIES = ("tile", "gather", "auto")
 COMMON = ("-materials soft -soft_model linear_elastic -soft_density 1000 -soft_young 1e6 -soft_poisson 0.3"

@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 
-from clang_tools import MAJOR, find_tool
+from mpm_regression.clang_tools import MAJOR, find_tool
 
 FOLDERS = ("app", "lib", "kokkos_kernels", "regression")
 

@@ -17,13 +17,12 @@ import tempfile
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-import case as cases  # noqa: E402
-import differences  # noqa: E402
-from benchmark_runs import HISTORY, Setting, performance  # noqa: E402
-from compare import BOUNDS  # noqa: E402
-from results import Run  # noqa: E402
+from mpm_regression import cases, differences  # noqa: E402
+from mpm_regression.compare import BOUNDS  # noqa: E402
+from mpm_tools.bench.runs import HISTORY, Setting, performance  # noqa: E402
+from mpm_tools.results import Run  # noqa: E402
+from mpm_tools.tree import default_program  # noqa: E402
 
 # deck, options, steps. Stresses of the footing grow to what is compared only with time; margins of 0.02 cells make rebuilds.
 CHECKS = [("inputs/landslide_coarse.opts", "", 1), ("inputs/landslide_coarse.opts", "", 100),
@@ -104,7 +103,7 @@ def times(given, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--binary", type=Path, default=cases.program())
+    parser.add_argument("--binary", type=Path, default=default_program())
     parser.add_argument("--backend", default="cuda")
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--paths", default="auto,host,peer")

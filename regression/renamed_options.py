@@ -11,9 +11,10 @@ import tempfile
 import numpy as np
 
 sys.dont_write_bytecode = True
+
+from mpm_regression import folders  # noqa: E402
+
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE / "reliability"))
-import folders  # noqa: E402
 
 FORMER = {"rebuild_margin": "p2g_margin", "flip_fraction": "flip_share", "f_bar_fraction": "f_bar_share",
           "rigid_bodies": "rigids", "shear_fraction": "shear_share", "contact_gap_scaling": "contact_penalty",

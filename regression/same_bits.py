@@ -14,11 +14,9 @@ import tempfile
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE / "reliability")]
 
-import case as cases  # noqa: E402
-from folders import differences  # noqa: E402
+from mpm_regression import cases  # noqa: E402
+from mpm_regression.folders import differences  # noqa: E402
 
 
 def arguments():

@@ -19,7 +19,7 @@ import subprocess
 import sys
 import time
 
-from clang_tools import MAJOR, find_tool
+from mpm_regression.clang_tools import MAJOR, find_tool
 
 FOLDERS = ("lib/common/", "lib/checkpoint/", "lib/element/", "lib/mesh/", "lib/output/")
 ROOTS = ("kokkos_kernels/", "lib/include/", "lib/", "kokkos_kernels/base/")

@@ -13,15 +13,14 @@ import pathlib
 import re
 import shutil
 import subprocess
-import sys
 
 import h5py
 import numpy as np
 
+from mpm_regression.folders import ENVIRONMENT, checkpoints, differences, fresh
+
 HERE = pathlib.Path(__file__).resolve().parent
 DECK = HERE / "deck.opts"
-sys.path.insert(0, str(HERE.parent / "reliability"))
-from folders import ENVIRONMENT, checkpoints, differences, fresh  # noqa: E402
 
 VARIABLES = {"created_at": "m", "shear_path": "-"}
 

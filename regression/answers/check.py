@@ -15,7 +15,7 @@ An expression is of Python, with numpy as np, of these:
   column(name)            all rows of a column
   frame(time)             {body: {field: array}} of the frame nearest to a time
   uneven(body, time)      standard deviation of the depth of a column of cells from the mean of both neighbours, over the mean
-                          depth, in 2D (unevenness of regression/flow.py)
+                          depth, in 2D (unevenness of scripts/mpm_tools/flow.py)
   near(value, exact, by)  |value - exact| <= by |exact|
 Each takes `run=NAME` where the deck has several runs; the first one is the default.
 """
@@ -29,10 +29,10 @@ import tempfile
 
 import numpy as np
 
+from mpm_tools.flow import depths, unevenness
+from mpm_tools.results import Run, read_frame
+
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent.parent / "scripts"), str(HERE.parent)]
-from flow import depths, unevenness  # noqa: E402
-from results import Run, read_frame  # noqa: E402
 
 
 class Deck:

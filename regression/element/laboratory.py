@@ -14,7 +14,7 @@ import random
 import subprocess
 import sys
 
-from point import deck_of, read_table, run_point, scratch_folder, write_path
+from mpm_regression.point import deck_of, read_table, run_point, scratch_folder, write_path
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "element"
 SAND = dict(young=2e7, poisson=0.3, cohesion=5000, friction_deg=30, dilation_deg=10)

@@ -9,7 +9,7 @@ import pathlib
 import random
 import sys
 
-from point import COMPONENTS, STRAIN, STRESS, deck_of, run_point, scratch_folder, write_path
+from mpm_regression.point import COMPONENTS, STRAIN, STRESS, deck_of, run_point, scratch_folder, write_path
 
 
 def frictional(dice):

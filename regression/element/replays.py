@@ -11,7 +11,7 @@ import argparse
 import pathlib
 import sys
 
-from point import STRESS, deck_of, read_table, run_point, scratch_folder
+from mpm_regression.point import STRESS, deck_of, read_table, run_point, scratch_folder
 
 HERE = pathlib.Path(__file__).resolve().parent
 MEAN, DEVIATOR, STATE = 1e-3, 3e-3, 3e-3

@@ -2,27 +2,22 @@
 import os
 import re
 import shlex
-import sys
-from pathlib import Path
 
-HERE = Path(__file__).resolve()
-sys.path[:0] = [str(HERE.parents[2] / "scripts"), str(HERE.parents[1]), str(HERE.parents[1] / "reliability")]
-
-from python_modules import need  # noqa: E402
+from mpm_tools.python_modules import need  # noqa: E402
 
 need("numpy", "h5py")
 
 import numpy as np  # noqa: E402
 
 from decks import text_of  # noqa: E402
-from differences import Scales  # noqa: E402
 from dimensions import (ACCELERATION, AREA, ENERGY, FORCE, LENGTH, MASS, MOMENTUM, SPEED, STRESS, VOLUME, WHOLE, column_kind, domain_of,  # noqa: E402
                         factor, field_kind, is_plane, names_of, per_width)
-from folders import checkpoints, fresh, run as run_program  # noqa: E402
 from images import EXACT  # noqa: E402
-from results import Run, read_frame  # noqa: E402
+from mpm_regression.differences import Scales  # noqa: E402
+from mpm_regression.folders import checkpoints, fresh, run as run_program  # noqa: E402
+from mpm_tools.results import Run, read_frame  # noqa: E402
 
-BOUNDS = {"double": 1e-9, "single": 0.05}  # of a field's largest value, as regression/compare.py has them
+BOUNDS = {"double": 1e-9, "single": 0.05}  # of a field's largest value, as mpm_regression.compare has them
 DOMAINS = 1e-4  # the same where half lengths follow the soil, which are numbers of single precision in every run
 
 
@@ -199,7 +194,7 @@ class Back:
 # ------------------------------------------------------------------------------------------------ comparison
 
 def scales_of(run, deck):
-    """Scale of a quantity by its units: what the others make of it (regression/differences.py)."""
+    """Scale of a quantity by its units: what the others make of it (mpm_regression.differences)."""
     last = next((read_frame(f)[1] for f in reversed(run.frames)), None)
     s = Scales(run, last)
     energy = max([s.momentum * s.velocity / 2, *(np.abs(v).max() for n, v in run.history.items() if n.startswith(("energy_", "work_")))])

@@ -5,7 +5,6 @@
 
 INJECT is the library made of inject.c; --short takes fewer samples; NAME says which of the checks to make.
 """
-import os
 import pathlib
 import random
 import shutil
@@ -17,7 +16,7 @@ import time
 
 import numpy as np
 
-from folders import (ENVIRONMENT, change_sealed, checkpoints, command, contents, differences, faults_of_folder, frames, fresh,
+from mpm_regression.folders import (ENVIRONMENT, change_sealed, checkpoints, command, contents, differences, faults_of_folder, frames, fresh,
                      is_whole, launcher, rows, run)
 
 HERE = pathlib.Path(__file__).parent

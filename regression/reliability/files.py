@@ -20,7 +20,7 @@ import time
 import h5py
 import numpy as np
 
-from folders import (ENVIRONMENT, change_sealed, checkpoints, command, differences, faults_of_folder, frames, fresh, is_whole,
+from mpm_regression.folders import (ENVIRONMENT, change_sealed, checkpoints, command, differences, faults_of_folder, frames, fresh, is_whole,
                      launcher, rows, run)
 
 HERE = pathlib.Path(__file__).parent

@@ -8,17 +8,14 @@ without a later one, and at most one interval may be lost; the end must be, bit 
 killed. As many runs are made as the kills take. On several ranks all are killed, and the launcher before them.
 """
 import argparse
-import contextlib
-import os
 import pathlib
 import random
-import signal
 import subprocess
 import sys
 import tempfile
 import time
 
-from folders import ENVIRONMENT, checkpoints, command, differences, faults_of_folder, fresh, launcher, rows, run
+from mpm_regression.folders import ENVIRONMENT, checkpoints, command, differences, faults_of_folder, fresh, kill, launcher, rows, run
 
 HERE = pathlib.Path(__file__).parent
 OPTIONS = ("-backend", "serial", "-p2g", "gather")
@@ -33,17 +30,6 @@ def start(binary, folder, ranks):
     again = ("-restart", "latest") if checkpoints(folder) else ()
     return subprocess.Popen([*launcher(ranks), *command(binary, HERE / "small.opts", folder, *options(ranks), *again)],
                             env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-
-
-def kill(process):
-    """SIGKILL to a process and its children."""
-    children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
-    children = children.read_text().split() if process.poll() is None else []
-    process.kill()
-    for child in children:
-        with contextlib.suppress(ProcessLookupError):  # it ended with its launcher
-            os.kill(int(child), signal.SIGKILL)
-    process.communicate()
 
 
 def step_of(path):

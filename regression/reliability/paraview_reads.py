@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 from matplotlib import image
 
-from folders import run
+from mpm_regression.folders import run
 
 HERE = pathlib.Path(__file__).parent
 INPUTS = HERE.parent.parent / "inputs"

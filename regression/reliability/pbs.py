@@ -13,7 +13,7 @@ import sys
 import tempfile
 import time
 
-from folders import ENVIRONMENT, differences, faults_of_folder, run
+from mpm_regression.folders import ENVIRONMENT, differences, faults_of_folder, run
 
 HERE = pathlib.Path(__file__).parent
 ROOT = HERE.parent.parent
@@ -41,7 +41,7 @@ def main():
                        "PBS_O_WORKDIR": str(ROOT)}
         given = {"DECK": str(DECK), "OPTIONS": OPTIONS, "LIMIT": f"{limit:.3f}", "MPM": str(binary),
                  "MPM_OUTPUT": str(base / "chain")}
-        subprocess.run(["qsub", "-v", ",".join(given), "scripts/pbs/cpu_node.pbs"], env={**environment, **given}, check=True)
+        subprocess.run(["qsub", "-v", ",".join(given), "scripts/site/pbs/cpu_node.pbs"], env={**environment, **given}, check=True)
         told = []
         while queue.exists() and len(told) < 100:
             job = dict(line.split("=", 1) for line in queue.read_text().splitlines())

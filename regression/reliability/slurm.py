@@ -4,7 +4,7 @@
     slurm.py MPM [--seconds 110]
 
 Needs root and Debian's slurm-wlm and munge. Starts munged, slurmctld and slurmd with a configuration of its own in a
-temporary folder, submits scripts/slurm/cpu_node.sbatch, and stops them all again. The job's limit is Slurm's least, one
+temporary folder, submits scripts/site/slurm/cpu_node.sbatch, and stops them all again. The job's limit is Slurm's least, one
 minute, and the run takes longer (--seconds): USR1 comes 20 to 50 s after the start, as Slurm looks every half minute.
 """
 import argparse
@@ -17,7 +17,7 @@ import sys
 import tempfile
 import time
 
-from folders import ENVIRONMENT, checkpoints, differences, faults_of_folder, run
+from mpm_regression.folders import ENVIRONMENT, differences, faults_of_folder, run
 
 HERE = pathlib.Path(__file__).parent
 ROOT = HERE.parent.parent
@@ -123,7 +123,7 @@ def main():
     run(arguments.binary, DECK, base / "whole", *OPTIONS, "-time_max_steps", steps)
     with Slurm(base) as slurm:
         limits = f"--cpus-per-task=1 --time=1 --signal=B:USR1@10 --output={base}/job-%j.log"
-        slurm.call("sbatch", *limits.split(), str(ROOT / "scripts/slurm/cpu_node.sbatch"), str(DECK), *OPTIONS, "-time_max_steps",
+        slurm.call("sbatch", *limits.split(), str(ROOT / "scripts/site/slurm/cpu_node.sbatch"), str(DECK), *OPTIONS, "-time_max_steps",
                    steps, environment={"MPM": str(pathlib.Path(arguments.binary).absolute()),
                                           "MPM_SCRIPTS": str(ROOT / "scripts"), "MPM_OUTPUT": str(base / "chain"),
                                           "MPM_SBATCH_OPTIONS": limits})

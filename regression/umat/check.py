@@ -24,12 +24,11 @@ import sys
 import h5py
 import numpy as np
 
+from mpm_regression import particles, point
+from mpm_regression.folders import checkpoints, contents, differences, frames, fresh, rows, run
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-sys.path[:0] = [str(HERE.parent), str(HERE.parent / "reliability"), str(HERE.parent / "element")]
-import particles  # noqa: E402
-import point  # noqa: E402
-from folders import checkpoints, contents, differences, frames, fresh, rows, run  # noqa: E402
 
 # Largest difference of a field from the built-in law's over the field's largest value; friction amplifies round-off.
 CLOSE = 1e-9

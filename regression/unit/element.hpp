@@ -93,7 +93,7 @@ struct Point {
 
 /// A file of replays/: time, total strain, stress and plastic strain (0 where the law has none) of each row.
 /// The environment's MPM_REPLAYS names the folder where the program no longer lies by its source
-/// (scripts/bundle_launch).
+/// (scripts/site/bundle_launch).
 struct Replay {
   struct Row {
     Sym strain, stress;

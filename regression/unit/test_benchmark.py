@@ -16,13 +16,11 @@ import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
-SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
-sys.path.insert(0, str(SCRIPTS))
-import benchmark_laws as laws  # noqa: E402
-import benchmark_runs as runs  # noqa: E402
-import benchmark_tables as tables  # noqa: E402
-import benchmark_threads as threads  # noqa: E402
+
+from mpm_tools.bench import laws, runs, tables, threads  # noqa: E402
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 
 loader = importlib.machinery.SourceFileLoader("benchmark", str(SCRIPTS / "benchmark"))
 benchmark = importlib.util.module_from_spec(importlib.util.spec_from_loader("benchmark", loader))
@@ -103,7 +101,7 @@ class Benchmark(unittest.TestCase):
     def test_laws(self):
         """A few steps with three laws, which take turns, and the table of made-up results."""
         self.addCleanup(setattr, laws, "STEPS", laws.STEPS)
-        laws.STEPS = 8
+        laws.STEPS = {"serial": 8}
         self.assertEqual(laws.cases(["double"], "linear_elastic,tresca"),
                          [("double", False, ["von_mises", "linear_elastic", "tresca"]), ("double", True, ["von_mises", "tresca"])])
         with self.assertRaises(SystemExit):

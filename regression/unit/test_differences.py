@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""regression/differences.py on made-up runs: what is told as how far apart. Needs numpy and h5py."""
+"""mpm_regression.differences on made-up runs: what is told as how far apart. Needs numpy and h5py."""
 
 import json
 import pathlib
@@ -11,10 +11,9 @@ import h5py
 import numpy as np
 
 sys.dont_write_bytecode = True
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "regression"), str(ROOT / "scripts")]
-import differences  # noqa: E402
-from results import Run  # noqa: E402
+
+from mpm_regression import differences  # noqa: E402
+from mpm_tools.results import Run  # noqa: E402
 
 OPTIONS = {"dim": "2", "mesh_spacing": "0.1", "materials": "clay", "clay_density": "100", "clay_young": "1e4",
            "clay_poisson": "0", "bodies": "soil", "soil_material": "clay", "rigid_bodies": "plate"}

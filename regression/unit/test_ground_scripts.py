@@ -18,10 +18,10 @@ import unittest.mock
 import numpy as np
 
 sys.dont_write_bytecode = True
+
+from mpm_tools.ground import fields, raster  # noqa: E402
+
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-sys.path.insert(0, str(SCRIPTS))
-import fields  # noqa: E402
-import raster  # noqa: E402
 
 HAS_RASTERIO = importlib.util.find_spec("rasterio") is not None
 

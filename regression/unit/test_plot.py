@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What scripts/results.py, factor.py and runout.py compute and scripts/plot draws, on a made-up footing, pipe and slide.
+"""What mpm_tools.results, factor and runout compute and scripts/plot draws, on a made-up footing, pipe and slide.
 Needs numpy, h5py and matplotlib."""
 
 import json
@@ -12,13 +12,9 @@ import h5py
 import numpy as np
 
 sys.dont_write_bytecode = True
-SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-sys.path.insert(0, str(SCRIPTS))
-import factor  # noqa: E402
-import plot_curves  # noqa: E402
-import plot_fields  # noqa: E402
-import results  # noqa: E402
-import runout  # noqa: E402
+
+from mpm_tools import factor, results, runout  # noqa: E402
+from mpm_tools.plot import curves as plot_curves, fields as plot_fields  # noqa: E402
 
 OPTIONS = {"dim": "2", "mesh_lower": "0,0", "mesh_upper": "3,4.5", "mesh_spacing": "0.05", "mesh_xmin": "roller",
            "materials": "clay", "clay_model": "von_mises", "clay_su": "3000", "clay_young": "1.5e6", "clay_poisson": "0.49",

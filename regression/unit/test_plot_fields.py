@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fields, slices and films of scripts/plot_fields.py and plot_film.py, on a made-up cube of soil with a pile.
+"""Fields, slices and films of mpm_tools.plot.fields and film, on a made-up cube of soil with a pile.
 Needs numpy, h5py, matplotlib and Pillow."""
 
 import contextlib
@@ -17,12 +17,11 @@ import numpy as np
 from PIL import Image
 
 sys.dont_write_bytecode = True
+
+from mpm_tools import results  # noqa: E402
+from mpm_tools.plot import curves as plot_curves, fields as plot_fields, film as plot_film  # noqa: E402
+
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-sys.path.insert(0, str(SCRIPTS))
-import plot_curves  # noqa: E402
-import plot_fields  # noqa: E402
-import plot_film  # noqa: E402
-import results  # noqa: E402
 
 CUBE = {"dim": "3", "mesh_lower": "0,0,0", "mesh_upper": "4,4,2", "mesh_spacing": "0.5", "bodies": "soil", "rigid_bodies": "pile",
         "pile_motion": "prescribed", "mesh_ymin": "roller"}

@@ -12,13 +12,10 @@ import h5py
 import numpy as np
 
 sys.dont_write_bytecode = True
-SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-sys.path.insert(0, str(SCRIPTS))
-import plot_fields  # noqa: E402
-import plot_probes  # noqa: E402
-import plot_profiles  # noqa: E402
-import raster  # noqa: E402
-import results  # noqa: E402
+
+from mpm_tools import results  # noqa: E402
+from mpm_tools.ground import raster  # noqa: E402
+from mpm_tools.plot import fields as plot_fields, probes as plot_probes, profiles as plot_profiles  # noqa: E402
 
 OPTIONS = {"dim": "2", "mesh_lower": "0,0", "mesh_upper": "4,2", "mesh_spacing": "0.25", "bodies": "soil", "probes": "toe,gate",
            "toe_kind": "gauge", "gate_kind": "section"}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What scripts/outlines.py, units.py and runout.py tell of a run: outlines of rigid bodies against points inside them, units of axes,
+"""What mpm_tools.plot.outlines, units and runout tell of a run: outlines of rigid bodies against points inside them, units of axes,
 and the run-out of slides in any direction. Needs numpy, h5py and matplotlib."""
 
 import json
@@ -13,14 +13,10 @@ import numpy as np
 from matplotlib.path import Path as Polygon
 
 sys.dont_write_bytecode = True
-SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-sys.path.insert(0, str(SCRIPTS))
-import outlines  # noqa: E402
-import plot_fields  # noqa: E402
-import raster  # noqa: E402
-import results  # noqa: E402
-import runout  # noqa: E402
-import units  # noqa: E402
+
+from mpm_tools import results, runout, units  # noqa: E402
+from mpm_tools.ground import raster  # noqa: E402
+from mpm_tools.plot import fields as plot_fields, outlines  # noqa: E402
 
 PLANE = {"dim": "2", "mesh_lower": "0,0", "mesh_upper": "8,6", "mesh_spacing": "0.25", "bodies": "soil", "rigid_bodies": "body"}
 SPACE = {**PLANE, "dim": "3", "mesh_lower": "0,0,0", "mesh_upper": "8,5,6"}

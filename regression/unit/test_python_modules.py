@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""scripts/python_modules.py: a script finds a Python that has its modules, or ends with one line."""
+"""mpm_tools.python_modules: a script finds a Python that has its modules, or ends with one line."""
 
 import os
 import pathlib
@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-THIRD_PARTY = ("import numpy", "import h5py", "import matplotlib", "from python_modules")
+THIRD_PARTY = ("import numpy", "import h5py", "import matplotlib", "from mpm_tools")
 
 
 def wrapper(folder, lines):
@@ -26,7 +26,8 @@ class PythonModules(unittest.TestCase):
         self.addCleanup(kept.cleanup)
         self.folder = pathlib.Path(kept.name)
         self.script = self.folder / "script"
-        self.script.write_text(f"import sys\nsys.path.insert(0, {str(SCRIPTS)!r})\nfrom python_modules import need\n"
+        (self.folder / "mpm_tools").symlink_to(SCRIPTS / "mpm_tools")
+        self.script.write_text("from mpm_tools.python_modules import need\n"
                                "need('made_up_module')\nimport made_up_module\nprint(made_up_module.WORD, *sys.argv[1:])\n")
 
     def run_script(self, *words, **variables):
@@ -55,7 +56,7 @@ class PythonModules(unittest.TestCase):
 
     def test_every_script_finds_its_python(self):
         python = wrapper(self.folder, "")
-        for path in sorted(SCRIPTS.iterdir()):
+        for path in sorted([*SCRIPTS.iterdir(), *SCRIPTS.glob("bench/*")]):
             if not path.is_file() or not path.read_bytes().startswith(b"#!/usr/bin/env python3"):
                 continue
             if not any(words in path.read_text() for words in THIRD_PARTY):

@@ -3,13 +3,10 @@
 
 import sys
 import unittest
-from pathlib import Path
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import case as cases  # noqa: E402
-import report  # noqa: E402
+from mpm_regression import cases, report  # noqa: E402
 
 
 def row(what, error, tolerance, relative=False, verdict="pass"):

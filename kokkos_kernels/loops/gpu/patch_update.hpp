@@ -175,7 +175,7 @@ struct UpdateParticles {
       prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
       prefetch(&soil.volume(p));
       if constexpr (domain == ParticleDomain::stretch) prefetch(&soil.half_length(p));
-      if constexpr (Dim == 2) {  // the forms that spill least: scripts/law_registers
+      if constexpr (Dim == 2) {  // the forms that spill least: scripts/bench/law_registers
         for (int k = 0; k < most_state(Laws{}, true); ++k)
           if (k < soil.history.columns) prefetch(&soil.history.column[k](p));
       } else {

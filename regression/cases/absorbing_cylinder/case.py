@@ -10,9 +10,9 @@ between a roller and a fixed base, when its sides begin to absorb.
 
 import numpy as np
 
-import particles
-from absorbing_checks import reflection_rows, rest_row
-from row import Row
+from mpm_regression import particles
+from mpm_regression.checks.absorbing import reflection_rows, rest_row
+from mpm_regression.row import Row
 
 SPACING, FINE, LENGTH, RADIUS = 0.25, 0.125, 15.0, 15.0
 DENSITY, YOUNG, SPEED, PEAK = 2000.0, 2e7, 100.0, 0.01

@@ -8,8 +8,8 @@ the static stress, and so must a bank that has come to rest between rollers, whe
 
 import numpy as np
 
-import particles
-from absorbing_checks import reflection_rows, rest_row
+from mpm_regression import particles
+from mpm_regression.checks.absorbing import reflection_rows, rest_row
 
 SPACING, CELLS, CENTRE = 0.25, 60, 35
 DENSITY, PEAK = 2000.0, 0.01

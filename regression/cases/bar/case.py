@@ -9,8 +9,8 @@ the period of the linear theory (about $10^{-5}$) is neglected. The Courant numb
 
 import numpy as np
 
-import particles
-from row import Row
+from mpm_regression import particles
+from mpm_regression.row import Row
 
 LENGTH, SPEED, PERIOD, PERIODS = 25.0, 0.05, 10.0, 10
 ORIGIN = (3.7, -1.3, 0.9)

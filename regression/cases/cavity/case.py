@@ -9,7 +9,7 @@ the length $b\\,M/(2G)$, with which it yields as the elastic medium beyond it wo
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 SPACING, OUTER = 0.1, 60.0
 WINDOW = 0.04  # m, on both sides of a radius

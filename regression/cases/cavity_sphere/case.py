@@ -10,7 +10,7 @@ The soil at the wall is stretched to twice its length along the wall, so it has 
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 OUTER, NEAR = 20.0, 2.0  # m, edges of the bodies
 ARC = np.radians(np.linspace(0, 90, 65))

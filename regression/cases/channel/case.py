@@ -9,8 +9,8 @@ periodic sides: the fluid is a strip of 10 m with free ends, and its middle metr
 
 import numpy as np
 
-from curves import last_frame, trapezoid
-from row import Row
+from mpm_regression.curves import last_frame, trapezoid
+from mpm_regression.row import Row
 
 G, H, K = 100.0, 0.5, 10.0
 LONG = True

@@ -6,7 +6,7 @@ $s_u$, so that the clay has failed at a settlement of 0.004 $D$; the mean up to 
 cell, so that the row of nodes at its base is the same. The case `circle_fine` has cells half as large.
 """
 
-from circle_checks import ROUGH, check_factors, draw_factors
+from mpm_regression.checks.circle import ROUGH, check_factors, draw_factors
 
 LONG = True
 RUNS = {"smooth": "", "rough": ROUGH}

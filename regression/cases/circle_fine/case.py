@@ -3,7 +3,7 @@
 The same problem on cells half as large.
 """
 
-from circle_checks import ROUGH, check_factors, draw_factors
+from mpm_regression.checks.circle import ROUGH, check_factors, draw_factors
 
 DECK = "regression/cases/circle/case.opts"
 RUNS = {"smooth": "-mesh_spacing 0.025", "rough": "-mesh_spacing 0.025 " + ROUGH}

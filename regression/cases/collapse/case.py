@@ -7,8 +7,8 @@ one. In channels sand runs out by $1.2\\,a\\,L_0$ (Lube et al. 2005), glass bead
 more heights.
 """
 
-import collapse
-from row import Row
+from mpm_regression.checks import collapse
+from mpm_regression.row import Row
 
 SPACING = 0.1
 RUNS = {name: collapse.options(1, SPACING, name, 3) for name in ("sand", "beads", "steep")}

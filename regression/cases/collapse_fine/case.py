@@ -10,8 +10,8 @@ value is its middle.
 
 import numpy as np
 
-import collapse
-from row import Row
+from mpm_regression.checks import collapse
+from mpm_regression.row import Row
 
 DECK = "regression/cases/collapse/case.opts"
 SPACING = 0.025

@@ -13,8 +13,8 @@ chosen; XPIC does not keep them.
 
 import numpy as np
 
-from curves import first_frame, last_frame, mesh_options, order
-from row import Row
+from mpm_regression.curves import first_frame, last_frame, mesh_options, order
+from mpm_regression.row import Row
 
 LOWER, HEIGHT = (0.3, -0.7), 50.0
 LONG = True

@@ -11,8 +11,8 @@ mechanism is a wedge of about 45° through the toe.
 
 import numpy as np
 
-from curves import slope
-from row import Row
+from mpm_regression.curves import slope
+from mpm_regression.row import Row
 
 STANDS, SLIDE = 3.5, (4.0, 4.2, 4.4)
 RUNS = {f"n_{n}": f"-gravity 0,{-n / 0.4:.6g}" for n in (STANDS, *SLIDE)}

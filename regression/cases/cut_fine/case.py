@@ -4,8 +4,8 @@ The case `cut` with 80 cells over the height instead of 40: eight times the work
 double precision.
 """
 
-import case as cases
-from row import Row
+from mpm_regression import cases
+from mpm_regression.row import Row
 
 cut = cases.Case("cut").module
 DECK = "regression/cases/cut/case.opts"

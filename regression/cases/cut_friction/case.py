@@ -9,8 +9,8 @@ one particle, because four lock in dilatant flow (`footing_cohesion`).
 
 import numpy as np
 
-from curves import slope
-from row import Row
+from mpm_regression.curves import slope
+from mpm_regression.row import Row
 
 BOUND = {5: 4.190, 10: 4.583, 20: 5.505, 30: 6.687}
 STANDS, SLIDE = 0.93, (1.06, 1.12, 1.18)  # times the bound

@@ -3,7 +3,7 @@
 The case `cut_friction` for $\\phi$ = 20° with 20 cells over the height instead of 40.
 """
 
-import case as cases
+from mpm_regression import cases
 
 cut = cases.Case("cut_friction").module
 DECK = "regression/cases/cut_friction/case.opts"

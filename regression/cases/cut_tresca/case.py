@@ -4,8 +4,8 @@ The case `cut` with the law `tresca`, which has the strength of `von_mises` in p
 $\\gamma H / s_u$ = 3.7752 to 3.7776.
 """
 
-import case as cases
-from row import Row
+from mpm_regression import cases
+from mpm_regression.row import Row
 
 cut = cases.Case("cut").module
 DECK = "regression/cases/cut/case.opts"

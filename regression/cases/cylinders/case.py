@@ -10,9 +10,9 @@ radius (each particle has the velocity at the centre of its mass), so that in 2 
 
 import numpy as np
 
-import particles
-from curves import last_frame
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 SETTLE = "-gravity_table 0:0,0.5:1,2:1 -gravity_table_interpolation smooth -damping 0.2 -time_end 1.5 -output_interval 1.5"
 BOX = " -cylinder_shape box -cylinder_lower 0,0 -cylinder_upper "

@@ -9,9 +9,9 @@ must approach it.
 
 import numpy as np
 
-import particles
-from results import read_frame
-from row import Row
+from mpm_regression import particles
+from mpm_tools.results import read_frame
+from mpm_regression.row import Row
 
 DENSITY, G, DEPTH, LENGTH = 1000.0, 9.81, 1.0, 3.6
 SPACING = 0.05

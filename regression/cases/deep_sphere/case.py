@@ -10,7 +10,7 @@ Sixteen cells over $D$, and eight where the row says so.
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 STRENGTH = 3000.0
 SOURCE = "Randolph, Martin & Hu (2000), and finite elements"

@@ -7,7 +7,7 @@ velocities strains soil that flows round a body; it is run for comparison, and o
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 STRENGTH = 3000.0
 SOURCE = "Randolph, Martin & Hu (2000), and finite elements"

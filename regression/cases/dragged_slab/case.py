@@ -9,7 +9,7 @@ at the surface, up to a cell ahead, which raises the force by 29 %. The mean for
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 LIMIT = 1000.0
 PLOUGHS = "The front end of the slab pushes the nodes at the surface that are less than a cell ahead of it."

@@ -7,8 +7,8 @@ the weight to $10^{-3}$, and both halves of the embankment must have the same st
 
 import numpy as np
 
-from curves import last_frame
-from row import Row
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 GRAVITY = 9.81
 RING = " -geometry axisymmetric -mesh_upper 5,3 -mesh_xmin roller -mesh_xmax free -bank_shape polygon -bank_polygon 0,0,4,0,1,2,0,2"

@@ -8,7 +8,7 @@ take a part of the energy at the front of the wave, which is steep; the balance 
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 RUNS = {"flip": "-time_courant 0.4", "half": "-time_courant 0.2", "quarter": "-time_courant 0.1",
         "xpic": "-time_courant 0.4 -velocity_update xpic", "apic": "-time_courant 0.4 -velocity_update apic"}

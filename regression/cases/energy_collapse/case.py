@@ -8,8 +8,8 @@ the share that the log warns of, 5 %, and must fall with the time step. FLIP mis
 
 import numpy as np
 
-from curves import last_frame
-from row import Row
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 LONG = True
 STRENGTH, G = 1000.0, 9.81

@@ -10,10 +10,10 @@ import importlib.util
 
 import numpy as np
 
-from curves import last_frame
-from flow import depths, filling, unevenness
-from results import CASES, read_frame
-from row import Row
+from mpm_regression.curves import last_frame
+from mpm_tools.flow import depths, filling, unevenness
+from mpm_tools.results import CASES, read_frame
+from mpm_regression.row import Row
 
 
 def module(name):

@@ -17,10 +17,10 @@ The velocity is that of the nodes. Six or eight cells over the height of a film;
 
 import numpy as np
 
-import film
-from curves import last_frame
-from film import FluidFilm
-from row import Row
+from mpm_regression.checks import film
+from mpm_regression.curves import last_frame
+from mpm_regression.checks.film import FluidFilm
+from mpm_regression.row import Row
 
 FILMS = {"newtonian": FluidFilm(10, 0.05, 1000, 0, 5, 1, 8), "Bingham": FluidFilm(15, 0.5, 1500, 100, 200, 1, 6)}
 LAYERS = {"thin": FluidFilm(15, 0.02, 1500, 100, 200, 1, 5), "thick": FluidFilm(15, 0.04, 1500, 100, 200, 1, 5)}

@@ -8,8 +8,8 @@ number $I = I_0 (\\tan\\theta - \\mu_s) / (\\mu_2 - \\tan\\theta)$ everywhere, a
 steady flow, with eight cells over the height, and move by APIC: sheared by more than a hundred, grains by FLIP begin to bounce ([the law](soils.md#mu_i)).
 """
 
-import film
-from film import FluidFilm, GrainFilm
+from mpm_regression.checks import film
+from mpm_regression.checks.film import FluidFilm, GrainFilm
 
 DECK = "regression/cases/film/case.opts"
 FILMS = {"newtonian": FluidFilm(10, 0.05, 1000, 0, 5, 1, 16), "Bingham": FluidFilm(15, 0.5, 1500, 100, 200, 1, 16),

@@ -4,7 +4,7 @@ The benchmark's own mesh: half of a smooth strip on weightless clay, 76,800 part
 independent sequential solver with the same rules of contact.
 """
 
-from footing_checks import against_reference, draw_curve
+from mpm_regression.checks.footing import against_reference, draw_curve
 
 DECK = "inputs/footing.opts"
 RUNS = {"footing": ""}

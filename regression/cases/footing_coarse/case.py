@@ -3,7 +3,7 @@
 The same problem on cells twice as large.
 """
 
-from footing_checks import against_reference, draw_curve
+from mpm_regression.checks.footing import against_reference, draw_curve
 
 RUNS = {"footing": ""}
 LONG = True

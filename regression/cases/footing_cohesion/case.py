@@ -10,8 +10,8 @@ Two rows have four particles without F-bar. With four particles and `-f_bar_frac
 [soils.md](soils.md#mohr_coulomb).
 """
 
-import footing_limits as footing
-from row import Row
+from mpm_regression.checks import footing_limits as footing
+from mpm_regression.row import Row
 
 CELLS, COARSE = 41, 21  # under the footing
 ANGLES = (20, 25, 30, 35, 40)

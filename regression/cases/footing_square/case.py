@@ -10,7 +10,7 @@ theorems the load is between 0.866 and 1 times as large.
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 CIRCLE = " -plate_shape cylinder -plate_centre 0,0,1.25 -plate_radius 0.5 -plate_height 0.15"
 SQUARE = " -plate_shape box -plate_lower 0,0,1.25 -plate_upper 0.5,0.5,1.4"

@@ -9,9 +9,9 @@ its 1 $B$ of thickness by 1 % at most. Set-up and reading are those of `footing_
 
 import numpy as np
 
-import footing_limits as footing
-from curves import last_frame
-from row import Row
+from mpm_regression.checks import footing_limits as footing
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 CELLS, COARSE = 41, 21
 ANGLES = (20, 25, 30, 35, 40)

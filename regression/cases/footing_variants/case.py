@@ -8,8 +8,8 @@ and one whose mesh begins 200 m before the footing. In the latter the footing is
 side of the mesh, and a smooth rigid bank stands where the far side was.
 """
 
-from footing_checks import distance, mean
-from row import Row
+from mpm_regression.checks.footing import distance, mean
+from mpm_regression.row import Row
 
 DECK = "regression/cases/footing_coarse/case.opts"
 PRECISIONS = ("double",)  # but for the runs that say otherwise

@@ -8,9 +8,9 @@ $K_0 = 1 - \\sin\\phi$. A cohesion of $10^{-4} \\gamma B$ keeps the surface toge
 
 import numpy as np
 
-import footing_limits as footing
-import ground
-from row import Row
+from mpm_regression.checks import footing_limits as footing
+from mpm_regression import ground
+from mpm_regression.row import Row
 
 CELLS = 41
 EXACT = {("smooth", 20): 1.579, ("smooth", 25): 3.461, ("smooth", 30): 7.653, ("smooth", 35): 17.577,

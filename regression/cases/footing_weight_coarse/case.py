@@ -3,9 +3,9 @@
 $N_\\gamma$ for $\\phi$ = 30° as in `footing_weight`, with 11 cells under the footing instead of 41.
 """
 
-import case as cases
-import footing_limits as footing
-from row import Row
+from mpm_regression import cases
+from mpm_regression.checks import footing_limits as footing
+from mpm_regression.row import Row
 
 fine = cases.Case("footing_weight").module
 DECK = "regression/cases/footing_weight/case.opts"

@@ -11,10 +11,10 @@ arrive, the soil at each side must move as a column of its height between period
 
 import numpy as np
 
-import particles
-from curves import first_frame, trapezoid
-from results import read_frame
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import first_frame, trapezoid
+from mpm_tools.results import read_frame
+from mpm_regression.row import Row
 
 PERIODIC, FREE = " -mesh_xmin periodic -mesh_xmax periodic", " -mesh_xmin free_field -mesh_xmax free_field"
 

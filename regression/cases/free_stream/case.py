@@ -7,8 +7,8 @@ nodes with almost no mass at the edge of the body cause no error. The mesh begin
 
 import numpy as np
 
-from curves import first_frame, last_frame
-from row import Row
+from mpm_regression.curves import first_frame, last_frame
+from mpm_regression.row import Row
 
 IN_3D = ("-dim 3 -mesh_lower -17.31,4.77,2.11 -mesh_upper -8.21,12.57,9.91 -body_centre -15,7,5 -body_radius 0.6"
          " -body_velocity 0.73,0.41,-0.37 -mesh_spacing 0.26 -time_end 3 -output_interval 3 -mesh_zmin free -mesh_zmax free")

@@ -11,7 +11,7 @@ is $M A w / H$, with the constrained modulus $M$, the area $A$ of the mesh and t
 mean over the last tenth is compared.
 """
 
-from row import Row
+from mpm_regression.row import Row
 
 SPACE = ("-dim 3 -mesh_spacing 0.125 -mesh_upper 1,1,1 -soil_upper 1,1,0 -pipe_velocity 0,0,-0.4 -time_end 0.1 "
          "-history_interval 0.001 -output_interval 0.1 ")

@@ -9,8 +9,8 @@ the speed of a block that stays is the mean over the last 0.1 s of 1 s. The ends
 
 import numpy as np
 
-from incline import DENSITY, HEIGHT, acceleration, centre, final_speed, write_block
-from row import Row
+from mpm_regression.checks.incline import DENSITY, HEIGHT, acceleration, centre, final_speed, write_block
+from mpm_regression.row import Row
 
 G, THETA = 9.81, np.radians(30)
 DRIVE, PUSH = G * np.sin(THETA), G * np.cos(THETA)

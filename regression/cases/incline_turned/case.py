@@ -8,8 +8,8 @@ $\\tau_{max} A$, where $A$ is the block's area, $a = g_t - \\tau_{max} A/m$. The
 
 import numpy as np
 
-from incline import DENSITY, HEIGHT, acceleration, write_block
-from row import Row
+from mpm_regression.checks.incline import DENSITY, HEIGHT, acceleration, write_block
+from mpm_regression.row import Row
 
 ALONG, INTO, LIMIT = -4.9, 8.5, 2000.0  # the block slides down the plane, towards -x
 ANGLES = (0, 5, 17, 45)

@@ -17,10 +17,10 @@ an error of $F_s$ of 1 % changes by a third.
 
 import numpy as np
 
-import particles
-from curves import mesh_options
-from results import read_frame
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import mesh_options
+from mpm_tools.results import read_frame
+from mpm_regression.row import Row
 
 G, DENSITY, DEPTH = 10.0, 1800.0, 3.0  # m/s2, kg/m3, m
 CELLS = 20  # over the thickness

@@ -9,8 +9,8 @@ run has a boundary of layers within a row of cells and the level of water within
 
 import numpy as np
 
-from curves import last_frame
-from row import Row
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 WITHIN = "-fill_lower 0,4.75 -fill_upper 2,5.25 -middle_upper 2,4.75 -water_level 2.9"
 SOLID = ("-dim 3 -mesh_lower 0,0,0 -mesh_upper 2,1,6 -gravity 0,0,-10 -mesh_ymin roller -mesh_ymax roller -mesh_zmin fixed"

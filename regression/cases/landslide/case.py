@@ -6,7 +6,7 @@ those of an independent solver with two kinds of contact normals. The paper give
 (11 s), but this time depends on the smallest residual motion, so it is no answer for a check.
 """
 
-from landslide_checks import draw_curve, rows
+from mpm_regression.checks.landslide import draw_curve, rows
 
 DECK = "inputs/landslide.opts"
 RUNS = {"landslide": ""}

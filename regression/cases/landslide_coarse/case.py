@@ -3,7 +3,7 @@
 The same slide on coarser cells: 12,584 particles, 30,000 steps.
 """
 
-from landslide_checks import draw_curve, rows
+from mpm_regression.checks.landslide import draw_curve, rows
 
 DECK = "inputs/landslide_coarse.opts"
 RUNS = {"landslide": ""}

@@ -9,10 +9,10 @@ particles more than three cells inside the block, because neither APIC nor FLIP 
 
 import numpy as np
 
-import particles
-from curves import last_frame
-from results import read_frame
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import last_frame
+from mpm_tools.results import read_frame
+from mpm_regression.row import Row
 
 CENTRE = np.array([-1.3, -0.1])
 SIZES = {"stretched": (12.0, 12.0), "sheared": (32.0, 8.0)}

@@ -12,9 +12,9 @@ import functools
 
 import numpy as np
 
-import particles
-from curves import last_frame, order
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import last_frame, order
+from mpm_regression.row import Row
 
 LOWER, LENGTH = np.array([-0.3, 0.7]), 1.0  # m
 DENSITY, YOUNG, POISSON = 1000.0, 1e6, 0.3

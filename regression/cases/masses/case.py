@@ -7,7 +7,7 @@ volume of the shape.
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 DENSITY = 2000.0
 FLAT = " -dim 2 -mesh_lower 0,0 -mesh_upper 4,4"

@@ -9,7 +9,7 @@ a base with the velocity $V$; a wave of velocity $V / 2$ runs up, as in an outcr
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 SPEED, DENSITY, V = np.sqrt(2e6 / 2000), 2000.0, 0.01
 COLUMN = " -mesh_xmin roller -mesh_xmax roller -mesh_upper 0.5,5 -layer_upper 0.5,5 -mesh_ymax free"

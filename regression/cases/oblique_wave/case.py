@@ -8,9 +8,9 @@ answer is the mean of those of its waves. The angle is that between the directio
 
 import numpy as np
 
-import particles
-from curves import first_frame, last_frame
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import first_frame, last_frame
+from mpm_regression.row import Row
 
 LONG = True
 HEIGHT = 64.0  # m

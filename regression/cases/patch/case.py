@@ -9,9 +9,9 @@ the particles must have moved with the linear field. In 2D and 3D, the corner of
 
 import numpy as np
 
-import particles
-from curves import last_frame
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 SPACING, YOUNG, POISSON, DENSITY = 0.13, 3e5, 0.3, 1800.0
 LOWER, CELLS = np.array([-17.31, 4.77, 2.11]), np.array([12, 8, 7])

@@ -11,9 +11,9 @@ cells must quarter the error. Two such waves, one each way, make a standing wave
 
 import numpy as np
 
-import particles
-from curves import first_frame, last_frame, mesh_options, order
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import first_frame, last_frame, mesh_options, order
+from mpm_regression.row import Row
 
 LOWER = (-1.3, 0.7)
 CELLS, HEIGHT, EDGE, SHIFT = 32, 12, 0.25, 11  # of the mesh of the block

@@ -22,9 +22,9 @@ particles, which is half a cell above the base, so that its safety factor is tha
 
 import numpy as np
 
-import particles
-from curves import last_frame, mesh_options, slope
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import last_frame, mesh_options, slope
+from mpm_regression.row import Row
 
 G, DENSITY, DEPTH = 10.0, 1800.0, 3.0  # m/s2, kg/m3, m
 CELLS, ALONG = 20, 8  # over the thickness, along the slope

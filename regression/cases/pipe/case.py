@@ -14,7 +14,7 @@ The mean over the displacements from 0.04 D to 0.06 D is compared.
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 STRENGTH = 3000.0
 RATIOS = (0, 0.25, 0.5, 0.75, 1)

@@ -4,8 +4,8 @@ The smooth and the rough pipe of the case `pipe` with 32 cells across the pipe i
 runs on a GPU or on all cores, in double precision.
 """
 
-import case as cases
-from row import Row
+from mpm_regression import cases
+from mpm_regression.row import Row
 
 pipe = cases.Case("pipe").module
 DECK = "regression/cases/pipe/case.opts"

@@ -9,8 +9,8 @@ from math import erf
 
 import numpy as np
 
-from curves import last_frame
-from row import Row
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 U, NU = 0.1, 0.005
 LONG = True

@@ -11,8 +11,8 @@ import csv
 
 import numpy as np
 
-from curves import trapezoid
-from row import Row
+from mpm_regression.curves import trapezoid
+from mpm_regression.row import Row
 
 SPEED, HEIGHT, LENGTH, DENSITY = 2.0, 0.5, 1.0, 2000.0
 IN_3D = (" -dim 3 -mesh_lower -1,1,2 -mesh_upper 5,2.2,3 -block_lower 0,1.3,2 -block_upper 1,1.9,2.5 -block_velocity 2,0,0 -mesh_ymin free"

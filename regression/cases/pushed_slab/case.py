@@ -8,8 +8,8 @@ $(F - \\tau_{max} A)/M$. The clay carries the vertical force (3 kPa) from the st
 
 import numpy as np
 
-from curves import last_frame, slope
-from row import Row
+from mpm_regression.curves import last_frame, slope
+from mpm_regression.row import Row
 
 LIMIT = 1000.0
 RUNS = {

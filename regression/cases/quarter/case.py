@@ -13,8 +13,8 @@ The table allows a tenth of the first bound and half of the second, and asks tha
 
 import numpy as np
 
-from curves import first_frame, last_frame
-from row import Row
+from mpm_regression.curves import first_frame, last_frame
+from mpm_regression.row import Row
 
 MESHES = {
     "section": " -dim 2 -geometry axisymmetric -mesh_lower 0,0 -mesh_upper 1.2,1.2 -mesh_ymin fixed -mesh_ymax free"

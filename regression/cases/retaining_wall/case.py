@@ -8,8 +8,8 @@ mean over the second half is compared. The base is smooth. On a rough base the w
 row of nodes, which cannot move, and the answers depend on the cells: with 20 over the height 3.13 and 0.25.
 """
 
-import ground
-from row import Row
+from mpm_regression import ground
+from mpm_regression.row import Row
 
 HEIGHT, LENGTH, WEIGHT, COHESION = 1.0, 3.0, 20e3, 20.0  # m, m, N/m3, Pa
 KP = 3.0

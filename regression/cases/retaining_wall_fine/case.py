@@ -3,7 +3,7 @@
 The case `retaining_wall` with 40 cells over the height instead of 10.
 """
 
-import case as cases
+from mpm_regression import cases
 
 wall = cases.Case("retaining_wall").module
 DECK = "regression/cases/retaining_wall/case.opts"

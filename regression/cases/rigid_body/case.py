@@ -6,8 +6,8 @@ total momentum must be conserved to round-off. *Fall*: under gravity alone the b
 
 import numpy as np
 
-from curves import last_frame
-from row import Row
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 BALLS = ("-dim 3 -mesh_lower -2.3,-1.3,-1.3 -mesh_upper 2.9,1.3,1.3 -soil_centre 0.83,0.07,0.05 -soil_radius 0.6"
          " -ram_centre -0.61,-0.13,-0.11 -ram_velocity 1.3,0.2,-0.1 -mesh_zmin free -mesh_zmax free -mesh_spacing 0.13"

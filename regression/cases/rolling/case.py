@@ -9,8 +9,8 @@ cells over the radius of the cylinder, with 10, and with 5 over the radius of th
 
 import numpy as np
 
-from curves import slope
-from row import Row
+from mpm_regression.curves import slope
+from mpm_regression.row import Row
 
 G, SLOPE = 9.81, np.radians(20)
 LONG = True

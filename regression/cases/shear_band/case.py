@@ -11,7 +11,7 @@ J/m2.
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 CELLS = (0.1, 0.05, 0.025)  # m
 LENGTH, STRENGTH, REMOULDED, PULL, DENSITY = 3.0, 1e4, 0.2, 22.0, 1000.0

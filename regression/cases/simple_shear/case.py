@@ -11,10 +11,10 @@ spin of a step turns the stress before the step's increment is added, an error o
 
 import numpy as np
 
-import particles
-from curves import last_frame
-from results import read_frame
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import last_frame
+from mpm_tools.results import read_frame
+from mpm_regression.row import Row
 
 CENTRE = np.array([-1.3, -0.1])
 SIZE = np.array([22.0, 6.0])

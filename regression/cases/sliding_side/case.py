@@ -9,8 +9,8 @@ of mass after 0.2 s, the force of the block on the side the mean after 0.2 s.
 
 import numpy as np
 
-from incline import DENSITY, HEIGHT, LENGTH, acceleration, centre, final_speed, write_block
-from row import Row
+from mpm_regression.checks.incline import DENSITY, HEIGHT, LENGTH, acceleration, centre, final_speed, write_block
+from mpm_regression.row import Row
 
 G, THETA = 9.81, np.radians(25)
 DRIVE, PUSH = G * np.sin(THETA), G * np.cos(THETA)

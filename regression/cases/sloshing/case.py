@@ -8,8 +8,8 @@ by 10 mm. The period is that between the zeros of the momentum.
 
 import numpy as np
 
-import particles
-from row import Row
+from mpm_regression import particles
+from mpm_regression.row import Row
 
 DENSITY, G, DEPTH, LENGTH = 1000.0, 9.81, 0.5, 1.0
 WAVE = np.pi / LENGTH

@@ -14,9 +14,9 @@ which does not strain it.
 
 import numpy as np
 
-import particles
-from curves import first_frame, last_frame
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import first_frame, last_frame
+from mpm_regression.row import Row
 
 RADIUS, OMEGA, DENSITY, POISSON = 1.0, 2 * np.pi, 1000.0, 0.3
 THICKNESS = 0.2

@@ -14,9 +14,9 @@ $(1 + k x)^{-1/2} \\sin(\\beta \\ln(1 + k x))$ and $\\omega = k c_0 \\sqrt{\\bet
 import h5py
 import numpy as np
 
-import particles
-from curves import first_frame, last_frame, mesh_options
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import first_frame, last_frame, mesh_options
+from mpm_regression.row import Row
 
 LOWER, HEIGHT = (0.3, -0.7), 10.0
 YOUNG, GROWTH, POISSON, WEIGHT = 2e6, 1e6, 0.3, 1800 * 9.81

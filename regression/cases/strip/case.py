@@ -7,9 +7,9 @@ over 0.02-0.05 $B$ is compared: the clay has yielded by 0.02 $B$, and the trench
 rough strip (1.5 $B$). The case `strip_fine` continues to $d = B/80$ and $d = 0$.
 """
 
-from footing_checks import EXACT
-from results import bearing_curve, mean_over, window_means
-from row import Row
+from mpm_regression.checks.footing import EXACT
+from mpm_tools.results import bearing_curve, mean_over, window_means
+from mpm_regression.row import Row
 
 SPACINGS = (0.1, 0.05, 0.025)
 ROUGH = " -plate_shear_limit 3000"

@@ -5,8 +5,8 @@ double precision. The straight line through the two answers, over $d$, gives the
 error: a footing that has sunk by 0.035 $B$, the mean of the window, stands in a trough.
 """
 
-import case as cases
-from row import Row
+from mpm_regression import cases
+from mpm_regression.row import Row
 
 strip = cases.Case("strip").module
 DECK = "regression/cases/strip/case.opts"

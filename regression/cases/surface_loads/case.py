@@ -12,8 +12,8 @@ pressure of 10 kPa, in plane strain (Lamé).
 
 import numpy as np
 
-from curves import first_frame, last_frame
-from row import Row
+from mpm_regression.curves import first_frame, last_frame
+from mpm_regression.row import Row
 
 OPEN = " -mesh_xmin free -mesh_xmax free -mesh_ymin free -gravity 0,0 -damping 0"
 COLUMN = (" -mesh_upper 0.25,2.5 -soil_upper 0.25,2 -gravity 0,0 -elastic_young 5e13 -time_end 0.02 -strip_lower 0,1.9 -strip_upper 0.25,2.1"

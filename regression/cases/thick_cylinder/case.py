@@ -9,8 +9,8 @@ the wall; the stresses are compared on the particles that are more than a cell f
 
 import numpy as np
 
-from curves import last_frame
-from row import Row
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 INNER, OUTER, WIDENED, HEIGHT = 1.0, 2.0, 2e-4, 0.05
 RUNS = {"20_cells": "", "40_cells": "-mesh_spacing 0.025"}

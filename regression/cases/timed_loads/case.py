@@ -10,7 +10,7 @@ the body that forces move has an error of the order of the step squared, because
 
 import numpy as np
 
-from row import Row
+from mpm_regression.row import Row
 
 RUNS = {"linear": "", "smooth": " ".join(f"-{name}_table_interpolation smooth" for name in (
     "gravity", "driven_velocity", "placed_displacement", "pushed_force"))}

@@ -8,10 +8,10 @@ positions (`-position_correction none`) they gather in lines. Domains are split.
 
 import numpy as np
 
-import particles
-from curves import last_frame
-from flow import filling
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import last_frame
+from mpm_tools.flow import filling
+from mpm_regression.row import Row
 
 SPEED, NU, DENSITY, SPACING = 1.0, 0.01, 1000.0, 0.05
 PRESSURE = 5000.0  # Pa, everywhere at the start

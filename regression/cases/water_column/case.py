@@ -9,9 +9,9 @@ alone. The force on the base in excess of the hydrostatic pressure is the buoyan
 
 import numpy as np
 
-import particles
-from curves import last_frame
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 SPACING, TOP, BOUNDARY, G = 0.25, 6.0, 4.0, 10.0  # m, m, m, m/s2
 DENSITY, K0, WATER = {"top": 1800.0, "ground": 2000.0}, {"top": 0.5, "ground": 0.6}, 1000.0

@@ -8,8 +8,8 @@ the footing is too. Water 0.3 m above the ground and 20 m above it must give the
 
 import numpy as np
 
-import particles
-from row import Row
+from mpm_regression import particles
+from mpm_regression.row import Row
 
 DENSITY, WATER, G, TOP, SPACING = 2000.0, 1000.0, 10.0, 2.0, 0.0625
 RATIO = 1 - WATER / DENSITY

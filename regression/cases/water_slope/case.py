@@ -11,9 +11,9 @@ normal stress. F-bar is off: it brings the mean stresses of a cell together, and
 
 import numpy as np
 
-import particles
-from curves import last_frame
-from row import Row
+from mpm_regression import particles
+from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 
 BETA, DENSITY, WATER, G = np.radians(25.0), 2000.0, 1000.0, 9.81
 LENGTH, THICK, SPACING, END = 30.0, 1.5, 0.125, 0.1

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from deck import Deck, Machine, vector
-from folders import frames, history, of_velocities
+from mpm_regression.folders import frames, history, of_velocities
 
 SPACING, WIDTH, HEIGHT = 0.25, 4.0, 4.0  # m
 LAWS = {"linear_elastic": "", "von_mises": "-{0}_su 3000", "tresca": "-{0}_su 2000", "mohr_coulomb": "-{0}_cohesion 2000 -{0}_friction_deg 30",

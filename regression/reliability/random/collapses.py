@@ -13,7 +13,7 @@ import numpy as np
 
 from collapse_decks import COLLAPSE, VARIANTS, Options, random_options
 from deck import Deck, Machine
-from folders import history
+from mpm_regression.folders import history
 
 ROUND_OFF = {"double": 1e-12, "single": 1e-6}  # of the mass
 ENERGY_SLACK = 0.05  # of the energy so far: steps are explicit, and nodes see the particles' mass spread

@@ -14,7 +14,7 @@ import itertools
 import math
 
 from courant import LARGEST, Listed, limit
-from folders import history
+from mpm_regression.folders import history
 
 HEIGHT, DENSITY, MODULUS = 4.0, 1000.0, 1.35e5  # m, kg/m3, Pa of the P wave
 POISSON = 0.3

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 from deck import Deck, vector
-from folders import frames, history, rows
+from mpm_regression.folders import frames, history, rows
 from sides import check_side_forces
 
 END = 0.3  # s

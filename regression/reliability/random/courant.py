@@ -11,7 +11,7 @@ import itertools
 import math
 
 from deck import Deck
-from folders import history
+from mpm_regression.folders import history
 
 DISC = "-dim 2 -mesh_lower 0,0 -mesh_upper 4,2 -body_shape disc -body_centre 1.2,1 -body_radius 0.3 -body_velocity 0.01,0.003"
 BOX = ("-dim 3 -mesh_lower 0,0,0 -mesh_upper 1.6,1,1 -body_shape box -body_lower 0.3,0.3,0.3 -body_upper 0.7,0.7,0.7 "

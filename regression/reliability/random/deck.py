@@ -4,9 +4,9 @@ import dataclasses
 
 import numpy as np
 
-from differences import largest
-from folders import checkpoints, differences, frames, fresh, launcher, rows, run
-from results import Run
+from mpm_regression.differences import largest
+from mpm_regression.folders import checkpoints, differences, frames, fresh, launcher, rows, run
+from mpm_tools.results import Run
 
 
 def vector(values):

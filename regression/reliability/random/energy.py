@@ -8,7 +8,7 @@ ranks, by another strategy, gives the same to round-off; one in single precision
 import numpy as np
 
 from deck import Deck, Machine, columns_but, vector
-from folders import history
+from mpm_regression.folders import history
 
 END = 0.25  # s
 LAWS = [f"-clay_young 1e6 -clay_poisson 0.3 -clay_model {law}" for law in (

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from deck import Deck, check_impulse, vector
-from folders import frames, history, of_velocities
+from mpm_regression.folders import frames, history, of_velocities
 
 H = 0.5  # m, edge of a cell
 OFF_COLUMN = {"double": 1e-6, "single": 0.02}  # of the largest displacement

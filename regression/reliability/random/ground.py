@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 from deck import Deck
-from folders import frames, rows
+from mpm_regression.folders import frames, rows
 
 DENSITY = 1700.0
 

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 from deck import Deck, vector
-from folders import frames, history
+from mpm_regression.folders import frames, history
 
 
 class Level(Deck):

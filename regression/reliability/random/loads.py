@@ -7,7 +7,7 @@ at every row. A constant table in the place of a constant must give the same bit
 import numpy as np
 
 from deck import Deck, flat_table, vector
-from folders import history
+from mpm_regression.folders import history
 
 END = 0.2  # s
 LARGEST = {"velocity": 0.4, "displacement": 0.03, "force": 500}

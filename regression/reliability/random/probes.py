@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from deck import Deck, vector
-from folders import frames, history
+from mpm_regression.folders import frames, history
 
 END = 0.12  # s
 DENSITY = 1800  # kg/m3

@@ -7,7 +7,7 @@ lists often. Some decks have two stages, in which the kinds differ.
 import numpy as np
 
 from deck import Deck, check_impulse, vector
-from folders import history, of_velocities
+from mpm_regression.folders import history, of_velocities
 
 END = 0.15  # s
 

@@ -14,8 +14,7 @@ import time
 import numpy as np
 
 from deck import vector
-from folders import ENVIRONMENT, checkpoints, command, fresh, history, launcher
-from kill import kill
+from mpm_regression.folders import ENVIRONMENT, checkpoints, command, fresh, history, kill, launcher
 from stages import Staged
 
 DT, STEPS = 5e-4, (20, 60)  # s; least and most steps of a stage

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from deck import Deck, vector
-from folders import checkpoints, contents, frames, history
+from mpm_regression.folders import checkpoints, contents, frames, history
 
 DT, STEPS = 1e-3, (20, 60)  # s; least and most steps of a stage
 

@@ -5,7 +5,7 @@ import h5py
 import numpy as np
 
 from deck import Deck, Machine
-from folders import checkpoints, frames, fresh, history, run
+from mpm_regression.folders import checkpoints, frames, fresh, history, run
 
 FIELDS = ("position", "velocity", "stress", "volume", "plastic_strain", "mass", "reference_height")
 PLAIN = Machine("serial", "auto")

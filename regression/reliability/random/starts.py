@@ -8,7 +8,7 @@ cut       a run cut in two by a frame, or by a checkpoint, goes on as the whole 
 refused   what a start and -restart_change do not take: one line, and nothing is written
 changed   -restart_change: loads, rigids and sides of the mesh that change at a restart
 """
-from folders import checkpoints, frames
+from mpm_regression.folders import checkpoints, frames
 from start_tests import FIELDS, StartTests, apart, bodies, column, from_file
 
 

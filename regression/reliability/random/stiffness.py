@@ -10,10 +10,10 @@ import h5py
 import numpy as np
 
 from deck import Deck, vector
-from differences import largest
-from fields import write_field
-from folders import frames, rows
-from results import Run
+from mpm_regression.differences import largest
+from mpm_tools.ground.fields import write_field
+from mpm_regression.folders import frames, rows
+from mpm_tools.results import Run
 
 H = 0.5  # m, edge of a cell
 LAWS = ["linear_elastic", "von_mises -soil_su {su}", "tresca -soil_su {su}",

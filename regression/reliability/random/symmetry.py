@@ -8,7 +8,7 @@ of the decks the body touches soil, or something is wrong with them all.
 import numpy as np
 
 from deck import Deck, rounded
-from folders import history
+from mpm_regression.folders import history
 
 SPACING = 0.125
 STEPS = {"double": 60, "single": 20}

@@ -7,7 +7,7 @@ balance, its row must hold. In some decks stages change the loads.
 import numpy as np
 
 from deck import Deck, check_impulse, flat_table, rounded
-from folders import history, of_velocities
+from mpm_regression.folders import history, of_velocities
 from loads import table_options
 
 STEP = 2e-4  # s

@@ -17,7 +17,7 @@ import numpy as np
 
 from collapses import Collapses
 from deck import Machine
-from folders import frames, history
+from mpm_regression.folders import frames, history
 from water_decks import EXCESS, PRESSURE, SERIAL, STILL, YIELD, beyond_yield, ground_options
 
 LIGHTEST = 1100.0  # kg/m3: lighter soil rises, and gains energy from the water

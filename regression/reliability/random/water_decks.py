@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from collapse_decks import Options, order
-import particles
+from mpm_regression import particles
 
 G = 9.81  # m/s2
 NAMES = ("lower", "middle", "upper")  # layers from the base up

@@ -1,0 +1,100 @@
+"""A case of the suite: its folder's case.py, and its runs by the program.
+
+case.py holds
+  RUNS         {run: options of the program beside the deck's}; {start} in them is the file that prepare wrote
+  check(runs)  yields a Row for each answer; runs is {run: Run}, all of one back end and precision
+and may hold
+  DECK         the options file, from the top of the source tree; else case.opts of its folder
+  PRECISIONS   those in which it is run, where not in both; BACKENDS likewise
+  LONG         True: not among the quick tests
+  APART        (why, bound): strategies and back ends are further apart after a step in single precision than compare.py allows
+  prepare(run, path, options)  writes the initial fields of a run to the HDF5 file `path`
+  draw(axes, runs)             draws the case's curve for the documents
+Its docstring opens with a title, and explains the problem, the exact answer and what the set-up neglects.
+"""
+
+import importlib.util
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+import time
+
+from mpm_tools.results import Run
+from mpm_tools.tree import CASES, ROOT
+
+SESSIONS = tempfile.TemporaryDirectory(prefix="mpm_")
+
+
+class ProgramFailed(Exception):
+    """A run that did not reach its end; the text says which, and what the program said."""
+
+
+def names():
+    return sorted(path.parent.name for path in CASES.glob("*/case.py"))
+
+
+class Case:
+    def __init__(self, name, root=ROOT):
+        """root: of the source tree whose case it is."""
+        path = root / "regression" / "cases" / name / "case.py"
+        if not path.exists():
+            sys.exit(f"regression/run: no case {name}: {path} is missing")
+        spec = importlib.util.spec_from_file_location(f"case_{name}", path)
+        self.module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(self.module)
+        self.name, self.root = name, root
+        self.deck = getattr(self.module, "DECK", f"regression/cases/{name}/case.opts")
+        self.runs = self.module.RUNS
+
+    def is_long(self):
+        return getattr(self.module, "LONG", False)
+
+    def variants(self, backends, precisions, in_turn=False):
+        """The (back end, precision) pairs of those asked for in which this case is run; in_turn: as few as have each word."""
+        backends = [word for word in backends if word in getattr(self.module, "BACKENDS", backends)]
+        precisions = [word for word in precisions if word in getattr(self.module, "PRECISIONS", precisions)]
+        if in_turn and backends and precisions:
+            return [(backends[k % len(backends)], precisions[k % len(precisions)]) for k in range(max(len(backends), len(precisions)))]
+        return [(backend, precision) for backend in backends for precision in precisions]
+
+    def title(self):
+        return self.module.__doc__.split("\n\n")[0].strip()
+
+    def explanation(self):
+        return "\n\n".join(self.module.__doc__.split("\n\n")[1:]).strip()
+
+
+def run_program(binary, case, run, variant, folder, more="", ranks=1):
+    """Runs the program once, in a variant (back end, precision, ...) and on so many ranks; its output as a Run, and the
+    time it took, s."""
+    backend, precision = variant[:2]
+    folder.mkdir(parents=True, exist_ok=True)
+    start = folder / f"{run}.start.h5"
+    options = shlex.split(f"-backend {backend} -precision {precision} {case.runs[run]} {more}".format(start=start))
+    if hasattr(case.module, "prepare"):
+        case.module.prepare(run, start, options)
+    command = [str(binary), "-options_file", case.deck, *options, "-output_dir", str(folder / run), "-progress", "off"]
+    if ranks > 1:
+        command = [launcher(), "-n", str(ranks), "--bind-to", "none", *command]
+    begin = time.time()
+    done = subprocess.run(command, cwd=case.root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
+    if done.returncode != 0:
+        raise ProgramFailed(f"{shlex.join(command)}: exit status {done.returncode}\n{done.stdout[-2000:]}")
+    return Run(folder / run), time.time() - begin
+
+
+def launcher():
+    """The mpirun of a bundle, or that of the machine."""
+    bundled = ROOT / "bin" / "mpirun"
+    return str(bundled) if bundled.exists() else "mpirun"
+
+
+def environment():
+    """Open MPI refuses root, and more ranks than cores, unless told; runs at the same time may clear each other's session
+    folder, so each has one of its own; threads and ranks that wait give way to those of other runs. A run on one rank starts
+    in half the time without a daemon beside it."""
+    return {"OMPI_MCA_orte_tmpdir_base": tempfile.mkdtemp(dir=SESSIONS.name),
+            "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+            "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_ess_singleton_isolated": "1", "OMP_PROC_BIND": "false", "OMP_WAIT_POLICY": "passive", **os.environ}

@@ -1,0 +1,1 @@
+"""Answers that several cases share: exact values, set-ups and rows."""

@@ -1,0 +1,1 @@
+"""Laboratory tests of a single material point, and fits to them."""

@@ -1,0 +1,1 @@
+"""Rasters of terrain and random fields."""

@@ -1,0 +1,1 @@
+"""Pictures of runs, for scripts/plot and its kin."""

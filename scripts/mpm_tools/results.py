@@ -1,0 +1,219 @@
+"""What a run wrote, as arrays, and what follows from it: the bearing capacity of a footing. Needs numpy and h5py."""
+
+import csv
+import json
+import re
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from mpm_tools.tree import CASES
+
+WINDOW = 0.01  # B, width of the windows over which Nc is averaged
+MEAN_FROM, MEAN_TO = 0.03, 0.20  # B, range of the mean that is reported
+
+
+class Run:
+    """A run's output: options {name: text}, history {column: array [rows]}, and the paths of its frames and the last of
+    them or None."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        self.options = read_options(self.folder)
+        self.history = read_history(self.folder / "history.csv")
+        self.frames = sorted(self.folder.glob("frames/frame_*.h5"))
+        self.frame = self.frames[-1] if self.frames else None
+
+    def text(self, name, default=""):
+        return self.options.get(name, default)
+
+    def words(self, name):
+        return [word for word in self.text(name).split(",") if word]
+
+    def numbers(self, name, default=()):
+        return [float(word) for word in self.words(name)] or list(default)
+
+    def number(self, name, default=0.0):
+        return self.numbers(name, [default])[0]
+
+    def columns(self, name):
+        """History columns NAMEx, NAMEy [, NAMEz] as an array [rows, dim]."""
+        return np.column_stack([self.history[name + axis] for axis in "xyz" if name + axis in self.history])
+
+    def frame_near(self, time):
+        """Path of the frame nearest to a time [s], None without frames."""
+        return min(self.frames, key=lambda path: abs(time_of(path) - time), default=None)
+
+    def displacement(self, rigid, time):
+        """Displacement [dim] of a rigid at a time [s] since it was placed: rows of the history, linearly between them, with what
+        came before a stage that a reset ended. None without history."""
+        columns = [self.history.get(f"{rigid}_{axis}") for axis in "xyz"[:int(self.text("dim", "2"))]]
+        if "time" not in self.history or any(column is None for column in columns):
+            return None
+        ways = np.column_stack(columns)
+        stages, numbers = self.words("stages"), self.history.get("stage", np.ones(len(ways)))
+        for k in np.flatnonzero(np.diff(numbers) > 0):
+            if self.text(f"{stages[int(numbers[k]) - 1]}_reset", "off") == "on":
+                ways[k + 1:] += ways[k]
+        return np.array([np.interp(time, self.history["time"], way) for way in ways.T])
+
+    def moving_rigids(self):
+        stages = [f"{stage}_" for stage in self.words("stages")]
+        return [name for name in self.words("rigid_bodies")
+                if any(self.text(f"{stage}{name}_motion", "fixed") != "fixed" for stage in ["", *stages])]
+
+    def stage_ends(self):
+        """[(name, time)] of the stages but the last that the history holds: s, where the next one begins."""
+        numbers, names = self.history.get("stage", np.array([])), self.words("stages")
+        ends = np.flatnonzero(np.diff(numbers) > 0)
+        return [(names[int(numbers[k]) - 1], self.history["time"][k]) for k in ends]
+
+
+def read_options(folder):
+    path = folder / "options.json"
+    if not path.exists():
+        print(f"plot: {path} is missing: nothing is known of bodies and rigids", file=sys.stderr)
+        return {}
+    options = json.loads(path.read_text())["options"]
+    options.setdefault("rigid_bodies", options.pop("rigids", "none"))  # the word of older runs
+    return {name: text for name, text in options.items() if text != "none"}
+
+
+def read_history(path):
+    """Columns of history.csv as arrays [rows]; empty if the file or its rows are missing."""
+    if not path.exists():
+        print(f"plot: {path} is missing: no curve", file=sys.stderr)
+        return {}
+    with open(path, newline="") as file:
+        header, *rows = csv.reader(file)
+    if not rows:
+        print(f"plot: {path} has no rows: no curve", file=sys.stderr)
+        return {}
+    return dict(zip(header, np.array(rows, dtype=float).T))
+
+
+def stage_of(path):
+    """Name of the stage in which a frame was written; empty where the run has none."""
+    with h5py.File(path) as file:
+        name = file.attrs.get("stage", "")
+        return name.decode() if isinstance(name, bytes) else str(name)
+
+
+def time_of(path):
+    """Time of a frame [s]."""
+    with h5py.File(path) as file:
+        return float(file.attrs["time"])
+
+
+def units_of(path):
+    """{dataset: SI unit} of all groups of a frame; older frames have none."""
+    with h5py.File(path) as file:
+        found = {key: data.attrs["unit"] for group in file.values() for key, data in group.items() if "unit" in data.attrs}
+    return {key: unit.decode() if isinstance(unit, bytes) else str(unit) for key, unit in found.items()}
+
+
+def read_frame(path):
+    """Time [s] and {group: {field: array}} of one frame."""
+    with h5py.File(path) as file:
+        groups = {name: {key: data[()] for key, data in group.items()} for name, group in file.items()}
+        return float(file.attrs["time"]), groups
+
+
+# ---------------------------------------------------------------------------------------------- bearing capacity
+
+
+def extent(run, name):
+    """Lower and upper x of a rigid's or body's shape, m."""
+    shape = run.text(f"{name}_shape", "box")
+    if shape == "polygon":
+        x = run.numbers(f"{name}_polygon")[::2]
+        return min(x), max(x)
+    if shape in ("disc", "ball", "cylinder", "cone"):
+        centre, radius = run.number(f"{name}_centre"), run.number(f"{name}_radius")
+        return in_mesh(run, centre - radius, centre + radius)
+    if shape == "stl":  # where its particles begin
+        with h5py.File(run.frames[0]) as file:
+            x = file[name]["position"][:, 0]
+        return float(x.min()), float(x.max())
+    if shape in ("half_plane", "layer"):
+        return run.number("mesh_lower"), run.number("mesh_upper")
+    (left, low), (right, high) = run.numbers(f"{name}_lower")[:2], run.numbers(f"{name}_upper")[:2]
+    angle = np.radians(run.number(f"{name}_angle_deg"))  # about the lower corner
+    x = [left + a * np.cos(angle) - b * np.sin(angle) for a in (0, right - left) for b in (0, high - low)]
+    return in_mesh(run, min(x), max(x))
+
+
+def in_mesh(run, left, right):
+    """What a side of the mesh leaves of an extent in x, m."""
+    return max(left, run.number("mesh_lower", left)), min(right, run.number("mesh_upper", right))
+
+
+def is_half_model(run, name):
+    """Does the rigid touch a roller side of the mesh, a plane of symmetry?"""
+    left, right = extent(run, name)
+    near = 1e-6 * max(run.number("mesh_spacing"), 1e-12)
+    return (abs(left - run.number("mesh_lower")) < near and run.text("mesh_xmin") == "roller") or (
+        abs(right - run.number("mesh_upper")) < near and run.text("mesh_xmax") == "roller")
+
+
+def strength_below(run, name):
+    """Undrained strength [Pa] of the first von_mises or tresca material, at the level of the rigid's underside; 0 if none."""
+    for material in run.words("materials"):
+        if run.text(f"{material}_model") in ("von_mises", "tresca"):
+            level = run.numbers(f"{name}_lower", [0, 0])[1]
+            depth = max(run.number(f"{material}_su_datum") - level, 0)
+            return run.number(f"{material}_su") + depth * run.number(f"{material}_su_gradient")
+    return 0.0
+
+
+def footing(run, name):
+    """Width B [m] and the force on the modelled part at Nc = 1 [N/m], if `name` is pushed straight down into clay in
+    2D, else None."""
+    velocity = run.numbers(f"{name}_velocity", [0, 0])
+    strength = strength_below(run, name)
+    vertical = run.text(f"{name}_motion") == "prescribed" and velocity[0] == 0 and velocity[1] < 0
+    plane = run.text("dim", "2") == "2" and run.text("geometry", "plane_strain") == "plane_strain"
+    if not plane or not vertical or strength == 0:
+        return None
+    left, right = extent(run, name)
+    return (2 if is_half_model(run, name) else 1) * (right - left), strength * (right - left)
+
+
+def bearing_curve(run, name):
+    """Penetration w/B and Nc of each row of the history, and the weight (advance) of the row. The force is the mean
+    over the interval that ends at the row, so it belongs to the middle of the interval."""
+    width, unit_force = footing(run, name)
+    w = -run.history[f"{name}_y"] / width
+    return (w[1:] + w[:-1]) / 2, run.history[f"{name}_force_y"][1:] / unit_force, np.diff(w)
+
+
+def window_means(w, nc, weight, window=WINDOW):
+    """Means of nc over the windows [k, k + 1] * window, k = 0, 1, ...: middles and means of those that are filled."""
+    weight = np.where(w > 0, np.maximum(weight, 0), 0)
+    place = np.maximum(w / window, 0).astype(int)
+    total = np.bincount(place, weight)
+    sums = np.bincount(place, weight * nc)
+    full = np.flatnonzero(total > 0.8 * window)
+    return (full + 0.5) * window, sums[full] / total[full]
+
+
+def mean_over(w, nc, weight, lower=MEAN_FROM, upper=MEAN_TO):
+    """Mean of nc over lower <= w <= upper, NaN where the run has nothing there."""
+    inside = (w >= lower) & (w <= upper)
+    return np.average(nc[inside], weights=weight[inside]) if weight[inside].sum() > 0 else np.nan
+
+
+def reference_curve(relative_spacing, fillet):
+    """Middles of the windows w/B and Nc of the stored curve for cells of d/B, or None. Columns are named Nc_d=0.05B or
+    Nc_d=0.05B_fillet, and w_over_B is the end of each window."""
+    for path in sorted(CASES.glob("footing*/reference.csv")):
+        with open(path, newline="") as file:
+            header, *rows = csv.reader(line for line in file if not line.startswith("#"))
+        for k, column in enumerate(header):
+            match = re.fullmatch(r"Nc_d=([0-9.]+)B(_fillet)?", column)
+            if match and bool(match[2]) == fillet and abs(float(match[1]) / relative_spacing - 1) < 1e-3:
+                values = np.array(rows, dtype=float)
+                return values[:, 0] - (values[1, 0] - values[0, 0]) / 2, values[:, k]
+    return None
