@@ -53,7 +53,7 @@ def main():
     given = arguments()
     count = different = 0
     for name in given.cases or cases.names():
-        if not (given.tree_before / "regression" / "cases" / name / "case.py").exists():
+        if name not in cases.places(given.tree_before):
             continue
         former, case = cases.Case(name, given.tree_before.resolve()), cases.Case(name)
         if case.is_long() and not given.long:

@@ -10,19 +10,22 @@ and may hold
   APART        (why, bound): strategies and back ends are further apart after a step in single precision than compare.py allows
   prepare(run, path, options)  writes the initial fields of a run to the HDF5 file `path`
   draw(axes, runs)             draws the case's curve for the documents
+  class Fine(Size)             the same problem in another size, as the case NAME_fine: size.py
 Its docstring opens with a title, and explains the problem, the exact answer and what the set-up neglects.
 """
 
 import importlib.util
 import os
+import re
 import shlex
 import subprocess
 import sys
 import tempfile
 import time
 
+from mpm_regression.size import with_size
 from mpm_tools.results import Run
-from mpm_tools.tree import CASES, ROOT
+from mpm_tools.tree import ROOT
 
 SESSIONS = tempfile.TemporaryDirectory(prefix="mpm_")
 
@@ -31,21 +34,33 @@ class ProgramFailed(Exception):
     """A run that did not reach its end; the text says which, and what the program said."""
 
 
+def places(root=ROOT):
+    """{name of a case: (its case.py,) or (its case.py, its size)}."""
+    found = {}
+    for path in (root / "regression" / "cases").glob("*/case.py"):
+        sizes = [word.lower() for word in re.findall(r"^class (\w+)\(Size\)", path.read_text(), re.M)]
+        found |= {"_".join([path.parent.name, *size]): (path, *size) for size in ([], *([word] for word in sizes))}
+    return dict(sorted(found.items()))
+
+
 def names():
-    return sorted(path.parent.name for path in CASES.glob("*/case.py"))
+    return list(places())
 
 
 class Case:
     def __init__(self, name, root=ROOT):
         """root: of the source tree whose case it is."""
-        path = root / "regression" / "cases" / name / "case.py"
-        if not path.exists():
-            sys.exit(f"regression/run: no case {name}: {path} is missing")
-        spec = importlib.util.spec_from_file_location(f"case_{name}", path)
+        found = places(root)
+        if name not in found:
+            sys.exit(f"regression/run: no case {name} in {root / 'regression' / 'cases'}")
+        path, *size = found[name]
+        spec = importlib.util.spec_from_file_location(f"case_{path.parent.name}", path)
         self.module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(self.module)
-        self.name, self.root = name, root
-        self.deck = getattr(self.module, "DECK", f"regression/cases/{name}/case.opts")
+        if size:
+            self.module = with_size(self.module, *size)
+        self.name, self.root, self.folder = name, root, f"regression/cases/{path.parent.name}"
+        self.deck = getattr(self.module, "DECK", f"{self.folder}/case.opts")
         self.runs = self.module.RUNS
 
     def is_long(self):

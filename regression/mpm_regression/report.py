@@ -49,7 +49,7 @@ def section(case, results):
     entries = columns(case, results)
     entries = {label: column for label, column in entries.items() if column} or entries
     lines = [f"### {case.title()}", "", case.explanation(), "",
-             f"`regression/run {case.name}`: [the deck](../{case.deck}), [the check](../regression/cases/{case.name}/case.py)", "",
+             f"`regression/run {case.name}`: [the deck](../{case.deck}), [the check](../{case.folder}/case.py)", "",
              "| answer | exact | allowed | " + " | ".join(entries) + " | source |", "| --- " * (len(entries) + 4) + "|"]
     described = next((column[0]["rows"] for column in entries.values() if column), [])
     for row in described:

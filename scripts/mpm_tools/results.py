@@ -208,7 +208,7 @@ def mean_over(w, nc, weight, lower=MEAN_FROM, upper=MEAN_TO):
 def reference_curve(relative_spacing, fillet):
     """Middles of the windows w/B and Nc of the stored curve for cells of d/B, or None. Columns are named Nc_d=0.05B or
     Nc_d=0.05B_fillet, and w_over_B is the end of each window."""
-    for path in sorted(CASES.glob("footing*/reference.csv")):
+    for path in sorted(CASES.glob("footing/reference*.csv")):
         with open(path, newline="") as file:
             header, *rows = csv.reader(line for line in file if not line.startswith("#"))
         for k, column in enumerate(header):

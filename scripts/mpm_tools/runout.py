@@ -144,7 +144,7 @@ def reference_runout(run):
     """Stored curves for the problem of this run: {kind of contact normal: {column: array}}, with columns time [s],
     toe and toe999 [m], speed of the centre of mass [m/s], shear of the base [N]; empty if there are none. A file says by
     its line "holds for:" which options the run must have."""
-    for path in sorted(CASES.glob("landslide*/reference.csv")):
+    for path in sorted(CASES.glob("landslide/reference*.csv")):
         lines = path.read_text().splitlines()
         wanted = next(line for line in lines if line.startswith("# holds for:")).split()[3:]
         if all(same_values(run.text(name), value) for name, value in (pair.split("=") for pair in wanted)):

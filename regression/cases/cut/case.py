@@ -13,6 +13,7 @@ import numpy as np
 
 from mpm_regression.curves import slope
 from mpm_regression.row import Row
+from mpm_regression.size import Size
 
 STANDS, SLIDE = 3.5, (4.0, 4.2, 4.4)
 RUNS = {f"n_{n}": f"-gravity 0,{-n / 0.4:.6g}" for n in (STANDS, *SLIDE)}
@@ -45,3 +46,17 @@ def draw(axes, runs):
     axes.axvline(3.78, color="k", ls="--", lw=0.8, label="exact limit")
     axes.set(xlabel="$\\gamma H / s_u$", ylabel="speed (m/s)")
     axes.legend()
+
+
+class Fine(Size):
+    """Vertical cut, finer
+
+    The case `cut` with 80 cells over the height instead of 40: eight times the work, so the case runs on a GPU or on all cores, in
+    double precision.
+    """
+
+    RUNS = {name: f"{options} -mesh_spacing 0.0125" for name, options in RUNS.items()}
+    BACKENDS, PRECISIONS = ("openmp", "cuda"), ("double",)
+
+    def check(runs):
+        yield Row("gamma H/su at failure, d = H/80", line(runs)[1], 3.78, 0.03, "limit analysis", relative=True)

@@ -11,6 +11,7 @@ import numpy as np
 
 from mpm_regression.curves import slope
 from mpm_regression.row import Row
+from mpm_regression.size import Size
 
 BOUND = {5: 4.190, 10: 4.583, 20: 5.505, 30: 6.687}
 STANDS, SLIDE = 0.93, (1.06, 1.12, 1.18)  # times the bound
@@ -62,3 +63,16 @@ def draw(axes, runs):
     axes.axvspan(0.985, 1, color="0.8", label="exact")
     axes.set(xlabel="$\\gamma H / c$ over the log-spiral bound", ylabel="mean speed of the bank (m/s)")
     axes.legend()
+
+
+class Coarse(Size):
+    """Vertical cut in soil with cohesion and friction, coarse
+
+    The case `cut_friction` for $\\phi$ = 20° with 20 cells over the height instead of 40.
+    """
+
+    RUNS = runs_of((20,), " -mesh_spacing 0.05")
+    LONG = False
+
+    def check(runs):
+        yield from rows(runs, (20,), 20)

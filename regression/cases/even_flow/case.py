@@ -6,24 +6,15 @@ or more), and the share of a node's volume that particles fill may scatter by as
 speak of, and no momentum: mass times velocity is what gravity and the walls have made of it (`reliability/random/run correction`).
 """
 
-import importlib.util
-
 import numpy as np
 
+from mpm_regression import cases
 from mpm_regression.curves import last_frame
 from mpm_tools.flow import depths, filling, unevenness
-from mpm_tools.results import CASES, read_frame
+from mpm_tools.results import read_frame
 from mpm_regression.row import Row
 
-
-def module(name):
-    spec = importlib.util.spec_from_file_location(f"case_{name}", CASES / name / "case.py")
-    found = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(found)
-    return found
-
-
-DAM = module("dam_break")
+DAM = cases.Case("dam_break").module
 DECK = "regression/cases/dam_break/case.opts"
 SPLIT = "-basin_file {start} -particle_domain split"
 RUNS = {"split": f"{SPLIT} -position_correction delta", "split_none": SPLIT,

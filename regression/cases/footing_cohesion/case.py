@@ -12,8 +12,9 @@ Two rows have four particles without F-bar. With four particles and `-f_bar_frac
 
 from mpm_regression.checks import footing_limits as footing
 from mpm_regression.row import Row
+from mpm_regression.size import Size
 
-CELLS, COARSE = 41, 21  # under the footing
+CELLS, COARSE, COARSEST = 41, 21, 11  # under the footing
 ANGLES = (20, 25, 30, 35, 40)
 RUNS = {f"{base}_{phi}": footing.cohesion_options(phi, CELLS) + more for phi in ANGLES for base, more in footing.BASES.items()}
 RUNS |= {f"{base}_coarse": footing.cohesion_options(30, COARSE) + more for base, more in footing.BASES.items()}
@@ -50,3 +51,18 @@ def draw(axes, runs):
             w, q = footing.curve(runs[f"{base}_{phi}"])
             curves[f"{base}, $\\phi$ = {phi}"] = w, q / 1000, colour, style
     footing.draw_curves(axes, curves, [footing.cohesion_factor(phi) for phi in (20, 30, 35)], "$N_c$")
+
+
+class Coarse(Size):
+    """Strip footing on soil with cohesion and friction, coarse
+
+    $N_c$ for $\\phi$ = 30° as in `footing_cohesion`, with 11 cells under the footing instead of 41.
+    """
+
+    RUNS = {base: footing.cohesion_options(30, COARSEST) + more for base, more in footing.BASES.items()}
+    LONG = False
+
+    def check(runs):
+        for base, run in runs.items():
+            yield Row(f"Nc, {base}, phi = 30, d = B/{COARSEST}", factor(run), footing.cohesion_factor(30), footing.tolerance(30),
+                      "Prandtl (1921)", relative=True, shortfall=footing.COARSE, bound=0.12)

@@ -12,8 +12,9 @@ import numpy as np
 from mpm_regression.checks import footing_limits as footing
 from mpm_regression.curves import last_frame
 from mpm_regression.row import Row
+from mpm_regression.size import Size
 
-CELLS, COARSE = 41, 21
+CELLS, COARSE, COARSEST = 41, 21, 11
 ANGLES = (20, 25, 30, 35, 40)
 PRESSURE = 1000.0  # Pa
 RUNS = {f"{base}_{phi}": footing.surcharge_options(phi, CELLS) + more for phi in ANGLES for base, more in footing.BASES.items()}
@@ -53,3 +54,19 @@ def draw(axes, runs):
             w, q = footing.curve(runs[f"{base}_{phi}"])
             curves[f"{base}, $\\phi$ = {phi}"] = w, q / PRESSURE, colour, style
     footing.draw_curves(axes, curves, [footing.surcharge_factor(phi) for phi in (20, 30, 35)], "$N_q$")
+
+
+class Coarse(Size):
+    """Strip footing on sand under a surcharge, coarse
+
+    $N_q$ for $\\phi$ = 30° as in `footing_surcharge`, with 11 cells under the footing instead of 41.
+    """
+
+    RUNS = {base: footing.surcharge_options(30, COARSEST) + more for base, more in footing.BASES.items()}
+    LONG = False
+
+    def check(runs):
+        for base, run in runs.items():
+            yield Row(f"Nq, {base}, phi = 30, d = B/{COARSEST}", factor(run), footing.surcharge_factor(30),
+                      footing.tolerance(30), "Prandtl (1921), Reissner (1924)", relative=True, shortfall=footing.COARSE, bound=0.1)
+            yield Row(f"surcharge at the end over that at the start, {base}", pressure(run), 1, 0.02, "set-up")

@@ -11,7 +11,7 @@ side of the mesh, and a smooth rigid bank stands where the far side was.
 from mpm_regression.checks.footing import distance, mean
 from mpm_regression.row import Row
 
-DECK = "regression/cases/footing_coarse/case.opts"
+DECK = "regression/cases/footing/coarse.opts"
 PRECISIONS = ("double",)  # but for the runs that say otherwise
 LONG = True
 FULL = " -mesh_lower -3,0 -soil_lower -3,0 -plate_lower -0.5,4"

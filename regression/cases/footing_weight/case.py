@@ -11,8 +11,9 @@ import numpy as np
 from mpm_regression.checks import footing_limits as footing
 from mpm_regression import ground
 from mpm_regression.row import Row
+from mpm_regression.size import Size
 
-CELLS = 41
+CELLS, COARSE = 41, 11
 EXACT = {("smooth", 20): 1.579, ("smooth", 25): 3.461, ("smooth", 30): 7.653, ("smooth", 35): 17.577,
          ("rough", 20): 2.839, ("rough", 25): 6.491, ("rough", 30): 14.754, ("rough", 35): 34.476}
 WEIGHT = 20e3  # N/m3
@@ -49,3 +50,20 @@ def draw(axes, runs):
             w, q = footing.curve(runs[f"{base}_{phi}"])
             curves[f"{base}, $\\phi$ = {phi}"] = w, q / (WEIGHT / 2), colour, style
     footing.draw_curves(axes, curves, [exact for (_, phi), exact in EXACT.items() if phi <= 30], "$N_\\gamma$")
+
+
+class Coarse(Size):
+    """Strip footing on sand with weight, coarse
+
+    $N_\\gamma$ for $\\phi$ = 30° as in `footing_weight`, with 11 cells under the footing instead of 41.
+    """
+
+    RUNS = {base: footing.weight_options(30, COARSE, WEIGHT * EXACT[base, 30] / 2) + more for base, more in footing.BASES.items()}
+    LONG = False
+
+    def prepare(run, path, options):
+        write_ground(path, 30, COARSE)
+
+    def check(runs):
+        for base, run in runs.items():
+            yield Row(f"N gamma, {base}, phi = 30, d = B/{COARSE}", factor(run), EXACT[base, 30], 0.08, SOURCE, relative=True)

@@ -7,6 +7,7 @@ those of an independent solver with two kinds of contact normals. The paper give
 """
 
 from mpm_regression.checks.landslide import draw_curve, rows
+from mpm_regression.size import Size
 
 DECK = "inputs/landslide.opts"
 RUNS = {"landslide": ""}
@@ -20,3 +21,14 @@ def check(runs):
 
 def draw(axes, runs):
     draw_curve(axes, runs["landslide"])
+
+
+class Coarse(Size):
+    """Submarine landslide, cells of 0.25 m
+
+    The same slide on coarser cells: 12,584 particles, 30,000 steps.
+    """
+
+    DECK = "inputs/landslide_coarse.opts"
+    BACKENDS = ("serial", "openmp", "cuda")
+    draw = draw

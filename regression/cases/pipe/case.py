@@ -15,6 +15,7 @@ The mean over the displacements from 0.04 D to 0.06 D is compared.
 import numpy as np
 
 from mpm_regression.row import Row
+from mpm_regression.size import Size
 
 STRENGTH = 3000.0
 RATIOS = (0, 0.25, 0.5, 0.75, 1)
@@ -49,3 +50,19 @@ def draw(axes, runs):
         axes.axhline(exact(a), color=line.get_color(), ls="--", lw=0.8)
     axes.set(xlabel="displacement over D", ylabel="$N$ (dashed: exact)", ylim=(0, 14), xlim=(0, 0.06))
     axes.legend(ncols=2)
+
+
+class Fine(Size):
+    """Deep pipe, finer
+
+    The smooth and the rough pipe of the case `pipe` with 32 cells across the pipe instead of 16: eight times the work, so the case
+    runs on a GPU or on all cores, in double precision.
+    """
+
+    RUNS = {name: f"{RUNS[name]} -mesh_spacing 0.03125" for name in ("a_0", "a_1")}
+    BACKENDS, PRECISIONS = ("openmp", "cuda"), ("double",)
+
+    def check(runs):
+        for a in (0, 1):
+            yield Row(f"N, tau_max/su = {a}, d = D/32", factor(runs[f"a_{a}"]), exact(a), 0.03, "Randolph & Houlsby (1984)",
+                      relative=True)

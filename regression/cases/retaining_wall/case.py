@@ -10,6 +10,7 @@ row of nodes, which cannot move, and the answers depend on the cells: with 20 ov
 
 from mpm_regression import ground
 from mpm_regression.row import Row
+from mpm_regression.size import Size
 
 HEIGHT, LENGTH, WEIGHT, COHESION = 1.0, 3.0, 20e3, 20.0  # m, m, N/m3, Pa
 KP = 3.0
@@ -47,3 +48,15 @@ def draw(axes, runs):
     axes.set_yticks([1 / KP, 1, KP], ["1/3", "1", "3"])
     axes.minorticks_off()
     axes.legend()
+
+
+class Fine(Size):
+    """Smooth retaining wall, finer
+
+    The case `retaining_wall` with 40 cells over the height instead of 10.
+    """
+
+    RUNS = {name: f"{options} -mesh_spacing 0.025" for name, options in RUNS.items()}
+    BACKENDS, PRECISIONS = ("openmp", "cuda"), ("double",)
+    LONG = True
+    draw = draw
