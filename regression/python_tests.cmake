@@ -1,0 +1,185 @@
+# Tests that are commands in Python.
+
+string(REPLACE ";" "," dims "${MPM_DIMS}")
+set(precisions double)
+if("float" IN_LIST MPM_REALS)
+  string(APPEND precisions ,single)
+endif()
+set(backends serial,openmp)
+if(Kokkos_ENABLE_CUDA)
+  string(APPEND backends ,cuda)
+endif()
+set(mpm $<TARGET_FILE:mpm>)
+set(inject $<TARGET_FILE:mpm_inject>)
+
+# mpm_python_test(NAME "options of mpm_test" SCRIPT ...): a script of this folder and its arguments
+function(mpm_python_test name how script)
+  separate_arguments(how)
+  mpm_test(${name} ${how} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/${script} ${ARGN})
+endfunction()
+string(JOIN " " threads ENVIRONMENT ${mpm_threads})
+string(JOIN " " ranks ENVIRONMENT ${mpm_ranks})
+
+# Input that the program refuses, pages, scripts, sources.
+mpm_python_test(wrong_input "TIMEOUT 600" wrong_input/check.py ${mpm})
+mpm_python_test(options_doc "" options_doc.py ${mpm} --check)
+foreach(name plot ground_scripts python_modules plot_fields plot_probes plot_shapes differences)
+  mpm_python_test(unit.${name} "" unit/test_${name}.py)
+endforeach()
+mpm_python_test(unit.factor_of_safety "" unit/test_factor_of_safety.py ${mpm})
+mpm_python_test(unit.benchmark "" unit/test_benchmark.py ${mpm})
+mpm_python_test(unit.bundle "" unit/test_bundle.py ${PROJECT_BINARY_DIR})
+mpm_python_test(docs.examples "" unit/test_examples.py)
+mpm_python_test(docs.verification "" unit/test_report.py)
+mpm_python_test(docs.links "" links.py)
+mpm_python_test(docs.missing "" missing.py ${mpm})
+mpm_python_test(docs.history "" history_columns.py ${mpm})
+mpm_python_test(package.example "TIMEOUT 300 ${threads}" package/check.py ${PROJECT_BINARY_DIR} ${PROJECT_BINARY_DIR}/package)
+mpm_python_test(code.includes "" include_rules.py)
+mpm_python_test(code.includes_rules "" include_rules.py --self-test)
+mpm_python_test(code.format "SKIPS TIMEOUT 300" format.py)
+if(NOT MPM_SANITIZE AND NOT Kokkos_ENABLE_CUDA)
+  mpm_python_test(code.tidy "SKIPS TIMEOUT 1200 PROCESSORS 2" tidy.py ${PROJECT_BINARY_DIR})
+  mpm_python_test(code.tidy_all "LONG SKIPS TIMEOUT 14400 PROCESSORS 2" tidy.py ${PROJECT_BINARY_DIR} --all)
+endif()
+if(Kokkos_ENABLE_CUDA)  # there may be no GPU
+  mpm_python_test(cuda.view_layout "TIMEOUT 300 ${threads}" cuda/check.py layout ${PROJECT_BINARY_DIR})
+  mpm_python_test(cuda.start "TIMEOUT 300 ${threads}" cuda/check.py start ${mpm})
+endif()
+
+# A single material point: replays of another program, laboratory tests against closed forms, fits, random paths.
+mpm_python_test(element.replays "TIMEOUT 3600 ${threads}" element/replays.py ${mpm})
+mpm_python_test(element.tests "LONG TIMEOUT 3600 ${threads}" element/laboratory.py ${mpm} --precisions double)
+mpm_python_test(element.tests_single "LONG TIMEOUT 3600 ${threads}" element/laboratory.py ${mpm} --precisions single)
+mpm_python_test(element.random "LONG TIMEOUT 3600 ${threads}" element/random_paths.py ${mpm})
+
+# Runs that are killed, stopped, and whose files and disks are damaged: docs/reliability.md.
+set(short "TIMEOUT 600")
+set(long "LONG TIMEOUT 3600")
+mpm_python_test(reliability.kill_short ${short} reliability/kill.py ${mpm} --kills 6 --seed 2)
+mpm_python_test(reliability.kill ${long} reliability/kill.py ${mpm} --kills 220)
+mpm_python_test(reliability.kill_ranks ${long} reliability/kill.py ${mpm} --kills 40 --seed 3 --ranks 2)
+mpm_python_test(reliability.faults_short ${short} reliability/faults.py ${mpm} ${inject} --short)
+mpm_python_test(reliability.faults ${long} reliability/faults.py ${mpm} ${inject})
+mpm_python_test(reliability.files_short ${short} reliability/files.py ${mpm} ${inject} --short)
+mpm_python_test(reliability.files ${long} reliability/files.py ${mpm} ${inject})
+mpm_python_test(reliability.slurm ${long} reliability/slurm.py ${mpm})
+mpm_python_test(reliability.pbs ${short} reliability/pbs.py ${mpm})
+set_tests_properties(reliability.pbs PROPERTIES RUN_SERIAL ON)  # its jobs have little time
+mpm_python_test(reliability.paraview "SKIPS TIMEOUT 300" reliability/paraview_reads.py ${mpm} --precisions ${precisions})
+mpm_python_test(reliability.paraview_benchmarks "LONG SKIPS TIMEOUT 3600 ${threads}" reliability/paraview_reads.py ${mpm} --benchmarks
+  --pictures ${CMAKE_CURRENT_BINARY_DIR}/paraview)
+
+# Random decks of a kind: `count` in the short form that CI runs, `all` in the long one; more words are options of the runner.
+function(mpm_random_decks name kind count all)
+  set(decks reliability/random/run ${kind} ${mpm} --precisions ${precisions} --dims ${dims} ${ARGN})
+  mpm_python_test(reliability.${name}_short "TIMEOUT 1200 PROCESSORS 2" ${decks} --count ${count})
+  mpm_python_test(reliability.${name} "LONG TIMEOUT 7200 PROCESSORS 2" ${decks} --count ${all})
+endfunction()
+mpm_random_decks(collapses collapses 4 200)
+mpm_random_decks(split collapses "2;--every;4" 100 --particle_domain split --seed 3)
+mpm_random_decks(water water 4 60)
+if(2 IN_LIST MPM_DIMS)
+  mpm_random_decks(axisymmetric axisymmetric 4 50)
+endif()
+mpm_random_decks(soils soils 5 60)
+mpm_random_decks(energy energy 7 50)
+mpm_random_decks(ground ground 4 80)
+mpm_random_decks(stiffness stiffness 3 60)
+mpm_random_decks(loads loads 6 80)
+mpm_random_decks(tractions tractions 3 60)
+mpm_random_decks(symmetry symmetry 6 100)
+mpm_random_decks(sides sides 6 80)
+mpm_random_decks(free_field free_field 2 60)
+mpm_random_decks(periodic periodic 4 60)
+mpm_random_decks(probes probes 3 50)
+mpm_random_decks(correction correction 6 50)
+mpm_random_decks(stages stages 6 80)
+mpm_random_decks(stage_bodies stage_bodies 3 60)
+mpm_random_decks(level level 4 80)
+mpm_random_decks(starts starts "5;--short;--precisions;double" 40)  # what another run left
+mpm_random_decks(compression compression "0;--short" 0)  # not random: soil that is pressed together
+mpm_random_decks(courant courant "0;--short" "0;--jobs;2")  # not random: the limit of the Courant number
+# Random decks against their images: other units, axes, meshes, orders, ranks, restarts.
+set(images metamorphic/run ${mpm} --dims ${dims} --each 6)
+mpm_python_test(reliability.metamorphic_short "TIMEOUT 1200 PROCESSORS 2" ${images} --count 30 --each 3)
+mpm_python_test(reliability.metamorphic "LONG TIMEOUT 14400 PROCESSORS 2" ${images} --count 1000 --seed 2 --jobs 2)
+# Random decks with their files and environment.
+mpm_python_test(reliability.decks_short "TIMEOUT 1200 PROCESSORS 2" fuzz/decks.py ${mpm} --count 100 --jobs 2)
+mpm_python_test(reliability.decks "LONG TIMEOUT 28800 PROCESSORS 2" fuzz/decks.py ${mpm} --count 10000 --jobs 2)
+
+# Small decks whose right answers stand in their comments: a test each, `long` where a comment says so.
+file(GLOB answers CONFIGURE_DEPENDS answers/*.opts)
+foreach(file ${answers})
+  cmake_path(GET file STEM deck)
+  file(STRINGS ${file} long REGEX "^# long$")
+  if(long)
+    set(long LONG)
+  endif()
+  mpm_python_test(answers.${deck} "${long} TIMEOUT 3600 ${ranks}" answers/check.py ${mpm} ${deck})
+endforeach()
+
+# A law with state variables, added by one header and one line to a copy of the program, which is built here.
+if(NOT Kokkos_ENABLE_CUDA AND NOT MPM_SANITIZE)
+  mpm_python_test(regression.added_law "LONG TIMEOUT 1800 PROCESSORS 2 ${threads}" added_law/check.py ${PROJECT_SOURCE_DIR}
+    ${PROJECT_BINARY_DIR}/added_law --jobs 2)
+endif()
+# Laws of the user, compiled to shared libraries. Those in Fortran are left out without a compiler for it.
+set(umat "SKIPS TIMEOUT 1800 PROCESSORS 2 ${ranks}")
+set(folder ${CMAKE_CURRENT_BINARY_DIR}/umat)
+mpm_python_test(regression.umat ${umat} umat/check.py ${mpm} ${folder} --dims ${dims} probe gives_up ends refused)
+mpm_python_test(regression.umat_long "LONG ${umat}" umat/check.py ${mpm} ${folder}_long --dims ${dims} c fortran driver)
+mpm_python_test(regression.umat_fortran ${umat} umat/check.py ${mpm} ${folder}_fortran --dims ${dims} --decks 20 fortran)
+# Former names of options, and the defaults that -analysis sets.
+mpm_python_test(regression.renamed_options "TIMEOUT 600" renamed_options.py ${mpm})
+mpm_python_test(regression.analysis_defaults "TIMEOUT 600" analysis_defaults.py ${mpm})
+
+# Whole runs: back ends and strategies against one another, several ranks against one, and corner cases of ranks; `long` is all
+# numbers of ranks, dimensions, precisions and strategies.
+set(run run --binary ${mpm} --out ${CMAKE_CURRENT_BINARY_DIR}/cases)
+mpm_python_test(regression.compare "TIMEOUT 1800 ${threads}" ${run} --compare ${backends} --precisions ${precisions} --short free_stream)
+mpm_python_test(regression.ranks "TIMEOUT 1800 PROCESSORS 2 ${ranks}" ${run} --ranks 4 --backends serial --precisions double rigid_body)
+set(corners "TIMEOUT 3600 PROCESSORS 2 ${ranks}")
+list(GET MPM_DIMS 0 first)
+mpm_python_test(regression.corners_of_ranks ${corners} corners_of_ranks.py ${mpm} --ranks 3 --dims ${first} --precisions double --short)
+mpm_python_test(regression.corners_of_ranks_long "LONG ${corners}" corners_of_ranks.py ${mpm} --ranks 2,3,4,5,6,7,8 --dims ${dims}
+  --precisions ${precisions})
+
+# Whole runs against exact or published answers, on every back end and in both precisions that are built. Those whose
+# case.py says LONG: `ctest -L long`, `scripts/test --all`.
+list(APPEND run --backends ${backends} --precisions ${precisions})
+function(mpm_case name long)
+  set(how "TIMEOUT 14400 ${threads}")
+  if(long)
+    mpm_python_test(regression.${name} "LONG ${how}" ${run} ${name})
+  elseif(Kokkos_ENABLE_CUDA)
+    mpm_python_test(regression.${name} ${how} ${run} ${name})
+  else()  # CI runs each back end and each precision, not each pair of them.
+    mpm_python_test(regression.${name} ${how} ${run} --in_turn ${name})
+    mpm_python_test(regression.${name}_pairs "LONG ${how}" ${run} --out ${CMAKE_CURRENT_BINARY_DIR}/pairs ${name})
+  endif()
+endfunction()
+file(GLOB cases CONFIGURE_DEPENDS cases/*/case.py)
+foreach(file ${cases})
+  cmake_path(GET file PARENT_PATH name)
+  cmake_path(GET name FILENAME base)
+  set(name ${base})
+  set(base_long OFF)
+  set(long OFF)
+  # What a case says of itself stands before its sizes.
+  file(STRINGS ${file} lines REGEX "^class [A-Za-z]+\\(Size\\)|^ *LONG = ")
+  foreach(line ${lines})
+    if(line MATCHES "LONG = (True|False)")
+      set(long ${CMAKE_MATCH_1})
+      if(name STREQUAL base)
+        set(base_long ${long})
+      endif()
+    else()
+      mpm_case(${name} ${long})
+      string(REGEX REPLACE "class ([A-Za-z]+).*" "\\1" size ${line})
+      string(TOLOWER ${base}_${size} name)
+      set(long ${base_long})
+    endif()
+  endforeach()
+  mpm_case(${name} ${long})
+endforeach()
