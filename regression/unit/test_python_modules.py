@@ -28,7 +28,7 @@ class PythonModules(unittest.TestCase):
         self.script = self.folder / "script"
         (self.folder / "mpm_tools").symlink_to(SCRIPTS / "mpm_tools")
         self.script.write_text("from mpm_tools.python_modules import need\n"
-                               "need('made_up_module')\nimport made_up_module\nprint(made_up_module.WORD, *sys.argv[1:])\n")
+                               "need('made_up_module')\nimport sys\nimport made_up_module\nprint(made_up_module.WORD, *sys.argv[1:])\n")
 
     def run_script(self, *words, **variables):
         environment = dict(os.environ, MPM_DEPS=str(self.folder), **variables)

@@ -11,9 +11,9 @@ more away from the walls, where a wave stands, are even.
 import numpy as np
 
 from mpm_regression.curves import last_frame
+from mpm_regression.row import Row
 from mpm_tools.flow import depths, measures, unevenness
 from mpm_tools.results import read_frame
-from mpm_regression.row import Row
 
 LONG = True
 LOWER, SPACING, COUNT = (0.0, 0.0), 0.1, 40

@@ -8,8 +8,8 @@ $K_0 = 1 - \\sin\\phi$. A cohesion of $10^{-4} \\gamma B$ keeps the surface toge
 
 import numpy as np
 
-from mpm_regression.checks import footing_limits as footing
 from mpm_regression import ground
+from mpm_regression.checks import footing_limits as footing
 from mpm_regression.row import Row
 from mpm_regression.size import Size
 

@@ -12,8 +12,8 @@ Both are 8 cells long. The velocity is that of the nodes, the means of the rows 
 
 import numpy as np
 
-from mpm_regression.curves import last_frame, mesh_options
 from mpm_regression.checks.film import FluidFilm
+from mpm_regression.curves import last_frame, mesh_options
 from mpm_regression.row import Row
 
 G, H, K, CELLS, ALONG = 100.0, 0.5, 10.0, 20, 8

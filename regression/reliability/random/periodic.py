@@ -11,8 +11,8 @@ import h5py
 import numpy as np
 
 from deck import Deck, check_impulse, vector
-from mpm_regression.folders import frames, history, of_velocities
 from mpm_regression import particles
+from mpm_regression.folders import frames, history, of_velocities
 
 SPACING, DENSITY, YOUNG = 0.25, 1500.0, 1e6  # m, kg/m3, Pa: powers of two and sums of them keep their bits
 RESOLUTION = 2.0**-12  # cells, so that a shift rounds nothing, in single precision too

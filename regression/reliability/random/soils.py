@@ -18,8 +18,8 @@ import numpy as np
 
 from collapse_decks import Options
 from collapses import Collapses
-from mpm_regression.folders import checkpoints, frames
 from mpm_regression import particles
+from mpm_regression.folders import checkpoints, frames
 
 CLAY = ("von_mises", "tresca", "softening_clay")
 FRICTION = ("mohr_coulomb", "drucker_prager")

@@ -11,8 +11,8 @@ import numpy as np
 
 from deck import Deck, vector
 from mpm_regression.differences import largest
-from mpm_tools.ground.fields import write_field
 from mpm_regression.folders import frames, rows
+from mpm_tools.ground.fields import write_field
 from mpm_tools.results import Run
 
 H = 0.5  # m, edge of a cell

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import matplotlib
 import numpy as np
 
-from mpm_tools.plot.outlines import outline
 from mpm_tools.plot.curves import COLOURS, save
+from mpm_tools.plot.outlines import outline
 from mpm_tools.results import read_frame, stage_of, units_of
 from mpm_tools.runout import grid_velocity, profile, slides, time_of_frame
 

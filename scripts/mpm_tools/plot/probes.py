@@ -5,8 +5,8 @@ import csv
 import matplotlib
 import numpy as np
 
-from mpm_tools.plot.curves import COLOURS, STYLES, mark_stages, mark_time, run_label, save
 from mpm_tools.ground.raster import Raster, read_ascii
+from mpm_tools.plot.curves import COLOURS, STYLES, mark_stages, mark_time, run_label, save
 from mpm_tools.units import axis_unit
 
 matplotlib.use("Agg")
