@@ -14,7 +14,7 @@
 #include <string>
 
 #include "base/subnormals.hpp"
-#include "gpu.hpp"
+#include "check/gpu.hpp"
 #include "input/launch.hpp"
 
 #ifdef KOKKOS_ENABLE_CUDA

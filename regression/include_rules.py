@@ -33,7 +33,9 @@ TABLE = {
     "parallel": KERNELS + " mpm mesh common input",
     "checkpoint": "base data mpm mesh common output input parallel",
     "step": KERNELS + " mpm mesh common output input parallel checkpoint",
-    "lib": "base data mpm mesh common element output input parallel checkpoint step",
+    "check": "base data mpm mesh common output input step",
+    "run": "base data mpm mesh common element output input parallel checkpoint step check",
+    "lib": "base mpm common input step check run",
     "app": "mpm",
 }
 # File, folder that it includes against the table: the reason.

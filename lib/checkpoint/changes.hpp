@@ -22,6 +22,11 @@ struct OptionChange {
   std::string name, before, after;  // with its dash; "none" where it is not given
 };
 
+/// Line for the log on a change.
+inline std::string line_of(const OptionChange& c) {
+  return "changed here: " + c.name + " " + c.before + " -> " + c.after;
+}
+
 /// Result of a comparison of the options at a restart.
 struct Comparison {
   std::vector<std::string> lines;     // one for each option that contradicts the checkpoint

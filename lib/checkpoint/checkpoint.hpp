@@ -17,13 +17,27 @@
 
 namespace mpm {
 
-/// The progress of a run.
 /// Schedule of the computation of wave speeds, where the time step follows the stiffness of the soil.
 struct WaveWatch {
   long due = 0, every = 1;  // step of the next look; steps from the last one to it
   double speed = 0;         // m/s, of the fastest wave at the last look; 0: there was none
 };
 
+/// Steps between rebuilds: since the last one, how many there were, and the most and fewest between two.
+struct RebuildCount {
+  long since = 0, count = 0, longest = 0, shortest = 0;
+};
+
+/// The present stage of a run.
+struct StageState {
+  long index = 0, step = 0;                     // among the stages; step at its begin
+  double time = 0;                              // s, simulated, at its begin
+  int over = 0;                                 // 1: the event that ends it has come
+  std::vector<double> rigid_zero, rigid_begin;  // m, 3 a rigid: displacements that the history counts from,
+                                                // and those at the begin of the stage; empty: 0
+};
+
+/// The progress of a run.
 struct RunState {
   long step = 0;
   double time = 0, dt = 0;        // s, simulated; of a whole step
@@ -32,13 +46,9 @@ struct RunState {
   double last_dt = 0;             // s, of the step before; 0: there is none
   double last_row_time = 0;       // s, simulated
   double wall = 0, stepping = 0;  // s since the first step; of it in steps
-  long since_rebuild = 0, rebuilds = 0, longest = 0, shortest = 0;  // steps between rebuilds
-  long stage = 0, stage_step = 0;                                   // index of the stage, step at its begin
-  double stage_time = 0;                                            // s, simulated, at its begin
+  RebuildCount rebuilds;
+  StageState stage;
   WaveWatch waves;
-  int stage_over = 0;                           // 1: the event that ends it has come
-  std::vector<double> rigid_zero, rigid_begin;  // m, 3 a rigid: displacements that the history counts from,
-                                                // and those at the begin of the stage; empty: 0
 };
 
 /// The particles of one set of a checkpoint that a rank holds: `count` of `total`, from number `first` on.

@@ -3,8 +3,8 @@
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 
-#include "autotune.hpp"
-#include "strategy_choice.hpp"
+#include "run/autotune.hpp"
+#include "run/strategy_choice.hpp"
 
 using namespace mpm;
 

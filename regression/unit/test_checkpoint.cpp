@@ -84,7 +84,7 @@ Checkpoint some_checkpoint() {
                {},
                12,
                {}};
-  c.run = {1234, 0.1 + 0.2, 1e-4, 1220, 0.1 + 0.19, 9e-5, 0.3, 17.5, 16.5, 3, 4, 5, 6};
+  c.run = {1234, 0.1 + 0.2, 1e-4, 1220, 0.1 + 0.19, 9e-5, 0.3, 17.5, 16.5, {3, 4, 5, 6}};
   c.run.waves = {.due = 1250, .every = 16, .speed = 37.5};
   c.history = {4096, 0xdeadbeef};
   c.state.bound = 0.1, c.state.increment = 1.0 / 3, c.state.margin = 0.25, c.state.due_in = 2;
@@ -158,8 +158,8 @@ TEST_CASE("a checkpoint reads as it was written, whichever rank had which point"
   CHECK(read.version == "0.9");
   CHECK((read.dim == 2 && read.ranks == 3 && read.backend == "serial" && read.precision == "double"));
   CHECK((read.strategy == "gather" && read.frames == 12 && read.history == wanted.history));
-  CHECK((read.run.step == 1234 && read.run.time == 0.1 + 0.2 && read.run.since_rebuild == 3 &&
-         read.run.last_dt == 9e-5 && read.run.shortest == 6));
+  CHECK((read.run.step == 1234 && read.run.time == 0.1 + 0.2 && read.run.rebuilds.since == 3 &&
+         read.run.last_dt == 9e-5 && read.run.rebuilds.shortest == 6));
   CHECK((read.run.waves.due == 1250 && read.run.waves.every == 16 && read.run.waves.speed == 37.5));
   CHECK((read.state.bound == 0.1 && read.state.increment == 1.0 / 3));
   CHECK((read.state.margin == 0.25 && read.state.due_in == 2));

@@ -5,10 +5,10 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 
+#include "check/energy_watch.hpp"
+#include "check/notices.hpp"
 #include "common/gravity_on_soil.hpp"
-#include "energy_watch.hpp"
 #include "input/courant.hpp"
-#include "notices.hpp"
 
 using namespace mpm;
 

@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <numbers>
 
+#include "check/warnings.hpp"
 #include "input/groups.hpp"
 #include "input/overlap.hpp"
 #include "input/particle_file.hpp"
 #include "input/shapes.hpp"
 #include "output/frames.hpp"
-#include "warnings.hpp"
 
 using namespace mpm;
 

@@ -1,0 +1,85 @@
+#include "check/warnings_soil.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/text.hpp"
+#include "input/groups.hpp"
+#include "input/shapes.hpp"
+
+namespace mpm {
+namespace {
+
+/// Whether two bodies have nodes in common at the start: less than a cell is between their bounds. The places
+/// of a file's particles are unknown here.
+bool touch(const Config& config, const BodyConfig& a, const BodyConfig& b) {
+  if (a.shape.kind == ShapeKind::particles || b.shape.kind == ShapeKind::particles) return true;
+  const Bounds one = bounds_of(a.shape, config.mesh, config.dim),
+               other = bounds_of(b.shape, config.mesh, config.dim);
+  for (int d = 0; d < config.dim; ++d)
+    if (std::max(one.lower[d], other.lower[d]) - std::min(one.upper[d], other.upper[d]) >=
+        config.mesh.spacing)
+      return false;
+  return true;
+}
+
+/// Level [m] of the water half a cell below the middle of a body.
+double water_level_under(const Config& config, const BodyConfig& body) {
+  const Bounds bounds = bounds_of(body.shape, config.mesh, config.dim);
+  const int up = config.dim - 1;
+  Vec3 place{};
+  for (int d = 0; d < config.dim; ++d) place[d] = (bounds.lower[d] + bounds.upper[d]) / 2;
+  place[up] = bounds.lower[up] - config.mesh.spacing / 2;
+  double level = *config.water.level;
+  for (const WaterRegionConfig& region : config.water.regions) {
+    bool inside = region.dry || region.level;
+    for (int d = 0; d < config.dim; ++d)
+      inside = inside && place[d] >= region.lower[d] && place[d] <= region.upper[d];
+    if (inside) level = region.dry ? -std::numeric_limits<double>::infinity() : *region.level;
+  }
+  return level;
+}
+
+/// Whether soil may move far, so that bodies that are apart meet.
+bool moves(const Config& config) {
+  const auto is_moved = [](const auto& each) { return each.velocity != Vec3{}; };
+  return config.gravity != Vec3{} || !config.loads.empty() ||
+         std::any_of(config.bodies.begin(), config.bodies.end(), is_moved) ||
+         std::any_of(config.rigids.begin(), config.rigids.end(),
+                     [](const RigidConfig& rigid) { return rigid.motion != Motion::fixed; });
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of_excavations(const Config& config) {
+  std::vector<std::string> lines;
+  if (!config.water.level) return lines;
+  for (const int b : config.stage.remove) {
+    const BodyConfig& body = config.bodies[b];
+    if (body.shape.kind == ShapeKind::particles) continue;
+    const double depth = water_level_under(config, body) - heights_of(body.shape, config)[0];
+    if (depth > 0)
+      lines.push_back(formatted(
+          "warning: -%s_remove: the excavation of %s reaches %.4g m below the water and is full of it; "
+          "-water_regions with a level of their own keep it dry",
+          config.stage.name.c_str(), body.name.c_str(), depth));
+  }
+  return lines;
+}
+
+std::string note_of_touching(const Config& config) {
+  constexpr std::size_t k_most = 8;
+  std::vector<std::string> names;
+  const bool all = moves(config);
+  for (const BodyConfig& body : config.bodies) {
+    const bool meets = std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& other) {
+      return &other != &body && (all || touch(config, body, other));
+    });
+    if (meets) names.push_back(body.name);
+  }
+  if (names.empty()) return "";
+  if (names.size() > k_most) names.resize(k_most), names.emplace_back("...");
+  return "the bodies " + join(names, ", ") + " stick to each other where they touch or meet: no slip, no gap";
+}
+
+}  // namespace mpm
