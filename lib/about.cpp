@@ -8,7 +8,7 @@
 
 #include "common/text.hpp"
 #include "git_commit.hpp"
-#include "input/options.hpp"
+#include "input/options/options.hpp"
 #include "mpm/simulation.hpp"
 #include "step/stepper.hpp"
 

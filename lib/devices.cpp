@@ -15,7 +15,7 @@
 
 #include "base/subnormals.hpp"
 #include "check/gpu.hpp"
-#include "input/launch.hpp"
+#include "input/deck/launch.hpp"
 
 #ifdef KOKKOS_ENABLE_CUDA
 #define KOKKOS_IMPL_PUBLIC_INCLUDE  // the header refuses others than Kokkos' own

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/hdf5_handle.hpp"
+#include "input/options/options.hpp"
 #include "run/element_run.hpp"
 #include "run/run.hpp"
 

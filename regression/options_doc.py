@@ -10,7 +10,7 @@ import sys
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
 DOCUMENT = TREE / "docs" / "options.md"
-RENAMED = TREE / "lib" / "input" / "renamed.cpp"
+RENAMED = TREE / "lib" / "input" / "deck" / "renamed.cpp"
 HEAD = """# Options
 
 Made from `mpm -help` by `regression/options_doc.py`; edit the help, not this file.
@@ -34,7 +34,7 @@ Some options have new names. Their former names stay accepted, and the log has o
 
 
 def former_names():
-    """[(former, name)] of lib/input/renamed.cpp."""
+    """[(former, name)] of lib/input/deck/renamed.cpp."""
     table = RENAMED.read_text().partition("k_renamed = {{")[2].partition("}};")[0]
     return re.findall(r'\{"(\w+)", "(\w+)"\}', table)
 

@@ -1,7 +1,7 @@
 #pragma once
 // Whether the machine and the program allow a run.
 
-#include "input/options.hpp"
+#include "input/deck/report.hpp"
 
 namespace mpm {
 

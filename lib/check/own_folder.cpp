@@ -7,7 +7,7 @@
 
 #include "common/text.hpp"
 #include "common/time_table.hpp"
-#include "input/shapes.hpp"
+#include "input/geometry/shapes.hpp"
 #include "output/own_files.hpp"
 
 namespace mpm {

@@ -1,7 +1,7 @@
 #pragma once
 // Whether the run destroys no input and no file of others.
 
-#include "input/options.hpp"
+#include "input/deck/report.hpp"
 
 namespace mpm {
 

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "input/load_faces.hpp"
-#include "input/overlap.hpp"
+#include "check/overlap.hpp"
 
 namespace mpm {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "input/filled.hpp"
+#include "input/geometry/filled.hpp"
 #include "mpm/config.hpp"
 
 namespace mpm {

@@ -10,8 +10,8 @@
 #include "common/material_table.hpp"
 #include "common/text.hpp"
 #include "common/time_table.hpp"
-#include "input/groups.hpp"
-#include "input/shapes.hpp"
+#include "input/geometry/shapes.hpp"
+#include "input/options/groups.hpp"
 #include "step/stepper.hpp"
 
 namespace mpm {

@@ -7,7 +7,7 @@
 #include "common/revolution.hpp"
 #include "common/text.hpp"
 #include "common/time_table.hpp"
-#include "input/shapes.hpp"
+#include "input/geometry/shapes.hpp"
 
 namespace mpm {
 namespace {

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "common/text.hpp"
-#include "input/groups.hpp"
-#include "input/shapes.hpp"
+#include "input/geometry/shapes.hpp"
+#include "input/options/groups.hpp"
 
 namespace mpm {
 namespace {

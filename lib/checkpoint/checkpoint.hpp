@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "data/saved_state.hpp"
-#include "input/options.hpp"
+#include "input/deck/report.hpp"
 #include "output/history.hpp"
 #include "output/probes.hpp"
 #include "output/rasters.hpp"
@@ -79,6 +79,14 @@ PetscErrorCode write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoi
 /// wrong, the content is not read.
 PetscErrorCode read_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint& checkpoint,
                                std::string* fault);
+
+/// Fault of the state for this mesh and these bodies ("takes ..."); empty if there is none.
+std::string state_fault(const SavedState& state, const Config& config);
+
+/// These words are in what is kept of a file that gives each particle its own value of a parameter.
+inline std::string own_parameter_words(const std::string& parameter) {
+  return ", with " + parameter + " of each particle";
+}
 
 /// Reads a file whose seal has been checked, as one of `ranks` ranks.
 std::string read_items(const std::string& path, int rank, int ranks, Checkpoint& checkpoint);

@@ -6,7 +6,7 @@
 #include "checkpoint/sealed_file.hpp"
 #include "common/hdf5_handle.hpp"
 #include "common/text.hpp"
-#include "input/renamed.hpp"
+#include "input/deck/renamed.hpp"
 
 namespace mpm {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "checkpoint/changes.hpp"
+#include "checkpoint/checkpoint.hpp"
 #include "checkpoint/earlier.hpp"
 #include "data/column_terms.hpp"
 #include "data/side_terms.hpp"

@@ -7,7 +7,7 @@
 
 #include "common/collectives.hpp"
 #include "data/face_terms.hpp"
-#include "input/shapes.hpp"
+#include "input/geometry/shapes.hpp"
 #include "parallel/partition.hpp"
 #include "transfer/velocity_gradients.hpp"
 

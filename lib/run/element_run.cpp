@@ -4,7 +4,7 @@
 #include "common/text.hpp"
 #include "element/drive.hpp"
 #include "element/table.hpp"
-#include "input/run_options.hpp"
+#include "input/deck/run_options.hpp"
 #include "output/files.hpp"
 #include "run/setup.hpp"
 #include "step/stepper.hpp"

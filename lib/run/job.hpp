@@ -2,7 +2,7 @@
 // Input, log and outcome of a run, which all of its parts use.
 
 #include "common/collectives.hpp"
-#include "input/options.hpp"
+#include "input/deck/report.hpp"
 #include "mpm/simulation.hpp"
 #include "output/folder_lock.hpp"
 #include "output/log.hpp"

@@ -5,9 +5,9 @@
 
 #include "common/revolution.hpp"
 #include "common/text.hpp"
-#include "input/groups.hpp"
-#include "input/particle_file.hpp"
-#include "input/shapes.hpp"
+#include "input/files/particle_file.hpp"
+#include "input/geometry/shapes.hpp"
+#include "input/options/groups.hpp"
 #include "run/load_model.hpp"
 
 namespace mpm {

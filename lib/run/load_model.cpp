@@ -4,12 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "common/presence.hpp"
 #include "common/revolution.hpp"
 #include "common/text.hpp"
-#include "input/field_file.hpp"
-#include "input/groups.hpp"
-#include "input/level_ground.hpp"
-#include "input/load_faces.hpp"
+#include "input/files/field_file.hpp"
+#include "input/geometry/load_faces.hpp"
+#include "input/options/groups.hpp"
+#include "input/options/level_ground.hpp"
 #include "mesh/background.hpp"
 #include "parallel/distribute.hpp"
 

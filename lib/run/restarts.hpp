@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "checkpoint/changes.hpp"
+#include "run/changes.hpp"
 #include "run/clock.hpp"
 #include "run/time_step.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "check/warnings_soil.hpp"
 #include "common/text.hpp"
-#include "input/run_options.hpp"
+#include "input/deck/run_options.hpp"
 #include "output/files.hpp"
 #include "output/performance_json.hpp"
 #include "step/stepper.hpp"

@@ -4,10 +4,10 @@
 #include <limits>
 
 #include "checkpoint/id_blocks.hpp"
-#include "checkpoint/particles.hpp"
 #include "common/text.hpp"
-#include "input/load_faces.hpp"
-#include "input/shapes.hpp"
+#include "input/files/checkpoint_particles.hpp"
+#include "input/geometry/load_faces.hpp"
+#include "input/geometry/shapes.hpp"
 #include "step/stage_loads.hpp"
 #include "step/state_map.hpp"
 

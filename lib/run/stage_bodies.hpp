@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "check/overlap.hpp"
 #include "common/model.hpp"
-#include "input/overlap.hpp"
 #include "run/clock.hpp"
 #include "step/stepper.hpp"
 

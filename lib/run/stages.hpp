@@ -1,7 +1,7 @@
 #pragma once
 // Stages of a run: which one holds, when it ends, and the state with which the next one begins.
 
-#include "checkpoint/changes.hpp"
+#include "run/changes.hpp"
 #include "run/clock.hpp"
 #include "run/time_step.hpp"
 

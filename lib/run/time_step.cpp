@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "common/courant.hpp"
 #include "common/text.hpp"
-#include "input/courant.hpp"
 
 namespace mpm {
 namespace {

@@ -1,9 +1,9 @@
 #include "step/stage_loads.hpp"
 
-#include "checkpoint/particles.hpp"
 #include "common/collectives.hpp"
 #include "common/text.hpp"
 #include "data/face_terms.hpp"
+#include "input/files/checkpoint_particles.hpp"
 
 namespace mpm {
 namespace {

@@ -2,7 +2,7 @@
 // Surfaces of the loads that begin with a stage: what an excavation bares, and what a fill brings.
 
 #include "data/saved_state.hpp"
-#include "input/load_faces.hpp"
+#include "input/geometry/load_faces.hpp"
 
 namespace mpm {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <optional>
 
-#include "checkpoint/particles.hpp"
 #include "common/material_table.hpp"
 #include "common/text.hpp"
+#include "input/files/checkpoint_particles.hpp"
 #include "physics/materials/any.hpp"
 
 namespace mpm {

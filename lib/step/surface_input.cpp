@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "input/height_surface.hpp"
-#include "input/revolved.hpp"
+#include "input/geometry/height_surface.hpp"
+#include "input/geometry/revolved.hpp"
 
 namespace mpm {
 namespace {

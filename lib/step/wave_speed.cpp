@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/material_table.hpp"
-#include "input/shapes.hpp"
+#include "input/geometry/shapes.hpp"
 #include "physics/materials/any.hpp"
 #include "step/stepper.hpp"
 

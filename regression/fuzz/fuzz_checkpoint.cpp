@@ -5,7 +5,6 @@
 
 #include <hdf5.h>
 
-#include "checkpoint/changes.hpp"
 #include "checkpoint/checkpoint.hpp"
 #include "checkpoint/sealed_file.hpp"
 #include "common/checksum.hpp"

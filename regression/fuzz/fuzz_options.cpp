@@ -1,7 +1,7 @@
 // An options file of any bytes: read and checked, or refused with lines that say why; never a crash or a
 // hang.
 
-#include "input/options.hpp"
+#include "input/options/options.hpp"
 #include "session.hpp"
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "input/raster_file.hpp"
-#include "input/triangle_surface.hpp"
+#include "input/files/raster_file.hpp"
+#include "input/geometry/triangle_surface.hpp"
 
 namespace mpm::test {
 

@@ -10,14 +10,14 @@
 #include <iterator>
 #include <random>
 
-#include "checkpoint/change_rules.hpp"
-#include "checkpoint/changes.hpp"
 #include "checkpoint/checkpoint.hpp"
 #include "checkpoint/earlier.hpp"
 #include "checkpoint/folder.hpp"
 #include "checkpoint/id_blocks.hpp"
 #include "checkpoint/sealed_file.hpp"
 #include "data/side_terms.hpp"
+#include "input/options/change_rules.hpp"
+#include "run/changes.hpp"
 
 using namespace mpm;
 namespace fs = std::filesystem;

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <random>
 
-#include "input/region.hpp"
-#include "input/revolved.hpp"
-#include "input/shapes.hpp"
+#include "input/geometry/region.hpp"
+#include "input/geometry/revolved.hpp"
+#include "input/geometry/shapes.hpp"
 
 using namespace mpm;
 using Catch::Approx;

@@ -7,8 +7,8 @@
 
 #include "check/energy_watch.hpp"
 #include "check/notices.hpp"
+#include "common/courant.hpp"
 #include "common/gravity_on_soil.hpp"
-#include "input/courant.hpp"
 
 using namespace mpm;
 

@@ -8,9 +8,9 @@
 #include <random>
 
 #include "ground_shapes.hpp"
-#include "input/cut_cells.hpp"
-#include "input/region.hpp"
-#include "input/shapes.hpp"
+#include "input/geometry/cut_cells.hpp"
+#include "input/geometry/region.hpp"
+#include "input/geometry/shapes.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

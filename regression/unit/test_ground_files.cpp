@@ -11,9 +11,9 @@
 #include <fstream>
 
 #include "ground_shapes.hpp"
-#include "input/cut_cells.hpp"
-#include "input/field_file.hpp"
-#include "input/stl_file.hpp"
+#include "input/files/field_file.hpp"
+#include "input/files/stl_file.hpp"
+#include "input/geometry/cut_cells.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/material_table.hpp"
-#include "input/level_ground.hpp"
+#include "input/options/level_ground.hpp"
 
 using namespace mpm;
 using Catch::Approx;

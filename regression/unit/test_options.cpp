@@ -11,9 +11,9 @@
 
 #include "common/f_bar.hpp"
 #include "common/text.hpp"
-#include "input/deck.hpp"
-#include "input/options.hpp"
-#include "input/suggest.hpp"
+#include "input/deck/deck.hpp"
+#include "input/deck/suggest.hpp"
+#include "input/options/options.hpp"
 #include "output/frames.hpp"
 #include "step/stepper.hpp"
 

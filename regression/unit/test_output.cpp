@@ -18,7 +18,7 @@
 #include <sstream>
 
 #include "common/collectives.hpp"
-#include "input/run_options.hpp"
+#include "input/deck/run_options.hpp"
 #include "output/files.hpp"
 #include "output/folder_lock.hpp"
 #include "output/frames.hpp"

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <numbers>
 
+#include "check/overlap.hpp"
 #include "check/warnings.hpp"
-#include "input/groups.hpp"
-#include "input/overlap.hpp"
-#include "input/particle_file.hpp"
-#include "input/shapes.hpp"
+#include "input/files/particle_file.hpp"
+#include "input/geometry/shapes.hpp"
+#include "input/options/groups.hpp"
 #include "output/frames.hpp"
 
 using namespace mpm;

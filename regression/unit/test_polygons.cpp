@@ -6,8 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "input/edge_tree.hpp"
-#include "input/polygon.hpp"
+#include "input/geometry/edge_tree.hpp"
+#include "input/geometry/polygon.hpp"
 
 using namespace mpm;
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "compare.hpp"
-#include "input/revolved.hpp"
+#include "input/geometry/revolved.hpp"
 #include "physics/surface.hpp"
 #include "step/surface_input.hpp"
 

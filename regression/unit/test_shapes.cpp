@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "input/polygon.hpp"
-#include "input/shapes.hpp"
+#include "input/geometry/polygon.hpp"
+#include "input/geometry/shapes.hpp"
 
 using namespace mpm;
 using Catch::Approx;

@@ -4,11 +4,11 @@
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 
+#include "check/overlap.hpp"
 #include "common/text.hpp"
-#include "input/groups.hpp"
-#include "input/options.hpp"
-#include "input/overlap.hpp"
-#include "input/shapes.hpp"
+#include "input/geometry/shapes.hpp"
+#include "input/options/groups.hpp"
+#include "input/options/options.hpp"
 #include "step/present_rigids.hpp"
 #include "step/state_map.hpp"
 

@@ -9,9 +9,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "checkpoint/changes.hpp"
 #include "checkpoint/checkpoint.hpp"
-#include "input/particle_file.hpp"
+#include "input/files/particle_file.hpp"
 #include "mesh/background.hpp"
 #include "output/frame_fields.hpp"
 #include "output/frames.hpp"

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "compare.hpp"
-#include "input/height_surface.hpp"
+#include "input/geometry/height_surface.hpp"
 #include "loops/window.hpp"
 #include "physics/contact.hpp"
 #include "physics/surface.hpp"

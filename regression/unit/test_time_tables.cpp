@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "compare.hpp"
-#include "input/time_table.hpp"
+#include "input/files/time_table.hpp"
 #include "transfer/upload_loads.hpp"
 
 using namespace mpm;

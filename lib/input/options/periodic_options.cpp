@@ -1,0 +1,85 @@
+// Checks of the other options in a mesh with periodic sides.
+
+#include "common/text.hpp"
+#include "input/geometry/height_surface.hpp"
+#include "input/geometry/shapes.hpp"
+#include "input/options/groups.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr double k_slack = 1e-6;  // cells
+constexpr double k_reach = 2;     // cells, further than a rigid acts on soil
+
+/// The option that makes a rigid move along a direction; empty where it does not. Forces may move a dynamic
+/// one along any.
+std::string moving_option(const RigidConfig& rigid, int d) {
+  if (rigid.motion == Motion::dynamic) return rigid.name + "_motion";
+  if (rigid.motion == Motion::fixed || rigid.velocity[d] == 0) return "";
+  return rigid.name + (rigid.displacement_table ? "_displacement_table"
+                       : rigid.velocity_table   ? "_velocity_table"
+                                                : "_velocity");
+}
+
+/// Whether a shape has the same section everywhere along direction d.
+bool goes_through(const Shape& shape, const MeshConfig& mesh, int dim, int d) {
+  const double slack = k_slack * mesh.spacing;
+  const auto spans = [&](double low, double high) {
+    return low <= mesh.lower[d] + slack && high >= mesh.upper[d] - slack;
+  };
+  switch (shape.kind) {
+    case ShapeKind::half_plane: return shape.normal[d] == 0;
+    case ShapeKind::box: return shape.angle == 0 && spans(shape.lower[d], shape.upper[d]);
+    case ShapeKind::polygon: return dim == 3 && d == 1 && spans(shape.width[0], shape.width[1]);
+    case ShapeKind::layer:
+      return d < dim - 1 && shape.top->is_level() && (!shape.base || shape.base->is_level());
+    default: return false;
+  }
+}
+
+void check_rigid(OptionReader& in, const Config& config, const RigidConfig& rigid, int d) {
+  const MeshConfig& mesh = config.mesh;
+  const std::string along = std::string(" along ") + "xyz"[d], moving = moving_option(rigid, d),
+                    where = ", where -" + side_option(d, 0) + " is periodic";
+  if (goes_through(rigid.shape, mesh, config.dim, d)) {
+    if (!moving.empty() && rigid.contact_normal == ContactNormal::gradient)
+      in.reject(rigid.name + "_contact_normal", "surface of a rigid that moves" + along + where);
+    return;
+  }
+  if (!moving.empty())
+    return in.reject(
+        moving,
+        std::string(rigid.motion == Motion::dynamic ? "fixed, or prescribed without motion" : "no motion") +
+            along + " of a rigid that has ends there" + where);
+  const Bounds bounds = bounds_of(rigid.shape, mesh, config.dim);
+  const double least = (k_reach - k_slack) * mesh.spacing;
+  if (bounds.lower[d] - mesh.lower[d] < least || mesh.upper[d] - bounds.upper[d] < least)
+    in.reject(rigid.name + "_shape", "a box, half plane, level layer or prism that goes through the mesh" +
+                                         along + ", or a shape 2 cells away from the sides" + where);
+}
+
+}  // namespace
+
+void check_periodic(OptionReader& in, const Config& config) {
+  if (in.listing()) return;
+  for (int d = 0; d < config.dim; ++d) {
+    if (!is_periodic(config.mesh, d)) continue;
+    const std::string where = ", where -" + side_option(d, 0) + " is periodic";
+    if (config.water.level && config.gravity[d] != 0)
+      in.reject("water_level", std::string("a -gravity of 0 along ") + "xyz"[d] + where);
+    for (const BodyConfig& body : config.bodies)
+      if (body.k0 && d == config.dim - 1)
+        in.reject(body.name + "_stress", "numbers" + where + ": such ground has no surface");
+    for (const RigidConfig& rigid : config.rigids) check_rigid(in, config, rigid, d);
+  }
+}
+
+void check_periodic_kept(OptionReader& in, int dim, const MeshConfig& first, const MeshConfig& mesh) {
+  for (int d = 0; d < dim; ++d)
+    if (is_periodic(first, d) != is_periodic(mesh, d))
+      in.reject(side_option(d, 0), is_periodic(first, d)
+                                       ? "periodic, as in the first stage"
+                                       : "a kind of side other than periodic, as in the first stage");
+}
+
+}  // namespace mpm
