@@ -54,7 +54,6 @@ class Schedule {
             whole ? step - begin_.step : 0};
   }
 
-  bool row_due(long step) const { return step == last_ || due(step, output_.history_interval); }
   /// Whether a row or a frame is due though the run goes on after this step.
   bool row_in_turn(long step) const { return due(step, output_.history_interval); }
   bool frame_in_turn(long step) const { return due(step, output_.interval); }
@@ -64,7 +63,6 @@ class Schedule {
   bool checkpoint_due(long step) const {
     return output_.checkpoint_interval && (step == last_ || due(step, *output_.checkpoint_interval));
   }
-  bool frame_due(long step) const { return step == last_ || due(step, output_.interval); }
   /// The next step after `step` at which a row, a frame, a checkpoint or a look for rasters is due.
   long next_stop(long step) const {
     const auto next_of = [&](const std::optional<double>& interval) {
