@@ -1,4 +1,4 @@
-// What a run would take, from its model in numbers and a short trial.
+// Cost of a run, from its model in numbers and a short trial.
 
 #include "run/dry_run.hpp"
 
@@ -65,7 +65,7 @@ PetscErrorCode time_steps(Job& job, Clock& clock, Stepper& stepper, double* seco
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// What -dry_run prints of a run: its particles, memory, steps and output.
+/// Prints particles, memory, steps and output of the run.
 PetscErrorCode report_need(Job& job, const Clock& clock, Stepper& stepper) {
   PetscFunctionBeginUser;
   Log& log = job.log;

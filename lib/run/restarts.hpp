@@ -18,7 +18,7 @@ class Restarts {
   Checkpoint* checkpoint() { return checkpoint_ ? &*checkpoint_ : nullptr; }
   /// Rows of the history to go on with.
   const std::string& history_rows() const { return history_rows_; }
-  /// Of each body, whether -restart_change gives it another law.
+  /// Marks the bodies to which -restart_change gives another law.
   const std::vector<char>& laws_changed() const { return laws_changed_; }
   /// `-p2g auto` at a restart keeps the strategy, and with it the bits, where the backend is the same.
   void keep_strategy(Config& config) const;

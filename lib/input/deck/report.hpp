@@ -1,5 +1,5 @@
 #pragma once
-// What is found when the input is read: options and mistakes.
+// Findings of the reading of the input: options and mistakes.
 
 #include <petscsys.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-// What may change between a run and its continuation, and from stage to stage. The rule of an option stands
-// where the option is read (Option::change).
+// Changes between a run and its continuation, and from stage to stage. The rule of an option stands where
+// the option is read (Option::change).
 
 #include <map>
 #include <string>

@@ -1,4 +1,4 @@
-// What a run writes, and from what it goes on.
+// Results that a run writes, and the checkpoint from which it goes on.
 
 #include <filesystem>
 
