@@ -64,6 +64,34 @@ void read_position_correction(OptionReader& in, Config& config) {
     in.not_taken("position_correction_rate", "-position_correction is none");
 }
 
+/// Gravity, water, damping and the factor of strength.
+void read_forces(OptionReader& in, Config& config) {
+  const Option gravity{.name = "gravity",
+                       .meaning = "acceleration of gravity",
+                       .unit = "m/s2",
+                       .range = k_speed,
+                       .change = k_by_choice};
+  in.vector(gravity, config.dim, config.gravity);
+  read_timed(in, gravity, true, config.dim, config.time.end, config.gravity, config.gravity_table);
+  if (config.gravity_table) config.gravity = largest_of(*config.gravity_table);
+  read_water(in, config);
+  in.number({.name = "damping",
+             .meaning = "local (non-viscous) damping factor",
+             .unit = "-",
+             .range = {.lowest = 0, .highest = 1, .open_highest = true},
+             .change = k_by_choice},
+            config.damping);
+  read_rayleigh(in, config);
+  in.number(
+      {.name = "strength_factor",
+       .meaning = "what the strength of all materials without a strength_factor of their own is divided "
+                  "by, as in a search for a factor of safety",
+       .unit = "-",
+       .range = {.lowest = 0.01, .highest = 100},
+       .change = k_by_choice},
+      config.strength_factor);
+}
+
 }  // namespace
 
 void read_time(OptionReader& in, TimeConfig& time) {
@@ -116,30 +144,7 @@ void limit_courant(OptionReader& in, Config& config) {
 
 void read_physics(OptionReader& in, Config& config) {
   in.section("Physics");
-  const Option gravity{.name = "gravity",
-                       .meaning = "acceleration of gravity",
-                       .unit = "m/s2",
-                       .range = k_speed,
-                       .change = k_by_choice};
-  in.vector(gravity, config.dim, config.gravity);
-  read_timed(in, gravity, true, config.dim, config.time.end, config.gravity, config.gravity_table);
-  if (config.gravity_table) config.gravity = largest_of(*config.gravity_table);
-  read_water(in, config);
-  in.number({.name = "damping",
-             .meaning = "local (non-viscous) damping factor",
-             .unit = "-",
-             .range = {.lowest = 0, .highest = 1, .open_highest = true},
-             .change = k_by_choice},
-            config.damping);
-  read_rayleigh(in, config);
-  in.number(
-      {.name = "strength_factor",
-       .meaning = "what the strength of all materials without a strength_factor of their own is divided "
-                  "by, as in a search for a factor of safety",
-       .unit = "-",
-       .range = {.lowest = 0.01, .highest = 100},
-       .change = k_by_choice},
-      config.strength_factor);
+  read_forces(in, config);
   read_analysis(in, config);
   read_velocity_update(in, config);
   in.word({.name = "particle_domain",
