@@ -47,7 +47,8 @@ SymTensor<double, 3> random_tensor(Dice& dice, int shears) {
 }
 
 /// A UMAT that the build has compiled: mpm_umat is inputs/umat/von_mises.c, mpm_umat_probe umat/probe.c. The
-/// environment's MPM_UMATS names the folder where the program no longer lies by it (scripts/site/bundle_launch).
+/// environment's MPM_UMATS names the folder where the program no longer lies by it
+/// (scripts/site/bundle_launch).
 std::shared_ptr<const UmatLibrary> library_of(const std::string& name, const std::string& properties, int dim,
                                               const std::array<double, 3>& lower = {}) {
   const char* elsewhere = std::getenv("MPM_UMATS");
