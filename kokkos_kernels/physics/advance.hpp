@@ -117,8 +117,8 @@ struct ParticleLaw {
       add_isotropic(stress, -excess);
     }
   }
-  /// gap_room(), after the law.
-  KOKKOS_INLINE_FUNCTION T room() const { return gap_room<Laws>(soil, p); }
+  /// gap_room(), after the law. Laws that cannot part do without: its registers would spill in their kernel.
+  KOKKOS_INLINE_FUNCTION T room() const requires(can_part(Laws{})) { return gap_room<Laws>(soil, p); }
 };
 
 /// A bound of the volume of a particle [m3], which of a ring is one of its section.
@@ -166,11 +166,11 @@ KOKKOS_FORCEINLINE_FUNCTION R advance(Particle<R, Dim>& q, const Law& law,
   }
   q.volume = Kokkos::fmax(volume_bound(by.least_volume, q, domain, by), q.volume);
   const auto most = volume_bound(by.most_volume, q, domain, by);
-  if (!any_of(q.volume > most)) return moved;
-  if constexpr (requires { law.room(); })
-    q.volume = Kokkos::fmin(q.volume, most * law.room());
-  else
+  if constexpr (requires { law.room(); }) {
+    if (any_of(q.volume > most)) q.volume = Kokkos::fmin(q.volume, most * law.room());
+  } else {
     q.volume = Kokkos::fmin(q.volume, R(most));
+  }
   return moved;
 }
 

@@ -4,6 +4,17 @@
 
 namespace mpm {
 
+/// Whether a law, or some law of a list, can part.
+template <template <class> class Model>
+inline constexpr bool parts = requires(const Model<double>& law,
+                                       const LawState<double, state_size<Model<double>>>& state) {
+  law.free_gap(state);
+};
+template <template <class> class... Models>
+constexpr bool can_part(ModelList<Models...>) {
+  return (parts<Models> || ...);
+}
+
 /// By how much the most volume of particle p grows because its soil has parted in all directions: exp of the
 /// gap (free_gap of its law, one of the list Laws). Such soil takes no pressure before the gap has closed.
 /// Its volume must remember the gap, or compression would bring the volume below that which the soil then
