@@ -15,7 +15,7 @@ Features features_of(const State<Space, T, Dim>& s) {
   using F = Feature;
   const std::pair<F, bool> all[] = {{F::other_strategy, chosen(s.p2g.strategy) != P2G::tile},
                                     {F::xpic, s.xpic_order > 0},
-                                    {F::apic, s.affine},
+                                    {F::apic, s.soil.points.has_affine},
                                     {F::splits, s.soil.points.splits},
                                     {F::correction, s.correction.on},
                                     {F::submerged, s.water.is_there()},

@@ -20,10 +20,9 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   for (const auto& set : s.rigid_points) add_set(set);
   add(s.patches.slot_of), add(s.patches.number), add(s.patches.origin), add(s.patches.neighbours),
       add(s.marks), add(s.scratch);
-  add(s.nodes.soil), add(s.nodes.kinematics), add(s.nodes.residual), add(s.nodes.shares), add(s.nodes.centre),
-      add(s.nodes.drift), add(s.nodes.boundary), add(s.nodes.impulse);
-  add(s.nodes.strength), add(s.nodes.displaced), add(s.nodes.rigid), add(s.near_rigid), add(s.vertices);
-  add(s.nodes.load), add(s.loads.loaded), add(s.loads.windows.sums);
+  for_each_nodal_field([&](const char*, bool, const auto& field) { add(field); }, s.nodes, uses_of_nodes(s));
+  add(s.nodes.impulse), add(s.nodes.rigid), add(s.near_rigid), add(s.vertices);
+  add(s.loads.loaded), add(s.loads.windows.sums);
   add(s.loads.coordinate), add(s.loads.force), add(s.loads.half_length);
   add(s.strays.alone), add(s.split.slots);
   add(s.boundary_windows.sums), add(s.strength_windows.sums);

@@ -82,6 +82,31 @@ struct Nodes : NodeSums<Space, T, Dim> {
       impulse;  // N s, [ImpulseTerms::size a rigid][node], kept from step to step
 };
 
+/// What a run has beside the step of the paper, by which nodal fields are in use.
+struct NodeUses {
+  bool boundary = false;    // some contact needs the soil's boundary
+  bool strength = false;    // some contact needs the soil's strength
+  bool water = false;       // soil displaces water
+  bool loads = false;       // loads on surfaces
+  bool residual = false;    // XPIC
+  bool correction = false;  // correction of the particles' positions
+  bool domains = false;     // domains stretch
+};
+
+/// Calls f(name, in_use, field) for every nodal field with one entry a node. The one table of nodal fields: a
+/// rebuild makes room for those in use, and memory and its check before a run follow it.
+template <class F, class Nodes_>
+void for_each_nodal_field(F&& f, Nodes_& nodes, const NodeUses& uses) {
+  f("soil", true, nodes.soil), f("kinematics", true, nodes.kinematics);
+  f("boundary", uses.boundary, nodes.boundary);
+  f("strength", uses.strength, nodes.strength);
+  f("displaced", uses.water, nodes.displaced);
+  f("load", uses.loads, nodes.load);
+  f("residual", uses.residual, nodes.residual);
+  f("shares", uses.correction, nodes.shares);
+  f("centre", uses.domains, nodes.centre), f("drift", uses.domains, nodes.drift);
+}
+
 /// A rigid body on the device.
 template <int Dim>
 struct Rigid {

@@ -3,6 +3,7 @@
 // checkpoints, cuts, ranks and the start of a run walk. A new vector of every particle is one row of it.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "data/face_terms.hpp"
@@ -53,43 +54,68 @@ enum class Carried {
   never         // the run makes it anew
 };
 
+/// Numbers of a particle of a column in a frame: vectors have three components in 2D too, stresses six.
+constexpr int framed_width(Width width) { return width_of(width, 3, 0); }
+/// Place in a frame of component k of a column of a run.
+constexpr int framed_place(Width width, int dim, int k) {
+  return width == Width::matrix ? k / dim * 3 + k % dim : k;
+}
+
 /// Options of a body by which it gives a column to all of its particles, in the place of a file.
 enum class GivenBy { none, velocity, stress };
+
+/// Values of the particles of a body that has no column: those that all have in common (BodyInput), or zero.
+enum class Common { zero, velocity, volume, mass };
+
+/// Groups of a frame that have a column.
+enum class Framed { no, bodies, nodes, bodies_and_nodes, all };
 
 /// Bounds of magnitude that the arithmetic has room for.
 enum class Bound { none, speed, stress, volume, mass, coordinate, domain };
 
-/// A row of the table.
+/// A row of the table. A column of a vector of the soil on the device (for_each_field_of) has its name in
+/// `saved`: by it the start of a run fills the vector, and frames and checkpoints read it.
 struct ParticleColumn {
   const char* name;   // of the data set in a frame or a file of the user's
-  const char* saved;  // of the field in a checkpoint
+  const char* saved;  // of the vector on the device and of the field in a checkpoint
+  const char* unit;   // in frames
   std::vector<double> ParticleColumns::*values;
   Width width;
   Carried carried;
   GivenBy given_by;
+  Common common;
+  Framed framed;
   int per_cell;  // power of the cell's edge by which a value goes from one mesh to another
   Bound bound;
 };
 
 inline constexpr ParticleColumn k_particle_columns[] = {
-    {"position", "coordinate", &ParticleColumns::position, Width::vector, Carried::always, GivenBy::none, 0,
-     Bound::none},
-    {"volume", "volume", &ParticleColumns::volume, Width::scalar, Carried::always, GivenBy::none, 0,
-     Bound::volume},
-    {"velocity", "velocity", &ParticleColumns::velocity, Width::vector, Carried::where_kept,
-     GivenBy::velocity, 0, Bound::speed},
-    {"stress", "stress", &ParticleColumns::stress, Width::stress, Carried::where_kept, GivenBy::stress, 0,
-     Bound::stress},
-    {"mass", "mass", &ParticleColumns::mass, Width::scalar, Carried::where_kept, GivenBy::none, 0,
-     Bound::mass},
-    {"reference_height", "reference_height", &ParticleColumns::reference_height, Width::scalar,
-     Carried::where_kept, GivenBy::none, 0, Bound::coordinate},
-    {"velocity_gradient", "affine", &ParticleColumns::velocity_gradient, Width::matrix, Carried::checkpoints,
-     GivenBy::velocity, 1, Bound::speed},
-    {"domain", "domain", &ParticleColumns::domain, Width::moments, Carried::checkpoints, GivenBy::none, -2,
-     Bound::domain},
-    {"faces", "", &ParticleColumns::faces, Width::faces, Carried::never, GivenBy::none, 0, Bound::none},
+    {"position", "coordinate", "m", &ParticleColumns::position, Width::vector, Carried::always, GivenBy::none,
+     Common::zero, Framed::all, 0, Bound::none},
+    {"velocity", "velocity", "m/s", &ParticleColumns::velocity, Width::vector, Carried::where_kept,
+     GivenBy::velocity, Common::velocity, Framed::all, 0, Bound::speed},
+    {"stress", "stress", "Pa", &ParticleColumns::stress, Width::stress, Carried::where_kept, GivenBy::stress,
+     Common::zero, Framed::bodies, 0, Bound::stress},
+    {"volume", "volume", "m3", &ParticleColumns::volume, Width::scalar, Carried::always, GivenBy::none,
+     Common::volume, Framed::bodies, 0, Bound::volume},
+    {"mass", "mass", "kg", &ParticleColumns::mass, Width::scalar, Carried::where_kept, GivenBy::none,
+     Common::mass, Framed::bodies_and_nodes, 0, Bound::mass},
+    {"reference_height", "reference_height", "m", &ParticleColumns::reference_height, Width::scalar,
+     Carried::where_kept, GivenBy::none, Common::zero, Framed::bodies, 0, Bound::coordinate},
+    {"velocity_gradient", "affine", "m/s", &ParticleColumns::velocity_gradient, Width::matrix,
+     Carried::checkpoints, GivenBy::velocity, Common::zero, Framed::no, 1, Bound::speed},
+    {"domain", "domain", "-", &ParticleColumns::domain, Width::moments, Carried::checkpoints, GivenBy::none,
+     Common::zero, Framed::no, -2, Bound::domain},
+    {"faces", "", "", &ParticleColumns::faces, Width::faces, Carried::never, GivenBy::none, Common::zero,
+     Framed::no, 0, Bound::none},
 };
+
+/// The row of a vector of the soil on the device; null where only the device has it.
+constexpr const ParticleColumn* column_of(std::string_view saved) {
+  for (const ParticleColumn& column : k_particle_columns)
+    if (column.saved == saved) return &column;
+  return nullptr;
+}
 
 /// Calls f(values, width) for every column, state variables and own parameters included.
 template <class F>

@@ -56,7 +56,7 @@ struct Soil : Points<Space, T, Dim> {
   Kokkos::View<T*, Memory> volume;                  // m3, current
   History<Space, T> history;                        // state variables of the laws
   Kokkos::View<std::uint16_t*, Memory> body;        // index into bodies
-  Kokkos::View<Matrix<T, Dim>*, Memory> affine;     // m/s a cell, C_p of APIC; of extent 0 without it
+  Kokkos::View<Matrix<T, Dim>*, Memory> affine;     // m/s a cell, C_p of APIC, in use where has_affine
   Kokkos::View<T*, Memory> mass;                    // kg, in use where has_own_mass
   /// In use where has_domain (physics/domain.hpp): half lengths along the axes [cells], which a step reads,
   /// and what they come from: the moments of the domain [cells2], and the coordinate [cells] and the volume
@@ -75,6 +75,7 @@ struct Soil : Points<Space, T, Dim> {
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
   Kokkos::View<StoredMaterial<T>*, Memory> materials;
+  bool has_affine = false;    // the velocity update is APIC
   bool has_own_mass = false;  // the particles of some body differ in mass; the same on all ranks
   bool has_domain = false;    // the domains of the particles stretch with the soil
   T least_half_length = 0;    // cells, of such a domain (k_least_half_length)
@@ -127,43 +128,65 @@ struct RigidPoints : Points<Space, T, Dim> {
 
 /// Use of a field by the update of the particles (function 5).
 enum class Use { none, reads, changes };
+/// Value of a field where one particle takes up another; a sum is halved where a particle is split. kept:
+/// that of the particle which stays; or the merge sets it.
+enum class Merged { kept, mass_mean, volume_mean, sum };
+/// Values of a field at the start of a run. column: those of the field's column on the host
+/// (k_particle_columns), or zero where there is none. own: upload_soil() has a function for it.
+enum class Start { column, own };
 
-/// Calls f(name, use, field...) for every field that holds one entry a particle, but cell and id, of some
-/// sets of the same kind at once. The one table of fields: sorting, migration, checkpoints, batches, memory
+/// A row of the table of fields.
+struct ParticleField {
+  const char* name;
+  Use use;
+  Merged merged = Merged::kept;
+  Start start = Start::column;
+};
+
+/// Calls f(row, field...) for every field that holds one entry a particle, but cell and id, of some sets of
+/// the same kind at once. The one table of fields: sorting, migration, merging, checkpoints, batches, memory
 /// and the bytes that a step moves follow it.
+#ifdef __CUDACC__
+#pragma nv_exec_check_disable  // f may be of the host alone
+#endif
 template <class F, class Soil_, class... Others>
 requires requires(Soil_& s) { s.history; }
-void for_each_field_of(F&& f, Soil_& s, Others&... others) {
-  f("coordinate", Use::changes, s.coordinate, others.coordinate...);
-  f("velocity", Use::changes, s.velocity, others.velocity...);
-  f("stress", Use::changes, s.stress, others.stress...);
-  f("volume", Use::changes, s.volume, others.volume...);
+KOKKOS_INLINE_FUNCTION void for_each_field_of(F&& f, Soil_& s, Others&... others) {
+  using enum Use;
+  using enum Merged;
+  constexpr Start own = Start::own;
+  f(ParticleField{"coordinate", changes, kept, own}, s.coordinate, others.coordinate...);
+  f(ParticleField{"velocity", changes, mass_mean}, s.velocity, others.velocity...);
+  f(ParticleField{"stress", changes, volume_mean}, s.stress, others.stress...);
+  f(ParticleField{"volume", changes, sum}, s.volume, others.volume...);
   for (int k = 0; k < s.history.columns; ++k)
-    f(s.history.name[k], s.history.changes[k] ? Use::changes : Use::reads, s.history.column[k],
-      others.history.column[k]...);
-  f("body", s.bodies.extent(0) > 1 ? Use::reads : Use::none, s.body, others.body...);
-  if (s.affine.extent(0) > 0) f("affine", Use::none, s.affine, others.affine...);
-  if (s.has_own_mass) f("mass", Use::reads, s.mass, others.mass...);
+    f(ParticleField{s.history.name[k], s.history.changes[k] ? changes : reads, volume_mean, own},
+      s.history.column[k], others.history.column[k]...);
+  f(ParticleField{"body", s.bodies.extent(0) > 1 ? reads : none, kept, own}, s.body, others.body...);
+  if (s.has_affine) f(ParticleField{"affine", none, mass_mean, own}, s.affine, others.affine...);
+  if (s.has_own_mass) f(ParticleField{"mass", reads, sum}, s.mass, others.mass...);
   if (s.has_domain) {
-    f("half_length", Use::reads, s.half_length, others.half_length...);
-    f("domain", Use::none, s.domain, others.domain...);
-    f("begun", Use::none, s.begun, others.begun...);
-    f("begun_volume", Use::none, s.begun_volume, others.begun_volume...);
+    f(ParticleField{"half_length", reads, kept, own}, s.half_length, others.half_length...);
+    f(ParticleField{"domain", none, kept, own}, s.domain, others.domain...);
+    f(ParticleField{"begun", none}, s.begun, others.begun...);
+    f(ParticleField{"begun_volume", none}, s.begun_volume, others.begun_volume...);
   }
-  if (s.splits) f("ancestor", Use::none, s.ancestor, others.ancestor...);
-  if (s.has_periods) f("periods", Use::none, s.periods, others.periods...);
+  if (s.splits) f(ParticleField{"ancestor", none, kept, own}, s.ancestor, others.ancestor...);
+  if (s.has_periods) f(ParticleField{"periods", none}, s.periods, others.periods...);
   constexpr const char* face_names[k_most_faces] = {"face_0", "face_1", "face_2"};
-  for (int k = 0; k < s.face_count; ++k) f(face_names[k], Use::none, s.faces[k], others.faces[k]...);
+  for (int k = 0; k < s.face_count; ++k)
+    f(ParticleField{face_names[k], none, kept, own}, s.faces[k], others.faces[k]...);
 }
 template <class F, class RigidPoints_>
 requires requires(RigidPoints_& s) { s.reference_position; }
 void for_each_field_of(F&& f, RigidPoints_& s) {
-  f("coordinate", Use::none, s.coordinate), f("reference_position", Use::none, s.reference_position);
+  f(ParticleField{"coordinate", Use::none}, s.coordinate);
+  f(ParticleField{"reference_position", Use::none}, s.reference_position);
 }
 /// The fields alone.
 template <class Points_, class F>
 void for_each_field(Points_& points, F&& f) {
-  for_each_field_of([&](const char*, Use, auto& field) { f(field); }, points);
+  for_each_field_of([&](const ParticleField&, auto& field) { f(field); }, points);
 }
 
 /// Places for the sums of windows, so that many threads can make them at once.

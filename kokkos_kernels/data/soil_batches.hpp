@@ -34,8 +34,8 @@ struct SoilBatch {
 template <class Home, class There, class F>
 void for_each_of_step(Home& home, There& there, F&& f) {
   for_each_field_of(
-      [&](const char*, Use use, auto& at_home, auto& in_batch) {
-        if (use != Use::none) f(at_home, in_batch, use);
+      [&](const ParticleField& row, auto& at_home, auto& in_batch) {
+        if (row.use != Use::none) f(at_home, in_batch, row.use);
       },
       home, there);
   f(home.cell, there.cell, Use::reads);

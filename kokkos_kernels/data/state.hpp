@@ -80,9 +80,8 @@ struct State {
   bool rayleigh = false;                  // Rayleigh damping is in use
   double kick = 1;                        // -, share of the next step by which it changes velocities
   double friction_time = 1;               // s, over which friction takes the mean normal impulse
-  double flip_fraction = 1;               // -, what is not FLIP is PIC, or XPIC
+  double flip_fraction = 1;               // -, what is not FLIP is PIC, or XPIC; 0 with APIC
   int xpic_order = 0;                     // m of XPIC(m), 0 without it
-  bool affine = false;                    // APIC: Soil::affine is in use; flip_fraction is then 0
   double f_bar_fraction = 0;              // -, the largest of all materials; each takes its share of it
   bool f_bar_by_material = false;         // bodies differ in material
   bool keeps_stress = false;              // sorting brings no pressures together: at a start from another run
@@ -103,6 +102,18 @@ struct State {
   EnergyWorks<Space, T, Dim> energy;  // in use where the run asks for an energy balance
   PositionCorrection<Space> correction;
 };
+
+/// The nodal fields that a run uses.
+template <class Space, class T, int Dim>
+NodeUses uses_of_nodes(const State<Space, T, Dim>& s) {
+  return {.boundary = s.soil_boundary,
+          .strength = s.shear_fraction,
+          .water = s.water.is_there(),
+          .loads = s.loads.in_use(),
+          .residual = s.xpic_order > 0,
+          .correction = s.correction.on,
+          .domains = s.soil.points.has_domain};
+}
 
 /// Dilatation rates of particles [1/s].
 template <class Space, class T>

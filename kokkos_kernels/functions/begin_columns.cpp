@@ -224,7 +224,7 @@ GiveColumns<Space, T, Dim> give_columns_of(const State<Space, T, Dim>& s, unsign
             sides,
             shear_ratios<Space>(shear_ratio),
             s.f_bar_fraction,
-            s.affine,
+            s.soil.points.has_affine,
             typename Give::Sum("mpm::column_sums", s.sides.columns.extent(0)),
             {}};
   for (int k = 0; k < k_units; ++k) {

@@ -22,7 +22,7 @@ ColumnStep<T, Dim> column_step(const State<Space, T, Dim>& s, int side, double d
           .still = k_still<T>,
           .mass_cut = s.mass_cut,
           .xpic = s.xpic_order,
-          .affine = s.affine,
+          .affine = s.soil.points.has_affine,
           .d = side / 2};
 }
 

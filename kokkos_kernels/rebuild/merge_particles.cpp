@@ -1,5 +1,6 @@
 #include "rebuild/merge_particles.hpp"
 
+#include "base/number_of.hpp"
 #include "physics/domain.hpp"
 #include "rebuild/shift_particle.hpp"
 
@@ -7,9 +8,9 @@ namespace mpm {
 namespace {
 
 /// Particles that merging has taken, and the kinetic energy [J] that went with them.
-struct Merged {
+struct Taken {
   double count = 0, energy = 0;
-  KOKKOS_INLINE_FUNCTION Merged& operator+=(const Merged& other) {
+  KOKKOS_INLINE_FUNCTION Taken& operator+=(const Taken& other) {
     count += other.count, energy += other.energy;
     return *this;
   }
@@ -20,13 +21,41 @@ struct Merged {
 
 namespace Kokkos {
 template <>
-struct reduction_identity<mpm::Merged> {
-  KOKKOS_FORCEINLINE_FUNCTION static mpm::Merged sum() { return {}; }
+struct reduction_identity<mpm::Taken> {
+  KOKKOS_FORCEINLINE_FUNCTION static mpm::Taken sum() { return {}; }
 };
 }  // namespace Kokkos
 
 namespace mpm {
 namespace {
+
+/// Brings the values of particle q to those of particle p, by the rule of each field.
+template <class T>
+struct TakeUp {
+  int p, q;
+  double mass_share;                // of p in the mass of both
+  double volume_of_p, volume_of_q;  // shares in the volume of both
+
+  template <class Field>
+  KOKKOS_INLINE_FUNCTION void operator()(const ParticleField& row, const Field& field) const {
+    using Value = typename Field::non_const_value_type;
+    using N = Number<Value>;
+    if constexpr (std::is_same_v<N, T>) {
+      N* const to = reinterpret_cast<N*>(&field(p));
+      const N* const from = reinterpret_cast<const N*>(&field(q));
+      for (int k = 0; k < components_of<Value>; ++k) to[k] = joined(row.merged, to[k], from[k]);
+    }
+  }
+  KOKKOS_INLINE_FUNCTION T joined(Merged rule, T at_p, T at_q) const {
+    switch (rule) {
+      case Merged::mass_mean: return T(mass_share * at_p + (1 - mass_share) * at_q);
+      case Merged::volume_mean: return T(volume_of_p) * at_p + T(volume_of_q) * at_q;
+      case Merged::sum: return T(double(at_p) + double(at_q));
+      case Merged::kept: break;
+    }
+    return at_p;
+  }
+};
 
 /// Merges particles of one body, cell by cell.
 template <class Space, class T, int Dim>
@@ -39,7 +68,7 @@ struct MergeInCell {
   Grid<T, Dim> grid;
   int body;
 
-  KOKKOS_INLINE_FUNCTION void operator()(int cell, Merged& sum) const {
+  KOKKOS_INLINE_FUNCTION void operator()(int cell, Taken& sum) const {
     constexpr double k_crowded = 2;
     const double most =
         k_crowded * filled_by<Dim>(double(soil.bodies(body).half_length.l)) * (1 + k_round_off);
@@ -120,31 +149,21 @@ struct MergeInCell {
   KOKKOS_INLINE_FUNCTION double merge(int p, int q) const {
     const double a = share(p, q), b = 1 - a, mass = double(soil.mass(p)) + double(soil.mass(q));
     const double volume = double(soil.volume(p)) + double(soil.volume(q));
-    const T of_p = T(double(soil.volume(p)) / volume), of_q = T(double(soil.volume(q)) / volume);
     const DomainMoments<double, Dim> m = common_domain(p, q);
     Vector<double, Dim> way = between(p, q);
     for (int d = 0; d < Dim; ++d) way[d] *= b;
     Placed<T, Dim> middle{address(p), soil.coordinate(p)};
     if (shift(grid, way, middle)) put(soil, address, p, middle);  // both are in the mesh, and so is this
     double square = 0;
-    Vector<T, Dim> v;
     for (int d = 0; d < Dim; ++d) {
-      const double v_p = soil.velocity(p)[d], v_q = soil.velocity(q)[d];
-      v[d] = T(a * v_p + b * v_q);
-      square += (v_p - v_q) * (v_p - v_q);
+      const double difference = double(soil.velocity(p)[d]) - double(soil.velocity(q)[d]);
+      square += difference * difference;
     }
-    soil.velocity(p) = v;
-    for (int k = 0; k < sym_size<Dim>; ++k)
-      soil.stress(p)[k] = of_p * soil.stress(p)[k] + of_q * soil.stress(q)[k];
-    for (int k = 0; k < soil.history.columns; ++k)
-      soil.history.column[k](p) = of_p * soil.history.column[k](p) + of_q * soil.history.column[k](q);
-    if (soil.affine.extent(0) > 0)
-      for (int i = 0; i < Dim; ++i)
-        for (int j = 0; j < Dim; ++j)
-          soil.affine(p)(i, j) = T(a * soil.affine(p)(i, j) + b * soil.affine(q)(i, j));
+    const Soil<Space, T, Dim> points = soil;
+    for_each_field_of(TakeUp<T>{p, q, a, double(soil.volume(p)) / volume, double(soil.volume(q)) / volume},
+                      points);
     for (int k = 0; k < Dim * (Dim + 1) / 2; ++k) soil.domain(p)[k] = T(m[k]);
     soil.half_length(p) = to_store<Space>(bounded_half_lengths(soil.domain(p), soil.least_half_length));
-    soil.mass(p) = T(mass), soil.volume(p) = T(volume);
     address(q) = -1;
     return a * b * mass * square / 2;
   }
@@ -158,10 +177,10 @@ void merge_particles(State<Space, T, Dim>& s) {
   for (int b = 0; b < static_cast<int>(s.strays.lost.size()); ++b) {
     const MergeInCell<Space, T, Dim> merge{
         s.soil.points, s.soil.bins.begin, s.soil.address, s.strays.alone, s.grid, b};
-    Merged merged;
+    Taken taken;
     Kokkos::parallel_reduce("mpm::merge_particles", Kokkos::RangePolicy<Space>(s.space, 0, cells), merge,
-                            Kokkos::Sum<Merged>(merged));
-    s.strays.lost[b].merged += merged.count, s.strays.lost[b].merged_energy += merged.energy;
+                            Kokkos::Sum<Taken>(taken));
+    s.strays.lost[b].merged += taken.count, s.strays.lost[b].merged_energy += taken.energy;
   }
 }
 

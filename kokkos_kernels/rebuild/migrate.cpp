@@ -141,7 +141,6 @@ void reserve_particles(State<Space, T, Dim>& s, int n) {
   const int kept = points.all;
   s.space.fence("mpm::reserve_particles");
   grow(points.cell, n, kept), grow(points.id, n, kept), grow(s.soil.address, n, kept);
-  if (s.affine) grow(points.affine, n, kept);
   for_each_field(points, [&](auto& field) { grow(field, n, kept); });
 }
 

@@ -333,18 +333,11 @@ void sort_and_list(State<Space, T, Dim>& s) {
   ensure(s.strays.alone, s.patches.slots);
   Kokkos::deep_copy(s.space, s.strays.alone, 0);
   const int nodes = s.patches.node_count();
-  ensure(s.nodes.soil, nodes);
-  ensure(s.nodes.kinematics, nodes);
-  if (s.xpic_order > 0) ensure(s.nodes.residual, nodes);
-  if (s.correction.on) ensure(s.nodes.shares, nodes);
-  if (s.soil.points.has_domain) ensure(s.nodes.centre, nodes), ensure(s.nodes.drift, nodes);
-  if (s.soil_boundary) ensure(s.nodes.boundary, nodes);
-  if (s.shear_fraction) ensure(s.nodes.strength, nodes);
-  if (s.water.is_there()) ensure(s.nodes.displaced, nodes);
-  if (s.loads.in_use()) {
-    ensure(s.nodes.load, nodes);
-    list_loaded(s);
-  }
+  const auto make_room = [nodes](const char*, bool in_use, auto& field) {
+    if (in_use) ensure(field, nodes);
+  };
+  for_each_nodal_field(make_room, s.nodes, uses_of_nodes(s));
+  if (s.loads.in_use()) list_loaded(s);
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid = decltype(s.nodes.rigid)(
         Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),

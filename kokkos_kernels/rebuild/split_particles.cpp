@@ -75,6 +75,17 @@ struct IsSplit {
   }
 };
 
+/// Halves the sums of a particle.
+struct Halve {
+  int p, other;
+
+  template <class Field>
+  KOKKOS_INLINE_FUNCTION void operator()(const ParticleField& row, const Field& field) const {
+    if constexpr (std::is_floating_point_v<typename Field::non_const_value_type>)
+      if (row.merged == Merged::sum) field(p) = field(other) = field(p) / 2;
+  }
+};
+
 /// Splits particle p; `other`, which is its copy, becomes the second half.
 template <class Space, class T, int Dim>
 struct Split {
@@ -97,8 +108,8 @@ struct Split {
     soil.domain(p) = soil.domain(other) = m;
     soil.half_length(p) = soil.half_length(other) =
         to_store<Space>(bounded_half_lengths(m, soil.least_half_length));
-    soil.mass(p) = soil.mass(other) = soil.mass(p) / 2;
-    soil.volume(p) = soil.volume(other) = soil.volume(p) / 2;
+    const Soil<Space, T, Dim> points = soil;
+    for_each_field_of(Halve{p, other}, points);
     for (int k = 0; k < soil.face_count; ++k) {
       Face<Dim>& face = soil.faces[k](p);
       for (int d = 0; d < FaceTerms<Dim>::steps; ++d) face[d] /= 2;  // the areas

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "base/copy.hpp"
+#include "base/number_of.hpp"
 #include "physics/domain.hpp"
 
 namespace mpm {
@@ -43,24 +44,27 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
     for (const int p : by_id)
       for (int k = 0; k < width; ++k) out.push_back(component(host(p), k));
   };
-  const auto part = [](const auto& value, int k) { return double(value[k]); };
-  const auto whole = [](const auto& value, int) { return double(value); };
-  spread(soil.velocity, Dim, fields.velocity, part);
-  spread(soil.stress, sym_size<Dim>, fields.stress, part);
-  spread(soil.volume, 1, fields.volume, whole);
+  const auto part = [](const auto& value, int k) {
+    return double(reinterpret_cast<const Number<std::decay_t<decltype(value)>>*>(&value)[k]);
+  };
+  const auto spread_column = [&](const ParticleField& row, const auto& view) {
+    using Value = typename std::decay_t<decltype(view)>::non_const_value_type;
+    const ParticleColumn* const column = column_of(row.name);
+    if (row.start == Start::column && column != nullptr && column->framed != Framed::no)
+      spread(view, components_of<Value>, fields.*column->values, part);
+  };
+  auto points = soil;
+  for_each_field_of(spread_column, points);
   fields.history.resize(soil.history.columns);
-  for (int k = 0; k < soil.history.columns; ++k) spread(soil.history.column[k], 1, fields.history[k], whole);
+  for (int k = 0; k < soil.history.columns; ++k) spread(soil.history.column[k], 1, fields.history[k], part);
   const auto bodies = mirror_of(soil.bodies);
   const auto of_body = [&](int b, int) { return double(bodies(b).mass); };
-  if (soil.has_own_mass)
-    spread(soil.mass, 1, fields.mass, whole);
-  else
-    spread(soil.body, 1, fields.mass, of_body);
+  if (!soil.has_own_mass) spread(soil.body, 1, fields.mass, of_body);
 
   const double spacing = s.spacing;
   const auto half_length = [&](const auto& cells, int d) { return double(cells[d]) * spacing; };
   if (soil.has_domain) spread(soil.half_length, Dim, fields.half_length, half_length);
-  if (soil.splits) spread(soil.ancestor, 1, fields.ancestor, whole);
+  if (soil.splits) spread(soil.ancestor, 1, fields.ancestor, part);
 
   for (int k = 0; k < soil.face_count; ++k) {
     std::vector<double> area;

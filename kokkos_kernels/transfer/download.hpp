@@ -4,19 +4,18 @@
 #include <vector>
 
 #include "base/spaces.hpp"
+#include "data/particle_columns.hpp"
 #include "data/state.hpp"
 
 namespace mpm {
 
-/// Fields of the soil on the host, as wide as SymTensor and Vector are: those of this rank's particles, in
-/// the order of order_for_host. On one rank, where none was split, that is the order of creation.
-struct SoilFields {
-  std::vector<int> id;             // of the first body, rising, then of the second
-  std::vector<std::size_t> first;  // of each body, and the end of the last one
-  std::vector<double> position;    // m from the mesh's lower corner
-  std::vector<double> velocity, stress, volume;
+/// The soil on the host: the columns that frames have, of this rank's particles in the order of
+/// order_for_host. On one rank, where none was split, that is the order of creation. The reference heights
+/// are not among them. Positions are from the mesh's lower corner, and stresses total.
+struct SoilFields : ParticleColumns {
+  std::vector<int> id;                       // of the first body, rising, then of the second
+  std::vector<std::size_t> first;            // of each body, and the end of the last one
   std::vector<std::vector<double>> history;  // of each column in use
-  std::vector<double> mass;                  // kg
   std::vector<double> half_length;           // m [Dim N], where domains stretch
   std::vector<double> ancestor;              // ids, where particles split
   std::vector<double> periods;               // [Dim N], Soil::periods of these positions

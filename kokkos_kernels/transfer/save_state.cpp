@@ -2,29 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
-#include <utility>
 
 #include "base/copy.hpp"
 #include "functions/step_kernels.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
+#include "transfer/fill_view.hpp"
 
 namespace mpm {
 namespace {
-
-/// The number that an entry of a field is made of, and how many of them it has.
-template <class Value>
-auto number_of(const Value& value) {
-  if constexpr (std::is_arithmetic_v<Value>)
-    return value;
-  else
-    return value.c[0];
-}
-template <class Value>
-using Number = decltype(number_of(std::declval<Value>()));
-template <class Value>
-constexpr int components_of = sizeof(Value) / sizeof(Number<Value>);
 
 template <class View>
 SavedField save_field(const std::string& name, const View& view, int count) {
@@ -54,8 +40,8 @@ SavedPoints save_points(const Patches_& patches, Points_ points) {
   const auto id = mirror_of(points.id);
   saved.id.assign(id.data(), id.data() + points.count);
   saved.address = addresses_of(patches, points.cell, points.count);
-  const auto save = [&](const char* name, Use, const auto& field) {
-    saved.fields.push_back(save_field(name, field, points.count));
+  const auto save = [&](const ParticleField& row, const auto& field) {
+    saved.fields.push_back(save_field(row.name, field, points.count));
   };
   for_each_field_of(save, points);
   return saved;
@@ -178,8 +164,8 @@ std::string restore_points(ParticleSet<Space, Points_>& set, const SavedPoints& 
   auto& points = set.points;
   points.count = points.all = static_cast<int>(saved.id.size());
   std::string missing;
-  const auto restore = [&](const char* name, Use, auto& view) {
-    if (!restore_field(name, view, saved, points.count)) missing = name;
+  const auto restore = [&](const ParticleField& row, auto& view) {
+    if (!restore_field(row.name, view, saved, points.count)) missing = row.name;
   };
   for_each_field_of(restore, points);
   restore_whole(points.id, saved.id);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "data/particle_columns.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
@@ -25,33 +26,29 @@ struct MaterialInput {
   double f_bar_share = 1;                // -, of State::f_bar_fraction
 };
 
-/// Particles of one deformable body. Positions are from the mesh's lower corner, Dim components each.
-struct BodyInput {
-  std::vector<double> position;              // m [Dim N]
-  std::vector<double> stress;                // Pa, effective [sym_size N], or empty for none
-  std::vector<double> excess_pore_pressure;  // Pa [N], or empty for none
-  std::vector<double> particle_velocity;     // m/s [Dim N], or empty where `velocity` holds for all
-  std::vector<std::vector<double>> state;    // of each state variable of the law [N], or empty for zero
-  std::vector<double> volume;                // m3 [N], or empty where particle_volume holds for all
-  std::vector<double> mass;                  // kg [N], or empty where particle_mass holds for all
-  std::vector<double> velocity_gradient;     // m/s a cell [Dim^2 N], or empty where the velocities tell it
-  std::vector<double> domain;        // cells2, moments of domains that stretch [Dim (Dim + 1) / 2 N], or
-                                     // empty where they are squares of the half length
-  std::vector<double> faces;         // surfaces of loads, FaceTerms one after the other
-                                     // [FaceTerms::size face_count N], or empty where there are none
-  std::vector<int> id;               // [N], or empty where they are counted from 0
-  double particle_volume = 0;        // m3
-  double least_volume = 0;           // m3, of all ranks, as they were created; 0: that above
-  double most_volume = 0;            // m3, likewise
-  double particle_mass = 0;          // kg; 0: density times particle_volume
-  double half_length = 0.25;         // cells
-  double density = 0;                // kg/m3
-  bool weighed = false;              // each particle's mass is the density times its volume at its creation
-  double least_mass = 0;             // kg, where they differ in mass, of all ranks; else 0
-  std::array<double, 3> velocity{};  // m/s
+/// Particles of one deformable body: columns, and where a column is empty the values that all particles have
+/// in common. Positions are from the mesh's lower corner; the stress is total where the state has an excess
+/// pore pressure. The state has the variables of the law, in the order of its table, or none of them, where
+/// they are zero; behind them the excess pore pressure, where it is not zero.
+struct BodyInput : ParticleColumns {
+  std::vector<int> id;                      // [N], or empty where they are counted from 0
+  std::array<double, 3> common_velocity{};  // m/s
+  double particle_volume = 0;               // m3
+  double least_volume = 0;                  // m3, of all ranks, as they were created; 0: that above
+  double most_volume = 0;                   // m3, likewise
+  double particle_mass = 0;                 // kg; 0: density times particle_volume
+  double least_mass = 0;                    // kg, where they differ in mass, of all ranks; else 0
+  double half_length = 0.25;                // cells
+  double density = 0;                       // kg/m3
+  bool weighed = false;  // each particle's mass is the density times its volume at its creation
   int material = 0;
   int velocity_field = 0;  // bodies of one field stick to one another, those of two do not feel each other
 };
+
+/// Mass of each particle of a body whose particles have none of their own [kg].
+inline double common_mass(const BodyInput& body) {
+  return body.particle_mass > 0 ? body.particle_mass : body.density * body.particle_volume;
+}
 
 /// The surface of a rigid body, as Surface has it.
 struct SurfaceInput {

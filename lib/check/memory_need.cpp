@@ -23,46 +23,80 @@ constexpr double k_made = 125, k_framed = 550;  // bytes of the host for a parti
 constexpr double k_mesh = 24;                   // for a patch, while PETSc's DMDA is made
 constexpr double k_rigid_framed = 150;          // for a rigid's particle in a frame
 
-/// Bytes of all that fills so many cells with soil: the soil's own, which -device_memory_limit keeps on the
-/// host, and the nodes', the rigids' and the patches'.
-template <class T, int Dim>
-void add_bytes(const Config& config, double cells, MemoryNeed& need) {
-  constexpr double k_ring = 1.1;  // the patches round the soil
-  int columns = 0;
-  bool undrained = false;
+/// The vectors of the soil that a run uses, without their memory.
+template <class Space, class T, int Dim>
+Soil<Space, T, Dim> soil_of(const Config& config) {
+  Soil<Space, T, Dim> soil;
+  bool undrained = false, own_mass = config.geometry == Geometry::axisymmetric;
   for (const BodyConfig& body : config.bodies) {
     const MaterialConfig& material = config.materials[body.material];
-    columns = std::max(columns, static_cast<int>(state_variables(material).size()));
+    soil.history.columns = std::max(soil.history.columns, static_cast<int>(state_variables(material).size()));
     undrained = undrained || material.pore_stiffness > 0;
+    own_mass = own_mass || body.shape.kind == ShapeKind::particles || body.shape.fill == Fill::cut;
   }
-  columns += undrained;  // the excess pore pressure
-  double a_particle = Footprint<T, Dim>::particle(columns);
-  if (config.particle_domain != ParticleDomain::fixed)
-    a_particle += Footprint<T, Dim>::domain(config.backend == Backend::cuda);
-  if (is_periodic(config.mesh)) a_particle += Footprint<T, Dim>::periods;
-  if (!config.loads.empty()) a_particle += Footprint<T, Dim>::face;
-  if (config.output.energy) a_particle += Footprint<T, Dim>::energy;
-  if (config.position_correction) a_particle += Footprint<T, Dim>::correction;
+  soil.history.columns += undrained;  // the excess pore pressure
+  soil.has_affine = config.velocity_update == VelocityUpdate::apic;
+  soil.has_domain = config.particle_domain != ParticleDomain::fixed;
+  soil.splits = config.particle_domain == ParticleDomain::split;
+  soil.has_own_mass = own_mass || soil.splits;
+  soil.has_periods = is_periodic(config.mesh);
+  soil.face_count = config.loads.empty() ? 0 : 1;
+  return soil;
+}
+
+/// The nodal fields that a run uses.
+NodeUses uses_of_nodes(const Config& config) {
+  const auto by_strength = [](const auto& of) { return of.shear_fraction.has_value(); };
+  return {.boundary = !config.rigids.empty(),
+          .strength = std::any_of(config.rigids.begin(), config.rigids.end(), by_strength),
+          .water = config.water.level.has_value(),
+          .loads = !config.loads.empty(),
+          .residual = config.velocity_update == VelocityUpdate::xpic,
+          .correction = bool(config.position_correction),
+          .domains = config.particle_domain != ParticleDomain::fixed};
+}
+
+/// Bytes that a particle of the soil takes, with what sorts it and what some runs keep of it in a step.
+template <class Space, class T, int Dim>
+double bytes_of_particle(const Config& config) {
+  const auto soil = soil_of<Space, T, Dim>(config);
+  double bytes = bytes_of_point(soil) + bytes_to_sort(soil);
+  if (!config.loads.empty()) bytes += k_grown * 3 * sizeof(Vector<T, Dim>);  // SurfaceLoads
+  if (config.output.energy) bytes += k_grown * (2 * sizeof(SymTensor<T, Dim>) + sizeof(T));
+  if (config.velocity_update == VelocityUpdate::xpic) bytes += k_grown * sizeof(Vector<T, Dim>);
   if (config.p2g.strategy == P2G::gather) {
     // a particle is in the lists of the nodes that it may reach before the margin is used up
     const double reach = 2 * (1.25 + config.p2g.margin);
-    a_particle += sizeof(int) * std::pow(reach, Dim);
+    bytes += sizeof(int) * std::pow(reach, Dim);
   }
-  const double soil = need.particles * a_particle;
-  need.nodes = k_ring * cells * Footprint<T, Dim>::node;
-  if (config.particle_domain != ParticleDomain::fixed)
-    need.nodes += k_ring * cells * Footprint<T, Dim>::domain_node;
-  if (!config.loads.empty()) need.nodes += k_ring * cells * Footprint<T, Dim>::load;
-  if (config.position_correction) need.nodes += k_ring * cells * Footprint<T, Dim>::shares;
+  return bytes;
+}
+
+/// Bytes of all that fills so many cells with soil: the soil's own, which -device_memory_limit keeps on the
+/// host, and the nodes', the rigids' and the patches'.
+template <class Space, class T, int Dim>
+void add_bytes(const Config& config, double cells, MemoryNeed& need) {
+  constexpr double k_ring = 1.1;  // the patches round the soil
+  const double soil = need.particles * bytes_of_particle<Space, T, Dim>(config);
+  need.nodes = k_ring * cells * bytes_of_node(Nodes<Space, T, Dim>{}, uses_of_nodes(config));
   if (config.backend == Backend::openmp && chosen(config.p2g.strategy) == P2G::tile)
-    need.nodes += cells * Footprint<T, Dim>::window;
-  need.all_ranks = need.rigids * Footprint<T, Dim>::rigid_point + need.patches * Footprint<T, Dim>::patch;
+    need.nodes += cells * k_window_bytes<T, Dim>;
+  const RigidPoints<Space, T, Dim> point;
+  need.all_ranks =
+      need.rigids * (bytes_of_point(point) + bytes_to_sort(point)) + need.patches * k_patch_bytes;
   need.device = soil + need.nodes;
   const double place = sizeof(Vector<T, Dim>) + 2 * (sizeof(Vector<double, Dim>) + sizeof(long));
   need.host += need.rigids * (place + (config.output.frames ? k_rigid_framed : 0)) + need.patches * k_mesh;
   if (!config.device_memory_limit) return;
   need.device = std::min(need.device, *config.device_memory_limit * k_gib);
   need.host += soil;
+}
+template <class T, int Dim>
+void add_bytes(const Config& config, double cells, MemoryNeed& need) {
+#ifdef KOKKOS_ENABLE_CUDA
+  if (config.backend == Backend::cuda) return add_bytes<Kokkos::Cuda, T, Dim>(config, cells, need);
+#endif
+  add_bytes<Processor, T, Dim>(config, cells, need);
 }
 
 /// Cells that a shape fills.

@@ -10,24 +10,17 @@
 
 namespace mpm {
 
-/// The particles of one body or rigid at one time, in the order of their creation. Vectors are padded to
-/// three components, symmetric tensors to six (xx, yy, zz, xy, yz, zx). All but position and velocity are
-/// empty for rigids.
-struct ParticleSnapshot {
+/// The particles of one body or rigid at one time, in the order of their creation: the columns of
+/// k_particle_columns that frames have, as wide as framed_width() says, and the state variables that frames
+/// have. Positions are from the origin. All but position and velocity are empty for rigids.
+struct ParticleSnapshot : ParticleColumns {
   std::string name;
   std::vector<int> id;  // of the particles of this rank, in the body; empty where they follow one another
   long first = 0;       // on several ranks: number in the body of the first particle here,
   long total = -1;      // and of all of them; negative where all are here
-  std::vector<double> position;               // m     [3 N]
-  std::vector<double> velocity;               // m/s   [3 N]
-  std::vector<double> grid_velocity;          // m/s   [3 N], of the nodes, interpolated to the particles
-  std::vector<double> stress;                 // Pa    [6 N], Cauchy, tension positive
-  std::vector<double> volume;                 // m3    [N]
-  std::vector<StateField> state;              // the state variables that frames have
-  std::vector<std::string> own_parameters{};  // of them: each particle's own values of parameters
-  std::vector<double> mass;                   // kg    [N], of particles and nodes
-  std::vector<double> reference_height;       // m   [N], where the particle was created
-  std::vector<double> number;                 // -     [N], of nodes: in the whole mesh, x fastest
+  std::vector<double> grid_velocity{};   // m/s [3 N], of the nodes, interpolated to the particles
+  std::vector<std::string> own_names{};  // of those of `state` that are each particle's own parameters
+  std::vector<double> number{};          // - [N], of nodes: in the whole mesh, x fastest
 };
 
 /// The attribute of a body's group in a frame that names the parameters of which each particle has its own,

@@ -10,13 +10,11 @@ namespace mpm {
 
 const std::vector<Field>& frame_fields() {
   static const std::vector<Field> fields = [] {
-    std::vector<Field> all = {
-        {"position", "m", 3, Of::all, &ParticleSnapshot::position},
-        {"velocity", "m/s", 3, Of::all, &ParticleSnapshot::velocity},
-        {"grid_velocity", "m/s", 3, Of::bodies, &ParticleSnapshot::grid_velocity},
-        {"stress", "Pa", 6, Of::bodies, &ParticleSnapshot::stress},
-        {"volume", "m3", 1, Of::bodies, &ParticleSnapshot::volume},
-    };
+    std::vector<Field> all;
+    for (const ParticleColumn& column : k_particle_columns)
+      if (column.framed != Framed::no)
+        all.push_back({column.name, column.unit, framed_width(column.width), column.framed, column.values});
+    all.push_back({"grid_velocity", "m/s", 3, Framed::bodies, &ParticleSnapshot::grid_velocity});
     const auto is_new = [&](const char* name) {
       return std::none_of(all.begin(), all.end(),
                           [&](const Field& f) { return std::string(f.name) == name; });
@@ -24,25 +22,23 @@ const std::vector<Field>& frame_fields() {
     for (int model = 0; model < static_cast<int>(material_models().size()); ++model)
       for (const StateVariable& variable : state_variables(model))
         if (variable.output && is_new(variable.name))
-          all.push_back({variable.name, variable.unit, 1, Of::bodies, nullptr});
+          all.push_back({variable.name, variable.unit, 1, Framed::bodies, nullptr});
     for (int model = 0; model < static_cast<int>(material_models().size()); ++model)
       for (const StateVariable& variable : state_variables(model))
         if (variable.parameter != nullptr && is_new(variable.parameter))
-          all.push_back({variable.parameter, variable.unit, 1, Of::bodies, nullptr});
-    const Field last[] = {{"pore_pressure", "Pa", 1, Of::bodies, nullptr},
-                          {k_excess_pore_pressure, "Pa", 1, Of::bodies, nullptr},
-                          {"half_length_x", "m", 1, Of::bodies, nullptr},
-                          {"half_length_y", "m", 1, Of::bodies, nullptr},
-                          {"half_length_z", "m", 1, Of::bodies, nullptr},
-                          {"periods_x", "-", 1, Of::bodies, nullptr},
-                          {"periods_y", "-", 1, Of::bodies, nullptr},
-                          {"periods_z", "-", 1, Of::bodies, nullptr},
-                          {"load_area_x", "m2", 1, Of::bodies, nullptr},
-                          {"load_area_y", "m2", 1, Of::bodies, nullptr},
-                          {"load_area_z", "m2", 1, Of::bodies, nullptr},
-                          {"mass", "kg", 1, Of::bodies_and_nodes, &ParticleSnapshot::mass},
-                          {"reference_height", "m", 1, Of::bodies, &ParticleSnapshot::reference_height},
-                          {"number", "-", 1, Of::nodes, &ParticleSnapshot::number}};
+          all.push_back({variable.parameter, variable.unit, 1, Framed::bodies, nullptr});
+    const Field last[] = {{"pore_pressure", "Pa", 1, Framed::bodies, nullptr},
+                          {k_excess_pore_pressure, "Pa", 1, Framed::bodies, nullptr},
+                          {"half_length_x", "m", 1, Framed::bodies, nullptr},
+                          {"half_length_y", "m", 1, Framed::bodies, nullptr},
+                          {"half_length_z", "m", 1, Framed::bodies, nullptr},
+                          {"periods_x", "-", 1, Framed::bodies, nullptr},
+                          {"periods_y", "-", 1, Framed::bodies, nullptr},
+                          {"periods_z", "-", 1, Framed::bodies, nullptr},
+                          {"load_area_x", "m2", 1, Framed::bodies, nullptr},
+                          {"load_area_y", "m2", 1, Framed::bodies, nullptr},
+                          {"load_area_z", "m2", 1, Framed::bodies, nullptr},
+                          {"number", "-", 1, Framed::nodes, &ParticleSnapshot::number}};
     all.insert(all.end(), std::begin(last), std::end(last));
     return all;
   }();

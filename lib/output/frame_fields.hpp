@@ -16,15 +16,13 @@ struct FrameStyle {
   int compression = 0;                // level of HDF5's deflate filter, 0 to 9
 };
 
-/// The groups that have a field.
-enum class Of { all, bodies, nodes, bodies_and_nodes };
-
-/// One field of a group. A new field is a line of frame_fields(); state variables come from the laws' tables.
+/// One field of a group. Fields come from the tables of particles' columns and of laws' state variables; what
+/// else frames have is a line of frame_fields().
 struct Field {
   const char* name;
   const char* unit;
   int components;
-  Of of;
+  Framed of;
   std::vector<double> ParticleSnapshot::*values;  // [components N]; null: a state variable, by its name
 };
 
@@ -37,9 +35,9 @@ const std::vector<double>* values_of(const ParticleSnapshot& particles, const Fi
 inline bool is_position(const Field& field) { return field.values == &ParticleSnapshot::position; }
 
 /// Whether the groups of a kind (all: rigids) have a field.
-inline bool belongs_to(const Field& field, Of group) {
-  return field.of == Of::all || field.of == group ||
-         (field.of == Of::bodies_and_nodes && (group == Of::bodies || group == Of::nodes));
+inline bool belongs_to(const Field& field, Framed group) {
+  return field.of == Framed::all || field.of == group ||
+         (field.of == Framed::bodies_and_nodes && (group == Framed::bodies || group == Framed::nodes));
 }
 
 /// Whether a field is float64 in any precision: where particles are and were.
@@ -48,15 +46,15 @@ inline bool is_exact(const Field& field) {
 }
 
 /// Whether a group of this kind is written with a field in this style. Nodes have all of theirs.
-inline bool is_written(const ParticleSnapshot& particles, const Field& field, Of group,
+inline bool is_written(const ParticleSnapshot& particles, const Field& field, Framed group,
                        const FrameStyle& style) {
   if (!belongs_to(field, group) || values_of(particles, field) == nullptr) return false;
-  return is_position(field) || group == Of::nodes || style.fields.empty() ||
+  return is_position(field) || group == Framed::nodes || style.fields.empty() ||
          std::find(style.fields.begin(), style.fields.end(), field.name) != style.fields.end();
 }
 
 /// The names of the fields that a group of this kind is written with.
-inline std::vector<std::string> written_fields(const ParticleSnapshot& particles, Of group,
+inline std::vector<std::string> written_fields(const ParticleSnapshot& particles, Framed group,
                                                const FrameStyle& style) {
   std::vector<std::string> names;
   for (const Field& field : frame_fields())
@@ -68,7 +66,7 @@ inline std::vector<std::string> written_fields(const ParticleSnapshot& particles
 inline std::vector<std::string> frame_field_names() {
   std::vector<std::string> names;
   for (const Field& field : frame_fields())
-    if (!is_position(field) && field.of != Of::nodes) names.push_back(field.name);
+    if (!is_position(field) && field.of != Framed::nodes) names.push_back(field.name);
   return names;
 }
 /// The list for a message, which names only the first and the last of numbered names: "state_1 to state_9".

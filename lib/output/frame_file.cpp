@@ -143,14 +143,15 @@ struct Reserve {
 };
 
 /// `reserve` is null where all numbers are here.
-PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSnapshot& particles, Of kind,
-                           Precision precision, const FrameStyle& style, Reserve* reserve = nullptr) {
+PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSnapshot& particles,
+                           Framed kind, Precision precision, const FrameStyle& style,
+                           Reserve* reserve = nullptr) {
   PetscFunctionBeginUser;
   const char* name = particles.name.c_str();
   Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   PetscCall(check(group.id, path, name));
-  if (!particles.own_parameters.empty())
-    PetscCall(write_text(group.id, path, k_own_parameter, join(particles.own_parameters, ",")));
+  if (!particles.own_names.empty())
+    PetscCall(write_text(group.id, path, k_own_parameter, join(particles.own_names, ",")));
   for (const Field& field : frame_fields()) {
     if (!is_written(particles, field, kind, style)) continue;
     if (reserve == nullptr) {
@@ -179,11 +180,11 @@ PetscErrorCode write_groups(hid_t file, const std::string& path, const Snapshot&
   if (dim > 0) PetscCall(write_attribute(file, path, "dim", H5T_NATIVE_LLONG, &dim));
   if (!snapshot.stage.empty()) PetscCall(write_text(file, path, "stage", snapshot.stage));
   for (const ParticleSnapshot& body : snapshot.bodies)
-    PetscCall(write_group(file, path, body, Of::bodies, precision, style, reserve));
+    PetscCall(write_group(file, path, body, Framed::bodies, precision, style, reserve));
   for (const ParticleSnapshot& rigid : snapshot.rigids)
-    PetscCall(write_group(file, path, rigid, Of::all, precision, style));
+    PetscCall(write_group(file, path, rigid, Framed::all, precision, style));
   for (const ParticleSnapshot& nodes : snapshot.nodes)
-    PetscCall(write_group(file, path, nodes, Of::nodes, precision, style));
+    PetscCall(write_group(file, path, nodes, Framed::nodes, precision, style));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -221,7 +222,7 @@ std::vector<FrameSlab> frame_slabs(const Snapshot& snapshot, Precision precision
   std::vector<FrameSlab> slabs;
   for (const ParticleSnapshot& body : snapshot.bodies)
     for (const Field& field : frame_fields()) {
-      if (!is_written(body, field, Of::bodies, style)) continue;
+      if (!is_written(body, field, Framed::bodies, style)) continue;
       FrameSlab slab{.body = &body, .field = &field, .rows = body.total};
       slab.bytes = static_cast<int>(H5Tget_size(file_type(field, precision)));
       slab.packed = style.compression > 0 && body.total > 0;

@@ -74,13 +74,13 @@ PetscErrorCode Frames::write(const Snapshot& snapshot) {
     PetscCall(write_frame_together(comm_, folder_ + "/" + file, snapshot, precision_, style_));
 
   FrameEntry entry{file, snapshot.time, {}};
-  const auto add = [&](const std::vector<ParticleSnapshot>& groups, Of kind) {
+  const auto add = [&](const std::vector<ParticleSnapshot>& groups, Framed kind) {
     for (const auto& group : groups)
       entry.groups.push_back({group.name,
                               group.total < 0 ? static_cast<long>(group.position.size() / 3) : group.total,
                               written_fields(group, kind, style_)});
   };
-  add(snapshot.bodies, Of::bodies), add(snapshot.rigids, Of::all), add(snapshot.nodes, Of::nodes);
+  add(snapshot.bodies, Framed::bodies), add(snapshot.rigids, Framed::all), add(snapshot.nodes, Framed::nodes);
   entries_.push_back(std::move(entry));
   ++count_;
   PetscCall(agree(comm_, rank_of(comm_) == 0 ? write_index() : PETSC_SUCCESS));

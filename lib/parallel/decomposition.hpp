@@ -31,6 +31,9 @@ struct RankReport {
   double sent = 0;  // bytes a step
 };
 
+/// Time of an exchange: in a step, whose work is timed already, or between two.
+enum class When { in_step, between_steps };
+
 template <class Space, class T, int Dim>
 class Decomposition {
  public:
@@ -59,12 +62,11 @@ class Decomposition {
   void join(const State_& s) { border_there_.wait(s.space); }
   /// Whether the border's sums have been sent since the last add_soil.
   bool sent_ahead() const { return ahead_ != Ahead::nothing; }
-  /// The sum over ranks of the nodal values of the residual of an XPIC pass.
-  PetscErrorCode add_residual(State_& s);
-  /// The sum over ranks of any values of the nodes, `size` a node, between two steps.
-  PetscErrorCode add_nodes(State_& s, T* values, int size);
-  /// The sum over ranks of the soil's strength, at nodes near rigids.
-  PetscErrorCode add_strength(State_& s);
+  /// The sum over ranks of a nodal field. read: by slot, where its nodes are read; null: everywhere.
+  template <class Field>
+  PetscErrorCode add_field(const State_& s, const Field& field, When when, const int* read = nullptr) {
+    return add_values(s, field.data(), static_cast<int>(field.extent(1)), when, read);
+  }
   /// The sum over ranks of the soil after sum_present_soil, for measures between two steps.
   PetscErrorCode add_present_soil(State_& s);
   /// The sum over ranks of the forces on dynamic rigids.
@@ -124,6 +126,7 @@ class Decomposition {
   PetscErrorCode exchange(int width, bool with_bound);
   void sum(const Space& space, const Fields& fields);
   PetscErrorCode add(const Space& space, const Fields& fields, bool with_bound);
+  PetscErrorCode add_values(const State_& s, T* values, int size, When when, const int* read);
   PetscErrorCode end_ahead(const State_& s, const Space& stream, bool with_bound);
   /// Forgets reports and messages of the steps before a rebuild.
   PetscErrorCode forget();

@@ -102,31 +102,14 @@ PetscErrorCode Decomposition<Space, T, Dim>::add_soil(State_& s, const Space& st
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode Decomposition<Space, T, Dim>::add_residual(State_& s) {
+PetscErrorCode Decomposition<Space, T, Dim>::add_values(const State_& s, T* values, int size, When when,
+                                                        const int* read) {
   PetscFunctionBeginUser;
   Fields fields;
-  fields.add(s.nodes.residual.data(), Dim);
+  fields.add(values, size, read);
+  if (when == When::between_steps) clock_.go_on();
   PetscCall(add(s.space, fields, false));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-template <class Space, class T, int Dim>
-PetscErrorCode Decomposition<Space, T, Dim>::add_nodes(State_& s, T* values, int size) {
-  PetscFunctionBeginUser;
-  Fields fields;
-  fields.add(values, size);
-  clock_.go_on();
-  PetscCall(add(s.space, fields, false));
-  clock_.stop();
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-template <class Space, class T, int Dim>
-PetscErrorCode Decomposition<Space, T, Dim>::add_strength(State_& s) {
-  PetscFunctionBeginUser;
-  Fields fields;
-  fields.add(s.nodes.strength.data(), StrengthTerms::size, s.near_rigid.data());
-  PetscCall(add(s.space, fields, false));
+  if (when == When::between_steps) clock_.stop();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -219,18 +202,17 @@ void Decomposition<Space, T, Dim>::drop_ahead() {
   present_added_ = false;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                 \
-  template bool Decomposition<Space, T, Dim>::overlaps(const State<Space, T, Dim>&) const;             \
-  template void Decomposition<Space, T, Dim>::note_bound(const State<Space, T, Dim>&, const Space&);   \
-  template PetscErrorCode Decomposition<Space, T, Dim>::add_soil(State<Space, T, Dim>&, const Space&); \
-  template PetscErrorCode Decomposition<Space, T, Dim>::add_residual(State<Space, T, Dim>&);           \
-  template PetscErrorCode Decomposition<Space, T, Dim>::add_nodes(State<Space, T, Dim>&, T*, int);     \
-  template PetscErrorCode Decomposition<Space, T, Dim>::add_strength(State<Space, T, Dim>&);           \
-  template PetscErrorCode Decomposition<Space, T, Dim>::add_present_soil(State<Space, T, Dim>&);       \
-  template Part<Space> Decomposition<Space, T, Dim>::border(const State<Space, T, Dim>&);              \
-  template Part<Space> Decomposition<Space, T, Dim>::inner(const State<Space, T, Dim>&) const;         \
-  template PetscErrorCode Decomposition<Space, T, Dim>::send_ahead(State<Space, T, Dim>&);             \
-  template PetscErrorCode Decomposition<Space, T, Dim>::forget();                                      \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                   \
+  template bool Decomposition<Space, T, Dim>::overlaps(const State<Space, T, Dim>&) const;               \
+  template void Decomposition<Space, T, Dim>::note_bound(const State<Space, T, Dim>&, const Space&);     \
+  template PetscErrorCode Decomposition<Space, T, Dim>::add_soil(State<Space, T, Dim>&, const Space&);   \
+  template PetscErrorCode Decomposition<Space, T, Dim>::add_values(const State<Space, T, Dim>&, T*, int, \
+                                                                   When, const int*);                    \
+  template PetscErrorCode Decomposition<Space, T, Dim>::add_present_soil(State<Space, T, Dim>&);         \
+  template Part<Space> Decomposition<Space, T, Dim>::border(const State<Space, T, Dim>&);                \
+  template Part<Space> Decomposition<Space, T, Dim>::inner(const State<Space, T, Dim>&) const;           \
+  template PetscErrorCode Decomposition<Space, T, Dim>::send_ahead(State<Space, T, Dim>&);               \
+  template PetscErrorCode Decomposition<Space, T, Dim>::forget();                                        \
   template void Decomposition<Space, T, Dim>::drop_ahead();
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -9,20 +9,11 @@
 namespace mpm {
 namespace {
 
-/// The fields of a body's particles and their widths.
-struct Part {
-  std::vector<double> ParticleSnapshot::*values;
-  int width;
-};
-constexpr Part k_parts[] = {{&ParticleSnapshot::position, 3},        {&ParticleSnapshot::velocity, 3},
-                            {&ParticleSnapshot::grid_velocity, 3},   {&ParticleSnapshot::stress, 6},
-                            {&ParticleSnapshot::volume, 1},          {&ParticleSnapshot::mass, 1},
-                            {&ParticleSnapshot::reference_height, 1}};
-
 /// The numbers of every field of a body, and their widths.
 std::vector<std::pair<std::vector<double>*, int>> fields_of(ParticleSnapshot& body) {
-  std::vector<std::pair<std::vector<double>*, int>> fields;
-  for (const auto& [values, width] : k_parts) fields.emplace_back(&(body.*values), width);
+  std::vector<std::pair<std::vector<double>*, int>> fields{{&body.grid_velocity, 3}};
+  for (const ParticleColumn& column : k_particle_columns)
+    if (column.framed != Framed::no) fields.emplace_back(&(body.*column.values), framed_width(column.width));
   for (StateField& state : body.state) fields.emplace_back(&state.values, 1);
   return fields;
 }

@@ -4,18 +4,11 @@
 // has lost it, lists, windows and passes over unchanged data are not counted. So a function's share of the
 // copy bandwidth tells how near it is to the limit of memory.
 
+#include "data/footprint.hpp"
 #include "functions/step_kernels.hpp"
 #include "step/timers.hpp"
 
 namespace mpm {
-
-/// Bytes a particle of the fields that are sorted.
-template <class Points_>
-double bytes_of_point(Points_ points) {
-  double bytes = sizeof(*points.cell.data()) + sizeof(*points.id.data());
-  for_each_field(points, [&](const auto& field) { bytes += sizeof(*field.data()); });
-  return bytes;
-}
 
 /// Function 3: place, body, velocity, stress, volume, domain and APIC's matrix of each particle; the sums of
 /// each node.
@@ -24,7 +17,7 @@ double bytes_to_nodes(const State<Space, T, Dim>& s) {
   const auto& p = s.soil.points;
   double particle = sizeof(*p.coordinate.data()) + sizeof(*p.cell.data()) + sizeof(*p.body.data());
   particle += sizeof(*p.velocity.data()) + sizeof(*p.stress.data()) + sizeof(*p.volume.data());
-  if (s.affine) particle += sizeof(*p.affine.data());
+  if (p.has_affine) particle += sizeof(*p.affine.data());
   if (p.has_own_mass) particle += sizeof(*p.mass.data());
   if (p.has_domain) particle += sizeof(*p.half_length.data());
   return p.count * particle + s.patches.node_count() * double(sizeof(T) * SoilTerms<Dim>::size);
@@ -38,14 +31,15 @@ double bytes_to_particles(const State<Space, T, Dim>& s) {
   auto p = s.soil.points;
   double particle = sizeof(*p.cell.data()) + sizeof(*p.body.data());
   for_each_field_of(
-      [&](const char* name, Use use, const auto& field) {
-        const bool counted = use == Use::none || std::string(name) == "body";  // above, of one body too
-        if (!counted) particle += (use == Use::changes ? 2 : 1) * sizeof(*field.data());
+      [&](const ParticleField& row, const auto& field) {
+        const bool counted =
+            row.use == Use::none || std::string(row.name) == "body";  // above, of one body too
+        if (!counted) particle += (row.use == Use::changes ? 2 : 1) * sizeof(*field.data());
       },
       p);
   const double place = sizeof(*p.coordinate.data()) + sizeof(*p.cell.data()) + sizeof(*p.body.data());
   particle += s.xpic_order * (place + 2 * sizeof(*p.velocity.data()));
-  if (s.affine) particle += sizeof(*p.affine.data());
+  if (p.has_affine) particle += sizeof(*p.affine.data());
   return p.count * particle + s.patches.node_count() * double(sizeof(T) * NodeKinematics<Dim>::size);
 }
 

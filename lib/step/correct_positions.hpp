@@ -36,11 +36,11 @@ PetscErrorCode correct_positions_for(State<Space, T, Dim>& s, double elapsed,
   if (ranks) PetscCall(ranks->add_present_soil(s));
   const FillField<Space, T, Dim> fill("mpm::fill", s.patches.node_count());
   volume_to_nodes<domain>(s, fill);
-  if (ranks) PetscCall(ranks->add_nodes(s, fill.data(), FillTerms<Dim>::size));
+  if (ranks) PetscCall(ranks->add_field(s, fill, When::between_steps));
   compare_volumes(s, fill);
   find_shifts(s, fill, elapsed);
   shares_to_nodes(s);
-  if (ranks) PetscCall(ranks->add_nodes(s, s.nodes.shares.data(), Dim));
+  if (ranks) PetscCall(ranks->add_field(s, s.nodes.shares, When::between_steps));
   apply_shifts(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

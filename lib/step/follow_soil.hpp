@@ -15,8 +15,8 @@ PetscErrorCode follow_soil(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>
   if (ranks) ranks->drop_ahead();
   sum_drift(s);
   if (ranks) {
-    PetscCall(ranks->add_nodes(s, s.nodes.centre.data(), CentreTerms<Dim>::size));
-    PetscCall(ranks->add_nodes(s, s.nodes.drift.data(), Dim));
+    PetscCall(ranks->add_field(s, s.nodes.centre, When::between_steps));
+    PetscCall(ranks->add_field(s, s.nodes.drift, When::between_steps));
   }
   stretch_domains(s);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -33,7 +33,7 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& poi
                    const Space& space) {
   const P2G how = s.p2g.strategy;
   with_domain(points, [&](auto domain) {
-    if (s.affine)
+    if (s.soil.points.has_affine)
       interpolate<AffineSource<Space, T, Dim, domain()>>(s, how, bins, {{points, s.grid.inv_spacing}},
                                                          s.nodes.soil, space);
     else if (!s.summed.soil)
@@ -94,7 +94,7 @@ PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>& s, Rayleigh<Space, T, Dim
                                                        {points, s.grid.inv_spacing}, by.sums);
     });
     show_viscous_forces(s, by);
-    if (ranks) PetscCall(ranks->add_residual(s));
+    if (ranks) PetscCall(ranks->add_field(s, s.nodes.residual, When::in_step));
   }
   add_rayleigh_forces(s, by, viscous);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -110,7 +110,7 @@ PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T
                                                            {set.points, s.near_rigid}, s.nodes.strength);
     });
   });
-  if (ranks) PetscCall(ranks->add_strength(s));
+  if (ranks) PetscCall(ranks->add_field(s, s.nodes.strength, When::in_step, s.near_rigid.data()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,11 +132,11 @@ PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T
         interpolate<ResidualSource<Space, T, Dim, domain()>>(
             s, s.p2g.strategy, s.soil.bins, {s.soil.points, residual_of(s)}, s.nodes.residual);
       });
-      if (ranks) PetscCall(ranks->add_residual(s));
+      if (ranks) PetscCall(ranks->add_field(s, s.nodes.residual, When::in_step));
     }
     xpic_pass(s, pass);
   }
-  if (s.affine) take_affine(s);
+  if (s.soil.points.has_affine) take_affine(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -42,35 +42,50 @@ void note_heights(const MeshConfig& mesh, BodyParticles& particles) {
     particles.reference_height.push_back(particles.position[p * Dim + Dim - 1] + mesh.lower[Dim - 1]);
 }
 
-/// The state variables of the particles of a body [variable][particle]: those of their creation, but for
-/// those that a law changes and a file gives. Own parameters that a field or a file gives are the particles'.
+/// The state variables of the particles of a body: those of their creation, but for those that a law changes
+/// and a file gives. Own parameters that a field or a file gives are the particles'. Behind them comes the
+/// excess pore pressure, where it is given.
 template <int Dim>
-std::vector<std::vector<double>> start_state(const Config& config, const AnyMaterial<double>& law,
-                                             const BodyInput& in, BodyParticles& particles) {
+std::vector<StateField> start_state(const Config& config, const AnyMaterial<double>& law,
+                                    ParticleColumns& in) {
   const auto variables = state_variables(law);
   const std::size_t count = in.position.size() / Dim;
-  std::vector<std::vector<double>> state(variables.size(), std::vector<double>(count));
+  std::vector<StateField> state;
+  for (const StateVariable& variable : variables)
+    state.push_back({variable.name, std::vector<double>(count)});
   ParticleStart start;
   start.up = Dim - 1;
   std::array<const StateField*, k_most_own> own{};
   const auto keys = own_parameters(variables);
-  for (const StateField& given : particles.own_parameters)
+  for (const StateField& given : in.own_parameters)
     if (const auto key = std::find(keys.begin(), keys.end(), given.name); key != keys.end())
       own[key - keys.begin()] = &given;
   for (std::size_t p = 0; p < count && !variables.empty(); ++p) {
-    start.height = particles.reference_height[p];
+    start.height = in.reference_height[p];
     for (std::size_t k = 0; k < own.size(); ++k)
       if (own[k] != nullptr) start.own[k] = own[k]->values[p];
     for (int d = 0; d < Dim; ++d) start.position[d] = in.position[p * Dim + d] + config.mesh.lower[d];
     for (int k = 0; k < sym_size<Dim> && !in.stress.empty(); ++k)
       start.stress[k] = in.stress[p * sym_size<Dim> + k];
     const auto values = initial_state(law, start);
-    for (std::size_t k = 0; k < values.size(); ++k) state[k][p] = values[k];
+    for (std::size_t k = 0; k < values.size(); ++k) state[k].values[p] = values[k];
   }
-  for (StateField& given : particles.state)
+  for (StateField& given : in.state)
     for (std::size_t k = 0; k < variables.size(); ++k)
-      if (variables[k].changes && given.name == variables[k].name) state[k] = std::move(given.values);
+      if (variables[k].changes && given.name == variables[k].name) state[k].values = std::move(given.values);
+  for (StateField& given : in.state)
+    if (given.name == k_excess_pore_pressure) state.push_back(std::move(given));
   return state;
+}
+
+/// Makes the stress of a body total, after its state was made of the effective one.
+template <int Dim>
+void add_excess_pressure(ParticleColumns& in) {
+  if (in.state.empty() || in.state.back().name != k_excess_pore_pressure) return;
+  const std::vector<double>& excess = in.state.back().values;
+  in.stress.resize(excess.size() * sym_size<Dim>);
+  for (std::size_t p = 0; p < excess.size(); ++p)
+    for (int k = 0; k < 3; ++k) in.stress[p * sym_size<Dim> + k] -= excess[p];
 }
 
 template <int Dim>
@@ -78,29 +93,20 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
   const MaterialConfig& material = config.materials[body.material];
   const AnyMaterial<double> law =
       make_material<double>(model_index(material.model), material.parameters, material.object.get());
-  BodyInput in;
-  in.position = std::move(particles.position);
+  BodyInput in{{std::move(static_cast<ParticleColumns&>(particles))}, std::move(particles.id)};
+  in.common_velocity = body.velocity;
   in.particle_volume = particles.particle_volume;
+  in.least_volume = particles.least_volume, in.most_volume = particles.most_volume;
+  in.particle_mass = particles.particle_mass, in.least_mass = particles.least_mass;
   in.half_length = particles.spacing / config.mesh.spacing / 2;
   in.density = density_of(config, body);
   in.weighed = body.shape.kind != ShapeKind::particles;
-  in.velocity = body.velocity;
-  in.particle_velocity = std::move(particles.velocity);
-  in.volume = std::move(particles.volume), in.mass = std::move(particles.mass);
-  in.least_volume = particles.least_volume, in.most_volume = particles.most_volume;
-  in.particle_mass = particles.particle_mass, in.least_mass = particles.least_mass;
-  in.stress = std::move(particles.stress);
+  in.material = body.material;
   if (in.stress.empty() && body.stress != Sym6{})
     for (std::size_t p = 0; p < in.position.size() / Dim; ++p)
       in.stress.insert(in.stress.end(), body.stress.begin(), body.stress.begin() + sym_size<Dim>);
-  in.material = body.material;
-  for (StateField& given : particles.state)
-    if (given.name == k_excess_pore_pressure) in.excess_pore_pressure = std::move(given.values);
-  in.state = start_state<Dim>(config, law, in, particles);
-  in.id = std::move(particles.id);
-  in.velocity_gradient = std::move(particles.velocity_gradient);
-  in.domain = std::move(particles.domain);
-  in.faces = std::move(particles.faces);
+  in.state = start_state<Dim>(config, law, in);
+  add_excess_pressure<Dim>(in);
   return in;
 }
 
@@ -202,7 +208,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   state_.friction_time = k_friction_cells * critical_time_step(config_);
   state_.flip_fraction = config_.flip_fraction;
   if (config_.velocity_update == VelocityUpdate::xpic) state_.xpic_order = config_.xpic_order;
-  state_.affine = config_.velocity_update == VelocityUpdate::apic;
+  state_.soil.points.has_affine = config_.velocity_update == VelocityUpdate::apic;
   state_.strays.rule = config_.stray_particles;
   state_.soil.points.has_domain = config_.particle_domain != ParticleDomain::fixed;
   state_.soil.points.rings = config_.geometry == Geometry::axisymmetric;

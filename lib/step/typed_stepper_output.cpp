@@ -157,7 +157,22 @@ std::vector<StateField> state_fields(const std::vector<StateVariable>& variables
   return fields;
 }
 
-/// Where frames tell pore pressures: adds those of the particles [from, to) to a body's fields, and makes its
+/// The columns of the particles [from, to) that frames have.
+template <int Dim>
+void frame_columns(const SoilFields& soil, std::size_t from, std::size_t to, ParticleSnapshot* body) {
+  for (const ParticleColumn& column : k_particle_columns) {
+    const std::vector<double>& values = soil.*column.values;
+    if (column.framed == Framed::no || values.empty()) continue;
+    const int n = width_of(column.width, Dim, 0), wide = framed_width(column.width);
+    std::vector<double>& framed = body->*column.values;
+    framed.assign(wide * (to - from), 0);
+    for (std::size_t p = from; p < to; ++p)
+      for (int k = 0; k < n; ++k)
+        framed[(p - from) * wide + framed_place(column.width, Dim, k)] = values[p * n + k];
+  }
+}
+
+/// Where frames have pore pressures: adds those of the particles [from, to) to a body's fields, and makes its
 /// stress total. `pore`: column of the excess pressure, -1 where there is none.
 template <int Dim>
 void add_pore_pressures(const Config& config, const SoilFields& soil, int pore, std::size_t from,
@@ -234,28 +249,21 @@ PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* out) {
     ParticleSnapshot body;
     body.name = config_.bodies[b].name;
     for (std::size_t p = from; p < to && ranks_; ++p) body.id.push_back(soil.id[p] - static_cast<int>(first));
-    body.position.assign(3 * (to - from), 0);
-    body.velocity = body.grid_velocity = body.position;
-    body.stress.assign(6 * (to - from), 0);
-    for (std::size_t p = from; p < to; ++p) {
+    frame_columns<Dim>(soil, from, to, &body);
+    body.grid_velocity.assign(3 * (to - from), 0);
+    for (std::size_t p = from; p < to; ++p)
       for (int d = 0; d < Dim; ++d) {
-        body.position[3 * (p - from) + d] = soil.position[p * Dim + d] + config_.mesh.lower[d];
-        body.velocity[3 * (p - from) + d] = soil.velocity[p * Dim + d];
+        body.position[3 * (p - from) + d] += config_.mesh.lower[d];
         body.grid_velocity[3 * (p - from) + d] = grid_velocity[p * Dim + d];
       }
-      for (int k = 0; k < sym_size<Dim>; ++k)
-        body.stress[6 * (p - from) + k] = soil.stress[p * sym_size<Dim> + k];
-    }
-    body.volume.assign(soil.volume.begin() + from, soil.volume.begin() + to);
     const auto variables = state_variables(config_.materials[config_.bodies[b].material]);
-    body.own_parameters = given_parameters(config_.bodies[b], variables);
-    body.state = state_fields(variables, body.own_parameters, soil, from, to);
+    body.own_names = given_parameters(config_.bodies[b], variables);
+    body.state = state_fields(variables, body.own_names, soil, from, to);
     if (has_pore_pressure(config_))  // of all bodies, so that pictures may show them
       add_pore_pressures<Dim>(config_, soil, state_.soil.points.history.pore, from, to, &body);
     add_periods<Dim>(config_.mesh, soil, from, to, &body);
     if (state_.soil.points.face_count > 0) add_load_areas<Dim>(soil, from, to, &body);
     if (state_.soil.points.has_domain) add_half_lengths<Dim>(soil, from, to, &body);
-    body.mass.assign(soil.mass.begin() + from, soil.mass.begin() + to);
     body.reference_height.assign(height.begin() + from, height.begin() + to);
     if (ranks_) PetscCall(order_particles(comm_, last - first, &body));
     out->bodies.push_back(std::move(body));

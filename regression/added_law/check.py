@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""A law with two state variables is one header and one line: this adds path_dependent.hpp to a copy of the program, builds it,
-and holds the state of its particles against what it must be.
+"""What the program takes to grow. A law with two state variables is one header and one line, and a vector of every particle is
+a member and a row in two headers: this adds path_dependent.hpp and the vector `tracer` to a copy of the program, builds it, and
+holds the state of its particles against what it must be.
 
     check.py SOURCE BUILD [--jobs N]
 
@@ -32,12 +33,34 @@ def put(path, text):
         path.write_text(text)
 
 
-def copy_with_law(source, copy):
-    """The program's source with the law's header, and its line in the list of materials."""
+TRACER = {  # file: what stands before an addition, and the addition
+    "kokkos_kernels/data/particles.hpp": [
+        ("  Kokkos::View<Vector<T, Dim>*, Memory> velocity;   // m/s\n", "  Kokkos::View<Vector<T, Dim>*, Memory> tracer;     // m\n"),
+        ('  f(ParticleField{"velocity", changes, mass_mean}, s.velocity, others.velocity...);\n',
+         '  f(ParticleField{"tracer", none, mass_mean}, s.tracer, others.tracer...);\n')],
+    "kokkos_kernels/data/particle_columns.hpp": [
+        ("  std::vector<double> velocity{};  // m/s [dim N]\n", "  std::vector<double> tracer{};    // m [dim N]\n"),
+        ("inline constexpr ParticleColumn k_particle_columns[] = {\n",
+         '    {"tracer", "tracer", "m", &ParticleColumns::tracer, Width::vector, Carried::where_kept, GivenBy::none,\n'
+         "     Common::zero, Framed::bodies, 0, Bound::none},\n")],
+}
+
+
+def with_tracer(text, additions):
+    """A source with the lines that add the vector."""
+    for before, line in additions:
+        assert text.count(before) == 1, before
+        text = text.replace(before, before + line)
+    return text
+
+
+def copy_with_additions(source, copy):
+    """The program's source with the vector, the law's header, and its line in the list of materials."""
     for part in ("CMakeLists.txt", "cmake", "kokkos_kernels", "lib", "app"):
         for path in [source / part] if (source / part).is_file() else (source / part).rglob("*"):
             if path.is_file() and path.name != "list.hpp":
-                put(copy / path.relative_to(source), path.read_text())
+                name = path.relative_to(source)
+                put(copy / name, with_tracer(path.read_text(), TRACER.get(str(name), [])))
     materials = "kokkos_kernels/physics/materials"
     put(copy / materials / "path_dependent.hpp", (HERE / "path_dependent.hpp").read_text())
     before = (source / materials / "list.hpp").read_text()
@@ -49,8 +72,8 @@ def copy_with_law(source, copy):
 
 
 def build(source, folder, jobs):
-    """The program with the law, double precision in 2D alone."""
-    copy_with_law(source, folder / "source")
+    """The program with the additions, double precision in 2D alone."""
+    copy_with_additions(source, folder / "source")
     cache = (folder.parent / "CMakeCache.txt").read_text()
     known = re.findall(r"^(\w+_ROOT|Kokkos_DIR|CMAKE_PREFIX_PATH|CMAKE_CXX_COMPILER\w*|CMAKE_C_COMPILER):(?!INTERNAL)\w+=(.+)$",
                        cache, re.M)
@@ -120,6 +143,38 @@ class Checks:
             self.go(started, "-time_max_steps", 1, deck=deck)
             with h5py.File(started / "frames/frame_00000.h5") as start, self.last_frame(self.whole) as end:
                 assert np.array_equal(start["block/shear_path"][:], end["block/shear_path"][:])
+
+    def check_vector(self):
+        """A vector comes from a file, goes with its particle from cell to cell and from rank to rank, through checkpoints, and into
+        frames, from which another run starts."""
+        listed = self.base / "traced.h5"
+        shutil.copyfile(self.whole / "frames/frame_00000.h5", listed)
+        with h5py.File(listed, "a") as file:
+            file["block/tracer"][:] = file["block/position"][:]
+        deck = self.base / "traced.opts"
+        lines = [line for line in DECK.read_text().splitlines() if not re.match("-block_(shape|lower|upper|velocity)", line)]
+        from_file = lambda path: deck.write_text("\n".join([*lines, "-block_shape particles", f"-block_file {path}"]) + "\n")
+        from_file(listed)
+        one = fresh(self.base / "traced")
+        self.go(one, deck=deck)
+        with h5py.File(listed) as start, self.last_frame(one) as end:
+            assert np.array_equal(end["block/tracer"][:], start["block/position"][:])
+            assert (end["heap/tracer"][:] == 0).all() and end["block/tracer"].attrs["unit"] in ("m", b"m")
+        for ranks in (2, 3):
+            several = fresh(self.base / f"traced_{ranks}")
+            self.go(several, "-p2g", "gather", ranks=ranks, deck=deck)
+            with self.last_frame(several) as there, self.last_frame(one) as here:
+                assert np.array_equal(there["block/tracer"][:], here["block/tracer"][:]), ranks
+        again = fresh(self.base / "traced_again")
+        shutil.copytree(one, again)
+        self.go(again, "-restart", checkpoints(again)[0], deck=deck)
+        assert not differences(one, again), differences(one, again)
+        for source in (sorted(one.glob("frames/frame_*.h5"))[-1], checkpoints(one)[-1]):
+            from_file(source)
+            started = fresh(self.base / "traced_start")
+            self.go(started, "-time_max_steps", 1, deck=deck)
+            with h5py.File(started / "frames/frame_00000.h5") as start, self.last_frame(one) as end:
+                assert np.array_equal(start["block/tracer"][:], end["block/tracer"][:]), source
 
     def steps_of(self, folder):
         """Columns step, time and dt of a history."""

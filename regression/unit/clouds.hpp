@@ -135,7 +135,7 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential,
   for (int d = 0; d < B::dim; ++d) s.gravity[d] = cloud.gravity[d];
   s.flip_fraction = cloud.flip_fraction;
   s.xpic_order = cloud.xpic_order;
-  s.affine = cloud.affine;
+  s.soil.points.has_affine = cloud.affine;
   s.soil.points.has_domain = cloud.stretch;
   s.soil.points.splits = cloud.split;
   s.soil.points.rings = cloud.rings;
@@ -191,10 +191,19 @@ std::vector<double> lattice(std::array<double, 3> low, std::array<double, 3> hig
 /// Undrained shear strength of each particle of a body of clay [Pa].
 inline std::vector<double>& strength_of(BodyInput& body) {
   body.state.resize(state_size<VonMises<double>>);
-  return body.state[VonMises<double>::strength];
+  return body.state[VonMises<double>::strength].values;
 }
 inline const std::vector<double>& strength_of(const BodyInput& body) {
-  return body.state[VonMises<double>::strength];
+  return body.state[VonMises<double>::strength].values;
+}
+
+/// Gives each particle of a body an excess pore pressure [Pa] beside its effective stress.
+template <int Dim>
+void give_excess_pressure(BodyInput& body, std::vector<double> excess) {
+  body.stress.resize(excess.size() * sym_size<Dim>);
+  for (std::size_t p = 0; p < excess.size(); ++p)
+    for (int k = 0; k < 3; ++k) body.stress[p * sym_size<Dim> + k] -= excess[p];
+  body.state.push_back({k_excess_pore_pressure, std::move(excess)});
 }
 
 template <int Dim>
@@ -259,8 +268,7 @@ BodyInput random_body(Dice& dice, std::array<int, 3> low, std::array<int, 3> hig
       }
   BodyInput body = body_of<Dim>(std::move(position), per_cell, spacing, per_cell % 2);
   for (double& strength : strength_of(body)) strength = dice.uniform(1000, 3000);
-  for (std::size_t n = 0; n < body.position.size(); ++n)
-    body.particle_velocity.push_back(dice.uniform(-1, 1));
+  for (std::size_t n = 0; n < body.position.size(); ++n) body.velocity.push_back(dice.uniform(-1, 1));
   for (std::size_t n = 0; n < strength_of(body).size() * sym_size<Dim>; ++n)
     body.stress.push_back(dice.uniform(-3000, 3000));
   return body;

@@ -141,8 +141,8 @@ template <class Points_>
 std::vector<Table> carried_fields(Points_ points) {
   std::vector<Table> fields;
   for_each_field_of(
-      [&](const char* name, Use, const auto& field) {
-        if (name != std::string("coordinate")) fields.push_back(by_id(points, field));
+      [&](const ParticleField& row, const auto& field) {
+        if (row.name != std::string("coordinate")) fields.push_back(by_id(points, field));
       },
       points);
   return fields;

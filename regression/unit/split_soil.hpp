@@ -22,8 +22,7 @@ inline Cloud with_two_updates(int seed) {
 /// Gives each particle of a body a velocity, a stress and a strength of its own.
 template <int Dim>
 void give_own_state(BodyInput& body, Dice& dice) {
-  for (std::size_t k = 0; k < body.position.size(); ++k)
-    body.particle_velocity.push_back(dice.uniform(-1, 1));
+  for (std::size_t k = 0; k < body.position.size(); ++k) body.velocity.push_back(dice.uniform(-1, 1));
   for (std::size_t k = 0; k < strength_of(body).size() * sym_size<Dim>; ++k)
     body.stress.push_back(dice.uniform(-300, 300));
   for (double& strength : strength_of(body)) strength = dice.uniform(1000, 3000);

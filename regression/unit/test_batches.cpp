@@ -29,8 +29,7 @@ Cloud busy_cloud(int seed) {
     cloud.bodies.push_back(body_of<Dim>(
         lattice<Dim>({from, 1, 1}, {to, cells[1] - 1.0, cells[2] - 1.0}, 2, spacing), 2, spacing, from < 2));
     BodyInput& body = cloud.bodies.back();
-    for (std::size_t n = 0; n < body.position.size(); ++n)
-      body.particle_velocity.push_back(dice.uniform(-9, 9));
+    for (std::size_t n = 0; n < body.position.size(); ++n) body.velocity.push_back(dice.uniform(-9, 9));
     for (std::size_t n = 0; n < strength_of(body).size() * sym_size<Dim>; ++n)
       body.stress.push_back(dice.uniform(-300, 300));
   }

@@ -190,8 +190,7 @@ TEST_CASE("every field goes with its particle", "[bins]") {
     std::size_t id = 0, wrong = 0;
     for (std::size_t b = 0; b < cloud.bodies.size(); ++b)
       for (std::size_t p = 0; p < strength_of(cloud.bodies[b]).size(); ++p, ++id) {
-        wrong +=
-            soil[0].value[id * B::dim] != typename B::real(cloud.bodies[b].particle_velocity[p * B::dim]);
+        wrong += soil[0].value[id * B::dim] != typename B::real(cloud.bodies[b].velocity[p * B::dim]);
         wrong += soil[4].value[id] != typename B::real(strength_of(cloud.bodies[b])[p]);
         wrong += soil[5].value[id] != double(b);
       }
@@ -297,8 +296,9 @@ TEST_CASE("the memory of a state is what particles and nodes take, to a tenth", 
     cloud.bodies = {body_of<Dim>(lattice<Dim>({0, 0, 0}, end, 2, 0.1), 2, 0.1, 1)};
     const auto s = state_of<B>(cloud, P2G::tile);
     const double cells = power(double(edge), Dim);
-    const double a_cell = Footprint<T, Dim>::particle(2) * power(2, Dim) + Footprint<T, Dim>::node +
-                          (has_windows(s.space) ? Footprint<T, Dim>::window : 0);
+    const double a_particle = bytes_of_point(s.soil.points) + bytes_to_sort(s.soil.points);
+    const double a_cell = a_particle * power(2, Dim) + bytes_of_node(s.nodes, uses_of_nodes(s)) +
+                          (has_windows(s.space) ? k_window_bytes<T, Dim> : 0);
     const double expected = a_cell * cells;
     INFO(build.name());
     CHECK(std::fabs(memory_of<Space, T, Dim>(s) / expected - 1) < (Dim == 2 ? 0.1 : 0.2));

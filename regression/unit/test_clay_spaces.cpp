@@ -101,8 +101,10 @@ Control control_with(double specific_volume) {
     body.stress.assign(count * sym_size<Dim>, 0.0);
     for (std::size_t p = 0; p < count; ++p)
       for (int k = 0; k < 3; ++k) body.stress[p * sym_size<Dim> + k] = -1e4;
-    body.state = {std::vector<double>(count, 2e4), std::vector<double>(count, v), std::vector<double>(count),
-                  std::vector<double>(count)};
+    body.state = {{"", std::vector<double>(count, 2e4)},
+                  {"", std::vector<double>(count, v)},
+                  {"", std::vector<double>(count)},
+                  {"", std::vector<double>(count)}};
     cloud.bodies.push_back(body);
   }
   auto s = state_of<B>(cloud);

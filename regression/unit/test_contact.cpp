@@ -24,7 +24,7 @@ Cloud pressed() {
   cloud.grid = grid_of<Dim>({20, 18, 12}, spacing, Wall::free);
   cloud.materials = clays();
   cloud.bodies = {body_of<Dim>(lattice<Dim>({6, 5, 3}, {14, 9, 8}, 2, spacing), 2, spacing, 1)};
-  cloud.bodies[0].velocity = {0.05, 0.2, -0.03};
+  cloud.bodies[0].common_velocity = {0.05, 0.2, -0.03};
   cloud.rigids = {rigid_of<Dim>(lattice<Dim>({8, 9, 4}, {12, 11, 7}, 4, spacing), 4, spacing)};
   cloud.rigids[0].velocity = {0.3, -0.5, 0.1};
   cloud.rigids[0].dynamic = true;

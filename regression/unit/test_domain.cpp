@@ -73,8 +73,7 @@ Cloud cloud_with_domains(int seed) {
     cloud.bodies.push_back(
         body_of<Dim>(lattice<Dim>({from, 2, 2}, {from + 6, 10, 6}, n, k_spacing), n, k_spacing, n - 2));
     BodyInput& body = cloud.bodies.back();
-    for (std::size_t k = 0; k < body.position.size(); ++k)
-      body.particle_velocity.push_back(dice.uniform(-1, 1));
+    for (std::size_t k = 0; k < body.position.size(); ++k) body.velocity.push_back(dice.uniform(-1, 1));
     for (std::size_t k = 0; k < strength_of(body).size() * sym_size<Dim>; ++k)
       body.stress.push_back(dice.uniform(-300, 300));
   }
@@ -388,8 +387,8 @@ TEST_CASE("soil that moves as one body keeps its domains, and steps as with fixe
     Cloud cloud = cloud_with_domains<B::dim>(7);
     cloud.gravity = {};
     for (BodyInput& body : cloud.bodies) {
-      body.particle_velocity.clear(), body.stress.clear(), body.domain.clear();
-      body.velocity = {0.7, -0.4, 0.2};
+      body.velocity.clear(), body.stress.clear(), body.domain.clear();
+      body.common_velocity = {0.7, -0.4, 0.2};
     }
     Cloud fixed = cloud;
     fixed.stretch = false;
@@ -421,7 +420,7 @@ TEST_CASE("a stray that flies keeps its domain", "[domain]") {
     std::vector<double> place = {0.51, 0.52, 0.53};  // m
     place.resize(Dim);
     cloud.bodies = {body_of<Dim>(place, 2, 0.1, 0)};
-    cloud.bodies[0].velocity = {0, -1, 0};
+    cloud.bodies[0].common_velocity = {0, -1, 0};
     cloud.gravity = {0, -10, 0};
     give_own_domains<Dim>(cloud, 1);
     for (const P2G how : k_strategies) {

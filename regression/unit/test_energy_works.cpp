@@ -50,8 +50,8 @@ Cloud vibrating_block() {
   BodyInput body = body_of<Dim>(lattice<Dim>(low, high, 2, h), 2, h, 0);
   for (std::size_t p = 0; p < body.position.size() / Dim; ++p)
     for (int d = 0; d < Dim; ++d)
-      body.particle_velocity.push_back(
-          d == 0 ? 0.5 * std::sin(std::numbers::pi * (body.position[p * Dim] / h - 8) / 8) : 0);
+      body.velocity.push_back(d == 0 ? 0.5 * std::sin(std::numbers::pi * (body.position[p * Dim] / h - 8) / 8)
+                                     : 0);
   cloud.bodies = {body};
   cloud.energy = true;
   return cloud;
@@ -144,8 +144,8 @@ TEST_CASE("gravity does m g h on a block that falls freely, and a rigid the forc
   for_each_build([](auto build) {
     using B = decltype(build);
     Cloud cloud = vibrating_block<B::dim>();
-    cloud.bodies[0].particle_velocity.clear();
-    cloud.bodies[0].velocity = {0.3, 0, 0};
+    cloud.bodies[0].velocity.clear();
+    cloud.bodies[0].common_velocity = {0.3, 0, 0};
     cloud.gravity = {0, -10, 0};
     auto s = state_of<B>(cloud, P2G::tile);
     const BodyMeasure before = measure(s, 0);
@@ -160,7 +160,7 @@ TEST_CASE("gravity does m g h on a block that falls freely, and a rigid the forc
     CHECK(std::fabs(works_of(s)[Work::gravity] - now.mass * 10 * fell) < 0.02 * now.kinetic_energy);
 
     Cloud pushed = vibrating_block<B::dim>();
-    pushed.bodies[0].particle_velocity.clear();
+    pushed.bodies[0].velocity.clear();
     pushed.rigids = {rigid_of<B::dim>(lattice<B::dim>({5, 8, 3}, {11, 9, 5}, 4, h), 4, h)};
     pushed.rigids[0].velocity = {0, -2, 0};
     auto p = state_of<B>(pushed, P2G::tile);

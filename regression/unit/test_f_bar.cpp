@@ -114,8 +114,9 @@ TEST_CASE("pressures begin alike within a material of a cell, as far as its frac
     };
     cloud.materials[0].pore_stiffness = 1e8;  // the other one drains
     Dice dice{std::mt19937_64(5)};
-    for (std::size_t p = 0; p < cloud.bodies[0].position.size() / B::dim; ++p)
-      cloud.bodies[0].excess_pore_pressure.push_back(dice.uniform(0, 2000));
+    std::vector<double> excess_p(cloud.bodies[0].position.size() / B::dim);
+    for (double& pressure : excess_p) pressure = dice.uniform(0, 2000);
+    give_excess_pressure<B::dim>(cloud.bodies[0], std::move(excess_p));
     cloud.f_bar_fraction = 1;
     INFO(build.name());
     const double round_off = B::of(1e-9, 1e-2);

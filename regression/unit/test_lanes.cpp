@@ -124,7 +124,7 @@ Cloud crowded_cloud(int seed) {
     std::vector<double> position;
     for (int k = 0; k < n * Dim; ++k) position.push_back(dice.uniform(1, 2) * cloud.grid.spacing);
     BodyInput crowd = body_of<Dim>(std::move(position), 2 + n % 2, cloud.grid.spacing, n % 2);
-    for (int k = 0; k < n * Dim; ++k) crowd.particle_velocity.push_back(dice.uniform(-1, 1));
+    for (int k = 0; k < n * Dim; ++k) crowd.velocity.push_back(dice.uniform(-1, 1));
     for (int k = 0; k < n * sym_size<Dim>; ++k) crowd.stress.push_back(dice.uniform(-3000, 3000));
     cloud.bodies.push_back(std::move(crowd));
   }

@@ -116,12 +116,12 @@ TEST_CASE("the grid of a body that moves as a whole has its velocity", "[measure
     constexpr int Dim = B::dim;
     INFO(build.name());
     Cloud cloud = free_cloud<Dim>(7);
-    for (BodyInput& body : cloud.bodies) body.particle_velocity.clear(), body.velocity = {3, -4, 12};
+    for (BodyInput& body : cloud.bodies) body.velocity.clear(), body.common_velocity = {3, -4, 12};
     auto s = state_of<B>(cloud);
     drift_within_margin(s);
     Table expected{Dim, {}};
     for (int p = 0; p < s.soil.points.count; ++p)
-      for (int d = 0; d < Dim; ++d) expected.value.push_back(cloud.bodies[0].velocity[d]);
+      for (int d = 0; d < Dim; ++d) expected.value.push_back(cloud.bodies[0].common_velocity[d]);
     CHECK(largest_difference(grid_velocity_table(s, Dim), expected) < B::of(1e-14, 1e-6));
     CHECK(std::fabs(largest_grid_speed(s, 0) / (Dim == 2 ? 5 : 13) - 1) < B::of(1e-14, 1e-6));
   });

@@ -19,7 +19,7 @@ Cloud block(std::array<double, 3> velocity) {
   cloud.grid = grid_of<Dim>({24, 20, 16}, k_spacing, Wall::free);
   cloud.materials = {{0, {1e-3, 0.3}}, {1, {1e-3, 0.3, 1, 0, 0}}};
   cloud.bodies = {body_of<Dim>(lattice<Dim>({8, 8, 8}, {12, 11, 10}, 2, k_spacing), 2, k_spacing, 0)};
-  cloud.bodies[0].velocity = velocity;
+  cloud.bodies[0].common_velocity = velocity;
   cloud.rigids = {rigid_of<Dim>(lattice<Dim>({1, 1, 1}, {3, 2, 2}, 4, k_spacing), 4, k_spacing)};
   return cloud;
 }
@@ -153,7 +153,7 @@ TEST_CASE("a particle that leaves the mesh at a free side is no fault", "[moveme
     Cloud cloud = block<B::dim>({0, 0, 0});
     auto lone = body_of<B::dim>({0.55, 1.93, 0.55}, 2, k_spacing, 0);  // the mesh ends at y = 2
     lone.position.resize(B::dim), strength_of(lone).resize(1);
-    lone.velocity = {0, 1, 0};
+    lone.common_velocity = {0, 1, 0};
     cloud.bodies.push_back(lone);
     CHECK(control_after<B>(cloud, 0.02, 20).fault_count == 0);
   });
@@ -188,8 +188,8 @@ TEST_CASE("a value that is not finite is reported with its particle, and nothing
         auto lone = body_of<Dim>({0.55, 1.73, 0.55}, 2, k_spacing, 1);
         lone.position.resize(Dim), strength_of(lone).resize(1);
         lone.stress.assign(sym_size<Dim>, 0.0);
-        lone.particle_velocity.assign(Dim, 0.0);
-        (in_stress ? lone.stress : lone.particle_velocity)[Dim - 1] = wrong;
+        lone.velocity.assign(Dim, 0.0);
+        (in_stress ? lone.stress : lone.velocity)[Dim - 1] = wrong;
         cloud.bodies.push_back(lone);
         auto s = state_of<B>(cloud);
         one_step(s, 1e-4);
@@ -211,7 +211,7 @@ TEST_CASE("a particle that outruns the bins in one step is reported as too fast"
     Cloud cloud = block<B::dim>({0, 0, 0});
     auto lone = body_of<B::dim>({0.55, 1.05, 0.55}, 2, k_spacing, 0);
     lone.position.resize(B::dim), strength_of(lone).resize(1);
-    lone.velocity = {0, -1, 0};
+    lone.common_velocity = {0, -1, 0};
     cloud.bodies.push_back(lone);
     const Control control = control_after<B>(cloud, time_to_move(3, 1), 1);
     REQUIRE(control.fault_count == 1);

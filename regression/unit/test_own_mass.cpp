@@ -31,8 +31,7 @@ Cloud cloud_with_masses(int seed, double spread) {
     cloud.bodies.push_back(
         body_of<Dim>(lattice<Dim>({from, 2, 2}, {from + 6, 10, 6}, n, k_spacing), n, k_spacing, n - 2));
     BodyInput& body = cloud.bodies.back();
-    for (std::size_t k = 0; k < body.position.size(); ++k)
-      body.particle_velocity.push_back(dice.uniform(-1, 1));
+    for (std::size_t k = 0; k < body.position.size(); ++k) body.velocity.push_back(dice.uniform(-1, 1));
     for (std::size_t k = 0; k < strength_of(body).size() * sym_size<Dim>; ++k)
       body.stress.push_back(dice.uniform(-300, 300));
   }
@@ -133,7 +132,7 @@ TEST_CASE("mass, momentum, energy and centre of a body are sums over its particl
       for (std::size_t p = 0; p < body.mass.size(); ++p) {
         mass += body.mass[p];
         for (int d = 0; d < Dim; ++d) {
-          const double v = body.particle_velocity[p * Dim + d];
+          const double v = body.velocity[p * Dim + d];
           momentum[d] += body.mass[p] * v, energy += body.mass[p] * v * v / 2,
               size += body.mass[p] * std::fabs(v);
           centre[d] += body.mass[p] * body.position[p * Dim + d];

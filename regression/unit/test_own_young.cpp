@@ -86,7 +86,7 @@ Cloud halves(const OwnYoung& law, const std::array<double, 2>& moduli, bool one_
     BodyInput body =
         body_of<Dim>(lattice<Dim>({left, 2, 2}, {left + 3, 6, 5}, 2, k_spacing), 2, k_spacing, half);
     const std::size_t count = body.position.size() / Dim;
-    for (std::size_t n = 0; n < count * Dim; ++n) body.particle_velocity.push_back(dice.uniform(-0.5, 0.5));
+    for (std::size_t n = 0; n < count * Dim; ++n) body.velocity.push_back(dice.uniform(-0.5, 0.5));
     for (std::size_t n = 0; n < count; ++n)
       for (int k = 0; k < sym_size<Dim>; ++k) body.stress.push_back(k < 3 ? -2e3 : dice.uniform(-100, 100));
     const auto parameters = one_body ? of_particle(law) : one_modulus(law, moduli[half]);
@@ -96,7 +96,8 @@ Cloud halves(const OwnYoung& law, const std::array<double, 2>& moduli, bool one_
     ParticleStart start;
     if (one_body) start.own = own_young(law, moduli[half]);
     const AnyMaterial<double> material = make_material<double>(model_index(law.model), parameters);
-    for (const double value : initial_state(material, start)) body.state.emplace_back(count, value);
+    for (const double value : initial_state(material, start))
+      body.state.push_back({"", std::vector<double>(count, value)});
     cloud.bodies.push_back(std::move(body));
   }
   if (!one_body) return cloud;
@@ -106,9 +107,9 @@ Cloud halves(const OwnYoung& law, const std::array<double, 2>& moduli, bool one_
   const auto join = [](std::vector<double>& to, const std::vector<double>& from) {
     to.insert(to.end(), from.begin(), from.end());
   };
-  join(all.position, right.position), join(all.particle_velocity, right.particle_velocity);
+  join(all.position, right.position), join(all.velocity, right.velocity);
   join(all.stress, right.stress);
-  for (std::size_t k = 0; k < all.state.size(); ++k) join(all.state[k], right.state[k]);
+  for (std::size_t k = 0; k < all.state.size(); ++k) join(all.state[k].values, right.state[k].values);
   return cloud;
 }
 

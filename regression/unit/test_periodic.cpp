@@ -48,7 +48,7 @@ Cloud random_soil(int seed, const Periods& shape, const std::array<int, 3>& shif
     double x = std::floor(body.position[k] / k_edge * k_resolved) / k_resolved;
     if (wraps) x = std::fmod(x + shift[d], cells[d]);
     body.position[k] = x * k_edge;
-    body.particle_velocity[k] += mean[d];
+    body.velocity[k] += mean[d];
   }
   cloud.bodies = {body};
   return cloud;

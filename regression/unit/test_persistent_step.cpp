@@ -178,7 +178,7 @@ TEST_CASE("teams that a device does not hold at once do one step a launch, or tw
         const int depth = width / 2;
         cloud.grid = grid_of<2>({width, depth + 6, 5}, h, Wall::roller);
         cloud.bodies = {body_of<2>(lattice<2>({0, 0, 0}, {double(width), double(depth), 5}, 2, h), 2, h, 1)};
-        cloud.bodies[0].velocity = {1, -0.5, 0};
+        cloud.bodies[0].common_velocity = {1, -0.5, 0};
         cloud.rigids.clear();
         auto one = state_of<B>(cloud, P2G::tile), two = state_of<B>(cloud, P2G::tile);
         INFO(B::name() << ' ' << width);

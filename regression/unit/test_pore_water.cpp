@@ -51,7 +51,8 @@ Cloud block(const MaterialInput& material) {
   const AnyMaterial<double> law = make_material<double>(material.model, material.parameters);
   const ParticleStart start{.position = {}, .height = 0, .stress = {-1e5, -1e5, -1e5, 0, 0, 0}};
   body.state.clear();
-  for (const double value : initial_state(law, start)) body.state.emplace_back(count, value);
+  for (const double value : initial_state(law, start))
+    body.state.push_back({"", std::vector<double>(count, value)});
   for (std::size_t p = 0; p < count; ++p)
     for (int k = 0; k < sym_size<Dim>; ++k) body.stress.push_back(k < 3 ? -1e5 : 0);
   return cloud;
@@ -239,7 +240,8 @@ TEST_CASE("a particle that flies alone has no excess pore pressure", "[pore_wate
     MaterialInput material = laws_of_effective_stress()[1];
     material.pore_stiffness = k_pore;
     Cloud cloud = block<Dim>(material);
-    cloud.bodies[0].excess_pore_pressure.assign(cloud.bodies[0].position.size() / Dim, 4e4);
+    give_excess_pressure<Dim>(cloud.bodies[0],
+                              std::vector<double>(cloud.bodies[0].position.size() / Dim, 4e4));
     auto s = state_of<B>(cloud);
     const auto& soil = s.soil.points;
     SymTensor<double, Dim> stress = soil.stress(3);
@@ -261,7 +263,7 @@ TEST_CASE("pore water stiffens the waves and stores energy", "[pore_water]") {
     material.pore_stiffness = k_pore;
     Cloud cloud = block<Dim>(material);
     auto& body = cloud.bodies[0];
-    body.excess_pore_pressure.assign(body.position.size() / Dim, 2e5);
+    give_excess_pressure<Dim>(body, std::vector<double>(body.position.size() / Dim, 2e5));
     const auto s = state_of<B>(cloud);
     const double modulus = wave_modulus(make_material<double>(0, material.parameters)) + k_pore;
     INFO(build.name());

@@ -44,7 +44,7 @@ Cloud soil_of(Stuff stuff, double scatter, double height, bool moves = true) {
   }
   for (std::size_t p = 0; p < body.position.size() / Dim; ++p) {
     const auto v = motion_at<Dim>(&body.position[p * Dim]);
-    for (int d = 0; d < Dim; ++d) body.particle_velocity.push_back(moves ? v[d] : 0.3);
+    for (int d = 0; d < Dim; ++d) body.velocity.push_back(moves ? v[d] : 0.3);
   }
   cloud.bodies = {body};
   return cloud;

@@ -34,7 +34,7 @@ Cloud moving_block(bool rings = false) {
       Dim == 2 ? std::array<double, 3>{7, 3, 0} : std::array<double, 3>{7, 5, 3};
   cloud.bodies = {body_of<Dim>(lattice<Dim>(low, high, 2, h), 2, h, 0)};
   BodyInput& body = cloud.bodies[0];
-  body.velocity = {k_speed, 0, 0};
+  body.common_velocity = {k_speed, 0, 0};
   if (rings) revolve(cloud);
   return cloud;
 }
@@ -259,7 +259,7 @@ TEST_CASE("a point in soil with a linear velocity and stress has their values th
     BodyInput& body = cloud.bodies[0];
     const auto linear = [](const double* x, int k) { return (k + 1) * (1 + 2 * x[0] - 3 * x[Dim - 1]); };
     for (std::size_t p = 0; p < body.position.size() / Dim; ++p) {
-      for (int d = 0; d < Dim; ++d) body.particle_velocity.push_back(linear(&body.position[p * Dim], d));
+      for (int d = 0; d < Dim; ++d) body.velocity.push_back(linear(&body.position[p * Dim], d));
       for (int k = 0; k < sym_size<Dim>; ++k) body.stress.push_back(linear(&body.position[p * Dim], 10 + k));
     }
     auto s = state_of<B>(cloud);

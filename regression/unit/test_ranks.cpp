@@ -47,10 +47,10 @@ Cloud share_of_cloud(const Cloud& whole, int rank, int ranks) {
     if (whole.affine) {  // from all neighbours of a particle
       std::vector<double> cells = body.position;
       for (double& x : cells) x /= whole.grid.spacing;
-      body.velocity_gradient = velocity_gradients(cells, body.particle_velocity, Dim);
+      body.velocity_gradient = velocity_gradients(cells, body.velocity, Dim);
       keep(body.velocity_gradient, Dim * Dim);
     }
-    keep(body.position, Dim), keep(strength_of(body), 1), keep(body.particle_velocity, Dim);
+    keep(body.position, Dim), keep(strength_of(body), 1), keep(body.velocity, Dim);
     keep(body.stress, sym_size<Dim>), keep(body.mass, 1), keep(body.domain, Dim * (Dim + 1) / 2);
   }
   return own;

@@ -220,8 +220,7 @@ TEST_CASE("velocities c r and c' z strain all rings alike, to the axis", "[ring]
       const double half = spacing / n / 2;
       for (std::size_t p = 0; p < body.position.size(); p += 2) {
         const double r = body.position[p], centroid = r + half * half / (3 * r);
-        for (const double v : {across * centroid, along * body.position[p + 1]})
-          body.particle_velocity.push_back(v);
+        for (const double v : {across * centroid, along * body.position[p + 1]}) body.velocity.push_back(v);
         for (const double g : {across, 0.0, 0.0, along}) body.velocity_gradient.push_back(g * spacing);
       }
       const double lame = 1.5e6 * 0.49 / (1.49 * 0.02), shear = 1.5e6 / (2 * 1.49),
@@ -248,7 +247,7 @@ TEST_CASE("a cylinder that moves along its axis keeps its shape, its momentum an
   for_each_plane_build([](auto build) {
     using B = decltype(build);
     Cloud cloud = cylinder(2);
-    cloud.bodies[0].velocity = {0, 5, 0};
+    cloud.bodies[0].common_velocity = {0, 5, 0};
     for (const P2G how : k_strategies) {
       auto s = state_of<B>(cloud, how);
       const std::vector<double> before = download_soil(s).position;
@@ -272,7 +271,7 @@ TEST_CASE("particles do not pass the axis, however fast they come", "[ring]") {
     Cloud cloud = cylinder(3);
     auto& body = cloud.bodies[0];
     for (std::size_t p = 0; p < body.position.size(); p += 2)
-      body.particle_velocity.push_back(-20 * body.position[p]), body.particle_velocity.push_back(0);
+      body.velocity.push_back(-20 * body.position[p]), body.velocity.push_back(0);
     for (const P2G how : k_strategies) {
       auto s = state_of<B>(cloud, how);
       run_steps(s, 1e-4, 100);

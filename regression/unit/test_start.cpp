@@ -255,7 +255,7 @@ TEST_CASE("a strength that a file gives each particle is in the state, the frame
       REQUIRE(stepper->snapshot(&frame) == PETSC_SUCCESS);
       REQUIRE(stepper->save(&c.state) == PETSC_SUCCESS);
       frame.dim = dim;
-      CHECK(frame.bodies[0].own_parameters == std::vector{key});
+      CHECK(frame.bodies[0].own_names == std::vector{key});
       c.version = "1", c.dim = dim, c.backend = "serial", c.precision = "double", c.strategy = "tile";
       c.options = {{"-bodies", "soil", "", false},
                    {"-soil_material", "clay", "", false},
@@ -301,12 +301,12 @@ TEST_CASE("a frame whose -output_fields left out the particles' own strength is 
     if (name != "su") style.fields.push_back(name);
   CHECK(file.fault(particles, table, 2, 2, style) == "");
   CHECK(own(table).empty());
-  particles.own_parameters = {"su"};
+  particles.own_names = {"su"};
   CHECK(file.fault(particles, table, 2, 2) == "");
   CHECK(own(table) == std::vector<double>{3, 2, 1});
   CHECK(file.fault(particles, table, 2, 2, style) ==
         "a frame with soil/su, which -output_fields of its run left out");
-  particles.own_parameters = {"cohesion", "young"};  // of another law
+  particles.own_names = {"cohesion", "young"};  // of another law
   CHECK(file.fault(particles, table, 2, 2, style) == "");
 }
 

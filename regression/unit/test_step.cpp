@@ -61,7 +61,7 @@ TEST_CASE("a body in free flight moves by v t, across rebuilds", "[step]") {
     cloud.materials = clays();
     cloud.bodies = {random_body<Dim>(dice, {6, 12, 5}, {10, 16, 7}, 0.8, 2, k_spacing),
                     random_body<Dim>(dice, {9, 10, 4}, {12, 14, 6}, 0.5, 3, k_spacing)};
-    for (auto& body : cloud.bodies) body.velocity = v, body.particle_velocity.clear(), body.stress.clear();
+    for (auto& body : cloud.bodies) body.common_velocity = v, body.velocity.clear(), body.stress.clear();
     const double dt = 1e-4;
     const int steps = 200;  // 4 cells
     for (P2G how : {P2G::tile, P2G::gather}) {
@@ -96,7 +96,7 @@ TEST_CASE("in a linear velocity field every particle strains and turns by its gr
       for (int d = 0; d < Dim; ++d) {
         double v = 0;
         for (int e = 0; e < Dim; ++e) v += A[d][e] * body.position[p * Dim + e];
-        body.particle_velocity.push_back(v);
+        body.velocity.push_back(v);
       }
       body.stress.insert(body.stress.end(), expected.c, expected.c + sym_size<Dim>);
     }
@@ -249,7 +249,7 @@ TEST_CASE("one step of a footing under way is the plain loop's in double on one 
     const auto start = fields_after<Reference<Dim>>(cloud, P2G::sequential, k_footing_step, 40);
     BodyInput& soil = cloud.bodies[0];
     for (std::size_t n = 0; n < soil.position.size(); ++n) soil.position[n] = start[0].value[n] * k_spacing;
-    soil.particle_velocity = start[1].value;
+    soil.velocity = start[1].value;
     soil.stress = start[2].value;
     const auto expected = fields_after<Reference<Dim>>(cloud, P2G::sequential, k_footing_step, 1);
     for_each_build([&](auto build) {

@@ -20,7 +20,7 @@ void put(State_& s, Feature f) {
   switch (f) {
     case Feature::other_strategy: s.p2g.strategy = P2G::atomic; break;
     case Feature::xpic: s.xpic_order = 2; break;
-    case Feature::apic: s.affine = true; break;
+    case Feature::apic: s.soil.points.has_affine = true; break;
     case Feature::splits: s.soil.points.splits = true; break;
     case Feature::correction: s.correction.on = true; break;
     case Feature::submerged: s.water.density = 1000; break;

@@ -127,9 +127,9 @@ TEST_CASE("every strategy keeps the total mass and momentum, and internal forces
     for (const BodyInput& body : cloud.bodies) {
       const double m_p = body.density * body.particle_volume;
       mass += m_p * strength_of(body).size();
-      for (std::size_t n = 0; n < body.particle_velocity.size(); ++n) {
-        momentum[n % Dim] += m_p * body.particle_velocity[n];
-        size[n % Dim] += m_p * std::fabs(body.particle_velocity[n]);
+      for (std::size_t n = 0; n < body.velocity.size(); ++n) {
+        momentum[n % Dim] += m_p * body.velocity[n];
+        size[n % Dim] += m_p * std::fabs(body.velocity[n]);
       }
     }
     for (P2G how : k_strategies) {

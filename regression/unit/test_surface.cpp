@@ -218,7 +218,7 @@ TEST_CASE("soil pressed into a thin plate is stopped by the face that it is at",
       std::array<double, 3> low{6, 6, 6}, high{14, 14, 14};
       (below ? high : low)[Dim - 1] = face;
       cloud.bodies = {body_of<Dim>(lattice<Dim>(low, high, 5, spacing), 5, spacing, 1)};
-      cloud.bodies[0].velocity[Dim - 1] = below ? 1 : -1;
+      cloud.bodies[0].common_velocity[Dim - 1] = below ? 1 : -1;
       std::array<double, 3> from{4, 4, 4}, to{16, 16, 16};
       from[Dim - 1] = 10, to[Dim - 1] = 11;
       cloud.rigids = {plate_of<Dim>(from, to, spacing)};
@@ -308,7 +308,7 @@ TEST_CASE(
       cloud.grid = grid_of<3>({20, 20, 20}, spacing, Wall::free);
       cloud.materials = clays();
       cloud.bodies = {body_of<3>(lattice<3>({6, 6, 6}, {14, 14, 10}, 2, spacing), 2, spacing, 1)};
-      cloud.bodies[0].velocity[2] = 1;
+      cloud.bodies[0].common_velocity[2] = 1;
       cloud.rigids = {plate_of<3>({10, 6, 10}, {16, 14, 12}, spacing)};
       cloud.rigids[0].surface.radius = spacing / 2;
       for (P2G how : k_strategies) {
@@ -406,7 +406,7 @@ TEST_CASE("contact begins where the gap is closed, and the mass of the body does
       std::array<double, 3> high{14, 14, 14};
       high[Dim - 1] = 10 - gap;
       cloud.bodies = {body_of<Dim>(lattice<Dim>({6, 6, 6}, high, 10, spacing), 10, spacing, 1)};
-      cloud.bodies[0].velocity[Dim - 1] = 1;
+      cloud.bodies[0].common_velocity[Dim - 1] = 1;
       std::array<double, 3> from{4, 4, 4}, to{16, 16, 16};
       from[Dim - 1] = 10, to[Dim - 1] = 12;
       cloud.rigids = {plate_of<Dim>(from, to, spacing)};

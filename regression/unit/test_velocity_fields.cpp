@@ -13,7 +13,7 @@ namespace {
 template <int Dim>
 BodyInput block(std::array<double, 3> low, std::array<double, 3> high, double velocity, double spacing) {
   BodyInput body = body_of<Dim>(lattice<Dim>(low, high, 2, spacing), 2, spacing, 1);
-  body.velocity = {velocity, 0, 0};
+  body.common_velocity = {velocity, 0, 0};
   for (std::size_t p = 0; p < body.position.size() / Dim; ++p)
     for (int k = 0; k < sym_size<Dim>; ++k)
       body.stress.push_back(100. * std::sin(1. + k + body.position[p * Dim] / spacing));

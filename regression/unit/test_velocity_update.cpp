@@ -33,19 +33,18 @@ Cloud holed_block() {
 /// v_p = b + A x_p, with A [1/s] row by row.
 template <int Dim>
 void set_linear(BodyInput& body, const double (&A)[3][3], const std::array<double, 3>& b) {
-  body.particle_velocity.clear();
+  body.velocity.clear();
   for (std::size_t p = 0; p < strength_of(body).size(); ++p)
     for (int d = 0; d < Dim; ++d) {
       double v = b[d];
       for (int e = 0; e < Dim; ++e) v += A[d][e] * body.position[p * Dim + e];
-      body.particle_velocity.push_back(v);
+      body.velocity.push_back(v);
     }
 }
 void set_random(BodyInput& body) {
   Dice dice{std::mt19937_64(29)};
-  body.particle_velocity.clear();
-  for (std::size_t n = 0; n < body.position.size(); ++n)
-    body.particle_velocity.push_back(dice.uniform(-1, 1));
+  body.velocity.clear();
+  for (std::size_t n = 0; n < body.position.size(); ++n) body.velocity.push_back(dice.uniform(-1, 1));
 }
 
 /// Velocities by particle after n steps, and where APIC is on, C_p.
@@ -55,7 +54,7 @@ std::vector<Table> velocities_after(const Cloud& cloud, P2G how, int n) {
   run_steps(s, k_dt, n);
   if (read_control(s).fault_count > 0) throw std::runtime_error("a step failed");
   std::vector<Table> fields{by_id(s.soil.points, s.soil.points.velocity)};
-  if (s.affine) fields.push_back(by_id(s.soil.points, s.soil.points.affine));
+  if (s.soil.points.has_affine) fields.push_back(by_id(s.soil.points, s.soil.points.affine));
   return fields;
 }
 
@@ -118,7 +117,7 @@ TEST_CASE("XPIC(m) is v - (I - S S+)^m v, by full matrices", "[velocity_update]"
     using B = decltype(reference);
     Cloud cloud = holed_block<B::dim>();
     set_random(cloud.bodies[0]);
-    const auto& v = cloud.bodies[0].particle_velocity;
+    const auto& v = cloud.bodies[0].velocity;
     const auto P = transfer<B::dim>(cloud.bodies[0]);
     const std::size_t count = v.size() / B::dim;
     std::vector<double> rest = v;
@@ -189,19 +188,19 @@ TEST_CASE("XPIC takes out what no node sees, and lets a smooth field be the more
         }
         for (int d = 0; inside && d < Dim; ++d) {
           const double v = got.value[p * Dim + d];
-          largest[0] = std::max(largest[0], std::fabs(v - body.particle_velocity[p * Dim + d]));
+          largest[0] = std::max(largest[0], std::fabs(v - body.velocity[p * Dim + d]));
           largest[1] = std::max(largest[1], std::fabs(v));
         }
       }
       return largest;
     };
     for (const double x : body.position)  // + and - in turn along each axis
-      body.particle_velocity.push_back(std::lround(x / k_spacing * 2 - 0.5) % 2 == 0 ? 1 : -1);
+      body.velocity.push_back(std::lround(x / k_spacing * 2 - 0.5) % 2 == 0 ? 1 : -1);
     for (int m : {1, 2, 3}) CHECK(change(m)[1] < B::of(1e-14, 1e-6));
 
-    for (double& v : body.particle_velocity) v = 0;
+    for (double& v : body.velocity) v = 0;
     for (std::size_t p = 0; p < strength_of(body).size(); ++p)  // a shear wave of 12 cells
-      body.particle_velocity[p * Dim] = std::sin(2 * M_PI * body.position[p * Dim + 1] / (12 * k_spacing));
+      body.velocity[p * Dim] = std::sin(2 * M_PI * body.position[p * Dim + 1] / (12 * k_spacing));
     const double first = change(1)[0];
     CHECK(first > 0.02);
     const double second = change(2)[0];
@@ -224,7 +223,7 @@ TEST_CASE("APIC keeps a linear field of velocity at free surfaces, from the firs
       INFO(build.name() << ' ' << word_of(how));
       const auto error = [&](const double(&field)[3][3], int steps) {
         set_linear<Dim>(body, field, b);
-        std::vector<Table> expected{{Dim, body.particle_velocity}};
+        std::vector<Table> expected{{Dim, body.velocity}};
         if (cloud.affine) {
           expected.push_back({Dim * Dim, {}});
           for (std::size_t n = 0; n < strength_of(body).size() * Dim * Dim; ++n)
@@ -274,7 +273,7 @@ TEST_CASE("XPIC and APIC keep momentum, and APIC angular momentum", "[velocity_u
       const double before[] = {total(0), total(1), total(Dim - 1)};
       const double tolerance = B::of(1e-13, 1e-5) * static_cast<double>(strength_of(body).size());
       const std::vector<double> x = soil_fields(s)[0].value;
-      const auto turning = s.affine ? angular_momentum<B>(s, x) : std::vector<double>{};
+      const auto turning = s.soil.points.has_affine ? angular_momentum<B>(s, x) : std::vector<double>{};
       one_step(s, k_dt);
       for (int d = 0; d < Dim; ++d) CHECK(std::fabs(total(d) - before[d]) < tolerance);
       for (std::size_t n = 0; n < turning.size(); ++n)

@@ -39,9 +39,9 @@ Cloud slump(int seed, bool whole, Wall kind) {
     for (std::size_t p = 0; p < count; ++p) body.position[p * Dim] += middle;
     for (std::size_t p = 0; p < count; ++p) {
       for (int d = 0; d < Dim; ++d) {
-        const double x = body.position[p * Dim + d], v = body.particle_velocity[p * Dim + d];
+        const double x = body.position[p * Dim + d], v = body.velocity[p * Dim + d];
         body.position.push_back(d == 0 ? 2 * middle - x : x);
-        body.particle_velocity.push_back(d == 0 || kind == Wall::fixed ? -v : v);
+        body.velocity.push_back(d == 0 || kind == Wall::fixed ? -v : v);
       }
       // Its stress turns as the velocity does: at a fixed wall as if turned about by half a turn.
       for (int k = 0; k < sym_size<Dim>; ++k) {
@@ -87,7 +87,7 @@ Cloud lone_particle(Wall wall, std::array<double, 3> velocity, std::array<double
   cloud.grid = grid_of<Dim>({6, 6, 6}, k_edge, wall);
   cloud.materials = clays();
   cloud.bodies = {body_of<Dim>({at.begin(), at.begin() + Dim}, 2, k_edge, 1)};
-  cloud.bodies[0].velocity = velocity;
+  cloud.bodies[0].common_velocity = velocity;
   return cloud;
 }
 
