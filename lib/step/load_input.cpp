@@ -21,6 +21,13 @@ TimeCurve curve_of(const std::vector<CurvePoint>& points, bool smooth) {
   return {points.data(), static_cast<int>(points.size()), smooth};
 }
 
+/// Component d of a table at a time [s], or a constant where there is none.
+double value_at(const std::optional<TimeTable>& table, double constant, int d, double time) {
+  if (!table) return constant;
+  const auto points = points_of(*table, d);
+  return curve_of(points, table->smooth).value(time);
+}
+
 }  // namespace
 
 std::vector<LoadInput> load_input(const Config& config, const std::vector<double>& carried) {
@@ -57,29 +64,22 @@ std::vector<LoadInput> load_input(const Config& config, const std::vector<double
 }
 
 double gravity_at(const Config& config, int d, double time) {
-  if (!config.gravity_table) return config.gravity[d];
-  const auto points = points_of(*config.gravity_table, d);
-  return curve_of(points, config.gravity_table->smooth).value(time);
+  return value_at(config.gravity_table, config.gravity[d], d, time);
 }
 
 double pressure_at(const LoadConfig& load, double time) {
-  if (!load.pressure_table) return load.pressure;
-  const auto points = points_of(*load.pressure_table, 0);
-  return curve_of(points, load.pressure_table->smooth).value(time);
+  return value_at(load.pressure_table, load.pressure, 0, time);
 }
 
 double traction_at(const LoadConfig& load, int d, double time) {
-  if (!load.traction_table) return load.traction[d];
-  const auto points = points_of(*load.traction_table, d);
-  return curve_of(points, load.traction_table->smooth).value(time);
+  return value_at(load.traction_table, load.traction[d], d, time);
 }
 
-double velocity_at(const RigidConfig& rigid, int d, double time) {
-  const auto& table = rigid.displacement_table ? rigid.displacement_table : rigid.velocity_table;
-  if (!table) return rigid.velocity[d];
+double velocity_at(const RigidConfig& rigid, int d, double present, double time) {
+  const auto& table = rigid.displacement_table;
+  if (!table) return value_at(rigid.velocity_table, present, d, time);
   const auto points = points_of(*table, d);
-  const TimeCurve curve = curve_of(points, table->smooth);
-  return rigid.displacement_table ? curve.rate(time) : curve.value(time);
+  return curve_of(points, table->smooth).rate(time);
 }
 
 }  // namespace mpm

@@ -97,9 +97,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::unbalanced_ratio(double time, double
 /// tells that of the time.
 template <class Space, class T, int Dim>
 double TypedStepper<Space, T, Dim>::velocity_of(std::size_t r, int d, double present, double time) const {
-  const RigidConfig& rigid = config_.rigids[r];
-  return rigid.velocity_table || rigid.displacement_table ? velocity_at(rigid, d, time - config_.time.start)
-                                                          : present;
+  return velocity_at(config_.rigids[r], d, present, time - config_.time.start);
 }
 
 template <class Space, class T, int Dim>

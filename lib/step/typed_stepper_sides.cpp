@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "common/collectives.hpp"
-#include "common/material_table.hpp"
 #include "functions/absorbing_sides.hpp"
+#include "step/body_input.hpp"
 #include "step/typed_stepper.hpp"
 
 namespace mpm {
@@ -43,9 +43,6 @@ PetscErrorCode TypedStepper<Space, T, Dim>::begin_sides() {
   sum_present_soil(state_);
   loads_to_nodes(state_);
   if (ranks_) PetscCall(ranks_->add_present_soil(state_));
-  std::vector<double> ratios;
-  for (const MaterialConfig& material : config_.materials)
-    ratios.push_back(shear_wave_ratio(material).value_or(0));
   SideRanks together;
   PetscErrorCode failed = PETSC_SUCCESS;
   if (ranks_) {
@@ -56,7 +53,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::begin_sides() {
       failed = MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE, MPI_MAX, comm_);
     };
   }
-  PetscCallCXX(begin_absorbing(state_, ratios, together));
+  PetscCallCXX(begin_absorbing(state_, shear_ratios(config_), together));
   PetscCallMPI(failed);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
