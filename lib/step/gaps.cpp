@@ -4,8 +4,6 @@
 #include <bit>
 #include <unordered_map>
 
-#include "common/collectives.hpp"
-
 namespace mpm {
 namespace {
 
@@ -92,12 +90,6 @@ template <int Dim>
 Gaps count_gaps(const std::vector<FilledPatch>& patches, const std::array<int, 3>& cells,
                 const std::array<bool, 3>& periodic) {
   return CellTable<Dim>(patches, cells, periodic).count();
-}
-
-PetscErrorCode gather_patches(MPI_Comm comm, std::vector<FilledPatch>* patches) {
-  PetscFunctionBeginUser;
-  PetscCall(share_records(comm, patches));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 template Gaps count_gaps<2>(const std::vector<FilledPatch>&, const std::array<int, 3>&,

@@ -1,8 +1,6 @@
 #pragma once
 // Cells without soil inside the soil: where it has come apart.
 
-#include <petscsys.h>
-
 #include <array>
 #include <vector>
 
@@ -22,8 +20,5 @@ struct Gaps {
 template <int Dim>
 Gaps count_gaps(const std::vector<FilledPatch>& patches, const std::array<int, 3>& cells,
                 const std::array<bool, 3>& periodic = {});
-
-/// The patches of all ranks, on every rank.
-PetscErrorCode gather_patches(MPI_Comm comm, std::vector<FilledPatch>* patches);
 
 }  // namespace mpm
