@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "data/impulse_terms.hpp"
+#include "data/motion_terms.hpp"
 
 namespace mpm {
 
@@ -26,11 +27,16 @@ struct SavedPoints {
   std::vector<SavedField> fields;  // the coordinate in that cell is the first
 };
 
-/// How a rigid body moves.
-struct SavedRigid {
-  std::array<double, 3> displacement{}, velocity{}, impulse{};  // m, m/s, N s since the last row
-  std::array<double, 3> binned{};  // m, displacement when its points were binned; they follow from it
-};
+/// Motion of a rigid body, as MotionTerms.
+using SavedRigid = std::array<double, MotionTerms::size>;
+
+/// A vector of such a row, and the row with another one in its place.
+inline std::array<double, 3> vector_of(const SavedRigid& rigid, int term) {
+  return {rigid[term], rigid[term + 1], rigid[term + 2]};
+}
+inline void set_vector(SavedRigid& rigid, int term, const std::array<double, 3>& value) {
+  for (int d = 0; d < 3; ++d) rigid[term + d] = value[d];
+}
 
 /// Normal impulses at the nodes, as friction keeps them; nodes that hold none are left out.
 struct SavedImpulse {
@@ -49,7 +55,7 @@ struct SavedSides {
 /// have left, and those that others took up.
 inline constexpr int k_lost = 11, k_lost_left = 0, k_lost_merged = 6;
 
-/// Numbers of a rank in SavedState::bounds, beside three a rigid that follow them.
+/// Numbers of a rank in SavedState::bounds, beside MotionTerms::impulse_size a rigid that follow them.
 inline constexpr int k_saved_bounds = 8;
 
 /// Numbers of SavedState::energy.

@@ -174,18 +174,36 @@ std::string restore_points(ParticleSet<Space, Points_>& set, const SavedPoints& 
   return missing;
 }
 
+template <int Dim>
+SavedRigid save_rigid(const Rigid<Dim>& rigid) {
+  SavedRigid row{};
+  for (int d = 0; d < Dim; ++d) {
+    row[MotionTerms::displacement + d] = rigid.pose.displacement[d];
+    row[MotionTerms::velocity + d] = rigid.velocity[d];
+    row[MotionTerms::binned + d] = rigid.binned.displacement[d];
+  }
+  for (int d = 0; d < Dim; ++d) row[MotionTerms::impulse + d] = rigid.impulse[d];
+  return row;
+}
+
+template <int Dim>
+void restore_rigid(const SavedRigid& row, Rigid<Dim>& rigid) {
+  for (int d = 0; d < Dim; ++d) {
+    rigid.pose.displacement[d] = row[MotionTerms::displacement + d];
+    rigid.velocity[d] = row[MotionTerms::velocity + d];
+    rigid.binned.displacement[d] = row[MotionTerms::binned + d];
+  }
+  for (int d = 0; d < Dim; ++d) rigid.impulse[d] = row[MotionTerms::impulse + d];
+}
+
 /// binned: the rigids stand where their points were binned, else where they are.
 template <class Space, class T, int Dim>
 void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved, bool binned) {
   const auto host = mirror_of(s.rigids);
-  for (std::size_t r = 0; r < saved.rigids.size(); ++r)
-    for (int d = 0; d < Dim; ++d) {
-      const SavedRigid& from = saved.rigids[r];
-      host(r).pose.displacement[d] = binned ? from.binned[d] : from.displacement[d];
-      host(r).binned.displacement[d] = from.binned[d];
-      host(r).velocity[d] = from.velocity[d];
-      host(r).impulse[d] = from.impulse[d];
-    }
+  for (std::size_t r = 0; r < saved.rigids.size(); ++r) {
+    restore_rigid(saved.rigids[r], host(r));
+    if (binned) host(r).pose = host(r).binned;
+  }
   copy(s.rigids, host);
 }
 
@@ -227,15 +245,7 @@ SavedState save_state(const State<Space, T, Dim>& s) {
   saved.margin = s.p2g.margin, saved.due_in = control().due_in;
   saved.soil = save_points(s.patches, s.soil.points);
   const auto rigids = mirror_of(s.rigids);
-  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
-    SavedRigid& rigid = saved.rigids.emplace_back();
-    for (int d = 0; d < Dim; ++d) {
-      rigid.displacement[d] = rigids(r).pose.displacement[d];
-      rigid.velocity[d] = rigids(r).velocity[d];
-      rigid.impulse[d] = rigids(r).impulse[d];
-      rigid.binned[d] = rigids(r).binned.displacement[d];
-    }
-  }
+  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) saved.rigids.push_back(save_rigid(rigids(r)));
   saved.impulse = save_impulse(s);
   save_strays(s, saved);
   return saved;

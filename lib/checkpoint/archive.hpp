@@ -2,6 +2,7 @@
 // The layout of a checkpoint in HDF5: one list, which the writer and the reader both go through. Each item is
 // at once what is written and where it is read to.
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -40,17 +41,11 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
 
   archive.points("soil", c.state.soil, soil);
   std::vector<double> motion;
-  for (const SavedRigid& rigid : c.state.rigids)
-    for (const auto* vector : {&rigid.displacement, &rigid.velocity, &rigid.impulse, &rigid.binned})
-      motion.insert(motion.end(), vector->begin(), vector->end());
+  for (const SavedRigid& rigid : c.state.rigids) motion.insert(motion.end(), rigid.begin(), rigid.end());
   archive.list("rigids", motion);
-  constexpr std::size_t k_motion = 12;
-  c.state.rigids.resize(motion.size() / k_motion);
-  for (std::size_t k = 0; k < c.state.rigids.size() * k_motion; ++k) {
-    SavedRigid& rigid = c.state.rigids[k / k_motion];
-    std::array<double, 3>* vectors[] = {&rigid.displacement, &rigid.velocity, &rigid.impulse, &rigid.binned};
-    (*vectors[k % k_motion / 3])[k % 3] = motion[k];
-  }
+  c.state.rigids.resize(motion.size() / MotionTerms::size);
+  for (std::size_t r = 0; r < c.state.rigids.size(); ++r)
+    std::copy_n(&motion[r * MotionTerms::size], MotionTerms::size, c.state.rigids[r].begin());
   archive.value("particles", c.state.particles), archive.list("lost", c.state.lost);
   archive.list("unused", c.state.unused);
   std::string columns = join(c.state.columns), variables = join(c.state.variables, "\n");

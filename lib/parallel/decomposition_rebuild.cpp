@@ -28,7 +28,8 @@ void fill(View& view, const std::vector<Value>& values) {
 // Numbers of a rank in SavedState::bounds: bound, increment, whether a report is under way, the two numbers
 // of it, sum, and the two numbers of the next report.
 constexpr int k_bounds = k_saved_bounds;
-constexpr double k_worth = 0.02;  // least gain in balance for which patches change hands
+constexpr int k_impulse = MotionTerms::impulse_size;  // of a rigid, behind them
+constexpr double k_worth = 0.02;                      // least gain in balance for which patches change hands
 
 }  // namespace
 
@@ -211,8 +212,8 @@ PetscErrorCode Decomposition<Space, T, Dim>::exchange_impulses(State_& s, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Saves the numbers that differ from rank to rank in SavedState::bounds: k_bounds numbers and three a rigid
-/// of each rank.
+/// Saves the numbers that differ from rank to rank in SavedState::bounds: k_bounds numbers and the impulse of
+/// each rigid, of each rank.
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::save(SavedState* saved) const {
   PetscFunctionBeginUser;
@@ -226,7 +227,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::save(SavedState* saved) const {
                           seen_().bound,
                           seen_().increment};
   for (const SavedRigid& rigid : saved->rigids)
-    own.insert(own.end(), rigid.impulse.begin(), rigid.impulse.end());
+    own.insert(own.end(), &rigid[MotionTerms::impulse], &rigid[MotionTerms::impulse] + k_impulse);
   const int width = static_cast<int>(own.size());
   saved->bounds.resize(std::size_t(size_) * width);
   PetscCallMPI(MPI_Allgather(own.data(), width, MPI_DOUBLE, saved->bounds.data(), width, MPI_DOUBLE, comm_));
@@ -245,7 +246,8 @@ PetscErrorCode Decomposition<Space, T, Dim>::save(SavedState* saved) const {
   }
   for (SavedRigid& rigid : saved->rigids)
     if (!forces_shared_)
-      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rigid.impulse.data(), 3, MPI_DOUBLE, MPI_SUM, comm_));
+      PetscCallMPI(
+          MPI_Allreduce(MPI_IN_PLACE, &rigid[MotionTerms::impulse], k_impulse, MPI_DOUBLE, MPI_SUM, comm_));
   saved->owners.assign(owners_.begin(), owners_.end());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -254,7 +256,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::save(SavedState* saved) const {
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::take_own(SavedState& saved) {
   PetscFunctionBeginUser;
-  const std::size_t width = k_bounds + 3 * saved.rigids.size();
+  const std::size_t width = k_bounds + k_impulse * saved.rigids.size();
   seen_() = {};
   bound_.set_due_in(saved.due_in);
   const auto sound = [&](long r) { return r >= 0 && r < size_; };
@@ -263,7 +265,8 @@ PetscErrorCode Decomposition<Space, T, Dim>::take_own(SavedState& saved) {
   if (!as_many) {
     bound_.set_sum(saved.bound - saved.increment);  // which the first step notes
     for (SavedRigid& rigid : saved.rigids)
-      if (rank_ > 0 && !forces_shared_) rigid.impulse = {};  // rank 0 has those of all
+      if (rank_ > 0 && !forces_shared_)  // rank 0 has those of all
+        std::fill_n(&rigid[MotionTerms::impulse], k_impulse, 0.0);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   owners_.assign(saved.owners.begin(), saved.owners.end());
@@ -273,7 +276,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::take_own(SavedState& saved) {
   bound_.set_sum(own[5]);
   seen_().bound = own[6], seen_().increment = own[7];
   for (std::size_t r = 0; r < saved.rigids.size(); ++r)
-    std::copy_n(own + k_bounds + 3 * r, 3, saved.rigids[r].impulse.begin());
+    std::copy_n(own + k_bounds + k_impulse * r, k_impulse, &saved.rigids[r][MotionTerms::impulse]);
   if (own[2] != 0) PetscCall(bound_.post(comm_, {own[3], own[4], 0}));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -146,7 +146,9 @@ void apply_changes(const std::vector<OptionChange>& changes, const Config& confi
         if (lower_case(change.name) == "-" + lower_case(rigid.name) + key) return true;
       return false;
     });
-    if (changed) state.rigids[r].velocity = rigid.motion == Motion::fixed ? Vec3{} : rigid.velocity;
+    if (changed)
+      set_vector(state.rigids[r], MotionTerms::velocity,
+                 rigid.motion == Motion::fixed ? Vec3{} : rigid.velocity);
   }
 }
 

@@ -88,7 +88,8 @@ PetscErrorCode look_at_present(const Job& job, const SavedState& state, Present*
   const Config& config = job.config;
   const int dim = config.dim;
   present->soil.assign(config.bodies.size(), {});
-  for (const SavedRigid& rigid : state.rigids) present->rigids.push_back(rigid.displacement);
+  for (const SavedRigid& rigid : state.rigids)
+    present->rigids.push_back(vector_of(rigid, MotionTerms::displacement));
   const Bounds bounds = bounds_of_placed(config);
   const auto position = positions_of(state.soil, config.mesh, dim);
   const auto body = numbers_of(state.soil, "body");
@@ -155,11 +156,14 @@ PetscErrorCode change_bodies(Job& job, const Clock& clock, SavedState& state, Pr
   const auto of_body = numbers_of(state.soil, "body");
   for (std::size_t p = 0; p < out.size(); ++p) out[p] = has(stage.remove, static_cast<int>(of_body[p]));
   if (!stage.remove.empty()) PetscCall(remove_particles(job.comm, config.dim, out, state, &mass));
-  for (const int r : stage.remove_rigids) state.rigids[r].velocity = state.rigids[r].impulse = {};
+  for (const int r : stage.remove_rigids) {
+    set_vector(state.rigids[r], MotionTerms::velocity, {});
+    std::fill_n(&state.rigids[r][MotionTerms::impulse], MotionTerms::impulse_size, 0.0);
+  }
   for (const int r : stage.place_rigids) {
     const RigidConfig& rigid = config.rigids[r];
     state.rigids[r] = {};
-    if (rigid.motion != Motion::fixed) state.rigids[r].velocity = rigid.velocity;
+    if (rigid.motion != Motion::fixed) set_vector(state.rigids[r], MotionTerms::velocity, rigid.velocity);
     PetscCall(job.log.print("rigid %s is placed", rigid.name.c_str()));
   }
   if (stage.place.empty() && stage.place_rigids.empty()) PetscFunctionReturn(PETSC_SUCCESS);

@@ -19,7 +19,7 @@ void reset_state(const Config& config, SavedState& state) {
     for (const char* name : {"velocity", "affine", "plastic_strain"})
       if (field.name == name) std::fill(field.values.begin(), field.values.end(), 0.0);
   for (std::size_t r = 0; r < state.rigids.size(); ++r)
-    if (config.rigids[r].motion == Motion::dynamic) state.rigids[r].velocity = {};
+    if (config.rigids[r].motion == Motion::dynamic) set_vector(state.rigids[r], MotionTerms::velocity, {});
 }
 
 double length_of(const Vec3& x) { return std::hypot(x[0], x[1], x[2]); }
@@ -123,7 +123,7 @@ double end_of_run(const Job& job, const Clock& clock) {
 void leave_stage(const Config& config, SavedState& state, StageState& stage) {
   stage.rigid_zero.resize(3 * config.rigids.size()), stage.rigid_begin.resize(stage.rigid_zero.size());
   for (std::size_t k = 0; k < stage.rigid_zero.size(); ++k) {
-    stage.rigid_begin[k] = state.rigids[k / 3].displacement[k % 3];
+    stage.rigid_begin[k] = state.rigids[k / 3][MotionTerms::displacement + k % 3];
     if (config.stage.reset) stage.rigid_zero[k] = stage.rigid_begin[k];
   }
   if (config.stage.reset) reset_state(config, state);

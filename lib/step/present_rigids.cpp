@@ -50,7 +50,8 @@ void PresentRigids::narrow(SavedState& state) {
   others_ = state.rigids;
   state.impulse.values =
       rearranged(state.impulse.values, 0, ImpulseTerms::size, others_.size(), place_.size(), place_, here);
-  state.bounds = rearranged(state.bounds, k_saved_bounds, 3, others_.size(), place_.size(), place_, here);
+  state.bounds = rearranged(state.bounds, k_saved_bounds, MotionTerms::impulse_size, others_.size(),
+                            place_.size(), place_, here);
   state.rigids.clear();
   for (const std::size_t r : place_) state.rigids.push_back(others_[r]);
 }
@@ -62,7 +63,8 @@ void PresentRigids::widen(SavedState& state) const {
       place_.empty() ? std::vector<double>(ImpulseTerms::size * state.impulse.address.size() * others_.size())
                      : rearranged(state.impulse.values, 0, ImpulseTerms::size, place_.size(), others_.size(),
                                   here, place_);
-  state.bounds = rearranged(state.bounds, k_saved_bounds, 3, place_.size(), others_.size(), here, place_);
+  state.bounds = rearranged(state.bounds, k_saved_bounds, MotionTerms::impulse_size, place_.size(),
+                            others_.size(), here, place_);
   std::vector<SavedRigid> rigids = others_;
   for (std::size_t k = 0; k < place_.size(); ++k) rigids[place_[k]] = state.rigids[k];
   state.rigids = std::move(rigids);
@@ -71,7 +73,8 @@ void PresentRigids::widen(SavedState& state) const {
 void PresentRigids::widen(std::vector<RigidRow>& rows) const {
   if (all()) return;
   std::vector<RigidRow> out(others_.size());
-  for (std::size_t r = 0; r < others_.size(); ++r) out[r].displacement = others_[r].displacement;
+  for (std::size_t r = 0; r < others_.size(); ++r)
+    out[r].displacement = vector_of(others_[r], MotionTerms::displacement);
   for (std::size_t k = 0; k < place_.size(); ++k) out[place_[k]] = rows[k];
   rows = std::move(out);
 }

@@ -92,8 +92,8 @@ Checkpoint some_checkpoint() {
   c.state.particles = k_soil;
   c.state.lost = {0, 1.5, 2.5, 3, 4, 5, 0, 0.5, 6};
   c.state.alone_known = 1, c.state.alone = {17, 23};
-  c.state.rigids = {{{1, 2, 0}, {3, 4, 0}, {5, 6, 0}, {7, 8, 0}},
-                    {{-1, -2, 0}, {-3, -4, 0}, {-5, -6, 0}, {-7, -8, 0}}};
+  c.state.rigids = {{1, 2, 0, 3, 4, 0, 5, 6, 0, 7, 8, 0},
+                    {-1, -2, 0, -3, -4, 0, -5, -6, 0, -7, -8, 0}};
   c.state.bounds = {0.25, 0.5, 0.75}, c.state.owners = {0, 2, 1, 0};
   if (rank_of_this() == 0) c.state.impulse = {{7, 5}, {70, 71, 72, 73, 74, 75, 50, 51, 52, 53, 54, 55}};
   return c;
@@ -167,8 +167,9 @@ TEST_CASE("a checkpoint reads as it was written, whichever rank had which point"
   CHECK((read.options[0].name == "-gravity" && read.options[0].value == "0,-10" && read.options[1].standard));
   check_points(read.state.soil, k_soil);
   REQUIRE(read.state.rigids.size() == 2);
-  CHECK((read.state.rigids[0].velocity[1] == 4 && read.state.rigids[1].impulse[0] == -5));
-  CHECK(read.state.rigids[1].binned[1] == -8);
+  CHECK((read.state.rigids[0][MotionTerms::velocity + 1] == 4 &&
+         read.state.rigids[1][MotionTerms::impulse] == -5));
+  CHECK(read.state.rigids[1][MotionTerms::binned + 1] == -8);
   CHECK((read.state.particles == k_soil && read.state.lost == wanted.state.lost));
   CHECK((read.state.alone_known == 1 && read.state.alone == wanted.state.alone));
   CHECK(read.state.bounds == std::vector<double>{0.25, 0.5, 0.75});
@@ -302,13 +303,15 @@ TEST_CASE("a load changes at a restart where it is named, and is told", "[checkp
 
   SavedState state;
   state.rigids.resize(2);
-  state.rigids[0].velocity = {0, -1, 0}, state.rigids[1].velocity = {0.5, 0, 0};
+  const int velocity = MotionTerms::velocity;
+  set_vector(state.rigids[0], velocity, {0, -1, 0}), set_vector(state.rigids[1], velocity, {0.5, 0, 0});
   apply_changes(found.changes, config, state);
-  CHECK(state.rigids[0].velocity == std::array<double, 3>{0, -2, 0});
-  CHECK(state.rigids[1].velocity == std::array<double, 3>{0.5, 0, 0});  // its force changed, no more
+  CHECK(vector_of(state.rigids[0], velocity) == std::array<double, 3>{0, -2, 0});
+  CHECK(vector_of(state.rigids[1], velocity) ==
+        std::array<double, 3>{0.5, 0, 0});  // its force changed, no more
   config.rigids[1].motion = Motion::fixed;
   apply_changes({{"-pile_motion", "dynamic", "fixed"}}, config, state);
-  CHECK(state.rigids[1].velocity == std::array<double, 3>{});
+  CHECK(vector_of(state.rigids[1], velocity) == std::array<double, 3>{});
 
   for (const std::string& name : all) CHECK(change_rule(name, config).listed);
   for (const char* name :
@@ -377,7 +380,7 @@ TEST_CASE("a state that no kernel could take is refused", "[checkpoint]") {
   CHECK(refused([](SavedState& s) { s.bound = 0.7; }));
   CHECK(refused([](SavedState& s) { s.unused[1] = -1; }));
   CHECK(refused([](SavedState& s) { s.variables.pop_back(); }));
-  CHECK(refused([](SavedState& s) { s.rigids[0].velocity[0] = HUGE_VAL; }));
+  CHECK(refused([](SavedState& s) { s.rigids[0][MotionTerms::velocity] = HUGE_VAL; }));
   CHECK(refused([](SavedState& s) { s.rigids.clear(); }));
   CHECK(refused([](SavedState& s) { s.impulse.address = {5}; }));
 }

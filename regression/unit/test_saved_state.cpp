@@ -35,11 +35,8 @@ bool same(const SavedPoints& a, const SavedPoints& b) {
 /// Everything, bit for bit, and the order of the particles on the device too.
 bool same(const SavedState& a, const SavedState& b) {
   bool equal = a.bound == b.bound && a.increment == b.increment && same(a.soil, b.soil) &&
-               a.impulse.address == b.impulse.address && a.impulse.values == b.impulse.values;
-  for (std::size_t r = 0; r < a.rigids.size(); ++r)
-    equal = equal && a.rigids[r].displacement == b.rigids[r].displacement &&
-            a.rigids[r].binned == b.rigids[r].binned && a.rigids[r].velocity == b.rigids[r].velocity &&
-            a.rigids[r].impulse == b.rigids[r].impulse;
+               a.impulse.address == b.impulse.address && a.impulse.values == b.impulse.values &&
+               a.rigids == b.rigids;
   return equal;
 }
 
