@@ -1,7 +1,9 @@
 #pragma once
 // The works that an energy balance sums from step to step (-output_energy).
 
+#include "base/spaces.hpp"
 #include "base/types.hpp"
+#include "data/rigid_pose.hpp"
 
 namespace mpm {
 
@@ -31,13 +33,13 @@ template <class Space, class T, int Dim>
 struct EnergyWorks {
   using Memory = typename Space::memory_space;
   bool on = false;
-  Kokkos::View<double*, Memory> work;                   // J [Work::count], since the start, on this rank
-  Kokkos::View<NodeWorks, Memory> of_nodes;             // of one step
-  Kokkos::View<double, Memory> of_stress;               // J, of one step
-  Kokkos::View<SymTensor<T, Dim>*, Memory> stress;      // Pa, of each particle before the step
-  Kokkos::View<SymTensor<T, Dim>*, Memory> strain;      // -, of each particle in the step
-  Kokkos::View<T*, Memory> volume;                      // m3, of each particle before the step
-  Kokkos::View<Vector<double, Dim>*, Memory> rigid_at;  // m, displacement of each rigid before the step
+  Kokkos::View<double*, Memory> work;               // J [Work::count], since the start, on this rank
+  Kokkos::View<NodeWorks, Memory> of_nodes;         // of one step
+  Kokkos::View<double, Memory> of_stress;           // J, of one step
+  Kokkos::View<SymTensor<T, Dim>*, Memory> stress;  // Pa, of each particle before the step
+  Kokkos::View<SymTensor<T, Dim>*, Memory> strain;  // -, of each particle in the step
+  Kokkos::View<T*, Memory> volume;                  // m3, of each particle before the step
+  Kokkos::View<RigidPose<Dim>*, Memory> rigid_at;   // of each rigid before the step
 };
 
 }  // namespace mpm

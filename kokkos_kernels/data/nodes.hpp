@@ -1,5 +1,5 @@
 #pragma once
-// Nodal fields, the rigid bodies' state, and the control block that lives on the device.
+// Nodal fields, and the control block that lives on the device.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,8 +8,6 @@
 #include "base/types.hpp"
 #include "data/impulse_terms.hpp"
 #include "data/patches.hpp"
-#include "data/rigid_pose.hpp"
-#include "data/surface.hpp"
 #include "data/water.hpp"
 
 namespace mpm {
@@ -106,28 +104,6 @@ void for_each_nodal_field(F&& f, Nodes_& nodes, const NodeUses& uses) {
   f("shares", uses.correction, nodes.shares);
   f("centre", uses.domains, nodes.centre), f("drift", uses.domains, nodes.drift);
 }
-
-/// A rigid body on the device.
-template <int Dim>
-struct Rigid {
-  RigidPose<Dim> pose;           // where it is
-  RigidPose<Dim> binned;         // where it was when its points were binned
-  Vector<double, Dim> velocity;  // m/s
-  Vector<double, Dim> impulse;   // N s, of the soil on it since the host last took it
-  Vector<double, Dim> force;     // N, external and weight
-  double mass;                   // kg
-  bool dynamic;
-  bool held[Dim];  // a plane of symmetry cuts it, across which it does not move
-  Surface<Dim> surface;
-  bool surface_normal;    // normals from the surface, not from the mass gradient
-  bool separates;         // the soil may part from it
-  double reach;           // m, gap at which the contact ends; 0: it does not depend on the gap
-  double exponent;        // -, of its decrease with the gap
-  double shear_limit;     // Pa, infinite where only the friction limits
-  double shear_fraction;  // -, of the soil's strength instead of the limit; negative: none
-  double friction;        // -, negative: none
-  double mass_cut;        // kg, nodes below it are not touched
-};
 
 /// Why a run cannot go on.
 enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone, law, state };

@@ -7,6 +7,7 @@
 #include "data/energy_works.hpp"
 #include "data/nodes.hpp"
 #include "data/position_correction.hpp"
+#include "data/rigid.hpp"
 #include "data/sides.hpp"
 #include "data/soil_batches.hpp"
 #include "data/split_patches.hpp"

@@ -6,7 +6,7 @@
 #include "base/spaces.hpp"
 #include "base/time_curve.hpp"
 #include "base/types.hpp"
-#include "data/nodes.hpp"
+#include "data/rigid.hpp"
 #include "data/sides.hpp"
 #include "data/surface_loads.hpp"
 
@@ -85,7 +85,7 @@ struct LoadsOfStep {
     if (load.target == LoadTarget::gravity)
       (*gravity)[d] = static_cast<T>(value);
     else if (load.target == LoadTarget::velocity)
-      rigids[load.rigid].velocity[d] = value;
+      rigids[load.rigid].motion.velocity[d] = value;
     else if (load.target == LoadTarget::side)
       sides[load.rigid].velocity[d] = value;
     else if (load.target == LoadTarget::pressure)
@@ -93,7 +93,7 @@ struct LoadsOfStep {
     else if (load.target == LoadTarget::traction)
       surfaces[load.rigid].traction[d] = value;
     else
-      rigids[load.rigid].force[d] = value;
+      rigids[load.rigid].force[Wrench<Dim>::force + d] = value;
   }
 };
 

@@ -153,7 +153,7 @@ void add_node_works(State<Space, T, Dim>& s, double dt) {
       "mpm::add_node_works", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
         work(Work::internal) += sum().internal, work(Work::gravity) += sum().gravity;
         work(Work::damping) += sum().damping, work(Work::boundary) += sum().boundary;
-        for (int r = 0; r < rigid_count; ++r) rigid_at(r) = rigids(r).pose.displacement;
+        for (int r = 0; r < rigid_count; ++r) rigid_at(r) = rigids(r).motion.pose;
       });
   Kokkos::parallel_for("mpm::strain_of_cells", nodes,
                        StrainOfCells<Space, T, Dim>{s.soil.points,
@@ -201,9 +201,11 @@ void add_rigid_work(State<Space, T, Dim>& s, bool counts) {
   const auto force = s.rigid_force;
   Kokkos::parallel_for(
       "mpm::add_rigid_work", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
-        for (int r = 0; r < count; ++r)
-          for (int d = 0; d < Dim; ++d)
-            work(Work::rigids) -= force(r * Dim + d) * (rigids(r).pose.displacement[d] - before(r)[d]);
+        constexpr int size = Wrench<Dim>::size;
+        for (int r = 0; r < count; ++r) {
+          const Vector<double, size> way = rigids(r).motion.pose.way_from(before(r));
+          for (int k = 0; k < size; ++k) work(Work::rigids) -= force(r * size + k) * way[k];
+        }
       });
 }
 

@@ -94,8 +94,8 @@ struct FindShift {
     const Coord<Dim> cell = cell_of_mesh(p);
     for (int r = 0; r < rigid_count; ++r) {
       const Rigid<Dim>& rigid = rigids(r);
-      const auto place =
-          rigid.pose.to_body([&](int d) { return (cell[d] + double(soil.coordinate(p)[d])) * spacing; });
+      const auto place = rigid.motion.pose.to_body(
+          [&](int d) { return (cell[d] + double(soil.coordinate(p)[d])) * spacing; });
       if (distance_to(rigid.surface, vertices, place).value < k_near_rigid * spacing) return true;
     }
     return false;

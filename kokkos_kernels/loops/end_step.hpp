@@ -5,60 +5,9 @@
 #include "base/serial_team.hpp"
 #include "data/state.hpp"
 #include "device/warp.hpp"
-#include "physics/local_damping.hpp"
+#include "physics/rigid_motion.hpp"
 
 namespace mpm {
-
-/// Motion of a rigid body in a step. T: precision of the soil's forces on it.
-template <class T, int Dim>
-struct MovingRigid {
-  RigidPose<Dim> pose;
-  Vector<double, Dim> velocity, impulse, force;  // as Rigid has them
-  double mass;
-  bool dynamic, held[Dim];
-
-  MovingRigid() = default;
-  KOKKOS_INLINE_FUNCTION explicit MovingRigid(const Rigid<Dim>& r)
-      : pose(r.pose),
-        velocity(r.velocity),
-        impulse(r.impulse),
-        force(r.force),
-        mass(r.mass),
-        dynamic(r.dynamic) {
-    for (int d = 0; d < Dim; ++d) held[d] = r.held[d];
-  }
-
-  /// Acceleration [m/s2] under the force [N] of the soil on it (Eq. 7), less local damping as at a node.
-  KOKKOS_INLINE_FUNCTION Vector<double, Dim> acceleration(const Vector<double, Dim>& contact, double damping,
-                                                          double dt) const {
-    Vector<double, Dim> a{};
-    for (int d = 0; d < Dim; ++d) a[d] = dynamic && !held[d] ? (force[d] + contact[d]) / mass : 0;
-    const Vector<double, Dim> brake = local_damping<T>(damping, dt, a, velocity);
-    for (int d = 0; d < Dim; ++d) a[d] -= brake[d];
-    return a;
-  }
-  /// Movement in a step [m] with acceleration a, exactly where the force is constant.
-  KOKKOS_INLINE_FUNCTION double movement(int d, double a, double dt) const {
-    return dt * (velocity[d] + dt / 2 * a);
-  }
-  /// Moves by a step. contact [N] is the force of the soil. Returns the largest component of its movement
-  /// [m].
-  KOKKOS_INLINE_FUNCTION double move(const Vector<double, Dim>& contact, double damping, double dt) {
-    const Vector<double, Dim> a = acceleration(contact, damping, dt);
-    double furthest = 0;
-    for (int d = 0; d < Dim; ++d) {
-      const double step = movement(d, a[d], dt);
-      furthest = Kokkos::fmax(furthest, Kokkos::fabs(step));
-      pose.displacement[d] += step;
-      impulse[d] += dt * contact[d];
-      velocity[d] += dt * a[d];
-    }
-    return furthest;
-  }
-  KOKKOS_INLINE_FUNCTION void keep_in(Rigid<Dim>& r) const {
-    r.pose = pose, r.velocity = velocity, r.impulse = impulse;
-  }
-};
 
 /// Values of Control that the end of a step changes, beside the count of steps.
 struct StepEnd {
@@ -118,9 +67,11 @@ struct EndStep {
         late(s.rebuild_late),
         summed(s.forces_summed) {}
 
+  /// Numbers of the wrenches on all rigids.
+  KOKKOS_INLINE_FUNCTION int values() const { return Wrench<Dim>::size * count; }
   static constexpr int warps(int threads) { return (threads + k_warp - 1) / k_warp; }
   /// Doubles that a team of so many threads needs.
-  int room(int threads) const { return Dim * count + warps(threads); }
+  int room(int threads) const { return values() + warps(threads); }
 
   /// Input of the end of a step: the rigids, the forces of the slots' nodes on them, the movements of
   /// particles, and where the forces on the rigids go [N], unless it is null.
@@ -151,23 +102,24 @@ struct EndStep {
   template <class Team>
   KOKKOS_INLINE_FUNCTION StepEnd move(const Team& team, StepEnd found, const Left& left, bool clears,
                                       double* part) const {
-    const int values = Dim * count, parts = warps(team.team_size()), rank = team.team_rank();
-    MovingRigid<T, Dim> rigid{};
-    if (rank < count) rigid = MovingRigid<T, Dim>(left.rigids[rank]);
+    constexpr int size = Wrench<Dim>::size;
+    const int values = this->values(), parts = warps(team.team_size()), rank = team.team_rank();
+    MovingRigid<Dim> rigid{};
+    if (rank < count) rigid = left.rigids[rank];
     const Noted noted = noted_movements(team, left.movements, clears);
     if (!summed) sum_by_warps(team, left.forces, 0, values, part);
     keep(team, largest_of_warp(noted.largest()), part + values);
     team.team_barrier();  // also: no thread reads `paused` any more
     MPM_ROLLED
     for (int r = rank; r < count; r += team.team_size()) {
-      if (r > rank) rigid = MovingRigid<T, Dim>(left.rigids[r]);
-      Vector<double, Dim> contact;
-      for (int d = 0; d < Dim; ++d) {
-        const int v = r * Dim + d;
-        contact[d] = summed ? sums(v) : part[v];
-        if (!summed && left.sums != nullptr) left.sums[v] = contact[d];
+      if (r > rank) rigid = left.rigids[r];
+      Wrench<Dim> contact;
+      for (int k = 0; k < size; ++k) {
+        const int v = r * size + k;
+        contact[k] = summed ? sums(v) : part[v];
+        if (!summed && left.sums != nullptr) left.sums[v] = contact[k];
       }
-      part[r * Dim] = rigid.move(contact, damping, dt) / spacing;
+      part[r * size] = advance_rigid<T>(rigid, contact, damping, dt) / spacing;
       rigid.keep_in(left.rigids[r]);
     }
     team.team_barrier();
@@ -175,7 +127,7 @@ struct EndStep {
     MPM_ROLLED
     for (int w = 0; w < parts; ++w) furthest = Kokkos::fmax(furthest, part[values + w]);
     MPM_ROLLED
-    for (int r = 0; r < count; ++r) furthest = Kokkos::fmax(furthest, part[r * Dim]);
+    for (int r = 0; r < count; ++r) furthest = Kokkos::fmax(furthest, part[r * size]);
     found.add(furthest, Kokkos::Experimental::epsilon<T>::value, margin, late);
     return found;
   }
@@ -202,23 +154,23 @@ struct EndStep {
     });
   }
 
-  /// Displacement [m] that rigid r, `of`, will have, to the same bits. Dynamic: it may move by the forces on
-  /// it, which are there. part: room(threads).
+  /// Pose that rigid r, `of`, will have, to the same bits. Dynamic: it may move by the forces on it, which
+  /// are there. part: room(threads).
   template <bool Dynamic, class Team>
-  KOKKOS_INLINE_FUNCTION Vector<double, Dim> next_displacement(const Team& team, int r, const Rigid<Dim>& of,
-                                                               double* part) const {
-    const MovingRigid<T, Dim> rigid(of);
-    Vector<double, Dim> a{}, to = rigid.pose.displacement;
+  KOKKOS_INLINE_FUNCTION RigidPose<Dim> pose_after(const Team& team, int r, const Rigid<Dim>& of,
+                                                   double* part) const {
+    constexpr int size = Wrench<Dim>::size;
+    const MovingRigid<Dim> rigid = of;
+    Vector<double, Dim> a{};
     if constexpr (Dynamic) {
       team.team_barrier();  // what was there before is done with
-      if (rigid.dynamic) sum_by_warps(team, forces.data(), r * Dim, Dim, part);
+      if (rigid.inertia.dynamic) sum_by_warps(team, forces.data(), r * size, size, part);
       team.team_barrier();
-      Vector<double, Dim> contact{};
-      for (int d = 0; d < Dim && rigid.dynamic; ++d) contact[d] = part[d];
-      a = rigid.acceleration(contact, damping, dt);
+      Wrench<Dim> contact{};
+      for (int k = 0; k < size && rigid.inertia.dynamic; ++k) contact[k] = part[k];
+      a = acceleration_of<T>(rigid, contact, damping, dt);
     }
-    for (int d = 0; d < Dim; ++d) to[d] += rigid.movement(d, a[d], dt);
-    return to;
+    return next_pose(rigid.motion, a, dt);
   }
 
  private:
@@ -266,7 +218,7 @@ struct EndStep {
     // Slots that a thread asks the memory for at once. On a processor one after the other, so that slots that
     // leave no force change nothing.
     constexpr int k_slots = is_device<Space> ? 4 : 1;
-    const int values = Dim * count;
+    const int values = this->values();
     double sum[k_slots] = {};
     MPM_ROLLED
     for (int k = rank; k < slots; k += k_slots * threads)

@@ -37,7 +37,7 @@ template <class Space, class T, int Dim, bool acts = true>
 struct UpdateNodes {
   using S = SoilTerms<Dim>;
   static constexpr int cells = Patch<Dim>::cells;
-  int value_count;
+  int value_count;  // of the wrenches on all rigids
   NodePlaces<Space, T, Dim> places;
   Nodes<Space, T, Dim> nodes;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
@@ -92,6 +92,9 @@ struct UpdateNodes {
     for (int d = 0; d < Dim; ++d) at[d] += from[d];
     keep(i, kinematics(sums, rigids.data(), i, at, near, force));
   }
+  /// Rigids, of which value_count has the numbers of their wrenches.
+  KOKKOS_INLINE_FUNCTION int rigid_count() const { return value_count / Wrench<Dim>::size; }
+
   /// Mass [kg] below which a node is at rest: so little that 1 / m_i might overflow.
   KOKKOS_INLINE_FUNCTION T at_rest() const { return T(1e-12) * mass_cut; }
 
@@ -155,8 +158,8 @@ struct UpdateNodes {
     return node;
   }
 
-  /// Motion of a node after the step; bodies: the rigids. Adds component d of the force on rigid r to
-  /// force[(r Dim + d) cells], unless it is null.
+  /// Motion of a node after the step; bodies: the rigids. Adds component k of the wrench on rigid r to
+  /// force[(r Wrench::size + k) cells], unless it is null.
   template <class Sums>
   KOKKOS_INLINE_FUNCTION KinematicValues<T, Dim> kinematics(const Sums& sums, const Rigid<Dim>* bodies, int i,
                                                             const Coord<Dim>& at, bool near,
@@ -220,7 +223,8 @@ struct UpdateNodes {
       if (node.acting != 0) v = by_sides(acting_sides, side_node(node, keeps), v_old, v, true);
     MPM_ROLLED
     for (int r = 0; r < node.touching; ++r)
-      touch(sums, node, bodies[r], r, v, keeps, force == nullptr ? force : force + r * Dim * cells);
+      touch(sums, node, bodies[r], r, v, keeps,
+            force == nullptr ? force : force + r * Wrench<Dim>::size * cells);
     if constexpr (acts)
       if (node.acting != 0 && node.touching > 0)
         v = by_sides(acting_sides, side_node(node, keeps), v_old, v, false);
@@ -275,8 +279,10 @@ struct UpdateNodes {
     for (int n = 0; n < RigidTerms<Dim>::size && has_mass_normals; ++n) given[n] = sums.rigid(r, node.i, n);
     const T m_i = node.soil[S::mass];
     Vector<T, Dim> n, v_r, boundary;
+    const auto place = place_at(node.at);
+    const Vector<double, Dim>& velocity = rigid.motion.velocity_at(place);
     for (int d = 0; d < Dim; ++d) {
-      v_r[d] = static_cast<T>(rigid.velocity[d]);
+      v_r[d] = static_cast<T>(velocity[d]);
       boundary[d] = node.boundary[BoundaryTerms<Dim>::area + d];
     }
     cancel_at_rollers(places.grid, node.sides, boundary);
@@ -324,7 +330,8 @@ struct UpdateNodes {
     }
     for (int d = 0; d < Dim; ++d) {
       v[d] += change[d];
-      if (force != nullptr) force[d * cells] -= static_cast<double>(m_i) * change[d] * inv_dt;
+      if (force != nullptr)
+        force[(Wrench<Dim>::force + d) * cells] -= static_cast<double>(m_i) * change[d] * inv_dt;
     }
   }
 
@@ -336,9 +343,9 @@ struct UpdateNodes {
     return static_cast<T>(rigid.shear_fraction) * (nodes.strength(i, StrengthTerms::strength) / volume);
   }
 
-  /// Place of a node in the frame of a rigid's surface [m].
-  KOKKOS_INLINE_FUNCTION Vector<double, Dim> place(const Rigid<Dim>& rigid, const Coord<Dim>& at) const {
-    return rigid.pose.to_body([&](int d) { return places.grid.coordinate_within(d, at[d], spacing); });
+  /// Place of a node [m], by component.
+  KOKKOS_INLINE_FUNCTION auto place_at(const Coord<Dim>& at) const {
+    return [this, &at](int d) { return places.grid.coordinate_within(d, at[d], spacing); };
   }
 
   /// Area of a cell's face [m^2; m in 2D] at a node, of which rollers leave a half; where the soil is
@@ -374,12 +381,12 @@ struct UpdateNodes {
     constexpr T k_facing = T(0.1);   // cosine
     constexpr T k_bounds = T(1e-3);  // of a cell's face: less is the soil's interior
     constexpr T k_aside = T(1e-3);   // of its length: less is round-off, which leaves a plane of symmetry
-    Vector<double, Dim> x = place(rigid, node.at);
+    Vector<double, Dim> x = rigid.motion.pose.to_body(place_at(node.at));
     bool reaches = true;
     MPM_ROLLED
     for (int look = 0; look < 2; ++look) {
       const Distance<Dim> to = distance_to(rigid.surface, vertices, x);
-      out = to.normal;
+      out = rigid.motion.pose.turn_to_world(to.normal);
       if (look > 0) break;
       distance = to.value;
       double reach = -k_overlap, against = 0;
@@ -390,8 +397,11 @@ struct UpdateNodes {
       reaches = distance <= Kokkos::fmax(0.0, reach) * spacing;
       const T length = Kokkos::sqrt(dot(boundary, boundary));
       if (!reaches || !(against > -k_facing * length && length > k_bounds * face(node.at, node.sides))) break;
+      Vector<double, Dim> back{};
       for (int d = 0; d < Dim; ++d)
-        if (Kokkos::fabs(boundary[d]) > k_aside * length) x[d] -= spacing * boundary[d] / length;
+        if (Kokkos::fabs(boundary[d]) > k_aside * length) back[d] = spacing * boundary[d] / length;
+      back = rigid.motion.pose.turn_to_body(back);
+      for (int d = 0; d < Dim; ++d) x[d] -= back[d];
     }
     return reaches;
   }
@@ -406,28 +416,29 @@ struct UpdateNodes {
 
 template <bool acts = true, class Space, class T, int Dim>
 UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, double dt) {
-  UpdateNodes<Space, T, Dim, acts> update{.value_count = Dim * static_cast<int>(s.rigid_points.size()),
-                                          .places = {s.grid, s.patches},
-                                          .nodes = s.nodes,
-                                          .rigids = s.rigids,
-                                          .vertices = s.vertices,
-                                          .forces = s.slot_forces,
-                                          .owned_nodes = s.owned_nodes,
-                                          .g = {},
-                                          .timed_g = s.timed.of_step().gravity,
-                                          .acting_sides = {},
-                                          .dt = T(s.kick * dt),
-                                          .inv_dt = T(1 / (s.kick * dt)),
-                                          .share = T(s.kick),
-                                          .damping = T(s.damping),
-                                          .fresh = T(-std::expm1(-dt / s.friction_time)),
-                                          .mass_cut = T(s.mass_cut),
-                                          .spacing = s.spacing,
-                                          .has_boundary = s.soil_boundary,
-                                          .has_friction = s.has_friction,
-                                          .has_mass_normals = s.mass_normals,
-                                          .clears = s.plan.sums_ahead && !s.plan.writes_sums,
-                                          .rings = s.soil.points.rings};
+  UpdateNodes<Space, T, Dim, acts> update{
+      .value_count = Wrench<Dim>::size * static_cast<int>(s.rigid_points.size()),
+      .places = {s.grid, s.patches},
+      .nodes = s.nodes,
+      .rigids = s.rigids,
+      .vertices = s.vertices,
+      .forces = s.slot_forces,
+      .owned_nodes = s.owned_nodes,
+      .g = {},
+      .timed_g = s.timed.of_step().gravity,
+      .acting_sides = {},
+      .dt = T(s.kick * dt),
+      .inv_dt = T(1 / (s.kick * dt)),
+      .share = T(s.kick),
+      .damping = T(s.damping),
+      .fresh = T(-std::expm1(-dt / s.friction_time)),
+      .mass_cut = T(s.mass_cut),
+      .spacing = s.spacing,
+      .has_boundary = s.soil_boundary,
+      .has_friction = s.has_friction,
+      .has_mass_normals = s.mass_normals,
+      .clears = s.plan.sums_ahead && !s.plan.writes_sums,
+      .rings = s.soil.points.rings};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   if constexpr (acts) update.acting_sides = acting(s.sides);
   return update;

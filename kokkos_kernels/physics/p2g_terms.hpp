@@ -7,6 +7,7 @@
 
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
+#include "data/rigid.hpp"
 #include "physics/domain.hpp"
 #include "physics/pore_water.hpp"
 #include "physics/ring_domain.hpp"
@@ -369,12 +370,8 @@ struct RigidSource {
 
   KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int) const { return {points.half_length, points.mass}; }
-  /// Brings point p to where its body is now, or to where the body is in another pose, or where it has
-  /// another displacement [m].
-  KOKKOS_INLINE_FUNCTION void move(int p) const { move(p, rigids(rigid).pose); }
-  KOKKOS_INLINE_FUNCTION void move(int p, const Vector<double, Dim>& displacement) const {
-    move(p, RigidPose<Dim>{displacement});
-  }
+  /// Brings point p to where its body is now, or to where the body is in another pose.
+  KOKKOS_INLINE_FUNCTION void move(int p) const { move(p, rigids(rigid).motion.pose); }
   KOKKOS_INLINE_FUNCTION void move(int p, const RigidPose<Dim>& pose) const {
     const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(points.cell(p));
     const Vector<double, Dim> x = pose.in_cells(spacing).to_world(points.reference_position(p));

@@ -113,8 +113,8 @@ void locate_rigids(State<Space, T, Dim>& s) {
         "mpm::locate_rigid", Kokkos::RangePolicy<Space>(s.space, 0, points.all), KOKKOS_LAMBDA(int p) {
           Coord<Dim> c{};
           double position[3] = {};
-          if (p == 0) rigids(r).binned = rigids(r).pose;
-          const auto x = rigids(r).pose.in_cells(spacing).to_world(reference_position(p));
+          if (p == 0) rigids(r).binned = rigids(r).motion.pose;
+          const auto x = rigids(r).motion.pose.in_cells(spacing).to_world(reference_position(p));
           for (int d = 0; d < Dim; ++d) {
             c[d] = static_cast<int>(Kokkos::floor(x[d]));
             x_p(p)[d] = static_cast<T>(x[d] - Kokkos::floor(x[d]));

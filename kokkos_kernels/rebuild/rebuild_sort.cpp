@@ -221,7 +221,7 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
           }
           if (!holds) return;
           const Rigid<Dim>& rigid = rigids(r);
-          const auto place = rigid.pose.to_body([&](int d) {
+          const auto place = rigid.motion.pose.to_body([&](int d) {
             return grid.coordinate_within(d, origin(slot)[d] + Patch<Dim>::edge / 2, spacing);
           });
           // The ground may be much nearer to one side of a patch than to its middle.
@@ -248,7 +248,7 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
     s.strength_windows.place = near;
     ensure(s.strength_windows.sums, window_bytes<StrengthSource<Space, T, Dim>> * s.near_count);
   }
-  ensure(s.slot_forces, 2 * std::size_t(s.near_count) * Dim * s.rigid_points.size());
+  ensure(s.slot_forces, 2 * std::size_t(s.near_count) * Wrench<Dim>::size * s.rigid_points.size());
 }
 
 /// Takes from the pressure of each of the particles [first, last) of a cell this fraction of what it differs

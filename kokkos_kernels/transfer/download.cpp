@@ -102,7 +102,7 @@ std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int 
   for (int p = 0; p < points.all; ++p) {
     Vector<double, Dim> x = reference_position(p);
     for (int d = 0; d < Dim; ++d) x[d] *= s.spacing;
-    x = rigids(rigid).pose.to_world(x);
+    x = rigids(rigid).motion.pose.to_world(x);
     for (int d = 0; d < Dim; ++d) position[std::size_t(id(p)) * Dim + d] = x[d];
   }
   return position;
@@ -115,7 +115,7 @@ std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s) {
   const auto view = s.rigids;
   Kokkos::parallel_for(
       "mpm::take_impulse", Kokkos::RangePolicy<Space>(s.space, 0, view.extent(0)),
-      KOKKOS_LAMBDA(int r) { view(r).impulse = filled<double, Dim>(0); });
+      KOKKOS_LAMBDA(int r) { view(r).impulse = Wrench<Dim>{}; });
   return rigids;
 }
 

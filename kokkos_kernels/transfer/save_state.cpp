@@ -178,22 +178,22 @@ template <int Dim>
 SavedRigid save_rigid(const Rigid<Dim>& rigid) {
   SavedRigid row{};
   for (int d = 0; d < Dim; ++d) {
-    row[MotionTerms::displacement + d] = rigid.pose.displacement[d];
-    row[MotionTerms::velocity + d] = rigid.velocity[d];
+    row[MotionTerms::displacement + d] = rigid.motion.pose.displacement[d];
+    row[MotionTerms::velocity + d] = rigid.motion.velocity[d];
     row[MotionTerms::binned + d] = rigid.binned.displacement[d];
   }
-  for (int d = 0; d < Dim; ++d) row[MotionTerms::impulse + d] = rigid.impulse[d];
+  for (int k = 0; k < Wrench<Dim>::size; ++k) row[MotionTerms::impulse + k] = rigid.impulse[k];
   return row;
 }
 
 template <int Dim>
 void restore_rigid(const SavedRigid& row, Rigid<Dim>& rigid) {
   for (int d = 0; d < Dim; ++d) {
-    rigid.pose.displacement[d] = row[MotionTerms::displacement + d];
-    rigid.velocity[d] = row[MotionTerms::velocity + d];
+    rigid.motion.pose.displacement[d] = row[MotionTerms::displacement + d];
+    rigid.motion.velocity[d] = row[MotionTerms::velocity + d];
     rigid.binned.displacement[d] = row[MotionTerms::binned + d];
   }
-  for (int d = 0; d < Dim; ++d) rigid.impulse[d] = row[MotionTerms::impulse + d];
+  for (int k = 0; k < Wrench<Dim>::size; ++k) rigid.impulse[k] = row[MotionTerms::impulse + k];
 }
 
 /// binned: the rigids stand where their points were binned, else where they are.
@@ -202,7 +202,7 @@ void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved, bool binne
   const auto host = mirror_of(s.rigids);
   for (std::size_t r = 0; r < saved.rigids.size(); ++r) {
     restore_rigid(saved.rigids[r], host(r));
-    if (binned) host(r).pose = host(r).binned;
+    if (binned) host(r).motion.pose = host(r).binned;
   }
   copy(s.rigids, host);
 }

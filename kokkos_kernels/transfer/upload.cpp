@@ -48,15 +48,15 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
   fill_view(s.rigids, "mpm::rigids", static_cast<int>(rigids.size()), [&](int r) {
     Rigid<Dim> rigid{};
     for (int d = 0; d < Dim; ++d) {
-      rigid.velocity[d] = rigids[r].velocity[d];
-      rigid.force[d] = rigids[r].force[d];
-      rigid.held[d] = rigids[r].held[d];
+      rigid.motion.velocity[d] = rigids[r].velocity[d];
+      rigid.force[Wrench<Dim>::force + d] = rigids[r].force[d];
+      rigid.inertia.held[d] = rigids[r].held[d];
     }
     const double particle_mass = rigids[r].density * rigids[r].particle_volume;
-    rigid.mass = rigids[r].revolved_volume > 0
-                     ? rigids[r].density * rigids[r].revolved_volume
-                     : particle_mass * static_cast<double>(rigids[r].position.size() / Dim);
-    rigid.dynamic = rigids[r].dynamic;
+    rigid.inertia.mass = rigids[r].revolved_volume > 0
+                             ? rigids[r].density * rigids[r].revolved_volume
+                             : particle_mass * static_cast<double>(rigids[r].position.size() / Dim);
+    rigid.inertia.dynamic = rigids[r].dynamic;
     rigid.shear_limit = rigids[r].shear_limit;
     rigid.shear_fraction = rigids[r].shear_fraction > 0 ? rigids[r].shear_fraction : -1;
     rigid.friction = rigids[r].friction;
@@ -153,7 +153,7 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.launch_barrier = decltype(s.launch_barrier)("mpm::launch_barrier");
   s.movements.bits = decltype(s.movements.bits)("mpm::movements");
   s.launch_movements.bits = decltype(s.launch_movements.bits)("mpm::launch_movements");
-  s.rigid_force = decltype(s.rigid_force)("mpm::rigid_force", Dim * rigids.size());
+  s.rigid_force = decltype(s.rigid_force)("mpm::rigid_force", Wrench<Dim>::size * rigids.size());
   upload_soil(s, materials, bodies, scratch_of_rigids<Space, T, Dim>(rigids), fault);
   upload_rigids(s, rigids, k_rigid_cut, fault);
   if (fault.kind != FaultKind::none) return fault;

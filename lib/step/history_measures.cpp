@@ -123,13 +123,12 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::measure_rigids(double interval, H
   row->rigids.clear();
   for (const Rigid<Dim>& r : take_rigids(run_.state)) {
     RigidRow rigid;
-    double impulse[Dim];
-    for (int d = 0; d < Dim; ++d) impulse[d] = r.impulse[d];
-    if (run_.ranks && !run_.ranks->forces_shared()) PetscCall(run_.sum(impulse, Dim));
+    Wrench<Dim> impulse = r.impulse;
+    if (run_.ranks && !run_.ranks->forces_shared()) PetscCall(run_.sum(impulse.c, Wrench<Dim>::size));
     for (int d = 0; d < Dim; ++d) {
-      rigid.displacement[d] = r.pose.displacement[d];
-      rigid.velocity[d] = velocity_at(config.rigids[row->rigids.size()], d, r.velocity[d], time);
-      rigid.force[d] = interval > 0 ? impulse[d] / interval : 0;
+      rigid.displacement[d] = r.motion.pose.displacement[d];
+      rigid.velocity[d] = velocity_at(config.rigids[row->rigids.size()], d, r.motion.velocity[d], time);
+      rigid.force[d] = interval > 0 ? impulse[Wrench<Dim>::force + d] / interval : 0;
     }
     row->rigids.push_back(rigid);
   }
@@ -174,7 +173,7 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::closing_speed(double* speed) cons
   const auto rigids = mirror_of(run_.state.rigids);
   for (int d = 0; d < Dim; ++d) {
     for (std::size_t r = 0; r < config.rigids.size(); ++r)
-      widen(d, config.rigids[r].velocity[d]), widen(d, rigids(r).velocity[d]);
+      widen(d, config.rigids[r].velocity[d]), widen(d, rigids(r).motion.velocity[d]);
     for (const auto& pair : config.mesh.sides)
       for (const SideConfig& side : pair) widen(d, side.velocity[d]);
   }

@@ -166,7 +166,7 @@ std::vector<ParticleSnapshot> Snapshots<Space, T, Dim>::rigids_at(double time) c
     for (std::size_t p = 0; p < position.size() / Dim; ++p)
       for (int d = 0; d < Dim; ++d) {
         rigid.position[3 * p + d] = position[p * Dim + d] + config.mesh.lower[d];
-        rigid.velocity[3 * p + d] = velocity_at(config.rigids[r], d, rigids(r).velocity[d], time);
+        rigid.velocity[3 * p + d] = velocity_at(config.rigids[r], d, rigids(r).motion.velocity[d], time);
       }
     groups.push_back(std::move(rigid));
   }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "common/courant.hpp"
 #include "common/f_bar.hpp"
 #include "common/text.hpp"
 #include "device/device_agrees.hpp"
 #include "functions/find_strays.hpp"
 #include "functions/step_kernels.hpp"
-#include "common/courant.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/limit_volumes.hpp"
 #include "step/body_input.hpp"

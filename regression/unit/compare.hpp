@@ -214,7 +214,7 @@ void drift_within_margin(State<Space, T, Dim>& s) {
     for (int p = 0; p < points.count; ++p)
       for (int d = 0; d < Dim; ++d)
         home(p)[d] = coordinate(p)[d] + origin(cell(p) / Patch<Dim>::cells)[d] + coord_of<Dim>(cell(p))[d] -
-                     rigids(r).pose.displacement[d] / s.spacing;
+                     rigids(r).motion.pose.displacement[d] / s.spacing;
     Kokkos::deep_copy(points.reference_position, home);
   }
 }

@@ -136,7 +136,7 @@ void move_points(const State<Space, T, Dim>& s) {
   Kokkos::deep_copy(soil.coordinate, x);
   const auto rigids = on_host(s.rigids);
   for (std::size_t r = 0; r < rigids.extent(0); ++r)
-    for (int d = 0; d < Dim; ++d) rigids(r).pose.displacement[d] += 0.6 * s.spacing;
+    for (int d = 0; d < Dim; ++d) rigids(r).motion.pose.displacement[d] += 0.6 * s.spacing;
   Kokkos::deep_copy(s.rigids, rigids);
 }
 

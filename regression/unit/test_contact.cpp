@@ -53,7 +53,8 @@ Vector<double, Dim> total_momentum(const State<Space, T, Dim>& s) {
   auto sum = filled<double, Dim>(0);
   for (int d = 0; d < Dim; ++d) {
     for (int p = 0; p < s.soil.points.count; ++p) sum[d] += double(bodies(body(p)).mass) * velocity(p)[d];
-    for (std::size_t r = 0; r < rigids.extent(0); ++r) sum[d] += rigids(r).mass * rigids(r).velocity[d];
+    for (std::size_t r = 0; r < rigids.extent(0); ++r)
+      sum[d] += rigids(r).inertia.mass * rigids(r).motion.velocity[d];
   }
   return sum;
 }
@@ -252,12 +253,12 @@ TEST_CASE("soil and a rigid that hits it keep their momentum", "[contact]") {
       auto s = state_of<B>(cloud, P2G::tile);
       s.mass_cut = 0;  // a node of hardly any mass drops its force
       const auto before = total_momentum(s);
-      const double rigid_before = on_host(s.rigids)(0).velocity[1];
+      const double rigid_before = on_host(s.rigids)(0).motion.velocity[1];
       run_steps(s, 2e-4, 50);
       const auto after = total_momentum(s);
       INFO(build.name() << " shear limit " << shear_limit);
       CHECK(read_control(s).fault_count == 0);
-      CHECK(on_host(s.rigids)(0).velocity[1] > rigid_before + 0.1);  // it was slowed down
+      CHECK(on_host(s.rigids)(0).motion.velocity[1] > rigid_before + 0.1);  // it was slowed down
       for (int d = 0; d < B::dim; ++d)
         CHECK(std::fabs(after[d] - before[d]) < B::of(1e-12, 1e-5) * std::fabs(before[1]));
     }
@@ -272,7 +273,7 @@ TEST_CASE("any number of rigids fits, and those out of touch change nothing but 
     const auto velocity_after = [&] {
       auto s = state_of<B>(cloud, P2G::tile);
       run_steps(s, 2e-4, 5);
-      return on_host(s.rigids)(0).velocity;
+      return on_host(s.rigids)(0).motion.velocity;
     };
     const auto alone = velocity_after();
     for (int r = 1; r < 70; ++r)

@@ -107,9 +107,9 @@ TEST_CASE("a rigid that a plane of symmetry cuts does not move across it by forc
       run_steps(s, 1e-4, 20);
       const auto rigid = on_host(s.rigids)(0);
       INFO(build.name());
-      CHECK((rigid.pose.displacement[0] == 0) == held);
-      CHECK((rigid.velocity[0] == 0) == held);
-      for (int d = 1; d < Dim; ++d) CHECK(rigid.pose.displacement[d] > 0);
+      CHECK((rigid.motion.pose.displacement[0] == 0) == held);
+      CHECK((rigid.motion.velocity[0] == 0) == held);
+      for (int d = 1; d < Dim; ++d) CHECK(rigid.motion.pose.displacement[d] > 0);
     }
   });
 }

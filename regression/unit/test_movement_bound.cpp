@@ -35,8 +35,8 @@ std::vector<Table> everything(const State<Space, T, Dim>& s) {
   const auto rigids = on_host(s.rigids);
   for (std::size_t r = 0; r < rigids.extent(0); ++r)
     all.push_back({1,
-                   {rigids(r).pose.displacement[0], rigids(r).pose.displacement[1], rigids(r).velocity[1],
-                    rigids(r).impulse[1]}});
+                   {rigids(r).motion.pose.displacement[0], rigids(r).motion.pose.displacement[1],
+                    rigids(r).motion.velocity[1], rigids(r).impulse[1]}});
   return all;
 }
 

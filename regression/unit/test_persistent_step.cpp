@@ -109,7 +109,7 @@ TEST_CASE("a step in one launch is the step function by function, across rebuild
           const auto ours = on_host(one.rigids), theirs = on_host(two.rigids);
           for (int r = 0; r < 2; ++r) {
             for (int d = 0; d < B::dim; ++d) {
-              CHECK(std::fabs(ours(r).pose.displacement[d] - theirs(r).pose.displacement[d]) <
+              CHECK(std::fabs(ours(r).motion.pose.displacement[d] - theirs(r).motion.pose.displacement[d]) <
                     B::of(1e-12, 1e-6));
               CHECK(std::fabs(ours(r).impulse[d] - theirs(r).impulse[d]) <
                     B::of(1e-9, 1e-4) * std::fabs(theirs(r).impulse[1]));

@@ -240,7 +240,8 @@ TEST_CASE("steps, rebuilds and patches that change hands leave the particles as 
       CHECK(apart(a, b) < 1e-11);
       const auto here = take_rigids(pair.here), alone = take_rigids(pair.alone);
       for (std::size_t r = 0; r < cloud.rigids.size(); ++r)
-        for (int d = 0; d < B::dim; ++d) CHECK(std::abs(here[r].velocity[d] - alone[r].velocity[d]) < 1e-11);
+        for (int d = 0; d < B::dim; ++d)
+          CHECK(std::abs(here[r].motion.velocity[d] - alone[r].motion.velocity[d]) < 1e-11);
     }
   });
 }

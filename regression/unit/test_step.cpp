@@ -211,9 +211,9 @@ TEST_CASE("a rigid falls freely as it should, to round-off", "[step]") {
     const double t = steps * dt;
     INFO(B::name());
     for (int d = 0; d < Dim; ++d) {
-      const double a = cloud.rigids[0].force[d] / rigid(0).mass, v = cloud.rigids[0].velocity[d];
-      CHECK(std::fabs(rigid(0).velocity[d] - v - a * t) < 1e-12);
-      CHECK(std::fabs(rigid(0).pose.displacement[d] - v * t - a * t * t / 2) < 1e-12);
+      const double a = cloud.rigids[0].force[d] / rigid(0).inertia.mass, v = cloud.rigids[0].velocity[d];
+      CHECK(std::fabs(rigid(0).motion.velocity[d] - v - a * t) < 1e-12);
+      CHECK(std::fabs(rigid(0).motion.pose.displacement[d] - v * t - a * t * t / 2) < 1e-12);
     }
   });
 }

@@ -165,7 +165,7 @@ TEST_CASE("loads follow their tables on the device, however steps are launched",
       const auto rigids = on_host(s.rigids);
       const TimeCurve velocity{k_velocity.data(), 4, false}, gravity{k_gravity.data(), 4, false};
       const double travel = sum_of_means(velocity, CurveUse::value, 0, steps * dt, steps * dt);
-      CHECK(std::fabs(rigids(0).pose.displacement[1] - travel) < 1e-15);
+      CHECK(std::fabs(rigids(0).motion.pose.displacement[1] - travel) < 1e-15);
       CHECK(std::fabs(on_host(s.timed.gravity)()[1] - gravity.value((steps + 0.5) * dt)) <
             B::of(1e-12, 1e-5));
       CHECK(std::fabs(rigids(1).force[1] - (-9e3 + 2 * gravity.value((steps + 0.5) * dt))) < 1e-9);
@@ -200,7 +200,8 @@ TEST_CASE("tables of one value give the same bits as the constants", "[time_tabl
     timed_steps(constant, 1e-4, 40, 40, false);
     timed_steps(timed, 1e-4, 40, 9, false);
     CHECK(soil_fields(constant) == soil_fields(timed));
-    CHECK(on_host(constant.rigids)(1).pose.displacement[1] == on_host(timed.rigids)(1).pose.displacement[1]);
+    CHECK(on_host(constant.rigids)(1).motion.pose.displacement[1] ==
+          on_host(timed.rigids)(1).motion.pose.displacement[1]);
   });
 }
 

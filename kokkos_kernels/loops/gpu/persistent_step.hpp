@@ -59,7 +59,8 @@ struct PersistentStep {
   Movements<Space, 3> movements;  // where WithNodes
 
   static constexpr std::size_t bytes(int values) {
-    return (WithNodes ? 2 * scratch_bytes<int>(Update::window) + scratch_bytes<Rigid<Dim>>(values / Dim) +
+    return (WithNodes ? 2 * scratch_bytes<int>(Update::window) +
+                            scratch_bytes<Rigid<Dim>>(values / Wrench<Dim>::size) +
                             scratch_bytes<double>(values * cells)
                       : 0) +
            Update::bytes();
@@ -105,7 +106,7 @@ struct PersistentStep {
     Slot slot{};
     if (WithNodes && at.part >= rigid_teams && at.part < at.others)
       slot = slot_of(team, scratch, at.part - rigid_teams);
-    if (WithNodes) at.bodies = scratch.take<Rigid<Dim>>(nodes.value_count / Dim);
+    if (WithNodes) at.bodies = scratch.take<Rigid<Dim>>(nodes.rigid_count());
     for (; at.step < steps; ++at.step, ++at.number) {
       if (at.part < at.others) step(team, scratch, slot, at);
       if (end_step(team, scratch, at) != 0) return;
@@ -252,7 +253,7 @@ struct PersistentStep {
   /// Stores the results of the steps for the host and the next launch, after every team has ended its steps.
   KOKKOS_INLINE_FUNCTION void leave(const Member& team, const Progress& at) const {
     for (int r = team.team_rank(); r < end.count; r += team.team_size())
-      MovingRigid<T, Dim>(at.bodies[r]).keep_in(nodes.rigids(r));
+      at.bodies[r].keep_in(nodes.rigids(r));
     Kokkos::single(Kokkos::PerTeam(team), [&] {
       at.found.keep_in(update.control());
       update.control().steps += at.step;
@@ -267,8 +268,7 @@ struct PersistentStep {
     for (int k = 0; k < rigid_count; ++k) {
       const auto& source = rigids[k];
       const Rigid<Dim>& body = at.by_all ? at.bodies[source.rigid] : nodes.rigids(source.rigid);
-      const Vector<double, Dim> to =
-          end.template next_displacement<!WithNodes>(team, source.rigid, body, room);
+      const RigidPose<Dim> to = end.template pose_after<!WithNodes>(team, source.rigid, body, room);
       const int all = rigid_teams * threads;
       MPM_ROLLED
       for (int p = at.part * threads + team.team_rank(); p < source.points.count; p += all) {
@@ -284,7 +284,7 @@ struct PersistentStep {
   KOKKOS_INLINE_FUNCTION void step_slot(const Member& team, Scratch scratch, const Slot& slot,
                                         const Progress& at) const {
     const Sums &present = sums[at.step % 3], &next = sums[(at.step + 1) % 3], &last = sums[(at.step + 2) % 3];
-    const int rigid_bodies = nodes.value_count / Dim;
+    const int rigid_bodies = nodes.rigid_count();
     const Rigid<Dim>* const bodies = at.bodies;
     double* const force = scratch.take<double>(nodes.value_count * cells);
     if (slot.near > 0 && !at.by_all) copy_rigids(team, at.bodies);
@@ -317,7 +317,7 @@ struct PersistentStep {
 
   /// Copies the rigids to scratch memory, where a node may read their values one after the other.
   KOKKOS_INLINE_FUNCTION void copy_rigids(const Member& team, Rigid<Dim>* bodies) const {
-    const int count = nodes.value_count / Dim;
+    const int count = nodes.rigid_count();
     using Word = std::uint64_t;
     static_assert(sizeof(Rigid<Dim>) % sizeof(Word) == 0 && std::is_trivially_copyable_v<Rigid<Dim>>);
     const Word* const from = reinterpret_cast<const Word*>(nodes.rigids.data());
