@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "data/contact_slots.hpp"
 #include "data/energy_works.hpp"
 #include "data/nodes.hpp"
 #include "data/position_correction.hpp"
@@ -48,12 +49,7 @@ struct State {
   std::vector<ParticleSet<Space, RigidPoints<Space, T, Dim>>> rigid_points;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   Kokkos::View<Vertex*, Memory> vertices;  // of the rigids' polygons
-  Kokkos::View<int*, Memory> near_slots;   // where a rigid may touch a node that the slot's particles reach
-  Kokkos::View<int*, Memory> near_rigid;   // by slot: its place among those, from 1 on; 0 elsewhere
-  int near_count = 0;
-  Windows<Space> boundary_windows, strength_windows;  // of the patches near a rigid
-  Kokkos::View<double*, Memory> slot_forces;          // N, [turn of a persistent step, else 0][of
-                                                      // near_slots][rigid][direction], of the soil on it
+  ContactSlots<Space> contact;
   Nodes<Space, T, Dim> nodes;
   NodeSums<Space, T, Dim> next_sums, last_sums;  // of run_persistent_steps, which sets last_sums to zero
   bool next_zero = false;                        // `next_sums` fits and is zero

@@ -15,7 +15,7 @@ struct WorkAtNodes {
   static constexpr int cells = Patch<Dim>::cells;
   UpdateNodes<Space, T, Dim> update;
   ControlView<Space> control;
-  decltype(State<Space, T, Dim>::near_rigid) near_rigid;
+  ContactPlaces<Space> contact;
   bool in_water;
 
   KOKKOS_INLINE_FUNCTION void operator()(int i, NodeWorks& sum) const {
@@ -47,10 +47,10 @@ struct WorkAtNodes {
 
   /// Deceleration of node i by local damping in the step [m/s2].
   KOKKOS_INLINE_FUNCTION Vector<T, Dim> braking_of(int i) const {
-    const int near = update.rigids.extent(0) > 0 ? near_rigid(i / cells) : 0;
+    const bool touches = update.rigids.extent(0) > 0 && contact(i / cells) > 0;
     Coord<Dim> at = coord_of<Dim>(i);
     for (int d = 0; d < Dim; ++d) at[d] += update.places.origin(i / cells)[d];
-    const auto node = update.node_of(update.nodes, i, at, near > 0);
+    const auto node = update.node_of(update.nodes, i, at, touches);
     Vector<T, Dim> v_old, a, brake;
     update.accelerate(node.soil, node.inv_m, v_old, a);
     update.advanced(update.nodes, update.rigids.data(), node, v_old, a, false, nullptr, brake);
@@ -143,7 +143,7 @@ void add_node_works(State<Space, T, Dim>& s, double dt) {
   const auto sum = works.of_nodes;
   Kokkos::parallel_reduce(
       "mpm::node_works", nodes,
-      WorkAtNodes<Space, T, Dim>{node_update_of(s, dt), s.control, s.near_rigid, s.water.is_there()},
+      WorkAtNodes<Space, T, Dim>{node_update_of(s, dt), s.control, s.contact.place, s.water.is_there()},
       Kokkos::Sum<NodeWorks, typename Space::memory_space>(sum));
   const auto work = works.work;
   const auto rigid_at = works.rigid_at;

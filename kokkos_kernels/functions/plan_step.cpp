@@ -17,7 +17,7 @@ StepPlan plan_step(const State<Space, T, Dim>& s) {
   plan.sums_ahead = fit && can(StepWay::sums_ahead, features);
   plan.writes_sums = has_windows(s.space) && !features.has(Feature::other_strategy) && !batches;
   // Patches far from rigids need few registers: where they are many, a launch of their own is faster.
-  plan.nodes_apart = is_device<Space> && !few && !s.rigid_points.empty() && s.near_count > 0 &&
+  plan.nodes_apart = is_device<Space> && !few && !s.rigid_points.empty() && s.contact.count > 0 &&
                      can(StepWay::nodes_apart, features);
   plan.nodes_aside = plan.nodes_apart && can(StepWay::nodes_aside, features);
   if (batches)

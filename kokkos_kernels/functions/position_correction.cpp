@@ -62,7 +62,7 @@ struct FindShift {
   decltype(PositionCorrection<Space>::flow_column) flow_column;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   Kokkos::View<Vertex*, typename Space::memory_space> vertices;
-  Kokkos::View<int*, typename Space::memory_space> near_rigid;
+  ContactPlaces<Space> contact;
   int rigid_count;
   double rate, elapsed, spacing;
 
@@ -90,7 +90,7 @@ struct FindShift {
     return in_mesh(places.origin(soil.cell(p) / Patch<Dim>::cells), coord_of<Dim>(soil.cell(p)));
   }
   KOKKOS_INLINE_FUNCTION bool is_near_rigid(int p) const {
-    if (rigid_count == 0 || near_rigid(soil.cell(p) / Patch<Dim>::cells) == 0) return false;
+    if (rigid_count == 0 || contact(soil.cell(p) / Patch<Dim>::cells) == 0) return false;
     const Coord<Dim> cell = cell_of_mesh(p);
     for (int r = 0; r < rigid_count; ++r) {
       const Rigid<Dim>& rigid = rigids(r);
@@ -236,7 +236,7 @@ void find_shifts(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill, 
                                                 s.correction.flow_column,
                                                 s.rigids,
                                                 s.vertices,
-                                                s.near_rigid,
+                                                s.contact.place,
                                                 static_cast<int>(s.rigid_points.size()),
                                                 s.correction.rate,
                                                 elapsed,

@@ -21,7 +21,7 @@ template <class Space, class T, int Dim>
 void add_buoyancy(State<Space, T, Dim>& s);
 
 /// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
-/// contact forces in s.slot_forces. Where the plan has sums_ahead and not writes_sums, it leaves the nodal
+/// contact forces in s.contact.forces. Where the plan has sums_ahead and not writes_sums, it leaves the nodal
 /// sums at zero, which is function 1 of the next step. dt [s]. stream: that of the nodes near rigids, if the
 /// plan has nodes_apart; the others are on s.space.
 template <class Space, class T, int Dim>
@@ -68,8 +68,8 @@ void update_particles(State<Space, T, Dim>& s, double dt) {
 template <class Space, class T, int Dim>
 void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside);
 
-/// Forces of the soil on the rigids in this step, from s.slot_forces to s.rigid_force [N]; else move_rigids
-/// does it.
+/// Forces of the soil on the rigids in this step, from s.contact.forces to s.rigid_force [N]; else
+/// move_rigids does it.
 template <class Space, class T, int Dim>
 void sum_forces(State<Space, T, Dim>& s, const Space& stream);
 

@@ -32,7 +32,7 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stre
   using Update = UpdateNodes<Space, T, Dim, acts>;
   const Update update = node_update_of<acts>(s, dt);
   const int room = update.value_count * Update::cells, values = update.value_count;
-  const auto near = s.near_rigid, near_slots = s.near_slots;
+  const auto contact = s.contact.place, contact_slots = s.contact.slots;
   const auto control = s.control;
   const std::size_t near_bytes = scratch_bytes<double>(room) + k_scratch_slack;
   constexpr std::size_t k_fast = 32 * 1024;  // bytes that every back end has; some thirty rigids need more
@@ -41,11 +41,11 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stre
     return light(
         Team(space, teams, node_threads<Space, Dim>).set_scratch_size(level, Kokkos::PerTeam(near_bytes)));
   };
-  if (s.near_count > 0 && !s.plan.nodes_apart)
+  if (s.contact.count > 0 && !s.plan.nodes_apart)
     return Kokkos::parallel_for(
         "mpm::update_nodes", some_near(s.space, s.patches.slots), KOKKOS_LAMBDA(const Member& team) {
           if (control().paused) return;
-          const int slot = team.league_rank(), n = near(slot);
+          const int slot = team.league_rank(), n = contact(slot);
           if (n > 0)
             update.update_near(team, update.nodes, slot, n - 1, scratch<double>(team, room, level));
           else
@@ -55,15 +55,16 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stre
       "mpm::update_nodes", light(Team(s.space, s.patches.slots, node_threads<Space, Dim>)),
       KOKKOS_LAMBDA(const Member& team) {
         const int slot = team.league_rank();
-        if (!control().paused && (values == 0 || near(slot) == 0))
+        if (!control().paused && (values == 0 || contact(slot) == 0))
           update.update_far(team, update.nodes, slot);
       });
   if (s.plan.nodes_apart)
     Kokkos::parallel_for(
-        "mpm::update_nodes_near_rigids", some_near(stream, s.near_count), KOKKOS_LAMBDA(const Member& team) {
+        "mpm::update_nodes_near_rigids", some_near(stream, s.contact.count),
+        KOKKOS_LAMBDA(const Member& team) {
           const int n = team.league_rank();
           if (!control().paused)
-            update.update_near(team, update.nodes, near_slots(n), n, scratch<double>(team, room, level));
+            update.update_near(team, update.nodes, contact_slots(n), n, scratch<double>(team, room, level));
         });
 }
 

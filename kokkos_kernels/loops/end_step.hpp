@@ -55,7 +55,7 @@ struct EndStep {
       : control(s.control),
         movements(s.movements),
         sums(s.rigid_force),
-        forces(s.slot_forces),
+        forces(s.contact.forces),
         rigids(s.rigids),
         timed(s.timed.of_step()),
         dt(step),
@@ -63,7 +63,7 @@ struct EndStep {
         margin(s.p2g.margin),
         damping(s.damping),
         count(static_cast<int>(s.rigid_points.size())),
-        slots(s.near_count),
+        slots(s.contact.count),
         late(s.rebuild_late),
         summed(s.forces_summed) {}
 

@@ -19,12 +19,12 @@ Interpolation<Source> interpolation_of(const State<Space, T, Dim>& s, const Bins
   constexpr bool load = std::is_same_v<Source, LoadSource<Space, T, Dim>>;
   constexpr bool rigid = std::is_same_v<Source, RigidSource<Space, T, Dim>>;
   Interpolation<Source> it{stream, s.grid, s.patches, bins, source, out, s.control, s.p2g.mosaic_cells};
-  it.windows = boundary   ? s.boundary_windows
-               : strength ? s.strength_windows
+  it.windows = boundary   ? s.contact.boundary
+               : strength ? s.contact.strength
                : load     ? s.loads.windows
                           : bins.windows;
   it.adds = load || !s.plan.writes_sums;
-  if (rigid) it.near_slots = s.near_slots, it.near_count = s.near_count;
+  if (rigid) it.some_slots = s.contact.slots, it.some_count = s.contact.count;
   return it;
 }
 

@@ -422,7 +422,7 @@ UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, d
       .nodes = s.nodes,
       .rigids = s.rigids,
       .vertices = s.vertices,
-      .forces = s.slot_forces,
+      .forces = s.contact.forces,
       .owned_nodes = s.owned_nodes,
       .g = {},
       .timed_g = s.timed.of_step().gravity,

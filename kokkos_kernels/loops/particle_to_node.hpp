@@ -24,9 +24,9 @@ struct Interpolation {
   int mosaic_cells = 3;
   Windows<Space> windows = {};
   bool adds = true;  // to what `out` holds, which `reset_nodes` cleared; else it is written, all of it
-  /// The slots whose nodes matter, if near_count is not negative; else those of all do.
-  Kokkos::View<int*, typename Space::memory_space> near_slots = {};
-  int near_count = -1;
+  /// The slots whose nodes matter, if some_count is not negative; else those of all do.
+  Kokkos::View<int*, typename Space::memory_space> some_slots = {};
+  int some_count = -1;
 };
 
 /// The strategy for the points of rigids. They are few in many cells of a patch or many in few: where `tile`

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "data/contact_slots.hpp"
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
 #include "data/rigid.hpp"
@@ -194,10 +195,10 @@ struct BoundarySource {
   };
   Soil<Space, T, Dim> points;
   T inv_spacing;
-  Kokkos::View<int*, typename Space::memory_space> near_rigid;  // by slot
+  ContactPlaces<Space> contact;
 
-  /// Far from every rigid no contact needs the boundary.
-  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return near_rigid(slot) == 0; }
+  /// No contact needs the boundary elsewhere.
+  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return contact(slot) == 0; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     const T volume = points.volume(p);
     return {domain_of<domain_>(points, p, points.bodies(points.body(p))), volume * inv_spacing, volume};
@@ -225,9 +226,9 @@ struct StrengthSource {
     T strength, volume;  // V_p s_p, V_p
   };
   Soil<Space, T, Dim> points;
-  Kokkos::View<int*, typename Space::memory_space> near_rigid;  // by slot
+  ContactPlaces<Space> contact;
 
-  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return near_rigid(slot) == 0; }
+  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return contact(slot) == 0; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
     const T volume = points.volume(p);
     const BodyProperties<T>& body = points.bodies(points.body(p));

@@ -56,9 +56,9 @@ template <class Space, class T, int Dim>
 void sort_points(State<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void build_lists(State<Space, T, Dim>& s);
-/// Notes which slots have a rigid near: a node that soil and a rigid share is reached from no other slot.
+/// Lists the slots where a contact may be: a node that soil and a rigid share is reached from no other slot.
 template <class Space, class T, int Dim>
-void mark_near_rigids(State<Space, T, Dim>& s);
+void list_contacts(State<Space, T, Dim>& s);
 /// Brings the mean stress of each particle towards that of its cell by the fraction of F-bar: the particles
 /// of a cell dilate together until the next rebuild, so their pressures begin together.
 template <class Space, class T, int Dim>

@@ -198,9 +198,9 @@ double far_from_patch(double margin) {
 }
 
 template <class Space, class T, int Dim>
-void mark_near_rigids(State<Space, T, Dim>& s) {
-  ensure(s.near_rigid, s.patches.slots);
-  const auto near = s.near_rigid;
+void list_contacts(State<Space, T, Dim>& s) {
+  ensure(s.contact.place, s.patches.slots);
+  const auto near = s.contact.place;
   const auto neighbours = s.patches.neighbours;
   const auto origin = s.patches.origin;
   const auto number = s.patches.number;
@@ -213,7 +213,7 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto begin = s.rigid_points[r].bins.begin;
     Kokkos::parallel_for(
-        "mpm::mark_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
+        "mpm::mark_contacts", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
           bool holds = grid.field_of(number(slot)) > 0;  // where no rigid has points
           for (int k = 0; k < Patch<Dim>::neighbours; ++k) {
             const int other = neighbours(slot, k);
@@ -230,25 +230,25 @@ void mark_near_rigids(State<Space, T, Dim>& s) {
           near(slot) = 1;
         });
   }
-  ensure(s.near_slots, slots);
-  const auto list = s.near_slots;
+  ensure(s.contact.slots, slots);
+  const auto list = s.contact.slots;
   Kokkos::parallel_scan(
-      "mpm::list_near_rigids", Kokkos::RangePolicy<Space>(s.space, 0, slots),
+      "mpm::list_contacts", Kokkos::RangePolicy<Space>(s.space, 0, slots),
       KOKKOS_LAMBDA(int slot, int& n, bool last) {
         if (near(slot) == 0) return;
         if (last) list(n) = slot, near(slot) = n + 1;
         ++n;
       },
-      s.near_count);
+      s.contact.count);
   if (s.soil_boundary && has_windows(s.space)) {
-    s.boundary_windows.place = near;
-    ensure(s.boundary_windows.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.near_count);
+    s.contact.boundary.place = near;
+    ensure(s.contact.boundary.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.contact.count);
   }
   if (s.shear_fraction && has_windows(s.space)) {
-    s.strength_windows.place = near;
-    ensure(s.strength_windows.sums, window_bytes<StrengthSource<Space, T, Dim>> * s.near_count);
+    s.contact.strength.place = near;
+    ensure(s.contact.strength.sums, window_bytes<StrengthSource<Space, T, Dim>> * s.contact.count);
   }
-  ensure(s.slot_forces, 2 * std::size_t(s.near_count) * Wrench<Dim>::size * s.rigid_points.size());
+  ensure(s.contact.forces, 2 * std::size_t(s.contact.count) * Wrench<Dim>::size * s.rigid_points.size());
 }
 
 /// Takes from the pressure of each of the particles [first, last) of a cell this fraction of what it differs
@@ -323,7 +323,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   if (s.has_friction) restore_impulse(s, kept);
   sort_points(s);
   build_lists(s);
-  if (!s.rigid_points.empty()) mark_near_rigids(s);
+  if (!s.rigid_points.empty()) list_contacts(s);
   if (s.f_bar_fraction > 0 && !s.keeps_stress) average_pressure(s);
 
   s.plan = plan_step(s);
@@ -361,7 +361,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
 
 #define MPM_INSTANTIATE(Space, T, Dim)                   \
   template void sort_points(State<Space, T, Dim>&);      \
-  template void mark_near_rigids(State<Space, T, Dim>&); \
+  template void list_contacts(State<Space, T, Dim>&);    \
   template void average_pressure(State<Space, T, Dim>&); \
   template void sort_and_list(State<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)

@@ -11,7 +11,7 @@ struct NodeForces {
   static constexpr int cells = Patch<Dim>::cells;
 
   UpdateNodes<Space, T, Dim> update;
-  decltype(State<Space, T, Dim>::near_rigid) near_rigid;
+  ContactPlaces<Space> contact;
   Vector<double, Dim> gravity;
 
   KOKKOS_INLINE_FUNCTION void operator()(int i, double& unbalanced, double& weight) const {
@@ -22,8 +22,7 @@ struct NodeForces {
     if (!(m_i > update.mass_cut)) return;
     Coord<Dim> at = coord_of<Dim>(i);
     for (int d = 0; d < Dim; ++d) at[d] += update.places.origin(slot)[d];
-    const auto node =
-        update.node_of(update.nodes, i, at, update.rigids.extent(0) > 0 && near_rigid(slot) > 0);
+    const auto node = update.node_of(update.nodes, i, at, update.rigids.extent(0) > 0 && contact(slot) > 0);
     Vector<T, Dim> v_old, a, free = filled<T, Dim>(1);
     update.accelerate(node.soil, node.inv_m, v_old, a);
     if (node.is_held()) a = update.held_acceleration(update.nodes, update.rigids.data(), node, v_old, a);
@@ -41,7 +40,7 @@ struct NodeForces {
 
 template <class Space, class T, int Dim>
 UnbalancedForces unbalanced_forces(const State<Space, T, Dim>& s, double dt) {
-  const NodeForces<Space, T, Dim> forces{node_update_of(s, dt), s.near_rigid, s.gravity};
+  const NodeForces<Space, T, Dim> forces{node_update_of(s, dt), s.contact.place, s.gravity};
   UnbalancedForces sum;
   Kokkos::parallel_reduce("mpm::unbalanced_forces",
                           Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()), forces, sum.force,

@@ -19,7 +19,7 @@ template <class Space, class T, int Dim>
 auto Decomposition<Space, T, Dim>::soil_fields(const State_& s, bool soil, bool boundary) const -> Fields {
   Fields fields;
   if (soil) fields.add(s.nodes.soil.data(), SoilTerms<Dim>::size);
-  if (boundary) fields.add(s.nodes.boundary.data(), BoundaryTerms<Dim>::size, s.near_rigid.data());
+  if (boundary) fields.add(s.nodes.boundary.data(), BoundaryTerms<Dim>::size, s.contact.place.data());
   return fields;
 }
 

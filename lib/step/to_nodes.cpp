@@ -41,7 +41,7 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& poi
                                                        s.nodes.soil, space);
     if (s.soil_boundary && !s.summed.boundary)
       interpolate<BoundarySource<Space, T, Dim, domain()>>(
-          s, how, bins, {points, s.grid.inv_spacing, s.near_rigid}, s.nodes.boundary, space);
+          s, how, bins, {points, s.grid.inv_spacing, s.contact.place}, s.nodes.boundary, space);
   });
 }
 template <class Space, class T, int Dim>
@@ -107,10 +107,10 @@ PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T
   for_all_soil(s, [&](const auto& set) {
     with_box_or_ring(set.points, [&](auto domain) {
       interpolate<StrengthSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, set.bins,
-                                                           {set.points, s.near_rigid}, s.nodes.strength);
+                                                           {set.points, s.contact.place}, s.nodes.strength);
     });
   });
-  if (ranks) PetscCall(ranks->add_field(s, s.nodes.strength, When::in_step, s.near_rigid.data()));
+  if (ranks) PetscCall(ranks->add_field(s, s.nodes.strength, When::in_step, s.contact.place.data()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

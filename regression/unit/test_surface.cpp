@@ -350,7 +350,7 @@ TEST_CASE("a patch counts as near a rigid if its particles reach a node that the
       from[Dim - 1] = low, to[Dim - 1] = low + 2;
       cloud.rigids = {plate_of<Dim>(from, to, spacing)};
       const auto s = state_of<B>(cloud);
-      const auto near = on_host(s.near_rigid), soil_begin = on_host(s.soil.bins.begin);
+      const auto near = on_host(s.contact.place), soil_begin = on_host(s.soil.bins.begin);
       const auto neighbours = on_host(s.patches.neighbours);
       const auto rigid_begin = on_host(s.rigid_points[0].bins.begin);
       const auto origin = on_host(s.patches.origin);

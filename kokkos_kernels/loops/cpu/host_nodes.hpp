@@ -18,10 +18,13 @@ struct HostNodes {
 
   UpdateNodes<Space, T, Dim> update;
   HostSoil<Space, T, Dim> soil;
-  bool in_windows, has_near;
+  bool in_windows, has_contact;
 
   HostNodes(const State<Space, T, Dim>& s, double dt)
-      : update(node_update_of(s, dt)), soil(s), in_windows(s.summed.in_windows), has_near(s.near_count > 0) {}
+      : update(node_update_of(s, dt)),
+        soil(s),
+        in_windows(s.summed.in_windows),
+        has_contact(s.contact.count > 0) {}
 
   /// Prefetches the sums of a later slot.
   void fetch_sums(int slot) const {
@@ -29,13 +32,13 @@ struct HostNodes {
   }
   /// One piece of code, wherever the sums come from: so it rounds alike.
   void operator()(int slot) const {
-    const int near = has_near ? soil.near_rigid(slot) : 0;
+    const int contact = has_contact ? soil.contact(slot) : 0;
     Sums sums;
     soil.take(slot, in_windows, sums);
-    if (near > 0) {
+    if (contact > 0) {
       thread_local std::vector<double> force;  // so that a step allocates nothing
       force.resize(update.value_count * cells);
-      update.update_near(SerialTeam{}, sums, slot, near - 1, force.data());
+      update.update_near(SerialTeam{}, sums, slot, contact - 1, force.data());
     } else if (inside(slot) && !update.has_friction) {
       update.update_rows(SerialTeam{}, sums, slot);
     } else {

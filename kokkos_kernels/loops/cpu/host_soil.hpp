@@ -25,7 +25,7 @@ template <class Space, class T, int Dim, ParticleDomain domain = ParticleDomain:
 struct HostSoil {
   HostSums<SoilSource<Space, T, Dim, domain>> soil;
   HostSums<BoundarySource<Space, T, Dim, domain>> boundary;
-  decltype(State<Space, T, Dim>::near_rigid) near_rigid;
+  ContactPlaces<Space> contact;
   decltype(NodeSums<Space, T, Dim>::rigid) rigid;
   bool has_boundary;
 
@@ -35,9 +35,9 @@ struct HostSoil {
                               s.nodes.soil, s.space)),
         boundary(interpolation_of(
             s, s.soil.bins,
-            BoundarySource<Space, T, Dim, domain>{s.soil.points, s.grid.inv_spacing, s.near_rigid},
+            BoundarySource<Space, T, Dim, domain>{s.soil.points, s.grid.inv_spacing, s.contact.place},
             s.nodes.boundary, s.space)),
-        near_rigid(s.near_rigid),
+        contact(s.contact.place),
         rigid(s.nodes.rigid),
         has_boundary(s.soil_boundary) {}
 
@@ -46,7 +46,7 @@ struct HostSoil {
     soil.sum(slot);
     if (has_boundary) boundary.sum(slot);
   }
-  bool has_boundary_at(int slot) const { return has_boundary && near_rigid(slot) != 0; }
+  bool has_boundary_at(int slot) const { return has_boundary && contact(slot) != 0; }
   /// From the windows to the nodes of a slot, any one.
   void give_nodes(int slot) const {
     soil.give_nodes(slot);

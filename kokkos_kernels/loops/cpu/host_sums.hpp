@@ -156,17 +156,17 @@ struct HostSums {
 template <class Source>
 void sum_on_host(const Interpolation<Source>& it) {
   const HostSums sums(it);
-  const bool near = it.near_count >= 0;
+  const bool some = it.some_count >= 0;
   const Shared held = slots_held<Source::dim>(it.bins);
   const Shared nodes =
-      near ? Shared{0, it.near_count, 1} : slots_about<Source::dim>(it.bins, it.patches.slots);
+      some ? Shared{0, it.some_count, 1} : slots_about<Source::dim>(it.bins, it.patches.slots);
   const Shared phases[] = {held, sums.windowed ? nodes : Shared{}};
   for_each_shared("mpm::reduce_by_tile", it.space, phases, [&](int phase, int n) {
     if (it.control().paused) return;
     if (phase == 0)
       sums.sum(it.bins.active_slots(n));
     else
-      sums.give_nodes(near ? it.near_slots(n) : n);
+      sums.give_nodes(some ? it.some_slots(n) : n);
   });
 }
 

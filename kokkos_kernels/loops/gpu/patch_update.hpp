@@ -77,7 +77,7 @@ struct UpdateParticles {
   Kokkos::View<Coord<Dim>*, Memory> origin;
   NodeField<Space, T, NodeKinematics<Dim>::size> kinematics;
   NodeSums<Space, T, Dim> sums;  // of the next step
-  Kokkos::View<int*, Memory> near_rigid;
+  ContactPlaces<Space> contact;
   ControlView<Space> control;
   Movements<Space> movements;
   Dilatations<Space, T> dilatation;
@@ -154,9 +154,9 @@ struct UpdateParticles {
       tile.add(team, particle);
       note_movement(team, noted, slot, moved);
       tile.give_window(team, out.soil, images);
-      if (has_boundary && near_rigid(slot) != 0) {
+      if (has_boundary && contact(slot) != 0) {
         team.team_barrier();
-        sum_patch(team, all, Boundary{source.points, source.inv_spacing, near_rigid}, number_of, cell_begin,
+        sum_patch(team, all, Boundary{source.points, source.inv_spacing, contact}, number_of, cell_begin,
                   images, out.boundary);
       }
     } else {
@@ -324,7 +324,7 @@ Update update_of(const State<Space, T, Dim>& s, double dt,
           .origin = s.patches.origin,
           .kinematics = s.nodes.kinematics,
           .sums = s.nodes,
-          .near_rigid = s.near_rigid,
+          .contact = s.contact.place,
           .control = s.control,
           .movements = s.movements,
           .dilatation = dilatations_of(s),

@@ -68,7 +68,7 @@ struct PersistentStep {
 
   /// Figures of a team's slot, the same in all steps.
   struct Slot {
-    int number, near;  // near: a rigid, as in State::near_rigid
+    int number, contact;  // contact: as ContactSlots::place
     Coord<Dim> from;
     bool empty;
     int* numbers;  // of the images of the window's nodes
@@ -117,7 +117,7 @@ struct PersistentStep {
   KOKKOS_INLINE_FUNCTION Slot slot_of(const Member& team, Scratch& scratch, int number) const {
     const bool empty = update.begin(number * cells) == update.begin((number + 1) * cells);
     const Slot slot{number,
-                    nodes.value_count > 0 ? update.near_rigid(number) : 0,
+                    nodes.value_count > 0 ? update.contact(number) : 0,
                     update.origin(number),
                     empty,
                     scratch.take<int>(Update::window),
@@ -287,7 +287,7 @@ struct PersistentStep {
     const int rigid_bodies = nodes.rigid_count();
     const Rigid<Dim>* const bodies = at.bodies;
     double* const force = scratch.take<double>(nodes.value_count * cells);
-    if (slot.near > 0 && !at.by_all) copy_rigids(team, at.bodies);
+    if (slot.contact > 0 && !at.by_all) copy_rigids(team, at.bodies);
     typename Update::Images images(update.grid, update.reach, slot.from);
     images.table = slot.images;
     const auto motion_of = [&](int n, int number) {
@@ -296,11 +296,11 @@ struct PersistentStep {
       bool own = true;
       for (int d = 0; d < Dim; ++d) own = own && place[d] >= 0 && place[d] < Patch<Dim>::edge;
       if (slot.empty && !own) return KinematicValues<T, Dim>{};
-      double* const told = own && slot.near > 0 ? force + place_of<Dim>(place) : nullptr;
+      double* const told = own && slot.contact > 0 ? force + place_of<Dim>(place) : nullptr;
       for (int v = 0; v < nodes.value_count && told != nullptr; ++v) told[v * cells] = 0;
       const bool beyond = image != n;  // of a wall, where a node has no motion of its own
       const KinematicValues<T, Dim> kinematics =
-          nodes.kinematics(present, bodies, number, in, slot.near > 0, beyond ? nullptr : told);
+          nodes.kinematics(present, bodies, number, in, slot.contact > 0, beyond ? nullptr : told);
       if (own)
         nodes.keep(slot.number * cells + place_of<Dim>(place),
                    beyond ? KinematicValues<T, Dim>{} : kinematics);
@@ -310,9 +310,9 @@ struct PersistentStep {
         team, scratch, slot.number, next, movements_of(at.number), images,
         [&](int n) { return slot.numbers[n]; }, motion_of);
     clear_sums(team, last, slot.number, nodes.has_boundary, nodes.has_mass_normals ? rigid_bodies : 0);
-    if (slot.near == 0) return;
+    if (slot.contact == 0) return;
     team.team_barrier();
-    nodes.leave_forces(team, force, slot.near - 1 + force_turn(at) * end.slots);
+    nodes.leave_forces(team, force, slot.contact - 1 + force_turn(at) * end.slots);
   }
 
   /// Copies the rigids to scratch memory, where a node may read their values one after the other.

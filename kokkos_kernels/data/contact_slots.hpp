@@ -1,0 +1,25 @@
+#pragma once
+// Slots where a contact may be.
+
+#include "data/particles.hpp"
+
+namespace mpm {
+
+/// Slots whose particles reach a node that a rigid may touch until the next rebuild, and the sums that
+/// contact takes there.
+template <class Space>
+struct ContactSlots {
+  using Memory = typename Space::memory_space;
+  Kokkos::View<int*, Memory> place;  // by slot: its place in `slots`, from 1 on; 0: it has no contact
+  Kokkos::View<int*, Memory> slots;
+  int count = 0;                         // of `slots`
+  Windows<Space> boundary, strength;     // of the soil, BoundaryTerms and StrengthTerms, in these slots
+  Kokkos::View<double*, Memory> forces;  // N, [turn of a persistent step, else 0][of slots][rigid][of
+                                         // Wrench], of the soil on the rigids
+};
+
+/// Places of slots among those where a contact may be, as ContactSlots::place.
+template <class Space>
+using ContactPlaces = decltype(ContactSlots<Space>::place);
+
+}  // namespace mpm
