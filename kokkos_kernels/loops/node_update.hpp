@@ -278,42 +278,46 @@ struct UpdateNodes {
     T given[RigidTerms<Dim>::size] = {};  // read before the test of the rigid, to hide the latency
     for (int n = 0; n < RigidTerms<Dim>::size && has_mass_normals; ++n) given[n] = sums.rigid(r, node.i, n);
     const T m_i = node.soil[S::mass];
-    Vector<T, Dim> n, v_r, boundary;
+    Opponent<T, Dim> other;
+    Vector<T, Dim> boundary;
     const auto place = place_at(node.at);
     const Vector<double, Dim>& velocity = rigid.motion.velocity_at(place);
     for (int d = 0; d < Dim; ++d) {
-      v_r[d] = static_cast<T>(velocity[d]);
+      other.velocity[d] = static_cast<T>(velocity[d]);
       boundary[d] = node.boundary[BoundaryTerms<Dim>::area + d];
     }
     cancel_at_rollers(places.grid, node.sides, boundary);
     double distance = 0;
     Vector<double, Dim> out{};
-    const bool reaches = rigid.surface_normal || rigid.reach > 0
+    const bool reaches = rigid.surface_normal || rigid.law.reach > 0
                              ? surface_contact(rigid, node, boundary, distance, out)
                              : true;
-    if (rigid.surface_normal ? !(reaches && surface_normal(out, node.sides, n))
-                             : !mass_normal(rigid, given, node.sides, n))
+    if (rigid.surface_normal ? !(reaches && surface_normal(out, node.sides, other.normal))
+                             : !mass_normal(rigid, given, node.sides, other.normal))
       return;
-    const T area = Kokkos::fmax(T(0), dot(boundary, n));
-    Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(rigid.friction) };
-    const T limit = shear_limit(rigid, node.i);
+    other.area = Kokkos::fmax(T(0), dot(boundary, other.normal));
+    const ContactLaw& law = rigid.law;
+    Interface<T> interface { Kokkos::Experimental::infinity<T>::value, static_cast<T>(law.friction) };
+    const T limit = shear_limit(law, node.i);
     if (limit < Kokkos::Experimental::infinity<T>::value)
-      interface.shear_speed = limit * area * dt * node.inv_m;
+      interface.shear_speed = limit * other.area * dt * node.inv_m;
     const Vector<T, Dim> g_now = gravity();
     T pressing = 0;
-    for (int d = 0; d < Dim; ++d) pressing += (node.soil[S::force + d] * node.inv_m + g_now[d]) * n[d];
+    for (int d = 0; d < Dim; ++d)
+      pressing += (node.soil[S::force + d] * node.inv_m + g_now[d]) * other.normal[d];
     interface.pressing = pressing * dt;
-    interface.separates = rigid.separates;
+    interface.separates = law.separates;
     // A node in the soil, most of a cell from the surface, feels its part of the shear; were it stopped as
     // well, the body would act thicker than it is. Round-off does not choose where a node lies half a cell
     // away.
-    interface.within_soil = rigid.surface_normal && distance > spacing / 2 + rigid.surface.round_off;
-    if (rigid.reach > 0) {
-      const T depth = surface_depth(node.boundary[BoundaryTerms<Dim>::volume] / places.grid.spacing, area);
-      const T gap = static_cast<T>(distance) + depth * places.grid.spacing;
-      interface.gap_scaling = gap_scaling(gap, T(rigid.reach), T(rigid.exponent));
+    other.within_soil = rigid.surface_normal && distance > spacing / 2 + rigid.surface.round_off;
+    if (law.reach > 0) {
+      const T depth =
+          surface_depth(node.boundary[BoundaryTerms<Dim>::volume] / places.grid.spacing, other.area);
+      other.gap = static_cast<T>(distance) + depth * places.grid.spacing;
+      interface.gap_scaling = gap_scaling(other.gap, T(law.reach), T(law.exponent));
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
-      if (gap > Kokkos::fmax(T(rigid.reach), places.grid.spacing / 2)) return;
+      if (other.gap > Kokkos::fmax(T(law.reach), places.grid.spacing / 2)) return;
     }
     const int row = ImpulseTerms::size * r;
     if (has_friction) {
@@ -322,7 +326,7 @@ struct UpdateNodes {
                            nodes.impulse(row + ImpulseTerms::store, node.i) * node.inv_m};
       interface.fresh = fresh;
     }
-    const Vector<T, Dim> change = contact_correction(v, v_r, n, interface);
+    const Vector<T, Dim> change = contact_correction(v, other, interface);
     if (has_friction && keeps) {
       nodes.impulse(row + ImpulseTerms::sum, node.i) = interface.pressed.sum;
       nodes.impulse(row + ImpulseTerms::weight, node.i) = interface.pressed.weight;
@@ -336,11 +340,11 @@ struct UpdateNodes {
   }
 
   /// Largest shear stress of the interface at node i [Pa], infinite where only the friction limits.
-  KOKKOS_INLINE_FUNCTION T shear_limit(const Rigid<Dim>& rigid, int i) const {
-    if (rigid.shear_fraction < 0) return static_cast<T>(rigid.shear_limit);
+  KOKKOS_INLINE_FUNCTION T shear_limit(const ContactLaw& law, int i) const {
+    if (law.shear_fraction < 0) return static_cast<T>(law.shear_limit);
     const T volume = nodes.strength(i, StrengthTerms::volume);
     if (!(volume > 0)) return 0;
-    return static_cast<T>(rigid.shear_fraction) * (nodes.strength(i, StrengthTerms::strength) / volume);
+    return static_cast<T>(law.shear_fraction) * (nodes.strength(i, StrengthTerms::strength) / volume);
   }
 
   /// Place of a node [m], by component.

@@ -1,5 +1,5 @@
 #pragma once
-// Contact of the soil with a rigid body at a node.
+// Contact of the soil at a node.
 
 #include "data/impulse_terms.hpp"
 #include "physics/walls.hpp"
@@ -69,6 +69,17 @@ KOKKOS_INLINE_FUNCTION T usable_impulse(Pressed<T>& pressed, T fresh, T stop) {
   return Kokkos::fmin(pressed.store, pressed.sum / pressed.weight);
 }
 
+/// Opponent of the soil at a node, such as the surface of a rigid body.
+template <class T, int Dim>
+struct Opponent {
+  Vector<T, Dim> velocity;   // m/s, at the node
+  Vector<T, Dim> normal;     // -, from the soil into it, of length 1
+  T area = 0;                // m2 (m in 2D), of the soil's boundary towards it
+  T gap = 0;                 // m, between the soil and it, where the law has a reach
+  T share = 1;               // -, its mass over its and the soil's: 1 for a rigid, which does not yield
+  bool within_soil = false;  // more than half a cell from the node: it is not stopped, and nothing presses it
+};
+
 /// Interface at a node, as the contact takes it.
 template <class T>
 struct Interface {
@@ -79,20 +90,20 @@ struct Interface {
   Pressed<T> pressed{};  // m/s: normal impulses over nodal mass
   T gap_scaling = 1;     // -, fraction of the normal correction
   bool separates = true;
-  bool within_soil =
-      false;  // more than half a cell from the surface: it is not stopped, and nothing presses it
 };
 
-/// Correction dV of the soil's velocity v at a node; v_r velocity of the rigid, n inward unit normal. No soil
-/// moves into the rigid. Shear acts while it moves in or is pressed in. Friction is a fraction of the usable
-/// normal impulse.
+/// Correction dV of the soil's velocity v at a node. No soil moves into the opponent. Shear acts while it
+/// moves in or is pressed in. Friction is a fraction of the usable normal impulse. Of the relative velocity
+/// that the contact takes away, the soil takes the opponent's share: the impulses on both are opposite.
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v, const Vector<T, Dim>& v_r,
-                                                         const Vector<T, Dim>& n, Interface<T>& interface) {
+KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v,
+                                                         const Opponent<T, Dim>& other,
+                                                         Interface<T>& interface) {
+  const Vector<T, Dim>& n = other.normal;
   Vector<T, Dim> relative, change = filled<T, Dim>(0);
-  for (int d = 0; d < Dim; ++d) relative[d] = v[d] - v_r[d];
+  for (int d = 0; d < Dim; ++d) relative[d] = v[d] - other.velocity[d];
   const T approach = dot(relative, n);
-  const T stop = (interface.within_soil ? T(0) : interface.gap_scaling) *
+  const T stop = other.share * (other.within_soil ? T(0) : interface.gap_scaling) *
                  (interface.separates ? Kokkos::fmax(T(0), approach) : approach);
   Vector<T, Dim> slip;
   for (int d = 0; d < Dim; ++d) slip[d] = relative[d] - approach * n[d];
@@ -103,15 +114,16 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
   constexpr T k_balanced = sizeof(T) == sizeof(double) ? T(1e-10) : T(1e-6);
   const bool touches = !interface.separates || approach > k_along * speed ||
                        interface.pressing > k_balanced * speed ||
-                       (interface.within_soil && -approach < k_leaves * speed);
+                       (other.within_soil && -approach < k_leaves * speed);
   T largest = touches ? interface.shear_speed : T(0);
   if (interface.friction >= 0) {
     const T normal = usable_impulse(interface.pressed, interface.fresh, stop);
     largest = Kokkos::fmin(interface.shear_speed, interface.friction * normal);
   }
-  const T factor = largest >= speed ? T(1) : largest / speed;
-  if (interface.friction > 0) interface.pressed.store -= factor * speed / interface.friction;
-  for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - factor * slip[d];
+  const T hold = other.share * speed;  // change of the soil's velocity that ends the slip
+  const T factor = largest >= hold ? T(1) : largest / hold;
+  if (interface.friction > 0) interface.pressed.store -= factor * hold / interface.friction;
+  for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - factor * (other.share * slip[d]);
   return change;
 }
 

@@ -57,13 +57,13 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
                              ? rigids[r].density * rigids[r].revolved_volume
                              : particle_mass * static_cast<double>(rigids[r].position.size() / Dim);
     rigid.inertia.dynamic = rigids[r].dynamic;
-    rigid.shear_limit = rigids[r].shear_limit;
-    rigid.shear_fraction = rigids[r].shear_fraction > 0 ? rigids[r].shear_fraction : -1;
-    rigid.friction = rigids[r].friction;
+    rigid.law = {.separates = rigids[r].separates,
+                 .reach = rigids[r].reach,
+                 .exponent = rigids[r].exponent,
+                 .shear_limit = rigids[r].shear_limit,
+                 .shear_fraction = rigids[r].shear_fraction > 0 ? rigids[r].shear_fraction : -1,
+                 .friction = rigids[r].friction};
     rigid.surface_normal = rigids[r].surface_normal;
-    rigid.separates = rigids[r].separates;
-    rigid.reach = rigids[r].reach;
-    rigid.exponent = rigids[r].exponent;
     rigid.surface = surface_of<Dim>(rigids[r].surface, s.spacing);
     rigid.surface.first = first_vertex[r];
     rigid.mass_cut = cut * particle_mass;

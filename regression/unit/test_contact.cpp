@@ -65,7 +65,7 @@ TEST_CASE("contact: no pull, no penetration, and shear up to the lesser of its b
   const Vector<double, 2> v{1, -2}, v_r{0, -0.5}, n{0, -1};  // relative (1, -1.5): approach 1.5, slip 1
   const auto change = [&](double shear_speed, double friction) {
     Interface<double> interface { shear_speed, friction };
-    return contact_correction<double, 2>(v, v_r, n, interface);
+    return contact_correction<double, 2>(v, {v_r, n}, interface);
   };
   CHECK(near(change(0, -1), 0, 1.5));               // smooth
   CHECK(near(change(0.25, -1), -0.25, 1.5));        // limited
@@ -78,7 +78,7 @@ TEST_CASE("contact: no pull, no penetration, and shear up to the lesser of its b
   const Vector<double, 2> away{0, 1};
   const auto with = [](auto dim, auto own, auto v, auto v_r, auto n) {
     Interface<double> interface = own;
-    return contact_correction<double, decltype(dim)::value>(v, v_r, n, interface);
+    return contact_correction<double, decltype(dim)::value>(v, {v_r, n}, interface);
   };
   using In2D = std::integral_constant<int, 2>;
   using V2 = Vector<double, 2>;
@@ -126,7 +126,7 @@ TEST_CASE("friction over many steps is a fraction of the normal impulse of all o
       v += drive;
       fade(interface);
       const auto change =
-          contact_correction<double, 2>({v, step % 4 == 0 ? -4.0 : 0.01}, {0, 0}, {0, -1}, interface);
+          contact_correction<double, 2>({v, step % 4 == 0 ? -4.0 : 0.01}, {{0, 0}, {0, -1}}, interface);
       v += change[0];
       normal += change[1], tangential -= change[0];
     }
@@ -147,7 +147,7 @@ TEST_CASE(
     "soil that has stuck for long has no friction in store, and soil that comes to a body has all of its own",
     "[contact]") {
   const auto friction_of = [](Interface<double>& interface, double slip) {
-    return -contact_correction<double, 2>({slip, -1}, {0, 0}, {0, -1}, interface)[0];
+    return -contact_correction<double, 2>({slip, -1}, {{0, 0}, {0, -1}}, interface)[0];
   };
   Interface<double> held{k_infinite, 0.5};
   held.fresh = 0.05;
@@ -163,11 +163,38 @@ TEST_CASE(
   CHECK(std::fabs(friction - 0.5 * 10) < 1e-12);
   for (int step = 0; step < 400; ++step) fade(held), friction_of(held, 0);
   fade(held);
-  const double lifted = -contact_correction<double, 2>({100, 1}, {0, 0}, {0, -1}, held)[0];
+  const double lifted = -contact_correction<double, 2>({100, 1}, {{0, 0}, {0, -1}}, held)[0];
   CHECK(std::fabs(lifted - 0.5 * 0.95) < 1e-9);  // a trough: the mean
   Interface<double> comes{k_infinite, 0.5};
   comes.fresh = 0.05;
   CHECK(std::fabs(friction_of(comes, 100) - 0.5) < 1e-12);
+}
+
+TEST_CASE("two bodies that meet take opposite impulses, until they stick or slip under the limit of shear",
+          "[contact]") {
+  const double m[] = {3, 0.5}, n[] = {0.6, -0.8}, v[2][2] = {{2, -1}, {-0.5, 0.5}};
+  const double approach = (v[0][0] - v[1][0]) * n[0] + (v[0][1] - v[1][1]) * n[1];
+  const double slip[] = {v[0][0] - v[1][0] - approach * n[0], v[0][1] - v[1][1] - approach * n[1]};
+  const double speed = std::hypot(slip[0], slip[1]), reduced = m[0] * m[1] / (m[0] + m[1]);
+  for (const double friction : {-1., 0.2})
+    for (const double limit : {0., 0.1, 1e3}) {  // N s
+      double impulse[2][2];
+      for (int b = 0; b < 2; ++b) {
+        const double sign = b == 0 ? 1 : -1;
+        Interface<double> interface { limit / m[b], friction };
+        Opponent<double, 2> other{{v[1 - b][0], v[1 - b][1]}, {sign * n[0], sign * n[1]}};
+        other.share = m[1 - b] / (m[0] + m[1]);
+        const auto change = contact_correction<double, 2>({v[b][0], v[b][1]}, other, interface);
+        for (int d = 0; d < 2; ++d) impulse[b][d] = m[b] * change[d];
+      }
+      const double normal = reduced * approach;
+      const double shear = std::min({limit, reduced * speed, friction < 0 ? limit : friction * normal});
+      INFO("friction " << friction << ", limit " << limit);
+      for (int d = 0; d < 2; ++d) {
+        CHECK(std::fabs(impulse[0][d] + impulse[1][d]) < 1e-14);
+        CHECK(std::fabs(impulse[0][d] + normal * n[d] + shear * slip[d] / speed) < 1e-14);
+      }
+    }
 }
 
 TEST_CASE("the inward normal is against the mass gradient, in a roller's plane, and none in the body",
