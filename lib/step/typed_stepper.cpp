@@ -180,6 +180,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::keep_balance(const EnergyRow& before
   PetscFunctionBeginUser;
   HistoryRow now;
   PetscCall(measures_.measure_bodies(&now.bodies));
+  PetscCall(loads_.measure(&now));
   PetscCall(energy_.keep(before, &now));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
