@@ -152,9 +152,13 @@ class Checks:
         with h5py.File(listed, "a") as file:
             file["block/tracer"][:] = file["block/position"][:]
         deck = self.base / "traced.opts"
-        lines = [line for line in DECK.read_text().splitlines() if not re.match("-block_(shape|lower|upper|velocity)", line)]
-        from_file = lambda path: deck.write_text("\n".join([*lines, "-block_shape particles", f"-block_file {path}"]) + "\n")
-        from_file(listed)
+
+        def from_file(path, left_out):
+            lines = [line for line in DECK.read_text().splitlines() if not re.match(left_out, line)]
+            bodies = ["-bodies block"] if "-bodies" in left_out else []
+            deck.write_text("\n".join([*lines, *bodies, "-block_shape particles", f"-block_file {path}"]) + "\n")
+
+        from_file(listed, "-block_(shape|lower|upper|velocity)")
         one = fresh(self.base / "traced")
         self.go(one, deck=deck)
         with h5py.File(listed) as start, self.last_frame(one) as end:
@@ -170,7 +174,7 @@ class Checks:
         self.go(again, "-restart", checkpoints(again)[0], deck=deck)
         assert not differences(one, again), differences(one, again)
         for source in (sorted(one.glob("frames/frame_*.h5"))[-1], checkpoints(one)[-1]):
-            from_file(source)
+            from_file(source, "-block_(shape|lower|upper|velocity)|-heap_|-bodies")  # the block lies on the heap now
             started = fresh(self.base / "traced_start")
             self.go(started, "-time_max_steps", 1, deck=deck)
             with h5py.File(started / "frames/frame_00000.h5") as start, self.last_frame(one) as end:
