@@ -12,7 +12,7 @@ import sys
 
 ROOTS = ("kokkos_kernels", "lib/include", "lib", "kokkos_kernels/base")
 DATA = {"sides": "sides.hpp", "water": "water.hpp", "loads on surfaces": "surface_loads.hpp", "rigid bodies": "rigid_pose.hpp"}
-CLASSES = ("State", "Core", "TypedStepper", "Body")
+CLASSES = ("Core", "ContactCore", "State", "TypedStepper", "Body")
 
 
 def sources_in(tree):

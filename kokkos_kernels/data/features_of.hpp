@@ -1,5 +1,5 @@
 #pragma once
-// Features of a State that limit how its steps may be done.
+// Features of a run that limit how its steps may be done.
 
 #include <iterator>
 #include <utility>
@@ -14,15 +14,15 @@ template <class Space, class T, int Dim>
 Features features_of(const State<Space, T, Dim>& s) {
   using F = Feature;
   const std::pair<F, bool> all[] = {{F::other_strategy, chosen(s.p2g.strategy) != P2G::tile},
-                                    {F::xpic, s.xpic_order > 0},
+                                    {F::xpic, s.scheme.xpic_order > 0},
                                     {F::apic, s.soil.points.has_affine},
                                     {F::splits, s.soil.points.splits},
                                     {F::correction, s.correction.on},
                                     {F::submerged, s.water.is_there()},
                                     {F::energy, s.energy.on},
                                     {F::loads, s.loads.in_use()},
-                                    {F::rayleigh, s.rayleigh},
-                                    {F::damping, s.damping > 0},
+                                    {F::rayleigh, s.scheme.rayleigh},
+                                    {F::damping, s.scheme.damping > 0},
                                     {F::shear_fraction, s.shear_fraction},
                                     {F::friction, s.has_friction},
                                     {F::acting_sides, s.sides.in_use()},

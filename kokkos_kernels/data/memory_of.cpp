@@ -26,7 +26,7 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add(s.loads.coordinate), add(s.loads.force), add(s.loads.half_length);
   add(s.strays.alone), add(s.split.slots);
   add(s.contact.boundary.sums), add(s.contact.strength.sums);
-  for (const auto* more : {&s.next_sums, &s.last_sums})
+  for (const auto* more : {&s.launch.next_sums, &s.launch.last_sums})
     add(more->soil), add(more->boundary), add(more->rigid);
   add(s.energy.stress), add(s.energy.strain), add(s.energy.volume);
   add(s.batches.room), add(s.batches.slots), add(s.timed.loads), add(s.timed.points), add(s.sides.nodes),

@@ -223,7 +223,7 @@ GiveColumns<Space, T, Dim> give_columns_of(const State<Space, T, Dim>& s, unsign
             acting(s.sides),
             sides,
             shear_ratios<Space>(shear_ratio),
-            s.f_bar_fraction,
+            s.f_bar.fraction,
             s.soil.points.has_affine,
             typename Give::Sum("mpm::column_sums", s.sides.columns.extent(0)),
             {}};

@@ -1,9 +1,10 @@
+#include "data/core.hpp"
 #include "functions/step_kernels.hpp"
 
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void add_buoyancy(State<Space, T, Dim>& s) {
+void add_buoyancy(Core<Space, T, Dim>& s) {
   const auto soil = s.nodes.soil;
   const auto displaced = s.nodes.displaced;
   const auto control = s.control;
@@ -18,7 +19,7 @@ void add_buoyancy(State<Space, T, Dim>& s) {
       });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template void add_buoyancy(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim) template void add_buoyancy(Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -163,8 +163,8 @@ void add_node_works(State<Space, T, Dim>& s, double dt) {
                                                     works,
                                                     s.control,
                                                     T(dt),
-                                                    T(s.f_bar_fraction),
-                                                    s.f_bar_by_material});
+                                                    T(s.f_bar.fraction),
+                                                    s.f_bar.by_material});
 }
 
 template <class Space, class T, int Dim>

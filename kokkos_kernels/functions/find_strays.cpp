@@ -66,7 +66,7 @@ struct MassInReach {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void mark_strays(State<Space, T, Dim>& s, const Space& stream) {
+void mark_strays(Core<Space, T, Dim>& s, const Space& stream) {
   constexpr int cells = Patch<Dim>::cells;
   const auto alone = s.strays.alone;
   const auto soil = s.soil.points;
@@ -98,7 +98,7 @@ void mark_strays(State<Space, T, Dim>& s, const Space& stream) {
 }
 
 template <class Space, class T, int Dim>
-void note_lost(State<Space, T, Dim>& s) {
+void note_lost(Core<Space, T, Dim>& s) {
   constexpr int quantities = 3 + Dim;  // number, mass, kinetic energy, momentum
   const auto soil = s.soil.points;
   const auto address = s.soil.address;
@@ -121,9 +121,9 @@ void note_lost(State<Space, T, Dim>& s) {
   }
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                            \
-  template void mark_strays(State<Space, T, Dim>&, const Space&); \
-  template void note_lost(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                           \
+  template void mark_strays(Core<Space, T, Dim>&, const Space&); \
+  template void note_lost(Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -14,7 +14,7 @@ constexpr double k_least_det = 0.05;  // of I - G: the soil was stretched by les
 
 /// Sums of a source over the soil at home, to `out`.
 template <class Source, class Space, class T, int Dim>
-void sum_at_home(State<Space, T, Dim>& s, const Source& source,
+void sum_at_home(ContactCore<Space, T, Dim>& s, const Source& source,
                  const NodeField<Space, T, Source::size>& out) {
   Kokkos::deep_copy(s.space, out, T(0));
   const auto sum = [&](const Bins<Space>& bins) {
@@ -131,7 +131,7 @@ struct StretchDomains {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void sum_drift(State<Space, T, Dim>& s) {
+void sum_drift(ContactCore<Space, T, Dim>& s) {
   collect_soil(s);
   const auto soil = s.soil.points;
   sum_at_home(s, CentreSource<Space, T, Dim>{soil}, s.nodes.centre);
@@ -143,7 +143,7 @@ void sum_drift(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void stretch_domains(State<Space, T, Dim>& s) {
+void stretch_domains(ContactCore<Space, T, Dim>& s) {
   Kokkos::parallel_for(
       "mpm::stretch_domains", light(Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count)),
       StretchDomains<Space, T, Dim>{
@@ -151,7 +151,7 @@ void stretch_domains(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void begin_domains(State<Space, T, Dim>& s) {
+void begin_domains(ContactCore<Space, T, Dim>& s) {
   if (!s.soil.points.has_domain) return;
   const auto soil = s.soil.points;
   Kokkos::parallel_for(
@@ -161,10 +161,10 @@ void begin_domains(State<Space, T, Dim>& s) {
       });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                  \
-  template void sum_drift(State<Space, T, Dim>&);       \
-  template void stretch_domains(State<Space, T, Dim>&); \
-  template void begin_domains(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                        \
+  template void sum_drift(ContactCore<Space, T, Dim>&);       \
+  template void stretch_domains(ContactCore<Space, T, Dim>&); \
+  template void begin_domains(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -8,14 +8,14 @@
 // The first two need the lists and nodes of before the rebuild.
 
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 
 namespace mpm {
 
 /// Sums of this rank's soil to s.nodes.centre and s.nodes.drift, by the run's strategy. Until
 /// begin_domains() the field `begun` of the soil is the way of each particle [cells].
 template <class Space, class T, int Dim>
-void sum_drift(State<Space, T, Dim>& s);
+void sum_drift(ContactCore<Space, T, Dim>& s);
 
 /// Deforms the domain of each particle, M <- k F M F^T, F the deformation gradient since the last time.
 /// The soil of node i now has its centre at x_i and came by u_i. With weights S_ip and their means x, u:
@@ -25,10 +25,10 @@ void sum_drift(State<Space, T, Dim>& s);
 /// keep their domains. The half lengths become those of half of this way further on, so that they are neither
 /// late nor early in the mean until the next time.
 template <class Space, class T, int Dim>
-void stretch_domains(State<Space, T, Dim>& s);
+void stretch_domains(ContactCore<Space, T, Dim>& s);
 
 /// After the lists were made, and where particles are new.
 template <class Space, class T, int Dim>
-void begin_domains(State<Space, T, Dim>& s);
+void begin_domains(ContactCore<Space, T, Dim>& s);
 
 }  // namespace mpm

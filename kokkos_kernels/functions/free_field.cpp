@@ -16,12 +16,12 @@ ColumnStep<T, Dim> column_step(const State<Space, T, Dim>& s, int side, double d
           .g = s.gravity,
           .timed_g = s.timed.of_step().gravity,
           .dt = dt,
-          .change = s.kick * dt,
-          .flip = s.flip_fraction,
-          .damping = s.damping,
+          .change = s.scheme.kick * dt,
+          .flip = s.scheme.flip_fraction,
+          .damping = s.scheme.damping,
           .still = k_still<T>,
-          .mass_cut = s.mass_cut,
-          .xpic = s.xpic_order,
+          .mass_cut = s.scheme.mass_cut,
+          .xpic = s.scheme.xpic_order,
           .affine = s.soil.points.has_affine,
           .d = side / 2};
 }

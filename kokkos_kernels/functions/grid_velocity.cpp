@@ -16,7 +16,7 @@ struct GridVelocity {
   NodeField<Space, T, SoilTerms<Dim>::size> nodes;
   NodePlaces<Space, T, Dim> places;
 
-  explicit GridVelocity(const State<Space, T, Dim>& s)
+  explicit GridVelocity(const Core<Space, T, Dim>& s)
       : points(s.soil.points), nodes(s.nodes.soil), places(s.grid, s.patches) {}
 
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> operator()(int p) const {
@@ -38,7 +38,7 @@ struct GridVelocity {
 }  // namespace
 
 template <class Space, class T, int Dim>
-double largest_grid_speed(const State<Space, T, Dim>& s, int body) {
+double largest_grid_speed(const Core<Space, T, Dim>& s, int body) {
   const GridVelocity<Space, T, Dim> velocity(s);
   const auto body_of = s.soil.points.body;
   double square = 0;
@@ -54,7 +54,7 @@ double largest_grid_speed(const State<Space, T, Dim>& s, int body) {
 }
 
 template <class Space, class T, int Dim>
-std::vector<double> grid_velocities(const State<Space, T, Dim>& s, const std::vector<int>& order) {
+std::vector<double> grid_velocities(const Core<Space, T, Dim>& s, const std::vector<int>& order) {
   const GridVelocity<Space, T, Dim> velocity(s);
   const int count = s.soil.points.count;
   const Kokkos::View<Vector<double, Dim>*, typename Space::memory_space> values("mpm::grid_velocity", count);
@@ -69,9 +69,9 @@ std::vector<double> grid_velocities(const State<Space, T, Dim>& s, const std::ve
   return out;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                  \
-  template double largest_grid_speed(const State<Space, T, Dim>&, int); \
-  template std::vector<double> grid_velocities(const State<Space, T, Dim>&, const std::vector<int>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                 \
+  template double largest_grid_speed(const Core<Space, T, Dim>&, int); \
+  template std::vector<double> grid_velocities(const Core<Space, T, Dim>&, const std::vector<int>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -10,16 +10,16 @@
 #include <vector>
 
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/core.hpp"
 
 namespace mpm {
 
 /// Largest speed of a body's particles, by the nodes [m/s].
 template <class Space, class T, int Dim>
-double largest_grid_speed(const State<Space, T, Dim>& s, int body);
+double largest_grid_speed(const Core<Space, T, Dim>& s, int body);
 
 /// Velocity of every particle of this rank, by the nodes [m/s], in this order of the particles: [Dim N].
 template <class Space, class T, int Dim>
-std::vector<double> grid_velocities(const State<Space, T, Dim>& s, const std::vector<int>& order);
+std::vector<double> grid_velocities(const Core<Space, T, Dim>& s, const std::vector<int>& order);
 
 }  // namespace mpm

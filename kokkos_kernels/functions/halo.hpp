@@ -3,7 +3,7 @@
 // come in.
 
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/core.hpp"
 
 namespace mpm {
 

@@ -9,7 +9,7 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void move_rigid_points(State<Space, T, Dim>& s, const Space& stream) {
+void move_rigid_points(ContactCore<Space, T, Dim>& s, const Space& stream) {
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto points = s.rigid_points[r].points;
     if (points.surface_normal) continue;  // only a rebuild asks for them, and finds them itself
@@ -72,22 +72,24 @@ struct Move {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void sum_forces(State<Space, T, Dim>& s, const Space& stream) {
+void sum_forces(ContactCore<Space, T, Dim>& s, const Space& stream) {
   const int values = Wrench<Dim>::size * static_cast<int>(s.rigid_points.size());
-  if (values > 0) launch_end(EndStep<Space, T, Dim>(s, 0), stream, values, Sum{});
+  if (values > 0) launch_end(EndStep<Space, T, Dim>(s, {}, 0), stream, values, Sum{});
   s.forces_summed = true;
 }
 
 template <class Space, class T, int Dim>
-void move_rigids(State<Space, T, Dim>& s, double dt, const Space& stream) {
-  launch_end(EndStep<Space, T, Dim>(s, dt), stream, 1, Move{});
+void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed, double dt,
+                 const Space& stream) {
+  launch_end(EndStep<Space, T, Dim>(s, timed, dt), stream, 1, Move{});
   s.forces_summed = false;
   if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, stream);
 }
 
 template <class Space, class T, int Dim>
-void begin_loads(State<Space, T, Dim>& s, const LoadClock& clock) {
-  const LoadsOfStep<T, Dim> timed = s.timed.of_step();
+void begin_loads(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& loads,
+                 const LoadClock& clock) {
+  const LoadsOfStep<T, Dim> timed = loads.of_step();
   if (timed.count == 0) return;
   Rigid<Dim>* const rigids = s.rigids.data();
   Kokkos::parallel_for(
@@ -98,7 +100,7 @@ void begin_loads(State<Space, T, Dim>& s, const LoadClock& clock) {
 }
 
 template <class Space, class T, int Dim>
-Control read_control(const State<Space, T, Dim>& s) {
+Control read_control(const Core<Space, T, Dim>& s) {
   Control c;
   Kokkos::View<Control, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(&c);
   copy(s.space, host, s.control);
@@ -107,20 +109,22 @@ Control read_control(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void restart_count(State<Space, T, Dim>& s) {
+void restart_count(const Core<Space, T, Dim>& s) {
   const auto control = s.control;
   Kokkos::parallel_for(
       "mpm::restart_count", Kokkos::RangePolicy<Space>(s.space, 0, 1),
       KOKKOS_LAMBDA(int) { control().steps = 0; });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                    \
-  template void sum_forces(State<Space, T, Dim>&, const Space&);          \
-  template void move_rigids(State<Space, T, Dim>&, double, const Space&); \
-  template void move_rigid_points(State<Space, T, Dim>&, const Space&);   \
-  template void begin_loads(State<Space, T, Dim>&, const LoadClock&);     \
-  template Control read_control(const State<Space, T, Dim>&);             \
-  template void restart_count(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                                             \
+  template void sum_forces(ContactCore<Space, T, Dim>&, const Space&);                             \
+  template void move_rigids(ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&, double, \
+                            const Space&);                                                         \
+  template void move_rigid_points(ContactCore<Space, T, Dim>&, const Space&);                      \
+  template void begin_loads(const ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&,   \
+                            const LoadClock&);                                                     \
+  template Control read_control(const Core<Space, T, Dim>&);                                       \
+  template void restart_count(const Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -24,7 +24,7 @@ std::vector<Value> on_host(const View& view) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s) {
+NodeImpulses<T> list_impulses(const ContactCore<Space, T, Dim>& s) {
   using Range = Kokkos::RangePolicy<Space>;
   const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
   const int nodes = s.owned_nodes.extent(0) > 0 ? s.patches.node_count() : 0;
@@ -57,7 +57,7 @@ NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void put_impulses(State<Space, T, Dim>& s, const NodeImpulses<T>& impulses) {
+void put_impulses(ContactCore<Space, T, Dim>& s, const NodeImpulses<T>& impulses) {
   const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
   const auto node = on_device<Space>("mpm::node", impulses.node);
   const auto value = on_device<Space>("mpm::value", impulses.value);
@@ -75,9 +75,9 @@ void put_impulses(State<Space, T, Dim>& s, const NodeImpulses<T>& impulses) {
   s.space.fence("mpm::put_impulses");
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                 \
-  template NodeImpulses<T> list_impulses(const State<Space, T, Dim>&); \
-  template void put_impulses(State<Space, T, Dim>&, const NodeImpulses<T>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                       \
+  template NodeImpulses<T> list_impulses(const ContactCore<Space, T, Dim>&); \
+  template void put_impulses(ContactCore<Space, T, Dim>&, const NodeImpulses<T>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 
 namespace mpm {
 
@@ -18,10 +18,10 @@ struct NodeImpulses {
 
 /// Impulses that are not zero, of the nodes that this rank is responsible for (State::owned_nodes).
 template <class Space, class T, int Dim>
-NodeImpulses<T> list_impulses(const State<Space, T, Dim>& s);
+NodeImpulses<T> list_impulses(const ContactCore<Space, T, Dim>& s);
 
 /// Sets the impulse of these nodes, where they have a slot, and that of all others to zero.
 template <class Space, class T, int Dim>
-void put_impulses(State<Space, T, Dim>& s, const NodeImpulses<T>& impulses);
+void put_impulses(ContactCore<Space, T, Dim>& s, const NodeImpulses<T>& impulses);
 
 }  // namespace mpm

@@ -23,14 +23,14 @@ auto step_of(const State<Space, T, Dim>& s, double dt, int steps) {
   using Functor = PersistentStep<Space, T, Dim, WithNodes, Laws, domain>;
   Functor f{update_of<typename Functor::Update>(s, dt, s.soil.bins.active_slots, 0),
             node_update_of<false>(s, dt),
-            {s, dt},
+            {s, s.timed, dt},
             {},
             0,
             0,
             steps,
-            {s.nodes, WithNodes ? s.next_sums : s.nodes, s.last_sums},
-            s.launch_barrier,
-            s.launch_movements};
+            {s.nodes, WithNodes ? s.launch.next_sums : s.nodes, s.launch.last_sums},
+            s.launch.barrier,
+            s.launch.movements};
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     const auto& points = s.rigid_points[r].points;
     if (points.surface_normal) continue;
@@ -71,19 +71,19 @@ void launch(const State<Space, T, Dim>& s, int slots, double dt, int steps) {
 /// Makes sure that the sums of the next and of the last step have room, and that the next one's are zero.
 template <class Space, class T, int Dim>
 void prepare_sums(State<Space, T, Dim>& s) {
-  if (s.next_zero) return;
+  if (s.launch.next_zero) return;
   const auto prepare = [&](auto& view, const auto& like) {
     if (view.layout() != like.layout())
       view = std::decay_t<decltype(view)>(Kokkos::view_alloc(like.label(), Kokkos::WithoutInitializing),
                                           like.layout());
     Kokkos::deep_copy(s.space, view, T(0));
   };
-  for (NodeSums<Space, T, Dim>* sums : {&s.next_sums, &s.last_sums}) {
+  for (NodeSums<Space, T, Dim>* sums : {&s.launch.next_sums, &s.launch.last_sums}) {
     prepare(sums->soil, s.nodes.soil);
     prepare(sums->boundary, s.nodes.boundary);
     prepare(sums->rigid, s.nodes.rigid);
   }
-  s.next_zero = true;
+  s.launch.next_zero = true;
 }
 
 /// Whether a launch of this kind has room for its rigids.
@@ -94,7 +94,7 @@ bool has_room(const State<Space, T, Dim>& s) {
   const int values = Wrench<Dim>::size * static_cast<int>(s.rigid_points.size());
   return with_choice(s, [&](auto laws, auto domain) {
     using Step = PersistentStep<Space, T, Dim, WithNodes, decltype(laws), domain()>;
-    const std::size_t parts = EndStep<Space, T, Dim>(s, 0).room(Step::threads) * sizeof(double);
+    const std::size_t parts = EndStep<Space, T, Dim>(s, s.timed, 0).room(Step::threads) * sizeof(double);
     return with_points <= k_most_rigids && parts <= Step::Update::bytes() &&
            Step::bytes(values) <= k_team_bytes<Space> - k_scratch_slack - 8 * (Step::threads + 2);
   });
@@ -119,7 +119,7 @@ void update_and_end(State<Space, T, Dim>& s, double dt) {
 template <class Space, class T, int Dim>
 bool can_persist(const State<Space, T, Dim>& s) {
   const bool summed = s.summed.soil && s.summed.boundary == s.soil_boundary && s.summed.rigids;
-  const bool pays = s.co_resident || s.patches.slots <= persistent::k_most_patches;
+  const bool pays = s.launch.co_resident || s.patches.slots <= persistent::k_most_patches;
   if constexpr (sums_fit<Space, T, Dim>)
     return pays && summed && can(StepWay::many_steps, features_of(s)) && persistent::has_room<true>(s);
   return false;
@@ -128,14 +128,15 @@ bool can_persist(const State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 int run_persistent_steps(State<Space, T, Dim>& s, double dt, long most) {
   if constexpr (sums_fit<Space, T, Dim>) {
-    const int steps =
-        is_device<Space> && s.co_resident ? static_cast<int>(std::min(most, persistent::k_most_steps)) : 1;
+    const int steps = is_device<Space> && s.launch.co_resident
+                          ? static_cast<int>(std::min(most, persistent::k_most_steps))
+                          : 1;
     persistent::prepare_sums(s);
     persistent::launch<true>(s, s.patches.slots, dt, steps);
     NodeSums<Space, T, Dim>& sums = s.nodes;
     for (int n = 0; n < steps % 3; ++n) {
-      std::swap(sums, s.next_sums);  // and what was read is zero one step later
-      std::swap(s.next_sums, s.last_sums);
+      std::swap(sums, s.launch.next_sums);  // and what was read is zero one step later
+      std::swap(s.launch.next_sums, s.launch.last_sums);
     }
     return steps;
   }
@@ -144,7 +145,7 @@ int run_persistent_steps(State<Space, T, Dim>& s, double dt, long most) {
 
 template <class Space, class T, int Dim>
 void resume_single_steps(State<Space, T, Dim>& s) {
-  s.co_resident = false;
+  s.launch.co_resident = false;
   s.summed = {};  // the host does not know whose turn the sums are
   const auto control = s.control;
   Kokkos::parallel_for(

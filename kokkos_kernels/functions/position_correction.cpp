@@ -215,7 +215,7 @@ struct reduction_identity<mpm::Added> {
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void compare_volumes(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill) {
+void compare_volumes(ContactCore<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill) {
   const double area = power(s.spacing, Dim - 1);
   Kokkos::parallel_for(
       "mpm::compare_volumes", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
@@ -224,7 +224,7 @@ void compare_volumes(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fi
 }
 
 template <class Space, class T, int Dim>
-void find_shifts(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill, double elapsed) {
+void find_shifts(ContactCore<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill, double elapsed) {
   ensure(s.scratch, 2 * sizeof(Vector<T, Dim>) * s.soil.points.count);
   Kokkos::parallel_for("mpm::find_shifts", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
                        FindShift<Space, T, Dim>{s.soil.points,
@@ -244,7 +244,7 @@ void find_shifts(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill, 
 }
 
 template <class Space, class T, int Dim>
-void apply_shifts(State<Space, T, Dim>& s) {
+void apply_shifts(ContactCore<Space, T, Dim>& s) {
   for (int b = 0; b < static_cast<int>(s.strays.lost.size()); ++b) {
     Added added;
     Kokkos::parallel_reduce("mpm::apply_shifts", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
@@ -262,10 +262,10 @@ void apply_shifts(State<Space, T, Dim>& s) {
   }
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                       \
-  template void compare_volumes(State<Space, T, Dim>&, const FillField<Space, T, Dim>&);     \
-  template void find_shifts(State<Space, T, Dim>&, const FillField<Space, T, Dim>&, double); \
-  template void apply_shifts(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                                             \
+  template void compare_volumes(ContactCore<Space, T, Dim>&, const FillField<Space, T, Dim>&);     \
+  template void find_shifts(ContactCore<Space, T, Dim>&, const FillField<Space, T, Dim>&, double); \
+  template void apply_shifts(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -9,7 +9,7 @@
 //   4. apply_shifts                               positions and velocities
 
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 
 namespace mpm {
 
@@ -19,13 +19,13 @@ using CorrectionVectors =
 
 /// Vector that each particle gives the nodes, by particle; in s.scratch.
 template <class Space, class T, int Dim>
-CorrectionVectors<Space, T, Dim> shares_of(const State<Space, T, Dim>& s) {
+CorrectionVectors<Space, T, Dim> shares_of(const ContactCore<Space, T, Dim>& s) {
   return CorrectionVectors<Space, T, Dim>(reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()),
                                           s.soil.points.count);
 }
 /// Shifts of the particles [cells], by particle; in s.scratch.
 template <class Space, class T, int Dim>
-CorrectionVectors<Space, T, Dim> shifts_of(const State<Space, T, Dim>& s) {
+CorrectionVectors<Space, T, Dim> shifts_of(const ContactCore<Space, T, Dim>& s) {
   const std::size_t count = s.soil.points.count;
   return CorrectionVectors<Space, T, Dim>(reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()) + count, count);
 }
@@ -45,7 +45,7 @@ using FillField = NodeField<Space, T, FillTerms<Dim>::size>;
 /// a^2/2. Neither lacks anything:
 ///   e_i = max(-k, f_i - 1 + a_i^2/2);   0 where f_i - a_i^2/2 is small
 template <class Space, class T, int Dim>
-void compare_volumes(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill);
+void compare_volumes(ContactCore<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill);
 
 /// The shift of each particle:
 ///   delta_p = -min(k_most_diffusion, rate gamma_p) sum_i e_i grad S_ip   [cells, 1/cell]
@@ -55,12 +55,12 @@ void compare_volumes(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fi
 /// particle. shares_of becomes m_p L_p delta_p [kg m/s], the momentum for the velocity of the new place.
 /// Makes room in s.scratch for both.
 template <class Space, class T, int Dim>
-void find_shifts(State<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill, double elapsed);
+void find_shifts(ContactCore<Space, T, Dim>& s, const FillField<Space, T, Dim>& fill, double elapsed);
 
 /// Moves the particles, and gives each the velocity of its new place to first order, less what keeps the
 /// momentum at the nodes: v_p += L_p delta_p - sum_i S_ip (sum_q S_iq m_q L_q delta_q) / m_i. Strays::lost
 /// counts the energy that this adds.
 template <class Space, class T, int Dim>
-void apply_shifts(State<Space, T, Dim>& s);
+void apply_shifts(ContactCore<Space, T, Dim>& s);
 
 }  // namespace mpm

@@ -134,7 +134,7 @@ void find_viscous_stress(State<Space, T, Dim>& s, const Rayleigh<Space, T, Dim>&
                                                      s.nodes.residual,
                                                      acting(s.sides),
                                                      s.control,
-                                                     T(1e-12) * T(s.mass_cut)});
+                                                     T(1e-12) * T(s.scheme.mass_cut)});
   Kokkos::parallel_for("mpm::viscous_stress", Kokkos::RangePolicy<Space>(s.space, 0, nodes),
                        ViscousStress<Space, T, Dim>{s.soil.points,
                                                     {s.grid, s.patches},
@@ -145,8 +145,8 @@ void find_viscous_stress(State<Space, T, Dim>& s, const Rayleigh<Space, T, Dim>&
                                                     by.stress,
                                                     by.shear_ratio,
                                                     by.stiffness,
-                                                    T(s.f_bar_fraction),
-                                                    s.f_bar_by_material});
+                                                    T(s.f_bar.fraction),
+                                                    s.f_bar.by_material});
 }
 
 template <class Space, class T, int Dim>
@@ -190,7 +190,7 @@ void add_rayleigh_work(State<Space, T, Dim>& s, const Rayleigh<Space, T, Dim>& b
   const auto owned = s.owned_nodes;
   const auto force = by.force;
   const auto control = s.control;
-  const double mass_cut = s.mass_cut, half_step = s.kick * dt / 2;
+  const double mass_cut = s.scheme.mass_cut, half_step = s.scheme.kick * dt / 2;
   const auto of_step = by.work;
   Kokkos::parallel_reduce(
       "mpm::rayleigh_work", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),

@@ -6,7 +6,7 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void split_patches(State<Space, T, Dim>& s, const Space& stream) {
+void split_patches(Core<Space, T, Dim>& s, const Space& stream) {
   const auto& bins = s.soil.bins;
   const int end = bins.last_active;
   const bool has_border = s.plan.form == StepForm::overlapped && bins.border > 0 && bins.border < end;
@@ -33,7 +33,7 @@ void split_patches(State<Space, T, Dim>& s, const Space& stream) {
   split_part(has_border ? bins.border : 0, end);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template void split_patches(State<Space, T, Dim>&, const Space&);
+#define MPM_INSTANTIATE(Space, T, Dim) template void split_patches(Core<Space, T, Dim>&, const Space&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -2,9 +2,16 @@
 // The functions of a time step, except the interpolation to nodes; each is one function of the paper.
 
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/floors.hpp"
+#include "data/nodes.hpp"
+#include "data/particles.hpp"
+#include "data/step_plan.hpp"
 
 namespace mpm {
+
+template <class Space, class T, int Dim>
+struct TimedLoads;
+struct LoadClock;
 
 /// The plan of the steps until the next rebuild, on one rank; several ranks may overlap theirs. After lists
 /// are made.
@@ -13,12 +20,12 @@ StepPlan plan_step(const State<Space, T, Dim>& s);
 
 /// 1. Sets the nodal sums to zero, where they have to be.
 template <class Space, class T, int Dim>
-void reset_nodes(State<Space, T, Dim>& s);
+void reset_nodes(ContactCore<Space, T, Dim>& s);
 
 /// Part of 3, of submerged soil: adds to the force at each node what the water weighs that the soil displaces
 /// there (s.nodes.displaced), against gravity.
 template <class Space, class T, int Dim>
-void add_buoyancy(State<Space, T, Dim>& s);
+void add_buoyancy(Core<Space, T, Dim>& s);
 
 /// 4. Nodal velocities and accelerations, boundary conditions, contact (Eqs (6), (8)-(10)). Leaves the
 /// contact forces in s.contact.forces. Where the plan has sums_ahead and not writes_sums, it leaves the nodal
@@ -32,7 +39,7 @@ void update_nodes(State<Space, T, Dim>& s, double dt) {
 }
 /// Brings to the nodes the sums that update_particles has left in windows for update_nodes.
 template <class Space, class T, int Dim>
-void finish_sums(State<Space, T, Dim>& s);
+void finish_sums(ContactCore<Space, T, Dim>& s);
 /// Persistent steps, which the program has for GPUs alone (persistent_launch.hpp).
 /// Whether one launch has room for function 5 with function 3 of the next step, function 6, and function 2 of
 /// the next step.
@@ -59,44 +66,46 @@ void resume_single_steps(State<Space, T, Dim>& s);
 /// the furthest movement of a particle in s.control. Where sums_ahead, adds the soil as it then is to the
 /// nodes. dt [s]. aside: the stream of the patches that are not common, where State::split lists them.
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt, const Space& aside);
+void update_particles(ContactCore<Space, T, Dim>& s, double dt, const Space& aside);
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt) {
+void update_particles(ContactCore<Space, T, Dim>& s, double dt) {
   update_particles(s, dt, s.space);
 }
 /// update_particles for some of the slots, where sums_ahead.
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside);
+void update_particles(ContactCore<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside);
 
 /// Forces of the soil on the rigids in this step, from s.contact.forces to s.rigid_force [N]; else
 /// move_rigids does it.
 template <class Space, class T, int Dim>
-void sum_forces(State<Space, T, Dim>& s, const Space& stream);
+void sum_forces(ContactCore<Space, T, Dim>& s, const Space& stream);
 
-/// 6. Moves the rigid bodies (Eq. 7), counts the step, and adds what any point can have moved to the bound.
-/// dt [s].
+/// 6. Moves the rigid bodies (Eq. 7), counts the step, sets what follows tables in time for the next, and
+/// adds what any point can have moved to the bound. dt [s].
 template <class Space, class T, int Dim>
-void move_rigids(State<Space, T, Dim>& s, double dt, const Space& stream);
+void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed, double dt,
+                 const Space& stream);
 template <class Space, class T, int Dim>
 void move_rigids(State<Space, T, Dim>& s, double dt) {
-  move_rigids(s, dt, s.space);
+  move_rigids(s, s.timed, dt, s.space);
 }
 
 /// Sets what follows tables in time for the next step, which is the first of the clock. move_rigids sets it
 /// for the steps after.
 template <class Space, class T, int Dim>
-void begin_loads(State<Space, T, Dim>& s, const LoadClock& clock);
+void begin_loads(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& loads,
+                 const LoadClock& clock);
 
 /// Coordinates of the rigids' points, where their mass gives a normal, from where the rigids are.
 template <class Space, class T, int Dim>
-void move_rigid_points(State<Space, T, Dim>& s, const Space& stream);
+void move_rigid_points(ContactCore<Space, T, Dim>& s, const Space& stream);
 
 /// Copy of the control block on the host. Waits for the steps before it.
 template <class Space, class T, int Dim>
-Control read_control(const State<Space, T, Dim>& s);
+Control read_control(const Core<Space, T, Dim>& s);
 
 /// Sets the count of steps since the last read_control to zero.
 template <class Space, class T, int Dim>
-void restart_count(State<Space, T, Dim>& s);
+void restart_count(const Core<Space, T, Dim>& s);
 
 }  // namespace mpm

@@ -12,19 +12,19 @@ template <class T>
 inline constexpr T k_thin = sizeof(T) == sizeof(double) ? T(1e-12) : T(1e-6);
 
 /// Cells by which a face may reach beyond a row of nodes and still act at that row: the nodes beyond may have
-/// less than State::mass_cut, where no force acts.
+/// less than TimeScheme::mass_cut, where no force acts.
 template <class T>
 inline constexpr T k_at_row = sizeof(T) == sizeof(double) ? T(1e-6) : T(1e-5);
 
-/// Particles that the loads of a State act on.
+/// Particles that loads act on.
 template <class Space, class T, int Dim>
 struct LoadedParticles {
   Soil<Space, T, Dim> soil;
   decltype(SurfaceLoads<Space, T, Dim>::loaded) loaded;
   decltype(Strays<Space>::alone) alone;
 
-  explicit LoadedParticles(const State<Space, T, Dim>& s)
-      : soil(s.soil.points), loaded(s.loads.loaded), alone(s.strays.alone) {}
+  LoadedParticles(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads)
+      : soil(s.soil.points), loaded(loads.loaded), alone(s.strays.alone) {}
   /// Number of the load of face k of particle p; -1 where there is none.
   KOKKOS_INLINE_FUNCTION int load_of(int p, int k) const {
     return static_cast<int>(soil.faces[k](p)[FaceTerms<Dim>::load]) - 1;
@@ -196,14 +196,15 @@ struct FollowSurfaces {
 
 /// Work of the loads of this rank at the nodes, with the mean of a node's velocity before and after the step.
 template <class Space, class T, int Dim>
-void add_load_work(State<Space, T, Dim>& s, double dt) {
+void add_load_work(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads,
+                   const EnergyWorks<Space, T, Dim>& energy, double dt) {
   using S = SoilTerms<Dim>;
   const auto control = s.control;
   const auto load = s.nodes.load;
   const auto soil = s.nodes.soil;
   const auto kinematics = s.nodes.kinematics;
-  const double mass_cut = s.mass_cut;
-  const auto of_step = s.loads.of_step;
+  const double mass_cut = s.scheme.mass_cut;
+  const auto of_step = loads.of_step;
   Kokkos::parallel_reduce(
       "mpm::load_work", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
       KOKKOS_LAMBDA(int i, double& sum) {
@@ -215,9 +216,9 @@ void add_load_work(State<Space, T, Dim>& s, double dt) {
         }
       },
       Kokkos::Sum<double, typename Space::memory_space>(of_step));
-  const auto work = s.loads.work;
-  const bool balance = s.energy.on;
-  const auto works = s.energy.work;
+  const auto work = loads.work;
+  const bool balance = energy.on;
+  const auto works = energy.work;
   Kokkos::parallel_for(
       "mpm::add_load_work", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
         work() += of_step();
@@ -248,13 +249,12 @@ struct reduction_identity<mpm::AddedSurface> {
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void list_loaded(State<Space, T, Dim>& s) {
-  auto& loads = s.loads;
+void list_loaded(const Core<Space, T, Dim>& s, SurfaceLoads<Space, T, Dim>& loads) {
   const int slots = s.patches.slots;
   ensure(loads.loaded, slots);
   const auto loaded = loads.loaded;
   const auto begin = s.soil.bins.begin;
-  const LoadedParticles<Space, T, Dim> particles(s);
+  const LoadedParticles<Space, T, Dim> particles(s, loads);
   Kokkos::parallel_for(
       "mpm::mark_loaded", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
         constexpr int cells = Patch<Dim>::cells;
@@ -280,17 +280,18 @@ void list_loaded(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-LoadSource<Space, T, Dim> place_faces(const State<Space, T, Dim>& s, int axis) {
+LoadSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads,
+                                      int axis) {
   Kokkos::parallel_for("mpm::place_faces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
-                       PlaceFaces<Space, T, Dim>{LoadedParticles<Space, T, Dim>(s), s.loads, axis});
-  LoadSource<Space, T, Dim> source{s.soil.points, s.loads.force, s.loads.loaded};
-  source.points.coordinate = s.loads.coordinate, source.points.half_length = s.loads.half_length;
+                       PlaceFaces<Space, T, Dim>{LoadedParticles<Space, T, Dim>(s, loads), loads, axis});
+  LoadSource<Space, T, Dim> source{s.soil.points, loads.force, loads.loaded, loads.windows};
+  source.points.coordinate = loads.coordinate, source.points.half_length = loads.half_length;
   source.points.has_domain = true;
   return source;
 }
 
 template <class Space, class T, int Dim>
-void add_loads(State<Space, T, Dim>& s) {
+void add_loads(const Core<Space, T, Dim>& s) {
   const auto soil = s.nodes.soil;
   const auto load = s.nodes.load;
   const auto control = s.control;
@@ -303,20 +304,23 @@ void add_loads(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void follow_surfaces(State<Space, T, Dim>& s, double dt) {
-  add_load_work(s, dt);
-  Kokkos::parallel_for(
-      "mpm::follow_surfaces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
-      FollowSurfaces<Space, T, Dim>{
-          LoadedParticles<Space, T, Dim>(s), {s.grid, s.patches}, s.nodes.kinematics, s.control, dt / 2});
+void follow_surfaces(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads,
+                     const EnergyWorks<Space, T, Dim>& energy, double dt) {
+  add_load_work(s, loads, energy, dt);
+  Kokkos::parallel_for("mpm::follow_surfaces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
+                       FollowSurfaces<Space, T, Dim>{LoadedParticles<Space, T, Dim>(s, loads),
+                                                     {s.grid, s.patches},
+                                                     s.nodes.kinematics,
+                                                     s.control,
+                                                     dt / 2});
 }
 
 template <class Space, class T, int Dim>
-std::vector<SurfaceSum> sum_surfaces(const State<Space, T, Dim>& s) {
+std::vector<SurfaceSum> sum_surfaces(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads) {
   using F = FaceTerms<Dim>;
   std::vector<SurfaceSum> sums;
-  const LoadedParticles<Space, T, Dim> particles(s);
-  for (int n = 0; n < static_cast<int>(s.loads.now.extent(0)); ++n) {
+  const LoadedParticles<Space, T, Dim> particles(s, loads);
+  for (int n = 0; n < static_cast<int>(loads.now.extent(0)); ++n) {
     AddedSurface sum;
     Kokkos::parallel_reduce(
         "mpm::sum_surfaces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
@@ -340,12 +344,15 @@ std::vector<SurfaceSum> sum_surfaces(const State<Space, T, Dim>& s) {
   return sums;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                              \
-  template void list_loaded(State<Space, T, Dim>&);                                 \
-  template LoadSource<Space, T, Dim> place_faces(const State<Space, T, Dim>&, int); \
-  template void add_loads(State<Space, T, Dim>&);                                   \
-  template void follow_surfaces(State<Space, T, Dim>&, double);                     \
-  template std::vector<SurfaceSum> sum_surfaces(const State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                                          \
+  template void list_loaded(const Core<Space, T, Dim>&, SurfaceLoads<Space, T, Dim>&);          \
+  template LoadSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>&,                    \
+                                                 const SurfaceLoads<Space, T, Dim>&, int);      \
+  template void add_loads(const Core<Space, T, Dim>&);                                          \
+  template void follow_surfaces(const Core<Space, T, Dim>&, const SurfaceLoads<Space, T, Dim>&, \
+                                const EnergyWorks<Space, T, Dim>&, double);                     \
+  template std::vector<SurfaceSum> sum_surfaces(const Core<Space, T, Dim>&,                     \
+                                                const SurfaceLoads<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -3,28 +3,32 @@
 
 #include <vector>
 
-#include "data/state.hpp"
+#include "data/core.hpp"
+#include "data/energy_works.hpp"
+#include "data/surface_loads.hpp"
 #include "physics/p2g_terms.hpp"
 
 namespace mpm {
 
 /// After lists were made: which slots hold particles with loads.
 template <class Space, class T, int Dim>
-void list_loaded(State<Space, T, Dim>& s);
+void list_loaded(const Core<Space, T, Dim>& s, SurfaceLoads<Space, T, Dim>& loads);
 
 /// The source of the forces on faces that lie along an axis, of particles in the slots with loads. It takes
-/// their places from s.loads, where this puts them.
+/// their places from `loads`, where this puts them, and is summed in the windows of the loads.
 template <class Space, class T, int Dim>
-LoadSource<Space, T, Dim> place_faces(const State<Space, T, Dim>& s, int axis);
+LoadSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads,
+                                      int axis);
 
 /// Adds s.nodes.load to the forces at the nodes.
 template <class Space, class T, int Dim>
-void add_loads(State<Space, T, Dim>& s);
+void add_loads(const Core<Space, T, Dim>& s);
 
 /// Behind function 4, before particles move: the work of the loads in the step, and the areas of the faces
-/// after it. dt [s].
+/// after it. energy: takes the work out of that of the internal forces, if it is in use. dt [s].
 template <class Space, class T, int Dim>
-void follow_surfaces(State<Space, T, Dim>& s, double dt);
+void follow_surfaces(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads,
+                     const EnergyWorks<Space, T, Dim>& energy, double dt);
 
 /// The surface of a load as it is now, on this rank: sums over its particles that are not alone.
 struct SurfaceSum {
@@ -33,6 +37,6 @@ struct SurfaceSum {
   double start_area = 0;  // m2, at the start of the run, of the particles that are here
 };
 template <class Space, class T, int Dim>
-std::vector<SurfaceSum> sum_surfaces(const State<Space, T, Dim>& s);
+std::vector<SurfaceSum> sum_surfaces(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads);
 
 }  // namespace mpm

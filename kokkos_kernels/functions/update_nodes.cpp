@@ -4,9 +4,9 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void reset_nodes(State<Space, T, Dim>& s) {
+void reset_nodes(ContactCore<Space, T, Dim>& s) {
   using Team = Kokkos::TeamPolicy<Space>;
-  s.summed = {}, s.next_zero = false;
+  s.summed = {}, s.launch.next_zero = false;
   if (s.plan.writes_sums) return;
   const auto nodes = s.nodes;
   const auto control = s.control;
@@ -74,14 +74,14 @@ template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt, const Space& stream) {
   if (s.sides.has_columns()) advance_columns(s, dt);
   if constexpr (is_device<Space>)
-    s.sides.in_use() || s.damping > 0 ? update_nodes_by_teams<true>(s, dt, stream)
-                                      : update_nodes_by_teams<false>(s, dt, stream);
+    s.sides.in_use() || s.scheme.damping > 0 ? update_nodes_by_teams<true>(s, dt, stream)
+                                             : update_nodes_by_teams<false>(s, dt, stream);
   else
     update_nodes_on_host(s, dt);
 }
 
 template <class Space, class T, int Dim>
-void finish_sums(State<Space, T, Dim>& s) {
+void finish_sums(ContactCore<Space, T, Dim>& s) {
   if constexpr (!is_device<Space>) {
     if (s.summed.in_windows) give_nodes_on_host(s);
   }
@@ -89,9 +89,9 @@ void finish_sums(State<Space, T, Dim>& s) {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                     \
-  template void reset_nodes(State<Space, T, Dim>&);                        \
+  template void reset_nodes(ContactCore<Space, T, Dim>&);                  \
   template void update_nodes(State<Space, T, Dim>&, double, const Space&); \
-  template void finish_sums(State<Space, T, Dim>&);
+  template void finish_sums(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -8,7 +8,8 @@ template <class Space>
 using Slots = Kokkos::View<int*, typename Space::memory_space>;
 
 template <bool Sums, PatchKind kind, class Laws, ParticleDomain domain, class Space, class T, int Dim>
-void launch_for(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
+void launch_for(ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
+                const Part<Space>& part) {
   using Update = UpdateParticles<Space, T, Dim, Sums, kind, Laws, domain>;
   const int teams = part.last - part.first;
   if (teams == 0) return;
@@ -19,14 +20,14 @@ void launch_for(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, c
 }
 /// Launches the kernel of the one law that all soil has, if it has one of its own.
 template <bool Sums, PatchKind kind, template <class> class... Models, class Space, class T, int Dim>
-bool launch_heavy(ModelList<Models...>, State<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
+bool launch_heavy(ModelList<Models...>, ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
                   const Part<Space>& part) {
   return ((s.law == model_index_in<Models>(Materials{}) &&
            (launch_for<Sums, kind, ModelList<Models>, ParticleDomain::fixed>(s, dt, slots, part), true)) ||
           ...);
 }
 template <bool Sums, PatchKind kind, class Space, class T, int Dim>
-void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
+void launch(ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
   with_domain(s.soil.points, [&](auto domain) {
     // Rings have one kernel, for all patches and laws.
     if constexpr (domain() == ParticleDomain::ring) {
@@ -45,7 +46,7 @@ void launch(State<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const
 /// The patches that are not common are few and take longer each. They are launched first, on a stream of
 /// their own, so that common patches fill the device beside them.
 template <bool Sums, class Space, class T, int Dim>
-void update_on_device(State<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside) {
+void update_on_device(ContactCore<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside) {
   if (!s.split.holds(part))
     return launch<Sums, PatchKind::any>(s, dt, Slots<Space>(s.soil.bins.active_slots), part);
   for (const auto& of : s.split.parts) {
@@ -58,7 +59,7 @@ void update_on_device(State<Space, T, Dim>& s, double dt, const Part<Space>& par
 }  // namespace
 
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const Part<Space>& part,
+void update_particles(ContactCore<Space, T, Dim>& s, double dt, [[maybe_unused]] const Part<Space>& part,
                       [[maybe_unused]] const Space& aside) {
   const bool sums = s.plan.sums_ahead;
   s.summed = {sums, sums && s.soil_boundary, false, sums && s.plan.writes_sums};
@@ -72,13 +73,13 @@ void update_particles(State<Space, T, Dim>& s, double dt, [[maybe_unused]] const
 }
 
 template <class Space, class T, int Dim>
-void update_particles(State<Space, T, Dim>& s, double dt, const Space& aside) {
+void update_particles(ContactCore<Space, T, Dim>& s, double dt, const Space& aside) {
   update_particles(s, dt, Part<Space>{s.space, 0, s.soil.bins.last_active}, aside);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                         \
-  template void update_particles(State<Space, T, Dim>&, double, const Space&); \
-  template void update_particles(State<Space, T, Dim>&, double, const Part<Space>&, const Space&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                               \
+  template void update_particles(ContactCore<Space, T, Dim>&, double, const Space&); \
+  template void update_particles(ContactCore<Space, T, Dim>&, double, const Part<Space>&, const Space&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

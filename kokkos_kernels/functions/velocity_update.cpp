@@ -7,7 +7,7 @@ namespace mpm {
 namespace {
 
 template <ParticleDomain domain, class Space, class T, int Dim>
-void xpic_pass_for(State<Space, T, Dim>& s, int pass) {
+void xpic_pass_for(ContactCore<Space, T, Dim>& s, int pass) {
   using S = SoilTerms<Dim>;
   const auto soil = s.soil.points;
   const NodePlaces places(s.grid, s.patches);
@@ -15,8 +15,8 @@ void xpic_pass_for(State<Space, T, Dim>& s, int pass) {
   const auto again = s.nodes.residual;
   const auto residual = residual_of(s);
   const auto control = s.control;
-  const bool first = pass == 0, last = pass == s.xpic_order - 1;
-  const T xpic = T(1 - s.flip_fraction);
+  const bool first = pass == 0, last = pass == s.scheme.xpic_order - 1;
+  const T xpic = T(1 - s.scheme.flip_fraction);
   Kokkos::parallel_for(
       "mpm::xpic_pass", light(Kokkos::RangePolicy<Space>(s.space, 0, soil.count)), KOKKOS_LAMBDA(int p) {
         if (control().paused) return;
@@ -38,7 +38,7 @@ void xpic_pass_for(State<Space, T, Dim>& s, int pass) {
 }
 
 template <ParticleDomain domain, class Space, class T, int Dim>
-void take_affine_for(State<Space, T, Dim>& s) {
+void take_affine_for(ContactCore<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
   const NodePlaces places(s.grid, s.patches);
   const auto kinematics = s.nodes.kinematics;
@@ -68,18 +68,18 @@ void take_affine_for(State<Space, T, Dim>& s) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void xpic_pass(State<Space, T, Dim>& s, int pass) {
+void xpic_pass(ContactCore<Space, T, Dim>& s, int pass) {
   with_domain(s.soil.points, [&](auto domain) { xpic_pass_for<domain()>(s, pass); });
 }
 
 template <class Space, class T, int Dim>
-void take_affine(State<Space, T, Dim>& s) {
+void take_affine(ContactCore<Space, T, Dim>& s) {
   with_domain(s.soil.points, [&](auto domain) { take_affine_for<domain()>(s); });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                 \
-  template void xpic_pass(State<Space, T, Dim>&, int); \
-  template void take_affine(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                       \
+  template void xpic_pass(ContactCore<Space, T, Dim>&, int); \
+  template void take_affine(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -3,13 +3,13 @@
 // and PIC need neither.
 
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 
 namespace mpm {
 
 /// Residual r_p of the particles' velocities after the passes of XPIC so far [m/s]; in s.scratch.
 template <class Space, class T, int Dim>
-auto residual_of(const State<Space, T, Dim>& s) {
+auto residual_of(const ContactCore<Space, T, Dim>& s) {
   return Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged>(
       reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()), s.soil.points.count);
 }
@@ -18,11 +18,11 @@ auto residual_of(const State<Space, T, Dim>& s) {
 /// where r_i is the rest as the nodes see it: of the first pass v_i of Eq. (6), then s.nodes.rest over the
 /// mass. The last pass takes the residual, (I - S S+)^m v_p, out of v_p, except the fraction of FLIP.
 template <class Space, class T, int Dim>
-void xpic_pass(State<Space, T, Dim>& s, int pass);
+void xpic_pass(ContactCore<Space, T, Dim>& s, int pass);
 
 /// C_p of APIC (Jiang et al. 2015) from the velocities at the end of the step: C_p = B_p D_p^-1 with
 /// B_p = sum S v_i (x_i - x_p)^T and D_p = sum S (x_i - x_p)(x_i - x_p)^T.
 template <class Space, class T, int Dim>
-void take_affine(State<Space, T, Dim>& s);
+void take_affine(ContactCore<Space, T, Dim>& s);
 
 }  // namespace mpm

@@ -147,7 +147,7 @@ struct PressOnWalls {
 }  // namespace
 
 template <class Space, class T, int Dim>
-WallForces wall_forces(const State<Space, T, Dim>& s) {
+WallForces wall_forces(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads) {
   ForceSum<Dim> sum;
   with_domain(s.soil.points, [&](auto domain) {
     PressOnWalls<Space, T, Dim, domain()> press{
@@ -159,10 +159,10 @@ WallForces wall_forces(const State<Space, T, Dim>& s) {
     Kokkos::parallel_reduce("mpm::wall_forces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
                             press, Kokkos::Sum<ForceSum<Dim>>(sum));
   });
-  for (int axis = 0; axis < Dim && s.loads.in_use(); ++axis) {
+  for (int axis = 0; axis < Dim && loads.in_use(); ++axis) {
     ForceSum<Dim> of_loads;
     Kokkos::parallel_reduce("mpm::wall_loads", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
-                            PressLoads<Space, T, Dim>{place_faces(s, axis), {{s.grid, s.patches}}},
+                            PressLoads<Space, T, Dim>{place_faces(s, loads, axis), {{s.grid, s.patches}}},
                             Kokkos::Sum<ForceSum<Dim>>(of_loads));
     sum += of_loads;
   }
@@ -173,7 +173,8 @@ WallForces wall_forces(const State<Space, T, Dim>& s) {
   return forces;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template WallForces wall_forces(const State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim) \
+  template WallForces wall_forces(const Core<Space, T, Dim>&, const SurfaceLoads<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

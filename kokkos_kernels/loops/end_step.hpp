@@ -3,7 +3,8 @@
 // step is counted, and what any point can have moved is added to the bound. A team does it.
 
 #include "base/serial_team.hpp"
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
+#include "data/timed_loads.hpp"
 #include "device/warp.hpp"
 #include "physics/rigid_motion.hpp"
 
@@ -51,17 +52,17 @@ struct EndStep {
   int count, slots, late;  // rigids, slots that leave forces
   bool summed;             // the forces are in `sums` already
 
-  EndStep(const State<Space, T, Dim>& s, double step)
+  EndStep(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& loads, double step)
       : control(s.control),
         movements(s.movements),
         sums(s.rigid_force),
         forces(s.contact.forces),
         rigids(s.rigids),
-        timed(s.timed.of_step()),
+        timed(loads.of_step()),
         dt(step),
         spacing(s.spacing),
         margin(s.p2g.margin),
-        damping(s.damping),
+        damping(s.scheme.damping),
         count(static_cast<int>(s.rigid_points.size())),
         slots(s.contact.count),
         late(s.rebuild_late),

@@ -60,7 +60,7 @@ struct UpdateScalars {
   T least_volume, most_volume;  // m3
   bool volume_is_fault;         // one that is at a bound
   Clock clock{};
-  bool f_bar_by_material = false;  // State::f_bar_by_material
+  bool f_bar_by_material = false;  // FBar::by_material
 };
 
 /// Values of a particle that a step changes.

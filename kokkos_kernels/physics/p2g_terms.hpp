@@ -305,6 +305,7 @@ struct LoadSource {
   Soil<Space, T, Dim> points;
   Kokkos::View<Vector<T, Dim>*, typename Space::memory_space> force;  // N
   Kokkos::View<int*, typename Space::memory_space> loaded;            // by slot
+  Windows<Space> windows;                                             // of the slots with loads
 
   KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return loaded(slot) == 0; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {

@@ -19,7 +19,7 @@ void copy_part(const Space& space, const View& to, const View& from, int first, 
 
 /// Copies a batch to the device; returns bytes.
 template <class Space, class T, int Dim>
-double copy_in(const Space& space, const State<Space, T, Dim>& s, const SoilBatch<Space, T, Dim>& batch) {
+double copy_in(const Space& space, const Core<Space, T, Dim>& s, const SoilBatch<Space, T, Dim>& batch) {
   double bytes = 0;
   for_each_of_step(s.soil.points, batch.set.points, [&](const auto& home, const auto& there, Use) {
     copy_part(space, there, home, batch.first, batch.last, bytes);
@@ -28,7 +28,7 @@ double copy_in(const Space& space, const State<Space, T, Dim>& s, const SoilBatc
 }
 /// Copies the fields that a step changes back to the host; returns their bytes.
 template <class Space, class T, int Dim>
-double copy_out(const Space& space, const State<Space, T, Dim>& s, const SoilBatch<Space, T, Dim>& batch) {
+double copy_out(const Space& space, const Core<Space, T, Dim>& s, const SoilBatch<Space, T, Dim>& batch) {
   double bytes = 0;
   for_each_of_step(s.soil.points, batch.set.points, [&](const auto& home, const auto& there, Use use) {
     if (use == Use::changes) copy_part(space, home, there, batch.first, batch.last, bytes);
@@ -38,7 +38,7 @@ double copy_out(const Space& space, const State<Space, T, Dim>& s, const SoilBat
 
 /// The batch that s.soil now is, to the nodes.
 template <class Space, class T, int Dim>
-void sum_batch(const State<Space, T, Dim>& s) {
+void sum_batch(const ContactCore<Space, T, Dim>& s) {
   with_domain(s.soil.points, [&](auto domain) {
     using Source = SoilSource<Space, T, Dim, domain()>;
     const Source source{s.soil.points, s.grid.inv_spacing};
@@ -49,7 +49,7 @@ void sum_batch(const State<Space, T, Dim>& s) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void update_by_batches(State<Space, T, Dim>& s, double dt) {
+void update_by_batches(ContactCore<Space, T, Dim>& s, double dt) {
   auto& b = s.batches;
   if (read_control(s).paused) return;  // this also waits for the nodes
   BatchCost& cost = b.cost;
@@ -94,16 +94,16 @@ void update_by_batches(State<Space, T, Dim>& s, double dt) {
 }
 
 template <class Space, class T, int Dim>
-void collect_soil(const State<Space, T, Dim>& s) {
+void collect_soil(const Core<Space, T, Dim>& s) {
   if (!s.batches.loaded) return;
   for (const auto& batch : s.batches.all)
     if (batch.stays) copy_out(s.space, s, batch);
   s.space.fence("mpm::collect_soil");
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                            \
-  template void update_by_batches(State<Space, T, Dim>&, double); \
-  template void collect_soil(const State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                  \
+  template void update_by_batches(ContactCore<Space, T, Dim>&, double); \
+  template void collect_soil(const Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

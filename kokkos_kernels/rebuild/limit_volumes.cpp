@@ -5,7 +5,7 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void limit_volumes(State<Space, T, Dim>& s) {
+void limit_volumes(Core<Space, T, Dim>& s) {
   const auto start_volume = s.strays.start_volume;
   if (start_volume.extent(0) == 0) return;
   collect_soil(s);
@@ -31,7 +31,7 @@ void limit_volumes(State<Space, T, Dim>& s) {
       });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template void limit_volumes(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim) template void limit_volumes(Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

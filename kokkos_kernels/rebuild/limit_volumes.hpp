@@ -3,7 +3,7 @@
 // and the largest particle of the run. Parts of cells and split particles are smaller: within the bounds of a
 // step such a particle could grow to many times its volume, and its stress would throw it about.
 
-#include "data/state.hpp"
+#include "data/core.hpp"
 #include "physics/gap_room.hpp"
 #include "physics/ring_domain.hpp"
 
@@ -40,6 +40,6 @@ KOKKOS_INLINE_FUNCTION bool is_volume_at_bound(const VolumeBounds<T>& of_all, co
 /// Brings volumes within own_volume_bounds() at a rebuild, before locate(); does nothing where
 /// Strays::start_volume is not in use. With StrayRule::stop a volume that was beyond them is a fault.
 template <class Space, class T, int Dim>
-void limit_volumes(State<Space, T, Dim>& s);
+void limit_volumes(Core<Space, T, Dim>& s);
 
 }  // namespace mpm

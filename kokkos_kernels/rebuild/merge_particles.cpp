@@ -172,7 +172,7 @@ struct MergeInCell {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void merge_particles(State<Space, T, Dim>& s) {
+void merge_particles(Core<Space, T, Dim>& s) {
   const int cells = s.patches.slots * Patch<Dim>::cells;
   for (int b = 0; b < static_cast<int>(s.strays.lost.size()); ++b) {
     const MergeInCell<Space, T, Dim> merge{
@@ -184,7 +184,7 @@ void merge_particles(State<Space, T, Dim>& s) {
   }
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template void merge_particles(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim) template void merge_particles(Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

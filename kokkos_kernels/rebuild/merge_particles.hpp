@@ -3,7 +3,7 @@
 // split, is pressed together again, two particles become one. Between two steps, after locate() and before
 // particles are split and sorted.
 
-#include "data/state.hpp"
+#include "data/core.hpp"
 
 namespace mpm {
 
@@ -15,6 +15,6 @@ namespace mpm {
 /// so that the sort leaves it out. Strays::lost counts both, and the kinetic energy of the motion of one
 /// against the other, which is gone.
 template <class Space, class T, int Dim>
-void merge_particles(State<Space, T, Dim>& s);
+void merge_particles(Core<Space, T, Dim>& s);
 
 }  // namespace mpm

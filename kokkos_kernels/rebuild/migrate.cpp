@@ -10,7 +10,7 @@ namespace {
 
 /// Calls f(view, place in the record) for every view that a particle's record is made of.
 template <class Space, class T, int Dim, class F>
-std::size_t for_each_part(const State<Space, T, Dim>& s, F&& f) {
+std::size_t for_each_part(const Core<Space, T, Dim>& s, F&& f) {
   std::size_t size = 0;
   const auto part = [&](const auto& view) {
     using Value = std::remove_reference_t<decltype(view.data()[0])>;
@@ -31,7 +31,7 @@ using Unmanaged = Kokkos::View<Value*, typename Space::memory_space, Kokkos::Mem
 /// Room for n values and `more` bytes in the scratch memory of sorting, which keeps its size: to ask a device
 /// for memory and give it back takes longer than all else that is done here.
 template <class Value, class Space, class T, int Dim>
-Unmanaged<Value, Space> scratch_of(State<Space, T, Dim>& s, std::size_t n, std::size_t more = 0) {
+Unmanaged<Value, Space> scratch_of(Core<Space, T, Dim>& s, std::size_t n, std::size_t more = 0) {
   ensure(s.scratch, n * sizeof(Value) + more);
   return Unmanaged<Value, Space>(reinterpret_cast<Value*>(s.scratch.data()), n);
 }
@@ -68,12 +68,12 @@ void grow(View& view, int n, int kept) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-std::size_t record_size(const State<Space, T, Dim>& s) {
+std::size_t record_size(const Core<Space, T, Dim>& s) {
   return for_each_part(s, [](const auto&, std::size_t) {});
 }
 
 template <class Space, class T, int Dim>
-std::vector<Leaver> find_leavers(State<Space, T, Dim>& s,
+std::vector<Leaver> find_leavers(Core<Space, T, Dim>& s,
                                  const Kokkos::View<int*, typename Space::memory_space>& owner, int own) {
   using Range = Kokkos::RangePolicy<Space>;
   const auto address = s.soil.address;
@@ -100,7 +100,7 @@ std::vector<Leaver> find_leavers(State<Space, T, Dim>& s,
 }
 
 template <class Space, class T, int Dim>
-std::vector<char> take_particles(State<Space, T, Dim>& s, const std::vector<int>& particles) {
+std::vector<char> take_particles(Core<Space, T, Dim>& s, const std::vector<int>& particles) {
   const int count = static_cast<int>(particles.size());
   if (count == 0) return {};
   const std::size_t size = record_size(s);  // a multiple of any alignment
@@ -119,7 +119,7 @@ std::vector<char> take_particles(State<Space, T, Dim>& s, const std::vector<int>
 }
 
 template <class Space, class T, int Dim>
-void add_particles(State<Space, T, Dim>& s, const std::vector<char>& records) {
+void add_particles(Core<Space, T, Dim>& s, const std::vector<char>& records) {
   const std::size_t size = record_size(s);
   const int count = static_cast<int>(records.size() / size);
   if (count == 0) return;
@@ -136,7 +136,7 @@ void add_particles(State<Space, T, Dim>& s, const std::vector<char>& records) {
 }
 
 template <class Space, class T, int Dim>
-void reserve_particles(State<Space, T, Dim>& s, int n) {
+void reserve_particles(Core<Space, T, Dim>& s, int n) {
   auto& points = s.soil.points;
   const int kept = points.all;
   s.space.fence("mpm::reserve_particles");
@@ -145,7 +145,7 @@ void reserve_particles(State<Space, T, Dim>& s, int n) {
 }
 
 template <class Space, class T, int Dim>
-std::vector<int> count_by_patch(const State<Space, T, Dim>& s) {
+std::vector<int> count_by_patch(const Core<Space, T, Dim>& s) {
   const long patches = s.grid.patches_of_field();
   const Kokkos::View<int*, typename Space::memory_space> counts("mpm::count_by_patch", patches);
   const auto address = s.soil.address;
@@ -159,13 +159,13 @@ std::vector<int> count_by_patch(const State<Space, T, Dim>& s) {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                                     \
-  template std::size_t record_size(const State<Space, T, Dim>&);                                           \
-  template std::vector<Leaver> find_leavers(State<Space, T, Dim>&,                                         \
+  template std::size_t record_size(const Core<Space, T, Dim>&);                                            \
+  template std::vector<Leaver> find_leavers(Core<Space, T, Dim>&,                                          \
                                             const Kokkos::View<int*, typename Space::memory_space>&, int); \
-  template std::vector<char> take_particles(State<Space, T, Dim>&, const std::vector<int>&);               \
-  template void add_particles(State<Space, T, Dim>&, const std::vector<char>&);                            \
-  template void reserve_particles(State<Space, T, Dim>&, int);                                             \
-  template std::vector<int> count_by_patch(const State<Space, T, Dim>&);
+  template std::vector<char> take_particles(Core<Space, T, Dim>&, const std::vector<int>&);                \
+  template void add_particles(Core<Space, T, Dim>&, const std::vector<char>&);                             \
+  template void reserve_particles(Core<Space, T, Dim>&, int);                                              \
+  template std::vector<int> count_by_patch(const Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

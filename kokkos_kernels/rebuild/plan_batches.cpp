@@ -4,7 +4,6 @@
 #include <array>
 
 #include "base/copy.hpp"
-#include "data/memory_of.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
 
@@ -33,18 +32,18 @@ struct Cutter {
 
 /// Lays a batch's place out; returns its bytes.
 template <class Space, class T, int Dim>
-std::size_t lay_out(const State<Space, T, Dim>& s, char* from, SoilBatch<Space, T, Dim>& batch) {
+std::size_t lay_out(const Core<Space, T, Dim>& s, char* from, SoilBatch<Space, T, Dim>& batch) {
   Cutter cutter{from};
   for_each_of_step(s.soil.points, batch.set.points,
                    [&](const auto&, auto& there, Use) { cutter.cut(there, batch.first, batch.last); });
   Kokkos::View<T*, typename Space::memory_space> dilatation;
-  if (s.f_bar_fraction > 0) cutter.cut(dilatation, batch.first, batch.last);
+  if (s.f_bar.fraction > 0) cutter.cut(dilatation, batch.first, batch.last);
   batch.scratch =
       decltype(batch.scratch)(reinterpret_cast<char*>(dilatation.data()), dilatation.extent(0) * sizeof(T));
   return cutter.end;
 }
 template <class Space, class T, int Dim>
-std::size_t bytes_of(const State<Space, T, Dim>& s, int particles) {
+std::size_t bytes_of(const Core<Space, T, Dim>& s, int particles) {
   SoilBatch<Space, T, Dim> batch;
   batch.last = particles;
   return lay_out(s, nullptr, batch);
@@ -52,7 +51,7 @@ std::size_t bytes_of(const State<Space, T, Dim>& s, int particles) {
 
 /// First particle of each slot, and behind the last.
 template <class Space, class T, int Dim>
-Kokkos::View<int*, Kokkos::HostSpace> first_of_slots(const State<Space, T, Dim>& s) {
+Kokkos::View<int*, Kokkos::HostSpace> first_of_slots(const Core<Space, T, Dim>& s) {
   const int slots = s.patches.slots;
   const Kokkos::View<int*, typename Space::memory_space> first("mpm::first_of_slots", slots + 1);
   const auto begin = s.soil.bins.begin;
@@ -65,7 +64,7 @@ Kokkos::View<int*, Kokkos::HostSpace> first_of_slots(const State<Space, T, Dim>&
 
 /// Puts whole patches together as long as they have at most `most` particles.
 template <class Space, class T, int Dim, class First>
-void cut_into_batches(State<Space, T, Dim>& s, const First& first, int most) {
+void cut_into_batches(Core<Space, T, Dim>& s, const First& first, int most) {
   auto& all = s.batches.all;
   const int slots = s.patches.slots;
   all.clear();
@@ -83,7 +82,7 @@ void cut_into_batches(State<Space, T, Dim>& s, const First& first, int most) {
 
 /// Bins::active_slots of every batch.
 template <class Space, class T, int Dim>
-void list_slots(State<Space, T, Dim>& s) {
+void list_slots(Core<Space, T, Dim>& s) {
   const auto& whole = s.soil.bins;
   auto& b = s.batches;
   ensure(b.slots, whole.last_active);
@@ -103,7 +102,7 @@ void list_slots(State<Space, T, Dim>& s) {
 
 /// Gives each batch its place. As many as can stay on the device.
 template <class Space, class T, int Dim>
-void give_places(State<Space, T, Dim>& s, std::size_t bytes_of_place) {
+void give_places(Core<Space, T, Dim>& s, std::size_t bytes_of_place) {
   auto& b = s.batches;
   const int stay = static_cast<int>(b.all.size()) <= b.places ? b.places : b.places - k_turns;
   for (int n = 0; n < static_cast<int>(b.all.size()); ++n) {
@@ -127,7 +126,7 @@ std::vector<Space> overlap_streams(const Space& space) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void store_soil(State<Space, T, Dim>& s, int count, std::size_t needed_scratch) {
+void store_soil(Core<Space, T, Dim>& s, int count, std::size_t needed_scratch) {
   auto& soil = s.soil.points;
   needed_scratch = std::max(needed_scratch, count * scratch_of_point(soil));
   Cutter cutter;
@@ -145,17 +144,20 @@ void store_soil(State<Space, T, Dim>& s, int count, std::size_t needed_scratch) 
 }
 
 template <class Space, class T, int Dim>
-void plan_batches(State<Space, T, Dim>& s) {
+void drop_batches(Core<Space, T, Dim>& s) {
+  s.batches.all.clear();
+  s.batches.loaded = false;
+  ensure(s.batches.slots, s.soil.bins.last_active);
+}
+
+template <class Space, class T, int Dim>
+void plan_batches(Core<Space, T, Dim>& s, std::size_t held) {
   auto& b = s.batches;
   const auto first = first_of_slots(s);
   int largest = 1;  // particles of a patch
   for (int slot = 0; slot < s.patches.slots; ++slot)
     largest = std::max(largest, first(slot + 1) - first(slot));
-  b.all.clear();
-  b.loaded = false;
-  ensure(b.slots, s.soil.bins.last_active);
-  const double beside = double(memory_of(s)) - b.room.extent(0),
-               least = k_turns * double(bytes_of(s, largest));
+  const double beside = double(held) - b.room.extent(0), least = k_turns * double(bytes_of(s, largest));
   b.least = beside + least;
   if (b.limit < b.least) return;
 
@@ -179,9 +181,10 @@ void plan_batches(State<Space, T, Dim>& s) {
   if (b.streams.empty()) b.streams = overlap_streams(s.space);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                               \
-  template void store_soil(State<Space, T, Dim>&, int, std::size_t); \
-  template void plan_batches(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                              \
+  template void store_soil(Core<Space, T, Dim>&, int, std::size_t); \
+  template void drop_batches(Core<Space, T, Dim>&);                 \
+  template void plan_batches(Core<Space, T, Dim>&, std::size_t);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

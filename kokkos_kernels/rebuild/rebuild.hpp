@@ -5,7 +5,7 @@
 
 #include "base/ensure.hpp"
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 #include "functions/follow_soil.hpp"
 
 namespace mpm {
@@ -16,11 +16,11 @@ namespace mpm {
 /// on it, and what it had of velocity against the wall is gone. A rigid's point outside the mesh is a fault
 /// in s.control.
 template <class Space, class T, int Dim>
-void locate(State<Space, T, Dim>& s);
+void locate(ContactCore<Space, T, Dim>& s);
 
 /// The rigids' part of it.
 template <class Space, class T, int Dim>
-void locate_rigids(State<Space, T, Dim>& s);
+void locate_rigids(ContactCore<Space, T, Dim>& s);
 
 /// Makes the patch table, the order of the points, their bins and the strategy's lists from the points'
 /// addresses, and resets the movement bound. Nodal fields are laid out anew and hold nothing.
@@ -47,22 +47,22 @@ struct KeptImpulse {
 
 // Parts of sort_and_list.
 template <class Space, class T, int Dim>
-KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>& s);
+KeptImpulse<Space, T, Dim> keep_impulse(const ContactCore<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
-void restore_impulse(State<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& kept);
+void restore_impulse(ContactCore<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& kept);
 template <class Space, class T, int Dim>
-void activate_patches(State<Space, T, Dim>& s);
+void activate_patches(ContactCore<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
-void sort_points(State<Space, T, Dim>& s);
+void sort_points(ContactCore<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
-void build_lists(State<Space, T, Dim>& s);
+void build_lists(ContactCore<Space, T, Dim>& s);
 /// Lists the slots where a contact may be: a node that soil and a rigid share is reached from no other slot.
 template <class Space, class T, int Dim>
-void list_contacts(State<Space, T, Dim>& s);
+void list_contacts(ContactCore<Space, T, Dim>& s);
 /// Brings the mean stress of each particle towards that of its cell by the fraction of F-bar: the particles
 /// of a cell dilate together until the next rebuild, so their pressures begin together.
 template <class Space, class T, int Dim>
-void average_pressure(State<Space, T, Dim>& s);
+void average_pressure(ContactCore<Space, T, Dim>& s);
 
 /// Part of a value that the sort moves at a time, so that its scratch memory stays small: a particle's
 /// vector, or as much of a tensor.

@@ -4,7 +4,7 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>& s) {
+KeptImpulse<Space, T, Dim> keep_impulse(const ContactCore<Space, T, Dim>& s) {
   KeptImpulse<Space, T, Dim> kept;
   if (!s.has_friction || s.nodes.impulse.extent(1) == 0) return kept;
   kept.slots = s.patches.slots;
@@ -16,7 +16,7 @@ KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void restore_impulse(State<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& kept) {
+void restore_impulse(ContactCore<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& kept) {
   const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
   s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", numbers, s.patches.node_count());
   const auto old = kept.impulse;
@@ -33,9 +33,9 @@ void restore_impulse(State<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& 
       });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                           \
-  template KeptImpulse<Space, T, Dim> keep_impulse(const State<Space, T, Dim>&); \
-  template void restore_impulse(State<Space, T, Dim>&, const KeptImpulse<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                                 \
+  template KeptImpulse<Space, T, Dim> keep_impulse(const ContactCore<Space, T, Dim>&); \
+  template void restore_impulse(ContactCore<Space, T, Dim>&, const KeptImpulse<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

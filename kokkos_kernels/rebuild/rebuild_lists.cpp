@@ -129,7 +129,7 @@ void build_windows(const Space& space, const Patches<Space, Dim>& patches, Bins<
 }
 
 template <class Source, class T, int Dim, class Space>
-void build_for(const State<Space, T, Dim>& s, const Source& source, Bins<Space>& bins) {
+void build_for(const ContactCore<Space, T, Dim>& s, const Source& source, Bins<Space>& bins) {
   const P2G how = chosen(s.p2g.strategy);
   if (how == P2G::gather) build_node_lists(s.space, source, s.patches, bins, s.p2g.margin + s.p2g.reserve);
   if (how == P2G::mosaic) build_blocks(s.space, s.grid, s.patches, bins, s.p2g.mosaic_cells);
@@ -139,7 +139,7 @@ void build_for(const State<Space, T, Dim>& s, const Source& source, Bins<Space>&
 }  // namespace
 
 template <class Space, class T, int Dim>
-void build_lists(State<Space, T, Dim>& s) {
+void build_lists(ContactCore<Space, T, Dim>& s) {
   build_for(s, SoilSource<Space, T, Dim>{s.soil.points, s.grid.inv_spacing}, s.soil.bins);
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
     auto& set = s.rigid_points[r];
@@ -148,7 +148,7 @@ void build_lists(State<Space, T, Dim>& s) {
   }
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template void build_lists(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim) template void build_lists(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -65,7 +65,7 @@ KOKKOS_INLINE_FUNCTION long patch_if_first(const Address& address, int p) {
 
 /// Marks the patches that hold soil of this rank.
 template <class Space, class T, int Dim, class Marks>
-void mark_soil(const State<Space, T, Dim>& s, const Marks& marks) {
+void mark_soil(const ContactCore<Space, T, Dim>& s, const Marks& marks) {
   const auto address = s.soil.address;
   Kokkos::parallel_for(
       "mpm::mark_soil", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.all), KOKKOS_LAMBDA(int p) {
@@ -78,7 +78,8 @@ void mark_soil(const State<Space, T, Dim>& s, const Marks& marks) {
 /// other point of it reaches a node that soil reaches before the next rebuild. Contact in the other fields
 /// asks the rigid's surface alone.
 template <class Space, class T, int Dim, class Points_, class Marks>
-void mark_rigid(const State<Space, T, Dim>& s, const ParticleSet<Space, Points_>& set, const Marks& marks) {
+void mark_rigid(const ContactCore<Space, T, Dim>& s, const ParticleSet<Space, Points_>& set,
+                const Marks& marks) {
   const auto address = set.address;
   const auto grid = s.grid;
   Kokkos::parallel_for(
@@ -98,7 +99,7 @@ void mark_rigid(const State<Space, T, Dim>& s, const ParticleSet<Space, Points_>
 }  // namespace
 
 template <class Space, class T, int Dim>
-void locate_rigids(State<Space, T, Dim>& s) {
+void locate_rigids(ContactCore<Space, T, Dim>& s) {
   const auto grid = s.grid;
   const auto control = s.control;
   const double spacing = s.spacing;
@@ -129,7 +130,7 @@ void locate_rigids(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void locate(State<Space, T, Dim>& s) {
+void locate(ContactCore<Space, T, Dim>& s) {
   collect_soil(s);
   const auto grid = s.grid;
   const auto origin = s.patches.origin;
@@ -173,7 +174,7 @@ void locate(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void activate_patches(State<Space, T, Dim>& s) {
+void activate_patches(ContactCore<Space, T, Dim>& s) {
   using Range = Kokkos::RangePolicy<Space>;
   const auto grid = s.grid;
   const int patch_count = static_cast<int>(grid.patch_count());
@@ -225,10 +226,10 @@ void activate_patches(State<Space, T, Dim>& s) {
   if (s.soil.points.rings) s.soil.points.patch_origin = origin.data();
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                \
-  template void locate(State<Space, T, Dim>&);        \
-  template void locate_rigids(State<Space, T, Dim>&); \
-  template void activate_patches(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                      \
+  template void locate(ContactCore<Space, T, Dim>&);        \
+  template void locate_rigids(ContactCore<Space, T, Dim>&); \
+  template void activate_patches(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

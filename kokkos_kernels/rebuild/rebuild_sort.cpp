@@ -2,13 +2,10 @@
 // points are put in order of id, so that the result does not depend on how threads ran.
 
 #include "base/copy.hpp"
-#include "functions/step_kernels.hpp"
-#include "functions/surface_loads.hpp"
 #include "physics/cell_mean.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
 #include "physics/surface.hpp"
-#include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
@@ -182,7 +179,7 @@ void sort_set(const Space& space, ParticleSet<Space, Points_>& set, const Patche
 }  // namespace
 
 template <class Space, class T, int Dim>
-void sort_points(State<Space, T, Dim>& s) {
+void sort_points(ContactCore<Space, T, Dim>& s) {
   sort_set(s.space, s.soil, s.patches, s.marks, s.scratch);
   s.soil.points.all = s.soil.points.count;  // what is left belongs to other ranks now
   for (auto& set : s.rigid_points) sort_set(s.space, set, s.patches, s.marks, s.scratch);
@@ -198,7 +195,7 @@ double far_from_patch(double margin) {
 }
 
 template <class Space, class T, int Dim>
-void list_contacts(State<Space, T, Dim>& s) {
+void list_contacts(ContactCore<Space, T, Dim>& s) {
   ensure(s.contact.place, s.patches.slots);
   const auto near = s.contact.place;
   const auto neighbours = s.patches.neighbours;
@@ -296,11 +293,11 @@ KOKKOS_INLINE_FUNCTION void average_mixed_cell(const Soil<Space, T, Dim>& soil, 
 }
 
 template <class Space, class T, int Dim>
-void average_pressure(State<Space, T, Dim>& s) {
+void average_pressure(ContactCore<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
   const auto begin = s.soil.bins.begin;
-  const T fraction = static_cast<T>(s.f_bar_fraction);
-  const bool by_material = s.f_bar_by_material;
+  const T fraction = static_cast<T>(s.f_bar.fraction);
+  const bool by_material = s.f_bar.by_material;
   Kokkos::parallel_for(
       "mpm::average_pressure", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()),
       KOKKOS_LAMBDA(int cell) {
@@ -316,54 +313,10 @@ void average_pressure(State<Space, T, Dim>& s) {
       });
 }
 
-template <class Space, class T, int Dim>
-void sort_and_list(State<Space, T, Dim>& s) {
-  const auto kept = keep_impulse(s);
-  activate_patches(s);
-  if (s.has_friction) restore_impulse(s, kept);
-  sort_points(s);
-  build_lists(s);
-  if (!s.rigid_points.empty()) list_contacts(s);
-  if (s.f_bar_fraction > 0 && !s.keeps_stress) average_pressure(s);
-
-  s.plan = plan_step(s);
-  s.summed = {};
-  s.strays.known = false;
-  s.split.parts.clear();
-  ensure(s.strays.alone, s.patches.slots);
-  Kokkos::deep_copy(s.space, s.strays.alone, 0);
-  const int nodes = s.patches.node_count();
-  const auto make_room = [nodes](const char*, bool in_use, auto& field) {
-    if (in_use) ensure(field, nodes);
-  };
-  for_each_nodal_field(make_room, s.nodes, uses_of_nodes(s));
-  if (s.loads.in_use()) list_loaded(s);
-  if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
-    s.nodes.rigid = decltype(s.nodes.rigid)(
-        Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),
-        nodes + (s.nodes.rigid.extent(1) > 0 ? nodes / 16 : 0));
-  if (s.mass_normals && s.plan.writes_sums)
-    Kokkos::deep_copy(s.space, s.nodes.rigid, T(0));  // only those near rigids are written
-  if (s.energy.on) {
-    ensure(s.energy.stress, s.soil.points.count), ensure(s.energy.strain, s.soil.points.count);
-    ensure(s.energy.volume, s.soil.points.count);
-  }
-  if (s.batches.in_use()) plan_batches(s);
-  const auto control = s.control;
-  Kokkos::parallel_for(
-      "mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
-        control().bound = 0;
-        control().due_in = 0;
-        control().lost = 0;
-        control().paused = control().fault_count > 0;
-      });
-}
-
-#define MPM_INSTANTIATE(Space, T, Dim)                   \
-  template void sort_points(State<Space, T, Dim>&);      \
-  template void list_contacts(State<Space, T, Dim>&);    \
-  template void average_pressure(State<Space, T, Dim>&); \
-  template void sort_and_list(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                      \
+  template void sort_points(ContactCore<Space, T, Dim>&);   \
+  template void list_contacts(ContactCore<Space, T, Dim>&); \
+  template void average_pressure(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -141,7 +141,7 @@ void copy_some(const Space& space, const Field& field,
 }  // namespace
 
 template <class Space, class T, int Dim>
-std::vector<Splitting> find_splittings(State<Space, T, Dim>& s) {
+std::vector<Splitting> find_splittings(Core<Space, T, Dim>& s) {
   using Range = Kokkos::RangePolicy<Space>;
   const int count = s.soil.points.count;
   const auto id = s.soil.points.id;
@@ -166,7 +166,7 @@ std::vector<Splitting> find_splittings(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void split_particles(State<Space, T, Dim>& s, const std::vector<Splitting>& splittings,
+void split_particles(Core<Space, T, Dim>& s, const std::vector<Splitting>& splittings,
                      const std::vector<int>& ids) {
   using Range = Kokkos::RangePolicy<Space>;
   const int more = static_cast<int>(splittings.size()), first = s.soil.points.all;
@@ -191,10 +191,9 @@ void split_particles(State<Space, T, Dim>& s, const std::vector<Splitting>& spli
   s.space.fence("mpm::split_particles");
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                \
-  template std::vector<Splitting> find_splittings(State<Space, T, Dim>&);             \
-  template void split_particles(State<Space, T, Dim>&, const std::vector<Splitting>&, \
-                                const std::vector<int>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                   \
+  template std::vector<Splitting> find_splittings(Core<Space, T, Dim>&); \
+  template void split_particles(Core<Space, T, Dim>&, const std::vector<Splitting>&, const std::vector<int>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "data/state.hpp"
+#include "data/core.hpp"
 
 namespace mpm {
 
@@ -18,7 +18,7 @@ struct Splitting {
 /// above a bound and its cell held, at the last rebuild, no more particles than it was filled with: others
 /// close the gap else. It has a least mass, an eighth of that at the start.
 template <class Space, class T, int Dim>
-std::vector<Splitting> find_splittings(State<Space, T, Dim>& s);
+std::vector<Splitting> find_splittings(Core<Space, T, Dim>& s);
 
 /// Splits them along the longest axes of their domains. Each keeps half of its mass and volume, and a new
 /// particle, whose id is in `ids`, gets the other half, with the same velocity, stress and state. Both lie as
@@ -26,7 +26,7 @@ std::vector<Splitting> find_splittings(State<Space, T, Dim>& s);
 /// and the centre of mass stay. The domains of both halves together have the moments that the whole had,
 /// where that was no longer than k_most_half_length.
 template <class Space, class T, int Dim>
-void split_particles(State<Space, T, Dim>& s, const std::vector<Splitting>& splittings,
+void split_particles(Core<Space, T, Dim>& s, const std::vector<Splitting>& splittings,
                      const std::vector<int>& ids);
 
 }  // namespace mpm

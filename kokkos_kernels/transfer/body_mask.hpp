@@ -2,7 +2,7 @@
 // Which bodies count for a measurement, as kernels ask it.
 
 #include "base/copy.hpp"
-#include "data/state.hpp"
+#include "data/core.hpp"
 
 namespace mpm {
 
@@ -12,7 +12,7 @@ using BodyMask = Kokkos::View<char**, Kokkos::LayoutRight, typename Space::memor
 
 /// The mask of some lists of indices of bodies, of which an empty one means all.
 template <class Space, class T, int Dim, class Lists>
-BodyMask<Space> mask_of(const State<Space, T, Dim>& s, const Lists& lists) {
+BodyMask<Space> mask_of(const Core<Space, T, Dim>& s, const Lists& lists) {
   const std::size_t bodies = s.soil.points.bodies.extent(0);
   const BodyMask<Space> mask("mpm::body_mask", lists.size(), bodies);
   const auto host = Kokkos::create_mirror_view(mask);

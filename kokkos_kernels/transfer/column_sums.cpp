@@ -83,7 +83,7 @@ struct AddColumns {
 }  // namespace
 
 template <class Space, class T, int Dim>
-std::vector<long> column_sums(const State<Space, T, Dim>& s, const ColumnGrid& grid) {
+std::vector<long> column_sums(const Core<Space, T, Dim>& s, const ColumnGrid& grid) {
   const std::vector<ColumnGrid> lists{grid};
   const Kokkos::View<long*, typename Space::memory_space> sums("mpm::column_sums", grid.count() * (1 + Dim));
   AddColumns<Space, T, Dim> add{positions_of(s), mask_of(s, lists), sums, {}, grid.cell, {}};
@@ -95,7 +95,7 @@ std::vector<long> column_sums(const State<Space, T, Dim>& s, const ColumnGrid& g
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim) \
-  template std::vector<long> column_sums(const State<Space, T, Dim>&, const ColumnGrid&);
+  template std::vector<long> column_sums(const Core<Space, T, Dim>&, const ColumnGrid&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -10,7 +10,7 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-std::vector<int> order_for_host(const State<Space, T, Dim>& s) {
+std::vector<int> order_for_host(const ContactCore<Space, T, Dim>& s) {
   const auto& soil = s.soil.points;
   const auto held = Kokkos::make_pair(0, soil.count);
   const auto id = mirror_of(Kokkos::subview(soil.id, held));
@@ -23,7 +23,7 @@ std::vector<int> order_for_host(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-SoilFields download_soil(const State<Space, T, Dim>& s) {
+SoilFields download_soil(const ContactCore<Space, T, Dim>& s) {
   const auto& soil = s.soil.points;
   const auto host_of = [&](const auto& view) {
     const auto held = Kokkos::subview(view, Kokkos::make_pair(0, soil.count));
@@ -93,7 +93,7 @@ SoilFields download_soil(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int rigid) {
+std::vector<double> download_rigid_positions(const ContactCore<Space, T, Dim>& s, int rigid) {
   const auto& points = s.rigid_points[rigid].points;
   const auto reference_position = mirror_of(points.reference_position);
   const auto id = mirror_of(points.id);
@@ -109,7 +109,7 @@ std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int 
 }
 
 template <class Space, class T, int Dim>
-std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s) {
+std::vector<Rigid<Dim>> take_rigids(ContactCore<Space, T, Dim>& s) {
   auto host = mirror_of(s.rigids);
   std::vector<Rigid<Dim>> rigids(host.data(), host.data() + host.extent(0));
   const auto view = s.rigids;
@@ -119,11 +119,11 @@ std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s) {
   return rigids;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                     \
-  template std::vector<int> order_for_host(const State<Space, T, Dim>&);                   \
-  template SoilFields download_soil(const State<Space, T, Dim>&);                          \
-  template std::vector<double> download_rigid_positions(const State<Space, T, Dim>&, int); \
-  template std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                                           \
+  template std::vector<int> order_for_host(const ContactCore<Space, T, Dim>&);                   \
+  template SoilFields download_soil(const ContactCore<Space, T, Dim>&);                          \
+  template std::vector<double> download_rigid_positions(const ContactCore<Space, T, Dim>&, int); \
+  template std::vector<Rigid<Dim>> take_rigids(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

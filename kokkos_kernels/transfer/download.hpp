@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/spaces.hpp"
+#include "data/contact_core.hpp"
 #include "data/particle_columns.hpp"
-#include "data/state.hpp"
 
 namespace mpm {
 
@@ -23,17 +23,17 @@ struct SoilFields : ParticleColumns {
 };
 /// The order in which particles come to the host: by body, and by id in a body.
 template <class Space, class T, int Dim>
-std::vector<int> order_for_host(const State<Space, T, Dim>& s);
+std::vector<int> order_for_host(const ContactCore<Space, T, Dim>& s);
 
 template <class Space, class T, int Dim>
-SoilFields download_soil(const State<Space, T, Dim>& s);
+SoilFields download_soil(const ContactCore<Space, T, Dim>& s);
 
 /// Positions [m from the mesh's lower corner] of a rigid's particles in the order of creation.
 template <class Space, class T, int Dim>
-std::vector<double> download_rigid_positions(const State<Space, T, Dim>& s, int rigid);
+std::vector<double> download_rigid_positions(const ContactCore<Space, T, Dim>& s, int rigid);
 
 /// The rigids on the host; their impulse is taken: it is set to zero on the device.
 template <class Space, class T, int Dim>
-std::vector<Rigid<Dim>> take_rigids(State<Space, T, Dim>& s);
+std::vector<Rigid<Dim>> take_rigids(ContactCore<Space, T, Dim>& s);
 
 }  // namespace mpm

@@ -21,7 +21,7 @@ long node_number(const Grid<T, Dim>& grid, const Coord<Dim>& at) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-NodeFields download_nodes(const State<Space, T, Dim>& s) {
+NodeFields download_nodes(const Core<Space, T, Dim>& s) {
   using S = SoilTerms<Dim>;
   const auto soil = mirror_of(s.nodes.soil);
   const auto origin = mirror_of(s.patches.origin);
@@ -48,7 +48,7 @@ NodeFields download_nodes(const State<Space, T, Dim>& s) {
   return fields;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template NodeFields download_nodes(const State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim) template NodeFields download_nodes(const Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

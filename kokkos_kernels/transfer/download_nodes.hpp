@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/core.hpp"
 
 namespace mpm {
 
@@ -17,6 +17,6 @@ struct NodeFields {
 
 /// The sums at the nodes must be those of the particles where they are now: sum_present_soil.
 template <class Space, class T, int Dim>
-NodeFields download_nodes(const State<Space, T, Dim>& s);
+NodeFields download_nodes(const Core<Space, T, Dim>& s);
 
 }  // namespace mpm

@@ -7,7 +7,7 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-std::vector<FilledPatch> filled_cells(const State<Space, T, Dim>& s) {
+std::vector<FilledPatch> filled_cells(const ContactCore<Space, T, Dim>& s) {
   using Bits = Kokkos::View<std::uint64_t*, typename Space::memory_space>;
   using Range = Kokkos::RangePolicy<Space>;
   constexpr int cells = Patch<Dim>::cells;
@@ -40,7 +40,7 @@ std::vector<FilledPatch> filled_cells(const State<Space, T, Dim>& s) {
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim) \
-  template std::vector<FilledPatch> filled_cells(const State<Space, T, Dim>&);
+  template std::vector<FilledPatch> filled_cells(const ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

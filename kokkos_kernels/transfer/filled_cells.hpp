@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 
 namespace mpm {
 
@@ -18,6 +18,6 @@ struct FilledPatch {
 
 /// The patches of this rank that hold soil or a rigid, in no order.
 template <class Space, class T, int Dim>
-std::vector<FilledPatch> filled_cells(const State<Space, T, Dim>& s);
+std::vector<FilledPatch> filled_cells(const ContactCore<Space, T, Dim>& s);
 
 }  // namespace mpm

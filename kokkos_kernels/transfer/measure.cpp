@@ -92,7 +92,7 @@ struct reduction_identity<mpm::Sum<Dim>> {
 namespace mpm {
 
 template <class Space, class T, int Dim>
-BodyMeasure measure(const State<Space, T, Dim>& s, int body) {
+BodyMeasure measure(const Core<Space, T, Dim>& s, int body) {
   // A sum of as many equal numbers, one after the other, would gather round-off of their number. A device
   // adds pair by pair.
   constexpr int together = is_device<Space> ? 1 : 256;
@@ -165,9 +165,9 @@ KOKKOS_INLINE_FUNCTION double modulus_after(const Law& law, const SymTensor<T, D
 }
 
 template <class Space, class T, int Dim>
-double fastest_wave(const State<Space, T, Dim>& s, double compression) {
+double fastest_wave(const Core<Space, T, Dim>& s, double compression) {
   const auto soil = s.soil.points;
-  const double rim_scale = s.rim_scale;
+  const double rim_scale = s.scheme.rim_scale;
   double fastest = 0;  // m2/s2
   Kokkos::parallel_reduce(
       "mpm::fastest_wave", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
@@ -188,7 +188,7 @@ double fastest_wave(const State<Space, T, Dim>& s, double compression) {
 }
 
 template <class Space, class T, int Dim>
-VelocityRange velocity_range(const State<Space, T, Dim>& s) {
+VelocityRange velocity_range(const Core<Space, T, Dim>& s) {
   const auto soil = s.soil.points;
   VelocityRange range;
   for (int d = 0; d < Dim; ++d) {
@@ -206,7 +206,7 @@ VelocityRange velocity_range(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
+double ranked_coordinate(const Core<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
                          const OverRanks& over) {
   const auto soil = s.soil.points;
   const auto position = positions_of(s);
@@ -240,11 +240,11 @@ double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long ra
   return x;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                               \
-  template BodyMeasure measure(const State<Space, T, Dim>&, int);                                    \
-  template double fastest_wave(const State<Space, T, Dim>&, double);                                 \
-  template VelocityRange velocity_range(const State<Space, T, Dim>&);                                \
-  template double ranked_coordinate(const State<Space, T, Dim>&, int, int, long, const BodyMeasure&, \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                              \
+  template BodyMeasure measure(const Core<Space, T, Dim>&, int);                                    \
+  template double fastest_wave(const Core<Space, T, Dim>&, double);                                 \
+  template VelocityRange velocity_range(const Core<Space, T, Dim>&);                                \
+  template double ranked_coordinate(const Core<Space, T, Dim>&, int, int, long, const BodyMeasure&, \
                                     const OverRanks&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "base/spaces.hpp"
-#include "data/state.hpp"
+#include "data/core.hpp"
 
 namespace mpm {
 
@@ -21,12 +21,12 @@ struct BodyMeasure {
 };
 
 template <class Space, class T, int Dim>
-BodyMeasure measure(const State<Space, T, Dim>& s, int body);
+BodyMeasure measure(const Core<Space, T, Dim>& s, int body);
 
 /// Speed of the fastest wave in any particle [m/s] (Eq. 14), once its soil has been compressed by a volume
 /// strain; 0 without particles.
 template <class Space, class T, int Dim>
-double fastest_wave(const State<Space, T, Dim>& s, double compression = 0);
+double fastest_wave(const Core<Space, T, Dim>& s, double compression = 0);
 
 /// Range of the velocities of the particles along each axis [m/s], from `least` to `most`, both 0 without
 /// particles. 0, the velocity of a side at rest, is always in it.
@@ -34,7 +34,7 @@ struct VelocityRange {
   double least[3] = {}, most[3] = {};
 };
 template <class Space, class T, int Dim>
-VelocityRange velocity_range(const State<Space, T, Dim>& s);
+VelocityRange velocity_range(const Core<Space, T, Dim>& s);
 
 /// Reductions over ranks that a measure calls: sums and maxima, number by number. Empty on one rank.
 struct OverRanks {
@@ -46,7 +46,7 @@ struct OverRanks {
 /// lower corner]; m is the measure of the whole body. It is a particle's coordinate, at most 2^-24 of the
 /// body's extent above the exact one, and the same whatever the number of threads.
 template <class Space, class T, int Dim>
-double ranked_coordinate(const State<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
+double ranked_coordinate(const Core<Space, T, Dim>& s, int body, int d, long rank, const BodyMeasure& m,
                          const OverRanks& over = {});
 
 }  // namespace mpm

@@ -1,7 +1,7 @@
 #pragma once
 // Where particles are, for what measures them.
 
-#include "data/state.hpp"
+#include "data/core.hpp"
 
 namespace mpm {
 
@@ -32,7 +32,7 @@ struct Positions {
 };
 
 template <class Space, class T, int Dim>
-Positions<Space, T, Dim> positions_of(const State<Space, T, Dim>& s) {
+Positions<Space, T, Dim> positions_of(const Core<Space, T, Dim>& s) {
   return {s.soil.points, s.patches.origin, s.spacing, s.grid.period};
 }
 

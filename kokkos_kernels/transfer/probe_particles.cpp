@@ -89,7 +89,7 @@ Kokkos::View<Region*, typename Space::memory_space> to_device(const std::vector<
 }  // namespace
 
 template <class Space, class T, int Dim>
-std::vector<ProbeParticle> particles_in(const State<Space, T, Dim>& s,
+std::vector<ProbeParticle> particles_in(const Core<Space, T, Dim>& s,
                                         const std::vector<ProbeRegion>& regions) {
   using Memory = typename Space::memory_space;
   const Membership<Space, T, Dim> is_in{positions_of(s), to_device<Space>(regions), mask_of(s, regions)};
@@ -121,7 +121,7 @@ std::vector<ProbeParticle> particles_in(const State<Space, T, Dim>& s,
 }
 
 template <class Space, class T, int Dim>
-NearestParticle nearest_particle(const State<Space, T, Dim>& s, const std::array<double, 3>& place,
+NearestParticle nearest_particle(const Core<Space, T, Dim>& s, const std::array<double, 3>& place,
                                  const std::vector<int>& bodies, const std::function<void(double*)>& least) {
   const std::vector<SectionPlane> lists{{0, 0, bodies}};
   const BodyMask<Space> counts = mask_of(s, lists);
@@ -149,10 +149,10 @@ NearestParticle nearest_particle(const State<Space, T, Dim>& s, const std::array
   return nearest;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                 \
-  template std::vector<ProbeParticle> particles_in(const State<Space, T, Dim>&,                        \
-                                                   const std::vector<ProbeRegion>&);                   \
-  template NearestParticle nearest_particle(const State<Space, T, Dim>&, const std::array<double, 3>&, \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                \
+  template std::vector<ProbeParticle> particles_in(const Core<Space, T, Dim>&,                        \
+                                                   const std::vector<ProbeRegion>&);                  \
+  template NearestParticle nearest_particle(const Core<Space, T, Dim>&, const std::array<double, 3>&, \
                                             const std::vector<int>&, const std::function<void(double*)>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -3,14 +3,14 @@
 
 #include <functional>
 
+#include "data/core.hpp"
 #include "data/probe_data.hpp"
-#include "data/state.hpp"
 
 namespace mpm {
 
 /// The particles of this rank in each region, by region and id.
 template <class Space, class T, int Dim>
-std::vector<ProbeParticle> particles_in(const State<Space, T, Dim>& s,
+std::vector<ProbeParticle> particles_in(const Core<Space, T, Dim>& s,
                                         const std::vector<ProbeRegion>& regions);
 
 /// Result of nearest_particle: the square of the distance [m2], infinite where there is no particle.
@@ -23,7 +23,7 @@ struct NearestParticle {
 /// equally near ones that with the lowest id. `least` makes the square of its distance the least of all
 /// ranks.
 template <class Space, class T, int Dim>
-NearestParticle nearest_particle(const State<Space, T, Dim>& s, const std::array<double, 3>& place,
+NearestParticle nearest_particle(const Core<Space, T, Dim>& s, const std::array<double, 3>& place,
                                  const std::vector<int>& bodies,
                                  const std::function<void(double*)>& least = {});
 

@@ -48,7 +48,7 @@ SavedPoints save_points(const Patches_& patches, Points_ points) {
 }
 
 template <class Space, class T, int Dim>
-SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
+SavedImpulse save_impulse(const ContactCore<Space, T, Dim>& s) {
   SavedImpulse saved;
   if (!s.has_friction) return saved;
   const auto number = mirror_of(s.patches.number);
@@ -73,7 +73,7 @@ SavedImpulse save_impulse(const State<Space, T, Dim>& s) {
 
 /// Saves the sums over particles that left the run, and the cells whose particles are alone.
 template <class Space, class T, int Dim>
-void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
+void save_strays(const ContactCore<Space, T, Dim>& s, SavedState& saved) {
   const auto put_back = mirror_of(s.strays.put_back);
   for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
     const Lost& lost = s.strays.lost[b];
@@ -92,7 +92,7 @@ void save_strays(const State<Space, T, Dim>& s, SavedState& saved) {
 }
 
 template <class Space, class T, int Dim>
-void restore_lost(State<Space, T, Dim>& s, const SavedState& saved) {
+void restore_lost(ContactCore<Space, T, Dim>& s, const SavedState& saved) {
   const auto put_back = Kokkos::create_mirror_view(s.strays.put_back);
   for (std::size_t b = 0; b < s.strays.lost.size(); ++b) {
     const double* const numbers = &saved.lost[b * k_lost];
@@ -105,7 +105,7 @@ void restore_lost(State<Space, T, Dim>& s, const SavedState& saved) {
 
 /// After the lists were made.
 template <class Space, class T, int Dim>
-void restore_alone(State<Space, T, Dim>& s, const SavedState& saved) {
+void restore_alone(ContactCore<Space, T, Dim>& s, const SavedState& saved) {
   s.strays.known = saved.alone_known != 0;
   const auto alone = mirror_of(s.strays.alone);
   const auto slot_of = mirror_of(s.patches.slot_of);
@@ -151,7 +151,7 @@ void restore_whole(View& view, const std::vector<long>& values) {
 
 /// Room in the host's store for as many particles, where the soil goes in batches.
 template <class Space, class T, int Dim>
-void make_room(State<Space, T, Dim>& s, int count) {
+void make_room(ContactCore<Space, T, Dim>& s, int count) {
   if (!s.batches.in_use() || count == s.soil.points.count) return;
   collect_soil(s);
   s.soil.points.count = s.soil.points.all = count;
@@ -198,7 +198,7 @@ void restore_rigid(const SavedRigid& row, Rigid<Dim>& rigid) {
 
 /// binned: the rigids stand where their points were binned, else where they are.
 template <class Space, class T, int Dim>
-void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved, bool binned) {
+void restore_rigids(ContactCore<Space, T, Dim>& s, const SavedState& saved, bool binned) {
   const auto host = mirror_of(s.rigids);
   for (std::size_t r = 0; r < saved.rigids.size(); ++r) {
     restore_rigid(saved.rigids[r], host(r));
@@ -209,7 +209,7 @@ void restore_rigids(State<Space, T, Dim>& s, const SavedState& saved, bool binne
 
 /// The patches are those of the run, so each node that held something is there.
 template <class Space, class T, int Dim>
-void restore_nodes(State<Space, T, Dim>& s, const SavedImpulse& saved) {
+void restore_nodes(ContactCore<Space, T, Dim>& s, const SavedImpulse& saved) {
   if (!s.has_friction) return;
   const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
   s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", numbers, s.patches.node_count());
@@ -225,7 +225,7 @@ void restore_nodes(State<Space, T, Dim>& s, const SavedImpulse& saved) {
 }
 
 template <class Space, class T, int Dim>
-void restore_control(State<Space, T, Dim>& s, const SavedState& saved) {
+void restore_control(ContactCore<Space, T, Dim>& s, const SavedState& saved) {
   const auto control = mirror_of(s.control);
   control().bound = saved.bound;
   control().increment = saved.increment;
@@ -237,7 +237,7 @@ void restore_control(State<Space, T, Dim>& s, const SavedState& saved) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-SavedState save_state(const State<Space, T, Dim>& s) {
+SavedState save_state(const ContactCore<Space, T, Dim>& s) {
   s.space.fence("mpm::save_state");
   SavedState saved;
   const auto control = mirror_of(s.control);
@@ -252,7 +252,7 @@ SavedState save_state(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-std::string take_saved(State<Space, T, Dim>& s, const SavedState& saved) {
+std::string take_saved(ContactCore<Space, T, Dim>& s, const SavedState& saved) {
   if (saved.rigids.size() != s.rigid_points.size()) return "the number of rigids";
   if (saved.lost.size() != s.strays.lost.size() * k_lost) return "the number of bodies";
   restore_lost(s, saved);
@@ -265,15 +265,7 @@ std::string take_saved(State<Space, T, Dim>& s, const SavedState& saved) {
 }
 
 template <class Space, class T, int Dim>
-void list_saved(State<Space, T, Dim>& s) {
-  // A rebuild brings the pressures of a cell together (F-bar); here none is made, only its tables.
-  const bool keeps = std::exchange(s.keeps_stress, true);
-  sort_and_list(s);
-  s.keeps_stress = keeps;
-}
-
-template <class Space, class T, int Dim>
-void finish_saved(State<Space, T, Dim>& s, const SavedState& saved) {
+void finish_saved(ContactCore<Space, T, Dim>& s, const SavedState& saved) {
   restore_rigids(s, saved, false);
   move_rigid_points(s, s.space);
   restore_nodes(s, saved.impulse);
@@ -283,11 +275,10 @@ void finish_saved(State<Space, T, Dim>& s, const SavedState& saved) {
   s.space.fence("mpm::restore_state");
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                       \
-  template SavedState save_state(const State<Space, T, Dim>& s);             \
-  template std::string take_saved(State<Space, T, Dim>&, const SavedState&); \
-  template void list_saved(State<Space, T, Dim>&);                           \
-  template void finish_saved(State<Space, T, Dim>&, const SavedState&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                             \
+  template SavedState save_state(const ContactCore<Space, T, Dim>& s);             \
+  template std::string take_saved(ContactCore<Space, T, Dim>&, const SavedState&); \
+  template void finish_saved(ContactCore<Space, T, Dim>&, const SavedState&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -1,14 +1,18 @@
 #pragma once
-// From a State to a SavedState and back. Between two steps only, with no rebuild due.
+// From the state of a run to a SavedState and back. Between two steps only, with no rebuild due.
+
+#include <string>
+#include <utility>
 
 #include "base/spaces.hpp"
+#include "data/contact_core.hpp"
 #include "data/saved_state.hpp"
-#include "data/state.hpp"
+#include "rebuild/rebuild.hpp"
 
 namespace mpm {
 
 template <class Space, class T, int Dim>
-SavedState save_state(const State<Space, T, Dim>& s);
+SavedState save_state(const ContactCore<Space, T, Dim>& s);
 
 // A saved state takes the place of what `upload` made from the same input in three parts, between which
 // several ranks bring its points to their owners: the points, their order and lists, and all that hangs on
@@ -16,11 +20,16 @@ SavedState save_state(const State<Space, T, Dim>& s);
 
 /// Empty, or what does not fit.
 template <class Space, class T, int Dim>
-std::string take_saved(State<Space, T, Dim>& s, const SavedState& saved);
+std::string take_saved(ContactCore<Space, T, Dim>& s, const SavedState& saved);
 template <class Space, class T, int Dim>
-void list_saved(State<Space, T, Dim>& s);
+void list_saved(State<Space, T, Dim>& s) {
+  // A rebuild brings the pressures of a cell together (F-bar); here none is made, only its tables.
+  const bool keeps = std::exchange(s.f_bar.keeps_stress, true);
+  sort_and_list(s);
+  s.f_bar.keeps_stress = keeps;
+}
 template <class Space, class T, int Dim>
-void finish_saved(State<Space, T, Dim>& s, const SavedState& saved);
+void finish_saved(ContactCore<Space, T, Dim>& s, const SavedState& saved);
 
 /// All of it, on one rank. Empty, or what does not fit.
 template <class Space, class T, int Dim>

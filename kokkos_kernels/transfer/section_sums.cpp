@@ -64,7 +64,7 @@ std::vector<int> bodies_of(const SectionPlane& plane, std::size_t bodies) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-SectionSum section_sum(const State<Space, T, Dim>& s, const SectionPlane& plane) {
+SectionSum section_sum(const Core<Space, T, Dim>& s, const SectionPlane& plane) {
   constexpr int together = is_device<Space> ? 1 : 256;  // as in measure()
   const auto position = positions_of(s);
   const auto density = mirror_of(s.density);
@@ -92,7 +92,7 @@ SectionSum section_sum(const State<Space, T, Dim>& s, const SectionPlane& plane)
 }
 
 template <class Space, class T, int Dim>
-BeyondMask<Space> beyond_mask(const State<Space, T, Dim>& s, const std::vector<SectionPlane>& planes) {
+BeyondMask<Space> beyond_mask(const Core<Space, T, Dim>& s, const std::vector<SectionPlane>& planes) {
   const auto position = positions_of(s);
   const BeyondMask<Space> mask("mpm::beyond_mask", s.soil.points.count);
   for (std::size_t n = 0; n < planes.size(); ++n) {
@@ -109,7 +109,7 @@ BeyondMask<Space> beyond_mask(const State<Space, T, Dim>& s, const std::vector<S
 }
 
 template <class Space, class T, int Dim>
-void add_lost_beyond(const State<Space, T, Dim>& s, const std::vector<SectionPlane>& planes,
+void add_lost_beyond(const Core<Space, T, Dim>& s, const std::vector<SectionPlane>& planes,
                      const BeyondMask<Space>& beyond, std::vector<SectionSum>& lost) {
   const auto soil = s.soil.points;
   const auto address = s.soil.address;
@@ -130,10 +130,10 @@ void add_lost_beyond(const State<Space, T, Dim>& s, const std::vector<SectionPla
   }
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                                   \
-  template SectionSum section_sum(const State<Space, T, Dim>&, const SectionPlane&);                     \
-  template BeyondMask<Space> beyond_mask(const State<Space, T, Dim>&, const std::vector<SectionPlane>&); \
-  template void add_lost_beyond(const State<Space, T, Dim>&, const std::vector<SectionPlane>&,           \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                  \
+  template SectionSum section_sum(const Core<Space, T, Dim>&, const SectionPlane&);                     \
+  template BeyondMask<Space> beyond_mask(const Core<Space, T, Dim>&, const std::vector<SectionPlane>&); \
+  template void add_lost_beyond(const Core<Space, T, Dim>&, const std::vector<SectionPlane>&,           \
                                 const BeyondMask<Space>&, std::vector<SectionSum>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "data/state.hpp"
 #include "functions/follow_soil.hpp"
 #include "physics/domain.hpp"
 #include "physics/surface.hpp"
@@ -118,9 +119,10 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.soil.points.has_periods = s.grid.is_periodic();
   s.spacing = grid.spacing;
   Fault fault{};
-  s.mass_cut = std::numeric_limits<double>::max();
+  s.scheme.mass_cut = std::numeric_limits<double>::max();
   for (const BodyInput& body : bodies)
-    s.mass_cut = std::min(s.mass_cut, k_cut * (body.least_mass > 0 ? body.least_mass : common_mass(body)));
+    s.scheme.mass_cut =
+        std::min(s.scheme.mass_cut, k_cut * (body.least_mass > 0 ? body.least_mass : common_mass(body)));
   double smallest = std::numeric_limits<double>::max(), largest = 0;
   for (const BodyInput& body : bodies) {
     smallest = std::min(smallest, body.most_volume > 0 ? body.least_volume : body.particle_volume);
@@ -129,7 +131,7 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   double least_half_length = k_least_half_length;
   for (const BodyInput& body : bodies) least_half_length = std::min(least_half_length, body.half_length);
   s.soil.points.least_half_length = static_cast<T>(least_half_length);
-  if (s.soil.points.splits) smallest *= k_least_piece, s.mass_cut *= k_least_piece;
+  if (s.soil.points.splits) smallest *= k_least_piece, s.scheme.mass_cut *= k_least_piece;
   s.strays.least_volume = k_least_volume * smallest, s.strays.most_volume = k_most_volume * largest;
   const bool alike = smallest == largest && !s.soil.points.splits;
   fill_view(s.strays.start_volume, "mpm::start_volume", alike ? 0 : static_cast<int>(bodies.size()),
@@ -150,9 +152,9 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   }
   s.control = ControlView<Space>("mpm::control");
   s.never_paused = ControlView<Space>("mpm::never_paused");
-  s.launch_barrier = decltype(s.launch_barrier)("mpm::launch_barrier");
+  s.launch.barrier = decltype(s.launch.barrier)("mpm::launch_barrier");
   s.movements.bits = decltype(s.movements.bits)("mpm::movements");
-  s.launch_movements.bits = decltype(s.launch_movements.bits)("mpm::launch_movements");
+  s.launch.movements.bits = decltype(s.launch.movements.bits)("mpm::launch_movements");
   s.rigid_force = decltype(s.rigid_force)("mpm::rigid_force", Wrench<Dim>::size * rigids.size());
   upload_soil(s, materials, bodies, scratch_of_rigids<Space, T, Dim>(rigids), fault);
   upload_rigids(s, rigids, k_rigid_cut, fault);

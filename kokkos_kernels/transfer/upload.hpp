@@ -23,7 +23,7 @@ struct MaterialInput {
   std::vector<double> parameters;        // in the order of the model's table
   std::shared_ptr<const void> object{};  // of make_object, where the model has one
   double pore_stiffness = 0;             // Pa, of the water in its pores; 0: the pores drain
-  double f_bar_share = 1;                // -, of State::f_bar_fraction
+  double f_bar_share = 1;                // -, of FBar::fraction
 };
 
 /// Particles of one deformable body: columns, and where a column is empty the values that all particles have

@@ -1,8 +1,9 @@
 #include "transfer/upload_loads.hpp"
 
-#include "base/copy.hpp"
-
 #include <string>
+
+#include "base/copy.hpp"
+#include "data/state.hpp"
 
 namespace mpm {
 namespace {

@@ -140,7 +140,7 @@ void fill_domains(Soil<Space, T, Dim>& soil, const Rows& rows) {
 /// C_p of APIC at the start: the gradient of each body's velocities, so that a linear field is kept from the
 /// first step on.
 template <class Space, class T, int Dim>
-void fill_affine(State<Space, T, Dim>& s, const std::vector<BodyInput>& bodies) {
+void fill_affine(Core<Space, T, Dim>& s, const std::vector<BodyInput>& bodies) {
   std::vector<double> gradient;
   std::array<int, 3> period{};
   for (int d = 0; d < Dim; ++d) period[d] = s.grid.period[d];
@@ -177,7 +177,7 @@ void fill_faces(Soil<Space, T, Dim>& soil, const Rows& rows) {
 
 /// Every vector of the soil but its positions.
 template <class Space, class T, int Dim>
-void fill_soil(State<Space, T, Dim>& s, const Rows& rows) {
+void fill_soil(Core<Space, T, Dim>& s, const Rows& rows) {
   auto& soil = s.soil.points;
   const auto fill = [&](const ParticleField& row, auto& field) {
     if (row.start == Start::column) fill_column<Dim>(field, row.name, rows);
@@ -196,7 +196,7 @@ void fill_soil(State<Space, T, Dim>& s, const Rows& rows) {
 
 /// Properties of bodies and materials, and what all of the soil has in common.
 template <class Space, class T, int Dim>
-void fill_properties(State<Space, T, Dim>& s, const std::vector<MaterialInput>& materials,
+void fill_properties(Core<Space, T, Dim>& s, const std::vector<MaterialInput>& materials,
                      const std::vector<BodyInput>& bodies) {
   auto& soil = s.soil.points;
   fill_view(soil.bodies, "mpm::bodies", static_cast<int>(bodies.size()), [&](int b) {
@@ -211,7 +211,7 @@ void fill_properties(State<Space, T, Dim>& s, const std::vector<MaterialInput>& 
     stored.f_bar_share = static_cast<T>(materials[m].f_bar_share);
     return stored;
   });
-  s.f_bar_by_material = std::any_of(bodies.begin(), bodies.end(), [&](const BodyInput& body) {
+  s.f_bar.by_material = std::any_of(bodies.begin(), bodies.end(), [&](const BodyInput& body) {
     return body.material != bodies.front().material;
   });
   s.law = bodies.empty() ? -1 : materials[bodies[0].material].model;
@@ -226,7 +226,7 @@ void fill_properties(State<Space, T, Dim>& s, const std::vector<MaterialInput>& 
 }  // namespace
 
 template <class Space, class T, int Dim>
-void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& materials,
+void upload_soil(Core<Space, T, Dim>& s, const std::vector<MaterialInput>& materials,
                  const std::vector<BodyInput>& bodies, std::size_t scratch, Fault& fault) {
   auto& soil = s.soil.points;
   const Rows rows(bodies, Dim);
@@ -244,8 +244,8 @@ void upload_soil(State<Space, T, Dim>& s, const std::vector<MaterialInput>& mate
   fill_properties(s, materials, bodies);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                \
-  template void upload_soil(State<Space, T, Dim>&, const std::vector<MaterialInput>&, \
+#define MPM_INSTANTIATE(Space, T, Dim)                                               \
+  template void upload_soil(Core<Space, T, Dim>&, const std::vector<MaterialInput>&, \
                             const std::vector<BodyInput>&, std::size_t, Fault&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

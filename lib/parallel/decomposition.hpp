@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "data/saved_state.hpp"
+#include "data/state.hpp"
 #include "device/stream_event.hpp"
 #include "functions/halo.hpp"
 #include "functions/node_impulses.hpp"

@@ -54,7 +54,7 @@ PetscErrorCode AppliedLoads<Space, T, Dim>::measure(HistoryRow* row) const {
   if (!run_.state.loads.in_use()) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(work(&row->load_work));
   const auto now = loads_at<Dim>(run_.config, row->time - run_.config.time.start);
-  const std::vector<SurfaceSum> sums = sum_surfaces(run_.state);
+  const std::vector<SurfaceSum> sums = sum_surfaces(run_.state, run_.state.loads);
   for (std::size_t n = 0; n < sums.size(); ++n) {
     double all[k_numbers] = {sums[n].area, sums[n].start_area};
     for (int d = 0; d < Dim; ++d) all[2 + d] = sums[n].vector[d];

@@ -5,6 +5,7 @@
 // copy bandwidth tells how near it is to the limit of memory.
 
 #include "data/footprint.hpp"
+#include "data/state.hpp"
 #include "functions/step_kernels.hpp"
 #include "step/timers.hpp"
 
@@ -38,7 +39,7 @@ double bytes_to_particles(const State<Space, T, Dim>& s) {
       },
       p);
   const double place = sizeof(*p.coordinate.data()) + sizeof(*p.cell.data()) + sizeof(*p.body.data());
-  particle += s.xpic_order * (place + 2 * sizeof(*p.velocity.data()));
+  particle += s.scheme.xpic_order * (place + 2 * sizeof(*p.velocity.data()));
   if (p.has_affine) particle += sizeof(*p.affine.data());
   return p.count * particle + s.patches.node_count() * double(sizeof(T) * NodeKinematics<Dim>::size);
 }

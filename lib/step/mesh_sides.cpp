@@ -52,7 +52,7 @@ PetscErrorCode MeshSides<Space, T, Dim>::begin() {
 template <class Space, class T, int Dim>
 PetscErrorCode MeshSides<Space, T, Dim>::measure(double interval, HistoryRow* row) const {
   PetscFunctionBeginUser;
-  row->walls = wall_forces(run_.state);
+  row->walls = wall_forces(run_.state, run_.state.loads);
   PetscCall(run_.sum(row->walls[0][0].data(), 18));
   if (!run_.state.sides.in_use()) PetscFunctionReturn(PETSC_SUCCESS);
   SideWork done = take_side_work(run_.state);

@@ -42,8 +42,8 @@ struct Step {
     if (rayleigh)
       PetscCall(run(StepPhase::soil_to_nodes, [&] { return rayleigh_to_nodes(s, *rayleigh, ranks); }));
     PetscCall(run(StepPhase::nodes, [&] {
-      update_nodes(s, dt);                           // 4 velocities, walls, contact
-      if (s.loads.in_use()) follow_surfaces(s, dt);  //   work of loads, and their areas
+      update_nodes(s, dt);                                              // 4 velocities, walls, contact
+      if (s.loads.in_use()) follow_surfaces(s, s.loads, s.energy, dt);  //   work of loads, and their areas
     }));
     if (s.energy.on)
       PetscCall(run(StepPhase::energy, [&] {
@@ -105,7 +105,7 @@ struct Step {
   PetscErrorCode persistent(long* left) const {
     PetscFunctionBeginUser;
     if constexpr (is_device<Space>) {
-      if (!timers.sampling() && s.kick == 1 && can_persist(s)) {
+      if (!timers.sampling() && s.scheme.kick == 1 && can_persist(s)) {
         const long most = *left;
         const auto steps = [&] {  // functions 4 to 6, and 1 to 3 of the next step
           const long done = run_persistent_steps(s, dt, most);
@@ -191,7 +191,7 @@ struct Step {
   PetscErrorCode update_rigids(bool on_stream) const {
     PetscFunctionBeginUser;
     if (ranks) PetscCall(ranks->add_forces(s));
-    move_rigids(s, dt, on_stream ? overlap->fork(s.space) : s.space);
+    move_rigids(s, s.timed, dt, on_stream ? overlap->fork(s.space) : s.space);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 3, the border first, unless its sums have been sent already.
@@ -234,7 +234,7 @@ PetscErrorCode step(State<Space, T, Dim>& s, Timers& timers, double dt, Decompos
     case StepForm::overlapped: PetscCall(step.overlapped()); break;
     case StepForm::persistent: PetscCall(step.persistent(left)); break;
   }
-  s.kick = 1;
+  s.scheme.kick = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

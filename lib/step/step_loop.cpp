@@ -16,7 +16,7 @@ PetscErrorCode StepLoop<Space, T, Dim>::set_up(bool from_run) {
   const Config& config = run_.config;
   if (!(config.rayleigh_mass > 0 || config.rayleigh_stiffness > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   rayleigh_ = std::make_unique<Rayleigh<Space, T, Dim>>();
-  run_.state.rayleigh = true;
+  run_.state.scheme.rayleigh = true;
   begin_rayleigh(*rayleigh_, config.rayleigh_mass, config.rayleigh_stiffness, shear_ratios(config));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -29,9 +29,9 @@ PetscErrorCode StepLoop<Space, T, Dim>::advance(const StepRange& range, Batch* b
   // Velocities are means over a step: from one to the next they change by half of each step's length, and
   // from rest by half of the first step's.
   const double before = range.before > 0 || !from_run_ ? range.before : dt;
-  s.kick = before == dt ? 1 : (before + dt) / (2 * dt);
+  s.scheme.kick = before == dt ? 1 : (before + dt) / (2 * dt);
   s.time = range.time;
-  begin_loads(s, {range.origin - run_.config.time.start, dt, range.first, before});
+  begin_loads(s, s.timed, {range.origin - run_.config.time.start, dt, range.first, before});
   const double start = WorkClock::wall();
   restart_count(s);
   if (run_.ranks)

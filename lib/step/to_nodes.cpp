@@ -72,7 +72,7 @@ void loads_to_nodes(State<Space, T, Dim>& s) {
   if (!s.loads.in_use()) return;
   Kokkos::deep_copy(s.space, s.nodes.load, T(0));
   for (int axis = 0; axis < Dim; ++axis)
-    interpolate<LoadSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, place_faces(s, axis),
+    interpolate<LoadSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, place_faces(s, s.loads, axis),
                                            s.nodes.load);
   add_loads(s);
 }
@@ -125,7 +125,7 @@ void sum_present_soil(State<Space, T, Dim>& s) {
 template <class Space, class T, int Dim>
 PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
   PetscFunctionBeginUser;
-  for (int pass = 0; pass < s.xpic_order; ++pass) {
+  for (int pass = 0; pass < s.scheme.xpic_order; ++pass) {
     if (pass > 0) {
       Kokkos::deep_copy(s.space, s.nodes.residual, T(0));
       with_box_or_ring(s.soil.points, [&](auto domain) {

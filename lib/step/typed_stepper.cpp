@@ -43,11 +43,11 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   *failure = fault.kind == FaultKind::none ? reports_.failure_of_limit() : reports_.failure_of(fault);
   PetscCall(run_.share(failure));
   if (!model.owners.empty() && failure->what.empty()) {
-    s.f_bar_fraction = f_bar_range(config).largest;
+    s.f_bar.fraction = f_bar_range(config).largest;
     run_.ranks = std::make_unique<Decomposition<Space, T, Dim>>();
     PetscCallCXX(PetscCall(run_.ranks->start(run_.comm, config.partition, model.owners, s)));
   }
-  s.keeps_stress = false;
+  s.f_bar.keeps_stress = false;
   if (config.output.energy && failure->what.empty()) PetscCallCXX(PetscCall(energy_.begin()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,23 +63,23 @@ void TypedStepper<Space, T, Dim>::set_options(const Model& model) {
   s.water = water_of_kernels<Dim>(config);
   if (!together && !config.p2g.rebuild_interval) s.rebuild_late = GlobalBound::k_late;
   s.batches.limit = config.device_memory_limit.value_or(0) * k_gib;
-  s.damping = config.damping;
+  s.scheme.damping = config.damping;
   // Friction takes the mean normal impulse over the time in which the fastest wave crosses so many cells:
   // some periods with which the impulse of a node rings with the waves of its cells. With five, a block
   // creeps that has 1.04 times the friction that it needs.
   constexpr double k_friction_cells = 10;
   s.friction_time = k_friction_cells * critical_time_step(config);
-  s.flip_fraction = config.flip_fraction;
-  if (config.velocity_update == VelocityUpdate::xpic) s.xpic_order = config.xpic_order;
+  s.scheme.flip_fraction = config.flip_fraction;
+  if (config.velocity_update == VelocityUpdate::xpic) s.scheme.xpic_order = config.xpic_order;
   s.soil.points.has_affine = config.velocity_update == VelocityUpdate::apic;
   s.strays.rule = config.stray_particles;
   s.soil.points.has_domain = config.particle_domain != ParticleDomain::fixed;
   s.soil.points.rings = config.geometry == Geometry::axisymmetric;
   s.soil.points.splits = config.particle_domain == ParticleDomain::split;
-  s.rim_scale = rim_scale(config);
+  s.scheme.rim_scale = rim_scale(config);
   // On several ranks the pressure of a cell is averaged once all its particles are here.
-  s.f_bar_fraction = together ? 0 : f_bar_range(config).largest;
-  s.keeps_stress = model.from_run;
+  s.f_bar.fraction = together ? 0 : f_bar_range(config).largest;
+  s.f_bar.keeps_stress = model.from_run;
   s.energy.on = config.output.energy;
 }
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "data/state.hpp"
 #include "functions/energy_works.hpp"
 #include "functions/step_kernels.hpp"
 #include "physics/materials/any.hpp"
@@ -133,14 +134,14 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential,
   s.p2g = cloud.p2g;
   s.p2g.strategy = how;
   for (int d = 0; d < B::dim; ++d) s.gravity[d] = cloud.gravity[d];
-  s.flip_fraction = cloud.flip_fraction;
-  s.xpic_order = cloud.xpic_order;
+  s.scheme.flip_fraction = cloud.flip_fraction;
+  s.scheme.xpic_order = cloud.xpic_order;
   s.soil.points.has_affine = cloud.affine;
   s.soil.points.has_domain = cloud.stretch;
   s.soil.points.splits = cloud.split;
   s.soil.points.rings = cloud.rings;
-  s.damping = cloud.damping;
-  s.f_bar_fraction = cloud.f_bar_fraction;
+  s.scheme.damping = cloud.damping;
+  s.f_bar.fraction = cloud.f_bar_fraction;
   s.batches.limit = cloud.memory_limit;
   s.energy.on = cloud.energy;
   s.soil.points.face_count = cloud.face_count;

@@ -448,7 +448,7 @@ TEST_CASE("short domains slow the time step, and long ones no more than a lone p
         }
       }
       auto s = state_of<B>(cloud);
-      s.rim_scale = 1.0 / (4 * Dim);  // what squares of a quarter of a cell allow
+      s.scheme.rim_scale = 1.0 / (4 * Dim);  // what squares of a quarter of a cell allow
       return fastest_wave(s);
     };
     const double square = wave_at(0.25, 0.25);

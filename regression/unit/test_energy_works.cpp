@@ -30,7 +30,7 @@ double gain_of_nodes(const State<Space, T, Dim>& s) {
   double gain = 0;
   for (int i = 0; i < s.patches.node_count(); ++i) {
     const double m = soil(i, S::mass);
-    if (!(m > 1e-12 * s.mass_cut)) continue;
+    if (!(m > 1e-12 * s.scheme.mass_cut)) continue;
     for (int d = 0; d < Dim; ++d) {
       const double before = soil(i, S::momentum + d) / m, v = motion(i, NodeKinematics<Dim>::velocity + d);
       gain += m * (v * v - before * before) / 2;

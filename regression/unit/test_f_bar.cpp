@@ -59,7 +59,7 @@ TEST_CASE("F-bar in cells of one material does not depend on other materials", "
       Cloud cloud = two_clays<B::dim>(same_cells);
       cloud.bodies[1].material = second;
       auto s = state_of<B>(cloud, is_device<typename B::Space> ? P2G::gather : P2G::sequential);
-      CHECK(s.f_bar_by_material == (second == 1));
+      CHECK(s.f_bar.by_material == (second == 1));
       run_steps(s, 1e-5, 20);
       return soil_fields(s);
     };

@@ -61,9 +61,9 @@ std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
   const T inv = s.grid.inv_spacing;
   const UpdateScalars<T> by{T(dt),
                             inv,
-                            T(s.flip_fraction),
-                            T(1 - s.flip_fraction),
-                            T(s.f_bar_fraction),
+                            T(s.scheme.flip_fraction),
+                            T(1 - s.scheme.flip_fraction),
+                            T(s.f_bar.fraction),
                             T(s.strays.least_volume),
                             T(s.strays.most_volume),
                             false};

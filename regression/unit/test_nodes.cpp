@@ -143,7 +143,7 @@ TEST_CASE(
       soil(i, Terms::force) = 4;
       if (i % 3 == 0) soil(i, Terms::mass) = 0;
       if (i % 3 != 1) continue;
-      const auto light = static_cast<typename B::real>(s.mass_cut / 2);
+      const auto light = static_cast<typename B::real>(s.scheme.mass_cut / 2);
       soil(i, Terms::mass) = light;
       for (int d = 0; d < Dim; ++d) soil(i, Terms::momentum + d) = light * (d + 1);
     }
@@ -167,7 +167,7 @@ TEST_CASE("damping takes a fraction of the acceleration, against the velocity", 
     constexpr int Dim = B::dim;
     INFO(build.name());
     auto s = nodes_that_move<B>(grid_of<Dim>({9, 11, 6}, 0.1, Wall::free));
-    s.damping = 0.25;
+    s.scheme.damping = 0.25;
     const auto soil = on_host(s.nodes.soil);
     for (int i = 0; i < s.patches.node_count(); ++i)
       soil(i, SoilTerms<Dim>::force) = 4, soil(i, SoilTerms<Dim>::force + 1) = -4;

@@ -70,7 +70,7 @@ TEST_CASE("own masses that are all alike give what one mass a body gives", "[own
         INFO(B::name() << " " << word_of(how) << ", velocity update " << kind);
         CHECK(own.soil.points.has_own_mass);
         CHECK(common.soil.points.mass.extent(0) == 0);
-        CHECK(own.mass_cut == common.mass_cut);
+        CHECK(own.scheme.mass_cut == common.scheme.mass_cut);
         run_steps(own, k_dt, 6), run_steps(common, k_dt, 6);
         const bool ordered = B::backend() == Backend::serial;
         CHECK(largest_difference(soil_fields(own), soil_fields(common)) <=

@@ -20,7 +20,7 @@ int steps_in_launches(State<Space, T, Dim>& s, double dt, int n, int most) {
       s.summed = {true, s.soil_boundary, true};
     }
     const bool whole = can_persist(s);
-    REQUIRE((whole || (!s.co_resident && s.patches.slots > 1000)));
+    REQUIRE((whole || (!s.launch.co_resident && s.patches.slots > 1000)));
     restart_count(s);
     const int asked = whole ? run_persistent_steps(s, dt, std::min(n, most)) : 1;
     if (!whole) one_step(s, dt);
@@ -183,7 +183,7 @@ TEST_CASE("teams that a device does not hold at once do one step a launch, or tw
         auto one = state_of<B>(cloud, P2G::tile), two = state_of<B>(cloud, P2G::tile);
         INFO(B::name() << ' ' << width);
         steps_in_launches(one, 2e-4, 10, 5);
-        CHECK(one.co_resident == !is_device<typename B::Space>);
+        CHECK(one.launch.co_resident == !is_device<typename B::Space>);
         steps_by_function(two, 2e-4, 10);
         CHECK(largest_difference(soil_fields(one), soil_fields(two)) < B::of(1e-10, 1e-3));
       }

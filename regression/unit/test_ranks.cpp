@@ -79,7 +79,7 @@ struct Pair {
     Cloud share = share_of_cloud<B::dim>(cloud, rank, size);
     share.f_bar_fraction = 0;  // a cell's particles are still on several ranks
     here = state_of<B>(share, how);
-    here.f_bar_fraction = cloud.f_bar_fraction;
+    here.f_bar.fraction = cloud.f_bar_fraction;
     const Owners owners = random_owners(alone.grid.patches_of_field(), size, seed);
     REQUIRE(ranks.start(MPI_COMM_WORLD, config, owners, here) == PETSC_SUCCESS);
   }

@@ -19,15 +19,15 @@ void put(State_& s, Feature f) {
   using Memory = typename State_::Memory;
   switch (f) {
     case Feature::other_strategy: s.p2g.strategy = P2G::atomic; break;
-    case Feature::xpic: s.xpic_order = 2; break;
+    case Feature::xpic: s.scheme.xpic_order = 2; break;
     case Feature::apic: s.soil.points.has_affine = true; break;
     case Feature::splits: s.soil.points.splits = true; break;
     case Feature::correction: s.correction.on = true; break;
     case Feature::submerged: s.water.density = 1000; break;
     case Feature::energy: s.energy.on = true; break;
     case Feature::loads: s.loads.now = decltype(s.loads.now)("loads", 1); break;
-    case Feature::rayleigh: s.rayleigh = true; break;
-    case Feature::damping: s.damping = 0.5; break;
+    case Feature::rayleigh: s.scheme.rayleigh = true; break;
+    case Feature::damping: s.scheme.damping = 0.5; break;
     case Feature::shear_fraction: s.shear_fraction = true; break;
     case Feature::friction: s.has_friction = true; break;
     case Feature::acting_sides: s.sides.mask = 1; break;

@@ -232,7 +232,7 @@ TEST_CASE("soil pressed into a thin plate is stopped by the face that it is at",
         Coord<Dim> node{10, z};
         if constexpr (Dim == 3) node = {10, 10, z};
         const std::size_t at = s.grid.address_of(node);
-        held += soil.value[at * soil.width] > s.mass_cut;
+        held += soil.value[at * soil.width] > s.scheme.mass_cut;
         fastest = std::max(fastest, std::fabs(motion.value[at * motion.width + Dim - 1]));
       }
       INFO(build.name() << (below ? " soil below" : " soil above"));

@@ -114,7 +114,7 @@ TEST_CASE("nodes get the forces of loads on faces, by every strategy", "[surface
         Kokkos::deep_copy(s.nodes.soil, 0);
         loads_to_nodes(s);
         const Table load = nodes_of(s, s.nodes.load), soil = nodes_of(s, s.nodes.soil);
-        const auto total = total_force<Dim>(sum_surfaces(s));
+        const auto total = total_force<Dim>(sum_surfaces(s, s.loads));
         std::array<double, Dim> sum{};
         double wrong = 0, size = 0;
         for (std::size_t i = 0; i < load.value.size() / Dim; ++i)
@@ -185,7 +185,7 @@ TEST_CASE("areas of faces turn with soil that spins, and grow with soil that str
       });
       const auto first = on_host(s.soil.points.faces[0]);
       const std::vector<Face<Dim>> before(first.data(), first.data() + s.soil.points.count);
-      follow_surfaces(s, dt);
+      follow_surfaces(s, s.loads, s.energy, dt);
       const auto after = on_host(s.soil.points.faces[0]);
       const double half = rate * dt / 2, turn = 2 * std::atan(half), stretch = (1 + half) / (1 - half);
       double wrong = 0;
@@ -218,7 +218,7 @@ TEST_CASE("areas of faces grow as the soil along them, not as that at the centre
     const std::vector<Face<Dim>> before(first.data(), first.data() + s.soil.points.count);
     const auto coordinate = on_host(s.soil.points.coordinate);
     const auto cell = on_host(s.soil.points.cell);
-    follow_surfaces(s, dt);
+    follow_surfaces(s, s.loads, s.energy, dt);
     const auto after = on_host(s.soil.points.faces[0]);
     double wrong = 0;
     int looked_at = 0;

@@ -73,7 +73,7 @@ template <class Space, class T, int Dim>
 void timed_steps(State<Space, T, Dim>& s, double dt, int n, int most, bool persistent) {
   for (int done = 0; done < n;) {
     restart_count(s);
-    begin_loads(s, {0, dt, done, dt});
+    begin_loads(s, s.timed, {0, dt, done, dt});
     int left = std::min(most, n - done);
     while (left > 0) {
       int asked = 1;

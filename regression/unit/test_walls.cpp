@@ -326,7 +326,7 @@ TEST_CASE("soil at rest presses the floor with its weight and the sides with its
     }
     cloud.bodies = {body};
     auto s = state_of<B>(cloud);
-    const WallForces force = wall_forces(s);
+    const WallForces force = wall_forces(s, s.loads);
     CHECK(std::fabs(force[1][0][1] + weight) < B::of(1e-10, 1e-4) * weight);
     const double width = Dim == 2 ? 1 : 3 * k_edge, side = 0.5 * 10 * k_density * 0.5 * 0.16 * width;
     CHECK(std::fabs(force[0][0][0] + side) < B::of(1e-10, 1e-4) * side);

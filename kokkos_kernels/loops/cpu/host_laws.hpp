@@ -1,7 +1,7 @@
 #pragma once
 // The laws of particles on a processor: as many particles at once as an instruction takes.
 
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 #include "loops/cpu/host_window.hpp"
 #include "physics/advance.hpp"
 

@@ -71,7 +71,7 @@ void update_nodes_on_host(State<Space, T, Dim>& s, double dt) {
 
 /// Brings to the nodes what the windows hold.
 template <class Space, class T, int Dim>
-void give_nodes_on_host(State<Space, T, Dim>& s) {
+void give_nodes_on_host(ContactCore<Space, T, Dim>& s) {
   const HostSoil<Space, T, Dim> soil(s);
   const Shared phases[] = {slots_about<Dim>(s.soil.bins, s.patches.slots)};
   for_each_shared("mpm::give_nodes", s.space, phases, [&](int, int slot) {

@@ -2,7 +2,7 @@
 // update_particles on a processor: a thread moves the particles of a patch, as many at once as an instruction
 // takes.
 
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 #include "loops/cpu/host_laws.hpp"
 #include "loops/cpu/host_samples.hpp"
 #include "loops/cpu/host_window.hpp"

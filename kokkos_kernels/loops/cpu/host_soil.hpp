@@ -29,7 +29,7 @@ struct HostSoil {
   decltype(NodeSums<Space, T, Dim>::rigid) rigid;
   bool has_boundary;
 
-  explicit HostSoil(const State<Space, T, Dim>& s)
+  explicit HostSoil(const ContactCore<Space, T, Dim>& s)
       : soil(interpolation_of(s, s.soil.bins,
                               SoilSource<Space, T, Dim, domain>{s.soil.points, s.grid.inv_spacing},
                               s.nodes.soil, s.space)),

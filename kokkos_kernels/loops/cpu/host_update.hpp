@@ -10,7 +10,7 @@ namespace mpm {
 /// Moves the soil; if `sums`, it goes on to the windows, with its boundary, and to the nodes where they are
 /// not to take from these.
 template <ParticleDomain domain, class Space, class T, int Dim>
-void move_on_host(State<Space, T, Dim>& s, const UpdateScalars<T>& by, bool sums) {
+void move_on_host(ContactCore<Space, T, Dim>& s, const UpdateScalars<T>& by, bool sums) {
   const auto& bins = s.soil.bins;
   const HostParticles<Space, T, Dim, domain> particles{
       s.soil.points, bins.begin,       s.patches.neighbours, s.patches.origin,  s.nodes.kinematics,

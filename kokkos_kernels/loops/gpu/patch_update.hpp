@@ -1,7 +1,7 @@
 #pragma once
 // Update of the particles of a patch by a team of a device (function 5), and of the nodes of the next step.
 
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 #include "device/warp.hpp"
 #include "loops/gpu/tile.hpp"
 #include "physics/advance.hpp"
@@ -293,28 +293,29 @@ inline constexpr bool sums_fit =
     scratch_fits<Space, T, Dim>(UpdateParticles<Space, T, Dim, true, PatchKind::any, Materials>::bytes());
 
 template <class Space, class T, int Dim>
-UpdateScalars<T> update_scalars(const State<Space, T, Dim>& s, double dt) {
-  const double flip = s.xpic_order > 0 ? 1 : s.flip_fraction;  // XPIC has changed the velocities already
+UpdateScalars<T> update_scalars(const ContactCore<Space, T, Dim>& s, double dt) {
+  const double flip =
+      s.scheme.xpic_order > 0 ? 1 : s.scheme.flip_fraction;  // XPIC has changed the velocities already
   return {.dt = T(dt),
           .inv_spacing = s.grid.inv_spacing,
           .flip = T(flip),
           .pic = T(1 - flip),
-          .f_bar = T(s.f_bar_fraction),
+          .f_bar = T(s.f_bar.fraction),
           .least_volume = T(s.strays.least_volume),
           .most_volume = T(s.strays.most_volume),
           .volume_is_fault = s.strays.rule == StrayRule::stop,
           .clock = {.start = s.time, .dt = dt, .steps = &s.control.data()->steps},
-          .f_bar_by_material = s.f_bar_by_material && s.f_bar_fraction > 0};
+          .f_bar_by_material = s.f_bar.by_material && s.f_bar.fraction > 0};
 }
 
 /// Whether the kernels of light laws alone do all that this run asks for.
 template <class Space, class T, int Dim>
-bool light_kernels_do(const State<Space, T, Dim>& s) {
-  return s.light_laws && !(s.f_bar_by_material && s.f_bar_fraction > 0);
+bool light_kernels_do(const ContactCore<Space, T, Dim>& s) {
+  return s.light_laws && !(s.f_bar.by_material && s.f_bar.fraction > 0);
 }
 
 template <class Update, class Space, class T, int Dim>
-Update update_of(const State<Space, T, Dim>& s, double dt,
+Update update_of(const ContactCore<Space, T, Dim>& s, double dt,
                  const Kokkos::View<int*, typename Space::memory_space>& slots, int first) {
   const auto& set = s.soil;
   return {.source = {set.points, s.grid.inv_spacing},

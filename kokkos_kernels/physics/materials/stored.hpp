@@ -20,7 +20,7 @@ template <class T>
 struct StoredMaterial {
   static constexpr std::size_t k_room = 16 + 64 * sizeof(T);  // bytes
   alignas(16) unsigned char bytes[k_room];
-  T f_bar_share = 1;  // of the run's fraction of F-bar, State::f_bar_fraction
+  T f_bar_share = 1;  // of the run's fraction of F-bar, FBar::fraction
 };
 
 /// make_material() of any.hpp, for a table of a device. pore_stiffness [Pa]: of the water in its pores.

@@ -1,0 +1,31 @@
+#pragma once
+// The middle floor of what a time step works on (data/floors.hpp): rigid bodies and their contact with soil.
+
+#include <vector>
+
+#include "data/contact_slots.hpp"
+#include "data/core.hpp"
+#include "data/rigid.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+struct ContactCore : Core<Space, T, Dim> {
+  using Memory = typename Space::memory_space;
+  std::vector<ParticleSet<Space, RigidPoints<Space, T, Dim>>> rigid_points;
+  Kokkos::View<Rigid<Dim>*, Memory> rigids;
+  Kokkos::View<Vertex*, Memory> vertices;  // of the rigids' polygons
+  ContactSlots<Space> contact;
+  Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step
+  bool forces_summed =
+      false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them
+  bool rigid_moves = false;     // some rigid is not fixed
+  bool rigid_dynamic = false;   // some rigid moves by the forces on it
+  bool mass_normals = false;    // some rigid's normals are those of its mass gradient
+  bool soil_boundary = false;   // some contact needs the soil's boundary at the nodes
+  bool shear_fraction = false;  // some contact needs the soil's strength at the nodes
+  bool has_friction = false;    // some contact has Coulomb friction
+  double friction_time = 1;     // s, over which friction takes the mean normal impulse
+};
+
+}  // namespace mpm
