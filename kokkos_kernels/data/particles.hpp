@@ -35,7 +35,7 @@ struct BodyProperties {
 /// is. As many columns are in use as the law with the most variables has, and one more for the excess pore
 /// pressure where some material has a pore stiffness; the others take no memory.
 template <class Space, class T>
-struct History {
+struct LawHistory {
   static constexpr int most = k_most_state<Space> + 1;
   Kokkos::Array<Kokkos::View<T*, typename Space::memory_space>, most> column;
   Kokkos::Array<const char*, most> name{};  // of each column in use
@@ -54,7 +54,7 @@ struct Soil : Points<Space, T, Dim> {
   Kokkos::View<Vector<T, Dim>*, Memory> velocity;   // m/s
   Kokkos::View<SymTensor<T, Dim>*, Memory> stress;  // Pa, Cauchy, tension positive
   Kokkos::View<T*, Memory> volume;                  // m3, current
-  History<Space, T> history;                        // state variables of the laws
+  LawHistory<Space, T> history;                     // state variables of the laws
   Kokkos::View<std::uint16_t*, Memory> body;        // index into bodies
   Kokkos::View<Matrix<T, Dim>*, Memory> affine;     // m/s a cell, C_p of APIC, in use where has_affine
   Kokkos::View<T*, Memory> mass;                    // kg, in use where has_own_mass

@@ -9,7 +9,7 @@ namespace mpm {
 /// this much room beyond the margin.
 inline constexpr double k_most_shift = 0.05;
 
-/// Soil that flows, by its law: a column of History that holds the plastic shear strain, or one of these.
+/// Soil that flows, by its law: a column of LawHistory that holds the plastic shear strain, or one of these.
 struct Flow {
   static constexpr int never = -2;   // the law has no plastic strain
   static constexpr int always = -1;  // a fluid without strength
@@ -19,7 +19,7 @@ template <class Space>
 struct PositionCorrection {
   bool on = false;
   double rate = 0;  // -, diffusion number for a unit of shear strain
-  Kokkos::View<int*, typename Space::memory_space> flow_column;  // by material: column of History, or Flow
+  Kokkos::View<int*, typename Space::memory_space> flow_column;  // by material: column of LawHistory, or Flow
 };
 
 }  // namespace mpm

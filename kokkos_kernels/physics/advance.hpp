@@ -36,7 +36,7 @@ struct GridSample {
 /// velocity gradient L [1/s]. That of a ring also has the hoop's, the last of its first row.
 template <class R, class T, int Dim, int Slopes>
 KOKKOS_INLINE_FUNCTION Increment<R, T, Dim> increment_of(const R (&L)[Dim][Slopes], T dt,
-                                                         const Clock& clock) {
+                                                         const LawClock& clock) {
   Increment<R, T, Dim> by;
   by.dt = dt, by.clock = clock;
   for (int k = 0; k < sym_size<Dim>; ++k) by.strain[k] = 0;
@@ -59,7 +59,7 @@ struct UpdateScalars {
   T dt, inv_spacing, flip, pic, f_bar;
   T least_volume, most_volume;  // m3
   bool volume_is_fault;         // one that is at a bound
-  Clock clock{};
+  LawClock clock{};
   bool f_bar_by_material = false;  // FBar::by_material
 };
 

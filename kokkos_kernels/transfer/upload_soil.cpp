@@ -78,7 +78,7 @@ void fill_column(View& view, const char* name, const Rows& rows) {
 /// As many columns as the materials of the bodies need, and their names: those of the variables where the
 /// laws agree.
 template <class Space, class T>
-void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& materials,
+void name_columns(LawHistory<Space, T>& history, const std::vector<MaterialInput>& materials,
                   const std::vector<BodyInput>& bodies) {
   static const auto shared = [] {
     std::array<std::string, k_most_state<Space>> names;
@@ -106,7 +106,7 @@ void name_columns(History<Space, T>& history, const std::vector<MaterialInput>& 
 
 /// State variable k of the laws, or the excess pore pressure.
 template <class Space, class T>
-void fill_history(History<Space, T>& history, int k, const Rows& rows) {
+void fill_history(LawHistory<Space, T>& history, int k, const Rows& rows) {
   const auto given_of = [&](const BodyInput& body) -> const std::vector<double>* {
     const int own = static_cast<int>(body.state.size());
     const bool has_pore = own > 0 && body.state.back().name == k_excess_pore_pressure;

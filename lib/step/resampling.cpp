@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-/// Column of History that shows whether soil of this material flows (PositionCorrection::flow_column).
+/// Column of LawHistory that shows whether soil of this material flows (PositionCorrection::flow_column).
 int flow_column(const MaterialConfig& material) {
   const auto variables = state_variables(material);
   for (std::size_t k = 0; k < variables.size(); ++k)

@@ -97,7 +97,7 @@ struct LawState {
 };
 
 /// The time at the start of a step [s]: `start`, and the steps of dt that were done since.
-struct Clock {
+struct LawClock {
   double start = 0, dt = 0;
   const int* steps = nullptr;  // in the memory of the execution space, where another team may count them
   KOKKOS_INLINE_FUNCTION double now() const { return start + dt * load_of_others(steps); }
@@ -110,7 +110,7 @@ struct Increment {
   Spin<R, Dim> spin;         // -
   R gradient[Dim][Dim];      // 1/s, L_ij = dv_i/dx_j
   T dt;                      // s
-  Clock clock;
+  LawClock clock;
   /// Time at the start of the step [s]; only laws that ask for it read it.
   KOKKOS_INLINE_FUNCTION T time() const { return static_cast<T>(clock.now()); }
 };
