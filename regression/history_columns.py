@@ -22,12 +22,13 @@ PROBES = ("-probes gate,tip,toe,pier -gate_kind section -gate_axis x -gate_at 4 
 LOAD = "-loads strip -strip_body bank -strip_lower {lower} -strip_upper {upper} -strip_pressure 1e3"
 RUNS = {
     "plane strain": "",
+    "a wheel": "-pipe_free x,y,rz",
     "particles that split": "-particle_domain split -position_correction delta",
     "stages under water with loads": "-gravity 0,-9.81 -water_level 5.2 -output_energy on -stages rest,push -rest_end equilibrium "
     + PROBES.format(at="2,1", line="2") + " " + LOAD.format(lower="0,0", upper="8,6"),
     "3D": "-dim 3 -mesh_lower 0,0,0 -mesh_upper 8,6,2 -soil_lower 0,0.5,0 -soil_upper 8,2,2 -boulder_shape ball -boulder_centre 2,3.5,1 "
     "-bank_shape box -bank_lower 6,2,0 -bank_upper 8,3,2 -floor_lower 0,0,0 -floor_upper 8,0.5,2 -press_lower 6,4.5,0 "
-    "-press_upper 8,5.5,2 -press_velocity 0,-0.1,0 -pipe_shape ball -pipe_centre 5,4.5,1 -mesh_xmin fixed -mesh_zmin friction -mesh_zmin_friction 0.3 "
+    "-press_upper 8,5.5,2 -press_velocity 0,-0.1,0 -pipe_shape ball -pipe_centre 5,4.5,1 -pipe_free x,y,z,rx,ry,rz -mesh_xmin fixed -mesh_zmin friction -mesh_zmin_friction 0.3 "
     + PROBES.format(at="2,1,1", line="2,1") + " " + LOAD.format(lower="0,0,0", upper="8,6,2"),
 }
 

@@ -26,6 +26,7 @@ enum class Feature {
   gravity_table,        // gravity by a table, set where rigid bodies move, when no node may be updated
   side_table,           // motion of a side by a table, set likewise
   pushed_mass_normals,  // rigid body that forces move, with normals of its mass gradient
+  turning_rigids,       // rigid bodies that may turn, which steps in one launch do not move
   revolved,             // body of revolution, whose particles are rings
   ranks,                // several ranks
   batches,              // soil that goes through the device's memory in batches
@@ -74,7 +75,7 @@ constexpr Features excluding(StepWay way) {
       return {F::other_strategy, F::xpic,   F::apic,  F::splits,  F::correction,
               F::submerged,      F::energy, F::loads, F::rayleigh};
     case StepWay::one_launch:
-      return excluding(StepWay::sums_ahead) | Features{F::revolved, F::ranks, F::batches};
+      return excluding(StepWay::sums_ahead) | Features{F::turning_rigids, F::revolved, F::ranks, F::batches};
     case StepWay::many_steps:
       return excluding(StepWay::one_launch) |
              Features{F::damping, F::shear_fraction, F::friction, F::acting_sides, F::pushed_mass_normals};

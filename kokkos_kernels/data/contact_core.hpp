@@ -20,6 +20,7 @@ struct ContactCore : Core<Space, T, Dim> {
   bool forces_summed =
       false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them
   bool rigid_moves = false;     // some rigid is not fixed
+  bool rigid_turns = false;     // some rigid may turn
   bool rigid_dynamic = false;   // some rigid moves by the forces on it
   bool mass_normals = false;    // some rigid's normals are those of its mass gradient
   bool soil_boundary = false;   // some contact needs the soil's boundary at the nodes

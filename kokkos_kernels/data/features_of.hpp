@@ -30,6 +30,7 @@ Features features_of(const State<Space, T, Dim>& s) {
                                     {F::gravity_table, s.timed.moves_gravity},
                                     {F::side_table, s.timed.moves_sides},
                                     {F::pushed_mass_normals, s.rigid_dynamic && s.mass_normals},
+                                    {F::turning_rigids, s.rigid_turns},
                                     {F::revolved, s.soil.points.rings},
                                     {F::ranks, s.owned_nodes.extent(0) > 0},
                                     {F::batches, s.batches.in_use()}};

@@ -199,11 +199,11 @@ void add_rigid_work(State<Space, T, Dim>& s, bool counts) {
   const auto before = s.energy.rigid_at;
   const auto rigids = s.rigids;
   const auto force = s.rigid_force;
+  const int size = wrench_size<Dim>(s.rigid_turns);
   Kokkos::parallel_for(
       "mpm::add_rigid_work", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
-        constexpr int size = Wrench<Dim>::size;
         for (int r = 0; r < count; ++r) {
-          const Vector<double, size> way = rigids(r).motion.pose.way_from(before(r));
+          const auto way = way_between(before(r), rigids(r).motion.pose);
           for (int k = 0; k < size; ++k) work(Work::rigids) -= force(r * size + k) * way[k];
         }
       });

@@ -73,7 +73,7 @@ struct Move {
 
 template <class Space, class T, int Dim>
 void sum_forces(ContactCore<Space, T, Dim>& s, const Space& stream) {
-  const int values = Wrench<Dim>::size * static_cast<int>(s.rigid_points.size());
+  const int values = wrench_size<Dim>(s.rigid_turns) * static_cast<int>(s.rigid_points.size());
   if (values > 0) launch_end(EndStep<Space, T, Dim>(s, {}, 0), stream, values, Sum{});
   s.forces_summed = true;
 }

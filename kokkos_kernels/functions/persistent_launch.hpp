@@ -91,7 +91,7 @@ template <bool WithNodes, class Space, class T, int Dim>
 bool has_room(const State<Space, T, Dim>& s) {
   int with_points = 0;
   for (const auto& set : s.rigid_points) with_points += !set.points.surface_normal;
-  const int values = Wrench<Dim>::size * static_cast<int>(s.rigid_points.size());
+  const int values = wrench_size<Dim>(s.rigid_turns) * static_cast<int>(s.rigid_points.size());
   return with_choice(s, [&](auto laws, auto domain) {
     using Step = PersistentStep<Space, T, Dim, WithNodes, decltype(laws), domain()>;
     const std::size_t parts = EndStep<Space, T, Dim>(s, s.timed, 0).room(Step::threads) * sizeof(double);

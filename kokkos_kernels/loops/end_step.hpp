@@ -50,6 +50,7 @@ struct EndStep {
   LoadsOfStep<T, Dim> timed;
   double dt, spacing, margin, damping;
   int count, slots, late;  // rigids, slots that leave forces
+  int size;                // numbers of a wrench in `sums` and `forces`
   bool summed;             // the forces are in `sums` already
 
   EndStep(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& loads, double step)
@@ -66,10 +67,11 @@ struct EndStep {
         count(static_cast<int>(s.rigid_points.size())),
         slots(s.contact.count),
         late(s.rebuild_late),
+        size(wrench_size<Dim>(s.rigid_turns)),
         summed(s.forces_summed) {}
 
   /// Numbers of the wrenches on all rigids.
-  KOKKOS_INLINE_FUNCTION int values() const { return Wrench<Dim>::size * count; }
+  KOKKOS_INLINE_FUNCTION int values() const { return size * count; }
   static constexpr int warps(int threads) { return (threads + k_warp - 1) / k_warp; }
   /// Doubles that a team of so many threads needs.
   int room(int threads) const { return values() + warps(threads); }
@@ -90,7 +92,7 @@ struct EndStep {
   template <class Team>
   KOKKOS_INLINE_FUNCTION void operator()(const Team& team, double* part) const {
     const int done = control().steps + 1;
-    const StepEnd found = move(team, StepEnd(control()), left(), true, part);
+    const StepEnd found = move<true>(team, StepEnd(control()), left(), true, part);
     set_timed(team, done);
     once(team, [&] {
       found.keep_in(control());
@@ -99,11 +101,11 @@ struct EndStep {
   }
 
   /// Moves the rigids. found: the end of the step before; clears: the movements begin anew. Returns, to all
-  /// threads, the end of this step; until all have it, they need `part`: room(threads).
-  template <class Team>
+  /// threads, the end of this step; until all have it, they need `part`: room(threads). MayTurn: as in
+  /// RigidPose.
+  template <bool MayTurn, class Team>
   KOKKOS_INLINE_FUNCTION StepEnd move(const Team& team, StepEnd found, const Left& left, bool clears,
                                       double* part) const {
-    constexpr int size = Wrench<Dim>::size;
     const int values = this->values(), parts = warps(team.team_size()), rank = team.team_rank();
     MovingRigid<Dim> rigid{};
     if (rank < count) rigid = left.rigids[rank];
@@ -114,13 +116,14 @@ struct EndStep {
     MPM_ROLLED
     for (int r = rank; r < count; r += team.team_size()) {
       if (r > rank) rigid = left.rigids[r];
-      Wrench<Dim> contact;
-      for (int k = 0; k < size; ++k) {
+      Wrench<Dim> contact{};
+      for (int k = 0; k < Wrench<Dim>::size; ++k) {
+        if (k >= size) break;
         const int v = r * size + k;
         contact[k] = summed ? sums(v) : part[v];
         if (!summed && left.sums != nullptr) left.sums[v] = contact[k];
       }
-      part[r * size] = advance_rigid<T>(rigid, contact, damping, dt) / spacing;
+      part[r * size] = advance_rigid<T, MayTurn>(rigid, contact, damping, dt) / spacing;
       rigid.keep_in(left.rigids[r]);
     }
     team.team_barrier();
@@ -156,11 +159,11 @@ struct EndStep {
   }
 
   /// Pose that rigid r, `of`, will have, to the same bits. Dynamic: it may move by the forces on it, which
-  /// are there. part: room(threads).
+  /// are there; no body turns. part: room(threads).
   template <bool Dynamic, class Team>
   KOKKOS_INLINE_FUNCTION RigidPose<Dim> pose_after(const Team& team, int r, const Rigid<Dim>& of,
                                                    double* part) const {
-    constexpr int size = Wrench<Dim>::size;
+    constexpr int size = wrench_size<Dim>(false);
     const MovingRigid<Dim> rigid = of;
     Vector<double, Dim> a{};
     if constexpr (Dynamic) {

@@ -31,8 +31,8 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
   for (int r = 0; r < rigids; ++r) clear(&nodes.rigid(r, slot * cells, 0), cells * RigidTerms<Dim>::size);
 }
 
-/// The node's part of the step. acts: some side of the mesh acts (data/sides.hpp), or local damping does;
-/// kernels without that take fewer registers of a GPU.
+/// The node's part of the step. acts: some side of the mesh acts (data/sides.hpp), local damping does, or a
+/// rigid may turn; kernels without that take fewer registers of a GPU.
 template <class Space, class T, int Dim, bool acts = true>
 struct UpdateNodes {
   using S = SoilTerms<Dim>;
@@ -55,7 +55,7 @@ struct UpdateNodes {
   T fresh;  // -, weight of a step in the mean normal impulse
   T mass_cut;
   double spacing;
-  bool has_boundary, has_friction, has_mass_normals, clears, rings;
+  bool has_boundary, has_friction, has_mass_normals, clears, rings, turns;
 
   /// The nodes of a slot, number n of those near a rigid, under their sums. Leaves the force on each rigid
   /// [N] in `forces`, summed in an order that is always the same. force: [values][cells]
@@ -93,7 +93,9 @@ struct UpdateNodes {
     keep(i, kinematics(sums, rigids.data(), i, at, near, force));
   }
   /// Rigids, of which value_count has the numbers of their wrenches.
-  KOKKOS_INLINE_FUNCTION int rigid_count() const { return value_count / Wrench<Dim>::size; }
+  KOKKOS_INLINE_FUNCTION int rigid_count() const { return value_count / wrench(); }
+  /// Numbers of a wrench.
+  KOKKOS_INLINE_FUNCTION int wrench() const { return wrench_size<Dim>(acts && turns); }
 
   /// Mass [kg] below which a node is at rest: so little that 1 / m_i might overflow.
   KOKKOS_INLINE_FUNCTION T at_rest() const { return T(1e-12) * mass_cut; }
@@ -223,8 +225,7 @@ struct UpdateNodes {
       if (node.acting != 0) v = by_sides(acting_sides, side_node(node, keeps), v_old, v, true);
     MPM_ROLLED
     for (int r = 0; r < node.touching; ++r)
-      touch(sums, node, bodies[r], r, v, keeps,
-            force == nullptr ? force : force + r * Wrench<Dim>::size * cells);
+      touch(sums, node, bodies[r], r, v, keeps, force == nullptr ? force : force + r * wrench() * cells);
     if constexpr (acts)
       if (node.acting != 0 && node.touching > 0)
         v = by_sides(acting_sides, side_node(node, keeps), v_old, v, false);
@@ -281,7 +282,7 @@ struct UpdateNodes {
     Opponent<T, Dim> other;
     Vector<T, Dim> boundary;
     const auto place = place_at(node.at);
-    const Vector<double, Dim>& velocity = rigid.motion.velocity_at(place);
+    const Vector<double, Dim> velocity = rigid.motion.template velocity_at<acts>(place);
     for (int d = 0; d < Dim; ++d) {
       other.velocity[d] = static_cast<T>(velocity[d]);
       boundary[d] = node.boundary[BoundaryTerms<Dim>::area + d];
@@ -337,6 +338,18 @@ struct UpdateNodes {
       if (force != nullptr)
         force[(Wrench<Dim>::force + d) * cells] -= static_cast<double>(m_i) * change[d] * inv_dt;
     }
+    if constexpr (acts)
+      if (force != nullptr && turns && rigid.motion.pose.turns) add_moment(rigid, place, m_i, change, force);
+  }
+
+  /// Adds the moment about the centre of a rigid of the force that changes a node's velocity (touch).
+  template <class Component>
+  KOKKOS_INLINE_FUNCTION void add_moment(const Rigid<Dim>& rigid, const Component& place, T m_i,
+                                         const Vector<T, Dim>& change, double* force) const {
+    Vector<double, Dim> given;  // N
+    for (int d = 0; d < Dim; ++d) given[d] = static_cast<double>(m_i) * change[d] * inv_dt;
+    const AngularVector<Dim> moment = moment_of(rigid.motion.pose.arm_to(place), given);
+    for (int k = 0; k < k_turning_axes<Dim>; ++k) force[(Wrench<Dim>::moment + k) * cells] -= moment[k];
   }
 
   /// Largest shear stress of the interface at node i [Pa], infinite where only the friction limits.
@@ -385,12 +398,12 @@ struct UpdateNodes {
     constexpr T k_facing = T(0.1);   // cosine
     constexpr T k_bounds = T(1e-3);  // of a cell's face: less is the soil's interior
     constexpr T k_aside = T(1e-3);   // of its length: less is round-off, which leaves a plane of symmetry
-    Vector<double, Dim> x = rigid.motion.pose.to_body(place_at(node.at));
+    Vector<double, Dim> x = rigid.motion.pose.template to_body<acts>(place_at(node.at));
     bool reaches = true;
     MPM_ROLLED
     for (int look = 0; look < 2; ++look) {
       const Distance<Dim> to = distance_to(rigid.surface, vertices, x);
-      out = rigid.motion.pose.turn_to_world(to.normal);
+      out = rigid.motion.pose.template turn_to_world<acts>(to.normal);
       if (look > 0) break;
       distance = to.value;
       double reach = -k_overlap, against = 0;
@@ -404,7 +417,7 @@ struct UpdateNodes {
       Vector<double, Dim> back{};
       for (int d = 0; d < Dim; ++d)
         if (Kokkos::fabs(boundary[d]) > k_aside * length) back[d] = spacing * boundary[d] / length;
-      back = rigid.motion.pose.turn_to_body(back);
+      back = rigid.motion.pose.template turn_to_body<acts>(back);
       for (int d = 0; d < Dim; ++d) x[d] -= back[d];
     }
     return reaches;
@@ -421,7 +434,7 @@ struct UpdateNodes {
 template <bool acts = true, class Space, class T, int Dim>
 UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, double dt) {
   UpdateNodes<Space, T, Dim, acts> update{
-      .value_count = Wrench<Dim>::size * static_cast<int>(s.rigid_points.size()),
+      .value_count = wrench_size<Dim>(s.rigid_turns) * static_cast<int>(s.rigid_points.size()),
       .places = {s.grid, s.patches},
       .nodes = s.nodes,
       .rigids = s.rigids,
@@ -442,7 +455,8 @@ UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, d
       .has_friction = s.has_friction,
       .has_mass_normals = s.mass_normals,
       .clears = s.plan.sums_ahead && !s.plan.writes_sums,
-      .rings = s.soil.points.rings};
+      .rings = s.soil.points.rings,
+      .turns = s.rigid_turns};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   if constexpr (acts) update.acting_sides = acting(s.sides);
   return update;

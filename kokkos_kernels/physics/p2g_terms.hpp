@@ -376,7 +376,8 @@ struct RigidSource {
   KOKKOS_INLINE_FUNCTION void move(int p) const { move(p, rigids(rigid).motion.pose); }
   KOKKOS_INLINE_FUNCTION void move(int p, const RigidPose<Dim>& pose) const {
     const Coord<Dim> from = origin(points.cell(p) / Patch<Dim>::cells), cell = coord_of<Dim>(points.cell(p));
-    const Vector<double, Dim> x = pose.in_cells(spacing).to_world(points.reference_position(p));
+    const Vector<double, Dim> x =
+        pose.in_cells(spacing).template to_world<false>(points.reference_position(p));
     for (int d = 0; d < Dim; ++d) points.coordinate(p)[d] = static_cast<T>(x[d] - from[d] - cell[d]);
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {

@@ -42,17 +42,125 @@ KOKKOS_INLINE_FUNCTION RigidPose<Dim> next_pose(const RigidMotion<Dim>& motion, 
   return pose;
 }
 
-/// Moves a rigid body by a step of dt [s]; contact [N]: wrench of the soil on it. Returns the largest
-/// component of the movement of its points [m].
+/// Turns a body with angular momentum `momentum` [kg m2/s], which stays, by a step of dt [s]: about one
+/// principal axis after the other, 1-2-3-2-1, about each exactly. Returns the angular velocity at the end
+/// [rad/s].
+KOKKOS_INLINE_FUNCTION AngularVector<3> turn_freely(const Turning<3>& body, const AngularVector<3>& momentum,
+                                                    double dt, Rotation<3>& rotation) {
+  Rotation<3> place = body.axes.then(rotation);  // of the principal axes
+  Vector<double, 3> own = place.turn_back(momentum);
+  constexpr int k_order[] = {0, 1, 2, 1, 0};
+  for (const int k : k_order) {
+    AngularVector<3> angle{};
+    angle[k] = (k == 2 ? dt : dt / 2) * own[k] / body.principal[k];
+    const Rotation<3> part = Rotation<3>::by(angle);
+    own = part.turn_back(own);
+    place = part.then(place);
+  }
+  rotation = body.axes.inverse().then(place);
+  for (int k = 0; k < 3; ++k) own[k] /= body.principal[k];
+  return place.turn(own);
+}
+KOKKOS_INLINE_FUNCTION AngularVector<2> turn_freely(const Turning<2>& body, const AngularVector<2>& momentum,
+                                                    double dt, Rotation<2>& rotation) {
+  const AngularVector<2> spin{momentum[0] / body.principal[0]};
+  rotation = rotation.then(Rotation<2>::by({dt * spin[0]}));
+  return spin;
+}
+
+/// Moment of inertia about an axis in space [kg m2].
+KOKKOS_INLINE_FUNCTION double inertia_about(const Turning<3>& body, const Rotation<3>& rotation, int axis) {
+  Vector<double, 3> along{};
+  along[axis] = 1;
+  along = body.axes.then(rotation).turn_back(along);
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) sum += body.principal[k] * along[k] * along[k];
+  return sum;
+}
+KOKKOS_INLINE_FUNCTION double inertia_about(const Turning<2>& body, const Rotation<2>&, int) {
+  return body.principal[0];
+}
+
+/// Angular momentum [kg m2/s] of a body that turns with a spin [rad/s].
+KOKKOS_INLINE_FUNCTION AngularVector<3> momentum_of(const Turning<3>& body, const Rotation<3>& rotation,
+                                                    const AngularVector<3>& spin) {
+  const Rotation<3> place = body.axes.then(rotation);
+  Vector<double, 3> own = place.turn_back(spin);
+  for (int k = 0; k < 3; ++k) own[k] *= body.principal[k];
+  return place.turn(own);
+}
+KOKKOS_INLINE_FUNCTION AngularVector<2> momentum_of(const Turning<2>& body, const Rotation<2>&,
+                                                    const AngularVector<2>& spin) {
+  return {body.principal[0] * spin[0]};
+}
+
+/// Change of the angular momentum of a rigid body in half a step of dt [s] by a moment [N m], less local
+/// damping, which brakes it as it brakes forces.
 template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION AngularVector<Dim> kick_of(const MovingRigid<Dim>& rigid, const Wrench<Dim>& contact,
+                                                  double damping, double dt) {
+  constexpr int spins = k_turning_axes<Dim>, moment = Wrench<Dim>::moment;
+  const Turning<Dim>& body = rigid.inertia.turning;
+  double scale = 0;  // kg m2, by which local damping compares moments with angular velocities
+  for (int k = 0; k < spins; ++k) scale += body.principal[k] / spins;
+  AngularVector<Dim> rate{};
+  for (int k = 0; k < spins; ++k)
+    if (body.turns_about(k)) rate[k] = (rigid.force[moment + k] + contact[moment + k]) / scale;
+  const AngularVector<Dim> brake = local_damping<T>(damping, dt, rate, rigid.motion.spin);
+  for (int k = 0; k < spins; ++k) rate[k] = dt / 2 * scale * (rate[k] - brake[k]);
+  return rate;
+}
+
+/// Turns a rigid body by a step of dt [s]; contact: wrench of the soil on it. Half of the moment's impulse
+/// comes before the rotation and half after it. Returns the largest movement by the rotation of a point of
+/// the body [m], or a little more.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION double turn_rigid(MovingRigid<Dim>& rigid, const Wrench<Dim>& contact, double damping,
+                                         double dt) {
+  const Turning<Dim>& body = rigid.inertia.turning;
+  RigidMotion<Dim>& motion = rigid.motion;
+  Rotation<Dim>& rotation = motion.pose.rotation;
+  const AngularVector<Dim> before = motion.spin;
+  const bool by_moments = rigid.inertia.dynamic && body.axis != Turning<Dim>::k_held;
+  const AngularVector<Dim> kick = by_moments ? kick_of<T>(rigid, contact, damping, dt) : AngularVector<Dim>{};
+  for (int k = 0; k < k_turning_axes<Dim>; ++k) rigid.momentum[k] += kick[k];
+  if (by_moments && body.axis == Turning<Dim>::k_free) {
+    turn_freely(body, rigid.momentum, dt, rotation);
+    for (int k = 0; k < k_turning_axes<Dim>; ++k) rigid.momentum[k] += kick[k];
+    Rotation<Dim> same = rotation;
+    motion.spin = turn_freely(body, rigid.momentum, 0, same);
+  } else {
+    AngularVector<Dim> angle;
+    const int k = body.axis;
+    const double inertia = by_moments ? inertia_about(body, rotation, k) : 1;
+    if (by_moments) motion.spin[k] = rigid.momentum[k] / inertia;
+    for (int n = 0; n < k_turning_axes<Dim>; ++n) angle[n] = dt * motion.spin[n];
+    rotation = rotation.then(Rotation<Dim>::by(angle));
+    if (by_moments) rigid.momentum[k] += kick[k], motion.spin[k] = rigid.momentum[k] / inertia;
+  }
+  double squares = 0;
+  for (int k = 0; k < k_turning_axes<Dim>; ++k) {
+    const double w = Kokkos::fmax(Kokkos::fabs(before[k]), Kokkos::fabs(motion.spin[k]));
+    squares += w * w;
+  }
+  return dt * Kokkos::sqrt(squares) * body.reach;
+}
+
+/// Moves a rigid body by a step of dt [s]; contact [N, N m]: wrench of the soil on it. Returns the largest
+/// component of the movement of its points [m], or a little more. MayTurn: as in RigidPose.
+template <class T, bool MayTurn = true, int Dim>
 KOKKOS_INLINE_FUNCTION double advance_rigid(MovingRigid<Dim>& rigid, const Wrench<Dim>& contact,
                                             double damping, double dt) {
   const Vector<double, Dim> a = acceleration_of<T>(rigid, contact, damping, dt),
                             way = movement_of(rigid.motion, a, dt);
   double furthest = 0;
   for (int d = 0; d < Dim; ++d) furthest = Kokkos::fmax(furthest, Kokkos::fabs(way[d]));
+  const bool turns = MayTurn && rigid.motion.pose.turns;
+  if constexpr (MayTurn)
+    if (turns) furthest += turn_rigid<T>(rigid, contact, damping, dt);
   rigid.motion.pose.move(way);
-  for (int k = 0; k < Wrench<Dim>::size; ++k) rigid.impulse[k] += dt * contact[k];
+  for (int k = 0; k < Wrench<Dim>::size; ++k)
+    if (k < wrench_size<Dim>(turns)) rigid.impulse[k] += dt * contact[k];
   for (int d = 0; d < Dim; ++d) rigid.motion.velocity[d] += dt * a[d];
   return furthest;
 }

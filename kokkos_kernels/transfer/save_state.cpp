@@ -181,8 +181,17 @@ SavedRigid save_rigid(const Rigid<Dim>& rigid) {
     row[MotionTerms::displacement + d] = rigid.motion.pose.displacement[d];
     row[MotionTerms::velocity + d] = rigid.motion.velocity[d];
     row[MotionTerms::binned + d] = rigid.binned.displacement[d];
+    row[MotionTerms::impulse + d] = rigid.impulse[Wrench<Dim>::force + d];
   }
-  for (int k = 0; k < Wrench<Dim>::size; ++k) row[MotionTerms::impulse + k] = rigid.impulse[k];
+  if (!rigid.motion.pose.turns) return row;
+  row[MotionTerms::turns] = 1;
+  rigid.motion.pose.rotation.store(&row[MotionTerms::rotation]);
+  rigid.binned.rotation.store(&row[MotionTerms::binned_rotation]);
+  for (int k = 0; k < k_turning_axes<Dim>; ++k) {
+    row[MotionTerms::moment + k] = rigid.impulse[Wrench<Dim>::moment + k];
+    row[MotionTerms::momentum + k] = rigid.momentum[k];
+    row[MotionTerms::spin + k] = rigid.motion.spin[k];
+  }
   return row;
 }
 
@@ -192,8 +201,21 @@ void restore_rigid(const SavedRigid& row, Rigid<Dim>& rigid) {
     rigid.motion.pose.displacement[d] = row[MotionTerms::displacement + d];
     rigid.motion.velocity[d] = row[MotionTerms::velocity + d];
     rigid.binned.displacement[d] = row[MotionTerms::binned + d];
+    rigid.impulse[Wrench<Dim>::force + d] = row[MotionTerms::impulse + d];
   }
-  for (int k = 0; k < Wrench<Dim>::size; ++k) rigid.impulse[k] = row[MotionTerms::impulse + k];
+  if (row[MotionTerms::turns] == 0) return;
+  RigidPose<Dim>& pose = rigid.motion.pose;
+  pose.turns = true;  // a body that is held now stays turned
+  pose.rotation = Rotation<Dim>::load(&row[MotionTerms::rotation]);
+  const Vector<double, Dim> displacement = rigid.binned.displacement;
+  rigid.binned = pose;
+  rigid.binned.displacement = displacement;
+  rigid.binned.rotation = Rotation<Dim>::load(&row[MotionTerms::binned_rotation]);
+  for (int k = 0; k < k_turning_axes<Dim>; ++k) {
+    rigid.impulse[Wrench<Dim>::moment + k] = row[MotionTerms::moment + k];
+    rigid.momentum[k] = row[MotionTerms::momentum + k];
+    rigid.motion.spin[k] = row[MotionTerms::spin + k];
+  }
 }
 
 /// binned: the rigids stand where their points were binned, else where they are.
@@ -203,6 +225,7 @@ void restore_rigids(ContactCore<Space, T, Dim>& s, const SavedState& saved, bool
   for (std::size_t r = 0; r < saved.rigids.size(); ++r) {
     restore_rigid(saved.rigids[r], host(r));
     if (binned) host(r).motion.pose = host(r).binned;
+    s.rigid_turns = s.rigid_turns || host(r).motion.pose.turns;
   }
   copy(s.rigids, host);
 }

@@ -7,6 +7,7 @@
 #include "data/state.hpp"
 #include "functions/follow_soil.hpp"
 #include "physics/domain.hpp"
+#include "physics/rigid_motion.hpp"
 #include "physics/surface.hpp"
 #include "rebuild/shift_particle.hpp"
 #include "transfer/fill_view.hpp"
@@ -15,6 +16,25 @@
 
 namespace mpm {
 namespace {
+
+template <int Dim>
+void set_turning(const RigidTurning& in, Rigid<Dim>& rigid) {
+  RigidMotion<Dim>& motion = rigid.motion;
+  motion.pose.turns = in.turns;
+  if (!in.turns) return;
+  Turning<Dim>& turning = rigid.inertia.turning;
+  for (int d = 0; d < Dim; ++d) motion.pose.centre[d] = in.centre[d];
+  for (int k = 0; k < k_turning_axes<Dim>; ++k) {
+    motion.spin[k] = in.spin[k];
+    rigid.force[Wrench<Dim>::moment + k] = in.moment[k];
+    turning.principal[k] = in.principal[k];
+  }
+  if constexpr (Dim == 3) turning.axes = Rotation<3>::load(in.axes.data());
+  turning.axis = in.axis;
+  turning.reach = in.reach;
+  if (rigid.inertia.dynamic && in.axis != Turning<Dim>::k_held)
+    rigid.momentum = momentum_of(turning, motion.pose.rotation, motion.spin);
+}
 
 template <class Space, class T, int Dim>
 void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut, Fault& fault) {
@@ -58,6 +78,7 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
                              ? rigids[r].density * rigids[r].revolved_volume
                              : particle_mass * static_cast<double>(rigids[r].position.size() / Dim);
     rigid.inertia.dynamic = rigids[r].dynamic;
+    set_turning(rigids[r].turning, rigid);
     rigid.law = {.separates = rigids[r].separates,
                  .reach = rigids[r].reach,
                  .exponent = rigids[r].exponent,
@@ -138,11 +159,12 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
             [&](int b) { return bodies[b].weighed ? 1 / bodies[b].density : 0; });
   s.strays.lost.assign(bodies.size(), {});
   s.strays.put_back = decltype(s.strays.put_back)("mpm::put_back", bodies.size());
-  s.rigid_moves = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.shear_fraction = s.has_friction =
-      false;
+  s.rigid_moves = s.rigid_turns = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.shear_fraction =
+      s.has_friction = false;
   for (const RigidInput& rigid : rigids) {
-    s.rigid_moves =
-        s.rigid_moves || rigid.dynamic || rigid.timed || rigid.velocity != std::array<double, 3>{};
+    s.rigid_turns = s.rigid_turns || rigid.turning.turns;
+    s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.timed || rigid.turning.turns ||
+                    rigid.velocity != std::array<double, 3>{};
     s.rigid_dynamic = s.rigid_dynamic || rigid.dynamic;
     s.has_friction = s.has_friction || rigid.friction > 0;
     s.mass_normals = s.mass_normals || !rigid.surface_normal;

@@ -64,6 +64,18 @@ template <int Dim>
 Surface<Dim> surface_of(const SurfaceInput& in, double spacing);
 
 /// Particles of one rigid body.
+/// How a rigid body turns.
+struct RigidTurning {
+  bool turns = false;
+  std::array<double, 3> centre{};          // m, of mass
+  std::array<double, 3> spin{};            // rad/s, in 2D the first; initial, or prescribed
+  std::array<double, 3> moment{};          // N m, external, likewise
+  std::array<double, 3> principal{};       // kg m2, principal moments of inertia, in 2D the first
+  std::array<double, 4> axes{1, 0, 0, 0};  // quaternion, from the principal axes to the body's (3D)
+  int axis = -1;                           // the only one about which moments turn it; 3: any; -1: none
+  double reach = 0;                        // m, from the centre to the farthest point
+};
+
 struct RigidInput {
   std::vector<double> position;      // m [Dim N]
   double particle_volume = 0;        // m3
@@ -74,7 +86,8 @@ struct RigidInput {
   std::array<double, 3> force{};     // N, external and weight
   bool dynamic = false;
   bool timed = false;          // its velocity follows a table
-  std::array<bool, 3> held{};  // a plane of symmetry cuts it, across which it does not move
+  std::array<bool, 3> held{};  // no force moves it along these axes
+  RigidTurning turning;        // where it may turn
   double shear_limit = 0;      // Pa, infinite where only the friction limits
   double shear_fraction = -1;  // -, of the soil's strength instead of the limit; negative: none
   double friction = -1;        // -, negative: none

@@ -154,13 +154,15 @@ bool is_eccentric(const Config& config, const Way& way) {
 
 void warn_of_turning(const Config& config, const Way& way, Lines& lines) {
   const RigidConfig& rigid = way.rigid;
-  if (rigid.motion != Motion::dynamic || way.soil < 0 || is_held_by_symmetry(config, way)) return;
+  if (rigid.motion != Motion::dynamic || rigid.turns() || way.soil < 0 || is_held_by_symmetry(config, way))
+    return;
   const bool rough = rigid.friction.value_or(0) > 0 || rigid.shear_limit > 0 ||
                      rigid.shear_fraction.value_or(0) > 0,
              round = rigid.shape.kind == ShapeKind::disc,
              upright = rigid.shape.kind == ShapeKind::box && rigid.shape.angle == 0;
   if (rough || (!round && (!upright || way.goes_sideways() || is_eccentric(config, way))))
-    lines.push_back("warning: rigid " + rigid.name + " does not turn: rigid bodies have no rotation");
+    lines.push_back("warning: rigid " + rigid.name + " does not turn; -" + rigid.name + "_free with " +
+                    (config.dim == 2 ? "rz" : "rx,ry,rz") + " lets it");
 }
 
 /// The resistance to sliding of a surface that is not along the mesh, in docs/method.md.

@@ -11,9 +11,43 @@
 
 namespace mpm {
 
+/// The motion of rigid bodies: numbers that every body has, and those of rotation where a body has turned.
+template <class Archive>
+void go_through_rigids(Archive& archive, std::vector<SavedRigid>& rigids) {
+  using M = MotionTerms;
+  struct Range {
+    int first, last;
+  };
+  constexpr Range k_moves[] = {{M::displacement, M::moment}, {M::binned, M::rotation}};
+  constexpr Range k_turns[] = {{M::moment, M::binned}, {M::rotation, M::size}};
+  const auto gathered = [&](const auto& ranges) {
+    std::vector<double> values;
+    for (const SavedRigid& rigid : rigids)
+      for (const Range& of : ranges)
+        values.insert(values.end(), rigid.begin() + of.first, rigid.begin() + of.last);
+    return values;
+  };
+  const auto spread = [&](const auto& ranges, const std::vector<double>& values) {
+    auto from = values.begin();
+    for (SavedRigid& rigid : rigids)
+      for (const Range& of : ranges) {
+        std::copy_n(from, of.last - of.first, rigid.begin() + of.first);
+        from += of.last - of.first;
+      }
+  };
+  std::vector<double> moves = gathered(k_moves), turns = gathered(k_turns);
+  if (std::all_of(turns.begin(), turns.end(), [](double x) { return x == 0; })) turns.clear();
+  archive.list("rigids", moves), archive.list_of_some("rigid_rotation", turns);
+  constexpr std::size_t k_of_moves = M::moment + M::rotation - M::binned;
+  rigids.resize(moves.size() / k_of_moves);
+  spread(k_moves, moves);
+  if (turns.size() == rigids.size() * (M::size - k_of_moves)) spread(k_turns, turns);
+}
+
 /// Goes through all of a checkpoint. An Archive has
 ///   value(path, number)           a number or text, as an attribute
 ///   list(path, vector)            numbers that every rank holds whole
+///   list_of_some(path, vector)    likewise; a file without the list stands for an empty one
 ///   text(path, string)            any length
 ///   points(path, points, block)  a set of points, of which each rank holds a block
 /// `soil`: the block of the particles.
@@ -40,12 +74,7 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
   archive.text("options", options);
 
   archive.points("soil", c.state.soil, soil);
-  std::vector<double> motion;
-  for (const SavedRigid& rigid : c.state.rigids) motion.insert(motion.end(), rigid.begin(), rigid.end());
-  archive.list("rigids", motion);
-  c.state.rigids.resize(motion.size() / MotionTerms::size);
-  for (std::size_t r = 0; r < c.state.rigids.size(); ++r)
-    std::copy_n(&motion[r * MotionTerms::size], MotionTerms::size, c.state.rigids[r].begin());
+  go_through_rigids(archive, c.state.rigids);
   archive.value("particles", c.state.particles), archive.list("lost", c.state.lost);
   archive.list("unused", c.state.unused);
   std::string columns = join(c.state.columns), variables = join(c.state.variables, "\n");

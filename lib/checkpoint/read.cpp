@@ -37,6 +37,10 @@ class Reader {
   }
   void list(const char* path, std::vector<double>& x) { whole(path, H5T_FLOAT, H5T_NATIVE_DOUBLE, x); }
   void list(const char* path, std::vector<long>& x) { whole(path, H5T_INTEGER, H5T_NATIVE_LONG, x); }
+  void list_of_some(const char* path, std::vector<double>& x) {
+    x.clear();
+    if (H5Lexists(file_, path, H5P_DEFAULT) > 0) list(path, x);
+  }
   void text(const char* path, std::string& x) { whole(path, H5T_INTEGER, H5T_NATIVE_UCHAR, x); }
 
   /// The block of this rank; all datasets of the group have one row a point.

@@ -42,6 +42,9 @@ class Writer {
   void list(const char* path, const std::vector<long>& x) {
     whole(path, H5T_STD_I64LE, H5T_NATIVE_LONG, x.size(), x.data());
   }
+  void list_of_some(const char* path, const std::vector<double>& x) {
+    if (!x.empty()) list(path, x);
+  }
   void text(const char* path, const std::string& x) {
     whole(path, H5T_STD_U8LE, H5T_NATIVE_UCHAR, x.size(), x.data());
   }

@@ -68,6 +68,10 @@ struct RigidRow {
   Vec3 displacement{};  // m, since the start
   Vec3 velocity{};      // m/s
   Vec3 force{};         // N, of the soil on it, mean over the interval since the last row
+  // Where it may turn; in 2D the first of each, counter-clockwise. About its centre of mass.
+  Vec3 angle{};             // rad, since the start: the rotation vector
+  Vec3 angular_velocity{};  // rad/s
+  Vec3 moment{};            // N m, as the force
 };
 
 /// One row of the history for one load on a surface.

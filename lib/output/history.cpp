@@ -48,9 +48,14 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
               text_of(body.merged_energy);
     if (config.position_correction) text += "," + text_of(body.corrected) + "," + text_of(body.raised);
   }
-  for (const RigidRow& rigid : row.rigids)
+  for (std::size_t r = 0; r < row.rigids.size(); ++r) {
+    const RigidRow& rigid = row.rigids[r];
     for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})
       append(text, *vector, dim);
+    if (!config.rigids[r].turns()) continue;
+    for (const Vec3* vector : {&rigid.angle, &rigid.angular_velocity, &rigid.moment})
+      append(text, *vector, dim == 2 ? 1 : 3);
+  }
   for_each_wall(config, [&](int d, int side) { append(text, row.walls[d][side], dim); });
   for (const LoadRow& load : row.loads) {
     append(text, load.force, dim);

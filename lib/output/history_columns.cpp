@@ -65,6 +65,12 @@ std::vector<HistoryColumn> history_columns(const Config& config) {
   for (const RigidConfig& rigid : config.rigids) {
     to.begin("rigid_bodies", "rigid body", rigid.name);
     for (const char* quantity : {"_", "_velocity_", "_force_"}) to.add_vector(rigid.name + quantity);
+    if (!rigid.turns()) continue;
+    for (const char* quantity : {"_angle", "_angular_velocity", "_moment"})
+      if (config.dim == 2)
+        to.add(rigid.name + quantity);
+      else
+        to.add_vector(rigid.name + quantity + "_");
   }
   for_each_wall(config, [&](int d, int side) {
     const std::string name = std::string(k_axis[d]) + (side == 0 ? "min" : "max");

@@ -19,7 +19,9 @@ void reset_state(const Config& config, SavedState& state) {
     for (const char* name : {"velocity", "affine", "plastic_strain"})
       if (field.name == name) std::fill(field.values.begin(), field.values.end(), 0.0);
   for (std::size_t r = 0; r < state.rigids.size(); ++r)
-    if (config.rigids[r].motion == Motion::dynamic) set_vector(state.rigids[r], MotionTerms::velocity, {});
+    if (config.rigids[r].motion == Motion::dynamic)
+      for (const int vector : {MotionTerms::velocity, MotionTerms::momentum, MotionTerms::spin})
+        set_vector(state.rigids[r], vector, {});
 }
 
 double length_of(const Vec3& x) { return std::hypot(x[0], x[1], x[2]); }

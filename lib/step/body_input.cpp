@@ -8,6 +8,7 @@
 #include "common/revolution.hpp"
 #include "input/geometry/shapes.hpp"
 #include "physics/materials/any.hpp"
+#include "step/rigid_inertia.hpp"
 #include "step/surface_input.hpp"
 #include "step/water.hpp"
 
@@ -125,7 +126,8 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
       in.revolved_volume += in.particle_volume * revolved_length(config, in.position[p]);
   in.half_length = particles.spacing / config.mesh.spacing / 2;
   in.dynamic = rigid.motion == Motion::dynamic;
-  if (in.dynamic) in.density = rigid.density;
+  const double volume = in.particle_volume * static_cast<double>(in.position.size() / config.dim);
+  if (in.dynamic) in.density = rigid.mass && volume > 0 ? *rigid.mass / volume : rigid.density;
   if (rigid.motion != Motion::fixed) in.velocity = rigid.velocity;
   const double carried = carried_mass(config, in);
   for (int d = 0; d < 3; ++d) in.force[d] = rigid.force[d] + carried * config.gravity[d];
@@ -133,6 +135,8 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
   const Cuts cuts = cuts_of(rigid.shape, config.mesh, config.dim);
   for (int d = 0; d < config.dim; ++d) in.held[d] = cuts[d][0] || cuts[d][1];
   if (config.geometry == Geometry::axisymmetric) in.held[0] = true;
+  for (int d = 0; d < config.dim; ++d) in.held[d] = in.held[d] || (in.dynamic && !rigid.free[d]);
+  in.turning = turning_of(config, rigid, in);
   set_contact(config, rigid, &in);
   return in;
 }

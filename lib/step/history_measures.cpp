@@ -130,6 +130,12 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::measure_rigids(double interval, H
       rigid.velocity[d] = velocity_at(config.rigids[row->rigids.size()], d, r.motion.velocity[d], time);
       rigid.force[d] = interval > 0 ? impulse[Wrench<Dim>::force + d] / interval : 0;
     }
+    const AngularVector<Dim> angle = r.motion.pose.rotation.way_from({});
+    for (int k = 0; k < k_turning_axes<Dim> && r.motion.pose.turns; ++k) {
+      rigid.angle[k] = angle[k];
+      rigid.angular_velocity[k] = r.motion.spin[k];
+      rigid.moment[k] = interval > 0 ? impulse[Wrench<Dim>::moment + k] / interval : 0;
+    }
     row->rigids.push_back(rigid);
   }
   run_.rigids.widen(row->rigids);

@@ -163,11 +163,17 @@ std::vector<ParticleSnapshot> Snapshots<Space, T, Dim>::rigids_at(double time) c
     rigid.name = config.rigids[r].name;
     rigid.position.assign(3 * (position.size() / Dim), 0);
     rigid.velocity = rigid.position;
-    for (std::size_t p = 0; p < position.size() / Dim; ++p)
+    RigidMotion<Dim> motion = rigids(r).motion;
+    for (int d = 0; d < Dim; ++d)
+      motion.velocity[d] = velocity_at(config.rigids[r], d, motion.velocity[d], time);
+    for (std::size_t p = 0; p < position.size() / Dim; ++p) {
+      const double* const x = &position[p * Dim];
+      const Vector<double, Dim> v = motion.velocity_at([x](int d) { return x[d]; });
       for (int d = 0; d < Dim; ++d) {
-        rigid.position[3 * p + d] = position[p * Dim + d] + config.mesh.lower[d];
-        rigid.velocity[3 * p + d] = velocity_at(config.rigids[r], d, rigids(r).motion.velocity[d], time);
+        rigid.position[3 * p + d] = x[d] + config.mesh.lower[d];
+        rigid.velocity[3 * p + d] = v[d];
       }
+    }
     groups.push_back(std::move(rigid));
   }
   run_.rigids.widen(groups);

@@ -35,6 +35,7 @@ void put(State_& s, Feature f) {
     case Feature::gravity_table: s.timed.moves_gravity = true; break;
     case Feature::side_table: s.timed.moves_sides = true; break;
     case Feature::pushed_mass_normals: s.rigid_dynamic = s.mass_normals = true; break;
+    case Feature::turning_rigids: s.rigid_turns = true; break;
     case Feature::revolved: s.soil.points.rings = true; break;
     case Feature::ranks: s.owned_nodes = Kokkos::View<std::uint64_t*, Memory>("owned", 1); break;
     case Feature::batches: s.batches.limit = 1; break;

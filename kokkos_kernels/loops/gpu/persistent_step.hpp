@@ -60,7 +60,7 @@ struct PersistentStep {
 
   static constexpr std::size_t bytes(int values) {
     return (WithNodes ? 2 * scratch_bytes<int>(Update::window) +
-                            scratch_bytes<Rigid<Dim>>(values / Wrench<Dim>::size) +
+                            scratch_bytes<Rigid<Dim>>(values / wrench_size<Dim>(false)) +
                             scratch_bytes<double>(values * cells)
                       : 0) +
            Update::bytes();
@@ -169,7 +169,8 @@ struct PersistentStep {
       if (at.part < at.others) left.sums = nullptr;
     }
     if (!at.by_all) at.found = StepEnd(update.control());
-    at.found = end.move(team, at.found, left, !at.by_all, Scratch(scratch).template take<double>(0));
+    at.found =
+        end.template move<false>(team, at.found, left, !at.by_all, Scratch(scratch).template take<double>(0));
     if (!at.by_all)
       answer(team, at);
     else if (at.part == at.others && (at.found.paused != 0 || at.step + 1 == steps))

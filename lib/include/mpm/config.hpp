@@ -141,12 +141,19 @@ struct RigidConfig {
   /// m/s: the velocity (prescribed) or the initial velocity (dynamic). Where a table gives it, its component
   /// of largest size in the table.
   Vec3 velocity{};
-  std::optional<TimeTable> velocity_table;      // m/s (prescribed)
-  std::optional<TimeTable> displacement_table;  // m, instead of a velocity: its changes count (prescribed)
-  double density = 0;                           // kg/m3 (dynamic)
-  Vec3 force{};                                 // N, external (dynamic), beside gravity
-  std::optional<TimeTable> force_table;         // N, instead of it
-  double shear_limit = 0;                       // Pa, largest shear stress of the interface; 0 is smooth
+  std::optional<TimeTable> velocity_table;       // m/s (prescribed)
+  std::optional<TimeTable> displacement_table;   // m, instead of a velocity: its changes count (prescribed)
+  double density = 0;                            // kg/m3 (dynamic)
+  std::optional<double> mass;                    // kg, instead of that by the density (dynamic)
+  std::optional<Vec3> centre_of_mass;            // m, where the body turns; else that of the shape
+  std::optional<std::array<double, 6>> inertia;  // kg m2, about it: xx, yy, zz, xy, yz, zx; in 2D the first
+  /// Along x, y, z and about them: whether forces and moments move it (dynamic). In 2D it turns about z.
+  std::array<bool, 6> free{true, true, true, false, false, false};
+  Vec3 angular_velocity{};  // rad/s, initial (dynamic) or prescribed; in 2D the first, counter-clockwise
+  Vec3 moment{};            // N m, external, likewise (dynamic)
+  Vec3 force{};             // N, external (dynamic), beside gravity
+  std::optional<TimeTable> force_table;  // N, instead of it
+  double shear_limit = 0;                // Pa, largest shear stress of the interface; 0 is smooth
   std::optional<double> shear_fraction;  // -, the limit as a fraction of the soil's strength, instead of it
   std::optional<double> friction;        // -, Coulomb coefficient
   ContactNormal contact_normal = ContactNormal::surface;
@@ -156,6 +163,12 @@ struct RigidConfig {
   double contact_gap_exponent = 6;  // -
   bool has_shear_limit = false;     // -NAME_shear_limit was given (it then bounds the friction too)
   bool absent = false;              // not in the run in this stage: a later one places it, or it was removed
+
+  /// Whether it may turn.
+  bool turns() const {
+    const bool free_to = motion == Motion::dynamic && (free[3] || free[4] || free[5]);
+    return free_to || (motion != Motion::fixed && angular_velocity != Vec3{});
+  }
 };
 
 /// Courant numbers above this are unstable (the energy of an elastic bar grows at 0.7).

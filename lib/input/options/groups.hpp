@@ -120,6 +120,11 @@ void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& confi
 bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, double end,
                 const Vec3& constant, std::optional<TimeTable>& table);
 
+/// How a rigid turns: of a body that moves. turning_keys: the options, without the name of the rigid.
+const std::vector<std::string>& turning_keys();
+void read_turning(OptionReader& in, int dim, RigidConfig& rigid);
+void check_turning(OptionReader& in, const Config& config, const MeshConfig& mesh, const RigidConfig& rigid);
+
 /// The motion of a rigid and what moves it; `end` [s]: of the run.
 void read_motion(OptionReader& in, int dim, double end, RigidConfig& rigid);
 

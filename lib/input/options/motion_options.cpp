@@ -27,7 +27,8 @@ constexpr const char* k_motion_keys[] = {"velocity",
 void read_prescribed(OptionReader& in, int dim, double end, const Option& velocity, RigidConfig& rigid) {
   const std::string displaced = rigid.name + "_displacement_table";
   Option required = velocity;
-  required.required = !in.listing() && !in.given(velocity.name + "_table") && !in.given(displaced);
+  required.required = !in.listing() && !in.given(velocity.name + "_table") && !in.given(displaced) &&
+                      !in.given(rigid.name + "_angular_velocity");
   in.vector(required, dim, rigid.velocity);
   read_timed(in, velocity, true, dim, end, rigid.velocity, rigid.velocity_table);
   read_timed(in,
@@ -49,7 +50,7 @@ void read_dynamic(OptionReader& in, int dim, double end, RigidConfig& rigid) {
              .meaning = "dynamic: its density",
              .unit = "kg/m3",
              .range = k_density,
-             .required = true,
+             .required = !in.given(rigid.name + "_mass"),
              .change = k_by_choice},
             rigid.density);
   const Option force{.name = rigid.name + "_force",
@@ -81,9 +82,12 @@ void read_motion(OptionReader& in, int dim, double end, RigidConfig& rigid) {
     if (prescribed || in.listing()) read_prescribed(in, dim, end, velocity, rigid);
     if (dynamic) in.vector(velocity, dim, rigid.velocity);
     if (dynamic || in.listing()) read_dynamic(in, dim, end, rigid);
+    if (rigid.motion != Motion::fixed || in.listing()) read_turning(in, dim, rigid);
   }
   const std::string why = rigid.name + "_motion is " + k_motions[static_cast<int>(rigid.motion)].first;
-  for (const char* key : k_motion_keys) {
+  std::vector<std::string> keys(std::begin(k_motion_keys), std::end(k_motion_keys));
+  keys.insert(keys.end(), turning_keys().begin(), turning_keys().end());
+  for (const std::string& key : keys) {
     const std::string name = rigid.name + "_" + key;
     const auto& all = in.known();
     if (!sound)

@@ -255,6 +255,9 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
            .change = k_by_choice},
           Words<bool>{{"free", true}, {"none", false}}, rigid.separates);
   read_gap_scaling(in, rigid);
+  if (!sound || !mesh) return;
+  if (rigid.mass) rigid.density = *rigid.mass / shape_volume(rigid.shape, *mesh, dim);
+  check_turning(in, config, *mesh, rigid);
 }
 
 }  // namespace

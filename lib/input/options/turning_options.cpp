@@ -1,0 +1,140 @@
+// Rotation of a rigid body: what is free, how fast it turns, and its inertia.
+
+#include <algorithm>
+
+#include "common/text.hpp"
+#include "input/geometry/shapes.hpp"
+#include "input/options/groups.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr const char* k_degrees[] = {"x", "y", "z", "rx", "ry", "rz"};
+const std::string k_free_2d = "some of x, y and rz", k_free_3d = "some of x, y, z, rx, ry and rz";
+
+/// Degrees of freedom by their words.
+void read_free(OptionReader& in, int dim, RigidConfig& rigid) {
+  const std::string takes = dim == 2 ? k_free_2d : k_free_3d, name = rigid.name + "_free";
+  std::vector<std::string> words;
+  const bool found = in.list_of(
+      {.name = name,
+       .meaning =
+           "dynamic: degrees of freedom that move by forces and moments: along x, y, z, and about "
+           "parallels of them through the centre of mass, rx, ry, rz (2D: rz alone). In 3D it turns about "
+           "one of them or about all",
+       .standard = "x, y and z: it does not turn"},
+      takes, words);
+  if (!found) return;
+  rigid.free = {};
+  for (const std::string& word : words) {
+    const auto at = std::find(std::begin(k_degrees), std::end(k_degrees), lower_case(word));
+    const auto k = at - std::begin(k_degrees);
+    const bool known = at != std::end(k_degrees) && (dim == 3 || k < 2 || k == 5);
+    if (!known) return in.reject(name, takes);
+    rigid.free[k] = true;
+  }
+  const int turns = rigid.free[3] + rigid.free[4] + rigid.free[5];
+  if (turns == 2) in.reject(name, "none, one or all of rx, ry and rz");
+}
+
+/// Numbers of a rotation: one in 2D.
+bool read_spin(OptionReader& in, int dim, const Option& option, Vec3& value) {
+  if (dim == 3 || in.listing()) return in.vector(option, 3, value);
+  return in.number(option, value[0]);
+}
+
+void read_inertia(OptionReader& in, int dim, RigidConfig& rigid) {
+  in.number({.name = rigid.name + "_mass",
+             .meaning = "dynamic: its mass, instead of that of its shape by the density",
+             .unit = "kg",
+             .range = {.lowest = 0, .highest = 1e15, .open_lowest = true},
+             .standard = "by its density"},
+            rigid.mass);
+  std::array<double, 6> inertia{};
+  const Option option{.name = rigid.name + "_inertia",
+                      .meaning =
+                          "dynamic: its inertia about the centre of mass: xx,yy,zz,xy,yz,zx of the "
+                          "tensor; in 2D one number",
+                      .unit = "kg m2",
+                      .range = {.lowest = dim == 2 ? 0 : -1e18, .highest = 1e18, .open_lowest = true},
+                      .standard = "that of its shape"};
+  const bool found = dim == 3 || in.listing()
+                         ? in.numbers(option, "I", "xx,yy,zz,xy,yz,zx", std::span<double>(inertia))
+                         : in.number(option, inertia[0]);
+  if (!found) return;
+  const auto& [xx, yy, zz, xy, yz, zx] = inertia;
+  const double minor = xx * yy - xy * xy;
+  const double determinant = zz * minor - xx * yz * yz + 2 * xy * yz * zx - yy * zx * zx;
+  if (dim == 3 && !(xx > 0 && minor > 0 && determinant > 0))
+    return in.reject(option.name, "the tensor of a body, whose principal moments are greater than 0");
+  rigid.inertia = inertia;
+}
+
+}  // namespace
+
+const std::vector<std::string>& turning_keys() {
+  static const std::vector<std::string> keys{"free", "angular_velocity", "centre_of_mass", "moment",
+                                             "mass", "inertia"};
+  return keys;
+}
+
+void read_turning(OptionReader& in, int dim, RigidConfig& rigid) {
+  const bool dynamic = rigid.motion == Motion::dynamic || in.listing();
+  if (dynamic) read_free(in, dim, rigid);
+  read_spin(
+      in, dim,
+      {.name = rigid.name + "_angular_velocity",
+       .meaning = "prescribed: the velocity at which it turns about its centre of mass; dynamic: that at "
+                  "the start; in 2D one number, counter-clockwise",
+       .unit = "rad/s",
+       .range = {.lowest = -1e6, .highest = 1e6}},
+      rigid.angular_velocity);
+  Vec3 centre{};
+  if (in.vector({.name = rigid.name + "_centre_of_mass",
+                 .meaning = "the point about which it turns, at the start",
+                 .unit = "m",
+                 .range = {.lowest = -1e7, .highest = 1e7},
+                 .standard = "that of its shape"},
+                dim, centre))
+    rigid.centre_of_mass = centre;
+  if (!dynamic) return;
+  read_spin(in, dim,
+            {.name = rigid.name + "_moment",
+             .meaning = "dynamic: external moment on it about the centre of mass; in 2D one number",
+             .unit = "N m",
+             .range = {.lowest = -1e15, .highest = 1e15}},
+            rigid.moment);
+  read_inertia(in, dim, rigid);
+}
+
+void check_turning(OptionReader& in, const Config& config, const MeshConfig& mesh, const RigidConfig& rigid) {
+  const std::string spin = rigid.name + "_angular_velocity";
+  const bool free = rigid.motion == Motion::dynamic && (rigid.free[3] || rigid.free[4] || rigid.free[5]);
+  if (!rigid.turns()) {
+    if (rigid.moment != Vec3{})
+      in.reject(rigid.name + "_moment", "a -" + rigid.name + "_free with a rotation beside it");
+    return;
+  }
+  const std::string option = free ? rigid.name + "_free" : spin, none = free ? "no rotation" : "0";
+  if (rigid.motion == Motion::dynamic && !free)
+    return in.reject(spin, "a -" + rigid.name + "_free with a rotation beside it, for the body is dynamic");
+  if (config.geometry == Geometry::axisymmetric)
+    return in.reject(option, none + " with -geometry axisymmetric");
+  const ShapeKind kind = rigid.shape.kind;
+  if (kind == ShapeKind::layer || kind == ShapeKind::half_plane || kind == ShapeKind::particles)
+    return in.reject(option, none + " of a layer, a half plane or a list of particles");
+  if (rigid.contact_normal == ContactNormal::gradient)
+    return in.reject(option, none + " where -" + rigid.name + "_contact_normal is gradient");
+  const Cuts cuts = cuts_of(rigid.shape, mesh, config.dim);
+  for (int d = 0; d < config.dim; ++d) {
+    if (cuts[d][0] || cuts[d][1])
+      return in.reject(option,
+                       none + " where a plane of symmetry cuts the shape, as that across " + "xyz"[d]);
+    if (is_periodic(mesh, d)) return in.reject(option, none + " in a mesh with periodic sides");
+  }
+  if (rigid.centre_of_mass && config.water.level && rigid.motion == Motion::dynamic)
+    in.reject(rigid.name + "_centre_of_mass",
+              "nothing where -water_level is given: the buoyancy acts at the centre of the shape");
+}
+
+}  // namespace mpm
