@@ -59,6 +59,11 @@ class Run:
                 ways[k + 1:] += ways[k]
         return np.array([np.interp(time, self.history["time"], way) for way in ways.T])
 
+    def angle(self, rigid, time):
+        """Angle [rad] by which a rigid in 2D has turned at a time [s]; 0 where it does not turn."""
+        angles = self.history.get(f"{rigid}_angle")
+        return 0.0 if angles is None else float(np.interp(time, self.history["time"], angles))
+
     def moving_rigids(self):
         stages = [f"{stage}_" for stage in self.words("stages")]
         return [name for name in self.words("rigid_bodies")

@@ -90,12 +90,13 @@ void read_turning(OptionReader& in, int dim, RigidConfig& rigid) {
        .range = {.lowest = -1e6, .highest = 1e6}},
       rigid.angular_velocity);
   Vec3 centre{};
-  if (in.vector({.name = rigid.name + "_centre_of_mass",
-                 .meaning = "the point about which it turns, at the start",
-                 .unit = "m",
-                 .range = {.lowest = -1e7, .highest = 1e7},
-                 .standard = "that of its shape"},
-                dim, centre))
+  const bool has_centre = in.given(rigid.name + "_centre_of_mass");
+  if ((has_centre || in.listing()) && in.vector({.name = rigid.name + "_centre_of_mass",
+                                                 .meaning = "the point about which it turns, at the start",
+                                                 .unit = "m",
+                                                 .range = {.lowest = -1e7, .highest = 1e7},
+                                                 .standard = "that of its shape"},
+                                                dim, centre))
     rigid.centre_of_mass = centre;
   if (!dynamic) return;
   read_spin(in, dim,

@@ -230,6 +230,11 @@ class Scene:
         if corners is None:
             return None
         corners, reach = corners + moved[self.plane], 2.5 * self.size(rigid)
+        angle = self.run.angle(rigid, self.time)
+        if angle != 0:  # about the centre of mass
+            given = self.run.text(f"{rigid}_centre_of_mass", "")
+            centre = points.mean(axis=0) if not given else np.array([float(x) for x in given.split(",")]) + moved
+            corners = centre + (corners - centre) @ [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]
         ends = [np.abs(end(corners, axis=0) - end(points, axis=0)).max() for end in (np.min, np.max)]
         return corners if max(ends) <= reach else None
 
