@@ -86,9 +86,16 @@ struct MovingRigid {
   Wrench<Dim> force;                 // N, N m, external and weight
   RigidInertia<Dim> inertia;
 
-  /// Stores the members that the end of a step changes.
+  /// Stores the members that the end of a step changes. MayTurn: as in RigidPose.
+  template <bool MayTurn>
   KOKKOS_INLINE_FUNCTION void keep_in(MovingRigid& rigid) const {
-    rigid.motion = motion, rigid.momentum = momentum, rigid.impulse = impulse;
+    if constexpr (MayTurn) {
+      rigid.motion = motion, rigid.momentum = momentum, rigid.impulse = impulse;
+    } else {
+      rigid.motion.pose.displacement = motion.pose.displacement;
+      rigid.motion.velocity = motion.velocity;
+      for (int d = 0; d < Dim; ++d) rigid.impulse[Wrench<Dim>::force + d] = impulse[Wrench<Dim>::force + d];
+    }
   }
 };
 

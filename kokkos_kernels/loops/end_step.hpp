@@ -124,7 +124,7 @@ struct EndStep {
         if (!summed && left.sums != nullptr) left.sums[v] = contact[k];
       }
       part[r * size] = advance_rigid<T, MayTurn>(rigid, contact, damping, dt) / spacing;
-      rigid.keep_in(left.rigids[r]);
+      rigid.template keep_in<MayTurn>(left.rigids[r]);
     }
     team.team_barrier();
     double furthest = 0;  // cells

@@ -254,7 +254,7 @@ struct PersistentStep {
   /// Stores the results of the steps for the host and the next launch, after every team has ended its steps.
   KOKKOS_INLINE_FUNCTION void leave(const Member& team, const Progress& at) const {
     for (int r = team.team_rank(); r < end.count; r += team.team_size())
-      at.bodies[r].keep_in(nodes.rigids(r));
+      at.bodies[r].template keep_in<false>(nodes.rigids(r));
     Kokkos::single(Kokkos::PerTeam(team), [&] {
       at.found.keep_in(update.control());
       update.control().steps += at.step;
