@@ -92,7 +92,8 @@ Checkpoint some_checkpoint() {
   c.state.particles = k_soil;
   c.state.lost = {0, 1.5, 2.5, 3, 4, 5, 0, 0.5, 6};
   c.state.alone_known = 1, c.state.alone = {17, 23};
-  c.state.rigids = {{1, 2, 0, 3, 4, 0, 5, 6, 0, 7, 8, 0}, {-1, -2, 0, -3, -4, 0, -5, -6, 0, -7, -8, 0}};
+  c.state.rigids = {{1, 2, 0, 3, 4, 0, 5, 6, 0, 0, 0, 0, 7, 8, 0},
+                    {-1, -2, 0, -3, -4, 0, -5, -6, 0, 0, 0, 9, -7, -8, 0, 0.5}};
   c.state.bounds = {0.25, 0.5, 0.75}, c.state.owners = {0, 2, 1, 0};
   if (rank_of_this() == 0) c.state.impulse = {{7, 5}, {70, 71, 72, 73, 74, 75, 50, 51, 52, 53, 54, 55}};
   return c;
@@ -169,6 +170,8 @@ TEST_CASE("a checkpoint reads as it was written, whichever rank had which point"
   CHECK((read.state.rigids[0][MotionTerms::velocity + 1] == 4 &&
          read.state.rigids[1][MotionTerms::impulse] == -5));
   CHECK(read.state.rigids[1][MotionTerms::binned + 1] == -8);
+  CHECK((read.state.rigids[1][MotionTerms::moment + 2] == 9 &&
+         read.state.rigids[1][MotionTerms::rotation] == 0.5));
   CHECK((read.state.particles == k_soil && read.state.lost == wanted.state.lost));
   CHECK((read.state.alone_known == 1 && read.state.alone == wanted.state.alone));
   CHECK(read.state.bounds == std::vector<double>{0.25, 0.5, 0.75});

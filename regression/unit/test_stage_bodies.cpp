@@ -151,18 +151,19 @@ TEST_CASE("rigid bodies that are not there leave no number in a state and come b
   config.rigids[1].absent = true;
   PresentRigids present(config);
   CHECK(present.narrowed(config).rigids.size() == 2);
+  constexpr int of_rigid = MotionTerms::impulse_size;
   SavedState state;
   for (int r = 0; r < 3; ++r) state.rigids.push_back({r + 1.0, 0, 0});
   state.impulse.address = {64, 65};
   for (int k = 1; k <= 6 * ImpulseTerms::size; ++k) state.impulse.values.push_back(k);
   for (int rank = 0; rank < 2; ++rank)
-    for (int k = 0; k < k_saved_bounds + 9; ++k) state.bounds.push_back(100 * rank + k);
+    for (int k = 0; k < k_saved_bounds + 3 * of_rigid; ++k) state.bounds.push_back(100 * rank + k);
   const SavedState whole = state;
   present.narrow(state);
   CHECK((state.rigids.size() == 2 && state.rigids[1][MotionTerms::displacement] == 3));
   CHECK(state.impulse.values == std::vector<double>{1, 2, 3, 7, 8, 9, 10, 11, 12, 16, 17, 18});
-  REQUIRE(state.bounds.size() == 2 * (k_saved_bounds + 6));
-  CHECK(state.bounds[k_saved_bounds + 6 + k_saved_bounds + 3] == 100 + k_saved_bounds + 6);
+  REQUIRE(state.bounds.size() == 2 * (k_saved_bounds + 2 * of_rigid));
+  CHECK(state.bounds[2 * k_saved_bounds + 3 * of_rigid] == 100 + k_saved_bounds + 2 * of_rigid);
   present.widen(state);
   CHECK((state.rigids.size() == 3 && state.rigids[1][MotionTerms::displacement] == 2));
   CHECK(state.impulse.values ==
