@@ -1,5 +1,5 @@
 #pragma once
-// The middle floor of what a time step works on (data/floors.hpp): rigid bodies and their contact with soil.
+// Middle floor of the data of a time step (data/floors.hpp): rigid bodies and their contact with soil.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The lowest floor of what a time step works on (data/floors.hpp): no rigid body, side or load is in it.
+// Lowest floor of the data of a time step (data/floors.hpp): no rigid body, side or load is in it.
 
 #include <cstdint>
 
@@ -28,7 +28,7 @@ struct Summed {
   bool in_windows = false;  // those of the soil and its boundary: the windows hold them, for update_nodes
 };
 
-/// How velocities go from step to step, and what brakes them.
+/// Update of the velocities from step to step, and their damping.
 struct TimeScheme {
   double damping = 0;        // -
   bool rayleigh = false;     // Rayleigh damping is in use
@@ -46,7 +46,7 @@ struct FBar {
   bool keeps_stress = false;  // sorting brings no pressures together: at a start from another run
 };
 
-/// What steps of which one launch does many work with (persistent_launch.hpp).
+/// Memory of launches that do many steps each (persistent_launch.hpp).
 template <class Space, class T, int Dim>
 struct PersistentLaunch {
   NodeSums<Space, T, Dim> next_sums, last_sums;  // run_persistent_steps sets last_sums to zero

@@ -1,6 +1,6 @@
 #pragma once
-// What a time step works on, in three floors: a function takes the lowest one that it needs, and is compiled
-// anew only for what lies in it.
+// Floors of the data of a time step: three structs, each with the one below as its base. A function takes the
+// lowest floor that it needs, and is compiled again only where this floor or one below changes.
 
 namespace mpm {
 

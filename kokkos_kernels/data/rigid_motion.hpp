@@ -55,7 +55,7 @@ KOKKOS_INLINE_FUNCTION Vector<double, Wrench<Dim>::size> way_between(const Rigid
   return way;
 }
 
-/// How a rigid body resists moments.
+/// Resistance of a rigid body to moments.
 template <int Dim>
 struct Turning {
   AngularVector<Dim> principal = {};  // kg m2, principal moments of inertia

@@ -47,7 +47,7 @@ struct Rotation<2> {
   KOKKOS_INLINE_FUNCTION Vector<double, 2> turn_back(const Vector<double, 2>& v) const {
     return {cosine * v[0] + sine * v[1], cosine * v[1] - sine * v[0]};
   }
-  /// This rotation, and another one after it.
+  /// Rotation by this one and then by another one.
   KOKKOS_INLINE_FUNCTION Rotation then(const Rotation& next) const { return by({angle + next.angle}); }
   /// Angle [rad] from another rotation to this one, along which moments do work.
   KOKKOS_INLINE_FUNCTION AngularVector<2> way_from(const Rotation& other) const {
@@ -81,7 +81,7 @@ struct Rotation<3> {
   KOKKOS_INLINE_FUNCTION Vector<double, 3> turn_back(const Vector<double, 3>& v) const {
     return inverse().turn(v);
   }
-  /// This rotation, and another one after it; of length 1, so that no round-off gathers.
+  /// Rotation by this one and then by another one. Its length is set to 1, so that no round-off gathers.
   KOKKOS_INLINE_FUNCTION Rotation then(const Rotation& next) const {
     const Vector<double, 3> both = cross(next.vector, vector);
     Rotation out{next.real * real};

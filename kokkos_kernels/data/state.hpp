@@ -1,6 +1,5 @@
 #pragma once
-// The top floor of what a time step works on (data/floors.hpp): all of it, for one execution space, real type
-// and dimension.
+// Top floor of the data of a time step (data/floors.hpp), for one execution space, real type and dimension.
 
 #include "data/contact_core.hpp"
 #include "data/energy_works.hpp"

@@ -43,10 +43,10 @@ KOKKOS_INLINE_FUNCTION RigidPose<Dim> next_pose(const RigidMotion<Dim>& motion, 
 }
 
 /// Turns a body with angular momentum `momentum` [kg m2/s], which stays, by a step of dt [s]: about one
-/// principal axis after the other, 1-2-3-2-1, about each exactly. Returns the angular velocity at the end
-/// [rad/s].
-KOKKOS_INLINE_FUNCTION AngularVector<3> turn_freely(const Turning<3>& body, const AngularVector<3>& momentum,
-                                                    double dt, Rotation<3>& rotation) {
+/// principal axis after the other, 1-2-3-2-1, about each exactly (symmetric splitting of the free rigid body,
+/// McLachlan 1993).
+KOKKOS_INLINE_FUNCTION void turn_freely(const Turning<3>& body, const AngularVector<3>& momentum, double dt,
+                                        Rotation<3>& rotation) {
   Rotation<3> place = body.axes.then(rotation);  // of the principal axes
   Vector<double, 3> own = place.turn_back(momentum);
   constexpr int k_order[] = {0, 1, 2, 1, 0};
@@ -58,14 +58,10 @@ KOKKOS_INLINE_FUNCTION AngularVector<3> turn_freely(const Turning<3>& body, cons
     place = part.then(place);
   }
   rotation = body.axes.inverse().then(place);
-  for (int k = 0; k < 3; ++k) own[k] /= body.principal[k];
-  return place.turn(own);
 }
-KOKKOS_INLINE_FUNCTION AngularVector<2> turn_freely(const Turning<2>& body, const AngularVector<2>& momentum,
-                                                    double dt, Rotation<2>& rotation) {
-  const AngularVector<2> spin{momentum[0] / body.principal[0]};
-  rotation = rotation.then(Rotation<2>::by({dt * spin[0]}));
-  return spin;
+KOKKOS_INLINE_FUNCTION void turn_freely(const Turning<2>& body, const AngularVector<2>& momentum, double dt,
+                                        Rotation<2>& rotation) {
+  rotation = rotation.then(Rotation<2>::by({dt * momentum[0] / body.principal[0]}));
 }
 
 /// Moment of inertia about an axis in space [kg m2].
@@ -92,6 +88,19 @@ KOKKOS_INLINE_FUNCTION AngularVector<3> momentum_of(const Turning<3>& body, cons
 KOKKOS_INLINE_FUNCTION AngularVector<2> momentum_of(const Turning<2>& body, const Rotation<2>&,
                                                     const AngularVector<2>& spin) {
   return {body.principal[0] * spin[0]};
+}
+
+/// Angular velocity [rad/s] of a body with an angular momentum [kg m2/s].
+KOKKOS_INLINE_FUNCTION AngularVector<3> spin_of(const Turning<3>& body, const Rotation<3>& rotation,
+                                                const AngularVector<3>& momentum) {
+  const Rotation<3> place = body.axes.then(rotation);
+  Vector<double, 3> own = place.turn_back(momentum);
+  for (int k = 0; k < 3; ++k) own[k] /= body.principal[k];
+  return place.turn(own);
+}
+KOKKOS_INLINE_FUNCTION AngularVector<2> spin_of(const Turning<2>& body, const Rotation<2>&,
+                                                const AngularVector<2>& momentum) {
+  return {momentum[0] / body.principal[0]};
 }
 
 /// Change of the angular momentum of a rigid body in half a step of dt [s] by a moment [N m], less local
@@ -127,8 +136,7 @@ KOKKOS_INLINE_FUNCTION double turn_rigid(MovingRigid<Dim>& rigid, const Wrench<D
   if (by_moments && body.axis == Turning<Dim>::k_free) {
     turn_freely(body, rigid.momentum, dt, rotation);
     for (int k = 0; k < k_turning_axes<Dim>; ++k) rigid.momentum[k] += kick[k];
-    Rotation<Dim> same = rotation;
-    motion.spin = turn_freely(body, rigid.momentum, 0, same);
+    motion.spin = spin_of(body, rotation, rigid.momentum);
   } else {
     AngularVector<Dim> angle;
     const int k = body.axis;

@@ -203,13 +203,8 @@ void restore_rigid(const SavedRigid& row, Rigid<Dim>& rigid) {
     rigid.binned.displacement[d] = row[MotionTerms::binned + d];
     rigid.impulse[Wrench<Dim>::force + d] = row[MotionTerms::impulse + d];
   }
-  if (row[MotionTerms::turns] == 0) return;
-  RigidPose<Dim>& pose = rigid.motion.pose;
-  pose.turns = true;  // a body that is held now stays turned
-  pose.rotation = Rotation<Dim>::load(&row[MotionTerms::rotation]);
-  const Vector<double, Dim> displacement = rigid.binned.displacement;
-  rigid.binned = pose;
-  rigid.binned.displacement = displacement;
+  if (row[MotionTerms::turns] == 0) return;  // it does not turn, or a stage has just placed it
+  rigid.motion.pose.rotation = Rotation<Dim>::load(&row[MotionTerms::rotation]);
   rigid.binned.rotation = Rotation<Dim>::load(&row[MotionTerms::binned_rotation]);
   for (int k = 0; k < k_turning_axes<Dim>; ++k) {
     rigid.impulse[Wrench<Dim>::moment + k] = row[MotionTerms::moment + k];
@@ -225,7 +220,6 @@ void restore_rigids(ContactCore<Space, T, Dim>& s, const SavedState& saved, bool
   for (std::size_t r = 0; r < saved.rigids.size(); ++r) {
     restore_rigid(saved.rigids[r], host(r));
     if (binned) host(r).motion.pose = host(r).binned;
-    s.rigid_turns = s.rigid_turns || host(r).motion.pose.turns;
   }
   copy(s.rigids, host);
 }

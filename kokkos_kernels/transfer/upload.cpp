@@ -79,6 +79,7 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
                              : particle_mass * static_cast<double>(rigids[r].position.size() / Dim);
     rigid.inertia.dynamic = rigids[r].dynamic;
     set_turning(rigids[r].turning, rigid);
+    rigid.binned = rigid.motion.pose;
     rigid.law = {.separates = rigids[r].separates,
                  .reach = rigids[r].reach,
                  .exponent = rigids[r].exponent,

@@ -64,7 +64,7 @@ template <int Dim>
 Surface<Dim> surface_of(const SurfaceInput& in, double spacing);
 
 /// Particles of one rigid body.
-/// How a rigid body turns.
+/// Rotation of a rigid body: nothing is set where it may not turn.
 struct RigidTurning {
   bool turns = false;
   std::array<double, 3> centre{};          // m, of mass

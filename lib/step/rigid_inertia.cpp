@@ -26,9 +26,9 @@ Inertia inertia_about(const MassProperties& of, double mass, const Vec3& point) 
   return inertia;
 }
 
-/// The rotation that takes the axes of space to three orthogonal axes, as a quaternion.
+/// Quaternion of the rotation that takes the axes of space to three orthogonal axes.
 std::array<double, 4> quaternion_of(const double (&axis)[3][3]) {
-  // Of the four squares, one is at least a quarter: Shepperd (1978).
+  // The largest of four squares is at least 1, so that no small number divides (Shepperd 1978).
   const double trace = axis[0][0] + axis[1][1] + axis[2][2];
   const std::array<double, 4> squares{1 + trace, 1 + 2 * axis[0][0] - trace, 1 + 2 * axis[1][1] - trace,
                                       1 + 2 * axis[2][2] - trace};
@@ -52,7 +52,7 @@ void set_principal(const Inertia& tensor, RigidTurning& to) {
   double m[3][3] = {{tensor[0], tensor[3], tensor[5]}, {0, tensor[1], tensor[4]}, {0, 0, tensor[2]}};
   double work[26];
   PetscBLASInt n = 3, room = 26, info = 0;
-  // Columns of LAPACK are rows here: what is given is the lower triangle, and row k becomes axis k.
+  // LAPACK stores a matrix by columns: it reads the lower triangle here, and leaves axis k in row k.
   LAPACKsyev_("V", "L", &n, &m[0][0], &n, to.principal.data(), work, &room, &info);
   if (info != 0 || !(to.principal[0] > 0)) throw std::runtime_error("a rigid body without inertia");
   double right = 0;  // 1 where the axes are right-handed
@@ -81,10 +81,10 @@ double reach_of(const RigidInput& in, int dim, double edge, const Vec3& centre) 
 RigidTurning turning_of(const Config& config, const RigidConfig& rigid, const RigidInput& in) {
   RigidTurning to;
   const int dim = config.dim;
-  if (in.position.empty()) return to;
+  if (!rigid.turns()) return to;
   const double edge = 2 * in.half_length * config.mesh.spacing;
-  to.turns = rigid.turns();
-  const MassProperties of = mass_properties(rigid.shape, dim).value_or(MassProperties{.volume = 1});
+  to.turns = true;
+  const MassProperties of = mass_properties(rigid.shape, dim).value();  // the options refuse other shapes
   const Vec3 centre = rigid.centre_of_mass.value_or(of.centre);
   for (int d = 0; d < dim; ++d) to.centre[d] = centre[d] - config.mesh.lower[d];
   to.spin = rigid.angular_velocity, to.moment = rigid.moment;

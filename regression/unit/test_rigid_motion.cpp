@@ -74,21 +74,25 @@ void in_both_dimensions(F&& f) {
 TEST_CASE("a pose takes points and directions to the world, and back", "[rigid_motion]") {
   in_both_dimensions([](auto dim) {
     Dice dice;
-    for (int n = 0; n < 20; ++n) {
-      const RigidPose<dim> pose = random_rigid<dim>(dice).motion.pose;
+    for (int n = 0; n < 40; ++n) {
+      const bool turned = n % 2 == 1;
+      const RigidPose<dim> pose = (turned ? turned_rigid<dim>(dice) : random_rigid<dim>(dice)).motion.pose;
       const auto x = dice.vector<dim>(5), along = dice.vector<dim>(1);
-      const auto place = pose.to_world(x), ahead = pose.to_world([&] {
-        auto y = x;
-        for (int d = 0; d < dim; ++d) y[d] += along[d];
-        return y;
-      }());
+      auto next = x;
+      for (int d = 0; d < dim; ++d) next[d] += along[d];
+      const auto place = pose.to_world(x), ahead = pose.to_world(next), centre = pose.to_world(pose.centre);
       const auto back = pose.to_body([&](int d) { return place[d]; });
       const auto there = pose.turn_to_world(along), here = pose.turn_to_body(there);
+      double length = 0, length_there = 0;
       for (int d = 0; d < dim; ++d) {
-        CHECK(std::fabs(back[d] - x[d]) < 1e-14);
+        CHECK(std::fabs(back[d] - x[d]) < 1e-13);
         CHECK(std::fabs(here[d] - along[d]) < 1e-14);
-        CHECK(std::fabs(ahead[d] - place[d] - there[d]) < 1e-14);  // it turns with the points
+        CHECK(std::fabs(ahead[d] - place[d] - there[d]) < 1e-13);  // it turns with the points
+        CHECK(std::fabs(centre[d] - pose.centre[d] - pose.displacement[d]) < 1e-13);
+        length += along[d] * along[d], length_there += there[d] * there[d];
       }
+      CHECK(std::fabs(length - length_there) < 1e-13);
+      CHECK((std::fabs(there[0] - along[0]) > 1e-6) == turned);
     }
   });
 }
@@ -157,31 +161,6 @@ TEST_CASE("a row of a checkpoint has room for the motion of a body", "[rigid_mot
   STATIC_CHECK(MotionTerms::binned_rotation - MotionTerms::rotation >= Rotation<3>::size);
   // Numbers of a rigid in the checkpoints of earlier versions.
   STATIC_CHECK(MotionTerms::moment + MotionTerms::rotation - MotionTerms::binned == 12);
-}
-
-TEST_CASE("a pose that turned takes points and directions to the world, and back", "[rigid_motion]") {
-  in_both_dimensions([](auto dim) {
-    Dice dice;
-    for (int n = 0; n < 20; ++n) {
-      const RigidPose<dim> pose = turned_rigid<dim>(dice).motion.pose;
-      const auto x = dice.vector<dim>(5), along = dice.vector<dim>(1);
-      const auto place = pose.to_world(x), centre = pose.to_world(pose.centre);
-      auto next = x;
-      for (int d = 0; d < dim; ++d) next[d] += along[d];
-      const auto ahead = pose.to_world(next), back = pose.to_body([&](int d) { return place[d]; });
-      const auto there = pose.turn_to_world(along), here = pose.turn_to_body(there);
-      double length = 0, turned = 0;
-      for (int d = 0; d < dim; ++d) {
-        CHECK(std::fabs(back[d] - x[d]) < 1e-13);
-        CHECK(std::fabs(here[d] - along[d]) < 1e-14);
-        CHECK(std::fabs(ahead[d] - place[d] - there[d]) < 1e-13);
-        CHECK(std::fabs(centre[d] - pose.centre[d] - pose.displacement[d]) < 1e-13);
-        length += along[d] * along[d], turned += there[d] * there[d];
-      }
-      CHECK(std::fabs(length - turned) < 1e-13);
-      CHECK(std::fabs(there[0] - along[0]) > 1e-6);
-    }
-  });
 }
 
 TEST_CASE("a point of a rigid body moves at the velocity of its place", "[rigid_motion]") {

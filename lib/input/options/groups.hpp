@@ -120,7 +120,7 @@ void check_cut_out(OptionReader& in, const MeshConfig& mesh, const Config& confi
 bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, double end,
                 const Vec3& constant, std::optional<TimeTable>& table);
 
-/// How a rigid turns: of a body that moves. turning_keys: the options, without the name of the rigid.
+/// Rotation of a rigid that moves. turning_keys: its options, without the name of the rigid.
 const std::vector<std::string>& turning_keys();
 void read_turning(OptionReader& in, int dim, RigidConfig& rigid);
 void check_turning(OptionReader& in, const Config& config, const MeshConfig& mesh, const RigidConfig& rigid);

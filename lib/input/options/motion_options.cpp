@@ -46,13 +46,16 @@ void read_prescribed(OptionReader& in, int dim, double end, const Option& veloci
 }
 
 void read_dynamic(OptionReader& in, int dim, double end, RigidConfig& rigid) {
-  in.number({.name = rigid.name + "_density",
-             .meaning = "dynamic: its density",
-             .unit = "kg/m3",
-             .range = k_density,
-             .required = !in.given(rigid.name + "_mass"),
-             .change = k_by_choice},
-            rigid.density);
+  const Option density{.name = rigid.name + "_density",
+                       .meaning = "dynamic: its density",
+                       .unit = "kg/m3",
+                       .range = k_density,
+                       .required = true,
+                       .change = k_by_choice};
+  if (in.given(rigid.name + "_mass") && !in.listing())
+    in.not_taken(density.name, rigid.name + "_mass is given");
+  else
+    in.number(density, rigid.density);
   const Option force{.name = rigid.name + "_force",
                      .meaning = "dynamic: external force on it, beside gravity",
                      .unit = "N",

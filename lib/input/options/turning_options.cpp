@@ -34,7 +34,7 @@ void read_free(OptionReader& in, int dim, RigidConfig& rigid) {
     rigid.free[k] = true;
   }
   const int turns = rigid.free[3] + rigid.free[4] + rigid.free[5];
-  if (turns == 2) in.reject(name, "none, one or all of rx, ry and rz");
+  if (dim == 3 && turns == 2) in.reject(name, "none, one or all of rx, ry and rz");
 }
 
 /// Numbers of a rotation: one in 2D.
@@ -112,13 +112,24 @@ void check_turning(OptionReader& in, const Config& config, const MeshConfig& mes
   const std::string spin = rigid.name + "_angular_velocity";
   const bool free = rigid.motion == Motion::dynamic && (rigid.free[3] || rigid.free[4] || rigid.free[5]);
   if (!rigid.turns()) {
-    if (rigid.moment != Vec3{})
-      in.reject(rigid.name + "_moment", "a -" + rigid.name + "_free with a rotation beside it");
+    const std::string beside =
+        rigid.motion == Motion::dynamic ? "_free with a rotation" : "_angular_velocity";
+    for (const char* key : {"_moment", "_inertia", "_centre_of_mass"})
+      if (in.given(rigid.name + key) && in.is_read(rigid.name + key))
+        in.reject(rigid.name + key, "a -" + rigid.name + beside + " beside it");
     return;
   }
   const std::string option = free ? rigid.name + "_free" : spin, none = free ? "no rotation" : "0";
   if (rigid.motion == Motion::dynamic && !free)
     return in.reject(spin, "a -" + rigid.name + "_free with a rotation beside it, for the body is dynamic");
+  const bool one_axis = free && config.dim == 3 && !(rigid.free[3] && rigid.free[4]);
+  for (int d = 0; d < 3 && one_axis; ++d)
+    if (!rigid.free[3 + d] && rigid.angular_velocity[d] != 0)
+      return in.reject(spin, std::string("0 about ") + "xyz"[d] + ", for only r" +
+                                 (rigid.free[3]   ? "x"
+                                  : rigid.free[4] ? "y"
+                                                  : "z") +
+                                 " is free");
   if (config.geometry == Geometry::axisymmetric)
     return in.reject(option, none + " with -geometry axisymmetric");
   const ShapeKind kind = rigid.shape.kind;
