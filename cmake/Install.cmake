@@ -9,7 +9,8 @@ set_target_properties(mpm PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 install(TARGETS mpm RUNTIME)
 install(TARGETS mpm_lib mpm_kernels EXPORT mpmTargets ARCHIVE)
 install(DIRECTORY lib/include/mpm TYPE INCLUDE FILES_MATCHING PATTERN "*.hpp")
-install(FILES kokkos_kernels/base/choices.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mpm)  # config.hpp includes it
+# config.hpp includes these two.
+install(FILES kokkos_kernels/base/choices.hpp kokkos_kernels/base/side_kinds.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mpm)
 install(DIRECTORY inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN "*.opts"
   PATTERN "umat/*.f" PATTERN "umat/*.c" PATTERN "umat/ABA_PARAM.INC")
 install(FILES kokkos_kernels/physics/materials/umat_symbols.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)

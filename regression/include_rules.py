@@ -47,7 +47,7 @@ EXCEPTIONS = {
     ("loops/reduce_by_tile.hpp", "loops/gpu"): "chooses between the loops of a GPU and of a processor",
     ("loops/reduce_by_tile.hpp", "loops/cpu"): "chooses between the loops of a GPU and of a processor",
     ("functions/follow_soil.cpp", "rebuild"): "collect_soil of rebuild/batches.hpp: the sums need batches of soil at home",
-    ("mpm/config.hpp", "base"): "base/choices.hpp is installed next to it",
+    ("mpm/config.hpp", "base"): "choices.hpp and side_kinds.hpp are installed next to it",
     ("app/main.cpp", "base"): "base/subnormals.hpp: a flag of the processor",
     ("common/model.hpp", "mesh"): "mesh/patch_grid.hpp: the table of patches, plain numbers",
     ("common/snapshot.hpp", "data"): "data/particle_columns.hpp: plain structs",

@@ -122,9 +122,9 @@ foreach(file ${answers})
   mpm_python_test(answers.${deck} "${long} TIMEOUT 3600 ${ranks}" answers/check.py ${mpm} ${deck})
 endforeach()
 
-# A law with state variables, added by one header and one line to a copy of the program, which is built here.
+# A law, a vector of every particle and a kind of side, added to a copy of the program, which is built here.
 if(NOT Kokkos_ENABLE_CUDA AND NOT MPM_SANITIZE)
-  mpm_python_test(regression.added_law "LONG TIMEOUT 1800 PROCESSORS 2 ${threads}" added_law/check.py ${PROJECT_SOURCE_DIR}
+  mpm_python_test(regression.added_law "LONG TIMEOUT 1800 PROCESSORS 2 ${threads}" additions/check.py ${PROJECT_SOURCE_DIR}
     ${PROJECT_BINARY_DIR}/added_law --jobs 2)
 endif()
 # Laws of the user, compiled to shared libraries. Those in Fortran are left out without a compiler for it.

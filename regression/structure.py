@@ -3,7 +3,7 @@
 
     structure.py [TREE]     TREE: a source tree, also of another version (default: this one)
 
-A kernel source is a .cpp file of kokkos_kernels/. The files that a new law and a new vector of the particles modify are held by
+A kernel source is a .cpp file of kokkos_kernels/. The files that a new law, vector of the particles and kind of side modify are held by
 the test regression.added_law.
 """
 import pathlib

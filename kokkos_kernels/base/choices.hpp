@@ -22,22 +22,6 @@ constexpr const char* word_of(P2G how) {
   return "";
 }
 
-/// Condition at one side of the mesh (-mesh_xmin ...): roller, no velocity normal to the side; fixed, no
-/// velocity; free, nothing; friction, a roller with friction along it; absorbing, dashpots; free_field,
-/// dashpots between the soil and a column of it that moves as the ground beside; periodic, the opposite side.
-/// In kernels a roller or fixed side that moves is `driven`, and periodic sides are free sides of a mesh with
-/// a period (Grid). Checkpoints hold these numbers.
-enum class Wall { periodic = -1, roller, fixed, free, friction, absorbing, driven, free_field };
-inline constexpr Wall k_last_wall = Wall::free_field;
-/// Whether the soil goes on beyond a side as its mirror image; beyond sides that act, it moves as the side's
-/// nodes do.
-constexpr bool is_mirror(Wall wall) { return wall == Wall::roller || wall == Wall::fixed; }
-constexpr bool is_acting(Wall wall) { return wall > Wall::free; }
-/// Whether dashpots hold the soil at a side.
-constexpr bool has_dashpots(Wall wall) { return wall == Wall::absorbing || wall == Wall::free_field; }
-/// Whether a side gives the soil no force.
-constexpr bool is_open(Wall wall) { return wall == Wall::free || wall == Wall::periodic; }
-
 /// How particles take their velocity from the nodes (-velocity_update).
 enum class VelocityUpdate { flip, pic, xpic, apic };
 

@@ -4,8 +4,8 @@
 // node's number is slot * cells + its place in the patch, and so is a cell's (a node is its cell's lower
 // corner).
 
-#include "base/choices.hpp"
 #include "base/patch_edge.hpp"
+#include "base/side_kinds.hpp"
 #include "base/types.hpp"
 
 namespace mpm {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "base/choices.hpp"
+#include "base/side_kinds.hpp"
 #include "base/spaces.hpp"
 #include "base/types.hpp"
 #include "data/column_terms.hpp"
@@ -19,10 +19,9 @@ struct Side {
   Wall kind = Wall::roller;
   bool holds_all = false;        // driven: no component is free
   Vector<double, Dim> velocity;  // m/s, of the present step
-  double friction = 0;           // -
-  double shear_limit = 0;        // Pa, infinite where there is none
-  double unit_mass = 0;          // kg, of a node whose cells are full: its area is that of a cell's face
-  double face = 0;               // m2 (m in 2D)
+  SideNumbers numbers;
+  double unit_mass = 0;  // kg, of a node whose cells are full: its area is that of a cell's face
+  double face = 0;       // m2 (m in 2D)
   int first = 0, step[Dim] = {};
   int first_column = 0;  // free_field: row `first` of the table of columns
 
@@ -41,9 +40,8 @@ struct Sides {
   Kokkos::View<Side<Dim>*, Memory> all;  // [2 d + side]; allocated where one acts
   Kokkos::View<double * [SideTerms<Dim>::size], Kokkos::LayoutRight, Memory> nodes;  // by Side::row
   Kokkos::View<double * [ColumnTerms<Dim>::size], Kokkos::LayoutRight, Memory>
-      columns;                            // by Side::column_row; allocated where a side is free_field
-  std::array<Side<Dim>, 2 * Dim> host{};  // as the run began
-  std::array<double, 2 * Dim> dashpot_factor{}, spring_length{};  // -, m (0: no springs)
+      columns;                               // by Side::column_row; allocated where a side is free_field
+  std::array<Side<Dim>, 2 * Dim> host{};     // as the run began
   unsigned unknown = 0;                      // sides whose dashpots and reactions have yet to be computed
   std::array<unsigned, 2 * Dim> held{};      // bit k: component k that the side held before it absorbed
   std::array<unsigned, 2 * Dim> mirrored{};  // bit k: component k that then turned round in a mirror

@@ -212,14 +212,15 @@ void begin_absorbing(State<Space, T, Dim>& s, const std::vector<double>& shear_r
   const auto table = mirror_of(s.sides.nodes);
   for (int n = 0; n < 2 * Dim; ++n) {
     if (!(sides >> n & 1u)) continue;
+    const SideNumbers& of = s.sides.host[n].numbers;
     const int first = s.sides.host[n].first;
     for (int row = first; row < first + side_rows(s.grid.cells, Dim, n / 2); ++row) {
       const auto sum_of = [&](int k) { return sums(row, k) * give.unit[k]; };
       const double volume = sum_of(k_volume), area = sum_of(k_area) / s.spacing;
       for (int k = 0; k < 2 && volume > 0; ++k) {
         const double impedance = sum_of(k == 0 ? k_pressure_waves : k_shear_waves) / volume;  // kg/m2/s
-        const double density = sum_of(k_mass) / volume, length = s.sides.spring_length[n];
-        table(row, S::dashpot + k) = s.sides.dashpot_factor[n] * std::max(0.0, area) * impedance;
+        const double density = sum_of(k_mass) / volume, length = of.spring_length;
+        table(row, S::dashpot + k) = of.dashpot_factor * std::max(0.0, area) * impedance;
         if (length > 0)
           table(row, S::spring + k) = std::max(0.0, area) * impedance * impedance / density / length;
       }

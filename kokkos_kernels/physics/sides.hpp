@@ -1,31 +1,10 @@
 #pragma once
 // Sides of the mesh with friction, dashpots or a motion of their own, at a node on them (docs/boundaries.md).
 
-#include "data/sides.hpp"
 #include "physics/contact.hpp"
+#include "physics/side_node.hpp"
 
 namespace mpm {
-
-/// A node on such sides in a step.
-template <int Dim>
-struct SideNode {
-  Coord<Dim> at;
-  unsigned sides;   // the acting ones that it lies on
-  unsigned ends;    // all that it lies on and that end the mesh, as sides_of
-  double mass, dt;  // kg, s
-  double fresh;     // -, weight of a step in the mean normal impulse
-  bool counts;      // this rank answers for it
-  bool keeps;       // the step itself, not a rehearsal, which leaves no trace
-
-  KOKKOS_INLINE_FUNCTION bool on(int side) const { return sides >> side & 1u; }
-  /// Share of a cell's face that the node has of a side: half of it along each other side that it lies on.
-  KOKKOS_INLINE_FUNCTION double share_of(int side) const {
-    double share = 1;
-    for (int d = 0; d < Dim; ++d)
-      if (d != side / 2 && (ends >> (2 * d) & 3u) != 0) share /= 2;
-    return share;
-  }
-};
 
 /// The force that a side with dashpots gives a node whatever its velocity [N]: the static reaction, and from
 /// a column beside it the stress of the free field.
@@ -54,16 +33,6 @@ KOKKOS_INLINE_FUNCTION const double* far_velocity(const ActingSides<Dim>& acting
   if (acting.all[side].kind == Wall::free_field)
     return acting.column(side, node.at) + ColumnTerms<Dim>::after;
   return acting.all[side].velocity.c;
-}
-
-/// Adds the impulse [N s] of a side on a node to what the side has given, and its work.
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION void book(double* kept, const SideNode<Dim>& node, const Vector<T, Dim>& v_old, int k,
-                                 double impulse, double v) {
-  using S = SideTerms<Dim>;
-  if (!node.counts || !node.keeps) return;
-  kept[S::impulse + k] += impulse;
-  kept[S::work] += impulse * (double(v_old[k]) + v) / 2;
 }
 
 /// A dashpot c [kg/s] and a spring s [N/m] on a component of a node's velocity, between the node and what
@@ -141,9 +110,10 @@ struct SideFriction {
       if (k != d) squares += (held[k] - side.velocity[k]) * (held[k] - side.velocity[k]);
     const double slip = node.mass * Kokkos::sqrt(squares);  // N s
     const double area = side.face * Kokkos::fmin(node.share_of(n), node.mass / side.unit_mass);
-    const double most = Kokkos::fmin(side.friction * normal, side.shear_limit * area * node.dt);
+    const double most =
+        Kokkos::fmin(side.numbers.friction * normal, side.numbers.shear_limit * area * node.dt);
     stops = slip > most ? most / slip : 1;
-    if (side.friction > 0) pressed.store -= stops * slip / (node.mass * side.friction);
+    if (side.numbers.friction > 0) pressed.store -= stops * slip / (node.mass * side.numbers.friction);
   }
 };
 
@@ -201,7 +171,7 @@ template <int Dim>
 KOKKOS_INLINE_FUNCTION void prescribe(const ActingSides<Dim>& acting, unsigned sides, int n, double* v) {
   const Side<Dim>& side = acting.all[n];
   const int d = n / 2;
-  if (has_dashpots(side.kind)) return;
+  if (side.kind != Wall::driven && side.kind != Wall::friction) return;
   for (int k = 0; k < Dim; ++k) {
     if ((k != d && !side.holds_all) || is_overruled(acting, sides, n, k)) continue;
     if (side.kind != Wall::friction)

@@ -20,7 +20,7 @@ void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vec
     side.kind = grid.walls[in.direction][in.side];
     side.holds_all = in.holds_all;
     for (int d = 0; d < Dim; ++d) side.velocity[d] = in.velocity[d];
-    side.friction = in.friction, side.shear_limit = in.shear_limit;
+    side.numbers = in.numbers;
     side.face = std::pow(grid.spacing, Dim - 1);
     side.unit_mass = density * side.face * grid.spacing / 2;
     side.first = rows;
@@ -33,7 +33,6 @@ void upload_sides(State<Space, T, Dim>& s, const GridInput& grid, const std::vec
     rows += side_rows(grid.cells, Dim, in.direction);
     if (side.kind == Wall::free_field) column_rows += side_rows(grid.cells, Dim, in.direction);
     s.sides.mask |= 1u << n;
-    s.sides.dashpot_factor[n] = in.dashpot_factor, s.sides.spring_length[n] = in.spring_length;
     if (has_dashpots(side.kind)) s.sides.unknown |= 1u << n;
     s.sides.held[n] = s.sides.mirrored[n] = 1u << in.direction;
   }

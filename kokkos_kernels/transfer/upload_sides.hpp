@@ -15,10 +15,7 @@ struct SideInput {
   int direction = 0, side = 0;       // 0 lower, 1 upper
   bool holds_all = false;            // driven: fixed, not roller
   std::array<double, 3> velocity{};  // m/s, where no table tells it
-  double friction = 0;               // -
-  double shear_limit = 0;            // Pa, infinite where there is none
-  double dashpot_factor = 1;         // -, of a side with dashpots
-  double spring_length = 0;          // m, likewise; 0: no springs
+  SideNumbers numbers{};
 };
 
 /// Sets up the sides of `grid` that act; density [kg/m3]: of the lightest soil.

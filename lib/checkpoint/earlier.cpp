@@ -1,6 +1,6 @@
 #include "checkpoint/earlier.hpp"
 
-#include "base/choices.hpp"
+#include "base/side_kinds.hpp"
 #include "data/side_terms.hpp"
 
 namespace mpm {

@@ -18,13 +18,10 @@ void MeshSides<Space, T, Dim>::set_up(GridInput* grid) {
     for (int side = 0; side < 2; ++side) {
       Wall& kind = grid->walls[d][side];
       const SideConfig& of = run_.config.mesh.sides[d][side];
-      SideInput in{.direction = d, .side = side, .holds_all = kind == Wall::fixed};
+      SideInput in{.direction = d, .side = side, .holds_all = kind == Wall::fixed, .numbers = of.numbers};
       if (is_mirror(kind) && of.moves) kind = Wall::driven;
       if (!is_acting(kind)) continue;
       if (!of.velocity_table) in.velocity = of.velocity;
-      in.friction = of.friction;
-      in.shear_limit = of.shear_limit.value_or(std::numeric_limits<double>::infinity());
-      in.dashpot_factor = of.dashpot_factor, in.spring_length = of.spring_length.value_or(0);
       sides.push_back(in);
     }
   double density = std::numeric_limits<double>::max();

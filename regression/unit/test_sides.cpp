@@ -32,7 +32,7 @@ Cloud corner(int seed) {
 
 std::vector<SideInput> sides_of_corner(int dim) {
   std::vector<SideInput> sides = {
-      {.direction = 0, .velocity = {0, 0.3, 0}, .friction = 0.4, .shear_limit = 1e9},
+      {.direction = 0, .velocity = {0, 0.3, 0}, .numbers = {.friction = 0.4, .shear_limit = 1e9}},
       {.direction = 1, .holds_all = true, .velocity = {0.2, -0.1, 0.1}}};
   if (dim == 3) sides.push_back({.direction = 2});
   return sides;
@@ -53,8 +53,7 @@ Side<3> rough_side(double friction) {
   Side<3> side;
   side.kind = Wall::friction;
   side.velocity = {0.1, 0, -0.2};
-  side.friction = friction;
-  side.shear_limit = Kokkos::Experimental::infinity<double>::value;
+  side.numbers.friction = friction;
   side.unit_mass = 1, side.face = 1;
   return side;
 }
@@ -102,7 +101,7 @@ TEST_CASE("friction of a side takes no more than its share of the normal impulse
                    left[2] = {v[0] - side.velocity[0], v[2] - side.velocity[2]};
       CHECK(slip[0] * left[0] + slip[1] * left[1] >= -1e-15);
       along += mass * std::hypot(v[0] - old[0], v[2] - old[2]);
-      CHECK(along <= side.friction * normal * (1 + 1e-12) + 1e-15);
+      CHECK(along <= side.numbers.friction * normal * (1 + 1e-12) + 1e-15);
     }
   }
 }
@@ -132,7 +131,7 @@ TEST_CASE("where sides with friction meet, their order does not matter, and thei
 
 TEST_CASE("the shear limit of a side bounds the shear impulse of a step by its area", "[sides]") {
   Side<3> side = rough_side(100);
-  side.shear_limit = 30, side.face = 0.5, side.unit_mass = 4;
+  side.numbers.shear_limit = 30, side.face = 0.5, side.unit_mass = 4;
   NodeOnSides<3> node;
   node.add(2, side);
   const auto v = node.meet(2, 1e-2, {5, -10, -0.2});  // half of a full node
@@ -286,7 +285,7 @@ TEST_CASE("an absorbing side takes rho c A and the static force from the soil at
       for (int k = 0; k < sym_size<Dim>; ++k) body.stress.push_back(k == 0 ? -4000.0 : 0.0);
     cloud.bodies = {body};
     auto s = state_of<B>(cloud);
-    upload_sides(s, cloud.grid, {{.direction = 0, .dashpot_factor = 0.5}}, k_density);
+    upload_sides(s, cloud.grid, {{.direction = 0, .numbers = {.dashpot_factor = 0.5}}}, k_density);
     interpolate(s);
     finish_sums(s);
     begin_absorbing(s, {1 / std::sqrt(3.0)}, {});

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "choices.hpp"
+#include "side_kinds.hpp"
 
 namespace mpm {
 
@@ -31,10 +32,7 @@ struct TimeTable {
 
 /// Properties of a side of the mesh beside its kind.
 struct SideConfig {
-  double friction = 0;                      // - (friction)
-  std::optional<double> shear_limit;        // Pa (friction)
-  double dashpot_factor = 1;                // - (absorbing)
-  std::optional<double> spring_length;      // m (absorbing)
+  SideNumbers numbers;
   Vec3 velocity{};                          // m/s; where a table gives it, its components of largest size
   std::optional<TimeTable> velocity_table;  // m/s
   bool of_accelerations = false;            // that table is the integral of a record of accelerations

@@ -14,10 +14,12 @@ constexpr const char* k_top_default =
     "roller; at the side against gravity smooth, unless a body reaches it at the start";
 
 void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
-  static const Words<Wall> words = {
-      {"roller", Wall::roller},         {"fixed", Wall::fixed},      {"free", Wall::free},
-      {"friction", Wall::friction},     {"smooth", Wall::friction},  {"absorbing", Wall::absorbing},
-      {"free_field", Wall::free_field}, {"periodic", Wall::periodic}};
+  Words<Wall> words;
+  std::string meaning = "what holds at that side:";
+  for (const SideWord& of : k_side_words) {
+    meaning.append(words.empty() ? " " : "; ").append(of.meaning);
+    words.emplace_back(of.word, of.kind);
+  }
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side) {
       const std::string name = side_option(d, side);
@@ -25,15 +27,11 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
         in.not_taken(name, "a mesh in 2D has no such side");
         continue;
       }
-      in.word(
-          {.name = name,
-           .meaning = "what holds at that side: no normal velocity; no velocity at all; nothing; no velocity "
-                      "into it, and friction along it; no velocity into it; dashpots that absorb waves; "
-                      "dashpots to a column that moves as the free field beside; the opposite side, which "
-                      "is periodic too",
-           .standard = d > 0 && side == 1 && in.listing() ? k_top_default : "",
-           .change = k_by_choice},
-          words, mesh.walls[d][side]);
+      in.word({.name = name,
+               .meaning = meaning,
+               .standard = d > 0 && side == 1 && in.listing() ? k_top_default : "",
+               .change = k_by_choice},
+              words, mesh.walls[d][side]);
     }
 }
 

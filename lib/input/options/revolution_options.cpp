@@ -1,5 +1,7 @@
 #include "input/options/revolution_options.hpp"
 
+#include <cmath>
+
 #include "common/text.hpp"
 #include "common/time_table.hpp"
 
@@ -30,7 +32,7 @@ void check_revolution(OptionReader& in, const Config& config) {
     else if (const Wall wall = config.mesh.walls[n / 2][n % 2];
              is_acting(wall) && wall != Wall::absorbing && wall != Wall::friction)
       in.reject(name, "roller, smooth, fixed, free, friction or absorbing" + where);
-    if (side.shear_limit) in.reject(name + "_shear_limit", "nothing" + where);
+    if (std::isfinite(side.numbers.shear_limit)) in.reject(name + "_shear_limit", "nothing" + where);
   }
   if (config.gravity[0] != 0)
     in.reject(config.gravity_table ? "gravity_table" : "gravity",

@@ -13,56 +13,37 @@
 namespace mpm {
 namespace {
 
-constexpr const char* k_keys[] = {"_friction",
-                                  "_shear_limit",
-                                  "_dashpot_factor",
-                                  "_spring_length",
-                                  "_velocity",
-                                  "_velocity_table",
-                                  "_velocity_table_interpolation",
-                                  "_acceleration",
-                                  "_acceleration_table",
-                                  "_acceleration_table_interpolation",
-                                  "_acceleration_correction"};
+constexpr const char* k_motion_keys[] = {"velocity",
+                                         "velocity_table",
+                                         "velocity_table_interpolation",
+                                         "acceleration",
+                                         "acceleration_table",
+                                         "acceleration_table_interpolation",
+                                         "acceleration_correction"};
+
+/// Calls f("_KEY") for each option of a side.
+template <class F>
+void for_each_key(F&& f) {
+  for (const SideNumber& number : k_side_numbers) f(std::string("_") + number.key);
+  for (const char* key : k_motion_keys) f(std::string("_") + key);
+}
 
 /// Whether a side is a friction side without friction.
 bool is_smooth(const OptionReader& in, const std::string& name) {
   return lower_case(in.given_text(name)) == "smooth";
 }
 
-void read_friction(OptionReader& in, const std::string& name, SideConfig& side) {
-  if (is_smooth(in, name)) return;
-  in.number({.name = name + "_friction",
-             .meaning = "friction: coefficient of friction, tan of the angle",
-             .unit = "-",
-             .range = {.lowest = 0, .highest = 1e3},
-             .required = true,
-             .change = k_by_choice},
-            side.friction);
-  in.number({.name = name + "_shear_limit",
-             .meaning = "friction: largest shear stress along the side",
-             .unit = "Pa",
-             .range = {.lowest = 0, .highest = 1e15},
-             .standard = "none",
-             .change = k_by_choice},
-            side.shear_limit);
-}
-
-void read_absorbing(OptionReader& in, const std::string& name, SideConfig& side) {
-  in.number({.name = name + "_dashpot_factor",
-             .meaning = "absorbing, free_field: factor of the dashpots rho c",
-             .unit = "-",
-             .range = {.lowest = 0, .highest = 1e3},
-             .change = k_by_choice},
-            side.dashpot_factor);
-  in.number(
-      {.name = name + "_spring_length",
-       .meaning = "absorbing, free_field: length L of springs rho c^2 / L beside the dashpots, against drift",
-       .unit = "m",
-       .range = {.lowest = 0, .highest = 1e9, .open_lowest = true},
-       .standard = "no springs",
-       .change = k_by_choice},
-      side.spring_length);
+void read_numbers(OptionReader& in, const std::string& name, Wall kind, SideNumbers& numbers) {
+  for (const SideNumber& number : k_side_numbers)
+    if (in.listing() || (number.of(kind) && !is_smooth(in, name)))
+      in.number({.name = name + "_" + number.key,
+                 .meaning = number.meaning,
+                 .unit = number.unit,
+                 .range = {.lowest = 0, .highest = number.highest, .open_lowest = number.positive},
+                 .required = number.required,
+                 .standard = number.standard,
+                 .change = k_by_choice},
+                numbers.*number.member);
 }
 
 void read_velocity(OptionReader& in, const std::string& name, int dim, double end, SideConfig& side) {
@@ -126,9 +107,10 @@ void read_acceleration(OptionReader& in, const std::string& name, int dim, doubl
 
 /// A roller leaves the velocity along it to the soil.
 void check_roller(OptionReader& in, const std::string& name, int dim, int d, const SideConfig& side) {
+  const std::string axis(1, "xyz"[d]);
   for (int k = 0; k < dim; ++k)
     if (k != d && side.velocity[k] != 0)
-      return in.reject(name + motion_of(side), std::string("0 but in ") + "xyz"[d] + ", for -" + name +
+      return in.reject(name + motion_of(side), "0 but in " + axis + ", for -" + name +
                                                    " is roller, which leaves the velocity along it free");
 }
 
@@ -144,17 +126,17 @@ void read_side(OptionReader& in, const Config& config, int d, int side, SideConf
   const std::string name = side_option(d, side);
   const Wall kind = config.mesh.walls[d][side];
   const auto known = in.known().size();
-  if (kind == Wall::friction || in.listing()) read_friction(in, name, to);
-  if (has_dashpots(kind) || in.listing()) read_absorbing(in, name, to);
-  const bool moves = !is_open(kind) && kind != Wall::free_field;
+  read_numbers(in, name, kind, to.numbers);
+  const bool moves = may_move(kind);
   if (in.listing() || (moves && !in.given(name + "_acceleration_table")))
     read_velocity(in, name, config.dim, config.time.end, to);
   if (in.listing() || moves) read_acceleration(in, name, config.dim, config.time.end, to);
   if (in.listing()) return;
   const auto& all = in.known();
-  for (const char* key : k_keys)
+  for_each_key([&](const std::string& key) {
     if (std::find(all.begin() + static_cast<long>(known), all.end(), name + key) == all.end())
       in.not_taken(name + key, why_not(in, name, key, moves));
+  });
   if (kind == Wall::roller) check_roller(in, name, config.dim, d, to);
 }
 
@@ -202,8 +184,9 @@ void read_sides(OptionReader& in, Config& config) {
       if (d < config.dim || in.listing()) {
         read_side(in, config, d, side, config.mesh.sides[d][side]);
       } else {
-        for (const char* key : k_keys)
+        for_each_key([&](const std::string& key) {
           in.not_taken(side_option(d, side) + key, "a mesh in 2D has no such side");
+        });
       }
 }
 

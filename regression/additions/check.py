@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""What the program takes to grow. A law with two state variables is one header and one line, and a vector of every particle is
-a member and a row in two headers: this adds path_dependent.hpp and the vector `tracer` to a copy of the program, builds it, and
-holds the state of its particles against what it must be.
+"""What the program takes to grow. A law with two state variables is one header and one line, a vector of every particle is a
+member and a row in two headers, and a kind of side of the mesh is one header, its rows in the tables of kinds and numbers, and one
+line. This adds path_dependent.hpp, the vector `tracer` and the side `spring` (spring_side.hpp) to a copy of the program, builds it,
+and holds what its runs give against what it must be.
 
     check.py SOURCE BUILD [--jobs N]
 
@@ -18,10 +19,10 @@ import subprocess
 import h5py
 import numpy as np
 
-from mpm_regression.folders import ENVIRONMENT, checkpoints, differences, fresh
+from mpm_regression.folders import ENVIRONMENT, checkpoints, differences, fresh, history, of_velocities
 
 HERE = pathlib.Path(__file__).resolve().parent
-DECK = HERE / "deck.opts"
+DECK, SPRING_DECK = HERE / "block.opts", HERE / "spring.opts"
 
 VARIABLES = {"created_at": "m", "shear_path": "-"}
 
@@ -33,7 +34,12 @@ def put(path, text):
         path.write_text(text)
 
 
-TRACER = {  # file: what stands before an addition, and the addition
+LAW = {  # file: what stands before an addition, and the addition
+    "kokkos_kernels/physics/materials/list.hpp": [
+        ('#include "physics/materials/newtonian.hpp"\n', '#include "physics/materials/path_dependent.hpp"\n'),
+        ("SofteningClay, Umat", ", PathDependent")],
+}
+VECTOR = {
     "kokkos_kernels/data/particles.hpp": [
         ("  Kokkos::View<Vector<T, Dim>*, Memory> velocity;   // m/s\n", "  Kokkos::View<Vector<T, Dim>*, Memory> tracer;     // m\n"),
         ('  f(ParticleField{"velocity", changes, mass_mean}, s.velocity, others.velocity...);\n',
@@ -44,10 +50,37 @@ TRACER = {  # file: what stands before an addition, and the addition
          '    {"tracer", "tracer", "m", &ParticleColumns::tracer, Width::vector, Carried::where_kept, GivenBy::none,\n'
          "     Common::zero, Framed::bodies, 0, Bound::none},\n")],
 }
+SIDE = {
+    "kokkos_kernels/base/side_kinds.hpp": [
+        ("friction, absorbing, driven, free_field", ", spring"),
+        ('    {"periodic", Wall::periodic, "the opposite side, which is periodic too"},\n',
+         '    {"spring", Wall::spring, "springs normal to it"},\n'),
+        ("// m; 0: no springs\n", "  double stiffness = 0;  // Pa/m\n"),
+        ('     "no springs"},\n',
+         '    {"stiffness", &SideNumbers::stiffness, [](Wall kind) { return kind == Wall::spring; }, "Pa/m",\n'
+         '     "spring: stiffness of the springs of an area", 1e15, false, "", true},\n')],
+    "kokkos_kernels/physics/sides.hpp": [
+        ('#include "physics/side_node.hpp"\n', '#include "physics/spring_side.hpp"\n'),
+        ("  for (int k = 0; k < Dim; ++k) v[k] = v_now[k];\n", "  if (meets) press_springs(acting, node, v_old, v);\n")],
+}
+ADDITIONS = {  # what is added, its header of this folder and where it goes, and the files that it modifies
+    "law": ("kokkos_kernels/physics/materials/path_dependent.hpp", LAW),
+    "vector": (None, VECTOR),
+    "side": ("kokkos_kernels/physics/spring_side.hpp", SIDE),
+}
+MOST_FILES = 2  # that an addition modifies
 
 
-def with_tracer(text, additions):
-    """A source with the lines that add the vector."""
+def count_files():
+    """Prints how many files of the program each addition modifies."""
+    for name, (header, files) in ADDITIONS.items():
+        added = f", and adds {pathlib.Path(header).name}" if header else ""
+        print(f"the {name:6} modifies {len(files)} ({', '.join(pathlib.Path(file).name for file in files)}){added}", flush=True)
+        assert len(files) <= MOST_FILES, (name, list(files))
+
+
+def with_additions(text, additions):
+    """A source with the lines that are added to it."""
     for before, line in additions:
         assert text.count(before) == 1, before
         text = text.replace(before, before + line)
@@ -55,20 +88,19 @@ def with_tracer(text, additions):
 
 
 def copy_with_additions(source, copy):
-    """The program's source with the vector, the law's header, and its line in the list of materials."""
+    """The program's source with the law, the vector and the side."""
+    modified = {}
+    for header, files in ADDITIONS.values():
+        if header:
+            put(copy / header, (HERE / pathlib.Path(header).name).read_text())
+        for file, additions in files.items():
+            modified.setdefault(file, []).extend(additions)
     for part in ("CMakeLists.txt", "cmake", "kokkos_kernels", "lib", "app"):
         for path in [source / part] if (source / part).is_file() else (source / part).rglob("*"):
-            if path.is_file() and path.name != "list.hpp":
-                name = path.relative_to(source)
-                put(copy / name, with_tracer(path.read_text(), TRACER.get(str(name), [])))
-    materials = "kokkos_kernels/physics/materials"
-    put(copy / materials / "path_dependent.hpp", (HERE / "path_dependent.hpp").read_text())
-    before = (source / materials / "list.hpp").read_text()
-    after = before.replace('#include "physics/materials/von_mises.hpp"\n',
-                           '#include "physics/materials/path_dependent.hpp"\n#include "physics/materials/von_mises.hpp"\n')
-    after, lists = re.subn(r"(using Materials =\s+ModelList<[^>]+)>;", r"\1, PathDependent>;", after)
-    assert len(after.splitlines()) == len(before.splitlines()) + 1 and lists == 1
-    put(copy / materials / "list.hpp", after)
+            if path.is_file():
+                name = str(path.relative_to(source))
+                put(copy / name, with_additions(path.read_text(), modified.pop(name, [])))
+    assert not modified, modified
 
 
 def build(source, folder, jobs):
@@ -235,6 +267,46 @@ class Checks:
         text = self.go(self.base / "wrong", "-soft_threshold", 0, status=2)
         assert "-soft_threshold: given \"0\", takes a path greater than 0 where -soft_change is given" in text, text
 
+    def check_side(self):
+        """A column on springs oscillates as a mass on a spring, and takes from them the work that it gives them."""
+        mass, spring, start = 2000.0, 4e6 * 2.0, 1e-3  # kg/m, N/m of the side, m/s
+        omega = np.sqrt(spring / mass)
+        one = fresh(self.base / "spring")
+        self.go(one, deck=SPRING_DECK)
+        h = history(one)
+        momentum, force, drift = h["column_momentum_y"], h["wall_ymin_force_y"], h["column_centre_y"] - h["column_centre_y"][0]
+        zeros = np.flatnonzero(np.diff(np.sign(momentum)))  # twice a period
+        at = of_velocities(h["time"], h["dt"])
+        when = at[zeros] - momentum[zeros] * np.diff(at)[zeros] / np.diff(momentum)[zeros]
+        found = np.pi / np.diff(when).mean()
+        assert len(zeros) == 4 and abs(found / omega - 1) < 5e-3, (when, found, omega)
+        size = start / omega
+        assert np.abs(drift + size * np.sin(omega * h["time"])).max() < 0.04 * size
+        # The force of a row is the mean since the row before.
+        taken = force[1:] * np.diff(h["time"]) + np.diff(momentum)
+        assert np.abs(taken).max() < 1e-9 * mass * start, np.abs(taken).max()
+        mean = spring * (drift[1:] + drift[:-1]) / 2
+        assert np.abs(force[1:] - mean).max() < 0.01 * spring * size, np.abs(force[1:] - mean).max() / (spring * size)
+        energy = mass * start**2 / 2
+        kept = h["energy_kinetic"] + h["energy_elastic"] - h["work_contact"]
+        assert np.abs(kept / energy - 1).max() < 5e-3 and np.ptp(h["work_contact"]) > 0.98 * energy, (kept / energy).tolist()
+        stored = h["energy_kinetic"] + spring * drift**2 / 2
+        assert abs(stored[-1] / energy - 1) < 0.02, stored[-1] / energy
+        again = fresh(self.base / "spring_again")
+        shutil.copytree(one, again)
+        self.go(again, "-restart", checkpoints(again)[0], deck=SPRING_DECK)
+        assert not differences(one, again), differences(one, again)
+        several = fresh(self.base / "spring_2")
+        self.go(several, "-p2g", "gather", ranks=2, deck=SPRING_DECK)
+        there = history(several)
+        for name, size in (("wall_ymin_force_y", np.abs(force).max()), ("column_momentum_y", mass * start), ("work_contact", energy)):
+            assert np.abs(there[name] - h[name]).max() < 1e-9 * size, (name, np.abs(there[name] - h[name]).max() / size)
+        text = self.go(self.base / "wrong", "-mesh_xmax_stiffness", 1, status=2, deck=SPRING_DECK)
+        assert "-mesh_xmax_stiffness" in text and "-mesh_xmax is roller" in text, text
+        text = self.go(self.base / "wrong", "-mesh_xmax", "spring", status=2, deck=SPRING_DECK)
+        assert "-mesh_xmax_stiffness: not given, takes a number in Pa/m" in text, text
+        print(f"             omega {found:.4f} 1/s of the column on springs, {omega:.4f} exact")
+
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
@@ -242,6 +314,7 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     given = parser.parse_args()
+    count_files()
     checks = Checks(build(given.source.resolve(), given.build.resolve(), given.jobs), given.build.resolve() / "runs")
     for name in (name for name in dir(checks) if name.startswith("check_")):
         getattr(checks, name)()
