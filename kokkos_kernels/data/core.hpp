@@ -76,7 +76,7 @@ struct Core {
   ControlView<Space> control, never_paused;
   Movements<Space> movements;
   Kokkos::View<char*, Memory>
-      scratch;  // scratch of a rebuild: one field in its new order; of a step: dilatations, XPIC
+      scratch;  // of a rebuild: one field in its new order; of a step: dilatations, or ParticleValues
   Kokkos::View<int*, Memory> marks;  // scratch of a rebuild: which patches hold points
 
   double time = 0;                        // s, before the steps that Control::steps counts

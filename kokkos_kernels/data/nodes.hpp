@@ -73,7 +73,7 @@ struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, DisplacedTerms::size> displaced;  // kg, of water; allocated with it
   NodeField<Space, T, Dim> load;      // N, of loads on surfaces, of this rank's soil; allocated with them
   NodeField<Space, T, Dim> residual;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
-  NodeField<Space, T, Dim> shares;    // of the position correction (ShareSource); allocated for it
+  NodeField<Space, T, Dim> shares;    // of the position correction (shares_of); allocated for it
   NodeField<Space, T, CentreTerms<Dim>::size> centre;  // of the soil, where domains stretch
   NodeField<Space, T, Dim> drift;  // kg cells, mass times the way since domains changed last; likewise
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>

@@ -7,6 +7,7 @@
 #include "functions/free_field.hpp"
 #include "functions/side_moduli.hpp"
 #include "loops/particle_to_node.hpp"
+#include "physics/pore_water.hpp"
 
 namespace mpm {
 namespace {

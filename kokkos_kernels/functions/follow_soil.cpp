@@ -139,7 +139,7 @@ void sum_drift(ContactCore<Space, T, Dim>& s) {
       "mpm::drift", Kokkos::RangePolicy<Space>(s.space, 0, soil.count), KOKKOS_LAMBDA(int p) {
         for (int d = 0; d < Dim; ++d) soil.begun(p)[d] = soil.coordinate(p)[d] - soil.begun(p)[d];
       });
-  sum_at_home(s, ResidualSource<Space, T, Dim>{soil, soil.begun}, s.nodes.drift);
+  sum_at_home(s, VectorSource<Space, T, Dim>{soil, soil.begun, {}, Times::mass}, s.nodes.drift);
 }
 
 template <class Space, class T, int Dim>

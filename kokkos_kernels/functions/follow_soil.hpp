@@ -1,7 +1,7 @@
 #pragma once
 // Domains follow the soil (-particle_domain stretch) between steps, at rebuilds and after so many steps
 // without one, from where particles were the last time to where they are:
-//   1. sum_drift        CentreSource, ResidualSource: of the soil at each node the centre of mass, and its
+//   1. sum_drift        CentreSource, VectorSource: of the soil at each node the centre of mass, and its
 //   way
 //   2. stretch_domains  the deformation gradient of each particle by least squares over its nodes; its domain
 //   3. begin_domains    once the lists are made: the places from which the next way counts

@@ -58,7 +58,7 @@ struct FindShift {
   NodePlaces<Space, T, Dim> places;
   FillField<Space, T, Dim> fill;
   NodeField<Space, T, SoilTerms<Dim>::size> sums;
-  CorrectionVectors<Space, T, Dim> shares, shifts;
+  ParticleValues<Space, T, Dim> shares, shifts;
   decltype(PositionCorrection<Space>::flow_column) flow_column;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   Kokkos::View<Vertex*, typename Space::memory_space> vertices;
@@ -173,7 +173,7 @@ struct ApplyShift {
   NodePlaces<Space, T, Dim> places;
   NodeField<Space, T, Dim> given;
   NodeField<Space, T, SoilTerms<Dim>::size> sums;
-  CorrectionVectors<Space, T, Dim> shares, shifts;
+  ParticleValues<Space, T, Dim> shares, shifts;
   Vector<double, Dim> gravity;
   double spacing;
   int body;

@@ -5,29 +5,25 @@
 //   1. SoilSource, BoundarySource to the nodes    mass, momentum; volume V_i = sum S V_p, area A_i = sum V_p
 //   grad S
 //   2. compare_volumes                            what is missing of each node's volume
-//   3. find_shifts; ShareSource to the nodes      shifts; the momentum that they would bring
+//   3. find_shifts; ValueSource to the nodes      shifts; the momentum that they would bring
 //   4. apply_shifts                               positions and velocities
 
 #include "base/spaces.hpp"
 #include "data/contact_core.hpp"
+#include "data/particle_values.hpp"
 
 namespace mpm {
 
-template <class Space, class T, int Dim>
-using CorrectionVectors =
-    Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged>;
-
 /// Vector that each particle gives the nodes, by particle; in s.scratch.
 template <class Space, class T, int Dim>
-CorrectionVectors<Space, T, Dim> shares_of(const ContactCore<Space, T, Dim>& s) {
-  return CorrectionVectors<Space, T, Dim>(reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()),
-                                          s.soil.points.count);
+ParticleValues<Space, T, Dim> shares_of(const ContactCore<Space, T, Dim>& s) {
+  return values_in_scratch<Dim>(s);
 }
 /// Shifts of the particles [cells], by particle; in s.scratch.
 template <class Space, class T, int Dim>
-CorrectionVectors<Space, T, Dim> shifts_of(const ContactCore<Space, T, Dim>& s) {
+ParticleValues<Space, T, Dim> shifts_of(const ContactCore<Space, T, Dim>& s) {
   const std::size_t count = s.soil.points.count;
-  return CorrectionVectors<Space, T, Dim>(reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()) + count, count);
+  return ParticleValues<Space, T, Dim>(reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()) + count, count);
 }
 
 /// Terms of a node for the correction: BoundaryTerms as sums over particles, then these.

@@ -6,6 +6,7 @@
 #include "base/copy.hpp"
 #include "data/particles.hpp"
 #include "physics/materials/any.hpp"
+#include "physics/pore_water.hpp"
 
 namespace mpm {
 

@@ -271,20 +271,19 @@ void list_loaded(const Core<Space, T, Dim>& s, SurfaceLoads<Space, T, Dim>& load
         ++n;
       },
       loads.loaded_count);
-  if (has_windows(s.space)) {
-    loads.windows.place = loaded;
-    ensure(loads.windows.sums, window_bytes<LoadSource<Space, T, Dim>> * loads.loaded_count);
-  }
+  loads.windows.place = loaded;
+  if (has_windows(s.space))
+    ensure(loads.windows.sums, window_bytes<VectorSource<Space, T, Dim>> * loads.loaded_count);
   const int count = s.soil.points.count;
   ensure(loads.coordinate, count), ensure(loads.force, count), ensure(loads.half_length, count);
 }
 
 template <class Space, class T, int Dim>
-LoadSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads,
-                                      int axis) {
+VectorSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>& s,
+                                        const SurfaceLoads<Space, T, Dim>& loads, int axis) {
   Kokkos::parallel_for("mpm::place_faces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
                        PlaceFaces<Space, T, Dim>{LoadedParticles<Space, T, Dim>(s, loads), loads, axis});
-  LoadSource<Space, T, Dim> source{s.soil.points, loads.force, loads.loaded, loads.windows};
+  VectorSource<Space, T, Dim> source{s.soil.points, loads.force, loads.windows};
   source.points.coordinate = loads.coordinate, source.points.half_length = loads.half_length;
   source.points.has_domain = true;
   return source;
@@ -346,8 +345,8 @@ std::vector<SurfaceSum> sum_surfaces(const Core<Space, T, Dim>& s, const Surface
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                          \
   template void list_loaded(const Core<Space, T, Dim>&, SurfaceLoads<Space, T, Dim>&);          \
-  template LoadSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>&,                    \
-                                                 const SurfaceLoads<Space, T, Dim>&, int);      \
+  template VectorSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>&,                  \
+                                                   const SurfaceLoads<Space, T, Dim>&, int);    \
   template void add_loads(const Core<Space, T, Dim>&);                                          \
   template void follow_surfaces(const Core<Space, T, Dim>&, const SurfaceLoads<Space, T, Dim>&, \
                                 const EnergyWorks<Space, T, Dim>&, double);                     \

@@ -14,11 +14,12 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void list_loaded(const Core<Space, T, Dim>& s, SurfaceLoads<Space, T, Dim>& loads);
 
-/// The source of the forces on faces that lie along an axis, of particles in the slots with loads. It takes
-/// their places from `loads`, where this puts them, and is summed in the windows of the loads.
+/// The source of the forces on faces that lie along an axis, of particles in the slots with loads: sum N f_p,
+/// N the mean of the linear hat of a node over the face. A face is a box without thickness. The source takes
+/// places, boxes and forces of the faces from `loads`, where this puts them, and is summed in its windows.
 template <class Space, class T, int Dim>
-LoadSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>& s, const SurfaceLoads<Space, T, Dim>& loads,
-                                      int axis);
+VectorSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>& s,
+                                        const SurfaceLoads<Space, T, Dim>& loads, int axis);
 
 /// Adds s.nodes.load to the forces at the nodes.
 template <class Space, class T, int Dim>

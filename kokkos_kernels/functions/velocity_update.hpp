@@ -4,14 +4,14 @@
 
 #include "base/spaces.hpp"
 #include "data/contact_core.hpp"
+#include "data/particle_values.hpp"
 
 namespace mpm {
 
 /// Residual r_p of the particles' velocities after the passes of XPIC so far [m/s]; in s.scratch.
 template <class Space, class T, int Dim>
-auto residual_of(const ContactCore<Space, T, Dim>& s) {
-  return Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged>(
-      reinterpret_cast<Vector<T, Dim>*>(s.scratch.data()), s.soil.points.count);
+ParticleValues<Space, T, Dim> residual_of(const ContactCore<Space, T, Dim>& s) {
+  return values_in_scratch<Dim>(s);
 }
 
 /// Pass number `pass` of XPIC(m) (Hammerquist & Nairn 2017): r_p <- r_p - sum_i S_ip r_i, from r_p = v_p,

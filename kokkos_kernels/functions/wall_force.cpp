@@ -2,6 +2,7 @@
 
 #include "functions/surface_loads.hpp"
 #include "loops/particle_to_node.hpp"
+#include "physics/displaced_mass.hpp"
 
 namespace mpm {
 namespace {
@@ -83,7 +84,7 @@ struct NearWalls {
 /// Source of the forces of loads on faces at such nodes, in the same way as the internal forces.
 template <class Space, class T, int Dim>
 struct PressLoads {
-  LoadSource<Space, T, Dim> source;
+  VectorSource<Space, T, Dim> source;
   NearWalls<Space, T, Dim> walls;
 
   KOKKOS_INLINE_FUNCTION void operator()(int p, ForceSum<Dim>& sum) const {
@@ -94,7 +95,7 @@ struct PressLoads {
       for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const auto&) {
         if (!(w > 0)) return;
         const Coord<Dim> node = walls.node(cell, a, step);
-        for (int k = 0; k < Dim; ++k) walls.add(node, k, double(w) * double(q.force[k]), 0, sum);
+        for (int k = 0; k < Dim; ++k) walls.add(node, k, double(w) * double(q.value[k]), 0, sum);
       });
     });
   }
@@ -108,8 +109,7 @@ struct PressOnWalls {
   using Source = SoilSource<Space, T, Dim, domain>;
   Source source;
   NearWalls<Space, T, Dim> walls;
-  DisplacedSource<Space, T, Dim, domain == ParticleDomain::ring ? domain : ParticleDomain::stretch>
-      displaced;  // in use where there is water
+  DisplacedMass<Space, T, Dim> displaced;  // in use where there is water
   Vector<double, Dim> g;
 
   struct Terms {
@@ -120,7 +120,7 @@ struct PressOnWalls {
     const int cell = source.points.cell(p);
     if (!walls.is_near(cell)) return;
     const typename Source::Point q = source.load(p);
-    const T carried = displaced.water.is_there() ? displaced.load(p).mass : T(0);
+    const T carried = displaced.water.is_there() ? displaced(p) : T(0);
     with_weights(source.points.coordinate(p), q.half_length, [&](const auto& a) {
       for_each_weight(a, [&](const Vector<int, Dim>& step, T w, const auto& grad) {
         if (!(w > 0)) return;

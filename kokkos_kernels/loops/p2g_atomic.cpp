@@ -1,5 +1,4 @@
 #include "loops/particle_to_node.hpp"
-#include "physics/materials/any.hpp"
 
 namespace mpm {
 

@@ -3,7 +3,6 @@
 
 #include "loops/cpu/host_sums.hpp"
 #include "loops/gpu/tile.hpp"
-#include "physics/materials/any.hpp"
 
 namespace mpm {
 

@@ -7,10 +7,10 @@
 
 #include "data/contact_slots.hpp"
 #include "data/nodes.hpp"
+#include "data/particle_values.hpp"
 #include "data/particles.hpp"
 #include "data/rigid.hpp"
 #include "physics/domain.hpp"
-#include "physics/pore_water.hpp"
 #include "physics/ring_domain.hpp"
 #include "physics/shape_gimp.hpp"
 #include "physics/walls.hpp"
@@ -39,15 +39,30 @@ KOKKOS_INLINE_FUNCTION auto numbers_of(Point& q) {
   return reinterpret_cast<Number*>(&q) + k_domain_numbers<T, Plain>;
 }
 
-/// Soil to nodes, Eqs (1), (2), (4): m_i = sum S m_p, p_i = sum S m_p v_p, f_i = - sum V_p sigma_p grad S.
-/// The weight, Eq. (5), is m_i g and is added at the node.
-template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
-struct SoilSource {
+/// Members that the sources of soil share. A source hides those functions in which it differs: each slot
+/// gives, every value is a scalar, and none takes the gradient.
+template <class Space_, class T, int Dim, int size_, Kind kind_, ParticleDomain domain_>
+struct SourceOfSoil {
   using Space = Space_;
   using real = T;
   static constexpr ParticleDomain domain = domain_;
-  static constexpr int dim = Dim, size = SoilTerms<Dim>::size;
-  static constexpr Kind kind = Kind::motion;
+  static constexpr int dim = Dim, size = size_;
+  static constexpr Kind kind = kind_;
+  Soil<Space, T, Dim> points;
+
+  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
+  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
+  template <class Point>
+  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) {
+    return 0;
+  }
+};
+
+/// Soil to nodes, Eqs (1), (2), (4): m_i = sum S m_p, p_i = sum S m_p v_p, f_i = - sum V_p sigma_p grad S.
+/// The weight, Eq. (5), is m_i g and is added at the node.
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
+struct SoilSource : SourceOfSoil<Space_, T, Dim, SoilTerms<Dim>::size, Kind::motion, domain_> {
   static constexpr bool rings = domain_ == ParticleDomain::ring;
   static constexpr int k_stresses = Dim * (Dim + 1) / 2 + rings;
   template <class R>
@@ -61,11 +76,10 @@ struct SoilSource {
   KOKKOS_INLINE_FUNCTION static constexpr int place(int i, int j) {
     return j == Dim ? 3 : Dim == 2 && i != j ? 2 : sym_index<Dim>(i, j);
   }
-  Soil<Space, T, Dim> points;
   T inv_spacing;
 
-  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const auto& points = this->points;
     const BodyProperties<T> of = points.properties(p);
     return point(domain_of<domain_>(points, p, of), of.mass, points.velocity(p), points.stress(p),
                  points.volume(p));
@@ -122,84 +136,55 @@ struct AffineSource : SoilSource<Space_, T, Dim, domain_> {
   }
 };
 
-/// Any vector r_p of the particles to nodes, by mass: sum S m_p r_p. For XPIC it is what is left of the
-/// velocity [m/s], for follow_soil() the way of the particle [cells].
-template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::stretch>
-struct ResidualSource {
-  using Space = Space_;
-  using real = T;
-  static constexpr ParticleDomain domain = domain_;
-  static constexpr int dim = Dim, size = Dim;
-  static constexpr Kind kind = Kind::motion;
+/// Factor of a particle's numbers: 1, or its mass [kg].
+enum class Times { one, mass };
+
+/// N numbers of each particle to nodes, sum S q_p, which some kernel has put in memory: of Kind::motion the
+/// components of a vector, of Kind::geometry scalars, which no wall turns, so that their sum over the nodes
+/// is that over the particles. The kernels are the same for domains that are fixed and that stretch.
+template <class Space_, class T, int Dim, int N, Kind kind_, ParticleDomain domain_ = ParticleDomain::stretch>
+struct ValueSource : SourceOfSoil<Space_, T, Dim, N, kind_, domain_> {
+  static_assert(kind_ == Kind::geometry || N == Dim);
   struct Point {
     DomainOf<T, Dim, domain_> half_length;
-    T momentum[Dim];
+    T value[N];
   };
-  Soil<Space, T, Dim> points;
-  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> residual;
+  ParticleValues<Space_, T, N> values;
+  Windows<Space_> windows = {};  // of the slots that give; without places all do, and have those of the bins
+  Times times = Times::one;
 
-  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
+  KOKKOS_INLINE_FUNCTION bool skips(int slot) const {
+    return windows.place.extent(0) > 0 && windows.place(slot) == 0;
+  }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    const BodyProperties<T> body = points.properties(p);
-    Point q{box_or_ring_of<domain_>(points, p, body), {}};
-    for (int d = 0; d < Dim; ++d) q.momentum[d] = body.mass * residual(p)[d];
+    const BodyProperties<T>& body = this->points.bodies(this->points.body(p));
+    const T scale = times == Times::mass ? this->points.mass_of(p, body) : T(1);
+    Point q{box_or_ring_of<domain_>(this->points, p, body), {}};
+    for (int n = 0; n < N; ++n) q.value[n] = scale * values(p)[n];
     return q;
   }
-  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value; }
-  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
-  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.momentum[value]; }
-  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
-};
-
-/// Any Dim values of the particles to nodes, each a scalar: sum S q_p. Walls turn none of them, so that their
-/// sum over the nodes is that over the particles.
-template <class Space_, class T, int Dim>
-struct ShareSource {
-  using Space = Space_;
-  using real = T;
-  static constexpr ParticleDomain domain = ParticleDomain::stretch;
-  static constexpr int dim = Dim, size = Dim;
-  static constexpr Kind kind = Kind::geometry;
-  struct Point {
-    HalfLengths<T, Dim> half_length;
-    T value[Dim];
-  };
-  Soil<Space, T, Dim> points;
-  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space, Kokkos::MemoryUnmanaged> values;
-
-  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
-  KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    Point q{any_domain_of(points, p), {}};
-    for (int d = 0; d < Dim; ++d) q.value[d] = values(p)[d];
-    return q;
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
+    return kind_ == Kind::motion ? value : -1;
   }
-  KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
-  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.value[value]; }
-  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
 };
 
 /// The soil's boundary at a node, sum grad S V_p, of rings with T S V_p in the radial component: by Gauss'
 /// theorem the integral of S_i n over it, n out of the soil. Summed over the nodes along a face it is the
 /// face's area, however the face cuts the cells. The source also sums the soil's volume there, sum S V_p.
 template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::fixed>
-struct BoundarySource {
-  using Space = Space_;
-  using real = T;
-  static constexpr ParticleDomain domain = domain_;
-  static constexpr int dim = Dim, size = BoundaryTerms<Dim>::size;
-  static constexpr Kind kind = Kind::geometry;
+struct BoundarySource : SourceOfSoil<Space_, T, Dim, BoundaryTerms<Dim>::size, Kind::geometry, domain_> {
   struct Point {
     DomainOf<T, Dim, domain_> half_length;
     T area, volume;  // V_p / d, V_p
   };
-  Soil<Space, T, Dim> points;
   T inv_spacing;
-  ContactPlaces<Space> contact;
+  ContactPlaces<Space_> contact;
 
   /// No contact needs the boundary elsewhere.
   KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return contact(slot) == 0; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const auto& points = this->points;
     const T volume = points.volume(p);
     return {domain_of<domain_>(points, p, points.bodies(points.body(p))), volume * inv_spacing, volume};
   }
@@ -213,138 +198,24 @@ struct BoundarySource {
   KOKKOS_INLINE_FUNCTION static T slope(const Point& q, int, int) { return q.area; }
 };
 
-/// The soil's strength at a node, sum S V_p s_p, and its volume, sum S V_p.
-template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::stretch>
-struct StrengthSource {
-  using Space = Space_;
-  using real = T;
-  static constexpr ParticleDomain domain = domain_;
-  static constexpr int dim = Dim, size = StrengthTerms::size;
-  static constexpr Kind kind = Kind::geometry;
-  struct Point {
-    DomainOf<T, Dim, domain_> half_length;
-    T strength, volume;  // V_p s_p, V_p
-  };
-  Soil<Space, T, Dim> points;
-  ContactPlaces<Space> contact;
-
-  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return contact(slot) == 0; }
-  KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    const T volume = points.volume(p);
-    const BodyProperties<T>& body = points.bodies(points.body(p));
-    T strength = 0;
-    // Who interpolates strengths includes physics/materials/any.hpp; all others see no law.
-    material_in(points.materials(body.material)).visit([&](const auto& law) {
-      strength = law.shear_strength(points.state_of(law, p));
-    });
-    return {box_or_ring_of<domain_>(points, p, body), volume * strength, volume};
-  }
-  KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
-  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
-  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
-    return value == StrengthTerms::strength ? q.strength : q.volume;
-  }
-  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
-};
-
-/// The mass of the water that the soil displaces, sum S rho_w m_p / rho below the level [kg]. rho is the
-/// density that the soil began with: when its pores change their volume, water comes and goes, and the weight
-/// of the grains under water stays.
-template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::stretch>
-struct DisplacedSource {
-  using Space = Space_;
-  using real = T;
-  static constexpr ParticleDomain domain = domain_;
-  static constexpr int dim = Dim, size = DisplacedTerms::size;
-  static constexpr Kind kind = Kind::motion;
-  struct Point {
-    DomainOf<T, Dim, domain_> half_length;
-    T mass;
-  };
-  Soil<Space, T, Dim> points;
-  Water<Dim> water;
-  Kokkos::View<double*, typename Space::memory_space> density;  // kg/m3, by body
-  Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  double spacing;  // m
-
-  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
-  KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    const BodyProperties<T> body = points.properties(p);
-    const int cell = points.cell(p);
-    const Coord<Dim> from = origin(cell / Patch<Dim>::cells), in = coord_of<Dim>(cell);
-    Vector<double, Dim> x;
-    for (int d = 0; d < Dim; ++d)
-      x[d] = (double(from[d]) + in[d] + double(points.coordinate(p)[d])) * spacing;
-    const auto half_length = box_or_ring_of<domain_>(points, p, body);
-    Vector<double, Dim> half;  // m
-    for (int d = 0; d < Dim; ++d) half[d] = double(half_length[d].l) * spacing;
-    const double share = water.submerged_share(x, half);
-    return {half_length,
-            static_cast<T>(water.density * share * (double(body.mass) / density(points.body(p))))};
-  }
-  KOKKOS_INLINE_FUNCTION static constexpr int component(int) { return -1; }
-  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
-  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int) { return q.mass; }
-  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
-};
-
-/// The forces of loads on the faces of particles that lie along one axis, sum N f_p, N the mean of the linear
-/// hat of the node over the face. A face is a box without thickness: `points` has faces in lieu of the
-/// coordinates and domains of its particles (place_faces).
-template <class Space_, class T, int Dim>
-struct LoadSource {
-  using Space = Space_;
-  using real = T;
-  static constexpr ParticleDomain domain = ParticleDomain::stretch;
-  static constexpr int dim = Dim, size = Dim;
-  static constexpr Kind kind = Kind::motion;
-  struct Point {
-    HalfLengths<T, Dim> half_length;
-    T force[Dim];
-  };
-  Soil<Space, T, Dim> points;
-  Kokkos::View<Vector<T, Dim>*, typename Space::memory_space> force;  // N
-  Kokkos::View<int*, typename Space::memory_space> loaded;            // by slot
-  Windows<Space> windows;                                             // of the slots with loads
-
-  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return loaded(slot) == 0; }
-  KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    Point q{with_inverses<T>(points.half_length(p)), {}};
-    for (int d = 0; d < Dim; ++d) q.force[d] = force(p)[d];
-    return q;
-  }
-  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value; }
-  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
-  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) { return q.force[value]; }
-  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
-};
-
 /// Where the soil of a node is: its mass m_i, and m_i times the way from the node to its centre of mass.
 template <class Space_, class T, int Dim>
-struct CentreSource {
-  using Space = Space_;
-  using real = T;
+struct CentreSource
+    : SourceOfSoil<Space_, T, Dim, CentreTerms<Dim>::size, Kind::geometry, ParticleDomain::stretch> {
   using Terms = CentreTerms<Dim>;
-  static constexpr ParticleDomain domain = ParticleDomain::stretch;
-  static constexpr int dim = Dim, size = Terms::size;
-  static constexpr Kind kind = Kind::geometry;
   static constexpr bool takes_offset = true;
   struct Point {
     HalfLengths<T, Dim> half_length;
     T mass;
   };
-  Soil<Space, T, Dim> points;
 
-  KOKKOS_INLINE_FUNCTION static constexpr bool skips(int) { return false; }
   KOKKOS_INLINE_FUNCTION Point load(int p) const {
-    return {with_inverses<T>(points.half_length(p)), points.properties(p).mass};
+    return {with_inverses<T>(this->points.half_length(p)), this->points.properties(p).mass};
   }
   KOKKOS_INLINE_FUNCTION static constexpr int component(int value) { return value - Terms::way; }
-  KOKKOS_INLINE_FUNCTION static constexpr bool takes(int, int) { return false; }
   KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
     return value == Terms::mass ? q.mass : T(0);
   }
-  KOKKOS_INLINE_FUNCTION static T slope(const Point&, int, int) { return 0; }
   /// As AffineSource::give_more.
   template <class W, class Add>
   KOKKOS_INLINE_FUNCTION static void give_more(const Point& q, W w, const Vector<W, Dim>& offset, Add&& add) {
@@ -470,29 +341,38 @@ using RingSoilSource = SoilSource<Space, T, Dim, ParticleDomain::ring>;
 template <class Space, class T, int Dim>
 using RingAffineSource = AffineSource<Space, T, Dim, ParticleDomain::ring>;
 template <class Space, class T, int Dim>
-using RingResidualSource = ResidualSource<Space, T, Dim, ParticleDomain::ring>;
-template <class Space, class T, int Dim>
 using RingBoundarySource = BoundarySource<Space, T, Dim, ParticleDomain::ring>;
-template <class Space, class T, int Dim>
-using RingStrengthSource = StrengthSource<Space, T, Dim, ParticleDomain::ring>;
-template <class Space, class T, int Dim>
-using RingDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::ring>;
 #define MPM_FOR_EACH_RING_SOURCE_2(X, Space, T) \
   X(RingSoilSource, Space, T, 2)                \
   X(RingAffineSource, Space, T, 2)              \
-  X(RingResidualSource, Space, T, 2)            \
   X(RingBoundarySource, Space, T, 2)
 #define MPM_FOR_EACH_RING_SOURCE_3(X, Space, T)
-#define MPM_FOR_EACH_OTHER_RING_SOURCE_2(X, Space, T) \
-  X(RingStrengthSource, Space, T, 2)                  \
-  X(RingDisplacedSource, Space, T, 2)
-#define MPM_FOR_EACH_OTHER_RING_SOURCE_3(X, Space, T)
+
+/// Sources of one, two or three scalars, and of a vector. In 2D two scalars are also one for each direction.
+template <class Space, class T, int Dim, ParticleDomain domain = ParticleDomain::stretch>
+using ScalarSource = ValueSource<Space, T, Dim, 1, Kind::geometry, domain>;
+template <class Space, class T, int Dim, ParticleDomain domain = ParticleDomain::stretch>
+using PairSource = ValueSource<Space, T, Dim, 2, Kind::geometry, domain>;
+template <class Space, class T, int Dim>
+using TripleSource = ValueSource<Space, T, Dim, 3, Kind::geometry>;
+template <class Space, class T, int Dim, ParticleDomain domain = ParticleDomain::stretch>
+using VectorSource = ValueSource<Space, T, Dim, Dim, Kind::motion, domain>;
+template <class Space, class T, int Dim>
+using RingScalarSource = ScalarSource<Space, T, Dim, ParticleDomain::ring>;
+template <class Space, class T, int Dim>
+using RingPairSource = PairSource<Space, T, Dim, ParticleDomain::ring>;
+template <class Space, class T, int Dim>
+using RingVectorSource = VectorSource<Space, T, Dim, ParticleDomain::ring>;
+#define MPM_FOR_EACH_VALUE_SOURCE_2(X, Space, T) \
+  X(RingScalarSource, Space, T, 2)               \
+  X(RingPairSource, Space, T, 2)                 \
+  X(RingVectorSource, Space, T, 2)
+#define MPM_FOR_EACH_VALUE_SOURCE_3(X, Space, T) X(TripleSource, Space, T, 3)
 
 /// Applies X(Source) to the sources that most runs take in every step, of a space, real type and dimension.
 #define MPM_FOR_EACH_STEP_SOURCE(X, Space, T, Dim) \
   X(SoilSource, Space, T, Dim)                     \
   X(AffineSource, Space, T, Dim)                   \
-  X(ResidualSource, Space, T, Dim)                 \
   X(BoundarySource, Space, T, Dim)                 \
   X(RigidSource, Space, T, Dim)                    \
   X(StretchedSoilSource, Space, T, Dim)            \
@@ -501,12 +381,11 @@ using RingDisplacedSource = DisplacedSource<Space, T, Dim, ParticleDomain::ring>
   MPM_FOR_EACH_RING_SOURCE_##Dim(X, Space, T)
 /// The others.
 #define MPM_FOR_EACH_OTHER_SOURCE(X, Space, T, Dim) \
-  X(ShareSource, Space, T, Dim)                     \
-  X(StrengthSource, Space, T, Dim)                  \
-  X(DisplacedSource, Space, T, Dim)                 \
-  X(LoadSource, Space, T, Dim)                      \
+  X(ScalarSource, Space, T, Dim)                    \
+  X(PairSource, Space, T, Dim)                      \
+  X(VectorSource, Space, T, Dim)                    \
   X(CentreSource, Space, T, Dim)                    \
-  MPM_FOR_EACH_OTHER_RING_SOURCE_##Dim(X, Space, T)
+  MPM_FOR_EACH_VALUE_SOURCE_##Dim(X, Space, T)
 #define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
   MPM_FOR_EACH_STEP_SOURCE(X, Space, T, Dim)  \
   MPM_FOR_EACH_OTHER_SOURCE(X, Space, T, Dim)

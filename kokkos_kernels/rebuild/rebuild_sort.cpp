@@ -241,10 +241,9 @@ void list_contacts(ContactCore<Space, T, Dim>& s) {
     s.contact.boundary.place = near;
     ensure(s.contact.boundary.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.contact.count);
   }
-  if (s.shear_fraction && has_windows(s.space)) {
-    s.contact.strength.place = near;
-    ensure(s.contact.strength.sums, window_bytes<StrengthSource<Space, T, Dim>> * s.contact.count);
-  }
+  s.contact.strength.place = near;
+  if (s.shear_fraction && has_windows(s.space))
+    ensure(s.contact.strength.sums, window_bytes<PairSource<Space, T, Dim>> * s.contact.count);
   ensure(s.contact.forces, 2 * std::size_t(s.contact.count) * Wrench<Dim>::size * s.rigid_points.size());
 }
 

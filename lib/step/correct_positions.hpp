@@ -24,8 +24,8 @@ void volume_to_nodes(const State<Space, T, Dim>& s, const FillField<Space, T, Di
 template <class Space, class T, int Dim>
 void shares_to_nodes(const State<Space, T, Dim>& s) {
   Kokkos::deep_copy(s.space, s.nodes.shares, T(0));
-  interpolate<ShareSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, {s.soil.points, shares_of(s)},
-                                          s.nodes.shares);
+  interpolate<ValueSource<Space, T, Dim, Dim, Kind::geometry>>(s, s.p2g.strategy, s.soil.bins,
+                                                               {s.soil.points, shares_of(s)}, s.nodes.shares);
 }
 
 template <ParticleDomain domain, class Space, class T, int Dim>

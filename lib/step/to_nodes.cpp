@@ -3,6 +3,7 @@
 #include "step/to_nodes.hpp"
 
 #include "functions/find_strays.hpp"
+#include "functions/particle_values.hpp"
 #include "functions/step_kernels.hpp"
 #include "functions/surface_loads.hpp"
 #include "functions/velocity_update.hpp"
@@ -58,10 +59,10 @@ void buoyancy_to_nodes(State<Space, T, Dim>& s) {
   if (!s.water.is_there()) return;
   if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.displaced, T(0));
   for_all_soil(s, [&](const auto& set) {
+    const auto displaced = find_displaced(s, set);
     with_box_or_ring(set.points, [&](auto domain) {
-      interpolate<DisplacedSource<Space, T, Dim, domain()>>(
-          s, s.p2g.strategy, set.bins, {set.points, s.water, s.density, s.patches.origin, s.spacing},
-          s.nodes.displaced);
+      interpolate<ScalarSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, set.bins, {set.points, displaced},
+                                                         s.nodes.displaced);
     });
   });
   add_buoyancy(s);
@@ -71,9 +72,11 @@ template <class Space, class T, int Dim>
 void loads_to_nodes(State<Space, T, Dim>& s) {
   if (!s.loads.in_use()) return;
   Kokkos::deep_copy(s.space, s.nodes.load, T(0));
-  for (int axis = 0; axis < Dim; ++axis)
-    interpolate<LoadSource<Space, T, Dim>>(s, s.p2g.strategy, s.soil.bins, place_faces(s, s.loads, axis),
-                                           s.nodes.load);
+  for (int axis = 0; axis < Dim; ++axis) {
+    auto it = interpolation_of(s, s.soil.bins, place_faces(s, s.loads, axis), s.nodes.load, s.space);
+    it.adds = true;  // one axis to the other
+    particle_to_node(s.p2g.strategy, it);
+  }
   add_loads(s);
 }
 
@@ -105,9 +108,10 @@ PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T
   PetscFunctionBeginUser;
   if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.strength, T(0));
   for_all_soil(s, [&](const auto& set) {
+    const auto strengths = find_strengths(s, set);
     with_box_or_ring(set.points, [&](auto domain) {
-      interpolate<StrengthSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, set.bins,
-                                                           {set.points, s.contact.place}, s.nodes.strength);
+      interpolate<PairSource<Space, T, Dim, domain()>>(
+          s, s.p2g.strategy, set.bins, {set.points, strengths, s.contact.strength}, s.nodes.strength);
     });
   });
   if (ranks) PetscCall(ranks->add_field(s, s.nodes.strength, When::in_step, s.contact.place.data()));
@@ -129,8 +133,9 @@ PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T
     if (pass > 0) {
       Kokkos::deep_copy(s.space, s.nodes.residual, T(0));
       with_box_or_ring(s.soil.points, [&](auto domain) {
-        interpolate<ResidualSource<Space, T, Dim, domain()>>(
-            s, s.p2g.strategy, s.soil.bins, {s.soil.points, residual_of(s)}, s.nodes.residual);
+        interpolate<VectorSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, s.soil.bins,
+                                                           {s.soil.points, residual_of(s), {}, Times::mass},
+                                                           s.nodes.residual);
       });
       if (ranks) PetscCall(ranks->add_field(s, s.nodes.residual, When::in_step));
     }

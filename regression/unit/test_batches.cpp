@@ -17,7 +17,7 @@ using namespace mpm::test;
 namespace {
 
 /// Two bodies that fill most of the mesh, each particle with a velocity and a stress of its own, and two
-/// rigids with friction; with F-bar.
+/// rigids with friction, of which one takes a fraction of the strength if the seed is odd; with F-bar.
 template <int Dim>
 Cloud busy_cloud(int seed) {
   Cloud cloud = random_cloud<Dim>(seed, Wall::roller);
@@ -33,6 +33,7 @@ Cloud busy_cloud(int seed) {
     for (std::size_t n = 0; n < strength_of(body).size() * sym_size<Dim>; ++n)
       body.stress.push_back(dice.uniform(-300, 300));
   }
+  if (seed % 2 == 1) cloud.rigids[0].shear_limit = 0, cloud.rigids[0].shear_fraction = 0.4;
   cloud.f_bar_fraction = 0.9, cloud.materials[1].f_bar_share = 0.4;
   cloud.p2g.margin = 0.05;
   cloud.gravity = {0, -10, -5};

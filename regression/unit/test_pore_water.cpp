@@ -6,6 +6,7 @@
 
 #include "compare.hpp"
 #include "loops/cpu/host_particles.hpp"
+#include "physics/displaced_mass.hpp"
 #include "physics/materials/any.hpp"
 #include "transfer/measure.hpp"
 
@@ -90,11 +91,11 @@ void put_at_rest(Cloud& cloud, const Water<Dim>& water, double top, int per_cell
 /// Mass of the water that all particles displace [kg].
 template <class Space, class T, int Dim>
 double displaced_by(const State<Space, T, Dim>& s) {
-  const DisplacedSource<Space, T, Dim> source{s.soil.points, s.water, s.density, s.patches.origin, s.spacing};
+  const DisplacedMass<Space, T, Dim> mass{s.soil.points, s.water, s.density, s.patches.origin, s.spacing};
   double total = 0;
   Kokkos::parallel_reduce(
       "test::displaced", Kokkos::RangePolicy<Space>(0, s.soil.points.count),
-      KOKKOS_LAMBDA(int p, double& sum) { sum += source.load(p).mass; }, total);
+      KOKKOS_LAMBDA(int p, double& sum) { sum += mass(p); }, total);
   return total;
 }
 
