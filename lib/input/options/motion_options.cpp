@@ -50,12 +50,10 @@ void read_dynamic(OptionReader& in, int dim, double end, RigidConfig& rigid) {
                        .meaning = "dynamic: its density",
                        .unit = "kg/m3",
                        .range = k_density,
-                       .required = true,
+                       .required = !in.given(rigid.name + "_mass"),
                        .change = k_by_choice};
-  if (in.given(rigid.name + "_mass") && !in.listing())
-    in.not_taken(density.name, rigid.name + "_mass is given");
-  else
-    in.number(density, rigid.density);
+  if (in.number(density, rigid.density) && !density.required)
+    in.reject(density.name, "nothing beside -" + rigid.name + "_mass");
   const Option force{.name = rigid.name + "_force",
                      .meaning = "dynamic: external force on it, beside gravity",
                      .unit = "N",

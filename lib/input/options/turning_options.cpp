@@ -115,7 +115,8 @@ void check_turning(OptionReader& in, const Config& config, const MeshConfig& mes
     const std::string beside =
         rigid.motion == Motion::dynamic ? "_free with a rotation" : "_angular_velocity";
     for (const char* key : {"_moment", "_inertia", "_centre_of_mass"})
-      if (in.given(rigid.name + key) && in.is_read(rigid.name + key))
+      if (in.given(rigid.name + key) && in.is_read(rigid.name + key) &&
+          (rigid.motion == Motion::dynamic || key == std::string("_centre_of_mass")))
         in.reject(rigid.name + key, "a -" + rigid.name + beside + " beside it");
     return;
   }
