@@ -25,6 +25,7 @@ enum class Feature {
   columns,              // free-field columns, which move beside the sides on the main stream
   gravity_table,        // gravity by a table, set where rigid bodies move, when no node may be updated
   side_table,           // motion of a side by a table, set likewise
+  contact_sites,        // contact at sites, which reads nodal sums between functions 4 and 5
   pushed_mass_normals,  // rigid body that forces move, with normals of its mass gradient
   turning_rigids,       // rigid bodies that may turn, which steps in one launch do not move
   revolved,             // body of revolution, whose particles are rings
@@ -67,13 +68,15 @@ constexpr Features excluding(StepWay way) {
   using F = Feature;
   switch (way) {
     case StepWay::sums_ahead:
-      return {F::other_strategy, F::xpic, F::apic, F::submerged, F::energy, F::loads, F::rayleigh};
+      return {F::other_strategy, F::xpic,  F::apic,     F::submerged,
+              F::energy,         F::loads, F::rayleigh, F::contact_sites};
     case StepWay::nodes_apart: return {F::gravity_table, F::side_table, F::columns, F::rayleigh};
     case StepWay::nodes_aside: return excluding(StepWay::nodes_apart) | Features{F::shear_fraction};
-    case StepWay::overlapped: return {F::other_strategy, F::submerged, F::energy, F::loads, F::rayleigh};
+    case StepWay::overlapped:
+      return {F::other_strategy, F::submerged, F::energy, F::loads, F::rayleigh, F::contact_sites};
     case StepWay::in_batches:
-      return {F::other_strategy, F::xpic,   F::apic,  F::splits,  F::correction,
-              F::submerged,      F::energy, F::loads, F::rayleigh};
+      return {F::other_strategy, F::xpic,   F::apic,  F::splits,   F::correction,
+              F::submerged,      F::energy, F::loads, F::rayleigh, F::contact_sites};
     case StepWay::one_launch:
       return excluding(StepWay::sums_ahead) | Features{F::turning_rigids, F::revolved, F::ranks, F::batches};
     case StepWay::many_steps:

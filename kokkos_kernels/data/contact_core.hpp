@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "data/contact_sites.hpp"
 #include "data/contact_slots.hpp"
 #include "data/core.hpp"
 #include "data/rigid.hpp"
@@ -16,6 +17,7 @@ struct ContactCore : Core<Space, T, Dim> {
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   Kokkos::View<Vertex*, Memory> vertices;  // of the rigids' polygons
   ContactSlots<Space> contact;
+  ContactSites<Space, T, Dim> at_sites;
   Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step
   bool forces_summed =
       false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them
@@ -25,8 +27,20 @@ struct ContactCore : Core<Space, T, Dim> {
   bool mass_normals = false;    // some rigid's normals are those of its mass gradient
   bool soil_boundary = false;   // some contact needs the soil's boundary at the nodes
   bool shear_fraction = false;  // some contact needs the soil's strength at the nodes
-  bool has_friction = false;    // some contact has Coulomb friction
+  bool has_friction = false;    // some contact at nodes has Coulomb friction
   double friction_time = 1;     // s, over which friction takes the mean normal impulse
 };
+
+/// Numbers of one rigid body at a node in Nodes::impulse; 0: no contact keeps any.
+template <class Space, class T, int Dim>
+int impulse_stride(const ContactCore<Space, T, Dim>& s) {
+  if (s.at_sites.in_use) return k_sites<Dim> * SiteTerms<Dim>::size;
+  return s.has_friction ? ImpulseTerms::size : 0;
+}
+/// Rows of Nodes::impulse.
+template <class Space, class T, int Dim>
+int impulse_rows(const ContactCore<Space, T, Dim>& s) {
+  return impulse_stride(s) * static_cast<int>(s.rigid_points.size());
+}
 
 }  // namespace mpm

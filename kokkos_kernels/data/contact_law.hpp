@@ -5,6 +5,7 @@ namespace mpm {
 
 /// Properties of the interface between the soil and what it touches.
 struct ContactLaw {
+  bool at_sites;          // contact at sites, not at nodes
   bool separates;         // the soil may part from it
   double reach;           // m, gap at which the contact ends; 0: it does not depend on the gap
   double exponent;        // -, of its decrease with the gap

@@ -29,6 +29,7 @@ Features features_of(const State<Space, T, Dim>& s) {
                                     {F::columns, s.sides.has_columns()},
                                     {F::gravity_table, s.timed.moves_gravity},
                                     {F::side_table, s.timed.moves_sides},
+                                    {F::contact_sites, s.at_sites.in_use},
                                     {F::pushed_mass_normals, s.rigid_dynamic && s.mass_normals},
                                     {F::turning_rigids, s.rigid_turns},
                                     {F::revolved, s.soil.points.rings},

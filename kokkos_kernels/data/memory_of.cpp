@@ -25,6 +25,7 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add(s.loads.loaded), add(s.loads.windows.sums);
   add(s.loads.coordinate), add(s.loads.force), add(s.loads.half_length);
   add(s.strays.alone), add(s.split.slots);
+  add(s.at_sites.sites), add(s.at_sites.gaps), add(s.at_sites.sums);
   add(s.contact.boundary.sums), add(s.contact.strength.sums);
   for (const auto* more : {&s.launch.next_sums, &s.launch.last_sums})
     add(more->soil), add(more->boundary), add(more->rigid);

@@ -38,11 +38,17 @@ inline void set_vector(SavedRigid& rigid, int term, const std::array<double, 3>&
   for (int d = 0; d < 3; ++d) rigid[term + d] = value[d];
 }
 
-/// Normal impulses at the nodes, as friction keeps them; nodes that hold none are left out.
+/// Impulses that contact keeps at the nodes and their sites; nodes that hold none are left out.
 struct SavedImpulse {
   std::vector<long> address;   // Grid::address_of the cell whose lower corner is the node
-  std::vector<double> values;  // N s, ImpulseTerms of each rigid [ImpulseTerms::size rigids M]
+  std::vector<double> values;  // ImpulseTerms of each rigid [ImpulseTerms::size rigids M]; where some rigid
+                               // has contact at sites, SiteTerms of each site, rigid by rigid
 };
+/// Numbers of each of so many rigid bodies at a node of saved impulses.
+inline int numbers_of_rigid(const SavedImpulse& saved, std::size_t rigids) {
+  const std::size_t rows = saved.address.size() * rigids;
+  return rows == 0 ? ImpulseTerms::size : static_cast<int>(saved.values.size() / rows);
+}
 
 /// The table of the nodes on sides of the mesh that act (data/sides.hpp), of all ranks.
 struct SavedSides {

@@ -53,7 +53,20 @@ struct WorkAtNodes {
     const auto node = update.node_of(update.nodes, i, at, touches);
     Vector<T, Dim> v_old, a, brake;
     update.accelerate(node.soil, node.inv_m, v_old, a);
+    if (update.at_sites && touches) return braking_behind_sites(i, v_old);
     update.advanced(update.nodes, update.rigids.data(), node, v_old, a, false, nullptr, brake);
+    return brake;
+  }
+  /// The same where the nodes are braked behind contact at sites, from the acceleration that was left.
+  KOKKOS_INLINE_FUNCTION Vector<T, Dim> braking_behind_sites(int i, const Vector<T, Dim>& v_old) const {
+    Vector<T, Dim> brake;
+    for (int d = 0; d < Dim; ++d) {
+      const T left =
+          (update.nodes.kinematics(i, NodeKinematics<Dim>::velocity + d) - v_old[d]) * update.inv_dt;
+      const bool along = left * v_old[d] > 0;  // damping has reduced it, else increased it
+      const T size = Kokkos::fabs(left) * update.damping / (along ? 1 - update.damping : 1 + update.damping);
+      brake[d] = v_old[d] == 0 ? T(0) : Kokkos::copysign(size, v_old[d]);
+    }
     return brake;
   }
 };

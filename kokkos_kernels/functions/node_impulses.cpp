@@ -26,7 +26,7 @@ std::vector<Value> on_host(const View& view) {
 template <class Space, class T, int Dim>
 NodeImpulses<T> list_impulses(const ContactCore<Space, T, Dim>& s) {
   using Range = Kokkos::RangePolicy<Space>;
-  const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
+  const int numbers = impulse_rows(s);
   const int nodes = s.owned_nodes.extent(0) > 0 ? s.patches.node_count() : 0;
   const auto impulse = s.nodes.impulse;
   const auto owned_nodes = s.owned_nodes;
@@ -58,7 +58,7 @@ NodeImpulses<T> list_impulses(const ContactCore<Space, T, Dim>& s) {
 
 template <class Space, class T, int Dim>
 void put_impulses(ContactCore<Space, T, Dim>& s, const NodeImpulses<T>& impulses) {
-  const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
+  const int numbers = impulse_rows(s);
   const auto node = on_device<Space>("mpm::node", impulses.node);
   const auto value = on_device<Space>("mpm::value", impulses.value);
   const auto impulse = s.nodes.impulse;

@@ -55,7 +55,8 @@ struct UpdateNodes {
   T fresh;  // -, weight of a step in the mean normal impulse
   T mass_cut;
   double spacing;
-  bool has_boundary, has_friction, has_mass_normals, clears, rings, turns;
+  int impulse_stride;  // of a rigid in Nodes::impulse
+  bool has_boundary, has_friction, has_mass_normals, clears, rings, turns, at_sites;
 
   /// The nodes of a slot, number n of those near a rigid, under their sums. Leaves the force on each rigid
   /// [N] in `forces`, summed in an order that is always the same. force: [values][cells]
@@ -134,6 +135,7 @@ struct UpdateNodes {
     Coord<Dim> at;
     unsigned sides, acting;  // sides of the mesh that it lies on, and those of them that act
     int touching;            // rigids that may touch it: the first of the list
+    bool near;               // it is in a slot where a contact may be
     T soil[S::size], boundary[BoundaryTerms<Dim>::size];
     T inv_m;
 
@@ -144,7 +146,7 @@ struct UpdateNodes {
   /// Node i, which is `at`, under its sums, with the forces of sides; near: a rigid may touch it.
   template <class Sums>
   KOKKOS_INLINE_FUNCTION Node node_of(const Sums& sums, int i, const Coord<Dim>& at, bool near) const {
-    Node node{i, at, 0, 0, 0, {}, {}, 0};
+    Node node{i, at, 0, 0, 0, near, {}, {}, 0};
     for (int n = 0; n < S::size; ++n) node.soil[n] = sums.soil(i, n);  // all asked for at once
     if (near && has_boundary)
       for (int n = 0; n < BoundaryTerms<Dim>::size; ++n) node.boundary[n] = sums.boundary(i, n);
@@ -167,8 +169,9 @@ struct UpdateNodes {
                                                             const Coord<Dim>& at, bool near,
                                                             double* force) const {
     MPM_ROLLED
-    for (int n = 0; n < ImpulseTerms::size * static_cast<int>(rigids.extent(0)) && has_friction; ++n)
-      nodes.impulse(n, i) *= kept_share(n % ImpulseTerms::size, fresh);
+    for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r)
+      for (int n = 0; n < ImpulseTerms::size && !bodies[r].law.at_sites; ++n)
+        nodes.impulse(impulse_stride * r + n, i) *= kept_share(n, fresh);
     const Node node = node_of(sums, i, at, near);
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old, a, brake;
     if (node.inv_m > 0) {
@@ -206,7 +209,7 @@ struct UpdateNodes {
                                                  bool ends, double* force, Vector<T, Dim>& brake) const {
     brake = filled<T, Dim>(0);
     if constexpr (acts)
-      if (damping > 0)
+      if (damping > 0 && !(at_sites && node.near))
         brake = braking(node.is_held() ? held_acceleration(sums, bodies, node, v_old, a) : a, v_old);
     Vector<T, Dim> v = v_old;
     if (!ends) return v;
@@ -225,7 +228,8 @@ struct UpdateNodes {
       if (node.acting != 0) v = by_sides(acting_sides, side_node(node, keeps), v_old, v, true);
     MPM_ROLLED
     for (int r = 0; r < node.touching; ++r)
-      touch(sums, node, bodies[r], r, v, keeps, force == nullptr ? force : force + r * wrench() * cells);
+      if (!bodies[r].law.at_sites)
+        touch(sums, node, bodies[r], r, v, keeps, force == nullptr ? force : force + r * wrench() * cells);
     if constexpr (acts)
       if (node.acting != 0 && node.touching > 0)
         v = by_sides(acting_sides, side_node(node, keeps), v_old, v, false);
@@ -320,7 +324,7 @@ struct UpdateNodes {
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
       if (other.gap > Kokkos::fmax(T(law.reach), places.grid.spacing / 2)) return;
     }
-    const int row = ImpulseTerms::size * r;
+    const int row = impulse_stride * r;
     if (has_friction) {
       interface.pressed = {nodes.impulse(row + ImpulseTerms::sum, node.i),
                            nodes.impulse(row + ImpulseTerms::weight, node.i),
@@ -451,12 +455,14 @@ UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, d
       .fresh = T(-std::expm1(-dt / s.friction_time)),
       .mass_cut = T(s.scheme.mass_cut),
       .spacing = s.spacing,
+      .impulse_stride = impulse_stride(s),
       .has_boundary = s.soil_boundary,
       .has_friction = s.has_friction,
       .has_mass_normals = s.mass_normals,
       .clears = s.plan.sums_ahead && !s.plan.writes_sums,
       .rings = s.soil.points.rings,
-      .turns = s.rigid_turns};
+      .turns = s.rigid_turns,
+      .at_sites = s.at_sites.in_use};
   for (int d = 0; d < Dim; ++d) update.g[d] = static_cast<T>(s.gravity[d]);
   if constexpr (acts) update.acting_sides = acting(s.sides);
   return update;

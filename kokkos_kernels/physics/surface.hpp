@@ -12,13 +12,24 @@ template <int Dim>
 struct Distance {
   double value;
   Vector<double, Dim> normal;
+  bool
+      at_edge;  // an edge of the body, or a rounded one, is the nearest, where its faces differ by 30 degrees
 };
 
+inline constexpr double k_edge = 0.866;    // cosine between the normals of faces, less is an edge
 inline constexpr double k_on_edge = 1e-9;  // of a cell or a unit vector, less has no direction
 
 /// On which side of a plane a point is, by its distance; 0 on the plane, and nearer to it than round-off [m].
 KOKKOS_INLINE_FUNCTION double side_of(double x, double round_off) {
   return x > round_off ? 1 : (x < -round_off ? -1 : 0);
+}
+
+/// Largest component of a vector.
+template <int N>
+KOKKOS_INLINE_FUNCTION double largest_of(const Vector<double, N>& v) {
+  double largest = v[0];
+  for (int d = 1; d < N; ++d) largest = Kokkos::fmax(largest, v[d]);
+  return largest;
 }
 
 /// A product of n intervals, given by how far the point is beyond each (`beyond` [m], negative inside) and
@@ -58,7 +69,7 @@ KOKKOS_INLINE_FUNCTION Distance<2> distance_to_polygon(const Vertices& vertices,
   double least = Kokkos::Experimental::finite_max<double>::value;
   Vector<double, 2> ways, faces;  // from the nearest places; normals of their edges
   double turn = 0;                // twice the area: which way round the polygon goes
-  bool inside = false;
+  bool inside = false, turned = false;
   MPM_ROLLED
   for (int k = 0; k < count; ++k) {
     const Vertex a = vertices(first + k), b = vertices(first + (k + 1 == count ? 0 : k + 1));
@@ -72,14 +83,16 @@ KOKKOS_INLINE_FUNCTION Distance<2> distance_to_polygon(const Vertices& vertices,
     if (length > least + round_off) continue;
     const bool nearer = length < least - round_off;
     add_or_begin(nearer, way, ways);
-    add_or_begin(nearer, {ez / Kokkos::sqrt(length2), -ex / Kokkos::sqrt(length2)}, faces);
-    if (nearer) least = length;
+    const Vector<double, 2> face{ez / Kokkos::sqrt(length2), -ex / Kokkos::sqrt(length2)};
+    add_or_begin(nearer, face, faces);
+    if (nearer) least = length, turned = false;
+    turned = turned || Kokkos::fabs(dot(face, way)) < k_edge * length;
   }
   const bool on_surface = !(least > round_off);
   const Vector<double, 2>& sum = on_surface ? faces : ways;
   const double length = Kokkos::sqrt(dot(sum, sum)), out = (on_surface ? turn < 0 : inside) ? -1 : 1;
   const double factor = length > (on_surface ? k_on_edge : round_off) ? out / length : 0;
-  return {on_surface ? 0 : (inside ? -least : least), {factor * sum[0], factor * sum[1]}};
+  return {on_surface ? 0 : (inside ? -least : least), {factor * sum[0], factor * sum[1]}, turned};
 }
 
 /// Distance of a point, r from the centre, to what turns about the vertical axis.
@@ -93,8 +106,9 @@ KOKKOS_INLINE_FUNCTION Distance<3> distance_to_revolved(const Surface<3>& body, 
   const double x = on_axis ? 0 : r[0] / off, y = on_axis ? 0 : r[1] / off;
   const double value = section.value - body.radius;
   const double up = section.normal[1];
-  if (on_axis && Kokkos::fabs(up) > k_on_edge) return {value, {0, 0, Kokkos::copysign(1.0, up)}};
-  return {value, {section.normal[0] * x, section.normal[0] * y, up}};
+  if (on_axis && Kokkos::fabs(up) > k_on_edge)
+    return {value, {0, 0, Kokkos::copysign(1.0, up)}, section.at_edge};
+  return {value, {section.normal[0] * x, section.normal[0] * y, up}, section.at_edge};
 }
 
 /// Height of the ground at a point [m], linear in each direction between the places where it is given; beyond
@@ -121,7 +135,7 @@ MPM_CALLED_FUNCTION Distance<3> distance_to_heights(const Surface<3>& body, cons
   const double a = (height_at(body, vertices, x + h, y) - height_at(body, vertices, x - h, y)) / (2 * h),
                b = (height_at(body, vertices, x, y + h) - height_at(body, vertices, x, y - h)) / (2 * h);
   const double up = 1 / Kokkos::sqrt(1 + a * a + b * b);
-  return {(z - height_at(body, vertices, x, y)) * up, {-a * up, -b * up, up}};
+  return {(z - height_at(body, vertices, x, y)) * up, {-a * up, -b * up, up}, false};
 }
 
 /// Signed distance of x [m from the mesh's lower corner, less the body's displacement].
@@ -150,6 +164,7 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
     Vector<double, Dim> beyond, n;
     for (int d = 0; d < Dim; ++d) beyond[d] = Kokkos::fabs(r[d]) - body.half[d];
     out.value = distance_to_product<Dim>(beyond, body.radius, body.round_off, n);
+    out.at_edge = largest_of(n) < 1 - k_on_edge;
     for (int d = 0; d < Dim; ++d) n[d] = side_of(r[d], body.round_off) * n[d];
     out.normal = n;
     out.normal[0] = body.cosine * n[0] - body.sine * n[up];
@@ -163,6 +178,7 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
       Vector<double, 2> share;
       const Vector<double, 2> beyond{plane.value, Kokkos::fabs(r[1]) - body.half[1]};
       out.value = distance_to_product<2>(beyond, body.radius, body.round_off, share);
+      out.at_edge = plane.at_edge || largest_of(share) < 1 - k_on_edge;
       out.normal = {share[0] * plane.normal[0], side_of(r[1], body.round_off) * share[1],
                     share[0] * plane.normal[1]};
     }

@@ -6,7 +6,7 @@ namespace mpm {
 template <class Space, class T, int Dim>
 KeptImpulse<Space, T, Dim> keep_impulse(const ContactCore<Space, T, Dim>& s) {
   KeptImpulse<Space, T, Dim> kept;
-  if (!s.has_friction || s.nodes.impulse.extent(1) == 0) return kept;
+  if (impulse_rows(s) == 0 || s.nodes.impulse.extent(1) == 0) return kept;
   kept.slots = s.patches.slots;
   kept.impulse = s.nodes.impulse;  // restore_impulse makes a new one
   kept.number =
@@ -17,7 +17,7 @@ KeptImpulse<Space, T, Dim> keep_impulse(const ContactCore<Space, T, Dim>& s) {
 
 template <class Space, class T, int Dim>
 void restore_impulse(ContactCore<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& kept) {
-  const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
+  const int numbers = impulse_rows(s);
   s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", numbers, s.patches.node_count());
   const auto old = kept.impulse;
   const auto number = kept.number;

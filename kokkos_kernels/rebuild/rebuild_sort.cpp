@@ -244,6 +244,12 @@ void list_contacts(ContactCore<Space, T, Dim>& s) {
   s.contact.strength.place = near;
   if (s.shear_fraction && has_windows(s.space))
     ensure(s.contact.strength.sums, window_bytes<PairSource<Space, T, Dim>> * s.contact.count);
+  if (s.at_sites.in_use) {
+    const std::size_t nodes = std::size_t(s.contact.count) * Patch<Dim>::cells;
+    ensure(s.at_sites.sites, nodes * k_sites<Dim> * s.rigid_points.size());
+    ensure(s.at_sites.gaps, nodes * k_sites<Dim> * s.rigid_points.size());
+    ensure(s.at_sites.sums, nodes);
+  }
   ensure(s.contact.forces, 2 * std::size_t(s.contact.count) * Wrench<Dim>::size * s.rigid_points.size());
 }
 

@@ -14,7 +14,7 @@ template <class Space, class T, int Dim>
 void sort_and_list(State<Space, T, Dim>& s) {
   const auto kept = keep_impulse(s);
   activate_patches(s);
-  if (s.has_friction) restore_impulse(s, kept);
+  if (impulse_rows(s) > 0) restore_impulse(s, kept);
   sort_points(s);
   build_lists(s);
   if (!s.rigid_points.empty()) list_contacts(s);

@@ -50,12 +50,12 @@ SavedPoints save_points(const Patches_& patches, Points_ points) {
 template <class Space, class T, int Dim>
 SavedImpulse save_impulse(const ContactCore<Space, T, Dim>& s) {
   SavedImpulse saved;
-  if (!s.has_friction) return saved;
+  if (impulse_rows(s) == 0) return saved;
   const auto number = mirror_of(s.patches.number);
   const auto impulse = mirror_of(s.nodes.impulse);
   // One of several ranks owns a node: the values of the others may be long out of date.
   const auto owned_nodes = mirror_of(s.owned_nodes);
-  const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
+  const int numbers = impulse_rows(s);
   const auto holds_some = [&](int i) {
     if (owned_nodes.extent(0) > 0 && (owned_nodes(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0)
       return false;
@@ -227,16 +227,21 @@ void restore_rigids(ContactCore<Space, T, Dim>& s, const SavedState& saved, bool
 /// The patches are those of the run, so each node that held something is there.
 template <class Space, class T, int Dim>
 void restore_nodes(ContactCore<Space, T, Dim>& s, const SavedImpulse& saved) {
-  if (!s.has_friction) return;
-  const int numbers = ImpulseTerms::size * static_cast<int>(s.rigid_points.size());
+  if (impulse_rows(s) == 0) return;
+  const int numbers = impulse_rows(s);
   s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", numbers, s.patches.node_count());
   const auto host = mirror_of(s.nodes.impulse);
   const auto slot_of = mirror_of(s.patches.slot_of);
+  // A body that a stage places or removes may have changed the numbers of each; those at nodes come first.
+  const std::size_t rigids = s.rigid_points.size();
+  const int stride = impulse_stride(s), was = numbers_of_rigid(saved, rigids), kept = std::min(stride, was);
   for (std::size_t n = 0; n < saved.address.size(); ++n) {
     const int slot = slot_of(saved.address[n] / Patch<Dim>::cells);
     if (slot < 0) continue;
     const int i = slot * Patch<Dim>::cells + static_cast<int>(saved.address[n] % Patch<Dim>::cells);
-    for (int k = 0; k < numbers; ++k) host(k, i) = static_cast<T>(saved.values[n * numbers + k]);
+    for (std::size_t r = 0; r < rigids; ++r)
+      for (int k = 0; k < kept; ++k)
+        host(r * stride + k, i) = static_cast<T>(saved.values[(n * rigids + r) * was + k]);
   }
   copy(s.nodes.impulse, host);
 }

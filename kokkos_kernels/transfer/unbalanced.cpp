@@ -1,6 +1,7 @@
 #include "transfer/unbalanced.hpp"
 
-#include "loops/node_update.hpp"
+#include "functions/step_kernels.hpp"
+#include "loops/site_contact.hpp"
 
 namespace mpm {
 namespace {
@@ -13,6 +14,7 @@ struct NodeForces {
   UpdateNodes<Space, T, Dim> update;
   ContactPlaces<Space> contact;
   Vector<double, Dim> gravity;
+  SiteContact<Space, T, Dim> sites;
 
   KOKKOS_INLINE_FUNCTION void operator()(int i, double& unbalanced, double& weight) const {
     const int slot = i / cells;
@@ -25,6 +27,8 @@ struct NodeForces {
     const auto node = update.node_of(update.nodes, i, at, update.rigids.extent(0) > 0 && contact(slot) > 0);
     Vector<T, Dim> v_old, a, free = filled<T, Dim>(1);
     update.accelerate(node.soil, node.inv_m, v_old, a);
+    for (int d = 0; d < Dim && update.at_sites && contact(slot) > 0; ++d)
+      a[d] += sites.reaction(i, node.inv_m, d);
     if (node.is_held()) a = update.held_acceleration(update.nodes, update.rigids.data(), node, v_old, a);
     apply_walls(update.places.grid, node.sides, free);  // 0 where a wall holds a component
     double force = 0, heavy = 0;
@@ -40,7 +44,8 @@ struct NodeForces {
 
 template <class Space, class T, int Dim>
 UnbalancedForces unbalanced_forces(const State<Space, T, Dim>& s, double dt) {
-  const NodeForces<Space, T, Dim> forces{node_update_of(s, dt), s.contact.place, s.gravity};
+  if (s.at_sites.in_use) sum_site_forces(s, dt);
+  const NodeForces<Space, T, Dim> forces{node_update_of(s, dt), s.contact.place, s.gravity, {s, dt}};
   UnbalancedForces sum;
   Kokkos::parallel_reduce("mpm::unbalanced_forces",
                           Kokkos::RangePolicy<Space>(s.space, 0, s.patches.node_count()), forces, sum.force,

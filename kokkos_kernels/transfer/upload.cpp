@@ -80,7 +80,8 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
     rigid.inertia.dynamic = rigids[r].dynamic;
     set_turning(rigids[r].turning, rigid);
     rigid.binned = rigid.motion.pose;
-    rigid.law = {.separates = rigids[r].separates,
+    rigid.law = {.at_sites = rigids[r].at_sites,
+                 .separates = rigids[r].separates,
                  .reach = rigids[r].reach,
                  .exponent = rigids[r].exponent,
                  .shear_limit = rigids[r].shear_limit,
@@ -145,6 +146,10 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   for (const BodyInput& body : bodies)
     s.scheme.mass_cut =
         std::min(s.scheme.mass_cut, k_cut * (body.least_mass > 0 ? body.least_mass : common_mass(body)));
+  double heaviest = 0;
+  for (const BodyInput& body : bodies) heaviest = std::max(heaviest, body.density);
+  s.at_sites.mass = heaviest * std::pow(grid.spacing, Dim);
+  if (s.soil.points.rings) s.at_sites.mass *= grid.cells[0] * grid.spacing;
   double smallest = std::numeric_limits<double>::max(), largest = 0;
   for (const BodyInput& body : bodies) {
     smallest = std::min(smallest, body.most_volume > 0 ? body.least_volume : body.particle_volume);
@@ -161,16 +166,22 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.strays.lost.assign(bodies.size(), {});
   s.strays.put_back = decltype(s.strays.put_back)("mpm::put_back", bodies.size());
   s.rigid_moves = s.rigid_turns = s.rigid_dynamic = s.mass_normals = s.soil_boundary = s.shear_fraction =
-      s.has_friction = false;
+      s.has_friction = s.at_sites.in_use = false;
   for (const RigidInput& rigid : rigids) {
     s.rigid_turns = s.rigid_turns || rigid.turning.turns;
     s.rigid_moves = s.rigid_moves || rigid.dynamic || rigid.timed || rigid.turning.turns ||
                     rigid.velocity != std::array<double, 3>{};
     s.rigid_dynamic = s.rigid_dynamic || rigid.dynamic;
-    s.has_friction = s.has_friction || rigid.friction > 0;
+    s.at_sites.in_use = s.at_sites.in_use || rigid.at_sites;
+    s.has_friction = s.has_friction || (rigid.friction > 0 && !rigid.at_sites);
     s.mass_normals = s.mass_normals || !rigid.surface_normal;
-    s.soil_boundary = s.soil_boundary || rigid.surface_normal || rigid.shear_limit > 0 || rigid.reach > 0;
     s.shear_fraction = s.shear_fraction || rigid.shear_fraction > 0;
+    if (rigid.at_sites) {
+      const bool limited = rigid.shear_limit > 0 && std::isfinite(rigid.shear_limit);
+      s.soil_boundary = s.soil_boundary || limited || rigid.shear_fraction > 0;
+      continue;
+    }
+    s.soil_boundary = s.soil_boundary || rigid.surface_normal || rigid.shear_limit > 0 || rigid.reach > 0;
     s.soil_boundary = s.soil_boundary || rigid.shear_fraction > 0;
   }
   s.control = ControlView<Space>("mpm::control");

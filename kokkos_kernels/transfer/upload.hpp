@@ -63,7 +63,6 @@ struct SurfaceInput {
 template <int Dim>
 Surface<Dim> surface_of(const SurfaceInput& in, double spacing);
 
-/// Particles of one rigid body.
 /// Rotation of a rigid body: nothing is set where it may not turn.
 struct RigidTurning {
   bool turns = false;
@@ -76,6 +75,7 @@ struct RigidTurning {
   double reach = 0;                        // m, from the centre to the farthest point
 };
 
+/// Particles of one rigid body, its motion and its contact.
 struct RigidInput {
   std::vector<double> position;      // m [Dim N]
   double particle_volume = 0;        // m3
@@ -93,6 +93,7 @@ struct RigidInput {
   double friction = -1;        // -, negative: none
   SurfaceInput surface;
   bool surface_normal = false;  // contact normals from the surface, not from the mass gradient
+  bool at_sites = false;        // contact at sites, not at nodes
   bool separates = true;        // the soil may part from it
   double reach = 0;             // m, gap at which the contact ends; 0: it does not depend on the gap
   double exponent = 6;          // -, of its decrease with the gap

@@ -133,17 +133,18 @@ PetscErrorCode bring_together(MPI_Comm comm, SavedState* state) {
   PetscFunctionBeginUser;
   IdBlock block;
   PetscCall(bring_to_blocks(comm, state->particles, ids_without_particle(*state), state->soil, &block));
-  PetscCall(
-      gather_impulse(comm, ImpulseTerms::size * static_cast<int>(state->rigids.size()), state->impulse));
+  PetscCall(gather_impulse(comm, state->impulse));
   leave_out_lost(state->soil);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode gather_impulse(MPI_Comm comm, int numbers, SavedImpulse& impulse) {
+PetscErrorCode gather_impulse(MPI_Comm comm, SavedImpulse& impulse) {
   PetscFunctionBeginUser;
   PetscMPIInt ranks = 1;
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
   const int own = static_cast<int>(impulse.address.size());
+  int numbers = own == 0 ? 0 : static_cast<int>(impulse.values.size() / own);  // of a node
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &numbers, 1, MPI_INT, MPI_MAX, comm));
   std::vector<int> counts(ranks), values(ranks);
   PetscCallMPI(MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, comm));
   for (int r = 0; r < ranks; ++r) values[r] = counts[r] * numbers;

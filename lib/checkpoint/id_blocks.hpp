@@ -28,6 +28,6 @@ PetscErrorCode bring_together(MPI_Comm comm, SavedState* state);
 
 /// Brings the impulses of all ranks together, in order of address, on every rank. A node that several ranks
 /// have is kept once, of the first. Collective.
-PetscErrorCode gather_impulse(MPI_Comm comm, int numbers, SavedImpulse& impulse);
+PetscErrorCode gather_impulse(MPI_Comm comm, SavedImpulse& impulse);
 
 }  // namespace mpm

@@ -9,6 +9,7 @@
 #include "checkpoint/earlier.hpp"
 #include "data/column_terms.hpp"
 #include "data/side_terms.hpp"
+#include "data/site_terms.hpp"
 #include "mesh/background.hpp"
 #include "output/probes.hpp"
 #include "parallel/global_bound.hpp"
@@ -119,7 +120,10 @@ std::string state_fault(const SavedState& state, const Config& config) {
   for (const long address : state.alone)
     if (!in_mesh(address, config.mesh, config.dim, 0)) return "a checkpoint with a sound alone";
   const std::size_t rigids = config.rigids.size();
-  if (state.impulse.values.size() != ImpulseTerms::size * state.impulse.address.size() * rigids)
+  const std::size_t rows = state.impulse.address.size() * rigids, values = state.impulse.values.size();
+  const std::size_t at_sites =
+      config.dim == 2 ? k_sites<2> * SiteTerms<2>::size : k_sites<3> * SiteTerms<3>::size;
+  if (values != ImpulseTerms::size * rows && values != at_sites * rows)
     return "a checkpoint with a sound impulse";
   const int ring = patch_edge(config.dim);
   for (const long address : state.impulse.address)

@@ -196,7 +196,7 @@ PetscErrorCode write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoi
   SavedState& state = checkpoint.state;
   IdBlock soil;
   PetscCall(bring_to_blocks(comm, state.particles, ids_without_particle(state), state.soil, &soil));
-  PetscCall(gather_impulse(comm, ImpulseTerms::size * static_cast<int>(state.rigids.size()), state.impulse));
+  PetscCall(gather_impulse(comm, state.impulse));
   if (size_of(comm) == 1)
     PetscCall(write_alone(path, checkpoint, soil));
   else

@@ -39,14 +39,14 @@ PetscErrorCode Decomposition<Space, T, Dim>::rebuild(State_& s) {
   clock_.stop();
   PetscCall(forget());
   NodeImpulses<T> impulses;
-  if (s.has_friction) impulses = list_impulses(s);
+  if (impulse_rows(s) > 0) impulses = list_impulses(s);
   PetscCall(rebalance(s));
   const double before = WorkClock::wall();
   long moved = 0;
   PetscCall(migrate(s, &moved));
   sort_and_list(s);
   PetscCall(make_lists(s));
-  if (s.has_friction) PetscCall(exchange_impulses(s, impulses));
+  if (impulse_rows(s) > 0) PetscCall(exchange_impulses(s, impulses));
   present_added_ = false;
   note_bound(s, s.space);
   s.space.fence("mpm::note_bound");
@@ -183,8 +183,7 @@ void Decomposition<Space, T, Dim>::put_border_first(State_& s, std::vector<int> 
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::exchange_impulses(State_& s, const NodeImpulses<T>& own) {
   PetscFunctionBeginUser;
-  const std::size_t numbers = ImpulseTerms::size * s.rigid_points.size(),
-                    size = sizeof(long) + numbers * sizeof(T);
+  const std::size_t numbers = impulse_rows(s), size = sizeof(long) + numbers * sizeof(T);
   std::vector<std::vector<char>> out(size_);
   for (std::size_t n = 0; n < own.node.size(); ++n) {
     std::set<int> reaching;

@@ -113,6 +113,7 @@ void set_contact(const Config& config, const RigidConfig& rigid, RigidInput* in)
   in->surface = surface_input(rigid.shape, config.mesh, config.dim);
   in->surface_normal = rigid.contact_normal == ContactNormal::surface;
   in->separates = rigid.separates;
+  in->at_sites = rigid.contact_at_sites;
   if (rigid.contact_gap_scaling) in->reach = rigid.contact_gap_reach * config.mesh.spacing;
   in->exponent = rigid.contact_gap_exponent;
 }

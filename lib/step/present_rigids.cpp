@@ -48,8 +48,8 @@ void PresentRigids::narrow(SavedState& state) {
   if (all() || state.rigids.size() != others_.size()) return;  // the latter is told
   const std::vector<std::size_t> here = counted(place_.size());
   others_ = state.rigids;
-  state.impulse.values =
-      rearranged(state.impulse.values, 0, ImpulseTerms::size, others_.size(), place_.size(), place_, here);
+  state.impulse.values = rearranged(state.impulse.values, 0, numbers_of_rigid(state.impulse, others_.size()),
+                                    others_.size(), place_.size(), place_, here);
   state.bounds = rearranged(state.bounds, k_saved_bounds, MotionTerms::impulse_size, others_.size(),
                             place_.size(), place_, here);
   state.rigids.clear();
@@ -61,8 +61,8 @@ void PresentRigids::widen(SavedState& state) const {
   const std::vector<std::size_t> here = counted(place_.size());
   state.impulse.values =
       place_.empty() ? std::vector<double>(ImpulseTerms::size * state.impulse.address.size() * others_.size())
-                     : rearranged(state.impulse.values, 0, ImpulseTerms::size, place_.size(), others_.size(),
-                                  here, place_);
+                     : rearranged(state.impulse.values, 0, numbers_of_rigid(state.impulse, place_.size()),
+                                  place_.size(), others_.size(), here, place_);
   state.bounds = rearranged(state.bounds, k_saved_bounds, MotionTerms::impulse_size, place_.size(),
                             others_.size(), here, place_);
   std::vector<SavedRigid> rigids = others_;

@@ -43,6 +43,7 @@ struct Step {
       PetscCall(run(StepPhase::soil_to_nodes, [&] { return rayleigh_to_nodes(s, *rayleigh, ranks); }));
     PetscCall(run(StepPhase::nodes, [&] {
       update_nodes(s, dt);                                              // 4 velocities, walls, contact
+      if (s.at_sites.in_use) contact_at_sites(s, dt);                   //   contact at sites
       if (s.loads.in_use()) follow_surfaces(s, s.loads, s.energy, dt);  //   work of loads, and their areas
     }));
     if (s.energy.on)

@@ -34,6 +34,7 @@ void put(State_& s, Feature f) {
     case Feature::columns: s.sides.columns = decltype(s.sides.columns)("columns", 1); break;
     case Feature::gravity_table: s.timed.moves_gravity = true; break;
     case Feature::side_table: s.timed.moves_sides = true; break;
+    case Feature::contact_sites: s.at_sites.in_use = true; break;
     case Feature::pushed_mass_normals: s.rigid_dynamic = s.mass_normals = true; break;
     case Feature::turning_rigids: s.rigid_turns = true; break;
     case Feature::revolved: s.soil.points.rings = true; break;

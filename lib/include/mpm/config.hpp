@@ -154,6 +154,7 @@ struct RigidConfig {
   double shear_limit = 0;                // Pa, largest shear stress of the interface; 0 is smooth
   std::optional<double> shear_fraction;  // -, the limit as a fraction of the soil's strength, instead of it
   std::optional<double> friction;        // -, Coulomb coefficient
+  bool contact_at_sites = false;         // else at nodes
   ContactNormal contact_normal = ContactNormal::surface;
   bool separates = true;            // the soil may part from it
   bool contact_gap_scaling = true;  // the normal correction decreases with the gap (Geo-contact)

@@ -1,5 +1,7 @@
 // Options that a run whose soil goes through the device's memory in batches cannot have.
 
+#include <algorithm>
+
 #include "base/step_features.hpp"
 #include "input/options/analysis_options.hpp"
 #include "input/options/groups.hpp"
@@ -38,6 +40,12 @@ constexpr Refusal k_refusals[] = {
      "nothing where -device_memory_limit sends the soil in batches"},
     {Feature::rayleigh, [](const Config& c) { return c.rayleigh_mass > 0 || c.rayleigh_stiffness > 0; },
      "rayleigh_ratio", "0 where -device_memory_limit sends the soil in batches"},
+    {Feature::contact_sites,
+     [](const Config& c) {
+       return std::any_of(c.rigids.begin(), c.rigids.end(),
+                          [](const RigidConfig& r) { return r.contact_at_sites; });
+     },
+     k_limit, "-NAME_contact nodes for every rigid: sites do not go in batches"},
 };
 
 /// Features of the table of refusals.

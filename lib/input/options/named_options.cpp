@@ -170,11 +170,23 @@ void read_contact_normal(OptionReader& in, RigidConfig& rigid) {
               "gradient where " + rigid.name + "_shape is " + in.given_text(rigid.name + "_shape"));
 }
 
+/// Where soil and body exchange impulses.
+void read_contact_points(OptionReader& in, RigidConfig& rigid) {
+  const Option option{.name = rigid.name + "_contact",
+                      .meaning =
+                          "where it touches the soil: at nodes near it, or at sites, points of its face "
+                          "half a cell apart"};
+  in.word(option, Words<bool>{{"nodes", false}, {"sites", true}}, rigid.contact_at_sites);
+  if (rigid.contact_at_sites && rigid.contact_normal == ContactNormal::gradient)
+    in.reject(option.name, "nodes where " + rigid.name + "_contact_normal is gradient");
+}
+
 /// The gap counts by default where it is known and may open.
 void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
   const std::string name = rigid.name + "_contact_gap_scaling";
-  rigid.contact_gap_scaling = rigid.separates && rigid.contact_normal == ContactNormal::surface;
-  if (rigid.separates || in.listing())
+  rigid.contact_gap_scaling =
+      rigid.separates && rigid.contact_normal == ContactNormal::surface && !rigid.contact_at_sites;
+  if ((rigid.separates && !rigid.contact_at_sites) || in.listing())
     in.word(
         {.name = name,
          .meaning = "geo: the normal correction decreases with the gap g as 1 - (g/reach)^exponent; none is "
@@ -182,7 +194,7 @@ void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
          .change = k_by_choice},
         Words<bool>{{"none", false}, {"geo", true}}, rigid.contact_gap_scaling);
   else
-    in.not_taken(name, rigid.name + "_separation is none");
+    in.not_taken(name, rigid.name + (rigid.contact_at_sites ? "_contact is sites" : "_separation is none"));
   if (rigid.contact_gap_scaling && in.given(name) && !has_distance(rigid.shape))
     in.reject(name, "none where " + rigid.name + "_shape is " + in.given_text(rigid.name + "_shape"));
   const Option reach{.name = rigid.name + "_contact_gap_reach",
@@ -250,6 +262,7 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
        .change = k_by_choice},
       rigid.friction);
   read_contact_normal(in, rigid);
+  read_contact_points(in, rigid);
   in.word({.name = rigid.name + "_separation",
            .meaning = "whether the soil may part from it; none: contact pulls as well (suction)",
            .change = k_by_choice},

@@ -1,0 +1,93 @@
+// Contact at sites: the gap along a line to a particle's box, and the impulse of a site.
+
+#include <catch2/catch_test_macros.hpp>
+#include <cmath>
+#include <limits>
+
+#include "physics/contact_site.hpp"
+
+namespace {
+
+using namespace mpm;
+using Site = ContactSite<double, 2>;
+
+constexpr ContactLaw k_smooth{.at_sites = true,
+                              .separates = true,
+                              .reach = 0,
+                              .exponent = 6,
+                              .shear_limit = 0,
+                              .shear_fraction = -1,
+                              .friction = -1};
+constexpr double k_none = std::numeric_limits<double>::infinity();
+
+/// A site whose face looks along y, with an impulse of the step before.
+Site site_of(double press, double shear, double gap = 0) {
+  Site site{};
+  site.normal = {0, 1};
+  site.gap = gap;
+  site.inverse_mass = 0.5;  // 1/kg
+  site.part = 1;
+  site.press = press, site.shear = {shear, 0};
+  return site;
+}
+
+}  // namespace
+
+TEST_CASE("the gap of a site is that to the near side of a particle's box, wherever the line enters it",
+          "[contact_sites]") {
+  const Vector<double, 2> half{0.25, 0.2}, up{0, 1};
+  for (double off : {-0.25, -0.1, 0.0, 0.2, 0.25})
+    for (double below : {0.1, 0.3, 0.45})  // cells, from the face to the middle of the box
+      CHECK(std::fabs(gap_to_box<double, 2>({off, -below}, up, half) - (below - 0.2)) < 1e-14);
+  CHECK(gap_to_box<double, 2>({0.4, -0.3}, up, half) == k_none);  // beside the box
+  CHECK(gap_to_box<double, 2>({0, -1.3}, up, half) == k_none);    // too far ahead
+  const double c = std::sqrt(0.5);
+  CHECK(std::fabs(gap_to_box<double, 2>({-0.5, -0.5}, {c, c}, {0.25, 0.25}) - 0.25 * std::sqrt(2.0)) < 1e-14);
+}
+
+TEST_CASE("keys of gaps have the order of the gaps, and give them back", "[contact_sites]") {
+  const double gaps[] = {-0.7, -1e-9, -0.0, 0.0, 1e-12, 0.2, 0.5};
+  for (double a : gaps) {
+    CHECK(GapKey::gap(GapKey::of(a)) == a);
+    CHECK((GapKey::of(a) > GapKey::none && GapKey::of(a) < GapKey::open));
+    for (double b : gaps)
+      if (a < b) CHECK(GapKey::of(a) < GapKey::of(b));
+  }
+}
+
+TEST_CASE("a site stops soil that comes nearer, no faster than the gap allows, and lets go what leaves",
+          "[contact_sites]") {
+  const SiteInterface<double> interface { 0, 1, 100, 0 };
+  Site site = site_of(0, 0);
+  CHECK(resolve(site, k_smooth, {0.3, -2}, interface)[1] == 4);  // kg m/s: 2 m/s over 0.5 / kg
+  CHECK(site.press == 4);
+  CHECK(site.shear[0] == 0);
+  site = site_of(0, 0, 0.01);  // m: 1 m/s close it in a step
+  CHECK(std::fabs(resolve(site, k_smooth, {0, -2}, interface)[1] - 2) < 1e-14);
+  site = site_of(3, 0);
+  CHECK(resolve(site, k_smooth, {0, 5}, interface)[1] == -3);
+  CHECK(site.press == 0);
+  ContactLaw glued = k_smooth;
+  glued.separates = false;
+  site = site_of(3, 0);
+  CHECK(resolve(site, glued, {0, 5}, interface)[1] == -10);
+  CHECK(site.press == -7);
+}
+
+TEST_CASE("the shear of a site ends the slip up to its limit, and friction up to its share of the press",
+          "[contact_sites]") {
+  Site site = site_of(4, 0);
+  CHECK(std::fabs(resolve(site, k_smooth, {0.1, 0}, {k_none, 1, 100, 0})[0] + 0.2) < 1e-14);  // rough
+  site = site_of(4, 0);
+  CHECK(std::fabs(resolve(site, k_smooth, {9, 0}, {0.5, 1, 100, 0})[0] + 0.5) < 1e-14);
+  ContactLaw law = k_smooth;
+  law.friction = 0.2;
+  site = site_of(4, 0);
+  CHECK(std::fabs(resolve(site, law, {9, 0}, {k_none, 1, 100, 0})[0] + 0.2 * 4) < 1e-14);
+  site = site_of(4, 0);
+  CHECK(std::fabs(resolve(site, law, {9, 8}, {k_none, 1, 100, 0})[0]) < 1e-14);  // it has left: no friction
+  site = site_of(0, 0);  // a face that round-off presses has no shear, unless soil beside it is pressed
+  CHECK(resolve(site, k_smooth, {1, -1e-12}, {5, 1, 100, 0})[0] == 0);
+  site = site_of(0, 0);
+  CHECK(std::fabs(resolve(site, k_smooth, {1, 0}, {5, 1, 100, 3})[0] + 2) < 1e-14);
+}
