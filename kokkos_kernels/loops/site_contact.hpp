@@ -214,9 +214,11 @@ struct SiteContact {
     if (!law.separates && !(gap < T(SiteReach::cling))) return;
     for (int d = 0; d < Dim; ++d) site.place[d] += gap * site.normal[d];
     site.gap = gap * update.places.grid.spacing;
+    constexpr T k_round_off = T(1e-6);  // of a weight: the place is on a row of nodes
     T sum = 0;
     for_each_hat(of, site, [&](int m, int i, T weight) {
-      const bool takes = sums_of(i) >= 0 && update.nodes.soil(i, SoilTerms<Dim>::mass) > update.mass_cut;
+      const bool takes = weight > k_round_off && sums_of(i) >= 0 &&
+                         update.nodes.soil(i, SoilTerms<Dim>::mass) > update.mass_cut;
       site.share[m] = takes ? weight : T(0);
       sum += site.share[m];
     });
@@ -429,11 +431,15 @@ struct SiteContact {
   KOKKOS_INLINE_FUNCTION T& kept(const Place& of, int node, int corner, int term) const {
     return update.nodes.impulse(update.impulse_stride * of.rigid + corner * Terms::size + term, node);
   }
-  /// Loads what a site kept. One that kept nothing takes what the next one along the normal has: the face has
-  /// moved on.
+  KOKKOS_INLINE_FUNCTION bool is_in_touch(int rigid, int node, int corner) const {
+    const int place = contact_place(node / cells);
+    return place > 0 && acts(number_of(rigid, place, node % cells, corner));
+  }
+  /// Loads what a site kept. One that had no contact takes what the next one along the normal had, where that
+  /// has none now: the face has moved on.
   KOKKOS_INLINE_FUNCTION void load(const Place& of, Site& site) const {
     int node = of.slot * cells + of.k, corner = of.corner;
-    if (kept(of, node, corner, Terms::normal) == 0) {
+    if (kept(of, node, corner, Terms::weight) == 0) {
       T most = 0;
       for (int sign = -1; sign <= 1; sign += 2) {
         Coord<Dim> c = coord_of<Dim>(of.k);
@@ -445,7 +451,7 @@ struct SiteContact {
         }
         const int i =
             number_at<decltype(update.places.neighbours), Dim>(update.places.neighbours, of.slot, c);
-        if (i < 0 || !(kept(of, i, there, Terms::normal) > most)) continue;
+        if (i < 0 || !(kept(of, i, there, Terms::normal) > most) || is_in_touch(of.rigid, i, there)) continue;
         most = kept(of, i, there, Terms::normal);
         node = i, corner = there;
       }
@@ -465,13 +471,12 @@ struct SiteContact {
     if (site != nullptr) {
       values[Terms::normal] = site->press * update.inv_dt;
       for (int d = 0; d < Dim; ++d) values[Terms::shear + d] = site->shear[d] * update.inv_dt;
-      if (friction > 0) {
-        Pressed<T> pressed{site->sum, site->weight, site->store};
-        usable_impulse(pressed, fresh, site->press);
-        values[Terms::sum] = pressed.sum, values[Terms::weight] = pressed.weight;
-        const T used = Kokkos::sqrt(dot(site->shear, site->shear)) / friction;
-        values[Terms::store] = Kokkos::fmax(T(0), pressed.store - used);
-      }
+      Pressed<T> pressed{site->sum, site->weight, site->store};
+      usable_impulse(pressed, fresh, site->press);
+      values[Terms::sum] = pressed.sum, values[Terms::weight] = pressed.weight;
+      if (friction > 0)
+        values[Terms::store] =
+            Kokkos::fmax(T(0), pressed.store - Kokkos::sqrt(dot(site->shear, site->shear)) / friction);
     }
     for (int term = 0; term < Terms::size; ++term)
       kept(of, of.slot * cells + of.k, of.corner, term) = values[term];
