@@ -1,5 +1,5 @@
 #pragma once
-// Contact at sites in a step: what a site, a particle and a node do in each pass over them.
+// Passes of contact at sites in a step: over sites, over the particles near them, and over nodes.
 
 #include "data/state.hpp"
 #include "loops/node_update.hpp"
@@ -7,6 +7,8 @@
 
 namespace mpm {
 
+/// Contact of all rigid bodies with `at_sites` in a step of dt [s], behind update_nodes (docs/method.md,
+/// "Contact at sites"). Each method is the work of one index of a pass (functions/contact_sites.cpp).
 template <class Space, class T, int Dim>
 struct SiteContact {
   using Terms = SiteTerms<Dim>;

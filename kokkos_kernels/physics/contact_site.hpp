@@ -13,7 +13,7 @@ struct SiteReach {
   static constexpr double behind = -0.75;   // from the face: soil that far in the body is found
   static constexpr double ahead = 1;        // and that far before it
   static constexpr double touch = 0.5;      // gap from which on a site has no contact
-  static constexpr double near = 1.25;      // particles farther from the face are not looked for
+  static constexpr double near = 1.25;      // particles farther from the face meet no site
   static constexpr double inflated = 1.25;  // box of a particle, over its domain
   static constexpr double edge = 0.05;      // from the rounded edges of a body, where it has no sites
   static constexpr double facing = 0.1;     // cosine between the face of a site and the one nearest to soil
