@@ -60,6 +60,10 @@ struct SiteContact {
   KOKKOS_INLINE_FUNCTION int sums_of(int node) const {
     return node < 0 ? -1 : (contact_place(node / cells) - 1) * cells + node % cells;
   }
+  /// Number of the node at c of a slot, where c may reach into the slots around it; -1: there is none.
+  KOKKOS_INLINE_FUNCTION int node_number(int slot, const Coord<Dim>& c) const {
+    return number_at<decltype(update.places.neighbours), Dim>(update.places.neighbours, slot, c);
+  }
   KOKKOS_INLINE_FUNCTION const Rigid<Dim>& body(int r) const { return update.rigids(r); }
   KOKKOS_INLINE_FUNCTION Coord<Dim> node_at(const Place& of) const {
     Coord<Dim> at = coord_of<Dim>(of.k);
@@ -67,16 +71,19 @@ struct SiteContact {
     return at;
   }
 
-  /// Whether a point is nearest to an edge of the body, or to a place close to one.
-  KOKKOS_INLINE_FUNCTION bool is_beside_edge(const Rigid<Dim>& rigid,
-                                             const Vector<double, Dim>& point) const {
+  /// Whether a point is nearest to an edge of the body, or to a place close to one. An edge that is rounded
+  /// by more than a cell is a face.
+  KOKKOS_INLINE_FUNCTION bool is_at_edge(const Rigid<Dim>& rigid, const Vector<double, Dim>& point,
+                                         const Distance<Dim>& to) const {
+    if (rigid.surface.radius > SiteReach::round * update.spacing) return false;
+    bool at_edge = to.at_edge;
     MPM_ROLLED
-    for (int n = 0; n < 2 * Dim; ++n) {
+    for (int n = 0; n < 2 * Dim && !at_edge; ++n) {
       Vector<double, Dim> beside = point;
       beside[n / 2] += (n % 2 == 0 ? -1 : 1) * SiteReach::edge * update.spacing;
-      if (distance_to(rigid.surface, update.vertices, beside).at_edge) return true;
+      at_edge = distance_to(rigid.surface, update.vertices, beside).at_edge;
     }
-    return false;
+    return at_edge;
   }
 
   /// Begins a site: the nearest place of the body's face. There is one in each column of sites along the axis
@@ -102,7 +109,7 @@ struct SiteContact {
     for (int d = 0; d < Dim; ++d) most = Kokkos::fmax(most, Kokkos::fabs(out[d]));
     const double away = to.value / update.spacing;  // cells
     if (!(away > k_on_edge && away <= SiteReach::layer * most * (1 + k_on_edge))) return;
-    if (to.at_edge || is_beside_edge(rigid, point)) return;
+    if (is_at_edge(rigid, point, to)) return;
     Site& site = sites(n);
     unsigned sides = 0;
     for (int d = 0; d < Dim; ++d) {
@@ -166,7 +173,7 @@ struct SiteContact {
         const int at = low[d] + rest % size[d];
         node[d] = at >> 1, corner |= (at & 1) << d;
       }
-      const int i = number_at<decltype(update.places.neighbours), Dim>(update.places.neighbours, slot, node);
+      const int i = node_number(slot, node);
       if (i < 0 || contact_place(i / cells) == 0) continue;
       const int n = number_of(r, contact_place(i / cells), i % cells, corner);
       if (gaps(n) == GapKey::none) continue;
@@ -200,7 +207,7 @@ struct SiteContact {
         c[d] += m >> d & 1;
         weight *= m >> d & 1 ? upper[d] : 1 - upper[d];
       }
-      f(m, number_at<decltype(update.places.neighbours), Dim>(update.places.neighbours, of.slot, c), weight);
+      f(m, node_number(of.slot, c), weight);
     }
   }
 
@@ -231,7 +238,7 @@ struct SiteContact {
     const Vector<double, Dim> velocity = body(of.rigid).motion.velocity_at(in_space);
     for (int d = 0; d < Dim; ++d) site.velocity[d] = static_cast<T>(velocity[d]);
     for (int m = 0; m < corners; ++m) site.share[m] /= sum;
-    site.inverse_mass = 1;  // until `begin` has it
+    site.inverse_mass = 1;  // begin_impulse replaces it
     for_each_hat(of, site, [&](int m, int i, T) {
       if (site.share[m] > 0) add(i, SiteSums<Dim>::sites, double(site.part) * site.share[m] * k_whole);
     });
@@ -451,8 +458,7 @@ struct SiteContact {
           const int half = 2 * c[d] + (of.corner >> d & 1) + sign * step;
           c[d] = half >> 1, there |= (half & 1) << d;
         }
-        const int i =
-            number_at<decltype(update.places.neighbours), Dim>(update.places.neighbours, of.slot, c);
+        const int i = node_number(of.slot, c);
         if (i < 0 || !(kept(of, i, there, Terms::normal) > most) || is_in_touch(of.rigid, i, there)) continue;
         most = kept(of, i, there, Terms::normal);
         node = i, corner = there;

@@ -16,10 +16,9 @@ struct SiteReach {
   static constexpr double near = 1.25;      // particles farther from the face meet no site
   static constexpr double inflated = 1.25;  // box of a particle, over its domain
   static constexpr double edge = 0.05;      // from the rounded edges of a body, where it has no sites
+  static constexpr double round = 1;        // radius from which on a rounded edge is a face
   static constexpr double facing = 0.1;     // cosine between the face of a site and the one nearest to soil
-  static constexpr double stored =
-      0.3;  // -, impulse that friction keeps unused, over the mean one of the time that the mean is of
-  static constexpr double cling = 0.05;  // gap up to which soil that may not part is held
+  static constexpr double cling = 0.05;     // gap up to which soil that may not part is held
 };
 
 /// Gap [cells] from a point of the face, `from` [cells, from the middle of a box], along the normal to the

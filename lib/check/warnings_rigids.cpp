@@ -171,14 +171,17 @@ void warn_of_drag(const Config& config, const Way& way, Lines& lines) {
   const bool flat = rigid.shape.kind == ShapeKind::box && rigid.shape.angle == 0 && rigid.shape.fillet == 0;
   if (rigid.motion != Motion::dynamic || way.soil < 0 || flat || !way.goes_sideways() || !way.is_loaded())
     return;
+  if (rigid.contact_at_sites) return;
   constexpr double k_enough = 20;  // cells over the radius
   const double cells = rigid.shape.radius / config.mesh.spacing;
   if (cells > k_enough) return;
   const std::string size = rigid.shape.kind == ShapeKind::disc
                                ? formatted(", which has %.3g cells over its radius,", cells)
                                : std::string();
-  lines.push_back("warning: rigid " + rigid.name + size +
-                  " moves too slowly where it slides on soil: contact of a curved or tilted surface drags");
+  lines.push_back(
+      "warning: rigid " + rigid.name + size +
+      " moves too slowly where it slides on soil: contact of a curved or tilted surface drags; -" +
+      rigid.name + "_contact sites does not");
 }
 
 void warn_of_gradient(const RigidConfig& rigid, Lines& lines) {
@@ -190,6 +193,22 @@ void warn_of_gradient(const RigidConfig& rigid, Lines& lines) {
       (rigid.shape.kind == ShapeKind::stl
            ? "; normals of a box, polygon, disc, cylinder or cone do not do this"
            : "; -" + rigid.name + "_contact_normal surface does not do this"));
+}
+
+/// Faces have no sites beside sharp edges.
+void warn_of_narrow_faces(const Config& config, const Way& way, Lines& lines) {
+  const ShapeKind kind = way.rigid.shape.kind;
+  if (!way.rigid.contact_at_sites || kind == ShapeKind::disc || kind == ShapeKind::half_plane) return;
+  constexpr double k_wide = 2;  // cells; a face of 1.1 cells has one row of sites
+  for (int d = 0; d < config.dim; ++d) {
+    const double cells = (way.bounds.upper[d] - way.bounds.lower[d]) / config.mesh.spacing;
+    if (cells >= k_wide) continue;
+    lines.push_back(
+        formatted("warning: -%s_contact: given \"sites\", but the rigid is %.3g cells across %c: faces of "
+                  "less than 1.1 cells let soil through; take nodes or smaller cells",
+                  way.rigid.name.c_str(), cells, "xyz"[d]));
+    return;
+  }
 }
 
 }  // namespace
@@ -205,6 +224,7 @@ std::vector<std::string> warnings_of_rigids(const Config& config) {
     warn_of_turning(config, way, lines);
     warn_of_drag(config, way, lines);
     warn_of_gradient(way.rigid, lines);
+    warn_of_narrow_faces(config, way, lines);
   }
   return lines;
 }
