@@ -39,22 +39,27 @@ struct ContactSites {
   using Memory = typename Space::memory_space;
   bool in_use = false;                               // some rigid body touches the soil at sites
   double mass = 0;                                   // kg, of the order of that of a full node
+  int rank = 0;                                      // this one
   Kokkos::View<ContactSite<T, Dim>*, Memory> sites;  // [rigid][contact slot][node of it][site of it]
   Kokkos::View<std::uint64_t*, Memory> gaps;         // of the sites, as GapKey
   Kokkos::View<std::int64_t * [SiteSums<Dim>::size], Kokkos::LayoutRight, Memory>
       sums;  // [contact slot][node of it]
 };
 
-/// Gaps [cells] as whole numbers of the same order; 0: there is no site.
+/// Gaps [cells] as whole numbers of the same order, to 2^-36 of them, with the rank of the soil that is so
+/// near in the last bits: of equal gaps that of the lowest rank is the least. none: there is no site.
 struct GapKey {
-  static constexpr std::uint64_t none = 0, open = ~std::uint64_t(0);
-  KOKKOS_INLINE_FUNCTION static std::uint64_t of(double gap) {
+  static constexpr std::uint64_t none = 0, open = ~std::uint64_t(0), ranks = 0xffff;
+  KOKKOS_INLINE_FUNCTION static std::uint64_t of(double gap, int rank) {
     const auto bits = Kokkos::bit_cast<std::uint64_t>(gap);
-    return bits >> 63 ? ~bits : bits | std::uint64_t(1) << 63;
+    const std::uint64_t ordered = bits >> 63 ? ~bits : bits | std::uint64_t(1) << 63;
+    return (ordered & ~ranks) | static_cast<std::uint64_t>(rank);
   }
   KOKKOS_INLINE_FUNCTION static double gap(std::uint64_t key) {
+    key &= ~ranks;
     return Kokkos::bit_cast<double>(key >> 63 ? key & ~(std::uint64_t(1) << 63) : ~key);
   }
+  KOKKOS_INLINE_FUNCTION static int rank(std::uint64_t key) { return static_cast<int>(key & ranks); }
 };
 
 }  // namespace mpm

@@ -1,118 +1,141 @@
-#include "functions/step_kernels.hpp"
-#include "loops/site_contact.hpp"
+#include "functions/contact_sites.hpp"
+
+#include "functions/shared_words.hpp"
+#include "loops/end_sites.hpp"
+#include "loops/find_sites.hpp"
+#include "loops/shared_sites.hpp"
+#include "loops/solve_sites.hpp"
 
 namespace mpm {
 namespace {
 
-/// Sweeps over all sites at once (Jacobi). The impulses of the step before are a good beginning, so few do.
-constexpr int k_sweeps = 2;
+/// Runs work(k) for so many indices, while the steps are not paused.
+template <class Space, class T, int Dim, class Work>
+void pass(const SitePasses<Space, T, Dim>& of, const char* name, int n, const Work& work) {
+  const auto control = of.control;
+  Kokkos::parallel_for(
+      name, light(Kokkos::RangePolicy<Space>(of.s.space, 0, n)), KOKKOS_LAMBDA(int k) {
+        if (!control().paused) work(k);
+      });
+}
 
 template <class Space, class T, int Dim>
-struct SitePasses {
-  using Contact = SiteContact<Space, T, Dim>;
-  const State<Space, T, Dim>& s;
-  Contact contact;
-  ControlView<Space> control;
-  int sites = contact.sites_of_body() * static_cast<int>(s.rigid_points.size());
-  int nodes = contact.count * Contact::cells;
+int node_count(const State<Space, T, Dim>& s) {
+  return s.contact.count * Patch<Dim>::cells;
+}
+template <class Space, class T, int Dim>
+int site_count(const State<Space, T, Dim>& s) {
+  return node_count(s) * k_sites<Dim> * static_cast<int>(s.rigid_points.size());
+}
 
-  /// A kernel of so many indices, while the steps are not paused.
-  template <class Work>
-  void pass(const char* name, int n, const Work& work) const {
-    const auto control = this->control;
-    Kokkos::parallel_for(
-        name, light(Kokkos::RangePolicy<Space>(s.space, 0, n)), KOKKOS_LAMBDA(int k) {
-          if (!control().paused) work(k);
-        });
+/// Calls f(what ranks share).
+template <class Space, class T, int Dim, class F>
+void with_shared(const SitePasses<Space, T, Dim>& of, SiteField field, F&& f) {
+  const Sites<Space, T, Dim> sites(of.s, of.dt);
+  using Sums = SiteSums<Dim>;
+  switch (field) {
+    case SiteField::gaps: return f(SharedGaps<Space, T, Dim>{sites});
+    case SiteField::counts: return f(SharedSums<Space, T, Dim>{sites, Sums::sites, 1});
+    case SiteField::momentum: return f(SharedSums<Space, T, Dim>{sites, Sums::momentum, Dim});
+    case SiteField::kept: return f(SharedKept<Space, T, Dim>{sites});
   }
-  void find() const {
-    const Contact of = contact;
-    pass(
-        "mpm::clear_sites", nodes, KOKKOS_LAMBDA(int k) {
-          for (int term = 0; term < SiteSums<Dim>::size; ++term) of.sums(k, term) = 0;
-        });
-    pass(
-        "mpm::find_sites", sites, KOKKOS_LAMBDA(int n) { of.find(n); });
-    pass(
-        "mpm::meet_sites", nodes, KOKKOS_LAMBDA(int k) {
-          const int slot = of.contact_slots(k / Contact::cells),
-                    cell = slot * Contact::cells + k % Contact::cells;
-          for (int p = of.begin(cell); p < of.begin(cell + 1); ++p) of.meet(slot, p);
-        });
-    pass(
-        "mpm::couple_sites", sites, KOKKOS_LAMBDA(int n) { of.couple(n); });
-  }
-  void begin() const {
-    const Contact of = contact;
-    pass(
-        "mpm::begin_sites", sites, KOKKOS_LAMBDA(int n) { of.begin_impulse(n); });
-  }
-  void take() const {
-    const Contact of = contact;
-    pass(
-        "mpm::give_sites", nodes, KOKKOS_LAMBDA(int k) { of.take(k); });
-  }
-  void sweep(int times) const {
-    const Contact of = contact;
-    for (int n = 0; n < times; ++n) {
-      pass(
-          "mpm::sweep_sites", sites, KOKKOS_LAMBDA(int k) { of.sweep(k); });
-      take();
-    }
-  }
-  void brake() const {
-    const Contact of = contact;
-    pass(
-        "mpm::brake_at_sites", nodes, KOKKOS_LAMBDA(int k) { of.brake(k); });
-  }
-  void end() const {
-    const Contact of = contact;
-    pass(
-        "mpm::end_nodes_at_sites", nodes, KOKKOS_LAMBDA(int k) { of.end_node(k); });
-    using Team = Kokkos::TeamPolicy<Space>;
-    constexpr int threads = node_threads<Space, Dim>;
-    const int room = Wrench<Dim>::size * Contact::cells, rigids = static_cast<int>(s.rigid_points.size());
-    const std::size_t bytes = scratch_bytes<double>(room) + k_scratch_slack;
-    const auto control = this->control;
-    Kokkos::parallel_for(
-        "mpm::end_sites",
-        light(Team(s.space, contact.count * rigids, threads).set_scratch_size(0, Kokkos::PerTeam(bytes))),
-        KOKKOS_LAMBDA(const typename Team::member_type& team) {
-          if (!control().paused)
-            of.end_body(team, team.league_rank() / of.count, team.league_rank() % of.count,
-                        scratch<double>(team, room));
-        });
-  }
-};
+}
 
 }  // namespace
 
 template <class Space, class T, int Dim>
-void sum_site_forces(const State<Space, T, Dim>& s, double dt) {
-  if (s.contact.count == 0) return;
-  const SitePasses<Space, T, Dim> passes{s, {s, dt}, s.never_paused};
-  passes.find();
-  passes.begin();
+void SitePasses<Space, T, Dim>::find() const {
+  const FindSites<Space, T, Dim> of(s, dt);
+  pass(
+      *this, "mpm::clear_sites", node_count(s), KOKKOS_LAMBDA(int k) {
+        for (int term = 0; term < SiteSums<Dim>::size; ++term) of.sums(k, term) = 0;
+      });
+  pass(
+      *this, "mpm::find_sites", site_count(s), KOKKOS_LAMBDA(int n) { of.find(n); });
+  pass(
+      *this, "mpm::meet_sites", node_count(s), KOKKOS_LAMBDA(int k) {
+        constexpr int cells = Patch<Dim>::cells;
+        const int slot = of.contact_slots(k / cells), cell = slot * cells + k % cells;
+        for (int p = of.begin(cell); p < of.begin(cell + 1); ++p) of.meet(slot, p);
+      });
 }
 
 template <class Space, class T, int Dim>
-void contact_at_sites(State<Space, T, Dim>& s, double dt) {
-  if (s.contact.count == 0) return;
-  const SitePasses<Space, T, Dim> passes{s, {s, dt}, s.control};
-  passes.find();
-  passes.begin();
-  passes.take();
-  passes.sweep(k_sweeps);
-  if (s.scheme.damping > 0) {
-    passes.brake();
-    passes.sweep(1);
-  }
-  passes.end();
+void SitePasses<Space, T, Dim>::couple() const {
+  const FindSites<Space, T, Dim> of(s, dt);
+  pass(
+      *this, "mpm::couple_sites", site_count(s), KOKKOS_LAMBDA(int n) { of.couple(n); });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                           \
-  template void contact_at_sites(State<Space, T, Dim>&, double); \
-  template void sum_site_forces(const State<Space, T, Dim>&, double);
+template <class Space, class T, int Dim>
+void SitePasses<Space, T, Dim>::begin() const {
+  const SolveSites<Space, T, Dim> of(s, dt);
+  pass(
+      *this, "mpm::begin_sites", site_count(s), KOKKOS_LAMBDA(int n) { of.begin_impulse(n); });
+}
+
+template <class Space, class T, int Dim>
+void SitePasses<Space, T, Dim>::sweep() const {
+  const SolveSites<Space, T, Dim> of(s, dt);
+  pass(
+      *this, "mpm::sweep_sites", site_count(s), KOKKOS_LAMBDA(int n) { of.sweep(n); });
+}
+
+template <class Space, class T, int Dim>
+void SitePasses<Space, T, Dim>::take() const {
+  const SolveSites<Space, T, Dim> of(s, dt);
+  pass(
+      *this, "mpm::give_sites", node_count(s), KOKKOS_LAMBDA(int k) { of.take(k); });
+}
+
+template <class Space, class T, int Dim>
+void SitePasses<Space, T, Dim>::brake() const {
+  const SolveSites<Space, T, Dim> of(s, dt);
+  pass(
+      *this, "mpm::brake_at_sites", node_count(s), KOKKOS_LAMBDA(int k) { of.brake(k); });
+}
+
+template <class Space, class T, int Dim>
+void SitePasses<Space, T, Dim>::end() const {
+  const EndSites<Space, T, Dim> of(s, dt);
+  pass(
+      *this, "mpm::end_nodes_at_sites", node_count(s), KOKKOS_LAMBDA(int k) { of.end_node(k); });
+  if (s.contact.count == 0) return;
+  using Team = Kokkos::TeamPolicy<Space>;
+  constexpr int threads = node_threads<Space, Dim>;
+  const int room = Wrench<Dim>::size * Patch<Dim>::cells, rigids = static_cast<int>(s.rigid_points.size());
+  const std::size_t bytes = scratch_bytes<double>(room) + k_scratch_slack;
+  const auto control = this->control;
+  Kokkos::parallel_for(
+      "mpm::end_sites",
+      light(Team(s.space, s.contact.count * rigids, threads).set_scratch_size(0, Kokkos::PerTeam(bytes))),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (!control().paused)
+          of.end_body(team, team.league_rank() / of.count, team.league_rank() % of.count,
+                      scratch<double>(team, room));
+      });
+}
+
+template <class Space, class T, int Dim>
+int SitePasses<Space, T, Dim>::width(SiteField field) const {
+  int width = 0;
+  with_shared(*this, field, [&]<class Shared>(const Shared& shared) {
+    width = shared.size * InWords<T, typename Shared::Value>::count;
+  });
+  return width;
+}
+
+template <class Space, class T, int Dim>
+void SitePasses<Space, T, Dim>::pack(SiteField field, const HaloLists<Space>& lists, T* out) const {
+  with_shared(*this, field, [&](const auto& shared) { pack_words(s.space, lists, shared, out); });
+}
+
+template <class Space, class T, int Dim>
+void SitePasses<Space, T, Dim>::combine(SiteField field, const HaloLists<Space>& lists, const T* in) const {
+  with_shared(*this, field, [&](const auto& shared) { combine_words(s.space, lists, shared, in); });
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim) template struct SitePasses<Space, T, Dim>;
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -37,13 +37,6 @@ template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt) {
   update_nodes(s, dt, s.space);
 }
-/// Part of 4, behind update_nodes, before the nodal sums are cleared: contact at sites
-/// (loops/site_contact.hpp).
-template <class Space, class T, int Dim>
-void contact_at_sites(State<Space, T, Dim>& s, double dt);
-/// Sums the forces of the last step at the sites in s.at_sites.sums, between two steps.
-template <class Space, class T, int Dim>
-void sum_site_forces(const State<Space, T, Dim>& s, double dt);
 /// Brings to the nodes the sums that update_particles has left in windows for update_nodes.
 template <class Space, class T, int Dim>
 void finish_sums(ContactCore<Space, T, Dim>& s);

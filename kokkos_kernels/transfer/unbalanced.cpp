@@ -1,7 +1,7 @@
 #include "transfer/unbalanced.hpp"
 
 #include "functions/step_kernels.hpp"
-#include "loops/site_contact.hpp"
+#include "loops/solve_sites.hpp"
 
 namespace mpm {
 namespace {
@@ -14,7 +14,7 @@ struct NodeForces {
   UpdateNodes<Space, T, Dim> update;
   ContactPlaces<Space> contact;
   Vector<double, Dim> gravity;
-  SiteContact<Space, T, Dim> sites;
+  SolveSites<Space, T, Dim> sites;
 
   KOKKOS_INLINE_FUNCTION void operator()(int i, double& unbalanced, double& weight) const {
     const int slot = i / cells;
@@ -44,7 +44,6 @@ struct NodeForces {
 
 template <class Space, class T, int Dim>
 UnbalancedForces unbalanced_forces(const State<Space, T, Dim>& s, double dt) {
-  if (s.at_sites.in_use) sum_site_forces(s, dt);
   const NodeForces<Space, T, Dim> forces{node_update_of(s, dt), s.contact.place, s.gravity, {s, dt}};
   UnbalancedForces sum;
   Kokkos::parallel_reduce("mpm::unbalanced_forces",

@@ -57,18 +57,6 @@ void check_mesh(const Config& config, InputReport& report) {
                 config.mesh.spacing, k_most_patches, patch_edge(config.dim), patches));
 }
 
-/// Ranks have no common sites.
-PetscErrorCode check_sites(MPI_Comm comm, const Config& config, InputReport& report) {
-  PetscFunctionBeginUser;
-  int ranks = 1;
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  for (const RigidConfig& rigid : config.rigids)
-    if (ranks > 1 && rigid.contact_at_sites)
-      report.errors.push_back(
-          formatted("mpm: -%s_contact: given \"sites\", takes nodes on several ranks", rigid.name.c_str()));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 }  // namespace
 
 PetscErrorCode check_machine(MPI_Comm comm, Config& config, InputReport& report) {
@@ -76,7 +64,6 @@ PetscErrorCode check_machine(MPI_Comm comm, Config& config, InputReport& report)
   PetscCall(check_device(comm, config, report));
   if (report.errors.empty()) check_build(comm, config, report);
   if (report.errors.empty()) check_mesh(config, report);
-  if (report.errors.empty()) PetscCall(check_sites(comm, config, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

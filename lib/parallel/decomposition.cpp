@@ -24,7 +24,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm comm, const Partitio
                                                    const Owners& owners, State_& s) {
   PetscFunctionBeginUser;
   comm_ = comm;
-  rank_ = rank_of(comm);
+  rank_ = s.at_sites.rank = rank_of(comm);
   size_ = size_of(comm);
   config_ = config;
   // Ranks may have different numbers of threads, and all overlap or none does.

@@ -68,6 +68,20 @@ class Decomposition {
   PetscErrorCode add_field(const State_& s, const Field& field, When when, const int* read = nullptr) {
     return add_values(s, field.data(), static_cast<int>(field.extent(1)), when, read);
   }
+  /// Other values of shared nodes: pack(lists, out) writes `width` numbers of each to its entry, and
+  /// combine(lists, in) takes those that came in, for which it needs no other order than that of its kernels.
+  template <class Pack, class Combine>
+  PetscErrorCode exchange_nodes(const State_& s, int width, When when, Pack&& pack, Combine&& combine) {
+    PetscFunctionBeginUser;
+    if (when == When::between_steps) clock_.go_on();
+    PetscCall(send(s.space, width, [&](T* out) { pack(lists_, out); }));
+    PetscCall(receive(s.space, width, false));
+    const double start = WorkClock::wall();
+    combine(lists_, transport_.deliver(s.space, width));
+    if (!is_device<Space>) halo_ += WorkClock::wall() - start;
+    if (when == When::between_steps) clock_.stop();
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   /// The sum over ranks of the soil after sum_present_soil, for measures between two steps.
   PetscErrorCode add_present_soil(State_& s);
   /// The sum over ranks of the forces on dynamic rigids.
@@ -124,6 +138,20 @@ class Decomposition {
 
   Fields soil_fields(const State_& s, bool soil, bool boundary) const;
   PetscErrorCode send(const Space& space, const Fields& fields);
+  /// Sends entries of `width` numbers that pack(out) writes, as far as the device can do so on the same
+  /// stream; a processor sends them at once.
+  template <class Pack>
+  PetscErrorCode send(const Space& space, int width, Pack&& pack) {
+    PetscFunctionBeginUser;
+    const double start = WorkClock::wall();
+    pack(transport_.out());
+    PetscCall(transport_.send(space, width));
+    if (!is_device<Space>) halo_ += WorkClock::wall() - start;
+    if (!is_device<Space>) PetscCall(transport_.start(width));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Waits until the entries of the neighbours have come in.
+  PetscErrorCode receive(const Space& space, int width, bool with_bound);
   PetscErrorCode exchange(int width, bool with_bound);
   void sum(const Space& space, const Fields& fields);
   PetscErrorCode add(const Space& space, const Fields& fields, bool with_bound);

@@ -23,18 +23,14 @@ auto Decomposition<Space, T, Dim>::soil_fields(const State_& s, bool soil, bool 
   return fields;
 }
 
-/// Packs the sums, and sends them as far as the device can do so on the same stream; a processor sends them
-/// at once.
+/// Packs the sums, and sends them.
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::send(const Space& space, const Fields& fields) {
   PetscFunctionBeginUser;
   if (fields.count == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  const double start = WorkClock::wall();
-  for (int f = 0; f < fields.count; ++f)
-    pack_nodes(space, lists_, fields.of[f], fields.width, transport_.out());
-  PetscCall(transport_.send(space, fields.width));
-  if (!is_device<Space>) halo_ += WorkClock::wall() - start;
-  if (!is_device<Space>) PetscCall(transport_.start(fields.width));
+  PetscCall(send(space, fields.width, [&](T* out) {
+    for (int f = 0; f < fields.count; ++f) pack_nodes(space, lists_, fields.of[f], fields.width, out);
+  }));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,15 +53,22 @@ void Decomposition<Space, T, Dim>::sum(const Space& space, const Fields& fields)
   if (!is_device<Space>) halo_ += WorkClock::wall() - start;
 }
 
+template <class Space, class T, int Dim>
+PetscErrorCode Decomposition<Space, T, Dim>::receive(const Space& space, int width, bool with_bound) {
+  PetscFunctionBeginUser;
+  space.fence("mpm::halo is packed");
+  clock_.pause();
+  PetscCall(exchange(width, with_bound));
+  clock_.go_on();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /// All of it at once.
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::add(const Space& space, const Fields& fields, bool with_bound) {
   PetscFunctionBeginUser;
   PetscCall(send(space, fields));
-  space.fence("mpm::halo is packed");
-  clock_.pause();
-  PetscCall(exchange(fields.width, with_bound));
-  clock_.go_on();
+  PetscCall(receive(space, fields.width, with_bound));
   sum(space, fields);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -208,6 +211,7 @@ void Decomposition<Space, T, Dim>::drop_ahead() {
   template PetscErrorCode Decomposition<Space, T, Dim>::add_soil(State<Space, T, Dim>&, const Space&);   \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_values(const State<Space, T, Dim>&, T*, int, \
                                                                    When, const int*);                    \
+  template PetscErrorCode Decomposition<Space, T, Dim>::receive(const Space&, int, bool);                \
   template PetscErrorCode Decomposition<Space, T, Dim>::add_present_soil(State<Space, T, Dim>&);         \
   template Part<Space> Decomposition<Space, T, Dim>::border(const State<Space, T, Dim>&);                \
   template Part<Space> Decomposition<Space, T, Dim>::inner(const State<Space, T, Dim>&) const;           \

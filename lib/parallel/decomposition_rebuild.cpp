@@ -6,6 +6,7 @@
 #include "base/copy.hpp"
 #include "common/collectives.hpp"
 #include "common/text.hpp"
+#include "functions/contact_sites.hpp"
 #include "functions/step_kernels.hpp"
 #include "parallel/decomposition.hpp"
 #include "parallel/partition.hpp"
@@ -161,7 +162,10 @@ PetscErrorCode Decomposition<Space, T, Dim>::make_lists(State_& s) {
          std::max<std::size_t>(plan.owned_nodes.size(), 1));  // of extent 0 it would mean one rank
   fill(s.owned_nodes, plan.owned_nodes);
 
-  const int width = std::max(SoilTerms<Dim>::size + BoundaryTerms<Dim>::size, Dim);
+  int width = SoilTerms<Dim>::size + BoundaryTerms<Dim>::size;
+  if (s.at_sites.in_use)
+    for (const SiteField field : {SiteField::gaps, SiteField::counts, SiteField::momentum, SiteField::kept})
+      width = std::max(width, SitePasses<Space, T, Dim>{s, 1, s.control}.width(field));
   PetscCall(transport_.set_up(plan.neighbours, plan.begin, width));
   s.plan = plan_step(s);
   if (overlaps(s)) s.plan.form = StepForm::overlapped;

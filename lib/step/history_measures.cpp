@@ -6,6 +6,7 @@
 #include "base/copy.hpp"
 #include "functions/grid_velocity.hpp"
 #include "rebuild/batches.hpp"
+#include "step/contact_at_sites.hpp"
 #include "step/gaps.hpp"
 #include "step/load_input.hpp"
 #include "transfer/download.hpp"
@@ -151,6 +152,7 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::unbalanced_ratio(double dt, doubl
   loads_to_nodes(s);
   if (run_.ranks) PetscCall(run_.ranks->add_present_soil(s));
   if (s.shear_fraction) PetscCall(strength_to_nodes(s, run_.ranks.get()));
+  if (s.at_sites.in_use) PetscCall(sum_site_forces(s, dt, run_.ranks.get()));
   const UnbalancedForces own = unbalanced_forces(s, dt);
   double sums[2] = {own.force, own.weight};
   PetscCall(run_.sum(sums, 2));

@@ -10,6 +10,7 @@
 #include "functions/velocity_update.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
+#include "step/contact_at_sites.hpp"
 
 namespace mpm {
 namespace {
@@ -41,11 +42,7 @@ struct Step {
     PetscCall(complete_nodes(s.space));        //   strength, particles that are alone
     if (rayleigh)
       PetscCall(run(StepPhase::soil_to_nodes, [&] { return rayleigh_to_nodes(s, *rayleigh, ranks); }));
-    PetscCall(run(StepPhase::nodes, [&] {
-      update_nodes(s, dt);                                              // 4 velocities, walls, contact
-      if (s.at_sites.in_use) contact_at_sites(s, dt);                   //   contact at sites
-      if (s.loads.in_use()) follow_surfaces(s, s.loads, s.energy, dt);  //   work of loads, and their areas
-    }));
+    PetscCall(run(StepPhase::nodes, [&] { return update_all_nodes(); }));  // 4 velocities, walls, contact
     if (s.energy.on)
       PetscCall(run(StepPhase::energy, [&] {
         add_node_works(s, dt);
@@ -163,6 +160,14 @@ struct Step {
     if (s.shear_fraction) PetscCall(strength_to_nodes(s, ranks));
     if (!s.strays.known) mark_strays(s, stream);
     if (wants_split(s) && s.split.parts.empty()) split_patches(s, stream);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Function 4, contact at sites, and the work of loads and their areas.
+  PetscErrorCode update_all_nodes() const {
+    PetscFunctionBeginUser;
+    update_nodes(s, dt);
+    if (s.at_sites.in_use) PetscCall(contact_at_sites(s, dt, ranks));
+    if (s.loads.in_use()) follow_surfaces(s, s.loads, s.energy, dt);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 5 of a part of the soil, or of all of it. The overlap stream takes the patches that are not

@@ -45,14 +45,19 @@ TEST_CASE("the gap of a site is that to the near side of a particle's box, where
   CHECK(std::fabs(gap_to_box<double, 2>({-0.5, -0.5}, {c, c}, {0.25, 0.25}) - 0.25 * std::sqrt(2.0)) < 1e-14);
 }
 
-TEST_CASE("keys of gaps have the order of the gaps, and give them back", "[contact_sites]") {
+TEST_CASE("keys of gaps have the order of the gaps and then of the ranks, and give both back",
+          "[contact_sites]") {
   const double gaps[] = {-0.7, -1e-9, -0.0, 0.0, 1e-12, 0.2, 0.5};
-  for (double a : gaps) {
-    CHECK(GapKey::gap(GapKey::of(a)) == a);
-    CHECK((GapKey::of(a) > GapKey::none && GapKey::of(a) < GapKey::open));
-    for (double b : gaps)
-      if (a < b) CHECK(GapKey::of(a) < GapKey::of(b));
-  }
+  for (double a : gaps)
+    for (int rank : {0, 1, 65535}) {
+      const std::uint64_t key = GapKey::of(a, rank);
+      CHECK(std::fabs(GapKey::gap(key) - a) <= 2e-11 * std::fabs(a));
+      CHECK(GapKey::rank(key) == rank);
+      CHECK((key > GapKey::none && key < GapKey::open));
+      for (double b : gaps)
+        if (a < b) CHECK(key < GapKey::of(b, 0));
+    }
+  CHECK(GapKey::of(0.2, 3) < GapKey::of(0.2, 4));
 }
 
 TEST_CASE("a site stops soil that comes nearer, no faster than the gap allows, and lets go what leaves",

@@ -1,0 +1,94 @@
+#pragma once
+// Loops that end contact at sites: the nodes, what sites keep, and the forces on rigid bodies.
+
+#include "loops/sites.hpp"
+
+namespace mpm {
+
+template <class Space, class T, int Dim>
+struct EndSites : Sites<Space, T, Dim> {
+  using Base = Sites<Space, T, Dim>;
+  using Base::acts, Base::body, Base::kept, Base::place_of_site, Base::number_of, Base::node_at;
+  using Base::Base;
+  using Base::update, Base::sites, Base::fresh, Base::cells, Base::corners;
+  using typename Base::Place, typename Base::Site, typename Base::Terms;
+
+  /// Ends node number k of the contact slots: sides that act, and its acceleration.
+  KOKKOS_INLINE_FUNCTION void end_node(int k) const {
+    const auto [node, v_old] = this->node_and_velocity(k);
+    if (!(node.inv_m > 0)) return;
+    KinematicValues<T, Dim> kinematics;
+    Vector<T, Dim> v;
+    for (int d = 0; d < Dim; ++d) v[d] = update.nodes.kinematics(node.i, NodeKinematics<Dim>::velocity + d);
+    if (node.acting != 0) v = by_sides(update.acting_sides, update.side_node(node, true), v_old, v, false);
+    apply_walls(update.places.grid, node.sides, v);
+    for (int d = 0; d < Dim; ++d) {
+      kinematics.c[NodeKinematics<Dim>::velocity + d] = v[d];
+      kinematics.c[NodeKinematics<Dim>::acceleration + d] = (v[d] - v_old[d]) * update.inv_dt * update.share;
+    }
+    update.keep(node.i, kinematics);
+  }
+
+  /// Ends the sites of body r in contact slot number n, and leaves the force of this rank's soil on it there.
+  /// force: [Wrench::size][cells]
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION void end_body(const Team& team, int r, int n, double* force) const {
+    if (!body(r).law.at_sites) return;
+    const int size = update.wrench();
+    for_team(team, cells, [&](int k) {
+      for (int v = 0; v < size; ++v) force[v * cells + k] = 0;
+      end_sites(r, n + 1, k, force + k);
+    });
+    team.team_barrier();
+    for_team(team, size, [&](int v) {
+      double sum = 0;
+      for (int k = 0; k < cells; ++k) sum += force[v * cells + k];
+      update.forces(n * update.value_count + r * size + v) = sum;
+    });
+  }
+
+ private:
+  /// Keeps the impulses of the sites of a node for the next step, and adds those on body r to
+  /// force[0], force[cells] ... [N].
+  KOKKOS_INLINE_FUNCTION void end_sites(int r, int place, int k, double* force) const {
+    for (int corner = 0; corner < corners; ++corner) {
+      const int n = number_of(r, place, k, corner);
+      const bool in_touch = acts(n);
+      const Place of = place_of_site(n);
+      keep(of, in_touch ? &sites(n) : nullptr);
+      if (in_touch) add_force(of, sites(n), force);
+    }
+  }
+  /// Keeps what a site has for the next step; null: it has no contact.
+  KOKKOS_INLINE_FUNCTION void keep(const Place& of, const Site* site) const {
+    T values[Terms::size] = {};
+    const T friction = static_cast<T>(body(of.rigid).law.friction);
+    if (site != nullptr) {
+      values[Terms::normal] = site->press * update.inv_dt;
+      for (int d = 0; d < Dim; ++d) values[Terms::shear + d] = site->shear[d] * update.inv_dt;
+      Pressed<T> pressed{site->sum, site->weight, site->store};
+      usable_impulse(pressed, fresh, site->press);
+      values[Terms::sum] = pressed.sum, values[Terms::weight] = pressed.weight;
+      if (friction > 0)
+        values[Terms::store] =
+            Kokkos::fmax(T(0), pressed.store - Kokkos::sqrt(dot(site->shear, site->shear)) / friction);
+    }
+    for (int term = 0; term < Terms::size; ++term)
+      kept(of, of.slot * cells + of.k, of.corner, term) = values[term];
+  }
+  KOKKOS_INLINE_FUNCTION void add_force(const Place& of, const Site& site, double* force) const {
+    Vector<double, Dim> given;  // N, to the soil
+    for (int d = 0; d < Dim; ++d) {
+      given[d] = (double(site.press) * site.normal[d] + site.shear[d]) * update.inv_dt;
+      force[(Wrench<Dim>::force + d) * cells] -= given[d];
+    }
+    const RigidPose<Dim>& pose = body(of.rigid).motion.pose;
+    if (!update.turns || !pose.turns) return;
+    const Coord<Dim> at = node_at(of);
+    const auto in_space = [&](int d) { return (at[d] + double(site.place[d])) * update.spacing; };
+    const AngularVector<Dim> moment = moment_of(pose.arm_to(in_space), given);
+    for (int k = 0; k < k_turning_axes<Dim>; ++k) force[(Wrench<Dim>::moment + k) * cells] -= moment[k];
+  }
+};
+
+}  // namespace mpm

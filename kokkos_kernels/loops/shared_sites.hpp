@@ -1,0 +1,74 @@
+#pragma once
+// What ranks share of the sites of contact, node by node (loops/shared_words.hpp).
+
+#include "loops/sites.hpp"
+
+namespace mpm {
+
+/// The least gaps of the sites.
+template <class Space, class T, int Dim>
+struct SharedGaps {
+  using Value = std::uint64_t;
+  Sites<Space, T, Dim> sites;
+  int size = static_cast<int>(sites.update.rigids.extent(0)) * k_sites<Dim>;
+
+  KOKKOS_INLINE_FUNCTION Value load(int node, int k) const {
+    const int n = number(node, k);
+    return n < 0 || sites.gaps(n) == GapKey::none ? GapKey::open : sites.gaps(n);
+  }
+  KOKKOS_INLINE_FUNCTION void store(int node, int k, Value value) const {
+    const int n = number(node, k);
+    if (n >= 0 && sites.gaps(n) != GapKey::none) sites.gaps(n) = value;
+  }
+  KOKKOS_INLINE_FUNCTION static Value combine(Value a, Value b) { return a < b ? a : b; }
+
+ private:
+  KOKKOS_INLINE_FUNCTION int number(int node, int k) const {
+    const int cells = Patch<Dim>::cells, place = sites.contact_place(node / cells);
+    return place == 0 ? -1 : sites.number_of(k / k_sites<Dim>, place, node % cells, k % k_sites<Dim>);
+  }
+};
+
+/// Sums over sites (SiteSums), `size` of them from the first on.
+template <class Space, class T, int Dim>
+struct SharedSums {
+  using Value = std::int64_t;
+  Sites<Space, T, Dim> sites;
+  int first, size;
+
+  KOKKOS_INLINE_FUNCTION Value load(int node, int k) const {
+    return is_there(node) ? sites.sums(sites.sums_of(node), first + k) : 0;
+  }
+  KOKKOS_INLINE_FUNCTION void store(int node, int k, Value value) const {
+    if (is_there(node)) sites.sums(sites.sums_of(node), first + k) = value;
+  }
+  KOKKOS_INLINE_FUNCTION static Value combine(Value a, Value b) { return a + b; }
+
+ private:
+  KOKKOS_INLINE_FUNCTION bool is_there(int node) const {
+    return sites.contact_place(node / Patch<Dim>::cells) > 0;
+  }
+};
+
+/// Numbers that sites keep for the next step, which the rank that is responsible for a site has.
+template <class Space, class T, int Dim>
+struct SharedKept {
+  using Value = T;
+  Sites<Space, T, Dim> sites;
+  int size = static_cast<int>(sites.update.rigids.extent(0)) * sites.update.impulse_stride;
+
+  KOKKOS_INLINE_FUNCTION Value load(int node, int k) const {
+    return is_there(node) ? sites.update.nodes.impulse(k, node) : T(0);
+  }
+  KOKKOS_INLINE_FUNCTION void store(int node, int k, Value value) const {
+    if (is_there(node)) sites.update.nodes.impulse(k, node) = value;
+  }
+  KOKKOS_INLINE_FUNCTION static Value combine(Value a, Value b) { return a + b; }
+
+ private:
+  KOKKOS_INLINE_FUNCTION bool is_there(int node) const {
+    return sites.contact_place(node / Patch<Dim>::cells) > 0;
+  }
+};
+
+}  // namespace mpm
