@@ -7,6 +7,7 @@
 #include "data/contact_slots.hpp"
 #include "data/core.hpp"
 #include "data/rigid.hpp"
+#include "data/surface_samples.hpp"
 
 namespace mpm {
 
@@ -15,7 +16,7 @@ struct ContactCore : Core<Space, T, Dim> {
   using Memory = typename Space::memory_space;
   std::vector<ParticleSet<Space, RigidPoints<Space, T, Dim>>> rigid_points;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
-  Kokkos::View<Vertex*, Memory> vertices;  // of the rigids' polygons
+  SurfaceTables<Memory> vertices;  // and samples, of the rigids' surfaces
   ContactSlots<Space> contact;
   ContactSites<Space, T, Dim> at_sites;
   Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step

@@ -1,23 +1,10 @@
 #pragma once
 // Signed distance to the surface of a rigid body, and its outward normal, at any point.
 
-#include "base/types.hpp"
 #include "data/surface.hpp"
+#include "physics/sampled_surface.hpp"
 
 namespace mpm {
-
-/// Signed distance [m], positive outside, and the outward unit normal there: of a point that is as near to
-/// several faces the sum of theirs, none (zero) where they cancel, as in the middle of a plate.
-template <int Dim>
-struct Distance {
-  double value;
-  Vector<double, Dim> normal;
-  bool
-      at_edge;  // an edge of the body, or a rounded one, is the nearest, where its faces differ by 30 degrees
-};
-
-inline constexpr double k_edge = 0.866;    // cosine between the normals of faces, less is an edge
-inline constexpr double k_on_edge = 1e-9;  // of a cell or a unit vector, less has no direction
 
 /// On which side of a plane a point is, by its distance; 0 on the plane, and nearer to it than round-off [m].
 KOKKOS_INLINE_FUNCTION double side_of(double x, double round_off) {
@@ -138,7 +125,8 @@ MPM_CALLED_FUNCTION Distance<3> distance_to_heights(const Surface<3>& body, cons
   return {(z - height_at(body, vertices, x, y)) * up, {-a * up, -b * up, up}, false};
 }
 
-/// Signed distance of x [m from the mesh's lower corner, less the body's displacement].
+/// Signed distance of x [m from the mesh's lower corner, less the body's displacement]. vertices: of the
+/// polygons, or SurfaceTables, which sampled surfaces take.
 template <int Dim, class Vertices>
 KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const Vertices& vertices,
                                                  const Vector<double, Dim>& x) {
@@ -157,6 +145,9 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
     if constexpr (Dim == 3) out = distance_to_revolved(body, vertices, r);
   } else if (body.kind == SurfaceKind::heights) {
     if constexpr (Dim == 3) out = distance_to_heights(body, vertices, x[0], x[1], x[2]);
+  } else if (body.kind == SurfaceKind::sampled) {
+    if constexpr (Dim == 3 && requires { vertices.samples; })
+      out = distance_to_samples(vertices, vertices.grids(body.first), x[0], x[1], x[2]);
   } else if (body.kind == SurfaceKind::box) {
     const double along = body.cosine * r[0] + body.sine * r[up];
     r[up] = body.cosine * r[up] - body.sine * r[0];

@@ -36,6 +36,40 @@ void set_turning(const RigidTurning& in, Rigid<Dim>& rigid) {
     rigid.momentum = momentum_of(turning, motion.pose.rotation, motion.spin);
 }
 
+/// Puts the tables of all surfaces on the device. Returns the number of each one's first vertex, or of its
+/// grid of samples.
+template <class Memory>
+std::vector<int> upload_surfaces(const std::vector<RigidInput>& rigids, SurfaceTables<Memory>& tables) {
+  std::vector<Vertex> vertices;
+  std::vector<SampleGrid> grids;
+  std::vector<int> blocks, first;
+  std::vector<SurfaceSample> samples;
+  std::vector<unsigned char> edges;
+  for (const RigidInput& rigid : rigids) {
+    const SurfaceInput& in = rigid.surface;
+    const bool sampled = in.kind == SurfaceKind::sampled;
+    first.push_back(static_cast<int>(sampled ? grids.size() : vertices.size()));
+    vertices.insert(vertices.end(), in.vertices.begin(), in.vertices.end());
+    if (!sampled) continue;
+    const int before = static_cast<int>(samples.size());
+    grids.push_back(in.grid);
+    grids.back().first_block = static_cast<int>(blocks.size());
+    grids.back().first_corner = before;
+    for (const int block : in.blocks) blocks.push_back(block < 0 ? -1 : before + block);
+    samples.insert(samples.end(), in.samples.begin(), in.samples.end());
+    edges.insert(edges.end(), in.edges.begin(), in.edges.end());
+  }
+  const auto fill = [](auto& view, const char* label, const auto& from) {
+    fill_view(view, label, static_cast<int>(from.size()), [&](int n) { return from[n]; });
+  };
+  fill(tables.vertices, "mpm::vertices", vertices);
+  fill(tables.grids, "mpm::sample_grids", grids);
+  fill(tables.blocks, "mpm::sample_blocks", blocks);
+  fill(tables.samples, "mpm::samples", samples);
+  fill(tables.edges, "mpm::sample_edges", edges);
+  return first;
+}
+
 template <class Space, class T, int Dim>
 void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut, Fault& fault) {
   const double spacing = s.spacing;
@@ -58,14 +92,7 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
       return x;
     });
   }
-  std::vector<Vertex> vertices;
-  std::vector<int> first_vertex;
-  for (const RigidInput& rigid : rigids) {
-    first_vertex.push_back(static_cast<int>(vertices.size()));
-    vertices.insert(vertices.end(), rigid.surface.vertices.begin(), rigid.surface.vertices.end());
-  }
-  fill_view(s.vertices, "mpm::vertices", static_cast<int>(vertices.size()),
-            [&](int v) { return vertices[v]; });
+  const std::vector<int> first_number = upload_surfaces(rigids, s.vertices);
   fill_view(s.rigids, "mpm::rigids", static_cast<int>(rigids.size()), [&](int r) {
     Rigid<Dim> rigid{};
     for (int d = 0; d < Dim; ++d) {
@@ -89,7 +116,7 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
                  .friction = rigids[r].friction};
     rigid.surface_normal = rigids[r].surface_normal;
     rigid.surface = surface_of<Dim>(rigids[r].surface, s.spacing);
-    rigid.surface.first = first_vertex[r];
+    rigid.surface.first = first_number[r];
     rigid.mass_cut = cut * particle_mass;
     return rigid;
   });

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "data/particle_columns.hpp"
+#include "data/surface_samples.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
@@ -56,7 +57,11 @@ struct SurfaceInput {
   std::array<double, 3> centre{}, half{}, normal{};
   double radius = 0, angle = 0;  // m, rad
   std::vector<Vertex> vertices;
-  int columns = 0;  // of heights, in a row
+  int columns = 0;          // of heights, in a row
+  SampleGrid grid{};        // sampled: numbers in its tables count from 0
+  std::vector<int> blocks;  // as in SurfaceTables
+  std::vector<SurfaceSample> samples;
+  std::vector<unsigned char> edges;
 };
 
 /// spacing [m]: edge of the cells, of which round-off is a share.

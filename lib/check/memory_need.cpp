@@ -12,6 +12,7 @@
 #include "input/geometry/shapes.hpp"
 #include "mesh/background.hpp"
 #include "output/rasters.hpp"
+#include "step/sample_surface.hpp"
 #include "step/stepper.hpp"
 
 namespace mpm {
@@ -82,11 +83,12 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   if (config.backend == Backend::openmp && chosen(config.p2g.strategy) == P2G::tile)
     need.nodes += cells * k_window_bytes<T, Dim>;
   const RigidPoints<Space, T, Dim> point;
-  need.all_ranks =
-      need.rigids * (bytes_of_point(point) + bytes_to_sort(point)) + need.patches * k_patch_bytes;
+  need.all_ranks = need.rigids * (bytes_of_point(point) + bytes_to_sort(point)) +
+                   need.patches * k_patch_bytes + need.samples;
   need.device = soil + need.nodes;
   const double place = sizeof(Vector<T, Dim>) + 2 * (sizeof(Vector<double, Dim>) + sizeof(long));
-  need.host += need.rigids * (place + (config.output.frames ? k_rigid_framed : 0)) + need.patches * k_mesh;
+  need.host += 2 * need.samples + need.rigids * (place + (config.output.frames ? k_rigid_framed : 0)) +
+               need.patches * k_mesh;
   if (!config.device_memory_limit) return;
   need.device = std::min(need.device, *config.device_memory_limit * k_gib);
   need.host += soil;
@@ -119,9 +121,11 @@ double count_particles(const Config& config, MemoryNeed& need) {
     cells += count / in_cell;
     need.particles += count;
   }
-  for (const RigidConfig& rigid : config.rigids)
-    if (!rigid.absent)
-      need.rigids += cells_in(rigid.shape, config) * std::pow(rigid.shape.particles_per_cell, config.dim);
+  for (const RigidConfig& rigid : config.rigids) {
+    if (rigid.absent) continue;
+    if (rigid.shape.kind == ShapeKind::stl) need.samples += sample_bytes(rigid.shape, config.mesh);
+    need.rigids += cells_in(rigid.shape, config) * std::pow(rigid.shape.particles_per_cell, config.dim);
+  }
   return cells;
 }
 

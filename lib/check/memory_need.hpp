@@ -13,6 +13,7 @@ namespace mpm {
 struct MemoryNeed {
   double particles = 0;       // of the bodies: of their lattices, and listed in files
   double rigids = 0;          // particles of the rigids, which every rank has all
+  double samples = 0;         // bytes of the rigids' sampled surfaces
   double patches = 0;         // of the mesh, with the ring outside
   double device = 0;          // bytes, where the kernels run
   double nodes = 0;           // bytes of that which are not the particles'

@@ -190,9 +190,7 @@ void warn_of_gradient(const RigidConfig& rigid, Lines& lines) {
       "warning: rigid " + rigid.name +
       ": with contact normals of the gradient the force on a footing is too large, by 8 % (strip) "
       "to 30 % (square)" +
-      (rigid.shape.kind == ShapeKind::stl
-           ? "; normals of a box, polygon, disc, cylinder or cone do not do this"
-           : "; -" + rigid.name + "_contact_normal surface does not do this"));
+      "; -" + rigid.name + "_contact_normal surface does not do this");
 }
 
 /// Faces have no sites beside sharp edges.

@@ -5,6 +5,7 @@
 
 #include "input/geometry/height_surface.hpp"
 #include "input/geometry/revolved.hpp"
+#include "step/sample_surface.hpp"
 
 namespace mpm {
 namespace {
@@ -205,6 +206,7 @@ SurfaceInput surface_input(const Shape& shape, const MeshConfig& mesh, int dim) 
   if (shape.kind == ShapeKind::polygon) return polygon(shape, mesh, dim);
   if (is_revolved(shape)) return revolved(shape, mesh);
   if (shape.kind == ShapeKind::layer) return layer(shape, mesh, dim);
+  if (shape.kind == ShapeKind::stl) return sampled_surface(shape, mesh);
   SurfaceInput out;
   out.kind = shape.kind == ShapeKind::disc ? SurfaceKind::disc : SurfaceKind::half_plane;
   const Vec3& centre = shape.kind == ShapeKind::disc ? shape.centre : shape.point;

@@ -6,15 +6,10 @@
 
 #include "common/text.hpp"
 #include "input/geometry/triangle_surface.hpp"
+#include "input/geometry/vectors.hpp"
 
 namespace mpm {
 namespace {
-
-Vec3 less(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// An edge by its vertices, the lower number first, and whether a triangle goes along it that way.
 struct EdgeUse {
@@ -57,7 +52,7 @@ std::string edge_fault(const TriangleSurface& surface) {
 
 /// Six times the volume of the tetrahedron p a b c.
 double six_volumes(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  return dot(less(a, p), cross(less(b, p), less(c, p)));
+  return inner_product(difference(a, p), outer_product(difference(b, p), difference(c, p)));
 }
 
 using Corners = std::array<Vec3, 3>;
@@ -88,8 +83,10 @@ bool cross(const TriangleSurface& surface, int i, int j) {
   if (shared == 3) return true;
   if (shared == 2) {
     constexpr double k_flat = 1e-12;
-    const Vec3 n = cross(less(x[1], x[0]), less(x[2], x[0])), m = cross(less(y[1], y[0]), less(y[2], y[0]));
-    return dot(n, m) < 0 && dot(n, m) <= -(1 - k_flat) * std::sqrt(dot(n, n) * dot(m, m));
+    const Vec3 n = outer_product(difference(x[1], x[0]), difference(x[2], x[0])),
+               m = outer_product(difference(y[1], y[0]), difference(y[2], y[0]));
+    return inner_product(n, m) < 0 &&
+           inner_product(n, m) <= -(1 - k_flat) * std::sqrt(inner_product(n, n) * inner_product(m, m));
   }
   double extent = 0;
   for (int d = 0; d < 3; ++d) {

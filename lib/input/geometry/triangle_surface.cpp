@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "input/geometry/vectors.hpp"
+
 namespace mpm {
 namespace {
 
-Vec3 less(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
 double triple_product(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
+  return inner_product(a, outer_product(b, c));
 }
 
 /// The number of each corner's vertex, and the vertices.
@@ -49,10 +48,14 @@ TriangleSurface::TriangleSurface(const std::vector<Vec3>& corners) {
   tree_ = BoxTree(std::move(boxes));
   bins_ = PlanBins(vertices_, triangles_, bounds_);
   const Vec3 origin = vertices_.empty() ? Vec3{} : vertices_[0];
-  for (const auto& v : triangles_)
-    volume_ += triple_product(less(vertices_[v[0]], origin), less(vertices_[v[1]], origin),
-                              less(vertices_[v[2]], origin)) /
+  for (const auto& v : triangles_) {
+    volume_ += triple_product(difference(vertices_[v[0]], origin), difference(vertices_[v[1]], origin),
+                              difference(vertices_[v[2]], origin)) /
                6;
+    area_ += length_of(outer_product(difference(vertices_[v[1]], vertices_[v[0]]),
+                                     difference(vertices_[v[2]], vertices_[v[0]]))) /
+             2;
+  }
 }
 
 bool TriangleSurface::holds(const Vec3& x, double slack) const {
@@ -69,8 +72,8 @@ bool TriangleSurface::holds(const Vec3& x, double slack) const {
                           : -side_of(vertices_[to], vertices_[from], x);
     }
     if (side[0] != side[1] || side[1] != side[2]) return;
-    const Vec3 a = less(vertices_[v[1]], vertices_[v[0]]), b = less(vertices_[v[2]], vertices_[v[0]]),
-               r = less(x, vertices_[v[0]]);
+    const Vec3 a = difference(vertices_[v[1]], vertices_[v[0]]),
+               b = difference(vertices_[v[2]], vertices_[v[0]]), r = difference(x, vertices_[v[0]]);
     const double normal = a[0] * b[1] - a[1] * b[0];  // its vertical component
     const double height = vertices_[v[0]][2] +
                           (r[0] * (a[2] * b[1] - a[1] * b[2]) + r[1] * (a[0] * b[2] - a[2] * b[0])) / normal;

@@ -17,6 +17,7 @@ class TriangleSurface {
   /// one place.
   explicit TriangleSurface(const std::vector<Vec3>& corners);
 
+  int vertices() const { return static_cast<int>(vertices_.size()); }
   int size() const { return static_cast<int>(triangles_.size()); }
   const std::array<int, 3>& triangle(int k) const { return triangles_[k]; }
   const Vec3& vertex(int v) const { return vertices_[v]; }
@@ -26,6 +27,7 @@ class TriangleSurface {
 
   /// Enclosed volume [m3], by the divergence theorem; less than 0 if the triangles face inwards.
   double volume() const { return volume_; }
+  double area() const { return area_; }  // m2
   /// Whether a point is inside, or below or above the inside by less than `slack` [m]: a vertical line
   /// upwards from it leaves more often than it enters. The point counts as moved by an infinitely small
   /// length along x, and by one smaller still along y, so that no line meets an edge.
@@ -37,7 +39,7 @@ class TriangleSurface {
   BoxTree tree_;
   PlanBins bins_;
   Box bounds_;
-  double volume_ = 0;
+  double volume_ = 0, area_ = 0;
 };
 
 /// Fault of a surface, as the end of "takes ..."; empty where it is closed, faces outwards, and

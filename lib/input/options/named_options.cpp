@@ -153,21 +153,14 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
   if (sound_materials && in.errors() == errors && !body.k0) check_starts(in, *mesh, config, listed, body);
 }
 
-/// Whether the step can compute the distance to the surface of a shape.
-bool has_distance(const Shape& shape) { return shape.kind != ShapeKind::stl; }
-
 void read_contact_normal(OptionReader& in, RigidConfig& rigid) {
   const Option option{
       .name = rigid.name + "_contact_normal",
       .meaning = "contact normals: of the body's own surface, or of its nodal mass gradient (Eq. 3)",
-      .standard = in.listing() ? "surface; of an stl: gradient" : ""};
-  if (!has_distance(rigid.shape)) rigid.contact_normal = ContactNormal::gradient;
+      .standard = in.listing() ? "surface" : ""};
   in.word(option,
           Words<ContactNormal>{{"surface", ContactNormal::surface}, {"gradient", ContactNormal::gradient}},
           rigid.contact_normal);
-  if (!has_distance(rigid.shape) && rigid.contact_normal == ContactNormal::surface)
-    in.reject(option.name,
-              "gradient where " + rigid.name + "_shape is " + in.given_text(rigid.name + "_shape"));
 }
 
 /// Where soil and body exchange impulses.
@@ -195,8 +188,6 @@ void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
         Words<bool>{{"none", false}, {"geo", true}}, rigid.contact_gap_scaling);
   else
     in.not_taken(name, rigid.name + (rigid.contact_at_sites ? "_contact is sites" : "_separation is none"));
-  if (rigid.contact_gap_scaling && in.given(name) && !has_distance(rigid.shape))
-    in.reject(name, "none where " + rigid.name + "_shape is " + in.given_text(rigid.name + "_shape"));
   const Option reach{.name = rigid.name + "_contact_gap_reach",
                      .meaning = "geo: the gap at which contact ends, in cells",
                      .unit = "-",
