@@ -28,6 +28,7 @@ enum class Feature {
   contact_sites,        // contact at sites, which reads nodal sums between functions 4 and 5
   pushed_mass_normals,  // rigid body that forces move, with normals of its mass gradient
   turning_rigids,       // rigid bodies that may turn, which steps in one launch do not move
+  many_rigids,          // lists of the rigid bodies near slots, which steps in one launch do not have
   revolved,             // body of revolution, whose particles are rings
   ranks,                // several ranks
   batches,              // soil that goes through the device's memory in batches
@@ -78,7 +79,8 @@ constexpr Features excluding(StepWay way) {
       return {F::other_strategy, F::xpic,   F::apic,  F::splits,   F::correction,
               F::submerged,      F::energy, F::loads, F::rayleigh, F::contact_sites};
     case StepWay::one_launch:
-      return excluding(StepWay::sums_ahead) | Features{F::turning_rigids, F::revolved, F::ranks, F::batches};
+      return excluding(StepWay::sums_ahead) |
+             Features{F::turning_rigids, F::many_rigids, F::revolved, F::ranks, F::batches};
     case StepWay::many_steps:
       return excluding(StepWay::one_launch) |
              Features{F::damping, F::shear_fraction, F::friction, F::acting_sides, F::pushed_mass_normals};

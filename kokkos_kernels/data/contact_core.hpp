@@ -38,10 +38,15 @@ int impulse_stride(const ContactCore<Space, T, Dim>& s) {
   if (s.at_sites.in_use) return k_sites<Dim> * SiteTerms<Dim>::size;
   return s.has_friction ? ImpulseTerms::size : 0;
 }
-/// Rows of Nodes::impulse.
+/// Numbers of all rigid bodies at a node, where they leave a run or a rank.
+template <class Space, class T, int Dim>
+int impulse_numbers(const ContactCore<Space, T, Dim>& s) {
+  return impulse_stride(s) * static_cast<int>(s.rigid_points.size());
+}
+/// Rows of Nodes::impulse: of the bodies near a slot.
 template <class Space, class T, int Dim>
 int impulse_rows(const ContactCore<Space, T, Dim>& s) {
-  return impulse_stride(s) * static_cast<int>(s.rigid_points.size());
+  return impulse_stride(s) * s.contact.near.width;
 }
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #pragma once
 // Slots where a contact may be.
 
+#include "data/near_bodies.hpp"
 #include "data/particles.hpp"
 
 namespace mpm {
@@ -13,8 +14,9 @@ struct ContactSlots {
   Kokkos::View<int*, Memory> place;  // by slot: its place in `slots`, from 1 on; 0: it has no contact
   Kokkos::View<int*, Memory> slots;
   int count = 0;                         // of `slots`
+  NearBodies<Space> near;                // by slot
   Windows<Space> boundary, strength;     // of the soil, BoundaryTerms and StrengthTerms, in these slots
-  Kokkos::View<double*, Memory> forces;  // N, [turn of a persistent step, else 0][of slots][rigid][of
+  Kokkos::View<double*, Memory> forces;  // N, [turn of a persistent step, else 0][of slots][near body][of
                                          // Wrench], of the soil on the rigids
 };
 

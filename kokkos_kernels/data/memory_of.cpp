@@ -21,6 +21,7 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   add(s.patches.slot_of), add(s.patches.number), add(s.patches.origin), add(s.patches.neighbours),
       add(s.marks), add(s.scratch);
   for_each_nodal_field([&](const char*, bool, const auto& field) { add(field); }, s.nodes, uses_of_nodes(s));
+  add(s.contact.near.of), add(s.contact.near.place);
   add(s.nodes.impulse), add(s.nodes.rigid), add(s.contact.place);
   for_each_table(s.vertices, add);
   add(s.loads.loaded), add(s.loads.windows.sums);

@@ -25,7 +25,7 @@ int node_count(const State<Space, T, Dim>& s) {
 }
 template <class Space, class T, int Dim>
 int site_count(const State<Space, T, Dim>& s) {
-  return node_count(s) * k_sites<Dim> * static_cast<int>(s.rigid_points.size());
+  return node_count(s) * k_sites<Dim> * s.contact.near.width;
 }
 
 /// Calls f(what ranks share).
@@ -103,12 +103,12 @@ void SitePasses<Space, T, Dim>::end() const {
   if (s.contact.count == 0) return;
   using Team = Kokkos::TeamPolicy<Space>;
   constexpr int threads = node_threads<Space, Dim>;
-  const int room = Wrench<Dim>::size * Patch<Dim>::cells, rigids = static_cast<int>(s.rigid_points.size());
+  const int room = Wrench<Dim>::size * Patch<Dim>::cells, bodies = s.contact.near.width;
   const std::size_t bytes = scratch_bytes<double>(room) + k_scratch_slack;
   const auto control = this->control;
   Kokkos::parallel_for(
       "mpm::end_sites",
-      light(Team(s.space, s.contact.count * rigids, threads).set_scratch_size(0, Kokkos::PerTeam(bytes))),
+      light(Team(s.space, s.contact.count * bodies, threads).set_scratch_size(0, Kokkos::PerTeam(bytes))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (!control().paused)
           of.end_body(team, team.league_rank() / of.count, team.league_rank() % of.count,

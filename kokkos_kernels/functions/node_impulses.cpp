@@ -26,7 +26,8 @@ std::vector<Value> on_host(const View& view) {
 template <class Space, class T, int Dim>
 NodeImpulses<T> list_impulses(const ContactCore<Space, T, Dim>& s) {
   using Range = Kokkos::RangePolicy<Space>;
-  const int numbers = impulse_rows(s);
+  const int rows = impulse_rows(s), numbers = impulse_numbers(s), stride = impulse_stride(s);
+  const NearBodies<Space> near = s.contact.near;
   const int nodes = s.owned_nodes.extent(0) > 0 ? s.patches.node_count() : 0;
   const auto impulse = s.nodes.impulse;
   const auto owned_nodes = s.owned_nodes;
@@ -38,7 +39,7 @@ NodeImpulses<T> list_impulses(const ContactCore<Space, T, Dim>& s) {
       KOKKOS_LAMBDA(int i, int& n, bool last) {
         if ((owned_nodes(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0) return;
         bool any = false;
-        for (int k = 0; k < numbers; ++k) any = any || impulse(k, i) != 0;
+        for (int k = 0; k < rows; ++k) any = any || impulse(k, i) != 0;
         if (!any) return;
         if (last) which(n) = i;
         ++n;
@@ -50,7 +51,11 @@ NodeImpulses<T> list_impulses(const ContactCore<Space, T, Dim>& s) {
       "mpm::list_impulses", Range(s.space, 0, found), KOKKOS_LAMBDA(int n) {
         const int i = which(n);
         node(n) = address_of_node<Dim>(number, i);
-        for (int k = 0; k < numbers; ++k) value(n * numbers + k) = impulse(k, i);
+        for (int m = 0; m < near.width; ++m) {
+          const int body = near.body(i / Patch<Dim>::cells, m);
+          for (int k = 0; k < stride && body >= 0; ++k)
+            value(n * numbers + body * stride + k) = impulse(m * stride + k, i);
+        }
       });
   s.space.fence("mpm::list_impulses");
   return {on_host<long>(node), on_host<T>(value)};
@@ -58,7 +63,8 @@ NodeImpulses<T> list_impulses(const ContactCore<Space, T, Dim>& s) {
 
 template <class Space, class T, int Dim>
 void put_impulses(ContactCore<Space, T, Dim>& s, const NodeImpulses<T>& impulses) {
-  const int numbers = impulse_rows(s);
+  const int numbers = impulse_numbers(s), stride = impulse_stride(s);
+  const NearBodies<Space> near = s.contact.near;
   const auto node = on_device<Space>("mpm::node", impulses.node);
   const auto value = on_device<Space>("mpm::value", impulses.value);
   const auto impulse = s.nodes.impulse;
@@ -70,7 +76,11 @@ void put_impulses(ContactCore<Space, T, Dim>& s, const NodeImpulses<T>& impulses
         const int slot = slot_of(node(n) / Patch<Dim>::cells);
         if (slot < 0) return;
         const int i = slot * Patch<Dim>::cells + static_cast<int>(node(n) % Patch<Dim>::cells);
-        for (int k = 0; k < numbers; ++k) impulse(k, i) = value(n * numbers + k);
+        for (int m = 0; m < near.width; ++m) {
+          const int body = near.body(slot, m);
+          for (int k = 0; k < stride && body >= 0; ++k)
+            impulse(m * stride + k, i) = value(n * numbers + body * stride + k);
+        }
       });
   s.space.fence("mpm::put_impulses");
 }

@@ -10,7 +10,7 @@ struct EndSites : Sites<Space, T, Dim> {
   using Base = Sites<Space, T, Dim>;
   using Base::acts, Base::body, Base::kept, Base::place_of_site, Base::number_of, Base::node_at;
   using Base::Base;
-  using Base::update, Base::sites, Base::fresh, Base::cells, Base::corners;
+  using Base::update, Base::sites, Base::contact_slots, Base::fresh, Base::cells, Base::corners;
   using typename Base::Place, typename Base::Site, typename Base::Terms;
 
   /// Ends node number k of the contact slots: sides that act, and its acceleration.
@@ -29,30 +29,31 @@ struct EndSites : Sites<Space, T, Dim> {
     update.keep(node.i, kinematics);
   }
 
-  /// Ends the sites of body r in contact slot number n, and leaves the force of this rank's soil on it there.
-  /// force: [Wrench::size][cells]
+  /// Ends the sites of the body that is number `near` of those near contact slot number n, and leaves the
+  /// force of this rank's soil on it there. force: [Wrench::size][cells]
   template <class Team>
-  KOKKOS_INLINE_FUNCTION void end_body(const Team& team, int r, int n, double* force) const {
-    if (!body(r).law.at_sites) return;
+  KOKKOS_INLINE_FUNCTION void end_body(const Team& team, int near, int n, double* force) const {
+    const int r = update.near_bodies.body(contact_slots(n), near);
+    if (r < 0 || !body(r).law.at_sites) return;
     const int size = update.wrench();
     for_team(team, cells, [&](int k) {
       for (int v = 0; v < size; ++v) force[v * cells + k] = 0;
-      end_sites(r, n + 1, k, force + k);
+      end_sites(near, n + 1, k, force + k);
     });
     team.team_barrier();
     for_team(team, size, [&](int v) {
       double sum = 0;
       for (int k = 0; k < cells; ++k) sum += force[v * cells + k];
-      update.forces(n * update.value_count + r * size + v) = sum;
+      update.forces(n * update.value_count + near * size + v) = sum;
     });
   }
 
  private:
-  /// Keeps the impulses of the sites of a node for the next step, and adds those on body r to
-  /// force[0], force[cells] ... [N].
-  KOKKOS_INLINE_FUNCTION void end_sites(int r, int place, int k, double* force) const {
+  /// Keeps the impulses of a body's sites of a node for the next step, and adds those on it to force[0],
+  /// force[cells] ... [N].
+  KOKKOS_INLINE_FUNCTION void end_sites(int near, int place, int k, double* force) const {
     for (int corner = 0; corner < corners; ++corner) {
-      const int n = number_of(r, place, k, corner);
+      const int n = number_of(near, place, k, corner);
       const bool in_touch = acts(n);
       const Place of = place_of_site(n);
       keep(of, in_touch ? &sites(n) : nullptr);
@@ -74,7 +75,7 @@ struct EndSites : Sites<Space, T, Dim> {
             Kokkos::fmax(T(0), pressed.store - Kokkos::sqrt(dot(site->shear, site->shear)) / friction);
     }
     for (int term = 0; term < Terms::size; ++term)
-      kept(of, of.slot * cells + of.k, of.corner, term) = values[term];
+      kept(of.near, of.slot * cells + of.k, of.corner, term) = values[term];
   }
   KOKKOS_INLINE_FUNCTION void add_force(const Place& of, const Site& site, double* force) const {
     Vector<double, Dim> given;  // N, to the soil

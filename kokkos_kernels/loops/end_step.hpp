@@ -47,6 +47,7 @@ struct EndStep {
   Movements<Space> movements;
   Kokkos::View<double*, Memory> sums, forces;  // N: of each rigid, and what the slots' nodes leave
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
+  NearBodies<Space> near;
   LoadsOfStep<T, Dim> timed;
   double dt, spacing, margin, damping;
   int count, slots, late;  // rigids, slots that leave forces
@@ -59,6 +60,7 @@ struct EndStep {
         sums(s.rigid_force),
         forces(s.contact.forces),
         rigids(s.rigids),
+        near(s.contact.near),
         timed(loads.of_step()),
         dt(step),
         spacing(s.spacing),
@@ -219,20 +221,31 @@ struct EndStep {
   /// is always the same.
   KOKKOS_INLINE_FUNCTION double sum_of_thread(const double* of_slots, int value, int rank,
                                               int threads) const {
-    // Slots that a thread asks the memory for at once. On a processor one after the other, so that slots that
-    // leave no force change nothing.
-    constexpr int k_slots = is_device<Space> ? 4 : 1;
-    const int values = this->values();
-    double sum[k_slots] = {};
+    if (!near.listed) {
+      const int values = this->values();
+      return sum_of_places(slots, rank, threads, [&](int slot) { return of_slots[slot * values + value]; });
+    }
+    const int r = value / size, first = near.first(r);
+    return sum_of_places(near.first(r + 1) - first, rank, threads,
+                         [&](int n) { return of_slots[near.place(first + n) * size + value % size]; });
+  }
+  /// The same over so many places, each of which leaves force_at(place).
+  template <class ForceAt>
+  KOKKOS_INLINE_FUNCTION static double sum_of_places(int places, int rank, int threads,
+                                                     const ForceAt& force_at) {
+    // Places that a thread asks the memory for at once. On a processor one after the other, so that slots
+    // that leave no force change nothing.
+    constexpr int k_places = is_device<Space> ? 4 : 1;
+    double sum[k_places] = {};
     MPM_ROLLED
-    for (int k = rank; k < slots; k += k_slots * threads)
-      for (int m = 0; m < k_slots; ++m) {
-        const int slot = Kokkos::min(k + m * threads, slots - 1);
-        const double force = of_slots[slot * values + value];  // some for nothing, but none waits
-        sum[m] += slot == k + m * threads ? force : 0;
+    for (int k = rank; k < places; k += k_places * threads)
+      for (int m = 0; m < k_places; ++m) {
+        const int place = Kokkos::min(k + m * threads, places - 1);
+        const double force = force_at(place);  // some for nothing, but none waits
+        sum[m] += place == k + m * threads ? force : 0;
       }
-    for (int step = 1; step < k_slots; step *= 2)
-      for (int m = 0; m < k_slots; m += 2 * step) sum[m] += sum[m + step];
+    for (int step = 1; step < k_places; step *= 2)
+      for (int m = 0; m < k_places; m += 2 * step) sum[m] += sum[m + step];
     return sum[0];
   }
 };

@@ -35,6 +35,7 @@ struct FindSites : Sites<Space, T, Dim> {
   KOKKOS_INLINE_FUNCTION void find(int n) const {
     gaps(n) = GapKey::none;
     const Place of = place_of_site(n);
+    if (of.rigid < 0) return;
     const Rigid<Dim>& rigid = body(of.rigid);
     if (!rigid.law.at_sites) return;
     const Coord<Dim> at = node_at(of);
@@ -85,7 +86,9 @@ struct FindSites : Sites<Space, T, Dim> {
     const HalfLength<T> common = soil.properties(p).half_length;
     for (int d = 0; d < Dim; ++d) half[d] = soil.has_domain ? T(soil.half_length(p)[d]) : T(common);
     MPM_ROLLED
-    for (int r = 0; r < static_cast<int>(update.rigids.extent(0)); ++r) {
+    for (int near = 0; near < update.near_bodies.width; ++near) {
+      const int r = update.near_bodies.body(slot, near);
+      if (r < 0) break;
       const Rigid<Dim>& rigid = body(r);
       if (!rigid.law.at_sites) continue;
       const auto in_space = [&](int d) {
@@ -122,7 +125,9 @@ struct FindSites : Sites<Space, T, Dim> {
       }
       const int i = reached ? node_number(slot, node) : -1;
       if (i < 0 || contact_place(i / cells) == 0) continue;
-      const int n = number_of(r, contact_place(i / cells), i % cells, corner);
+      const int near = update.near_bodies.number(i / cells, r);
+      if (near < 0) continue;
+      const int n = number_of(near, contact_place(i / cells), i % cells, corner);
       if (gaps(n) == GapKey::none) continue;
       const Site& site = sites(n);
       T facing = 0;

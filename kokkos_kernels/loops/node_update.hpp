@@ -37,11 +37,12 @@ template <class Space, class T, int Dim, bool acts = true>
 struct UpdateNodes {
   using S = SoilTerms<Dim>;
   static constexpr int cells = Patch<Dim>::cells;
-  int value_count;  // of the wrenches on all rigids
+  int value_count;  // of the wrenches on the rigids near a slot
   NodePlaces<Space, T, Dim> places;
   Nodes<Space, T, Dim> nodes;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   SurfaceTables<typename Space::memory_space> vertices;
+  NearBodies<Space> near_bodies;
   Kokkos::View<double*, typename Space::memory_space> forces;
   Kokkos::View<std::uint64_t*, typename Space::memory_space> owned_nodes;
   Vector<T, Dim> g;
@@ -134,7 +135,7 @@ struct UpdateNodes {
     int i;
     Coord<Dim> at;
     unsigned sides, acting;  // sides of the mesh that it lies on, and those of them that act
-    int touching;            // rigids that may touch it: the first of the list
+    int touching;            // rigids that may touch it: the first of those near its slot
     bool near;               // it is in a slot where a contact may be
     T soil[S::size], boundary[BoundaryTerms<Dim>::size];
     T inv_m;
@@ -154,7 +155,7 @@ struct UpdateNodes {
     if (!(m_i > at_rest())) return node;
     node.inv_m = 1 / m_i;
     node.sides = sides_of(places.grid, at);
-    if (near && m_i > mass_cut) node.touching = static_cast<int>(rigids.extent(0));
+    if (near && m_i > mass_cut) node.touching = near_bodies.width;
     if constexpr (acts) {
       node.acting = node.sides & acting_sides.mask;
       if (node.acting != 0) add_reactions(acting_sides, side_node(node, false), &node.soil[S::force]);
@@ -162,16 +163,19 @@ struct UpdateNodes {
     return node;
   }
 
-  /// Motion of a node after the step; bodies: the rigids. Adds component k of the wrench on rigid r to
-  /// force[(r Wrench::size + k) cells], unless it is null.
+  /// Motion of a node after the step; bodies: the rigids. Adds component k of the wrench on the rigid that is
+  /// number n near the slot to force[(n Wrench::size + k) cells], unless it is null.
   template <class Sums>
   KOKKOS_INLINE_FUNCTION KinematicValues<T, Dim> kinematics(const Sums& sums, const Rigid<Dim>* bodies, int i,
                                                             const Coord<Dim>& at, bool near,
                                                             double* force) const {
     MPM_ROLLED
-    for (int r = 0; r < static_cast<int>(rigids.extent(0)) && has_friction; ++r)
-      for (int n = 0; n < ImpulseTerms::size && !bodies[r].law.at_sites; ++n)
-        nodes.impulse(impulse_stride * r + n, i) *= kept_share(n, fresh);
+    for (int m = 0; m < near_bodies.width && has_friction; ++m) {
+      const int r = near_bodies.body(i / cells, m);
+      if (r >= 0 && bodies[r].law.at_sites) continue;  // sites keep numbers of their own
+      for (int n = 0; n < ImpulseTerms::size; ++n)
+        nodes.impulse(impulse_stride * m + n, i) *= kept_share(n, fresh);
+    }
     const Node node = node_of(sums, i, at, near);
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old, a, brake;
     if (node.inv_m > 0) {
@@ -227,9 +231,12 @@ struct UpdateNodes {
     if constexpr (acts)
       if (node.acting != 0) v = by_sides(acting_sides, side_node(node, keeps), v_old, v, true);
     MPM_ROLLED
-    for (int r = 0; r < node.touching; ++r)
+    for (int n = 0; n < node.touching; ++n) {
+      const int r = near_bodies.body(node.i / cells, n);
+      if (r < 0) break;
       if (!bodies[r].law.at_sites)
-        touch(sums, node, bodies[r], r, v, keeps, force == nullptr ? force : force + r * wrench() * cells);
+        touch(sums, node, bodies[r], r, n, v, keeps, force == nullptr ? force : force + n * wrench() * cells);
+    }
     if constexpr (acts)
       if (node.acting != 0 && node.touching > 0)
         v = by_sides(acting_sides, side_node(node, keeps), v_old, v, false);
@@ -275,13 +282,13 @@ struct UpdateNodes {
     if (clears) clear_sums(team, nodes, slot, false, 0);
   }
 
-  /// Contact with rigid r; adds the force of the soil on it (Eq. 10) to force[0], force[cells] ..., unless it
-  /// is null. keeps: friction uses up normal impulse.
+  /// Contact with rigid r, number n near the slot; adds the force of the soil on it (Eq. 10) to force[0],
+  /// force[cells] ..., unless it is null. keeps: friction uses up normal impulse.
   template <class Sums>
-  KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, const Node& node, const Rigid<Dim>& rigid, int r,
+  KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, const Node& node, const Rigid<Dim>& rigid, int r, int n,
                                     Vector<T, Dim>& v, bool keeps, double* force) const {
     T given[RigidTerms<Dim>::size] = {};  // read before the test of the rigid, to hide the latency
-    for (int n = 0; n < RigidTerms<Dim>::size && has_mass_normals; ++n) given[n] = sums.rigid(r, node.i, n);
+    for (int k = 0; k < RigidTerms<Dim>::size && has_mass_normals; ++k) given[k] = sums.rigid(r, node.i, k);
     const T m_i = node.soil[S::mass];
     Opponent<T, Dim> other;
     Vector<T, Dim> boundary;
@@ -324,7 +331,7 @@ struct UpdateNodes {
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
       if (other.gap > Kokkos::fmax(T(law.reach), places.grid.spacing / 2)) return;
     }
-    const int row = impulse_stride * r;
+    const int row = impulse_stride * n;
     if (has_friction) {
       interface.pressed = {nodes.impulse(row + ImpulseTerms::sum, node.i),
                            nodes.impulse(row + ImpulseTerms::weight, node.i),
@@ -438,11 +445,12 @@ struct UpdateNodes {
 template <bool acts = true, class Space, class T, int Dim>
 UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, double dt) {
   UpdateNodes<Space, T, Dim, acts> update{
-      .value_count = wrench_size<Dim>(s.rigid_turns) * static_cast<int>(s.rigid_points.size()),
+      .value_count = wrench_size<Dim>(s.rigid_turns) * s.contact.near.width,
       .places = {s.grid, s.patches},
       .nodes = s.nodes,
       .rigids = s.rigids,
       .vertices = s.vertices,
+      .near_bodies = s.contact.near,
       .forces = s.contact.forces,
       .owned_nodes = s.owned_nodes,
       .g = {},

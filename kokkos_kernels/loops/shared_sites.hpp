@@ -10,7 +10,7 @@ template <class Space, class T, int Dim>
 struct SharedGaps {
   using Value = std::uint64_t;
   Sites<Space, T, Dim> sites;
-  int size = static_cast<int>(sites.update.rigids.extent(0)) * k_sites<Dim>;
+  int size = sites.update.near_bodies.widest * k_sites<Dim>;
 
   KOKKOS_INLINE_FUNCTION Value load(int node, int k) const {
     const int n = number(node, k);
@@ -25,7 +25,9 @@ struct SharedGaps {
  private:
   KOKKOS_INLINE_FUNCTION int number(int node, int k) const {
     const int cells = Patch<Dim>::cells, place = sites.contact_place(node / cells);
-    return place == 0 ? -1 : sites.number_of(k / k_sites<Dim>, place, node % cells, k % k_sites<Dim>);
+    return place == 0 || k / k_sites<Dim> >= sites.update.near_bodies.width
+               ? -1
+               : sites.number_of(k / k_sites<Dim>, place, node % cells, k % k_sites<Dim>);
   }
 };
 
@@ -55,19 +57,23 @@ template <class Space, class T, int Dim>
 struct SharedKept {
   using Value = T;
   Sites<Space, T, Dim> sites;
-  int size = static_cast<int>(sites.update.rigids.extent(0)) * sites.update.impulse_stride;
+  int size = sites.update.near_bodies.widest * sites.update.impulse_stride;
 
   KOKKOS_INLINE_FUNCTION Value load(int node, int k) const {
-    return is_there(node) ? sites.update.nodes.impulse(k, node) : T(0);
+    return is_there(node, k) ? sites.update.nodes.impulse(k, node) : T(0);
   }
   KOKKOS_INLINE_FUNCTION void store(int node, int k, Value value) const {
-    if (is_there(node)) sites.update.nodes.impulse(k, node) = value;
+    if (is_there(node, k)) sites.update.nodes.impulse(k, node) = value;
   }
   KOKKOS_INLINE_FUNCTION static Value combine(Value a, Value b) { return a + b; }
 
  private:
-  KOKKOS_INLINE_FUNCTION bool is_there(int node) const {
-    return sites.contact_place(node / Patch<Dim>::cells) > 0;
+  /// Whether the number is one of a site: with contact at nodes all ranks have it already.
+  KOKKOS_INLINE_FUNCTION bool is_there(int node, int k) const {
+    const auto& near = sites.update.near_bodies;
+    const int slot = node / Patch<Dim>::cells, n = k / sites.update.impulse_stride;
+    const int body = n < near.width ? near.body(slot, n) : -1;
+    return body >= 0 && sites.body(body).law.at_sites && sites.contact_place(slot) > 0;
   }
 };
 

@@ -46,18 +46,20 @@ struct Sites {
         unit(s.at_sites.mass * s.spacing / dt * 0x1p-52),
         fresh(static_cast<T>(-std::expm1(-k_faster * dt / s.friction_time))) {}
 
-  /// A site: its body, and its node by slot and place.
+  /// A site: its body, number `near` of those near the slot, and its node by slot and place. rigid: negative
+  /// where the slot has fewer bodies
   struct Place {
-    int rigid, slot, k, corner;  // corner: bit d, half a cell along d from the node
+    int rigid, near, slot, k, corner;  // corner: bit d, half a cell along d from the node
   };
   KOKKOS_INLINE_FUNCTION int sites_of_body() const { return count * cells * corners; }
   KOKKOS_INLINE_FUNCTION Place place_of_site(int n) const {
-    const int at = n % sites_of_body();
-    return {n / sites_of_body(), contact_slots(at / (cells * corners)), at / corners % cells, at % corners};
+    const int at = n % sites_of_body(), near = n / sites_of_body();
+    const int slot = contact_slots(at / (cells * corners));
+    return {update.near_bodies.body(slot, near), near, slot, at / corners % cells, at % corners};
   }
   /// Number of the site at a corner of a node of a contact slot, by the place of the slot from 1 on.
-  KOKKOS_INLINE_FUNCTION int number_of(int rigid, int place, int k, int corner) const {
-    return ((rigid * count + place - 1) * cells + k) * corners + corner;
+  KOKKOS_INLINE_FUNCTION int number_of(int near, int place, int k, int corner) const {
+    return ((near * count + place - 1) * cells + k) * corners + corner;
   }
   /// Number of the sums of a node; negative where no contact may be.
   KOKKOS_INLINE_FUNCTION int sums_of(int node) const {
@@ -109,8 +111,8 @@ struct Sites {
     Kokkos::atomic_add(&sums(sums_of(node), term), static_cast<std::int64_t>(Kokkos::round(value)));
   }
 
-  KOKKOS_INLINE_FUNCTION T& kept(const Place& of, int node, int corner, int term) const {
-    return update.nodes.impulse(update.impulse_stride * of.rigid + corner * Terms::size + term, node);
+  KOKKOS_INLINE_FUNCTION T& kept(int near, int node, int corner, int term) const {
+    return update.nodes.impulse(update.impulse_stride * near + corner * Terms::size + term, node);
   }
   struct NodeAndVelocity {
     typename UpdateNodes<Space, T, Dim>::Node node;

@@ -137,15 +137,15 @@ struct SolveSites : Sites<Space, T, Dim> {
     return site.part * area;
   }
 
-  KOKKOS_INLINE_FUNCTION bool is_in_touch(int rigid, int node, int corner) const {
+  KOKKOS_INLINE_FUNCTION bool is_in_touch(int rigid, int near, int node, int corner) const {
     const int place = contact_place(node / cells);
-    return place > 0 && touches(rigid, number_of(rigid, place, node % cells, corner));
+    return place > 0 && touches(rigid, number_of(near, place, node % cells, corner));
   }
   /// Loads what a site kept. One that had no contact takes what the next one along the normal had, where that
   /// has none now: the face has moved on.
   KOKKOS_INLINE_FUNCTION void load(const Place& of, Site& site) const {
-    int node = of.slot * cells + of.k, corner = of.corner;
-    if (kept(of, node, corner, Terms::weight) == 0) {
+    int near = of.near, node = of.slot * cells + of.k, corner = of.corner;
+    if (kept(near, node, corner, Terms::weight) == 0) {
       T most = 0;
       for (int sign = -1; sign <= 1; sign += 2) {
         Coord<Dim> c = coord_of<Dim>(of.k);
@@ -156,18 +156,20 @@ struct SolveSites : Sites<Space, T, Dim> {
           c[d] = half >> 1, there |= (half & 1) << d;
         }
         const int i = node_number(of.slot, c);
-        if (i < 0 || !(kept(of, i, there, Terms::normal) > most) || is_in_touch(of.rigid, i, there)) continue;
-        most = kept(of, i, there, Terms::normal);
-        node = i, corner = there;
+        const int body = i < 0 ? -1 : update.near_bodies.number(i / cells, of.rigid);
+        if (body < 0 || !(kept(body, i, there, Terms::normal) > most)) continue;
+        if (is_in_touch(of.rigid, body, i, there)) continue;
+        most = kept(body, i, there, Terms::normal);
+        near = body, node = i, corner = there;
       }
     }
-    site.press = kept(of, node, corner, Terms::normal) * update.dt;
-    for (int d = 0; d < Dim; ++d) site.shear[d] = kept(of, node, corner, Terms::shear + d) * update.dt;
+    site.press = kept(near, node, corner, Terms::normal) * update.dt;
+    for (int d = 0; d < Dim; ++d) site.shear[d] = kept(near, node, corner, Terms::shear + d) * update.dt;
     const T across = dot(site.shear, site.normal);
     for (int d = 0; d < Dim; ++d) site.shear[d] -= across * site.normal[d];
-    site.sum = kept(of, node, corner, Terms::sum) * (1 - fresh);
-    site.weight = kept(of, node, corner, Terms::weight) * (1 - fresh);
-    site.store = kept(of, node, corner, Terms::store) * kept_share(ImpulseTerms::store, update.fresh);
+    site.sum = kept(near, node, corner, Terms::sum) * (1 - fresh);
+    site.weight = kept(near, node, corner, Terms::weight) * (1 - fresh);
+    site.store = kept(near, node, corner, Terms::store) * kept_share(ImpulseTerms::store, update.fresh);
   }
 };
 

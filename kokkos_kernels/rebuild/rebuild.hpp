@@ -42,6 +42,7 @@ template <class Space, class T, int Dim>
 struct KeptImpulse {
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space> impulse;
   Kokkos::View<int*, typename Space::memory_space> number;
+  NearBodies<Space> near;  // whose rows they are
   int slots = 0;
 };
 

@@ -12,13 +12,21 @@ KeptImpulse<Space, T, Dim> keep_impulse(const ContactCore<Space, T, Dim>& s) {
   kept.number =
       decltype(kept.number)(Kokkos::view_alloc("mpm::kept_number", Kokkos::WithoutInitializing), kept.slots);
   copy(s.space, kept.number, Kokkos::subview(s.patches.number, Kokkos::make_pair(0, kept.slots)));
+  kept.near = s.contact.near;
+  if (kept.near.listed) {  // the next lists take its place
+    const auto part = Kokkos::make_pair(0, kept.slots * kept.near.width);
+    kept.near.of = decltype(kept.near.of)(Kokkos::view_alloc("mpm::kept_bodies", Kokkos::WithoutInitializing),
+                                          part.second);
+    copy(s.space, kept.near.of, Kokkos::subview(s.contact.near.of, part));
+  }
   return kept;
 }
 
 template <class Space, class T, int Dim>
 void restore_impulse(ContactCore<Space, T, Dim>& s, const KeptImpulse<Space, T, Dim>& kept) {
-  const int numbers = impulse_rows(s);
-  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", numbers, s.patches.node_count());
+  const int stride = impulse_stride(s);
+  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", impulse_rows(s), s.patches.node_count());
+  const NearBodies<Space> before = kept.near, near = s.contact.near;
   const auto old = kept.impulse;
   const auto number = kept.number;
   const auto impulse = s.nodes.impulse;
@@ -26,10 +34,15 @@ void restore_impulse(ContactCore<Space, T, Dim>& s, const KeptImpulse<Space, T, 
   Kokkos::parallel_for(
       "mpm::restore_impulse", Kokkos::RangePolicy<Space>(s.space, 0, kept.slots * Patch<Dim>::cells),
       KOKKOS_LAMBDA(int i) {
-        const int slot = slot_of(number(i / Patch<Dim>::cells));
+        constexpr int cells = Patch<Dim>::cells;
+        const int slot = slot_of(number(i / cells));
         if (slot < 0) return;
-        const int now = slot * Patch<Dim>::cells + i % Patch<Dim>::cells;
-        for (int k = 0; k < numbers; ++k) impulse(k, now) = old(k, i);
+        for (int n = 0; n < before.width; ++n) {
+          const int body = before.body(i / cells, n), to = body < 0 ? -1 : near.number(slot, body);
+          if (to < 0) continue;
+          for (int k = 0; k < stride; ++k)
+            impulse(to * stride + k, slot * cells + i % cells) = old(n * stride + k, i);
+        }
       });
 }
 

@@ -182,75 +182,8 @@ template <class Space, class T, int Dim>
 void sort_points(ContactCore<Space, T, Dim>& s) {
   sort_set(s.space, s.soil, s.patches, s.marks, s.scratch);
   s.soil.points.all = s.soil.points.count;  // what is left belongs to other ranks now
+  if (s.contact.near.listed) return;        // what is near them is found by their surfaces
   for (auto& set : s.rigid_points) sort_set(s.space, set, s.patches, s.marks, s.scratch);
-}
-
-/// Distance [cells] of a surface from the middle of a patch, beyond which it touches no node that particles
-/// of the patch reach, until the next rebuild: half the diagonal of their window, the reach of a contact (a
-/// cell along each axis), and the movement till then.
-template <int Dim>
-double far_from_patch(double margin) {
-  constexpr double half = 0.5 * Patch<Dim>::edge + 1, step_beyond_margin = 0.5;
-  return std::sqrt(static_cast<double>(Dim)) * (half + 1) + margin + step_beyond_margin;
-}
-
-template <class Space, class T, int Dim>
-void list_contacts(ContactCore<Space, T, Dim>& s) {
-  ensure(s.contact.place, s.patches.slots);
-  const auto near = s.contact.place;
-  const auto neighbours = s.patches.neighbours;
-  const auto origin = s.patches.origin;
-  const auto number = s.patches.number;
-  const auto rigids = s.rigids;
-  const auto vertices = s.vertices;
-  const auto grid = s.grid;
-  const double spacing = s.spacing, far = far_from_patch<Dim>(s.p2g.margin + s.p2g.reserve) * spacing;
-  const int slots = s.patches.slots;
-  Kokkos::deep_copy(s.space, near, 0);
-  for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) {
-    const auto begin = s.rigid_points[r].bins.begin;
-    Kokkos::parallel_for(
-        "mpm::mark_contacts", Kokkos::RangePolicy<Space>(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
-          bool holds = grid.field_of(number(slot)) > 0;  // where no rigid has points
-          for (int k = 0; k < Patch<Dim>::neighbours; ++k) {
-            const int other = neighbours(slot, k);
-            holds |= other >= 0 && begin(other * Patch<Dim>::cells) < begin((other + 1) * Patch<Dim>::cells);
-          }
-          if (!holds) return;
-          const Rigid<Dim>& rigid = rigids(r);
-          const auto place = rigid.motion.pose.to_body([&](int d) {
-            return grid.coordinate_within(d, origin(slot)[d] + Patch<Dim>::edge / 2, spacing);
-          });
-          // The ground may be much nearer to one side of a patch than to its middle.
-          const bool trims = rigid.surface_normal && rigid.surface.kind != SurfaceKind::heights;
-          if (trims && distance_to(rigid.surface, vertices, place).value > far) return;
-          near(slot) = 1;
-        });
-  }
-  ensure(s.contact.slots, slots);
-  const auto list = s.contact.slots;
-  Kokkos::parallel_scan(
-      "mpm::list_contacts", Kokkos::RangePolicy<Space>(s.space, 0, slots),
-      KOKKOS_LAMBDA(int slot, int& n, bool last) {
-        if (near(slot) == 0) return;
-        if (last) list(n) = slot, near(slot) = n + 1;
-        ++n;
-      },
-      s.contact.count);
-  if (s.soil_boundary && has_windows(s.space)) {
-    s.contact.boundary.place = near;
-    ensure(s.contact.boundary.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.contact.count);
-  }
-  s.contact.strength.place = near;
-  if (s.shear_fraction && has_windows(s.space))
-    ensure(s.contact.strength.sums, window_bytes<PairSource<Space, T, Dim>> * s.contact.count);
-  if (s.at_sites.in_use) {
-    const std::size_t nodes = std::size_t(s.contact.count) * Patch<Dim>::cells;
-    ensure(s.at_sites.sites, nodes * k_sites<Dim> * s.rigid_points.size());
-    ensure(s.at_sites.gaps, nodes * k_sites<Dim> * s.rigid_points.size());
-    ensure(s.at_sites.sums, nodes);
-  }
-  ensure(s.contact.forces, 2 * std::size_t(s.contact.count) * Wrench<Dim>::size * s.rigid_points.size());
 }
 
 /// Takes from the pressure of each of the particles [first, last) of a cell this fraction of what it differs
@@ -318,9 +251,8 @@ void average_pressure(ContactCore<Space, T, Dim>& s) {
       });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                      \
-  template void sort_points(ContactCore<Space, T, Dim>&);   \
-  template void list_contacts(ContactCore<Space, T, Dim>&); \
+#define MPM_INSTANTIATE(Space, T, Dim)                    \
+  template void sort_points(ContactCore<Space, T, Dim>&); \
   template void average_pressure(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -14,10 +14,10 @@ template <class Space, class T, int Dim>
 void sort_and_list(State<Space, T, Dim>& s) {
   const auto kept = keep_impulse(s);
   activate_patches(s);
-  if (impulse_rows(s) > 0) restore_impulse(s, kept);
   sort_points(s);
   build_lists(s);
   if (!s.rigid_points.empty()) list_contacts(s);
+  if (impulse_rows(s) > 0) restore_impulse(s, kept);
   if (s.f_bar.fraction > 0 && !s.f_bar.keeps_stress) average_pressure(s);
 
   s.plan = plan_step(s);

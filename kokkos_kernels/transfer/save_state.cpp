@@ -47,6 +47,21 @@ SavedPoints save_points(const Patches_& patches, Points_ points) {
   return saved;
 }
 
+/// The lists of bodies near slots, on the host.
+template <class Space>
+NearBodies<Kokkos::DefaultHostExecutionSpace> on_host(const NearBodies<Space>& near) {
+  NearBodies<Kokkos::DefaultHostExecutionSpace> host;
+  host.listed = near.listed, host.width = near.width;
+  if (near.listed) host.of = mirror_of(near.of);
+  return host;
+}
+/// Calls f(number, body) for the bodies near a slot.
+template <class Space, class F>
+void for_each_near(const NearBodies<Space>& near, int slot, F&& f) {
+  for (int n = 0; n < near.width; ++n)
+    if (const int body = near.body(slot, n); body >= 0) f(n, body);
+}
+
 template <class Space, class T, int Dim>
 SavedImpulse save_impulse(const ContactCore<Space, T, Dim>& s) {
   SavedImpulse saved;
@@ -55,18 +70,23 @@ SavedImpulse save_impulse(const ContactCore<Space, T, Dim>& s) {
   const auto impulse = mirror_of(s.nodes.impulse);
   // One of several ranks owns a node: the values of the others may be long out of date.
   const auto owned_nodes = mirror_of(s.owned_nodes);
-  const int numbers = impulse_rows(s);
+  const auto near = on_host(s.contact.near);
+  const int rows = impulse_rows(s), stride = impulse_stride(s);
   const auto holds_some = [&](int i) {
     if (owned_nodes.extent(0) > 0 && (owned_nodes(i / Patch<Dim>::cells) >> (i % Patch<Dim>::cells) & 1) == 0)
       return false;
-    for (int k = 0; k < numbers; ++k)
+    for (int k = 0; k < rows; ++k)
       if (impulse(k, i) != 0 || std::signbit(impulse(k, i))) return true;
     return false;
   };
   for (int i = 0; i < s.patches.node_count(); ++i) {
     if (!holds_some(i)) continue;
     saved.address.push_back(address_of_node<Dim>(number, i));
-    for (int k = 0; k < numbers; ++k) saved.values.push_back(impulse(k, i));
+    const std::size_t at = saved.values.size();
+    saved.values.resize(at + impulse_numbers(s));
+    for_each_near(near, i / Patch<Dim>::cells, [&](int n, int body) {
+      for (int k = 0; k < stride; ++k) saved.values[at + body * stride + k] = impulse(n * stride + k, i);
+    });
   }
   return saved;
 }
@@ -228,9 +248,9 @@ void restore_rigids(ContactCore<Space, T, Dim>& s, const SavedState& saved, bool
 template <class Space, class T, int Dim>
 void restore_nodes(ContactCore<Space, T, Dim>& s, const SavedImpulse& saved) {
   if (impulse_rows(s) == 0) return;
-  const int numbers = impulse_rows(s);
-  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", numbers, s.patches.node_count());
+  s.nodes.impulse = decltype(s.nodes.impulse)("mpm::nodes.impulse", impulse_rows(s), s.patches.node_count());
   const auto host = mirror_of(s.nodes.impulse);
+  const auto near = on_host(s.contact.near);
   const auto slot_of = mirror_of(s.patches.slot_of);
   // A body that a stage places or removes may have changed the numbers of each; those at nodes come first.
   const std::size_t rigids = s.rigid_points.size();
@@ -239,9 +259,10 @@ void restore_nodes(ContactCore<Space, T, Dim>& s, const SavedImpulse& saved) {
     const int slot = slot_of(saved.address[n] / Patch<Dim>::cells);
     if (slot < 0) continue;
     const int i = slot * Patch<Dim>::cells + static_cast<int>(saved.address[n] % Patch<Dim>::cells);
-    for (std::size_t r = 0; r < rigids; ++r)
+    for_each_near(near, slot, [&](int m, int body) {
       for (int k = 0; k < kept; ++k)
-        host(r * stride + k, i) = static_cast<T>(saved.values[(n * rigids + r) * was + k]);
+        host(m * stride + k, i) = static_cast<T>(saved.values[(n * rigids + body) * was + k]);
+    });
   }
   copy(s.nodes.impulse, host);
 }

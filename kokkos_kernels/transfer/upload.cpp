@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/copy.hpp"
 #include "data/state.hpp"
 #include "functions/follow_soil.hpp"
 #include "physics/domain.hpp"
@@ -122,6 +123,31 @@ void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigid
   });
 }
 
+/// Chooses whether slots have lists of the bodies near them, and the spheres by which these are found.
+template <class Space, class T, int Dim>
+void begin_near_bodies(const std::vector<RigidInput>& rigids, double spacing, NearBodies<Space>& near) {
+  const auto by_surface = [](const RigidInput& rigid) { return rigid.surface_normal; };
+  near = {};
+  near.width = static_cast<int>(rigids.size());
+  near.listed = near.width > k_few_bodies && std::all_of(rigids.begin(), rigids.end(), by_surface);
+  if (!near.listed) return;
+  near.spheres = decltype(near.spheres)("mpm::spheres", rigids.size(), Dim + 1);
+  const auto spheres = Kokkos::create_mirror_view(near.spheres);
+  for (std::size_t r = 0; r < rigids.size(); ++r) {
+    const std::vector<double>& x = rigids[r].position;
+    double squares = 0;
+    for (int d = 0; d < Dim; ++d) {
+      double low = x[d], high = x[d];
+      for (std::size_t n = d; n < x.size(); n += Dim) low = std::min(low, x[n]), high = std::max(high, x[n]);
+      const double half = (high - low) / 2 + spacing;  // the surface may be beyond the middles of particles
+      spheres(r, d) = (low + high) / 2;
+      squares += half * half;
+    }
+    spheres(r, Dim) = std::sqrt(squares);
+  }
+  copy(near.spheres, spheres);
+}
+
 /// Bytes of scratch memory that sorting the rigid with the most points takes.
 template <class Space, class T, int Dim>
 std::size_t scratch_of_rigids(const std::vector<RigidInput>& rigids) {
@@ -219,6 +245,7 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   s.rigid_force = decltype(s.rigid_force)("mpm::rigid_force", Wrench<Dim>::size * rigids.size());
   upload_soil(s, materials, bodies, scratch_of_rigids<Space, T, Dim>(rigids), fault);
   upload_rigids(s, rigids, k_rigid_cut, fault);
+  begin_near_bodies<Space, T, Dim>(rigids, grid.spacing, s.contact.near);
   if (fault.kind != FaultKind::none) return fault;
   sort_and_list(s);
   begin_domains(s);

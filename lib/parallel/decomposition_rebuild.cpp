@@ -162,6 +162,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::make_lists(State_& s) {
          std::max<std::size_t>(plan.owned_nodes.size(), 1));  // of extent 0 it would mean one rank
   fill(s.owned_nodes, plan.owned_nodes);
 
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &s.contact.near.widest, 1, MPI_INT, MPI_MAX, comm_));
   int width = SoilTerms<Dim>::size + BoundaryTerms<Dim>::size;
   if (s.at_sites.in_use)
     for (const SiteField field : {SiteField::gaps, SiteField::counts, SiteField::momentum, SiteField::kept})
@@ -187,7 +188,7 @@ void Decomposition<Space, T, Dim>::put_border_first(State_& s, std::vector<int> 
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::exchange_impulses(State_& s, const NodeImpulses<T>& own) {
   PetscFunctionBeginUser;
-  const std::size_t numbers = impulse_rows(s), size = sizeof(long) + numbers * sizeof(T);
+  const std::size_t numbers = impulse_numbers(s), size = sizeof(long) + numbers * sizeof(T);
   std::vector<std::vector<char>> out(size_);
   for (std::size_t n = 0; n < own.node.size(); ++n) {
     std::set<int> reaching;

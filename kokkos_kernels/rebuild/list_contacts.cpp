@@ -1,0 +1,220 @@
+// Slots where a contact may be until the next rebuild, and the rigid bodies that are near each of them.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/copy.hpp"
+#include "physics/p2g_terms.hpp"
+#include "physics/surface.hpp"
+#include "rebuild/rebuild.hpp"
+
+namespace mpm {
+namespace {
+
+/// Distance [cells] of a surface from the middle of a patch, beyond which it touches no node that particles
+/// of the patch reach, until the next rebuild: half the diagonal of their window, the reach of a contact (a
+/// cell along each axis), and the movement till then.
+template <int Dim>
+double far_from_patch(double margin) {
+  constexpr double half = 0.5 * Patch<Dim>::edge + 1, step_beyond_margin = 0.5;
+  return std::sqrt(static_cast<double>(Dim)) * (half + 1) + margin + step_beyond_margin;
+}
+
+/// Whether a rigid body may touch soil at the nodes of a slot.
+template <class Space, class T, int Dim>
+struct NearSlot {
+  using Memory = typename Space::memory_space;
+  Grid<T, Dim> grid;
+  decltype(Patches<Space, Dim>::origin) origin;
+  Kokkos::View<Rigid<Dim>*, Memory> rigids;
+  SurfaceTables<Memory> vertices;
+  NearBodies<Space> near;
+  double spacing, far;  // m
+
+  explicit NearSlot(const ContactCore<Space, T, Dim>& s)
+      : grid(s.grid),
+        origin(s.patches.origin),
+        rigids(s.rigids),
+        vertices(s.vertices),
+        near(s.contact.near),
+        spacing(s.spacing),
+        far(far_from_patch<Dim>(s.p2g.margin + s.p2g.reserve) * s.spacing) {}
+
+  /// A place of the slot's patch, so many cells from its origin [m], in the body as it was at the start.
+  KOKKOS_INLINE_FUNCTION Vector<double, Dim> place(int slot, int r, const Coord<Dim>& from) const {
+    return rigids(r).motion.pose.to_body(
+        [&](int d) { return grid.coordinate_within(d, origin(slot)[d] + from[d], spacing); });
+  }
+  /// Whether the surface of body r is so far from the patch that they do not touch. The ground may be much
+  /// nearer to one side of a patch than to its middle, so this says nothing of it.
+  KOKKOS_INLINE_FUNCTION bool is_far(int slot, int r) const {
+    const Rigid<Dim>& rigid = rigids(r);
+    if (!rigid.surface_normal || rigid.surface.kind == SurfaceKind::heights) return false;
+    const auto middle = place(slot, r, filled<int, Dim>(Patch<Dim>::edge / 2));
+    return distance_to(rigid.surface, vertices, middle).value > far;
+  }
+  /// Whether body r is near a slot, by its surface alone.
+  KOKKOS_INLINE_FUNCTION bool operator()(int slot, int r) const {
+    const Rigid<Dim>& rigid = rigids(r);
+    if (rigid.surface.kind == SurfaceKind::heights) return is_over_ground(slot, r);
+    const auto middle = place(slot, r, filled<int, Dim>(Patch<Dim>::edge / 2));
+    double squares = 0;
+    for (int d = 0; d < Dim; ++d) {
+      const double way = middle[d] - near.spheres(r, d);
+      squares += way * way;
+    }
+    const double reach = near.spheres(r, Dim) + far;
+    return squares < reach * reach && distance_to(rigid.surface, vertices, middle).value <= far;
+  }
+
+ private:
+  /// Whether the ground is near at any column of nodes of the patch's window.
+  KOKKOS_INLINE_FUNCTION bool is_over_ground(int slot, int r) const {
+    constexpr int width = Patch<Dim>::edge + 3;
+    MPM_ROLLED
+    for (int n = 0; n < (Dim == 3 ? width * width : width); ++n) {
+      Coord<Dim> from = filled<int, Dim>(Patch<Dim>::edge / 2);
+      from[0] = n % width - 1;
+      if (Dim == 3) from[1] = n / width - 1;
+      if (distance_to(rigids(r).surface, vertices, place(slot, r, from)).value <= far) return true;
+    }
+    return false;
+  }
+};
+
+/// Marks the slots that body r may touch, by the patches round them that hold its points.
+template <class Space, class T, int Dim>
+void mark_by_points(const ContactCore<Space, T, Dim>& s, int r) {
+  const auto marks = s.contact.place;
+  const auto neighbours = s.patches.neighbours;
+  const auto number = s.patches.number;
+  const auto grid = s.grid;
+  const auto begin = s.rigid_points[r].bins.begin;
+  const NearSlot<Space, T, Dim> near(s);
+  Kokkos::parallel_for(
+      "mpm::mark_contacts", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.slots), KOKKOS_LAMBDA(int slot) {
+        bool holds = grid.field_of(number(slot)) > 0;  // where no rigid has points
+        for (int k = 0; k < Patch<Dim>::neighbours; ++k) {
+          const int other = neighbours(slot, k);
+          holds |= other >= 0 && begin(other * Patch<Dim>::cells) < begin((other + 1) * Patch<Dim>::cells);
+        }
+        if (holds && !near.is_far(slot, r)) marks(slot) = 1;
+      });
+}
+
+/// Lists the bodies near each slot, and marks the slots that have some.
+template <class Space, class T, int Dim>
+void list_bodies(ContactCore<Space, T, Dim>& s) {
+  using Range = Kokkos::RangePolicy<Space>;
+  NearBodies<Space>& list = s.contact.near;
+  const auto marks = s.contact.place;
+  const NearSlot<Space, T, Dim> near(s);
+  const int slots = s.patches.slots, bodies = static_cast<int>(s.rigid_points.size());
+  Kokkos::parallel_reduce(
+      "mpm::count_near_bodies", Range(s.space, 0, slots),
+      KOKKOS_LAMBDA(int slot, int& most) {
+        int count = 0;
+        for (int r = 0; r < bodies; ++r) count += near(slot, r) ? 1 : 0;
+        marks(slot) = count > 0 ? 1 : 0;
+        most = Kokkos::max(most, count);
+      },
+      Kokkos::Max<int>(list.width));
+  s.space.fence("mpm::count_near_bodies");
+  list.width = std::max(list.width, 1);
+  ensure(list.of, std::size_t(slots) * list.width);
+  const auto of = list.of;
+  const int width = list.width;
+  Kokkos::parallel_for(
+      "mpm::list_near_bodies", Range(s.space, 0, slots), KOKKOS_LAMBDA(int slot) {
+        int count = 0;
+        for (int r = 0; r < bodies && marks(slot) != 0; ++r)
+          if (near(slot, r)) of(slot * width + count++) = r;
+        for (; count < width; ++count) of(slot * width + count) = -1;
+      });
+}
+
+/// The entries of a body in the lists of slots.
+template <class Space>
+struct EntriesOfBody {
+  Kokkos::View<int*, typename Space::memory_space> slots, of;
+  int count, width;
+
+  /// Calls f(place) for each, in the order of slots.
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void operator()(int body, const F& f) const {
+    for (int n = 0; n < count; ++n)
+      for (int m = 0; m < width; ++m)
+        if (of(slots(n) * width + m) == body) f(n * width + m);
+  }
+};
+
+/// Lists the entries of each body.
+template <class Space, class T, int Dim>
+void list_entries(ContactCore<Space, T, Dim>& s) {
+  using Range = Kokkos::RangePolicy<Space>;
+  NearBodies<Space>& list = s.contact.near;
+  const int bodies = static_cast<int>(s.rigid_points.size());
+  const EntriesOfBody<Space> for_each_entry{s.contact.slots, list.of, s.contact.count, list.width};
+  ensure(list.first, bodies + 1);
+  ensure(list.place, std::size_t(s.contact.count) * list.width);
+  const auto first = list.first, place = list.place;
+  Kokkos::parallel_scan(
+      "mpm::count_entries", Range(s.space, 0, bodies + 1), KOKKOS_LAMBDA(int r, int& sum, bool last) {
+        if (last) first(r) = sum;
+        if (r < bodies) for_each_entry(r, [&](int) { ++sum; });
+      });
+  Kokkos::parallel_for(
+      "mpm::list_entries", Range(s.space, 0, bodies), KOKKOS_LAMBDA(int r) {
+        int at = first(r);
+        for_each_entry(r, [&](int entry) { place(at++) = entry; });
+      });
+}
+
+template <class Space, class T, int Dim>
+void make_room_for_contact(ContactCore<Space, T, Dim>& s) {
+  const std::size_t nodes = std::size_t(s.contact.count) * Patch<Dim>::cells, width = s.contact.near.width;
+  if (s.soil_boundary && has_windows(s.space)) {
+    s.contact.boundary.place = s.contact.place;
+    ensure(s.contact.boundary.sums, window_bytes<BoundarySource<Space, T, Dim>> * s.contact.count);
+  }
+  s.contact.strength.place = s.contact.place;
+  if (s.shear_fraction && has_windows(s.space))
+    ensure(s.contact.strength.sums, window_bytes<PairSource<Space, T, Dim>> * s.contact.count);
+  if (s.at_sites.in_use) {
+    ensure(s.at_sites.sites, nodes * k_sites<Dim> * width);
+    ensure(s.at_sites.gaps, nodes * k_sites<Dim> * width);
+    ensure(s.at_sites.sums, nodes);
+  }
+  ensure(s.contact.forces, 2 * std::size_t(s.contact.count) * Wrench<Dim>::size * width);
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void list_contacts(ContactCore<Space, T, Dim>& s) {
+  const int slots = s.patches.slots;
+  ensure(s.contact.place, slots);
+  Kokkos::deep_copy(s.space, s.contact.place, 0);
+  if (s.contact.near.listed)
+    list_bodies(s);
+  else
+    for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) mark_by_points(s, r);
+  ensure(s.contact.slots, slots);
+  const auto list = s.contact.slots, place = s.contact.place;
+  Kokkos::parallel_scan(
+      "mpm::list_contacts", Kokkos::RangePolicy<Space>(s.space, 0, slots),
+      KOKKOS_LAMBDA(int slot, int& n, bool last) {
+        if (place(slot) == 0) return;
+        if (last) list(n) = slot, place(slot) = n + 1;
+        ++n;
+      },
+      s.contact.count);
+  s.contact.near.widest = s.contact.near.width;
+  if (s.contact.near.listed) list_entries(s);
+  make_room_for_contact(s);
+}
+
+#define MPM_INSTANTIATE(Space, T, Dim) template void list_contacts(ContactCore<Space, T, Dim>&);
+MPM_FOR_EACH(MPM_INSTANTIATE)
+
+}  // namespace mpm
