@@ -13,6 +13,8 @@ constexpr int k_edge_cells = SampleGrid::edge, k_corners = k_edge_cells + 1;
 constexpr double k_rounding = 0.5;                   // cells of the mesh
 constexpr double k_outside = 1.75, k_inside = 1.25;  // cells of the mesh: how far contact asks from a surface
 constexpr double k_margin = 2;                       // cells of the mesh, of the grid round the surface
+constexpr double k_far = 3;  // blocks from the surface: how far the distance is looked up
+constexpr double k_tenth = 0.1;
 constexpr double k_most_bytes = 2e9;
 
 /// Bytes of the blocks near a surface of an area [m2] and of the corners of all blocks of a volume [m3].
@@ -71,13 +73,38 @@ class Sampler {
     out_.samples.push_back(sample);
     out_.edges.push_back(of.at_edge ? 1 : 0);
   }
+  /// Whether the surface is nearer to a point than a distance, as far as a tenth of a cell; a triangle near
+  /// it.
+  bool is_within(const Vec3& x, double far, int& guess) const {
+    const TriangleDistance& sharp = surface_.sharp();
+    double off = guess < 0 ? far : std::abs(sharp.walked(x, guess).value);
+    while (off > 2 * k_tenth * cell_) {  // another part of the surface may be nearer
+      const auto nearer = sharp.nearest(x, -1, std::min(far, guess < 0 ? far : off - 2 * k_tenth * cell_));
+      if (nearer.triangle < 0) break;
+      guess = nearer.triangle, off = std::abs(nearer.value);
+    }
+    return guess >= 0 && off < far;
+  }
+  /// Samples of the corners of blocks. Those far from the surface are on the side of the one before, which is
+  /// not beyond the surface: nearer ones would lie between.
   void fill_corners() {
     const auto& n = out_.grid.blocks;
+    const double far = k_far * k_edge_cells * out_.grid.spacing;
     int guess = -1;
     for (int k = 0; k <= n[2]; ++k)
       for (int j = 0; j <= n[1]; ++j)
-        for (int i = 0; i <= n[0]; ++i)
-          add(surface_.at(place({k_edge_cells * i, k_edge_cells * j, k_edge_cells * k}), guess));
+        for (int i = 0; i <= n[0]; ++i) {
+          const Vec3 x = place({k_edge_cells * i, k_edge_cells * j, k_edge_cells * k});
+          const int row = n[0] + 1, before = i > 0 ? 1 : j > 0 ? row : k > 0 ? row * (n[1] + 1) : 0;
+          if (is_within(x, far, guess)) {
+            add(surface_.at(x, guess, true));
+            continue;
+          }
+          SurfaceSample last{static_cast<float>(far), {}};
+          if (before > 0) last = out_.samples[out_.samples.size() - before];
+          const double sign = last.value < 0 ? -1 : 1;
+          add({sign * far, {last.normal[0], last.normal[1], last.normal[2]}, false});
+        }
   }
   void fill_blocks() {
     const auto& n = out_.grid.blocks;
@@ -89,7 +116,7 @@ class Sampler {
           for (int c = 0; c < 8; ++c) {
             const int corner =
                 ((k + (c >> 2 & 1)) * (n[1] + 1) + j + (c >> 1 & 1)) * (n[0] + 1) + i + (c & 1);
-            near = near || is_near(out_.samples[corner].value, reach);
+            near = near || is_near(out_.samples[corner].value, reach + 2 * k_tenth * cell_);
           }
           out_.blocks.push_back(near ? static_cast<int>(out_.samples.size()) : -1);
           if (near) fill_block({k_edge_cells * i, k_edge_cells * j, k_edge_cells * k});
@@ -99,10 +126,33 @@ class Sampler {
   bool is_near(double distance, double reach) const {
     return distance - reach < k_outside * cell_ && distance + reach > -k_inside * cell_;
   }
+  /// Whether a walk over the surface finds the nearest place of all, to a tenth of a cell, at points across a
+  /// block, from the one that is the nearest at its middle; the triangle there.
+  bool is_smooth(const std::array<int, 3>& first, int& middle) const {
+    const auto at = [&](int i, int j, int k) {
+      return place({first[0] + i * k_edge_cells / 2, first[1] + j * k_edge_cells / 2,
+                    first[2] + k * k_edge_cells / 2});
+    };
+    const TriangleDistance& sharp = surface_.sharp();
+    const auto to = sharp.nearest(at(1, 1, 1), middle);
+    middle = to.triangle;
+    const double reach = std::abs(to.value) + std::sqrt(3.0) * k_edge_cells * out_.grid.spacing;
+    Box round;
+    for (const double r : {-reach, reach}) round.add(along(at(1, 1, 1), r, Vec3{1, 1, 1}));
+    if (surface_.bends_in(round)) return false;
+    for (int n = 0; n < 27; ++n) {
+      if (n % 2 == 1) continue;  // corners, and the middles of faces' edges
+      const Vec3 x = at(n % 3, n / 3 % 3, n / 9);
+      const double off = std::abs(sharp.walked(x, middle).value) - k_tenth * cell_;
+      if (off > 0 && sharp.nearest(x, -1, off).triangle >= 0) return false;
+    }
+    return true;
+  }
   /// Samples of a block. Where contact asks for no cell of a sample, a bound on the distance is enough.
   void fill_block(const std::array<int, 3>& first) {
     const double h = out_.grid.spacing, cells = std::sqrt(3.0) * h;
-    int guess = -1;
+    const bool walks = is_smooth(first, middle_);
+    int guess = middle_;
     RoundedSurface::Distance last{};
     Vec3 from{};
     for (int k = 0; k < k_corners; ++k)
@@ -110,11 +160,11 @@ class Sampler {
         for (int i = 0; i < k_corners; ++i) {
           const Vec3 x = place({first[0] + i, first[1] + j, first[2] + k});
           const double walked = length_of(difference(x, from));
-          if (guess >= 0 && !is_near(last.value, walked + cells)) {
+          if (i + j + k > 0 && !is_near(last.value, walked + cells)) {
             add({last.value + (last.value > 0 ? -walked : walked), last.normal, false});
             continue;
           }
-          last = surface_.at(x, guess), from = x;
+          last = surface_.at(x, guess, walks), from = x;
           add(last);
         }
   }
@@ -123,6 +173,7 @@ class Sampler {
   Vec3 origin_;  // m, of the mesh
   double cell_;  // m, of the mesh
   SurfaceInput& out_;
+  int middle_ = -1;  // triangle that is the nearest to the middle of the block before
 };
 
 }  // namespace

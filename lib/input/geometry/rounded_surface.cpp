@@ -17,6 +17,13 @@ constexpr double k_touch = 0.02;     // of the radius: a ball may be so far outs
 constexpr std::size_t k_planes = 8;  // at most
 constexpr double k_none = 1e-12;     // m over the radius
 
+/// Whether the faces at edge c of triangle k differ in direction.
+bool bends(const TriangleDistance& of, int k, int c) {
+  const int other = of.beyond(k, c);
+  if (of.is_left_out(k)) return false;
+  return other < 0 || inner_product(of.normal(k), of.normal(other)) < k_bends;
+}
+
 /// Whether the edge c of triangle k is convex and bends.
 bool is_sharp(const TriangleDistance& of, int k, int c) {
   const int other = of.beyond(k, c);
@@ -62,7 +69,7 @@ Vec3 behind(const Planes& planes, double radius, const Vec3& x, std::vector<doub
 RoundedSurface::RoundedSurface(const TriangleDistance& sharp, double radius)
     : sharp_(sharp), radius_(radius) {
   const TriangleSurface& s = sharp.surface();
-  std::vector<Box> edges;
+  std::vector<Box> edges, bent;
   for (int k = 0; k < s.size(); ++k)
     for (int c = 0; c < 3; ++c)
       if (sharp.beyond(k, c) < k && is_sharp(sharp, k, c)) {
@@ -70,6 +77,17 @@ RoundedSurface::RoundedSurface(const TriangleDistance& sharp, double radius)
         box.add(s.corner(k, c)), box.add(s.corner(k, (c + 1) % 3));
       }
   edges_ = BoxTree(std::move(edges));
+  for (int k = 0; k < s.size(); ++k)
+    for (int c = 0; c < 3; ++c)
+      if (sharp.beyond(k, c) < k && bends(sharp, k, c)) {
+        Box& box = bent.emplace_back();
+        box.add(s.corner(k, c)), box.add(s.corner(k, (c + 1) % 3));
+      }
+  bends_ = BoxTree(std::move(bent));
+}
+
+bool RoundedSurface::bends_in(const Box& box) const {
+  return bends_.any_near(box, [](int) { return true; });
 }
 
 bool RoundedSurface::is_near_edge(const Vec3& place) const {
@@ -176,8 +194,8 @@ bool RoundedSurface::rounded_at(const Vec3& x, const Nearest& to, double radius,
   return false;
 }
 
-RoundedSurface::Distance RoundedSurface::at(const Vec3& x, int& guess) const {
-  const Nearest to = sharp_.nearest(x, guess);
+RoundedSurface::Distance RoundedSurface::at(const Vec3& x, int& guess, bool walks) const {
+  const Nearest to = walks ? sharp_.walked(x, guess) : sharp_.nearest(x, guess);
   guess = to.triangle;
   Distance out = sharp_at(x, to);
   if (!(radius_ > 0) || to.value < -radius_ * (1 - k_touch) || !is_near_edge(to.point)) return out;

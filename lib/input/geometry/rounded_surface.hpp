@@ -22,8 +22,12 @@ class RoundedSurface {
   /// radius [m]: of the balls.
   RoundedSurface(const TriangleDistance& sharp, double radius);
 
-  /// guess: a triangle that may be near, or -1; it is set to the nearest one.
-  Distance at(const Vec3& x, int& guess) const;
+  /// guess: a triangle that may be near, or -1; it is set to the nearest one. walks: the guess leads there
+  /// over a smooth surface (TriangleDistance::walked).
+  Distance at(const Vec3& x, int& guess, bool walks = false) const;
+  const TriangleDistance& sharp() const { return sharp_; }
+  /// Whether the surface has an edge of more than 10 degrees, convex or not, in a box.
+  bool bends_in(const Box& box) const;
 
  private:
   /// A plane that the centre of a ball must be behind by its radius.
@@ -41,6 +45,7 @@ class RoundedSurface {
   const TriangleDistance& sharp_;
   double radius_;
   BoxTree edges_;  // convex ones
+  BoxTree bends_;  // all
 };
 
 }  // namespace mpm

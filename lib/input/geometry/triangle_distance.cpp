@@ -118,39 +118,73 @@ Vec3 TriangleDistance::pseudo_normal(const Nearest& of) const {
   return unit_of(along(normals_[of.triangle], 1, normals_[other]));
 }
 
-TriangleDistance::Nearest TriangleDistance::nearest(const Vec3& at, int guess) const {
+/// Takes a triangle that is nearer than `least` [m2]; whether it is.
+bool TriangleDistance::approach(const Vec3& x, int k, double& least, Nearest& out) const {
+  if (left_out_[k]) return false;
   const TriangleSurface& s = *surface_;
-  Nearest out;
+  const Foot foot = foot_on(s.corner(k, 0), s.corner(k, 1), s.corner(k, 2), x);
+  const Vec3 way = difference(x, foot.point);
+  const double square = inner_product(way, way);
+  if (!(square < least)) return false;
+  least = square;
+  out.point = foot.point, out.feature = foot.feature, out.part = foot.part, out.triangle = k;
+  return true;
+}
+
+/// The point, or its image on the side of the mirrors where the surface is.
+Vec3 TriangleDistance::before_mirrors(const Vec3& at, Nearest& out) const {
   Vec3 x = at;
   for (const Mirror& m : mirrors_)
     if (m.upper ? x[m.d] > m.place : x[m.d] < m.place) {
       x[m.d] = 2 * m.place - x[m.d];
       out.images[m.d] = !out.images[m.d];
     }
-  double least = Box::k_none;  // m2
-  const auto visit = [&](int k) {
-    if (left_out_[k]) return;
-    const Foot foot = foot_on(s.corner(k, 0), s.corner(k, 1), s.corner(k, 2), x);
-    const Vec3 way = difference(x, foot.point);
-    const double square = inner_product(way, way);
-    if (!(square < least)) return;
-    least = square;
-    out.point = foot.point, out.feature = foot.feature, out.part = foot.part, out.triangle = k;
-  };
-  if (guess >= 0) visit(guess);
-  s.tree().visit_nearest(x, least, visit);
-  if (out.triangle < 0) return out;
+  return x;
+}
+
+/// Finds sign and normal at the nearest place, for a point whose image before the mirrors is x.
+void TriangleDistance::finish(const Vec3& at, const Vec3& x, double least, Nearest& out) const {
+  if (out.triangle < 0) return;
   out.normal = pseudo_normal(out);
   const double length = std::sqrt(least), across = inner_product(difference(x, out.point), out.normal);
   // Nearly along the surface, as at a needle's edge, round-off may turn the sign of the product.
   constexpr double k_sure = 1e-6;
-  const bool inside = std::abs(across) > k_sure * length || !mirrors_.empty() ? across < 0 : s.holds(x, 0);
+  const bool inside =
+      std::abs(across) > k_sure * length || !mirrors_.empty() ? across < 0 : surface_->holds(x, 0);
   out.value = inside ? -length : length;
   for (const Mirror& m : mirrors_)
     if (out.images[m.d] && (m.upper ? at[m.d] > m.place : at[m.d] < m.place)) {
       out.point[m.d] = 2 * m.place - out.point[m.d];
       out.normal[m.d] = -out.normal[m.d];
     }
+}
+
+TriangleDistance::Nearest TriangleDistance::nearest(const Vec3& at, int guess, double limit) const {
+  Nearest out;
+  const Vec3 x = before_mirrors(at, out);
+  double least = limit * limit;
+  if (guess >= 0) approach(x, guess, least, out);
+  surface_->tree().visit_nearest(x, least, [&](int k) { approach(x, k, least, out); });
+  finish(at, x, least, out);
+  return out;
+}
+
+TriangleDistance::Nearest TriangleDistance::walked(const Vec3& at, int from) const {
+  Nearest out;
+  const Vec3 x = before_mirrors(at, out);
+  double least = Box::k_none;
+  bool nearer = approach(x, from, least, out);
+  while (nearer) {
+    nearer = false;
+    if (out.feature == Feature::edge) {
+      const int other = beyond(out.triangle, out.part);
+      nearer = other >= 0 && approach(x, other, least, out);
+    } else if (out.feature == Feature::corner) {
+      const int v = surface_->triangle(out.triangle)[out.part];
+      for (int n = first_[v]; n < first_[v + 1]; ++n) nearer = approach(x, list_[n], least, out) || nearer;
+    }
+  }
+  finish(at, x, least, out);
   return out;
 }
 

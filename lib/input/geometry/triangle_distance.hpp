@@ -26,7 +26,7 @@ class TriangleDistance {
     double value = 0;   // m, positive outside
     Vec3 point{};       // m, on the surface
     Vec3 normal{};      // of length 1, out of the surface: of the face, or the pseudo-normal
-    int triangle = -1;  // -1: there is no surface
+    int triangle = -1;  // -1: there is none within the limit
     Feature feature = Feature::face;
     int part = 0;         // edge or corner of the triangle
     bool images[3] = {};  // directions in which it is the image of the triangle
@@ -34,9 +34,13 @@ class TriangleDistance {
 
   TriangleDistance(std::shared_ptr<const TriangleSurface> surface, std::vector<Mirror> mirrors);
 
-  /// The nearest place of the surface to x [m]. guess: a triangle that may be near, or -1; it changes the
-  /// time alone.
-  Nearest nearest(const Vec3& x, int guess = -1) const;
+  /// The nearest place of the surface to x [m], if it is nearer than `limit` [m]. guess: a triangle that may
+  /// be near, or -1; it changes the time alone.
+  Nearest nearest(const Vec3& x, int guess = -1, double limit = 1e150) const;
+  /// The nearest place that is found by steps from a triangle to those that share the edge or corner that is
+  /// the nearest there. Where the surface between is smooth it is the nearest of all, in a fraction of the
+  /// time.
+  Nearest walked(const Vec3& x, int from) const;
 
   const TriangleSurface& surface() const { return *surface_; }
   const std::vector<Mirror>& mirrors() const { return mirrors_; }
@@ -55,6 +59,9 @@ class TriangleDistance {
   void set_neighbours();
   void set_corners();
   Vec3 pseudo_normal(const Nearest& of) const;
+  bool approach(const Vec3& x, int k, double& least, Nearest& out) const;
+  Vec3 before_mirrors(const Vec3& at, Nearest& out) const;
+  void finish(const Vec3& at, const Vec3& x, double least, Nearest& out) const;
 
   std::shared_ptr<const TriangleSurface> surface_;
   std::vector<Mirror> mirrors_;
