@@ -44,6 +44,15 @@ struct SavedImpulse {
   std::vector<double> values;  // ImpulseTerms of each rigid [ImpulseTerms::size rigids M]; where some rigid
                                // has contact at sites, SiteTerms of each site, rigid by rigid
 };
+/// What contact between rigid bodies keeps: the impulses of its contacts in the last step, and those on each
+/// rigid body since the last row of the history.
+struct SavedPairs {
+  static constexpr int width = 6, totals = 6;  // numbers of a contact and of a rigid
+  std::vector<double> contacts;  // [width]: numbers of the two bodies (sides of the mesh are negative: -1 -
+                                 // side) and of the point, impulse [N s]
+  std::vector<double> impulses;  // [totals], force and moment [N s, N m s]; empty: no two bodies may meet
+};
+
 /// Numbers of each of so many rigid bodies at a node of saved impulses.
 inline int numbers_of_rigid(const SavedImpulse& saved, std::size_t rigids) {
   const std::size_t rows = saved.address.size() * rigids;
@@ -87,6 +96,7 @@ struct SavedState {
   int alone_known = 0;      // 1: `alone` holds; 0: the next step finds it
   std::vector<SavedRigid> rigids;
   SavedImpulse impulse;
+  SavedPairs pairs;
   std::vector<double> energy;  // k_saved_energy numbers where the run has an energy balance: the works, and
                                // kinetic and elastic energy at the start [J], of all ranks; behind them,
                                // where there are loads on surfaces, their work since the start [J]

@@ -3,6 +3,7 @@
 
 #include "data/contact_core.hpp"
 #include "data/energy_works.hpp"
+#include "data/rigid_pairs.hpp"
 #include "data/sides.hpp"
 #include "data/surface_loads.hpp"
 #include "data/timed_loads.hpp"
@@ -13,6 +14,7 @@ template <class Space, class T, int Dim>
 struct State : ContactCore<Space, T, Dim> {
   TimedLoads<Space, T, Dim> timed;
   Sides<Space, Dim> sides;            // of the mesh, that act on the soil
+  RigidPairs<Space, Dim> pairs;       // rigid bodies that may touch each other
   SurfaceLoads<Space, T, Dim> loads;  // on parts of bodies' surfaces
   EnergyWorks<Space, T, Dim> energy;  // in use where the run asks for an energy balance
 };

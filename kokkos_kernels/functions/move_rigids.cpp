@@ -1,6 +1,7 @@
 #include <vector>
 
 #include "base/copy.hpp"
+#include "functions/rigid_pairs.hpp"
 #include "functions/step_kernels.hpp"
 #include "loops/end_step.hpp"
 #include "loops/particle_to_node.hpp"
@@ -69,6 +70,13 @@ struct Move {
   }
 };
 
+template <class Space, class T, int Dim>
+void move_by(ContactCore<Space, T, Dim>& s, const EndStep<Space, T, Dim>& end, const Space& stream) {
+  launch_end(end, stream, 1, Move{});
+  s.forces_summed = false;
+  if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, stream);
+}
+
 }  // namespace
 
 template <class Space, class T, int Dim>
@@ -81,9 +89,12 @@ void sum_forces(ContactCore<Space, T, Dim>& s, const Space& stream) {
 template <class Space, class T, int Dim>
 void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed, double dt,
                  const Space& stream) {
-  launch_end(EndStep<Space, T, Dim>(s, timed, dt), stream, 1, Move{});
-  s.forces_summed = false;
-  if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, stream);
+  move_by(s, EndStep<Space, T, Dim>(s, timed, dt), stream);
+}
+
+template <class Space, class T, int Dim>
+void move_touching_rigids(State<Space, T, Dim>& s, double dt, const Space& stream) {
+  move_by(s, EndStep<Space, T, Dim>(s, s.timed, dt, s.pairs.actions), stream);
 }
 
 template <class Space, class T, int Dim>
@@ -120,6 +131,7 @@ void restart_count(const Core<Space, T, Dim>& s) {
   template void sum_forces(ContactCore<Space, T, Dim>&, const Space&);                             \
   template void move_rigids(ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&, double, \
                             const Space&);                                                         \
+  template void move_touching_rigids(State<Space, T, Dim>&, double, const Space&);                 \
   template void move_rigid_points(ContactCore<Space, T, Dim>&, const Space&);                      \
   template void begin_loads(const ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&,   \
                             const LoadClock&);                                                     \

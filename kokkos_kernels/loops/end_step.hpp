@@ -48,19 +48,22 @@ struct EndStep {
   Kokkos::View<double*, Memory> sums, forces;  // N: of each rigid, and what the slots' nodes leave
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   NearBodies<Space> near;
+  Kokkos::View<PairAction<Dim>*, Memory> pairs;  // on each rigid, where some are near each other
   LoadsOfStep<T, Dim> timed;
   double dt, spacing, margin, damping;
   int count, slots, late;  // rigids, slots that leave forces
   int size;                // numbers of a wrench in `sums` and `forces`
   bool summed;             // the forces are in `sums` already
 
-  EndStep(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& loads, double step)
+  EndStep(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& loads, double step,
+          const Kokkos::View<PairAction<Dim>*, Memory>& actions = {})
       : control(s.control),
         movements(s.movements),
         sums(s.rigid_force),
         forces(s.contact.forces),
         rigids(s.rigids),
         near(s.contact.near),
+        pairs(actions),
         timed(loads.of_step()),
         dt(step),
         spacing(s.spacing),
@@ -125,7 +128,10 @@ struct EndStep {
         contact[k] = summed ? sums(v) : part[v];
         if (!summed && left.sums != nullptr) left.sums[v] = contact[k];
       }
-      part[r * size] = advance_rigid<T, MayTurn>(rigid, contact, damping, dt) / spacing;
+      const PairAction<Dim>* action = nullptr;
+      if constexpr (MayTurn)  // as in steps one by one
+        if (pairs.extent(0) > 0) action = pairs.data() + r;
+      part[r * size] = advance_rigid<T, MayTurn>(rigid, contact, damping, dt, action) / spacing;
       rigid.template keep_in<MayTurn>(left.rigids[r]);
     }
     team.team_barrier();

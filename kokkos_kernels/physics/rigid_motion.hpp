@@ -2,6 +2,7 @@
 // Motion of a rigid body in a step.
 
 #include "data/rigid_motion.hpp"
+#include "data/rigid_pairs.hpp"
 #include "physics/local_damping.hpp"
 
 namespace mpm {
@@ -120,18 +121,21 @@ KOKKOS_INLINE_FUNCTION AngularVector<Dim> kick_of(const MovingRigid<Dim>& rigid,
   return rate;
 }
 
-/// Turns a rigid body by a step of dt [s]; contact: wrench of the soil on it. Half of the moment's impulse
-/// comes before the rotation and half after it. Returns the largest movement by the rotation of a point of
+/// Turns a rigid body by a step of dt [s]; contact: wrench of the soil on it; pairs: what other rigid bodies
+/// do to it, null where none is near. Half of the moment's impulse comes before the rotation and half after
+/// it. Returns the largest movement by the rotation of a point of
 /// the body [m], or a little more.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION double turn_rigid(MovingRigid<Dim>& rigid, const Wrench<Dim>& contact, double damping,
-                                         double dt) {
+                                         double dt, const PairAction<Dim>* pairs) {
   const Turning<Dim>& body = rigid.inertia.turning;
   RigidMotion<Dim>& motion = rigid.motion;
   Rotation<Dim>& rotation = motion.pose.rotation;
   const AngularVector<Dim> before = motion.spin;
   const bool by_moments = rigid.inertia.dynamic && body.axis != Turning<Dim>::k_held;
-  const AngularVector<Dim> kick = by_moments ? kick_of<T>(rigid, contact, damping, dt) : AngularVector<Dim>{};
+  AngularVector<Dim> kick = by_moments ? kick_of<T>(rigid, contact, damping, dt) : AngularVector<Dim>{};
+  for (int k = 0; k < k_turning_axes<Dim> && by_moments && pairs != nullptr; ++k)
+    if (body.turns_about(k)) kick[k] += dt / 2 * pairs->wrench[Wrench<Dim>::moment + k];
   for (int k = 0; k < k_turning_axes<Dim>; ++k) rigid.momentum[k] += kick[k];
   if (by_moments && body.axis == Turning<Dim>::k_free) {
     turn_freely(body, rigid.momentum, dt, rotation);
@@ -146,26 +150,37 @@ KOKKOS_INLINE_FUNCTION double turn_rigid(MovingRigid<Dim>& rigid, const Wrench<D
     rotation = rotation.then(Rotation<Dim>::by(angle));
     if (by_moments) rigid.momentum[k] += kick[k], motion.spin[k] = rigid.momentum[k] / inertia;
   }
-  double squares = 0;
+  double squares = 0, shift = 0;
+  if (pairs != nullptr) {
+    AngularVector<Dim> angle;
+    for (int k = 0; k < k_turning_axes<Dim>; ++k) angle[k] = pairs->shift[Wrench<Dim>::moment + k];
+    for (int k = 0; k < k_turning_axes<Dim>; ++k) shift += Kokkos::fabs(angle[k]);
+    if (shift > 0) rotation = rotation.then(Rotation<Dim>::by(angle));
+  }
   for (int k = 0; k < k_turning_axes<Dim>; ++k) {
     const double w = Kokkos::fmax(Kokkos::fabs(before[k]), Kokkos::fabs(motion.spin[k]));
     squares += w * w;
   }
-  return dt * Kokkos::sqrt(squares) * body.reach;
+  return (dt * Kokkos::sqrt(squares) + shift) * body.reach;
 }
 
-/// Moves a rigid body by a step of dt [s]; contact [N, N m]: wrench of the soil on it. Returns the largest
-/// component of the movement of its points [m], or a little more. MayTurn: as in RigidPose.
+/// Moves a rigid body by a step of dt [s]; contact [N, N m]: wrench of the soil on it; pairs: what other
+/// rigid bodies do to it, which nothing damps, null where none is near. Returns the largest component of the
+/// movement of its points [m], or a little more. MayTurn: as in RigidPose.
 template <class T, bool MayTurn = true, int Dim>
 KOKKOS_INLINE_FUNCTION double advance_rigid(MovingRigid<Dim>& rigid, const Wrench<Dim>& contact,
-                                            double damping, double dt) {
-  const Vector<double, Dim> a = acceleration_of<T>(rigid, contact, damping, dt),
-                            way = movement_of(rigid.motion, a, dt);
+                                            double damping, double dt,
+                                            const PairAction<Dim>* pairs = nullptr) {
+  Vector<double, Dim> a = acceleration_of<T>(rigid, contact, damping, dt);
+  for (int d = 0; d < Dim && pairs != nullptr; ++d)
+    if (rigid.inertia.dynamic && !rigid.inertia.held[d]) a[d] += pairs->wrench[d] / rigid.inertia.mass;
+  Vector<double, Dim> way = movement_of(rigid.motion, a, dt);
+  for (int d = 0; d < Dim && pairs != nullptr; ++d) way[d] += pairs->shift[d];
   double furthest = 0;
   for (int d = 0; d < Dim; ++d) furthest = Kokkos::fmax(furthest, Kokkos::fabs(way[d]));
   const bool turns = MayTurn && rigid.motion.pose.turns;
   if constexpr (MayTurn)
-    if (turns) furthest += turn_rigid<T>(rigid, contact, damping, dt);
+    if (turns) furthest += turn_rigid<T>(rigid, contact, damping, dt, pairs);
   rigid.motion.pose.move(way);
   for (int k = 0; k < Wrench<Dim>::size; ++k)
     if (k < wrench_size<Dim>(turns)) rigid.impulse[k] += dt * contact[k];

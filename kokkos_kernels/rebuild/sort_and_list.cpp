@@ -6,6 +6,7 @@
 #include "functions/step_kernels.hpp"
 #include "functions/surface_loads.hpp"
 #include "rebuild/batches.hpp"
+#include "rebuild/list_pairs.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
@@ -18,6 +19,7 @@ void sort_and_list(State<Space, T, Dim>& s) {
   build_lists(s);
   if (!s.rigid_points.empty()) list_contacts(s);
   if (impulse_rows(s) > 0) restore_impulse(s, kept);
+  list_pairs(s);
   if (s.f_bar.fraction > 0 && !s.f_bar.keeps_stress) average_pressure(s);
 
   s.plan = plan_step(s);

@@ -10,6 +10,7 @@
 #include "physics/domain.hpp"
 #include "physics/rigid_motion.hpp"
 #include "physics/surface.hpp"
+#include "rebuild/list_pairs.hpp"
 #include "rebuild/shift_particle.hpp"
 #include "transfer/fill_view.hpp"
 #include "transfer/place_points.hpp"
@@ -247,6 +248,7 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   upload_rigids(s, rigids, k_rigid_cut, fault);
   begin_near_bodies<Space, T, Dim>(rigids, grid.spacing, s.contact.near);
   if (fault.kind != FaultKind::none) return fault;
+  find_parts(s);
   sort_and_list(s);
   begin_domains(s);
   return fault;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/rigid_contact.hpp"
 #include "common/text.hpp"
 
 namespace mpm {
@@ -85,12 +86,12 @@ void Notices::report_rigids(const HistoryRow& row, const Config& config,
       const RigidConfig &one = config.rigids[a], &other = config.rigids[b];
       if (one.absent || other.absent || parts_.contains({a, b})) continue;
       if (one.motion != Motion::dynamic && other.motion != Motion::dynamic) continue;
+      if (have_contact(config, one, other)) continue;
       if (!places_->share_space(a, b, moved_by(a), moved_by(b))) continue;
       parts_.emplace(a, b);
       if (!first)
         lines->push_back(
-            formatted("step %ld, time %.6g s: rigid %s is in rigid %s: rigid bodies do not touch each "
-                      "other",
+            formatted("step %ld, time %.6g s: rigid %s is in rigid %s: these two do not touch each other",
                       row.step, row.time, one.name.c_str(), other.name.c_str()));
     }
 }

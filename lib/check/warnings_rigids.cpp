@@ -5,6 +5,7 @@
 
 #include "check/rigid_places.hpp"
 #include "common/revolution.hpp"
+#include "common/rigid_contact.hpp"
 #include "common/text.hpp"
 #include "common/time_table.hpp"
 #include "input/geometry/shapes.hpp"
@@ -87,18 +88,24 @@ void warn_of_meetings(const Config& config, const std::vector<Way>& ways, Lines&
   for (int a = 0; a < count; ++a)
     for (int b = a + 1; b < count; ++b) {
       if (ways[a].rigid.absent || ways[b].rigid.absent || !(ways[a].moves() || ways[b].moves())) continue;
+      if (have_contact(config, ways[a].rigid, ways[b].rigid)) continue;
       if (places.share_space(a, b, {}, {})) continue;  // parts of one body
       for (int k = 1; k <= k_times; ++k) {
         const double time = config.time.end * k / k_times;
         if (!places.share_space(a, b, ways[a].at(time), ways[b].at(time))) continue;
         const bool first = ways[a].moves();  // the name of one that moves
         lines.push_back(
-            formatted("warning: rigid %s goes into rigid %s after %.3g s: rigid bodies do not touch "
+            formatted("warning: rigid %s goes into rigid %s after %.3g s: these two do not touch "
                       "each other",
                       ways[first ? a : b].rigid.name.c_str(), ways[first ? b : a].rigid.name.c_str(), time));
         break;
       }
     }
+}
+
+/// Whether sides of the mesh that are not free stop a rigid body.
+bool stops_at_sides(const Config& config, const Way& way) {
+  return config.rigid_contact && way.rigid.motion == Motion::dynamic && is_touchable(way.rigid);
 }
 
 /// The run fails where a particle of a rigid body leaves the mesh.
@@ -116,6 +123,8 @@ void warn_of_leaving(const Config& config, const Way& way, Lines& lines) {
       if (place.lower[d] > config.mesh.lower[d] - edge && place.upper[d] < config.mesh.upper[d] + edge)
         continue;
       if (is_periodic(config.mesh, d)) continue;
+      const bool upper = place.upper[d] >= config.mesh.upper[d] + edge;
+      if (stops_at_sides(config, way) && !is_open(config.mesh.walls[d][upper])) return;
       lines.push_back(formatted("warning: rigid %s leaves the mesh after %.3g s, where the run fails",
                                 way.rigid.name.c_str(), time));
       return;

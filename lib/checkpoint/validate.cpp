@@ -85,6 +85,22 @@ bool sound_sides(const SavedSides& sides, const Config& config) {
          std::all_of(sides.columns.begin(), sides.columns.end(), finite);
 }
 
+/// Whether contacts between rigid bodies are those of bodies of the run.
+bool sound_pairs(const SavedPairs& pairs, const Config& config) {
+  const auto rigids = static_cast<double>(config.rigids.size());
+  const auto finite = [](double x) { return std::isfinite(x); };
+  const std::size_t of_rigids = SavedPairs::totals * config.rigids.size();
+  if (pairs.contacts.size() % SavedPairs::width != 0 ||
+      !(pairs.impulses.empty() || pairs.impulses.size() == of_rigids) ||
+      !std::all_of(pairs.contacts.begin(), pairs.contacts.end(), finite) ||
+      !std::all_of(pairs.impulses.begin(), pairs.impulses.end(), finite))
+    return false;
+  for (std::size_t at = 0; at < pairs.contacts.size(); at += SavedPairs::width)
+    for (int k = 0; k < 2; ++k)
+      if (pairs.contacts[at + k] < -2 * config.dim || pairs.contacts[at + k] >= rigids) return false;
+  return true;
+}
+
 /// Fault of the account of bodies that are placed at a stage, and of their state variables.
 std::string bodies_fault(const SavedState& state, const Config& config) {
   const std::size_t bodies = config.bodies.size();
@@ -135,6 +151,7 @@ std::string state_fault(const SavedState& state, const Config& config) {
     return "a checkpoint with a sound section_lost";
   if (!std::all_of(state.impulse.values.begin(), state.impulse.values.end(), finite))
     return "a checkpoint with a sound impulse";
+  if (!sound_pairs(state.pairs, config)) return "a checkpoint with sound pair_contacts and pair_impulses";
   if (!sound_sides(state.sides, config))
     return "a checkpoint with sound side_kinds, side_nodes and side_columns";
   for (const SavedRigid& rigid : state.rigids)

@@ -72,6 +72,9 @@ struct RigidRow {
   Vec3 angle{};             // rad, since the start: the rotation vector
   Vec3 angular_velocity{};  // rad/s
   Vec3 moment{};            // N m, as the force
+  // Of other rigid bodies and sides of the mesh on it, likewise.
+  Vec3 contact_force{};   // N
+  Vec3 contact_moment{};  // N m
 };
 
 /// One row of the history for one load on a surface.

@@ -10,6 +10,7 @@
 
 #include "common/checksum.hpp"
 #include "common/numbers.hpp"
+#include "common/rigid_contact.hpp"
 #include "common/text.hpp"
 #include "output/files.hpp"
 #include "output/history_columns.hpp"
@@ -48,13 +49,19 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
               text_of(body.merged_energy);
     if (config.position_correction) text += "," + text_of(body.corrected) + "," + text_of(body.raised);
   }
+  const std::vector<char> in_contact = contact_columns(config);
   for (std::size_t r = 0; r < row.rigids.size(); ++r) {
     const RigidRow& rigid = row.rigids[r];
     for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})
       append(text, *vector, dim);
-    if (!config.rigids[r].turns()) continue;
-    for (const Vec3* vector : {&rigid.angle, &rigid.angular_velocity, &rigid.moment})
-      append(text, *vector, dim == 2 ? 1 : 3);
+    const bool turns = config.rigids[r].turns();
+    const int angular = dim == 2 ? 1 : 3;
+    if (turns)
+      for (const Vec3* vector : {&rigid.angle, &rigid.angular_velocity, &rigid.moment})
+        append(text, *vector, angular);
+    if (!in_contact[r]) continue;
+    append(text, rigid.contact_force, dim);
+    if (turns) append(text, rigid.contact_moment, angular);
   }
   for_each_wall(config, [&](int d, int side) { append(text, row.walls[d][side], dim); });
   for (const LoadRow& load : row.loads) {

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "common/rigid_contact.hpp"
 #include "common/text.hpp"
 #include "output/probes.hpp"
 
@@ -53,6 +54,23 @@ void add_body(Columns& to, const std::string& name, const Config& config) {
     for (const char* energy : {"_corrected_energy", "_raised_energy"}) to.add(name + energy);
 }
 
+void add_rigid(Columns& to, const RigidConfig& rigid, int dim, bool in_contact) {
+  to.begin("rigid_bodies", "rigid body", rigid.name);
+  for (const char* quantity : {"_", "_velocity_", "_force_"}) to.add_vector(rigid.name + quantity);
+  const auto add_turning = [&](const std::string& name) {
+    if (dim == 2)
+      to.add(name);
+    else
+      to.add_vector(name + "_");
+  };
+  if (rigid.turns())
+    for (const char* quantity : {"_angle", "_angular_velocity", "_moment"})
+      add_turning(rigid.name + quantity);
+  if (!in_contact) return;
+  to.add_vector(rigid.name + "_contact_force_");
+  if (rigid.turns()) add_turning(rigid.name + "_contact_moment");
+}
+
 }  // namespace
 
 std::vector<HistoryColumn> history_columns(const Config& config) {
@@ -62,16 +80,9 @@ std::vector<HistoryColumn> history_columns(const Config& config) {
   begin_run();
   for (const char* name : {"step", "time", "dt", "wall_time"}) to.add(name);
   for (const BodyConfig& body : config.bodies) add_body(to, body.name, config);
-  for (const RigidConfig& rigid : config.rigids) {
-    to.begin("rigid_bodies", "rigid body", rigid.name);
-    for (const char* quantity : {"_", "_velocity_", "_force_"}) to.add_vector(rigid.name + quantity);
-    if (!rigid.turns()) continue;
-    for (const char* quantity : {"_angle", "_angular_velocity", "_moment"})
-      if (config.dim == 2)
-        to.add(rigid.name + quantity);
-      else
-        to.add_vector(rigid.name + quantity + "_");
-  }
+  const std::vector<char> in_contact = contact_columns(config);
+  for (std::size_t r = 0; r < config.rigids.size(); ++r)
+    add_rigid(to, config.rigids[r], config.dim, in_contact[r]);
   for_each_wall(config, [&](int d, int side) {
     const std::string name = std::string(k_axis[d]) + (side == 0 ? "min" : "max");
     to.begin("", "side", name);

@@ -5,6 +5,7 @@
 
 #include "base/copy.hpp"
 #include "functions/grid_velocity.hpp"
+#include "functions/rigid_pairs.hpp"
 #include "rebuild/batches.hpp"
 #include "step/contact_at_sites.hpp"
 #include "step/gaps.hpp"
@@ -122,6 +123,7 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::measure_rigids(double interval, H
   const Config& config = run_.config;
   const double time = row->time - config.time.start;
   row->rigids.clear();
+  const std::vector<PairAction<Dim>> actions = take_pair_actions(run_.state);
   for (const Rigid<Dim>& r : take_rigids(run_.state)) {
     RigidRow rigid;
     Wrench<Dim> impulse = r.impulse;
@@ -136,6 +138,11 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::measure_rigids(double interval, H
       rigid.angle[k] = angle[k];
       rigid.angular_velocity[k] = r.motion.spin[k];
       rigid.moment[k] = interval > 0 ? impulse[Wrench<Dim>::moment + k] / interval : 0;
+    }
+    for (int k = 0; k < Wrench<Dim>::size && !actions.empty() && interval > 0; ++k) {
+      const double mean = actions[row->rigids.size()].impulse[k] / interval;
+      (k < Wrench<Dim>::moment ? rigid.contact_force[k] : rigid.contact_moment[k - Wrench<Dim>::moment]) =
+          mean;
     }
     row->rigids.push_back(rigid);
   }

@@ -1,6 +1,7 @@
 #include "step/present_rigids.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mpm {
 namespace {
@@ -18,6 +19,24 @@ std::vector<double> rearranged(const std::vector<double>& rows, std::size_t head
     std::copy_n(row, head, &out[n * now]);
     for (std::size_t k = 0; k < from.size(); ++k)
       std::copy_n(row + head + width * from[k], width, &out[n * now + head + width * to[k]]);
+  }
+  return out;
+}
+
+/// Contacts of bodies with other numbers: number n becomes to[n], where to[n] < 0 has none. Sides stay.
+std::vector<double> renumbered(const std::vector<double>& contacts, const std::vector<long>& to) {
+  constexpr int width = SavedPairs::width;
+  std::vector<double> out;
+  const auto now = [&](double n) {
+    const auto known = n >= 0 && n < static_cast<double>(to.size());
+    return n < 0 ? n : known ? static_cast<double>(to[static_cast<std::size_t>(n)]) : -HUGE_VAL;
+  };
+  for (std::size_t at = 0; at + width <= contacts.size(); at += width) {
+    const double a = now(contacts[at]), b = now(contacts[at + 1]);
+    if (a < 0 || (contacts[at + 1] >= 0 && b < 0)) continue;
+    out.insert(out.end(), {a, b});
+    out.insert(out.end(), contacts.begin() + static_cast<long>(at) + 2,
+               contacts.begin() + static_cast<long>(at) + width);
   }
   return out;
 }
@@ -52,6 +71,11 @@ void PresentRigids::narrow(SavedState& state) {
                                     others_.size(), place_.size(), place_, here);
   state.bounds = rearranged(state.bounds, k_saved_bounds, MotionTerms::impulse_size, others_.size(),
                             place_.size(), place_, here);
+  state.pairs.impulses =
+      rearranged(state.pairs.impulses, 0, SavedPairs::totals, others_.size(), place_.size(), place_, here);
+  std::vector<long> number(others_.size(), -1);
+  for (std::size_t k = 0; k < place_.size(); ++k) number[place_[k]] = static_cast<long>(k);
+  state.pairs.contacts = renumbered(state.pairs.contacts, number);
   state.rigids.clear();
   for (const std::size_t r : place_) state.rigids.push_back(others_[r]);
 }
@@ -65,6 +89,9 @@ void PresentRigids::widen(SavedState& state) const {
                                   place_.size(), others_.size(), here, place_);
   state.bounds = rearranged(state.bounds, k_saved_bounds, MotionTerms::impulse_size, place_.size(),
                             others_.size(), here, place_);
+  state.pairs.impulses =
+      rearranged(state.pairs.impulses, 0, SavedPairs::totals, place_.size(), others_.size(), here, place_);
+  state.pairs.contacts = renumbered(state.pairs.contacts, std::vector<long>(place_.begin(), place_.end()));
   std::vector<SavedRigid> rigids = others_;
   for (std::size_t k = 0; k < place_.size(); ++k) rigids[place_[k]] = state.rigids[k];
   state.rigids = std::move(rigids);

@@ -4,6 +4,7 @@
 
 #include "functions/energy_works.hpp"
 #include "functions/find_strays.hpp"
+#include "functions/rigid_pairs.hpp"
 #include "functions/split_patches.hpp"
 #include "functions/step_kernels.hpp"
 #include "functions/surface_loads.hpp"
@@ -197,7 +198,14 @@ struct Step {
   PetscErrorCode update_rigids(bool on_stream) const {
     PetscFunctionBeginUser;
     if (ranks) PetscCall(ranks->add_forces(s));
-    move_rigids(s, s.timed, dt, on_stream ? overlap->fork(s.space) : s.space);
+    const Space& stream = on_stream ? overlap->fork(s.space) : s.space;
+    if (s.pairs.in_use()) {
+      if (!s.forces_summed) sum_forces(s, stream);
+      contact_of_rigids(s, dt, stream);
+      move_touching_rigids(s, dt, stream);
+    } else {
+      move_rigids(s, s.timed, dt, stream);
+    }
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 3, the border first, unless its sums have been sent already.

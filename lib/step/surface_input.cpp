@@ -88,7 +88,7 @@ Polygon made_smaller(const Polygon& polygon, const std::vector<bool>& ends, doub
   return smaller;
 }
 
-SurfaceInput box(const Shape& shape, const MeshConfig& mesh, int dim) {
+SurfaceInput box(const Shape& shape, const MeshConfig& mesh, int dim, Corners corners) {
   SurfaceInput out;
   const double slack = k_slack * mesh.spacing;
   Vec3 lower = shape.lower, upper = shape.upper;
@@ -110,11 +110,12 @@ SurfaceInput box(const Shape& shape, const MeshConfig& mesh, int dim) {
     out.centre[0] -= mesh.lower[0], out.centre[up] -= mesh.lower[up];
   }
   constexpr double k_rounding = 0.5;  // cells
-  out.radius = std::max(shape.fillet, std::min(k_rounding * mesh.spacing, shortest / 2));
+  const double least = corners == Corners::rounded ? std::min(k_rounding * mesh.spacing, shortest / 2) : 0;
+  out.radius = std::max(shape.fillet, least);
   return out;
 }
 
-SurfaceInput polygon(const Shape& shape, const MeshConfig& mesh, int dim) {
+SurfaceInput polygon(const Shape& shape, const MeshConfig& mesh, int dim, Corners corners) {
   SurfaceInput out;
   out.kind = SurfaceKind::polygon;
   const double slack = k_slack * mesh.spacing;
@@ -124,7 +125,7 @@ SurfaceInput polygon(const Shape& shape, const MeshConfig& mesh, int dim) {
   for (std::size_t k = 0; k < outline.size(); ++k)
     ends.push_back(on_boundary(edge_of(outline, k), mesh, dim));
   constexpr double k_left = 1e-6;  // of an edge, so that none vanishes
-  out.radius = rounding_of(outline, ends, 1 - k_left, mesh.spacing);
+  if (corners == Corners::rounded) out.radius = rounding_of(outline, ends, 1 - k_left, mesh.spacing);
   if (dim == 3) out.radius = std::min(out.radius, (shape.width[1] - shape.width[0]) / 2);
   const Polygon smaller = made_smaller(outline, ends, out.radius);
   for (std::size_t k = 0; k < smaller.size(); ++k)
@@ -179,12 +180,12 @@ SurfaceInput heights(const HeightSurface& top, const MeshConfig& mesh) {
   return out;
 }
 
-SurfaceInput layer(const Shape& shape, const MeshConfig& mesh, int dim) {
-  if (dim == 2 || !depends_on_y(shape)) return polygon(prism_of(shape, mesh), mesh, dim);
+SurfaceInput layer(const Shape& shape, const MeshConfig& mesh, int dim, Corners corners) {
+  if (dim == 2 || !depends_on_y(shape)) return polygon(prism_of(shape, mesh), mesh, dim, corners);
   return heights(*shape.top, mesh);
 }
 
-SurfaceInput revolved(const Shape& shape, const MeshConfig& mesh) {
+SurfaceInput revolved(const Shape& shape, const MeshConfig& mesh, Corners corners) {
   SurfaceInput out;
   out.kind = SurfaceKind::revolved;
   const double slack = k_slack * mesh.spacing, beyond = beyond_mesh(mesh, 3);
@@ -192,7 +193,7 @@ SurfaceInput revolved(const Shape& shape, const MeshConfig& mesh) {
   const Polygon section =
       section_of(shape, low < mesh.lower[2] + slack ? beyond : 0, high > mesh.upper[2] - slack ? beyond : 0);
   const std::vector<bool> all(section.size(), false);
-  out.radius = rounding_of(section, all, 0.5, mesh.spacing);
+  if (corners == Corners::rounded) out.radius = rounding_of(section, all, 0.5, mesh.spacing);
   for (const Point2& vertex : made_smaller(section, all, out.radius))
     out.vertices.push_back({vertex[0], vertex[1] - shape.centre[2], false});
   for (int d = 0; d < 3; ++d) out.centre[d] = shape.centre[d] - mesh.lower[d];
@@ -201,11 +202,11 @@ SurfaceInput revolved(const Shape& shape, const MeshConfig& mesh) {
 
 }  // namespace
 
-SurfaceInput surface_input(const Shape& shape, const MeshConfig& mesh, int dim) {
-  if (shape.kind == ShapeKind::box) return box(shape, mesh, dim);
-  if (shape.kind == ShapeKind::polygon) return polygon(shape, mesh, dim);
-  if (is_revolved(shape)) return revolved(shape, mesh);
-  if (shape.kind == ShapeKind::layer) return layer(shape, mesh, dim);
+SurfaceInput surface_input(const Shape& shape, const MeshConfig& mesh, int dim, Corners corners) {
+  if (shape.kind == ShapeKind::box) return box(shape, mesh, dim, corners);
+  if (shape.kind == ShapeKind::polygon) return polygon(shape, mesh, dim, corners);
+  if (is_revolved(shape)) return revolved(shape, mesh, corners);
+  if (shape.kind == ShapeKind::layer) return layer(shape, mesh, dim, corners);
   if (shape.kind == ShapeKind::stl) return sampled_surface(shape, mesh);
   SurfaceInput out;
   out.kind = shape.kind == ShapeKind::disc ? SurfaceKind::disc : SurfaceKind::half_plane;

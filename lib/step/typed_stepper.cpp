@@ -12,6 +12,7 @@
 #include "rebuild/limit_volumes.hpp"
 #include "step/body_input.hpp"
 #include "step/follow_soil.hpp"
+#include "step/pair_input.hpp"
 #include "step/water.hpp"
 #include "transfer/save_state.hpp"
 
@@ -38,6 +39,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   set_options(model);
   PetscCallCXX(sides_.set_up(&grid));
   PetscCallCXX(loads_.set_up(model.face_count, carried_masses(config, rigids)));
+  PetscCallCXX(upload_pairs(s, pair_input(config), config.mesh.spacing));
   Fault fault{};
   PetscCallCXX(fault = upload(s, grid, materials, bodies, rigids));
   *failure = fault.kind == FaultKind::none ? reports_.failure_of_limit() : reports_.failure_of(fault);
@@ -190,6 +192,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscFunctionBeginUser;
   collect_soil(run_.state);
   PetscCallCXX(*saved = save_state(run_.state));
+  PetscCallCXX(saved->pairs = save_pairs(run_.state));
   PetscCall(snapshots_.save_for_starts(saved));
   ids_.save(saved);
   PetscCall(energy_.save(saved));
@@ -218,6 +221,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   if (!run_.is_first()) std::fill(saved.lost.begin(), saved.lost.end(), 0);  // rank 0 has them
   Failure unfit;
   PetscCallCXX(unfit.what = take_saved(s, saved));
+  PetscCallCXX(restore_pairs(s, saved.pairs));
   loads_.restore(saved);
   energy_.restore(saved);
   probes_.restore(saved);

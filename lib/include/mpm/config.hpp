@@ -154,6 +154,7 @@ struct RigidConfig {
   double shear_limit = 0;                // Pa, largest shear stress of the interface; 0 is smooth
   std::optional<double> shear_fraction;  // -, the limit as a fraction of the soil's strength, instead of it
   std::optional<double> friction;        // -, Coulomb coefficient
+  std::optional<double> restitution;     // -, of impacts on other rigid bodies
   bool contact_at_sites = false;         // else at nodes
   ContactNormal contact_normal = ContactNormal::surface;
   bool separates = true;            // the soil may part from it
@@ -366,6 +367,9 @@ struct Config {
   std::vector<MaterialConfig> materials;
   std::vector<BodyConfig> bodies;
   std::vector<RigidConfig> rigids;
+  bool rigid_contact = true;             // rigid bodies touch each other, where one of two is dynamic
+  bool rigid_contact_given = false;      // by the options
+  std::optional<double> rigid_friction;  // -, of all pairs of rigid bodies
   OutputConfig output;
   std::vector<LoadConfig> loads;
   std::vector<ProbeConfig> probes;

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "common/text.hpp"
+#include "input/deck/body_table.hpp"
 #include "input/deck/renamed.hpp"
 
 namespace mpm {
@@ -234,8 +235,38 @@ void DeckReader::note_replaced() {
   }
 }
 
+/// Adds the rigid bodies of the table that -rigid_bodies_file names: their names behind those of
+/// -rigid_bodies, and each cell as an option of its body, which gives way to all others.
+void DeckReader::add_rigid_bodies() {
+  const auto last = [&](const char* name) -> const GivenOption* {
+    const GivenOption* found = nullptr;
+    for (const GivenOption& option : options_)
+      if (lower_case(option.name) == name && (found == nullptr || option.source >= found->source))
+        found = &option;
+    return found;
+  };
+  const GivenOption* const file = last("-rigid_bodies_file");
+  if (file == nullptr || !file->value) return;
+  std::string fault;
+  const std::string path = *file->value;
+  const std::vector<RowOptions> rows = rows_of_bodies(contents_of(path, fault), &fault);
+  if (!fault.empty()) return fail("-rigid_bodies_file: given \"" + printable(path) + "\", takes " + fault);
+  files.push_back(path);
+  const GivenOption* const listed = last("-rigid_bodies");
+  const Source source = listed == nullptr ? file->source : std::max(listed->source, file->source);
+  std::vector<std::string> names;
+  if (listed != nullptr && listed->value) names.push_back(*listed->value);
+  for (const RowOptions& row : rows) {
+    names.push_back(row.name);
+    for (const auto& [option, value] : row.options)
+      options_.push_back({option, "", value, Source::petscrc, path});
+  }
+  options_.push_back({"-rigid_bodies", "", join(names), source, path});
+}
+
 std::vector<GivenOption> DeckReader::take() {
   note_replaced();
+  add_rigid_bodies();
   std::stable_sort(options_.begin(), options_.end(),
                    [](const GivenOption& a, const GivenOption& b) { return a.source < b.source; });
   return std::move(options_);

@@ -54,8 +54,10 @@ class DeckReader {
            const std::string& where);
   void fail(const std::string& line);
 
-  std::vector<GivenOption> options_;
   void note_replaced();
+  void add_rigid_bodies();
+
+  std::vector<GivenOption> options_;
 
   std::vector<std::string> prefixes_, open_files_,
       open_names_;                              // of the files: what identifies them; their names

@@ -125,6 +125,10 @@ const std::vector<std::string>& turning_keys();
 void read_turning(OptionReader& in, int dim, RigidConfig& rigid);
 void check_turning(OptionReader& in, const Config& config, const MeshConfig& mesh, const RigidConfig& rigid);
 
+/// Contact between rigid bodies: the options of all of them, and that of each.
+void read_rigid_contact(OptionReader& in, Config& config);
+void read_restitution(OptionReader& in, RigidConfig& rigid);
+
 /// The motion of a rigid and what moves it; `end` [s]: of the run.
 void read_motion(OptionReader& in, int dim, double end, RigidConfig& rigid);
 

@@ -252,6 +252,7 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
        .range = {.lowest = 0, .highest = 10},
        .change = k_by_choice},
       rigid.friction);
+  read_restitution(in, rigid);
   read_contact_normal(in, rigid);
   read_contact_points(in, rigid);
   in.word({.name = rigid.name + "_separation",
@@ -327,6 +328,7 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
     note_presence(config.stage, config.rigids.back());
     read_rigid(in, mesh, config, config.rigids.back());
   }
+  read_rigid_contact(in, config);
   for (const auto& name : loads) {
     config.loads.emplace_back().name = name;
     read_load(in, config, config.loads.back());
