@@ -88,7 +88,14 @@ void warn_of_meetings(const Config& config, const std::vector<Way>& ways, Lines&
   for (int a = 0; a < count; ++a)
     for (int b = a + 1; b < count; ++b) {
       if (ways[a].rigid.absent || ways[b].rigid.absent || !(ways[a].moves() || ways[b].moves())) continue;
-      if (have_contact(config, ways[a].rigid, ways[b].rigid)) continue;
+      if (have_contact(config, ways[a].rigid, ways[b].rigid)) {
+        if (places.share_space(a, b, {}, {}))
+          lines.push_back(
+              formatted("warning: rigid %s and rigid %s have space in common at the start: they do not touch "
+                        "each other",
+                        ways[a].rigid.name.c_str(), ways[b].rigid.name.c_str()));
+        continue;
+      }
       if (places.share_space(a, b, {}, {})) continue;  // parts of one body
       for (int k = 1; k <= k_times; ++k) {
         const double time = config.time.end * k / k_times;

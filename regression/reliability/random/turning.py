@@ -29,7 +29,7 @@ class Turning(Deck):
                           "-output_interval 0.06").split(), *self.soil()]
         names = draw.choice([["wheel"], ["wheel", "brick"]])
         self.bodies = {name: self.body(name, 0.9 + 1.6 * k) for k, name in enumerate(names)}
-        self.options += ["-rigid_bodies", ",".join(names)] + [word for body in self.bodies.values() for word in body["words"]]
+        self.options += ["-rigid_contact", "on", "-rigid_bodies", ",".join(names)] + [word for body in self.bodies.values() for word in body["words"]]
 
     def soil(self):
         common = "-soil_density 1700 -soil_young 2e6 -soil_poisson 0.3 "
@@ -96,9 +96,10 @@ class Turning(Deck):
             for axis, g in zip(self.axes, self.gravity):
                 if axis not in body["held"]:
                     self.check_gain(name, axis, body["mass"] * values[f"{name}_velocity_{axis}"],
-                                    values[f"{name}_force_{axis}"] + body["mass"] * g, t)
+                                    values[f"{name}_force_{axis}"] + values[f"{name}_contact_force_{axis}"] + body["mass"] * g, t)
             if self.dim == 2:
-                self.check_gain(name, "rz", round(body["inertia"][0], 6) * turned[""], values[f"{name}_moment"] + round(body["moment"][0], 6), t)
+                self.check_gain(name, "rz", round(body["inertia"][0], 6) * turned[""], values[f"{name}_moment"]
+                                + values[f"{name}_contact_moment"] + round(body["moment"][0], 6), t)
 
     def check_gain(self, name, what, momentum, rate, t):
         """What a body gains between two rows is the mean of the force over the interval."""
