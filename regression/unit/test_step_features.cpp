@@ -37,6 +37,7 @@ void put(State_& s, Feature f) {
     case Feature::contact_sites: s.at_sites.in_use = true; break;
     case Feature::pushed_mass_normals: s.rigid_dynamic = s.mass_normals = true; break;
     case Feature::turning_rigids: s.rigid_turns = true; break;
+    case Feature::many_rigids: s.contact.near.listed = true; break;
     case Feature::rigid_pairs: s.pairs.count = 1; break;
     case Feature::revolved: s.soil.points.rings = true; break;
     case Feature::ranks: s.owned_nodes = Kokkos::View<std::uint64_t*, Memory>("owned", 1); break;
