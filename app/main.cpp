@@ -26,9 +26,9 @@ std::atomic_int failure_status{k_system_failure};
 std::atomic_bool begun{false};  // the steps
 
 /// Prints the first failure in one line.
-void tell_failure(bool memory, const char* message) {
-  static std::atomic_flag told;
-  if (told.test_and_set()) return;
+void print_failure(bool memory, const char* message) {
+  static std::atomic_flag printed;
+  if (printed.test_and_set()) return;
   if (!memory) {
     std::fprintf(stderr, "mpm: %s\n", message != nullptr ? message : "the system failed");
     return;
@@ -39,7 +39,7 @@ void tell_failure(bool memory, const char* message) {
 }
 
 /// Whether a message is that of an allocation: of the language, its containers or Kokkos.
-bool tells_of_memory(const char* message) {
+bool is_of_memory(const char* message) {
   const std::string text = message != nullptr ? message : "";
   return text.find("bad_alloc") != std::string::npos ||
          text.find("failed to allocate") != std::string::npos ||
@@ -49,21 +49,21 @@ bool tells_of_memory(const char* message) {
 
 /// One line instead of PETSc's page, where an error is met first; a full disk is often met by rows and by
 /// frames, which are written beside the run.
-PetscErrorCode tell_in_one_line(MPI_Comm, int, const char*, const char*, PetscErrorCode error,
-                                PetscErrorType type, const char* message, void*) {
-  if (type == PETSC_ERROR_INITIAL) tell_failure(error == PETSC_ERR_MEM || tells_of_memory(message), message);
+PetscErrorCode print_in_one_line(MPI_Comm, int, const char*, const char*, PetscErrorCode error,
+                                 PetscErrorType type, const char* message, void*) {
+  if (type == PETSC_ERROR_INITIAL) print_failure(error == PETSC_ERR_MEM || is_of_memory(message), message);
   return error;
 }
 
 /// Prints a failure of PETSc's start, where only an option of PETSc can be wrong.
-PetscErrorCode tell_of_start(MPI_Comm, int, const char*, const char*, PetscErrorCode error,
-                             PetscErrorType type, const char* message, void*) {
+PetscErrorCode print_fault_of_start(MPI_Comm, int, const char*, const char*, PetscErrorCode error,
+                                    PetscErrorType type, const char* message, void*) {
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (type == PETSC_ERROR_INITIAL && rank == 0)
     std::fprintf(
         stderr,
-        "mpm: options of PETSc: given a value that it does not know (%s), takes those of its manual\n",
+        "mpm: options of PETSc: given a value that is not one of its words (%s), takes those of its manual\n",
         message != nullptr ? message : "");
   return error;
 }
@@ -76,7 +76,7 @@ PetscErrorCode run(const mpm::InputReport& arguments, mpm::Outcome* outcome) {
     PetscCall(simulation.set_from_options(PETSC_COMM_WORLD, nullptr, arguments));
     if (simulation.ready()) PetscCall(simulation.run());
   } catch (const std::exception& error) {
-    tell_failure(tells_of_memory(error.what()), error.what());
+    print_failure(is_of_memory(error.what()), error.what());
     PetscFunctionReturn(PETSC_ERR_MEM);
   }
   *outcome = simulation.outcome();
@@ -91,7 +91,7 @@ void end_of_exception() {
   } catch (const std::exception& error) {
     what = error.what();
   } catch (...) {}
-  tell_failure(tells_of_memory(what.c_str()), what.c_str());
+  print_failure(is_of_memory(what.c_str()), what.c_str());
   std::_Exit(failure_status);
 }
 
@@ -118,7 +118,8 @@ void end_others() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const mpm::Told told = mpm::told_without_run(argc, argv); told.asked) return print(told.text);
+  if (const mpm::AboutAnswer about = mpm::answer_without_run(argc, argv); about.asked)
+    return print(about.text);
   mpm::flush_subnormals();
   std::set_terminate(end_of_exception);
   MPI_Init(&argc, &argv);
@@ -129,13 +130,13 @@ int main(int argc, char** argv) {
   const auto arguments = mpm::prepare_arguments(MPI_COMM_WORLD, &argc, &argv);
   // The system's own way with signals: PETSc's is a page of text even where a reader closes a pipe.
   PetscCall(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"));
-  PetscCall(PetscPushErrorHandler(tell_of_start, nullptr));  // stays: -malloc_debug could not free it
+  PetscCall(PetscPushErrorHandler(print_fault_of_start, nullptr));  // stays: -malloc_debug could not free it
   if (PetscInitialize(&argc, &argv, nullptr, nullptr) != PETSC_SUCCESS) {
     mpm::end_devices();
     MPI_Finalize();
     return static_cast<int>(mpm::Outcome::bad_input);
   }
-  PetscCall(PetscPushErrorHandler(tell_in_one_line, nullptr));
+  PetscCall(PetscPushErrorHandler(print_in_one_line, nullptr));
   mpm::Outcome outcome{};
   const bool whole = run(*arguments, &outcome) == PETSC_SUCCESS;
   if (!whole) end_others();

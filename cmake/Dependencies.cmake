@@ -1,4 +1,4 @@
-# What mpm stands on, as targets:
+# Libraries that mpm uses, as targets:
 #   Kokkos::kokkos  PETSc::PETSc  MPI::MPI_C  HDF5::HDF5  METIS::METIS  ZLIB::ZLIB  Catch2::Catch2
 # `scripts/setup` installs what is missing; <Package>_ROOT and CMAKE_PREFIX_PATH steer the search.
 
@@ -15,7 +15,7 @@ if(MPM_KOKKOS_LANGUAGE STREQUAL CUDA)
   enable_language(CUDA)
   # nvcc's -O is for the code of the processor alone, and each source has its own.
   string(REPLACE "-O3" "" CMAKE_CUDA_FLAGS_RELEASE "${CMAKE_CUDA_FLAGS_RELEASE}")
-  if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake before 3.25.2 does not know nvcc's C++20
+  if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake before 3.25.2 has no option for nvcc's C++20
     set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
     list(APPEND CMAKE_CUDA_COMPILE_FEATURES cuda_std_20)
   endif()
@@ -38,10 +38,10 @@ function(mpm_kokkos_sources target)
   endif()
 endfunction()
 
-# The same for a group of sources that take little of a step. nvcc takes 20 s to read Kokkos' headers; it compiles the group as one
-# file, <target>_<group>.cpp in the build folder. (UNITY_BUILD of CMake 3.25 does not know CUDA.) Other compilers compile each
+# As mpm_kokkos_sources, for a group of sources that take little of a step. nvcc takes 20 s to read Kokkos' headers; it compiles the group as one
+# file, <target>_<group>.cpp in the build folder. (UNITY_BUILD of CMake 3.25 does not take CUDA.) Other compilers compile each
 # source. No two sources of a group may define the same name in unnamed namespaces.
-# What the host compiler then gets is nearly all code that launches kernels; -O3 would take over twice as long as -Og.
+# The host compiler then gets little else than code that launches kernels; -O3 would take over twice as long as -Og.
 function(mpm_kokkos_group target group)
   if(NOT MPM_KOKKOS_LANGUAGE STREQUAL CUDA)
     mpm_kokkos_sources(${target} ${ARGN})

@@ -1,4 +1,4 @@
-# What `cmake --install` puts where: the program, the library with its public headers, and the package that
+# Places of the files that `cmake --install` installs: the program, the library with its public headers, and the package that
 # find_package(mpm) reads.
 
 include(CMakePackageConfigHelpers)

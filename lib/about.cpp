@@ -62,7 +62,7 @@ std::string help_text() {
   return read_options(nullptr, available_backends(), config, report) == PETSC_SUCCESS ? report.help_text : "";
 }
 
-Told told_without_run(int argc, char** argv) {
+AboutAnswer answer_without_run(int argc, char** argv) {
   for (int k = 1; k < argc; ++k) {
     const std::string word = lower_case(argv[k]);
     const bool version = word == "--version" || word == "-version";

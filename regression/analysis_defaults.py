@@ -16,7 +16,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 FLOW = ("-analysis", "flow")
 SET = ("-velocity_update", "apic", "-particle_domain", "split", "-position_correction", "delta")
 SHORT = ("-time_end", 0.02, "-backend", "serial", "-p2g", "tile", "-checkpoint_interval", 0.01)
-# What holds where the deck gives an option of those that are set, and in a body of revolution.
+# Lines of the log where the deck gives an option of those that are set, and in a body of revolution.
 NOTES = {(): "flow sets -velocity_update apic, -particle_domain split, -position_correction delta",
          ("-particle_domain", "stretch"): "flow sets -velocity_update apic, -position_correction delta; the deck gives "
                                           "-particle_domain stretch",

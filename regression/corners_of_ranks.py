@@ -44,7 +44,7 @@ def velocity(vx, vy, dim):
 
 
 def decks(dim):
-    """{name: (options, steps, looks at most)}. A patch has 8 cells an edge in 2D, 4 in 3D."""
+    """{name: (options, steps, most checks by the host)}. A patch has 8 cells an edge in 2D, 4 in 3D."""
     patch = 8 if dim == 2 else 4
     soil = "-bodies soil -soil_material soft "
     return {
@@ -54,7 +54,7 @@ def decks(dim):
                             + box("soil", (0.2, 0.2), (4.0, 0.6), dim, f"-soil_velocity {velocity(0.5, 0.1, dim)}"), 100, 50),
         "across all ranks": (mesh(6.4, 1.6, 0.2, dim) + soil + "-time_courant 0.4 "
                              + box("soil", (0.4, 0.4), (1.2, 1.2), dim, f"-soil_velocity {velocity(5, 0, dim)}"), 420, 210),
-        # The host looks at soil that is so fast after each step.
+        # The host checks soil that is so fast after each step.
         "fast": (mesh(6.4, 1.6, 0.2, dim) + soil + "-time_courant 0.4 "
                  + box("soil", (0.4, 0.4), (1.2, 1.2), dim, f"-soil_velocity {velocity(18, 0, dim)}"), 100, 100),
         "meeting at a cut": (mesh(6.4, 1.6, 0.2, dim) + "-bodies soil,other -soil_material soft -other_material soft "
@@ -82,7 +82,7 @@ def rebuilds(folder):
 
 
 def looks_too_often(folder, most):
-    """How often the host looked at the steps, where that is more than `most` times: it should be seldom, on several ranks too, or a device
+    """How often the host checked the steps, where that is more than `most` times: it should be seldom, on several ranks too, or a device
     waits for it. The host looks each 0.05 s, so that on a machine with other load it may look after each step."""
     done = performance(folder)
     looks = done["looks_of_host"]

@@ -70,9 +70,9 @@ def check(given, folder):
     return wrong
 
 
-def us_of(told):
+def us_of(report):
     """us a step, without output."""
-    return 1e6 * told["stepping_seconds"] / told["steps"]
+    return 1e6 * report["stepping_seconds"] / report["steps"]
 
 
 def times(given, folder):
@@ -82,18 +82,18 @@ def times(given, folder):
             size = Setting("footing", ranks * particles, given.backend, precision, "tile").size()
             return (f"-options_file inputs/footing.opts -precision {precision} -p2g tile -time_max_steps {given.steps}"
                     f" {size} {HISTORY}")
-        told = run(given, options(1), 1, folder / "time")
-        if told is None:
+        report = run(given, options(1), 1, folder / "time")
+        if report is None:
             wrong += 1
             continue
-        alone = us_of(told)
+        alone = us_of(report)
         print(f"{precision}, {particles:,} particles a rank: {alone:.0f} us a step on one rank", flush=True)
         for way in ways(given):
-            told = run(given, f"{options(given.ranks)} {way}", given.ranks, folder / "time")
-            if told is None:
+            report = run(given, f"{options(given.ranks)} {way}", given.ranks, folder / "time")
+            if report is None:
                 wrong += 1
                 continue
-            us, ranks = us_of(told), told["between_ranks"]
+            us, ranks = us_of(report), report["between_ranks"]
             halo, wait, held = (ranks[name] for name in ("halo_seconds", "wait_seconds", "held_seconds"))
             print(f"  {way}: {us:.0f} us ({100 * alone / us:.1f} %), {ranks['halo_path']}; halo (pack and sum)"
                   f" {halo['least']:.3f} to {halo['most']:.3f} s, wait {wait['least']:.3f} to {wait['most']:.3f} s"
@@ -111,7 +111,7 @@ def main():
     parser.add_argument("--no-checks", action="store_true")
     parser.add_argument("--no-times", action="store_true")
     given = parser.parse_args()
-    given.binary = given.binary.absolute()  # a link tells the launcher of a bundle what to start
+    given.binary = given.binary.absolute()  # the launcher of a bundle starts the program that a link names
     with tempfile.TemporaryDirectory() as folder:
         wrong = 0 if given.no_checks else check(given, Path(folder))
         wrong += 0 if given.no_times else times(given, Path(folder))

@@ -37,7 +37,7 @@ def run(binary, options):
 
 
 def faults_of(binary, options):
-    """What is wrong with the program's answer to options that it should refuse."""
+    """Yields the faults of the program's answer to options that it should refuse."""
     name = re.findall(r"(?:^|\s)(-[a-z]\w*)", options)[-1]
     result, files = run(binary, options)
     faults = [] if result.returncode == 2 else [f"status {result.returncode}, expected 2"]

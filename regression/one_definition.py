@@ -27,7 +27,7 @@ def code_of(text):
 
 
 def parts_of(text, mark=","):
-    """What stands between the marks that are in no brackets."""
+    """Parts of the text between the marks that are in no brackets."""
     parts, depth = [""], 0
     for letter in text:
         depth += {"(": 1, "<": 1, "[": 1, "{": 1, ")": -1, ">": -1, "]": -1, "}": -1}.get(letter, 0)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes docs/options.md from what `mpm -help` prints.
 
-Usage: regression/options_doc.py PATH_TO_mpm [--check]   (--check: only tell whether the file is up to date)
+Usage: regression/options_doc.py PATH_TO_mpm [--check]   (--check: only report whether the file is up to date)
 """
 import pathlib
 import re
@@ -20,9 +20,9 @@ Made from `mpm -help` by `regression/options_doc.py`; edit the help, not this fi
 A deck holds one option a line; `#` begins a comment. What the command line gives takes precedence over the deck, and the
 last of an option given twice holds. Units are SI; in 2D every force and mass is per metre of width, or of the whole
 revolution with `-geometry axisymmetric`. A list has commas and no spaces. NAME stands for a name of `-materials`, `-bodies`, `-rigid_bodies` or `-probes`; names are of letters, digits and _, begin
-with a letter, and are told apart without regard to case. The vertical axis is the last one.
+with a letter, and are compared without regard to case. The vertical axis is the last one.
 
-Every mistake is told in a line of its own before anything is written, and the exit status is then 2. Some options
+Every mistake is reported in a line of its own before anything is written, and the exit status is then 2. Some options
 of PETSc are [taken too](running.md#options-of-petsc).
 
 Some options have new names. Their former names stay accepted, and the log has one line for each: `mpm: note: -rigids is now

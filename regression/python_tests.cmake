@@ -170,7 +170,7 @@ foreach(file ${cases})
   set(name ${base})
   set(base_long OFF)
   set(long OFF)
-  # What a case says of itself stands before its sizes.
+  # LONG of the case itself stands before its sizes.
   file(STRINGS ${file} lines REGEX "^class [A-Za-z]+\\(Size\\)|^ *LONG = ")
   foreach(line ${lines})
     if(line MATCHES "LONG = (True|False)")

@@ -40,7 +40,7 @@ def dim_of(case, run):
 
 
 def compare(given, both, run, variant, strategy, base):
-    """What differs between the two programs in one run."""
+    """Differences between the two programs in one run."""
     more = f"-p2g {strategy} -time_max_steps {given.steps}"
     folders = []
     for name, program, case in (("before", given.before, both[0]), ("after", given.after, both[1])):

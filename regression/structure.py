@@ -41,7 +41,7 @@ def reached_from(path, texts):
 
 
 def body_of(text, name):
-    """What stands between the braces of a struct or class; None where it is not defined there."""
+    """Text between the braces of a struct or class; None where it is not defined there."""
     start = re.search(rf"\b(?:struct|class) (?:\w+::)?{name}\b[^;{{]*\{{", text)
     if start is None:
         return None

@@ -6,7 +6,7 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 environment=$("$source_dir/scripts/setup" --print-env) || exit 1
 eval "$environment"
 
-# Open MPI refuses root (containers) and more ranks than cores (tests) unless told.
+# Open MPI refuses root (containers) and more ranks than cores (tests) unless allowed.
 if [ "$(id -u)" = 0 ]; then export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; fi
 export OMPI_MCA_rmaps_base_oversubscribe=${OMPI_MCA_rmaps_base_oversubscribe:-1}
 # Where threads of several ranks share the cores, binding would put them all on the first ones.

@@ -80,7 +80,7 @@ struct Nodes : NodeSums<Space, T, Dim> {
       impulse;  // N s, [ImpulseTerms::size a rigid][node], kept from step to step
 };
 
-/// What a run has beside the step of the paper, by which nodal fields are in use.
+/// Features of a run beside the step of the paper; each brings nodal fields into use.
 struct NodeUses {
   bool boundary = false;    // some contact needs the soil's boundary
   bool strength = false;    // some contact needs the soil's strength

@@ -57,7 +57,7 @@ struct WorkAtNodes {
     update.advanced(update.nodes, update.rigids.data(), node, v_old, a, false, nullptr, brake);
     return brake;
   }
-  /// The same where the nodes are braked behind contact at sites, from the acceleration that was left.
+  /// Deceleration [m/s2] where damping follows contact at sites, from the acceleration that damping left.
   KOKKOS_INLINE_FUNCTION Vector<T, Dim> braking_behind_sites(int i, const Vector<T, Dim>& v_old) const {
     Vector<T, Dim> brake;
     for (int d = 0; d < Dim; ++d) {

@@ -146,7 +146,7 @@ int run_persistent_steps(State<Space, T, Dim>& s, double dt, long most) {
 template <class Space, class T, int Dim>
 void resume_single_steps(State<Space, T, Dim>& s) {
   s.launch.co_resident = false;
-  s.summed = {};  // the host does not know whose turn the sums are
+  s.summed = {};  // the host has no record of whose turn the sums are
   const auto control = s.control;
   Kokkos::parallel_for(
       "mpm::resume_single_steps", Kokkos::RangePolicy<Space>(s.space, 0, 1),

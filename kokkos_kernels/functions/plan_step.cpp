@@ -10,8 +10,8 @@ StepPlan plan_step(const State<Space, T, Dim>& s) {
       2000;  // patches that a device has all at once, so that a step should take few launches
   const bool few = s.patches.slots < k_few, batches = s.batches.in_use();
   const Features features = features_of(s);
-  // One thread gains nothing by sums ahead, and the log tells its functions apart. On a GPU the scratch
-  // memory must hold the update and the sums.
+  // One thread gains nothing by sums ahead, and the log has a line for each of its functions. On a GPU the
+  // scratch memory must hold the update and the sums.
   const bool fit = is_device<Space> ? sums_fit<Space, T, Dim> : has_windows(s.space);
   StepPlan plan;
   plan.sums_ahead = fit && can(StepWay::sums_ahead, features);

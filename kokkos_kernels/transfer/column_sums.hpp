@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// The columns of this rank's particles, [column][1 + Dim] as ColumnGrid tells; x is the fastest. A particle
+/// The columns of this rank's particles, [column][1 + Dim] as in ColumnGrid; x is the fastest. A particle
 /// is spread over the columns that its domain covers. `area` [m2] of a column is that of its cell: in 2D its
 /// edge times 1 m, of bodies of revolution that of its ring.
 template <class Space, class T, int Dim>

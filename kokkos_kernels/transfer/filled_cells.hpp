@@ -1,5 +1,5 @@
 #pragma once
-// Which cells hold soil, for what is told of gaps.
+// Cells that hold soil, for the notice of gaps.
 
 #include <cstdint>
 #include <vector>

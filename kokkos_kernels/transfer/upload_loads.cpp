@@ -47,7 +47,7 @@ void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads) 
 template <class Space, class T, int Dim>
 void upload_surface_loads(State<Space, T, Dim>& s, const std::vector<SurfaceLoad<Dim>>& loads) {
   if (loads.empty()) return;
-  if (s.loads.in_use()) {  // in their place, which the kernels know
+  if (s.loads.in_use()) {  // into the same views, which kernels hold
     const auto host = Kokkos::create_mirror_view(s.loads.now);
     for (std::size_t n = 0; n < loads.size(); ++n) host(n) = loads[n];
     return copy(s.loads.now, host);

@@ -14,7 +14,7 @@ namespace mpm {
 struct SideInput {
   int direction = 0, side = 0;       // 0 lower, 1 upper
   bool holds_all = false;            // driven: fixed, not roller
-  std::array<double, 3> velocity{};  // m/s, where no table tells it
+  std::array<double, 3> velocity{};  // m/s, where no table gives it
   SideNumbers numbers{};
 };
 
@@ -34,11 +34,11 @@ SideWork take_side_work(const State<Space, T, Dim>& s);
 /// The table of the sides' nodes, row by row (SideTerms).
 template <class Space, class T, int Dim>
 std::vector<double> side_table(const State<Space, T, Dim>& s);
-/// Which rows of it are of nodes that this rank answers for.
+/// Rows of the table that belong to nodes of this rank.
 template <class Space, class T, int Dim>
 std::vector<int> own_side_rows(const State<Space, T, Dim>& s);
 /// This rank's share of the table of all ranks, which is the sum. own: the rows of which it gives what
-/// changes in a step and the static reaction; first: it gives what all ranks know alike.
+/// changes in a step and the static reaction; first: it gives the values that are the same on all ranks.
 template <class Space, class T, int Dim>
 std::vector<double> share_of_side_table(const State<Space, T, Dim>& s, const std::vector<int>& own,
                                         bool first);

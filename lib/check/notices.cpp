@@ -12,7 +12,7 @@ std::vector<std::string> Notices::report(const HistoryRow& row, const Config& co
                                          const std::vector<double>& rigid_zero) {
   std::vector<std::string> lines;
   const auto report = [&](bool happened, const std::string& body, const char* what, const std::string& line) {
-    if (happened && told_.insert(body + what).second)
+    if (happened && logged_.insert(body + what).second)
       lines.push_back(formatted("step %ld, time %.6g s: ", row.step, row.time) + "body " + body + ": " +
                       line);
   };
@@ -99,7 +99,7 @@ void Notices::report_rigids(const HistoryRow& row, const Config& config,
 /// Notices about the soil as a whole that lower the trust in the run.
 void Notices::report_soil(const HistoryRow& row, const Config& config, std::vector<std::string>* lines) {
   const auto report = [&](bool happened, const char* what, const std::string& line) {
-    if (happened && told_.insert(what).second)
+    if (happened && logged_.insert(what).second)
       lines->push_back(formatted("step %ld, time %.6g s: ", row.step, row.time) + line);
   };
   constexpr double k_gaps = 0.01;  // of the cells that hold soil
@@ -110,7 +110,7 @@ void Notices::report_soil(const HistoryRow& row, const Config& config, std::vect
                    "soil comes apart; ",
                    row.empty_cells, row.filled_cells) +
              (may_split ? "-analysis flow keeps together soil that flows or is stretched (docs/flow.md)"
-                        : "docs/flow.md tells which options keep it together"));
+                        : "docs/flow.md has the options that keep it together"));
   if (!config.output.energy) return;
   const EnergyRow& e = row.energy;
   for (const double energy : {e.kinetic, e.internal, e.gravity, e.rigids})

@@ -30,7 +30,7 @@ class Notices {
                      std::vector<std::string>* lines);
   void report_soil(const HistoryRow& row, const Config& config, std::vector<std::string>* lines);
 
-  std::set<std::string> told_;             // what happened, to which body
+  std::set<std::string> logged_;           // what happened, to which body
   std::map<std::string, long> particles_;  // of each body, when its first row was seen
   std::unique_ptr<RigidPlaces> places_;    // where there are several rigids
   std::set<std::pair<int, int>> parts_;    // pairs of rigids that had space in common in their first row

@@ -88,7 +88,7 @@ void warn_of_rigidity(const std::string& material, const Stiffness& soil, Lines&
   if (!(soil.young > k_highest * soil.strength || soil.young < k_lowest * soil.strength)) return;
   lines.push_back(formatted(
       "warning: material %s: Young's modulus is %.4g times the strength (%.4g and %.4g Pa); for clay it "
-      "is 50 to 2000 times, so look at -%s_young and -%s_su",
+      "is 50 to 2000 times, so check -%s_young and -%s_su",
       material.c_str(), soil.young / soil.strength, soil.young, soil.strength, material.c_str(),
       material.c_str()));
 }
@@ -240,15 +240,15 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
   warn_of_gravity(config, lines);
   warn_of_water(config, lines);
   for (const std::string& line : warnings_of_excavations(config)) lines.push_back(line);
-  std::vector<char> told(config.materials.size());
+  std::vector<char> warned(config.materials.size());
   for (const BodyConfig& body : config.bodies) {
     warn_of_tension(body, config.dim, lines);
     const int up = config.dim - 1;
     const Bounds bounds = bounds_of(body.shape, config.mesh, config.dim);
     const MaterialConfig& material = config.materials[body.material];
     const Stiffness soil(material, bounds.lower[up]);
-    if (told[body.material]) continue;
-    told[body.material] = 1;
+    if (warned[body.material]) continue;
+    warned[body.material] = 1;
     for (const std::string& line : warnings_of_law(material)) lines.push_back("warning: " + line);
     warn_of_f_bar(config, material, lines);
     warn_of_rigidity(material.name, soil, lines);

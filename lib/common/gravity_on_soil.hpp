@@ -1,5 +1,5 @@
 #pragma once
-// Soil of which water always carries the same share: less gravity acts on it, and the kernels know of no
+// Soil of which water always carries the same share: less gravity acts on it, and the kernels have no
 // water.
 
 #include <algorithm>

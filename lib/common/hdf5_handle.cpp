@@ -15,7 +15,7 @@ herr_t take_innermost(unsigned, const H5E_error2_t* record, void* to) {
 }  // namespace
 
 Hdf5Fault hdf5_fault(const std::string& what) {
-  Hdf5Fault fault{.what = what, .cause = "no cause is told"};
+  Hdf5Fault fault{.what = what, .cause = "HDF5 gives no cause"};
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_innermost, &fault);
   return fault;
 }

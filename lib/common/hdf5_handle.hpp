@@ -20,7 +20,7 @@ struct Handle {
   }
 };
 
-/// HDF5 prints nothing from now on, in this thread where it tells threads apart.
+/// HDF5 prints nothing from now on, in this thread where it is built for several.
 inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 /// Has HDF5 hold from now on what its cache of metadata takes for two files (0.5 MB each), as many as are
@@ -41,7 +41,7 @@ Hdf5Fault hdf5_fault(const std::string& what);
 /// A fault is an error that names the file; one of memory is PETSC_ERR_MEM.
 PetscErrorCode check_hdf5(const Hdf5Fault& fault, const std::string& path);
 
-/// HDF5 prints nothing in this scope: what fails is told by who looks at the results.
+/// HDF5 prints nothing in this scope; the caller reports failures from the results.
 class Quiet {
  public:
   Quiet() {

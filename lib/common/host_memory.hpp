@@ -3,7 +3,7 @@
 
 namespace mpm {
 
-/// Bytes of the host's memory that are free for this process; 0 where the system does not tell.
+/// Bytes of the host's memory that are free for this process; 0 where the system does not report them.
 double free_host_memory();
 
 }  // namespace mpm

@@ -3,7 +3,7 @@
 
 namespace mpm {
 
-/// Whether frames and probes tell a pore pressure, and total stress.
+/// Whether frames and probes have a pore pressure, and total stress.
 inline bool has_pore_pressure(const Config& config) {
   for (const MaterialConfig& material : config.materials)
     if (material.pore_stiffness > 0) return true;

@@ -36,7 +36,7 @@ struct Snapshot {
   double time = 0;  // s
   long step = 0;
   std::vector<ParticleSnapshot> bodies, rigids, nodes{};
-  int dim = 0;          // 0: not told
+  int dim = 0;          // 0: the file has none
   std::string stage{};  // its name; empty: the run has none
 };
 

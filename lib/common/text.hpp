@@ -41,7 +41,7 @@ std::string one_of(const std::vector<std::string>& words);
 /// The option of a side of the mesh, mesh_xmin ... mesh_zmax. d: direction; side: 0 lower, 1 upper.
 std::string side_option(int d, int side);
 
-/// ASCII lower case: PETSc's options know no case.
+/// ASCII lower case: PETSc's options ignore case.
 std::string lower_case(std::string_view text);
 
 /// Whether a text has characters below the blank, as a line end or a tabulator has; these in a form that

@@ -34,7 +34,7 @@ inline Vec3 largest_rate(const TimeTable& table) {
   return largest;
 }
 
-/// End of the option that tells how a side moves.
+/// End of the option that gives the motion of a side.
 inline const char* motion_of(const SideConfig& side) {
   return side.of_accelerations ? "_acceleration_table"
          : side.velocity_table ? "_velocity_table"

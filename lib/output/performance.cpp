@@ -53,7 +53,7 @@ double updates_per_second(const Performance& p) { return double(p.steps) * p.par
 
 std::string format_performance(const Performance& p) {
   std::string text = "time of the functions, and the least that they must move\n" + table_of(p);
-  if (p.looks > 0) text += formatted("%ld steps, looked at by the host %ld times\n", p.steps, p.looks);
+  if (p.looks > 0) text += formatted("%ld steps, checked by the host %ld times\n", p.steps, p.looks);
   if (p.rebuilds > 0)
     text += formatted("bins and lists were rebuilt %ld times, after %ld to %ld steps, %.1f on average\n",
                       p.rebuilds, p.shortest, p.longest, p.interval);

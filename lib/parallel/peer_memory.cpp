@@ -73,8 +73,8 @@ PetscErrorCode PeerMemory::start(MPI_Comm comm, bool device, bool* possible) {
 
   comm_ = comm, device_ = device;
   rank_ = rank_of(comm), ranks_ = size_of(comm);
-  PetscCall(share_window(comm, ranks_ * sizeof(Word), &words_, &told_));
-  for (int r = 0; r < ranks_; ++r) new (&told_[rank_][r]) Word{0};
+  PetscCall(share_window(comm, ranks_ * sizeof(Word), &words_, &notices_));
+  for (int r = 0; r < ranks_; ++r) new (&notices_[rank_][r]) Word{0};
   PetscCall(ensure(1));
   char* next = nullptr;
   PetscCall(of((rank_ + 1) % ranks_, &next));
@@ -150,12 +150,12 @@ PetscErrorCode PeerMemory::of(int rank, char** memory) {
 }
 
 void PeerMemory::notify(int rank, long number) {
-  told_[rank][rank_].number.store(number, std::memory_order_release);
+  notices_[rank][rank_].number.store(number, std::memory_order_release);
 }
 
 void PeerMemory::wait_for(int rank, long number) const {
   constexpr int k_spins = 2000;  // before others may have the core
-  for (int n = 0; told_[rank_][rank].number.load(std::memory_order_acquire) < number; ++n)
+  for (int n = 0; notices_[rank_][rank].number.load(std::memory_order_acquire) < number; ++n)
     if (n > k_spins) sched_yield();
 }
 

@@ -50,7 +50,7 @@ class PeerMemory {
   std::vector<char*> peers_;   // by rank; null until it is asked for
   std::vector<char> handles_;  // of a device's memory, by rank
   MPI_Win memory_ = MPI_WIN_NULL, words_ = MPI_WIN_NULL;
-  std::vector<Word*> told_;  // by rank: the words of that rank, one for each that writes to it
+  std::vector<Word*> notices_;  // by rank: the words of that rank, one for each that writes to it
 };
 
 }  // namespace mpm

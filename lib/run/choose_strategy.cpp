@@ -128,12 +128,12 @@ std::vector<Contestant> try_all(const Config& config, MPI_Comm comm, const Model
 
 /// "tile 12.1 us, gather 14 us": the fastest round of each.
 std::string figures_of(const std::vector<Contestant>& all) {
-  std::string told;
+  std::string text;
   for (const Contestant& each : all)
     if (!each.times.seconds.empty())
-      told += formatted("%s%s %.4g us", told.empty() ? "" : ", ", each.name.c_str(),
+      text += formatted("%s%s %.4g us", text.empty() ? "" : ", ", each.name.c_str(),
                         1e6 * least_of(each.times.seconds));
-  return told;
+  return text;
 }
 
 /// Text of the log on a choice.

@@ -161,8 +161,8 @@ PetscErrorCode Run::rebuild(const Batch& batch) {
   const double before = seconds_now();
   PetscCall(stepper_->rebuild(elapsed, &failure));
   effort_.stepping += seconds_now() - before;
-  if (const std::string news = stepper_->drain_log(); !news.empty())
-    PetscCall(job_.log.print("step %ld: %s", clock_.step, news.c_str()));
+  if (const std::string notices = stepper_->drain_log(); !notices.empty())
+    PetscCall(job_.log.print("step %ld: %s", clock_.step, notices.c_str()));
   if (!failure.what.empty()) PetscCall(fail(job_, clock_, failure.what));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -215,7 +215,7 @@ PetscErrorCode Run::stop() {
   ignore_signals();
   PetscCall(write_checkpoint());
   job_.outcome = Outcome::stopped;
-  PetscCall(job_.log.print("told to stop by %s; %s is written, and -restart latest goes on from it",
+  PetscCall(job_.log.print("stopped by %s; %s is written, and -restart latest goes on from it",
                            stopped_by_.c_str(),
                            checkpoint_path(job_.config.output.directory, clock_.step).c_str()));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -13,7 +13,7 @@ constexpr long k_look_every = 20;  // steps between two computations of wave spe
 constexpr double k_calm =
     1.15;  // largest growth of the fastest wave's speed for which they are more than one
 constexpr double k_growth = 1.1;  // largest growth of the step from one measure to the next
-constexpr double k_told = 0.2;    // least change of the step that the log reports
+constexpr double k_logged = 0.2;  // least change of the step that the log reports
 
 /// Why a fixed time step is no longer stable. speed [m/s]: that of the fastest wave, which counts for more
 /// where a particle's domain is short.
@@ -133,8 +133,8 @@ PetscErrorCode TimeStep::follow(Job& job, Stepper& stepper, bool now, Clock& clo
   const Config& config = job.config;
   double& dt = clock.dt;
   const bool due = now || (laws_follow_ && clock.step >= waves_.due);
-  if (!follows_ || !due || looked_at_ == clock.step) PetscFunctionReturn(PETSC_SUCCESS);
-  looked_at_ = clock.step;
+  if (!follows_ || !due || computed_at_ == clock.step) PetscFunctionReturn(PETSC_SUCCESS);
+  computed_at_ = clock.step;
   double speed = 0;
   PetscCall(laws_follow_ ? look_ahead(config, stepper, clock.step, &speed) : stepper.fastest_wave(0, &speed));
   if (!(speed > 0)) PetscFunctionReturn(PETSC_SUCCESS);  // no soil is left
@@ -151,11 +151,11 @@ PetscErrorCode TimeStep::follow(Job& job, Stepper& stepper, bool now, Clock& clo
   const double wanted = step_of(limits, config.time.courant, config);
   dt = clock.step > 0 && laws_follow_ ? std::min(wanted, k_growth * dt) : wanted;
   clock.schedule = Schedule(config.time, config.output, dt, {clock.step, clock.time()});
-  if (told_ > 0 && std::fabs(dt - told_) <= k_told * told_) PetscFunctionReturn(PETSC_SUCCESS);
-  if (told_ > 0)
+  if (logged_ > 0 && std::fabs(dt - logged_) <= k_logged * logged_) PetscFunctionReturn(PETSC_SUCCESS);
+  if (logged_ > 0)
     PetscCall(
         job.log.print("step %ld: the time step follows the stiffness of the soil: %.4g s", clock.step, dt));
-  told_ = dt;
+  logged_ = dt;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

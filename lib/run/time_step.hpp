@@ -25,7 +25,7 @@ class TimeStep {
   PetscErrorCode follow(Job& job, Stepper& stepper, bool now, Clock& clock);
 
   /// Another stepper, or the same soil under other laws: all is computed anew.
-  void begin_stage(const Clock& clock) { told_ = 0, looked_at_ = -1, waves_ = {.due = clock.step}; }
+  void begin_stage(const Clock& clock) { logged_ = 0, computed_at_ = -1, waves_ = {.due = clock.step}; }
   const WaveWatch& waves() const { return waves_; }
   void go_on(const WaveWatch& waves) { waves_ = waves, waves_.every = std::max(1L, waves.every); }
 
@@ -34,9 +34,9 @@ class TimeStep {
 
   bool follows_ = false;
   bool laws_follow_ = false;  // the stiffness of some soil changes
-  long looked_at_ = -1;       // step of the last computation of wave speeds
+  long computed_at_ = -1;     // step of the last computation of wave speeds
   WaveWatch waves_;           // when the next one is due
-  double told_ = 0;           // s, the last step that the log has
+  double logged_ = 0;         // s, the last step that the log has
 };
 
 }  // namespace mpm

@@ -2,7 +2,7 @@
 // The least that each function of a step must move to and from memory: every value of a particle or node that
 // it needs is read once, and every one that it changes is written once. What it reads again because a cache
 // has lost it, lists, windows and passes over unchanged data are not counted. So a function's share of the
-// copy bandwidth tells how near it is to the limit of memory.
+// copy bandwidth says how near it is to the limit of memory.
 
 #include "data/footprint.hpp"
 #include "data/state.hpp"
@@ -24,9 +24,9 @@ double bytes_to_nodes(const State<Space, T, Dim>& s) {
   return p.count * particle + s.patches.node_count() * double(sizeof(T) * SoilTerms<Dim>::size);
 }
 
-/// Function 5: what changes of a particle is read and written, the rest that the update looks at is read; the
-/// motion of each node. Each pass of XPIC reads places and takes and leaves a velocity, APIC's matrix is
-/// written.
+/// Function 5: values of a particle that change are read and written, the others that the update needs are
+/// read; the motion of each node. Each pass of XPIC reads places and takes and leaves a velocity, APIC's
+/// matrix is written.
 template <class Space, class T, int Dim>
 double bytes_to_particles(const State<Space, T, Dim>& s) {
   auto p = s.soil.points;

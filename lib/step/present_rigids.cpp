@@ -64,7 +64,7 @@ Config PresentRigids::narrowed(const Config& config) const {
 }
 
 void PresentRigids::narrow(SavedState& state) {
-  if (all() || state.rigids.size() != others_.size()) return;  // the latter is told
+  if (all() || state.rigids.size() != others_.size()) return;  // the reader of checkpoints reports the latter
   const std::vector<std::size_t> here = counted(place_.size());
   others_ = state.rigids;
   state.impulse.values = rearranged(state.impulse.values, 0, numbers_of_rigid(state.impulse, others_.size()),

@@ -1,5 +1,5 @@
 #pragma once
-// The stepper knows of the rigid bodies that are in the run; the history, frames and checkpoints know of all.
+// The stepper has the rigid bodies that are in the run; the history, frames and checkpoints have all.
 
 #include <vector>
 

@@ -48,7 +48,7 @@ class BodyLaw {
   bool undrained() const { return undrained_; }
   std::size_t count() const { return variables_.size(); }
 
-  /// The variables of particle p, which is where `start` tells; why it cannot start, where it cannot.
+  /// The variables of particle p, which starts from `start`. fault: the reason where it cannot start.
   std::vector<double> values(std::size_t p, ParticleStart start, std::string& fault) const {
     for (std::size_t k = 0; k < own_.size(); ++k)
       if (own_[k] != nullptr) start.own[k] = own_[k]->values[p];

@@ -49,7 +49,8 @@ struct OwnedPatch {
   int particles = 0, rank = 0;
 };
 
-/// The time step of all ranks together: every function but `strategy` is collective, and tells of all ranks.
+/// The time step of all ranks together: every function but `strategy` is collective, and its results are
+/// those of all ranks.
 class Stepper {
  public:
   virtual ~Stepper() = default;
@@ -66,8 +67,8 @@ class Stepper {
   /// Rows of the history at row->time; `interval` [s] is the time since the last call, over which the forces
   /// are a mean.
   virtual PetscErrorCode measure(double interval, HistoryRow* row) = 0;
-  /// Mean unbalanced force over mean weight of the nodes, at a time [s]; infinite where no node is free to
-  /// tell.
+  /// Mean unbalanced force over mean weight of the nodes, at a time [s]; infinite where no node is
+  /// free.
   virtual PetscErrorCode unbalanced_ratio(double time, double* ratio) = 0;
   /// Finds the state of the probes at the start of the run, the same on every rank.
   virtual PetscErrorCode begin_probes(ProbeState* state) = 0;

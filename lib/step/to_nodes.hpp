@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not tell them.
+/// Function 2: mass and normal direction to the nodes, of each rigid body whose surface does not give them.
 /// They may be there already.
 template <class Space, class T, int Dim>
 void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& stream);

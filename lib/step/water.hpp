@@ -34,7 +34,7 @@ Water<Dim> water_of(const Config& config) {
   return water;
 }
 
-/// The water that the kernels know: none where it carries all soil alike (gravity_on_soil).
+/// The water of the kernels: none where it carries all soil alike (gravity_on_soil).
 template <int Dim>
 Water<Dim> water_of_kernels(const Config& config) {
   return carries_alike(config) ? Water<Dim>{} : water_of<Dim>(config);

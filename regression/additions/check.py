@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the program takes to grow. A law with two state variables is one header and one line, a vector of every particle is a
+"""Additions to the program and their cost. A law with two state variables is one header and one line, a vector of every particle is a
 member and a row in two headers, and a kind of side of the mesh is one header, its rows in the tables of kinds and numbers, and one
 line. This adds path_dependent.hpp, the vector `tracer` and the side `spring` (spring_side.hpp) to a copy of the program, builds it,
 and holds what its runs give against what it must be.
@@ -217,7 +217,7 @@ class Checks:
         return np.genfromtxt(folder / "history.csv", delimiter=",", names=True)[["step", "time", "dt"]]
 
     def check_time(self):
-        """A law is told the time: the path counts from then on."""
+        """A law gets the time: the path counts from then on."""
         folder = fresh(self.base / "since")
         self.go(folder, "-soft_since", 0.45)
         for frame in sorted(folder.glob("frames/frame_*.h5")):
@@ -229,11 +229,11 @@ class Checks:
         alone = self.base / "alone.opts"
         alone.write_text("".join("-bodies block\n" if line.startswith("-bodies") else line
                                  for line in DECK.read_text().splitlines(True) if not line.startswith("-heap_")))
-        told = {}
+        printed = {}
         for change in (-3, 30):
             more = ("-soft_change", change, "-block_lower", "0.5,0", "-block_upper", "1.5,0.75", "-block_velocity", "1,-1")
             folder = fresh(self.base / "follows")
-            told[change] = self.go(folder, *more, deck=alone)
+            printed[change] = self.go(folder, *more, deck=alone)
             one = self.steps_of(folder)
             with self.last_frame(folder) as end:
                 young = 4e5 * np.maximum(0.1, 1 + change * np.maximum(0, end["block/shear_path"][:] - 1e-3))
@@ -245,12 +245,12 @@ class Checks:
             folder = fresh(self.base / "follows_on_ranks")
             self.go(folder, *more, "-p2g", "gather", deck=alone, ranks=2)
             assert np.abs(self.steps_of(folder)["dt"] / one["dt"] - 1).max() < 1e-9
-        assert "the time step follows the stiffness of the soil" in told[30], told[30]
+        assert "the time step follows the stiffness of the soil" in printed[30], printed[30]
         text = self.go(fresh(self.base / "fixed"), *more, "-time_step", 2.2e-3, deck=alone, status=3)
         assert re.search(r"mpm: step \d+, time [\d.]+ s: -time_step: given \"0.0022\", takes at most", text), text
 
     def check_dry_run(self):
-        """The dry run counts the columns in use, and tells the fields."""
+        """The dry run counts the columns in use, and prints the fields."""
         sizes = {}
         plain = self.base / "plain.opts"
         plain.write_text("".join(line for line in DECK.read_text().splitlines(True) if "change" not in line and "threshold" not in line))

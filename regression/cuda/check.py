@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a build with CUDA must show without a GPU.
+"""Checks of a build with CUDA that need no GPU.
 
     check.py layout BUILD     nvcc and the host compiler lay out views alike: docs/install.md, "Your own PETSc, Kokkos, HDF5"
     check.py start PROGRAM    the program needs no driver to be loaded; without a GPU it runs on the processor, and makes the
@@ -59,12 +59,12 @@ def start(program):
         for backend in ("serial", "openmp"):
             status, _, errors = call([program, *few, "-backend", backend, "-output_dir", f"{folder}/{backend}"])
             assert status == 0 and errors == "", f"-backend {backend}: {status} {errors}"
-        status, told, errors = call([program, *few, "-backend", "cuda", "-dry_run"])
-        assert status == 0 and "a dry run: nothing was written" in told, f"-dry_run: {status} {told} {errors}"
-        if "no GPU here" not in told + errors:
+        status, printed, errors = call([program, *few, "-backend", "cuda", "-dry_run"])
+        assert status == 0 and "a dry run: nothing was written" in printed, f"-dry_run: {status} {printed} {errors}"
+        if "no GPU here" not in printed + errors:
             print("there is a GPU: what becomes of a run without one was not tried")
             return
-        status, told, errors = call([program, *few, "-backend", "cuda", "-output_dir", f"{folder}/cuda"])
+        status, printed, errors = call([program, *few, "-backend", "cuda", "-output_dir", f"{folder}/cuda"])
         assert status == 2 and 'mpm: -backend: given "cuda", takes serial or openmp' in errors, f"{status} {errors}"
         assert not pathlib.Path(folder, "cuda").exists()
 

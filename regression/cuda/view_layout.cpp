@@ -30,7 +30,8 @@ __global__ void view_layout(Several views, unsigned long* out) {
 
 int main() {
   for (unsigned long n = 0; n < 64; ++n) words[n] = n * sizeof(long);
-  const Several& views = *reinterpret_cast<const Several*>(words);  // whose members then tell where they are
+  const Several& views =
+      *reinterpret_cast<const Several*>(words);  // whose members then hold their own places
   std::printf("%zu: %zu %zu %zu %lu\n", sizeof views, std::size_t(views.a.extent(0)),
               std::size_t(views.b.extent(0)), std::size_t(views.c.extent(1)), place_of(views.c.data()));
 }

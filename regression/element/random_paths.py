@@ -82,7 +82,7 @@ def bearable(parameters, start):
 
 
 def random_control(dice, columns, size):
-    """The same with stress increments of at most `size` [Pa] in the place of the strains of some sides."""
+    """Replaces the strains of some sides in the columns by stress increments of at most `size` [Pa]; the columns."""
     for c in dice.sample(COMPONENTS[:3], dice.choice((1, 2, 2, 3))):
         columns["ds" + c] = [None] + [size * dice.uniform(-1, 1) for _ in range(ROWS)]
         columns["de" + c] = [None] * (ROWS + 1)

@@ -9,7 +9,7 @@ TABLE = read_table()
 # Sections of the table whose options do not make a run long, and options of them that do.
 LIGHT = ("Run", "Particle", "Several", "Time", "Physics", "Output", "Material", "Each material", "Each rigid", "Each body NAME")
 HEAVY = ("particles_per_cell", "mesh_lower", "mesh_upper", "mesh_spacing", "time_max_steps", "fill", "fillet")
-# What makes most decks wrong is drawn seldom.
+# Options that make most decks wrong are drawn seldom.
 RARE = ("dim", "output_dir", "restart", "materials", "bodies", "rigid_bodies", "wall_time_limit", "mesh_lower", "mesh_upper",
         "mesh_spacing", "dry_run", "device_memory_limit", "NAME_model", "NAME_shape")
 GEOMETRY = ("lower", "upper", "polygon", "width", "centre", "radius", "point", "normal", "file", "fillet", "angle_deg",

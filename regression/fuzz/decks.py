@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Starts the program with random decks, of which none may crash it, hang it or make it tell a page.
+"""Starts the program with random decks, of which none may crash it, hang it or make it print a page.
 
     decks.py MPM [--count 10000] [--seed 1] [--shard 1/1] [--jobs 1] [--keep FOLDER] [--only K,...]
 
@@ -8,11 +8,11 @@ options of PETSc, and an environment (deck_make.py). Most are dry runs, the othe
 
 - no signal, no end beyond the limits of time and memory, and the exit status is 0, 2, 3 or 75 (1 where the output folder
   cannot be made);
-- what goes wrong is told in lines of ours, a few of them, and never by a page of a library;
+- the program reports faults in lines of its own, a few of them, and never by a page of a library;
 - wrong input (2) leaves nothing behind, and says something;
 - a run that ends with 0 has a history with finite numbers only.
 
-What offends is told by class at the end; --keep keeps one folder of each class and number, with the lines of the deck that
+Offences are printed by class at the end; --keep keeps one folder of each class and number, with the lines of the deck that
 matter and a script that starts it again. --only starts some decks of a seed. Decks depend on docs/options.md too.
 """
 import argparse
@@ -124,7 +124,7 @@ def nonfinite(folder):
 
 
 def first_line(text):
-    """The first telling line of what was printed, with numbers and given values left out, for a class."""
+    """The first line of what was printed that says why, with numbers and given values left out, for a class."""
     text = re.sub(r"(?m)^\[\S+:\d+\].*\n?", "", text)  # Open MPI's own account of a signal
     pages = [line for line in text.splitlines() if PAGE.search(line) and "Error Message ---" not in line]
     lines = pages[:2] or [line for line in text.splitlines() if line.strip()][:1]
@@ -196,20 +196,20 @@ def smaller(trial, program, wanted, tries=80):
 
 
 def needs(trial):
-    """What an offence takes beside the lines of the deck, in words."""
+    """Conditions of an offence beside the lines of the deck, in words."""
     size_of = lambda content: content if isinstance(content, str) else f"{len(content)} bytes"
     files = [f"{name} ({size_of(content)})" for name, content in trial.files.items()]
     return " ".join([*trial.words, *(f"{name}={value}" for name, value in trial.environment.items()), *files])
 
 
-def keep(trial, program, folder, told):
+def keep(trial, program, folder, what):
     """Writes a trial as a folder with all its files and run.sh."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     write_files(trial, folder)
     variables = " ".join(f"{name}={shlex.quote(value)}" for name, value in trial.environment.items())
     pipe = "cat deck.opts | " if trial.by_pipe else ""
-    lines = ["#!/bin/sh", f"# {told}", 'cd "$(dirname "$0")"', f"ulimit -v {MEMORY >> 10}", f"ulimit -t {PROCESSOR_TIME}",
+    lines = ["#!/bin/sh", f"# {what}", 'cd "$(dirname "$0")"', f"ulimit -v {MEMORY >> 10}", f"ulimit -t {PROCESSOR_TIME}",
              f"{pipe}env {variables} {shlex.join(command_of(trial, program))}", ""]
     (folder / "run.sh").write_text("\n".join(lines), errors="surrogateescape")
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a fuzzed function needs around it: MPI and PETSc are up, and nothing is printed.
+// Surroundings of a fuzzed function: MPI and PETSc are up, and nothing is printed.
 
 #include <mpi.h>
 #include <petscsys.h>

@@ -71,7 +71,7 @@ def run_deck(binary, deck, folder, ranks=1, cut=0.0, steps=0):
 # ------------------------------------------------------------------------------------------------ the way back
 
 class Back:
-    """What the results of an image are in the units, axes and names of the deck."""
+    """Results of an image in the units, axes and names of the deck."""
 
     def __init__(self, deck, image):
         self.deck, self.image, self.dim = deck, image, deck["dim"]
@@ -262,7 +262,7 @@ def compare_frame(run, deck, image, number, other):
     for body in [*names_of(deck, "bodies"), *names_of(deck, "rigid_bodies")]:
         fields, theirs = wanted[body], body_of(given, image, body)
         if body in names_of(deck, "rigid_bodies") and image.must != EXACT:
-            continue  # rigid particles only show the body, which the history tells of
+            continue  # rigid particles only show the body, which the history has
         if len(theirs["position"]) != image.copies * len(fields["position"]):
             found.append((np.inf, f"frame {number} {body}: {len(theirs['position'])} particles and {len(fields['position'])}"))
             continue

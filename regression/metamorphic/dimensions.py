@@ -1,4 +1,4 @@
-"""What the options of a deck and the columns and fields of its results are made of: units, and how they turn with the axes.
+"""Kinds of the options of a deck and of the columns and fields of its results: units, and how they turn with the axes.
 
 Units are exponents of length, time and mass. In plane strain what belongs to the whole body is per metre of width: `per_width`.
 """
@@ -128,7 +128,7 @@ def field_kind(field, deck):
 
 
 def factor(units, scales):
-    """What a quantity of these units is multiplied by where the units of length, time and mass become smaller by `scales`."""
+    """Factor of a quantity of these units where the units of length, time and mass become smaller by `scales`."""
     out = 1.0
     for exponent, scale in zip(units, scales):
         out *= scale ** exponent

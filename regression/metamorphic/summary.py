@@ -28,8 +28,8 @@ def table_of(decks):
         rows.append(f"| {name} | {len(images)} | {failed} | {number_of(largest['largest'])} | {number_of(agree)} | {largest['where']} |")
     passed, failed = count_pairs(decks)
     kinds = [f"{deck['dim']}D {deck['precision']}" for deck in decks]
-    told = ", ".join(f"{kinds.count(kind)} in {kind}" for kind in sorted(set(kinds)))
-    return "\n".join([*rows, "", f"{len(decks)} decks ({told}) with {passed + failed} images, of which {failed} differ"])
+    printed = ", ".join(f"{kinds.count(kind)} in {kind}" for kind in sorted(set(kinds)))
+    return "\n".join([*rows, "", f"{len(decks)} decks ({printed}) with {passed + failed} images, of which {failed} differ"])
 
 
 def number_of(x):

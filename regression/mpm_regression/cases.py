@@ -107,7 +107,7 @@ def launcher():
 
 
 def environment():
-    """Open MPI refuses root, and more ranks than cores, unless told; runs at the same time may clear each other's session
+    """Open MPI refuses root, and more ranks than cores, unless allowed; runs at the same time may clear each other's session
     folder, so each has one of its own; threads and ranks that wait give way to those of other runs. A run on one rank starts
     in half the time without a daemon beside it."""
     return {"OMPI_MCA_orte_tmpdir_base": tempfile.mkdtemp(dir=SESSIONS.name),

@@ -1,4 +1,4 @@
-"""What cases measure on the curves and frames of a run."""
+"""Measures that cases take from the curves and frames of a run."""
 
 import numpy as np
 

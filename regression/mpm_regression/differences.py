@@ -39,7 +39,7 @@ def mass(run, groups):
 
 
 class Scales:
-    """What differences of a problem's fields are measured by, from its reference run."""
+    """Scales of the fields of a problem, from its reference run; differences are relative to them."""
 
     def __init__(self, run, groups):
         fields = [groups[body] for body in run.words("bodies") if len(groups[body]["volume"]) > 0]  # a stage may place others

@@ -36,11 +36,11 @@ def run(binary, deck, folder, *options, status=0, environment=None, prefix=(), t
     with subprocess.Popen([*prefix, *command(binary, deck, folder, *options)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           errors="replace", env={**ENVIRONMENT, **(environment or {})}, start_new_session=True) as process:
         try:
-            out, told = process.communicate(timeout=timeout)
+            out, errors = process.communicate(timeout=timeout)
         except BaseException:
             os.killpg(process.pid, signal.SIGKILL)  # the launcher and its ranks
             raise
-    done = subprocess.CompletedProcess(process.args, process.returncode, out, told)
+    done = subprocess.CompletedProcess(process.args, process.returncode, out, errors)
     if status is not None and done.returncode != status:
         raise AssertionError(f"exit status {done.returncode} instead of {status} of {options}:\n"
                              f"{done.stdout[-1500:]}\n{done.stderr}")
@@ -95,7 +95,7 @@ def frames(folder):
 
 
 def differences(one, other):
-    """What differs between the results in two folders, bit by bit; empty if nothing."""
+    """Differences between the results in two folders, bit by bit; empty if there is none."""
     found = []
     if rows(one) != rows(other):
         found.append(f"history.csv: {len(rows(one))} and {len(rows(other))} lines")
@@ -120,7 +120,7 @@ SEAL = re.compile(rb"\nmpm checkpoint, (\d{20}) bytes before this line, crc32 ([
 
 
 def is_whole(path):
-    """Whether a checkpoint has the length and checksum that its last line tells."""
+    """Whether a checkpoint has the length and checksum of its last line."""
     data = path.read_bytes()
     seal = SEAL.search(data)
     return bool(seal) and int(seal[1]) == seal.start() and int(seal[2], 16) == zlib.crc32(data[:seal.start()])

@@ -69,7 +69,7 @@ def allowed_text(row):
 
 
 def cell(column, what):
-    """An answer with its error for each back end of a column; back ends that say the same are told once."""
+    """An answer with its error for each back end of a column; back ends with the same answer share an entry."""
     texts = []
     for entry in column:
         for row in entry["rows"]:
@@ -155,7 +155,7 @@ def passed_text(verdicts):
 
 
 def shortfalls(all_cases, results):
-    """What falls short, how far, and why: a line for each answer, with its worst variant."""
+    """Known shortfalls: a line for each answer, with its worst variant, its error and the reason."""
     worst = {}
     for label, kept in results.items():
         for name in all_cases:
@@ -170,13 +170,13 @@ def shortfalls(all_cases, results):
 
 
 def machines(results):
-    """What the results were made with, the machine of most of them first."""
-    told = []
+    """Machines and versions that made the results, the machine of most of them first."""
+    made_by = []
     for label, kept in results.items():
         made = Counter(entry["machine"] for variants in kept["cases"].values() for entry in variants.values())
         if made:
-            told.append(f"{label}: {', '.join(name for name, _ in made.most_common())}, mpm {kept['version']}")
-    return "; ".join(told)
+            made_by.append(f"{label}: {', '.join(name for name, _ in made.most_common())}, mpm {kept['version']}")
+    return "; ".join(made_by)
 
 
 def draw(drawn):

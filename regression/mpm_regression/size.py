@@ -10,7 +10,7 @@ class Size:
 
 
 def with_size(module, size):
-    """What a case.py defines, as the size of this name changes it."""
+    """Definitions of a case.py, as the size of this name changes them."""
     changes = vars(getattr(module, size.capitalize()))
     kept = {name: value for name, value in vars(module).items() if name != "draw"}
     return types.SimpleNamespace(**{**kept, **changes, "__doc__": inspect.cleandoc(changes["__doc__"])})

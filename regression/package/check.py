@@ -34,9 +34,9 @@ def variable(build, name):
 def install(build, folder):
     """The install tree, at another place than where it was made."""
     made, prefix = folder / "made", folder / "pre fix"
-    told = call("cmake", "--install", build, "--prefix", made)
+    printed = call("cmake", "--install", build, "--prefix", made)
     native = variable(build, "MPM_ARCH") == "native"
-    assert ("MPM_ARCH=native" in told) == native, told
+    assert ("MPM_ARCH=native" in printed) == native, printed
     made.rename(prefix)
     return prefix
 
@@ -88,12 +88,12 @@ def main():
          f"-DCMAKE_CXX_COMPILER={variable(build, 'CMAKE_CXX_COMPILER')}", *flags, env=environment)
     call("cmake", "--build", example / "build", env=environment)
 
-    # The same deck by both.
+    # Both run the same deck.
     deck = prefix / "share/mpm/inputs/footing_coarse.opts"
     options = ["-options_file", deck, "-backend", "serial", "-p2g", "sequential", "-time_max_steps", STEPS, "-output_frames", "off"]
     for name, program in (("program", prefix / "bin/mpm"), ("library", example / "build/example")):
-        told = call(program, *options, "-output_dir", folder / name, env=environment)
-        assert name == "program" or "example: the steps begin" in told and "ended with 0" in told, told
+        printed = call(program, *options, "-output_dir", folder / name, env=environment)
+        assert name == "program" or "example: the steps begin" in printed and "ended with 0" in printed, printed
     rows = history(folder / "library")
     assert rows == history(folder / "program"), "the example and the program differ"
     assert int(rows[-1]["step"]) == STEPS, rows[-1]

@@ -78,7 +78,7 @@ class Checks:
         return f"{count} pairs of runs"
 
     def check_across_rebuilds(self):
-        """The same where a rebuild lies between, in both precisions."""
+        """A restart gives the same bits where a rebuild lies between, in both precisions."""
         one, two = fresh(self.base / "one"), fresh(self.base / "two")
         cuts = (217, 222, 300) if self.short else (217, 222, 580, 900)
         for options in ((), ("-precision", "single")):
@@ -202,17 +202,17 @@ class Checks:
     def check_signals(self):
         """Each signal ends the run with a checkpoint and 75; from there it ends as if it had not come."""
         for sent in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
-            folder = fresh(self.base / "told")
+            folder = fresh(self.base / "printed")
             process = subprocess.Popen(command(self.binary, DECK, folder, *OPTIONS, "-checkpoint_interval", 10,
                                                "-history_interval", 1e-5), env=ENVIRONMENT,
                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             while not (folder / "history.csv").exists() and process.poll() is None:
                 time.sleep(0.001)
             process.send_signal(sent)
-            told, _ = process.communicate(timeout=60)
+            printed, _ = process.communicate(timeout=60)
             if process.returncode == 0:
                 raise AssertionError("the run ended before the signal came")
-            assert process.returncode == 75 and sent.name in told, (process.returncode, told[-500:])
+            assert process.returncode == 75 and sent.name in printed, (process.returncode, printed[-500:])
             assert len(checkpoints(folder)) == 1
             self.go(folder, "-restart", "latest", "-checkpoint_interval", 10, "-history_interval", 1e-5)
             assert len(rows(folder)) == 122
@@ -277,9 +277,9 @@ class Checks:
         table.write_text('clay_su,plate_velocity\n800,"0.5,-1"\n1200,"0,-1"\n')
         words = [sys.executable, HERE.parent.parent / "scripts/sweep", table, "-options_file", DECK, "-backend", "serial",
                  "-p2g", "tile", "-time_max_steps", "40", "--mpm", self.binary, "--out", folder]
-        for told in ("finished", "finished before"):
+        for printed in ("finished", "finished before"):
             done = subprocess.run(list(map(str, words)), env=ENVIRONMENT, capture_output=True, text=True)
-            assert done.returncode == 0 and done.stdout.count(told) == 2, done.stdout + done.stderr
+            assert done.returncode == 0 and done.stdout.count(printed) == 2, done.stdout + done.stderr
         lines = (folder / "histories.csv").read_text().splitlines()
         assert lines[0].startswith("run,clay_su,plate_velocity,step,time") and lines[-1].startswith("1,1200,")
         assert len(lines) == 1 + sum(len(rows(folder / f"run_000{n}")) - 1 for n in (0, 1))
@@ -361,8 +361,8 @@ class Checks:
                 try:
                     folder = point / "out"
                     done = go(folder, *options, status=1)
-                    told = [line for line in done.stderr.splitlines() if line.startswith("mpm: ")]  # mpirun tells more
-                    assert len(told) == 1 and "No space left on device" in told[0] and str(folder) in told[0], done.stderr
+                    printed = [line for line in done.stderr.splitlines() if line.startswith("mpm: ")]  # mpirun prints more
+                    assert len(printed) == 1 and "No space left on device" in printed[0] and str(folder) in printed[0], done.stderr
                     self.expect_intact(folder)
                     kept = self.base / "kept"
                     shutil.rmtree(kept, ignore_errors=True)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What users, other runs and the system do to a run's files: each ends with one clear line and its exit status, nothing lost.
+"""Damage by users, other runs and the system to a run's files: each ends with one clear line and its exit status, nothing lost.
 
     files.py MPM INJECT [--short] [NAME ...]
 
@@ -125,9 +125,9 @@ class Checks:
 
     def performance(self, folder):
         """outcome, first_step and steps of a performance.json."""
-        told = json.loads((folder / "performance.json").read_text())
-        assert bool(told["functions"]) == (told["steps"] > 0) and (told["particle_updates_per_second"] or 1) > 0, told
-        return told["outcome"], told["first_step"], told["steps"]
+        printed = json.loads((folder / "performance.json").read_text())
+        assert bool(printed["functions"]) == (printed["steps"] > 0) and (printed["particle_updates_per_second"] or 1) > 0, printed
+        return printed["outcome"], printed["first_step"], printed["steps"]
 
     def check_performance(self):
         """performance.json is that of the last run that ended here, or is absent: of each part of a run its own."""
@@ -177,7 +177,7 @@ class Checks:
             self.go(folder, "-dry_run", "-time_max_steps", 3)
             assert first.poll() is None, "the first was over before the others were refused"
             os.kill(int(process), signal.SIGTERM)
-            told, errors = first.communicate(timeout=PATIENCE)
+            printed, errors = first.communicate(timeout=PATIENCE)
             assert first.returncode == 75, (first.returncode, errors)
             assert not faults_of_folder(folder) and not (folder / "mpm.lock").exists()
             whole = self.base / f"whole_of_{len(prefix)}"
@@ -206,7 +206,7 @@ class Checks:
         assert lock.read_text() == "mine"
 
     def check_locks_in_turn(self):
-        """Of several runs that start at once in one folder one runs, whichever; all others are refused."""
+        """If several runs start at once in one folder, one of them runs; all others are refused."""
         for _ in range(2 if self.short else 8):
             folder = fresh(self.base / "race")
             runs = [subprocess.Popen(command(self.binary, DECK, folder, *OPTIONS, "-time_max_steps", 600), env=ENVIRONMENT,
@@ -245,7 +245,7 @@ class Checks:
     # --- what is later goes last ----------------------------------------------------------------------------------
 
     def check_later_state(self):
-        """What a run is to make anew goes once a newer checkpoint is there, the one that it came from among it."""
+        """Once a newer checkpoint is there, the files that a run is to make anew go, with the checkpoint that it came from."""
         folder = self.copy_of_whole("renamed")
         renamed, *_ = checkpoints(folder)
         latest = folder / "checkpoint_99999.h5"
@@ -280,7 +280,7 @@ class Checks:
     # --- memory -------------------------------------------------------------------------------------------------
 
     def check_memory(self):
-        """What cannot fit is refused before it is made, whoever needs it."""
+        """A run that cannot fit into memory is refused before it allocates."""
         big = ("-mesh_upper", "2000,1000", "-plate_upper", "1999,900")
         meminfo = dict(line.split(":") for line in pathlib.Path("/proc/meminfo").read_text().splitlines())
         small = int(meminfo["MemAvailable"].split()[0]) < 40e6  # kB
@@ -304,10 +304,10 @@ class Checks:
                 resource.setrlimit(resource.RLIMIT_AS, (size, size))
             folder = fresh(self.base / "allocation")
             done = self.go(folder, *options, status=None, limit=limit)
-            told = [line for line in done.stderr.splitlines() if line.startswith("mpm: ")]
-            if not told and done.returncode != 0 and not folder.exists():
+            printed = [line for line in done.stderr.splitlines() if line.startswith("mpm: ")]
+            if not printed and done.returncode != 0 and not folder.exists():
                 continue  # not even MPI came up
-            assert done.returncode == 0 or (done.returncode in (2, 3) and len(told) == 1), (megabytes, done.returncode, done.stderr)
+            assert done.returncode == 0 or (done.returncode in (2, 3) and len(printed) == 1), (megabytes, done.returncode, done.stderr)
             found.append(done.returncode)
         assert 0 in found and 2 in found, found
 
@@ -324,11 +324,11 @@ class Checks:
             for after in sorted(self.chance.sample(range(calls), (2 if prefix else 4) if self.short else (30 if prefix else 150))):
                 folder = fresh(self.base / "allocation")
                 done = self.go(folder, *options, status=None, environment={**setting, "INJECT_AFTER": str(after)}, prefix=prefix)
-                told = [line for line in done.stderr.splitlines() if line.startswith("mpm: ")]
-                if not told and not done.stdout:
+                printed = [line for line in done.stderr.splitlines() if line.startswith("mpm: ")]
+                if not printed and not done.stdout:
                     continue  # libraries' own, before the program began
                 assert done.returncode in (0, 1, 2, 3), (after, done.returncode, done.stdout[-500:], done.stderr)
-                assert done.returncode == 0 or told, (after, done.returncode, done.stderr)
+                assert done.returncode == 0 or printed, (after, done.returncode, done.stderr)
                 assert not folder.exists() or not faults_of_folder(folder), (after, faults_of_folder(folder))
                 found[done.returncode] = found.get(done.returncode, 0) + 1
         return ", ".join(f"{found[status]} times {status}" for status in sorted(found))

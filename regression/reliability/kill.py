@@ -37,7 +37,7 @@ def step_of(path):
 
 
 def check_after_kill(folder, before):
-    """What the kill has broken; empty if nothing."""
+    """Faults that the kill has left; empty if there is none."""
     faults = faults_of_folder(folder)
     there = [step_of(path) for path in checkpoints(folder)]
     if before and (not there or there[-1] < before[-1]):
@@ -70,7 +70,7 @@ def main():
         process = start(arguments.binary, folder, arguments.ranks)
         delay = chance.uniform(0, whole / 2) if kills < arguments.kills else 600
         try:
-            _, told = process.communicate(timeout=delay)
+            _, printed = process.communicate(timeout=delay)
         except subprocess.TimeoutExpired:
             kill(process)
             kills += 1
@@ -82,7 +82,7 @@ def main():
                 sys.exit(f"after kill {kills} (seed {arguments.seed}), {delay:.3f} s: " + "; ".join(faults))
             continue
         if process.returncode != 0:
-            sys.exit(f"after kill {kills}: exit status {process.returncode}: {told}")
+            sys.exit(f"after kill {kills}: exit status {process.returncode}: {printed}")
         different = differences(reference, folder)
         if different:
             sys.exit(f"after kill {kills}, the end differs: " + "; ".join(different))

@@ -42,18 +42,18 @@ def main():
         given = {"DECK": str(DECK), "OPTIONS": OPTIONS, "LIMIT": f"{limit:.3f}", "MPM": str(binary),
                  "MPM_OUTPUT": str(base / "chain")}
         subprocess.run(["qsub", "-v", ",".join(given), "scripts/site/pbs/cpu_node.pbs"], env={**environment, **given}, check=True)
-        told = []
-        while queue.exists() and len(told) < 100:
+        printed = []
+        while queue.exists() and len(printed) < 100:
             job = dict(line.split("=", 1) for line in queue.read_text().splitlines())
             queue.unlink()
             done = subprocess.run(["bash", ROOT / queue.with_suffix(".script").read_text().strip()], cwd=base,
-                                  env={**environment, **job, "PBS_JOBID": str(len(told))}, capture_output=True, text=True)
-            told += [line for line in done.stdout.splitlines() if line.startswith("job ")] or [done.stdout + done.stderr]
-        stopped = sum("exit status 75" in line for line in told)
-        assert stopped >= 2 and "exit status 0" in told[-1], told
+                                  env={**environment, **job, "PBS_JOBID": str(len(printed))}, capture_output=True, text=True)
+            printed += [line for line in done.stdout.splitlines() if line.startswith("job ")] or [done.stdout + done.stderr]
+        stopped = sum("exit status 75" in line for line in printed)
+        assert stopped >= 2 and "exit status 0" in printed[-1], printed
         found = differences(base / "whole", base / "chain") + faults_of_folder(base / "chain")
         assert not found, found
-    print(f"{len(told)} jobs, {stopped} of them stopped before their limit: the same bits as one run that was not stopped")
+    print(f"{len(printed)} jobs, {stopped} of them stopped before their limit: the same bits as one run that was not stopped")
 
 
 if __name__ == "__main__":

@@ -130,16 +130,16 @@ def main():
         until = time.time() + arguments.wait
         while slurm.call("squeue", "-h") and time.time() < until:
             time.sleep(1)
-    told = [line for log in sorted(base.glob("job-*.log"), key=lambda path: int(path.stem[4:])) for line in log.read_text().splitlines()
+    printed = [line for log in sorted(base.glob("job-*.log"), key=lambda path: int(path.stem[4:])) for line in log.read_text().splitlines()
             if line.startswith("job ")]
-    print("\n".join(told))
-    stopped = sum("exit status 75" in line for line in told)
-    if not told or "exit status 0" not in told[-1] or stopped < 2:
+    print("\n".join(printed))
+    stopped = sum("exit status 75" in line for line in printed)
+    if not printed or "exit status 0" not in printed[-1] or stopped < 2:
         sys.exit(f"the chain did not come to its end after two limits at least; logs are in {base}")
     found = differences(base / "whole", base / "chain") + faults_of_folder(base / "chain")
     if found:
         sys.exit(f"the results differ: {found}; they are in {base}")
-    print(f"{len(told)} jobs, {stopped} of them stopped before their limit: the same bits as one run that was not stopped")
+    print(f"{len(printed)} jobs, {stopped} of them stopped before their limit: the same bits as one run that was not stopped")
     shutil.rmtree(base)
 
 

@@ -333,7 +333,7 @@ class Tests:
         print(f"driver: the built-in law and its UMAT differ by {worst:.2g}")
 
     def test_driver_given(self):
-        """What the probe is given along a path, that it may give up, and that a path may go on from another's end."""
+        """Arguments that the probe gets along a path; the probe may give up, and a path may go on from another's end."""
         library = self.build(HERE / "probe.c", "probe.so")
         for dim in self.dims:
             path = {"time": [2, 3, 5], "exx": [0, 1e-3, 3e-3], "eyy": [0, 0, -1e-3], "exy": [0, 2e-3, 2e-3]}
@@ -353,8 +353,8 @@ class Tests:
                 self.check(abs(again[key][-1] - found[key][-1]) <= 1e-12 * abs(found[key][-1]), f"{key} of a path that goes on")
             for how in (1, 2, 3):
                 lines = self.drive(self.umat(library, [1e6, 0.3, how, 1e-3], 38), path, dim, status=3)
-                told = [line for line in lines if line.startswith("mpm: row ")]
-                self.check(len(told) == 1 and "the law fails, or its stress is not finite" in told[0], f"gives up {how}: {lines}")
+                printed = [line for line in lines if line.startswith("mpm: row ")]
+                self.check(len(printed) == 1 and "the law fails, or its stress is not finite" in printed[0], f"gives up {how}: {lines}")
         lines = self.drive(self.umat(library, [1e6, 0.3], 38), path, 2, "-precision", "single", status=2)
         self.check(lines == ['mpm: -clay_model: given "umat", takes another model with -precision single: umat takes '
                              '-precision double'], f"driven in single precision: {lines}")

@@ -1,5 +1,5 @@
 /* A linear elastic UMAT in C that keeps what it is given in statev, so that a test can hold it against what
- * it must be, and that gives up when told to.
+ * it must be, and that gives up when a parameter says so.
  *
  * props   0 Young's modulus [Pa], 1 Poisson's ratio, 2 what it does when the strain 11 or 22 passes props[3]:
  * 0 nothing, 1 pnewdt below 1, 2 xit, 3 a stress that is not a number; 4 at once: xit; 5 at once: no

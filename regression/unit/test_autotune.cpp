@@ -1,4 +1,4 @@
-// What a few steps tell of a strategy's speed.
+// Speed of a strategy, measured by a few steps.
 
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
@@ -118,7 +118,7 @@ TEST_CASE("one slow round changes nothing, as others may use the machine meanwhi
   CHECK(choice.clear);
 }
 
-TEST_CASE("what a busy machine tells is not kept", "[autotune]") {
+TEST_CASE("times of a busy machine are not kept", "[autotune]") {
   // Tile's true 15.5 ms were met once: it is taken, but most of its rounds would have said mosaic.
   const auto noisy =
       choose_by_times(rounds_of({31, 15.5, 29}, {40, 33, 36}, {19.5, 24, 19.8}, {30, 41, 50}), 0.5);

@@ -136,7 +136,7 @@ TEST_CASE("a state goes on in batches to the same bits, wherever it was saved", 
   });
 }
 
-TEST_CASE("the lowest limit is told, and it does", "[batches]") {
+TEST_CASE("the lowest limit is reported, and it does", "[batches]") {
   for_each_build([&](auto build) {
     using B = decltype(build);
     Cloud cloud = busy_cloud<B::dim>(5);

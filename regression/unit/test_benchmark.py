@@ -55,30 +55,30 @@ class Benchmark(unittest.TestCase):
         """The figures are those of the log, to the digits that it has."""
         options = "-options_file inputs/footing_coarse.opts -backend serial -p2g tile -time_max_steps 40 -p2g_rebuild_interval 7 "
         with tempfile.TemporaryDirectory() as name:
-            told = runs.run(PROGRAM, options + runs.HISTORY, pathlib.Path(name) / "run")
+            report = runs.run(PROGRAM, options + runs.HISTORY, pathlib.Path(name) / "run")
             log = (pathlib.Path(name) / "run" / "mpm.log").read_text()
             version = json.loads((pathlib.Path(name) / "run" / "options.json").read_text())["version"]
-        self.assertEqual((told["program"], told["version"], told["outcome"]), ("mpm", version, "finished"))
-        self.assertEqual((told["dim"], told["precision"], told["backend"], told["strategy"]), (2, "double", "serial", "tile"))
-        self.assertEqual((told["ranks"], told["threads_per_rank"], told["first_step"], told["steps"]), (1, 1, 0, 40))
-        self.assertIn(f", {told['processor']}, {told['cores']} cores, 1 rank\n", log)
-        for each in told["functions"]:
-            row = f"  {each['name']:30} {each['calls']:9} {each['seconds']:11.3f} {100 * each['seconds'] / told['wall_seconds']:6.1f} %"
+        self.assertEqual((report["program"], report["version"], report["outcome"]), ("mpm", version, "finished"))
+        self.assertEqual((report["dim"], report["precision"], report["backend"], report["strategy"]), (2, "double", "serial", "tile"))
+        self.assertEqual((report["ranks"], report["threads_per_rank"], report["first_step"], report["steps"]), (1, 1, 0, 40))
+        self.assertIn(f", {report['processor']}, {report['cores']} cores, 1 rank\n", log)
+        for each in report["functions"]:
+            row = f"  {each['name']:30} {each['calls']:9} {each['seconds']:11.3f} {100 * each['seconds'] / report['wall_seconds']:6.1f} %"
             self.assertIn(row + (f" {each['bytes'] / 1e9:11.2f}" if each["bytes"] else ""), log)
-        self.assertEqual(len(re.findall(r" +\d+ +[\d.]+ +[\d.]+ %", log)), len(told["functions"]))
-        self.assertRegex(log, rf"wall time +{told['wall_seconds']:.3f} ")
-        rebuilds = [told["rebuilds"][name] for name in ("count", "shortest_interval_steps", "longest_interval_steps", "mean_interval_steps")]
+        self.assertEqual(len(re.findall(r" +\d+ +[\d.]+ +[\d.]+ %", log)), len(report["functions"]))
+        self.assertRegex(log, rf"wall time +{report['wall_seconds']:.3f} ")
+        rebuilds = [report["rebuilds"][name] for name in ("count", "shortest_interval_steps", "longest_interval_steps", "mean_interval_steps")]
         self.assertIn("were rebuilt {} times, after {} to {} steps, {:.1f} on average\n".format(*rebuilds), log)
         self.assertEqual(rebuilds, [5, 7, 7, 7])
-        self.assertIn(f"40 steps, looked at by the host {told['looks_of_host']} times\n", log)
-        self.assertIn(f"strategy tile; {told['memory_bytes'] / 1e6:.1f} MB on the device, "
-                      f"{told['memory_bytes'] / told['particles']:.1f} bytes a particle\n", log)
-        copy, moved = told["copy_bandwidth_bytes_per_second"], told["moved_bytes_per_second"]
-        self.assertIn(f"{told['device']}: a copy reads and writes {copy / 1e9:.1f} GB/s; the steps move {moved / 1e9:.1f} GB/s, "
+        self.assertIn(f"40 steps, checked by the host {report['looks_of_host']} times\n", log)
+        self.assertIn(f"strategy tile; {report['memory_bytes'] / 1e6:.1f} MB on the device, "
+                      f"{report['memory_bytes'] / report['particles']:.1f} bytes a particle\n", log)
+        copy, moved = report["copy_bandwidth_bytes_per_second"], report["moved_bytes_per_second"]
+        self.assertIn(f"{report['device']}: a copy reads and writes {copy / 1e9:.1f} GB/s; the steps move {moved / 1e9:.1f} GB/s, "
                       f"{100 * moved / copy:.1f} % of it\n", log)
-        self.assertIn(f"{1e6 * told['stepping_seconds'] / 40:.4g} us a step without output; "
-                      f"{told['particle_updates_per_second'] / 1e6:.1f} M/s particle updates\n", log)
-        self.assertIsNone(told["between_ranks"])
+        self.assertIn(f"{1e6 * report['stepping_seconds'] / 40:.4g} us a step without output; "
+                      f"{report['particle_updates_per_second'] / 1e6:.1f} M/s particle updates\n", log)
+        self.assertIsNone(report["between_ranks"])
 
     def test_backends(self):
         self.assertIn("serial", runs.backends(PROGRAM))
@@ -152,7 +152,7 @@ class Benchmark(unittest.TestCase):
             self.assertIn("before", page.read_text())
 
     def test_kept_results(self):
-        """What is measured again replaces what was kept of it, and nothing else."""
+        """A new measurement replaces the one that was kept of the same run, and nothing else."""
         kept = {"runs": [result("cuda", "single", "tile", 10.0), result("cuda", "double", "tile", 20.0)], "curves": {}}
         benchmark.add(kept, {"runs": [result("cuda", "single", "tile", 9.0)]})
         self.assertEqual({each["precision"]: each["us"] for each in kept["runs"]}, {"single": 9.0, "double": 20.0})

@@ -13,7 +13,7 @@ using namespace mpm::test;
 
 namespace {
 
-/// What is wrong with the bins of a set of points; empty if nothing is.
+/// Fault of the bins of a set of points; empty if there is none.
 template <class Space, class T, int Dim, class Set>
 std::string fault_of_bins(const State<Space, T, Dim>& s, const Set& set) {
   const auto begin = on_host(set.bins.begin), active_slots = on_host(set.bins.active_slots);
@@ -46,7 +46,7 @@ std::string fault_of_bins(const State<Space, T, Dim>& s, const Set& set) {
   return "";
 }
 
-/// What is wrong with the patch table; empty if nothing is.
+/// Fault of the patch table; empty if there is none.
 template <class Space, class T, int Dim>
 std::string fault_of_patches(const State<Space, T, Dim>& s) {
   const auto slot_of = on_host(s.patches.slot_of);
@@ -86,7 +86,7 @@ std::string fault_of_patches(const State<Space, T, Dim>& s) {
         if (origin(other)[d] - origin(slot)[d] != (rest % 3 - 1) * Patch<Dim>::edge)
           return "a patch around is elsewhere";
       if (neighbours(other, Patch<Dim>::neighbours - 1 - k) != slot)
-        return "a neighbour does not know its neighbour";
+        return "a neighbour does not list its neighbour";
     }
     if (!needed) return "a patch is active that no point can reach";
   }

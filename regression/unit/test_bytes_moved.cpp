@@ -1,4 +1,4 @@
-// What the log's performance report counts: bytes that the functions must move, and the bandwidth of a copy.
+// Counts of the log's performance report: bytes that the functions must move, and the bandwidth of a copy.
 
 #include <catch2/catch_test_macros.hpp>
 

@@ -124,7 +124,7 @@ void write_text(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << text;
 }
 
-/// What reading a file says is wrong with it.
+/// Fault that reading a file reports.
 std::string fault_of(const std::string& path) {
   Checkpoint read;
   std::string fault;
@@ -181,7 +181,7 @@ TEST_CASE("a checkpoint reads as it was written, whichever rank had which point"
   CHECK(!fs::exists(path + ".tmp"));
 }
 
-TEST_CASE("a checkpoint tells which particles have left the run", "[checkpoint]") {
+TEST_CASE("a checkpoint lists the particles that have left the run", "[checkpoint]") {
   const std::string path = folder_of("lost") + "/checkpoint_1.h5";
   const auto has_left = [](long id) { return id % 10 == 3 || id == k_soil - 1; };
   Checkpoint c = some_checkpoint();
@@ -275,7 +275,7 @@ TEST_CASE("only what contradicts the state is refused at a restart", "[checkpoin
   CHECK(lines[3].find("-plate_friction") != std::string::npos);
 }
 
-TEST_CASE("a load changes at a restart where it is named, and is told", "[checkpoint]") {
+TEST_CASE("a load changes at a restart where it is named, and is reported", "[checkpoint]") {
   Config config;
   config.rigids.resize(2);
   config.rigids[0].name = "plate", config.rigids[1].name = "pile";

@@ -1,4 +1,4 @@
-// What holds for any state of cam_clay and softening_clay: many random ones.
+// Properties of any state of cam_clay and softening_clay: many random ones.
 
 #include <catch2/catch_test_macros.hpp>
 
@@ -11,7 +11,7 @@ using namespace mpm::test;
 
 namespace {
 
-/// What n random states of a law show at worst, over the largest stress of the state.
+/// Worst of n random states of a law, over the largest stress of the state.
 struct Worst {
   double outside = 0, outside_single = 0, gains = 0, flat = 0, single = 0, single_state = 0;
   long yielding = 0, elastic_changed = 0, not_finite = 0, far_outside = 0;

@@ -52,7 +52,7 @@ std::vector<Particle<Law, Dim>> after_steps(const Law& law, const std::vector<Sy
   return {host.data(), host.data() + n};
 }
 
-/// The same stresses and states as the reference (a processor, double precision, 3D).
+/// Checks stresses and states against the reference (a processor, double precision, 3D).
 template <class B, template <class> class Law>
 void check_on(const Values& values, double pressure) {
   using T = typename B::real;
@@ -84,8 +84,8 @@ int index_of(const std::string& model) {
   return static_cast<int>(found - models.begin());
 }
 
-/// What the steps say of two particles of cam_clay apart from each other, the second with this specific
-/// volume.
+/// Control block after steps of two particles of cam_clay apart from each other, the second with this
+/// specific volume.
 template <class B>
 Control control_with(double specific_volume) {
   constexpr int Dim = B::dim;

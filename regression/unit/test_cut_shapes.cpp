@@ -1,4 +1,4 @@
-// Shapes that planes of symmetry cut, cylinders and cones, and that filling looks at no more than it must.
+// Shapes that planes of symmetry cut, cylinders and cones; filling tests no more places than it must.
 
 #include <algorithm>
 #include <catch2/catch_approx.hpp>
@@ -224,7 +224,7 @@ TEST_CASE("a cylinder's lower end may be a cone, and its section is that of its 
   }
 }
 
-TEST_CASE("the sites of a row that cannot hold anything are not looked at", "[shapes]") {
+TEST_CASE("filling skips the sites of a row that cannot hold anything", "[shapes]") {
   // 5.8e10 sites; those of the rows in question are 1e5.
   const auto mesh = mesh_of({0, 0}, {120000, 120000}, 1);
   Shape corner;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""mpm_regression.differences on made-up runs: what is told as how far apart. Needs numpy and h5py."""
+"""mpm_regression.differences on made-up runs: the differences that it reports. Needs numpy and h5py."""
 
 import json
 import pathlib

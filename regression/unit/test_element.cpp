@@ -108,7 +108,7 @@ TEST_CASE("strains are found for stresses, over many orders of the stiffness", "
   CHECK(point.time == 1);
 }
 
-TEST_CASE("a stress that the law does not bear is told with its residual", "[element]") {
+TEST_CASE("a stress that the law does not bear is reported with its residual", "[element]") {
   const double limit = 1e4;
   const PointLaw law = saturating(1e7, 3e6, limit);
   DrivenPoint point{.now = {.state = {0}}};
@@ -119,7 +119,7 @@ TEST_CASE("a stress that the law does not bear is told with its residual", "[ele
   CHECK(std::fabs(point.now.stress[3]) <= limit);
 }
 
-TEST_CASE("a law that fails is told", "[element]") {
+TEST_CASE("a law that fails is reported", "[element]") {
   const PointLaw law = saturating(1e7, 3e6, 1e4);
   DrivenPoint point{.now = {.state = {0}}};
   const auto row = row_of({k_e, k_e, k_e, k_e, k_e, k_e}, {0, 0, 0, 1.5, 0, 0});
@@ -174,7 +174,7 @@ TEST_CASE("sums of stresses and of strains are governed", "[element]") {
   CHECK(std::fabs(point.now.stress[0] + point.now.stress[1] + point.now.stress[2] + 15e4 + 1500) < 500);
 }
 
-TEST_CASE("a sum that the law does not bear is told by its name", "[element]") {
+TEST_CASE("a sum that the law does not bear is reported by its name", "[element]") {
   const PointLaw law = saturating(1e7, 3e6, 1e4);
   DrivenPoint point{.now = {.state = {0}}};
   ElementRow row = row_of({k_e, k_e, k_e, Drive::free, k_e, k_e}, {});

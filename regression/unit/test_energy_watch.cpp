@@ -1,4 +1,4 @@
-// Energy without a source, Courant numbers, and what the log tells once.
+// Energy without a source, Courant numbers, and notices that the log prints once.
 
 #include <algorithm>
 #include <catch2/catch_approx.hpp>
@@ -147,7 +147,7 @@ TEST_CASE("the largest Courant number is that of the rim of the body with the mo
     }
 }
 
-TEST_CASE("the log tells once what happens to soil for the first time", "[energy_watch]") {
+TEST_CASE("the log reports once what happens to soil for the first time", "[energy_watch]") {
   Config config = config_of_one_body();
   Notices notices;
   HistoryRow row = row_of(1, 0);
@@ -163,13 +163,13 @@ TEST_CASE("the log tells once what happens to soil for the first time", "[energy
   CHECK(notices.report(row, config).empty());
 }
 
-TEST_CASE("the log tells once of gaps, of energy that is missing, and of what the velocity update damps",
+TEST_CASE("the log reports once gaps, energy that is missing, and energy that the velocity update damps",
           "[energy_watch]") {
   Config config = config_of_one_body();
   config.output.energy = true;
   Notices notices;
   HistoryRow row = row_of(1, 100);
-  const auto told = [&](const std::string& what) {
+  const auto count_of = [&](const std::string& what) {
     const auto lines = notices.report(row, config);
     return std::count_if(lines.begin(), lines.end(),
                          [&](const std::string& line) { return line.find(what) != std::string::npos; });
@@ -179,15 +179,15 @@ TEST_CASE("the log tells once of gaps, of energy that is missing, and of what th
   row.energy.gravity = 100, row.energy.kinetic = 80, row.energy.error = -5, row.energy.update = -20;
   CHECK(notices.report(row, config).empty());  // at the limits
   row.empty_cells = 11;
-  CHECK(told("hold no particle") == 1);
-  CHECK(told("hold no particle") == 0);
+  CHECK(count_of("hold no particle") == 1);
+  CHECK(count_of("hold no particle") == 0);
   row.energy.error = -5.1;
   row.step = 50;
-  CHECK(told("energy_error") == 0);  // the works of few steps
+  CHECK(count_of("energy_error") == 0);  // the works of few steps
   row.step = 200;
-  CHECK(told("energy_error") == 1);
+  CHECK(count_of("energy_error") == 1);
   row.energy.update = -21;
-  CHECK(told("work_update") == 1);
+  CHECK(count_of("work_update") == 1);
   row.energy.update = -50, row.energy.error = 50;
   CHECK(notices.report(row, config).empty());
 }

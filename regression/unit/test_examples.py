@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The decks of inputs/ and the pages that tell of them: docs/examples.md, the first deck in README.md, docs/first_job.md."""
+"""The decks of inputs/ and the pages about them: docs/examples.md, the first deck in README.md, docs/first_job.md."""
 
 import pathlib
 import re

@@ -37,7 +37,7 @@ class Search(unittest.TestCase):
             rows = list(csv.DictReader(file))
         self.assertTrue(all((row["end"] == "rest") == (float(row["factor"]) < EXACT) for row in rows))
 
-    def test_an_interval_without_the_factor_is_told(self):
+    def test_an_interval_without_the_factor_is_reported(self):
         done, _ = self.search("--stage", "reduce", "--low", "1.7", "--high", "1.8")
         self.assertIn("the soil fails with --low 1.7 already", done.stderr)
         done, _ = self.search("--stage", "reduce", "--low", "1.5", "--high", "1.6")

@@ -123,7 +123,8 @@ TEST_CASE("grains that part carry nothing until they have come together again", 
   CHECK(point.state[MuI<double>::parted] == 0);
 }
 
-TEST_CASE("a fluid with a yield stress rests, and takes tension where told", "[flowing_laws]") {
+TEST_CASE("a fluid with a yield stress rests, and takes tension where an option allows it",
+          "[flowing_laws]") {
   Values values = slurry(0.5);
   Point<YieldStressFluid<double>, 3> point(law_of<YieldStressFluid<double>>(values),
                                            {-100, -100, -100, 29.9, 0, 0});

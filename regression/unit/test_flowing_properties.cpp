@@ -1,4 +1,4 @@
-// What holds for any state of mu_i, newtonian, yield_stress_fluid, power_elastic and j2_hardening: many
+// Properties of any state of mu_i, newtonian, yield_stress_fluid, power_elastic and j2_hardening: many
 // random ones; and these laws on every back end, and in lanes of a processor.
 
 #include <catch2/catch_test_macros.hpp>
@@ -84,7 +84,7 @@ double modulus_of(const Law& law, const Point<Law, 3>& point, int k) {
   return std::fmin(law.wave_modulus(point.stress, point.state), shear_modulus_in(law));
 }
 
-/// What n random states of a law show at worst, relative to the size of the stress. `gains`: work of the
+/// Worst of n random states of a law, relative to the size of the stress. `gains`: work of the
 /// deviator on the strain that is not elastic, below 0.
 struct Worst {
   double gains = 0, flat = 0, single = 0, state = 0;

@@ -1,4 +1,4 @@
-// What holds for any state of tresca, mohr_coulomb and drucker_prager: many random ones.
+// Properties of any state of tresca, mohr_coulomb and drucker_prager: many random ones.
 
 #include <catch2/catch_test_macros.hpp>
 #include <limits>
@@ -64,7 +64,7 @@ SymTensor<double, 3> widened(const SymTensor<T, Dim>& s) {
   return wide;
 }
 
-/// What n random states of a law show at worst, relative to the stress of the trial (energies: to that of the
+/// Worst of n random states of a law, relative to the stress of the trial (energies: to that of the
 /// trial). `gains`: energy from plastic flow. `nearer`: with associated flow the return is the admissible
 /// stress that is nearest to the trial in the elastic energy, so that (trial - s) : C^-1 (q - s) <= 0 for
 /// each admissible q, which is taken from another return.

@@ -45,7 +45,7 @@ std::vector<SymTensor<typename Law::real, Dim>> after_step(const Law& law, const
   return {host_stress.data(), host_stress.data() + n};
 }
 
-/// The same stresses as the reference (a processor, double precision, 3D) on a back end.
+/// Checks stresses on a back end against the reference (a processor, double precision, 3D).
 template <class B, template <class> class Law>
 void check_on(const Values& values) {
   using T = typename B::real;

@@ -1,4 +1,4 @@
-// What is wrong with surfaces of the ground, and their files.
+// Faults of surfaces of the ground, and of their files.
 
 #include <hdf5.h>
 #include <unistd.h>
@@ -148,7 +148,7 @@ TEST_CASE("STL files are read, ASCII and binary", "[ground]") {
   CHECK(read_stl(path, 1, surface).find("its header says 512 triangles") != std::string::npos);
 }
 
-TEST_CASE("ESRI ASCII grids are read, and what is wrong with one is told", "[ground]") {
+TEST_CASE("ESRI ASCII grids are read, and faults of one are reported", "[ground]") {
   const Folder folder;
   const std::string path = folder.path / "grid.asc";
   Raster raster;
@@ -207,7 +207,7 @@ TEST_CASE("surfaces that do not cover the mesh, have holes, or cross are found",
   CHECK_FALSE(crossing_of(*slope, *level(0.25), mesh, 3));
 }
 
-TEST_CASE("a field on a grid is linear between its points, and what is wrong with one is told", "[ground]") {
+TEST_CASE("a field on a grid is linear between its points, and faults of one are reported", "[ground]") {
   const Folder folder;
   const std::string path = folder.path / "f.h5";
   const auto value = [](double x, double y, double z) { return 3 + x - 2 * y + 0.5 * z; };

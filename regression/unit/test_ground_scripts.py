@@ -127,7 +127,7 @@ class Terrain(Folder):
         self.assertEqual(done.returncode, 0, done.stderr)
         return raster.read_ascii(terrain).values - raster.read_ascii(self.folder / "base.asc").values
 
-    def test_a_release_of_polygons_is_as_deep_as_told_within_its_rim(self):
+    def test_a_release_of_polygons_is_as_deep_as_given_within_its_rim(self):
         terrain = self.write(self.plane(80, 80, 1.0, 0.0, 0.0))
         (self.folder / "area.csv").write_text("x,y\n510,720\n550,720\n550,750\n510,750\n")
         (self.folder / "in.json").write_text(json.dumps({"origin": [500, 700, 0]}))
@@ -178,7 +178,7 @@ class Terrain(Folder):
         self.assertAlmostEqual(got.extent[3] / (344 * 92.66), 1, delta=0.003)
         self.assertGreater(np.nanmax(got.values), 1000)
 
-    def test_a_bad_file_is_told_in_one_line(self):
+    def test_a_bad_file_is_reported_in_one_line(self):
         self.refused(run("terrain", self.folder / "none.asc", self.folder / "o.asc"), "none.asc: takes a file that is there")
         (self.folder / "bad.asc").write_text("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n")
         self.refused(run("terrain", self.folder / "bad.asc", self.folder / "o.asc"), "takes 2 x 2 values")
@@ -358,15 +358,15 @@ class Fields(Folder):
         axes = self.picture_of_sweep("time,base_x,soil_mass", [f"{t},0,{7 * t}" for t in range(4)], y="soil_mass")
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time (s)", "soil_mass (kg/m)"))
 
-    def test_what_is_wrong_is_told_in_one_line(self):
+    def test_what_is_wrong_is_reported_in_one_line(self):
         words = {"--name": "su", "--lower": "0,0", "--upper": "4,2", "--spacing": "0.5", "--mean": "1", "--cov": "0.3",
                  "--length": "2,1"}
-        for name, value, told in [("--upper", "4,0", "--upper: takes numbers greater"), ("--length", "1,0", "--length: takes"),
+        for name, value, message in [("--upper", "4,0", "--upper: takes numbers greater"), ("--length", "1,0", "--length: takes"),
                                   ("--lower", "0", "take 2 numbers each"), ("--mean", "-1", "lognormal --mean more than 0"),
                                   ("--spacing", "1e-4", "or a larger --spacing")]:
             given = [word for pair in {**words, name: value}.items() for word in pair]
             with self.subTest(name=name, value=value):
-                self.refused(run("random_field", self.folder / "f.h5", *given), told)
+                self.refused(run("random_field", self.folder / "f.h5", *given), message)
 
 
 if __name__ == "__main__":

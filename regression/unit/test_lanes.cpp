@@ -45,7 +45,7 @@ void check_groups() {
   for (int n = 0; n < N * W; ++n) CHECK(out[n] == in[n]);
 }
 
-/// What update_particles should do, one particle by one, without lanes: by id, as moved_fields.
+/// Result that update_particles should give, particle by particle, without lanes: by id, as moved_fields.
 template <class B>
 std::vector<Table> moved_one_by_one(const StateOf<B>& s, double dt) {
   using T = typename B::real;

@@ -1,4 +1,4 @@
-// What the history and the frames say of the particles and the nodes.
+// Values of particles and nodes in the history and the frames.
 
 #include <algorithm>
 #include <catch2/catch_test_macros.hpp>

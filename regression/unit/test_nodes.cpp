@@ -177,7 +177,7 @@ TEST_CASE("damping takes a fraction of the acceleration, against the velocity", 
     const auto motion = on_host(s.nodes.kinematics);
     CHECK(motion(0, Dim) == 3);       // speeding up: 4 - 1
     CHECK(motion(0, Dim + 1) == -5);  // slowing down: -4 - 1
-    // A velocity that is round-off beside its change tells no direction.
+    // A velocity that is round-off beside its change has no direction.
     for (const int i : {1, 2}) CHECK(std::fabs(motion(i, Dim) - 4) < 1e-5);
   });
 }

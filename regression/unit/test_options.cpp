@@ -116,14 +116,14 @@ TEST_CASE("a material has the run's fraction of F-bar, but its own where that is
   CHECK(fractions("-sand_dilation_deg 5 -sand_f_bar_fraction 0.3") == std::array{0.98, 0.3});
   CHECK(fractions("-sand_dilation_deg 5 -clay_f_bar_fraction 0.3") == std::array{0.3, 0.});
   CHECK(fractions("-f_bar_fraction 0.5 -sand_f_bar_fraction 1") == std::array{0.5, 1.});
-  const auto told = [&](const std::string& more) {
+  const auto noted = [&](const std::string& more) {
     for (const auto& option : read(deck + more).report.options)
       if (option.name == "-sand_f_bar_fraction") return option.value + (option.standard ? " by default" : "");
     return std::string();
   };
-  CHECK(told("-sand_dilation_deg 5") == "0 by default");
-  CHECK(told("-f_bar_fraction 0.5") == "0.5 by default");
-  CHECK(told("-sand_f_bar_fraction 1") == "1");
+  CHECK(noted("-sand_dilation_deg 5") == "0 by default");
+  CHECK(noted("-f_bar_fraction 0.5") == "0.5 by default");
+  CHECK(noted("-sand_f_bar_fraction 1") == "1");
 }
 
 TEST_CASE("a rigid body has its motion and interface", "[options]") {
@@ -434,7 +434,7 @@ struct Decks {
   }
 };
 
-/// What read_options takes of a command line. Nothing of it is left for PETSc.
+/// Words that read_options takes from a command line. It leaves none of them for PETSc.
 std::string prepared(std::vector<std::string> words, InputReport& report) {
   words.insert(words.begin(), "mpm");
   std::vector<char*> pointers;
@@ -489,7 +489,7 @@ TEST_CASE("the command line wins over decks, decks over what they include before
   CHECK(report.replaced == std::vector<std::string>{"b", "1", "c", "1", "c", "2"});
 }
 
-TEST_CASE("a deck's mistakes are told by file and line, and no option of it is left", "[options]") {
+TEST_CASE("a deck's mistakes are reported by file and line, and no option of it is left", "[options]") {
   const Decks decks;
   const auto path = decks.write("a.opts", "-dim 2\n-options_file " + decks.write("b.opts", "-x 1\n-y 1 2\n") +
                                               "\n-options_file none.opts\n-prefix_pop\n");
@@ -591,7 +591,7 @@ TEST_CASE("precedence does not depend on which name of an option is used", "[opt
   }
 }
 
-TEST_CASE("both names of an option in one place are an error that tells both", "[options]") {
+TEST_CASE("both names of an option in one place are an error that names both", "[options]") {
   DeckReader reader;
   reader.read_words({"-flip_share", "0.9", "-FLIP_fraction", "0.8"}, Source::command_line, "");
   REQUIRE(reader.errors.size() == 1);
@@ -601,7 +601,7 @@ TEST_CASE("both names of an option in one place are an error that tells both", "
       "same option");
 }
 
-TEST_CASE("an error tells the name that was given", "[options]") {
+TEST_CASE("an error has the name that was given", "[options]") {
   InputReport report;
   report.renamed = {"flip_fraction", "flip_share"};
   REQUIRE(PetscOptionsClear(nullptr) == PETSC_SUCCESS);

@@ -1,5 +1,5 @@
-// What a run writes: the history, the frames and their index, the log; and what it leaves when the disk is
-// full.
+// Files of a run: the history, the frames and their index, the log; and the files that are left when the disk
+// is full.
 
 #include <hdf5.h>
 #include <petscsys.h>
@@ -103,7 +103,7 @@ HistoryRow some_row() {
   return row;
 }
 
-/// `count` particles with numbers that tell them apart.
+/// `count` particles, each with other numbers.
 ParticleSnapshot some_particles(const std::string& name, int count, bool body) {
   ParticleSnapshot p;
   p.name = name;
@@ -134,7 +134,7 @@ void take_share(ParticleSnapshot& body, int rank, int ranks) {
   cut(body.volume, 1), cut(body.state[0].values, 1), cut(body.mass, 1), cut(body.reference_height, 1);
 }
 
-/// A path that all ranks know.
+/// A path that is the same on all ranks.
 std::string shared_path(MPI_Comm comm, const std::string& name) {
   std::string path = fs::temp_directory_path() / ("mpm_" + std::to_string(::getpid()) + "_" + name);
   if (rank_of(comm) != 0) path.clear();
@@ -667,7 +667,7 @@ TEST_CASE("the log's file holds what was said before it was opened and each tent
   CHECK_THAT(lines[2], ContainsSubstring("10.0 %"));
 }
 
-TEST_CASE("the options in force tell given from default", "[output]") {
+TEST_CASE("the options in force show which were given and which are defaults", "[output]") {
   const Folder folder;
   const std::vector<EffectiveOption> options = {{"-mesh_spacing", "0.05", "m", false},
                                                 {"-p2g", "auto", "", true}};

@@ -1,4 +1,4 @@
-// What is in the place of something else, and what is likely to be a mistake.
+// Bodies in the place of others, and inputs that are likely to be mistakes.
 
 #include <unistd.h>
 
@@ -182,7 +182,7 @@ TEST_CASE("particles of a file overlap a rigid, which can cut them", "[overlap]"
   std::filesystem::remove(path);
 }
 
-TEST_CASE("an overlap is told with its volume and the option that cuts", "[overlap]") {
+TEST_CASE("an overlap is reported with its volume and the option that cuts", "[overlap]") {
   Config config = empty_config(2);
   add_body(config, "small", box({1, 0.5, 0}, {2, 1.5, 0}));
   BodyConfig& large = add_body(config, "large", box({0, 0, 0}, {4, 1, 0}));

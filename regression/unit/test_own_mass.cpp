@@ -39,7 +39,7 @@ Cloud cloud_with_masses(int seed, double spread) {
   return cloud;
 }
 
-/// The same bodies with one mass each.
+/// Bodies of the cloud with one mass each.
 Cloud without_masses(Cloud cloud) {
   for (BodyInput& body : cloud.bodies) body.mass.clear(), body.least_mass = 0;
   return cloud;
@@ -150,7 +150,7 @@ TEST_CASE("mass, momentum, energy and centre of a body are sums over its particl
   });
 }
 
-TEST_CASE("own masses are saved, restored and told by id, whatever was sorted in between", "[own_mass]") {
+TEST_CASE("own masses are saved, restored and reported by id, whatever was sorted in between", "[own_mass]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     const Cloud cloud = cloud_with_masses<B::dim>(7, 0.6);

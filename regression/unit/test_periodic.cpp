@@ -54,7 +54,7 @@ Cloud random_soil(int seed, const Periods& shape, const std::array<int, 3>& shif
   return cloud;
 }
 
-/// What particles have after some steps, by id, and where they would be had they passed no side [m].
+/// Particles after some steps, by id, and where they would be had they passed no side [m].
 struct Outcome {
   std::vector<double> velocity, stress, volume, position, way;
   int rebuilds = 0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What mpm_tools.results, factor and runout compute and scripts/plot draws, on a made-up footing, pipe and slide.
+"""mpm_tools.results, factor and runout, and the pictures of scripts/plot, on a made-up footing, pipe and slide.
 Needs numpy, h5py and matplotlib."""
 
 import json
@@ -159,7 +159,7 @@ class Plot(unittest.TestCase):
         plot_curves.draw_pushed(axes, run, "plate", [])
         return [text for text in axes.get_legend_handles_labels()[1] if "this run" in text or "each row" in text]
 
-    def test_a_mean_is_told_where_a_window_holds_rows(self):
+    def test_a_mean_is_reported_where_a_window_holds_rows(self):
         self.assertEqual(self.legend_with(500), ["each row of the history", "this run, mean over 0.01 m of penetration (0.01 B)"])
 
     def test_rows_that_are_further_apart_than_a_window_have_no_mean(self):

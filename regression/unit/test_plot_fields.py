@@ -107,15 +107,15 @@ class Cube(unittest.TestCase):
 
     def test_a_film_has_each_frame_and_says_what_it_lacks(self):
         write_cube(self.folder)
-        run, told = results.Run(self.folder), io.StringIO()
+        run, printed = results.Run(self.folder), io.StringIO()
         path, os.environ["PATH"] = os.environ["PATH"], str(self.folder)
         try:
-            with contextlib.redirect_stderr(told):
+            with contextlib.redirect_stderr(printed):
                 made = plot_film.draw_film(run)
         finally:
             os.environ["PATH"] = path
         self.assertEqual([each.name for each in made], ["film.gif"])
-        self.assertEqual(told.getvalue(), "plot: ffmpeg is not installed: no film.mp4; film.gif shows the same\n")
+        self.assertEqual(printed.getvalue(), "plot: ffmpeg is not installed: no film.mp4; film.gif shows the same\n")
         with Image.open(self.folder / "film.gif") as film:
             self.assertEqual(film.n_frames, 2)
         plot_film.draw_film(run, until=0.5)
@@ -123,7 +123,7 @@ class Cube(unittest.TestCase):
             self.assertEqual(getattr(film, "n_frames", 1), 1)
         self.assertRaises(plot_fields.NothingToDraw, plot_film.draw_film, run, (), -1.0)
 
-    def test_an_mp4_gets_the_pixels_and_a_failing_ffmpeg_is_told(self):
+    def test_an_mp4_gets_the_pixels_and_a_failing_ffmpeg_is_reported(self):
         pictures = [Image.fromarray(np.full((4, 6, 3), k, np.uint8)) for k in range(3)]
         pictures[1] = pictures[1].quantize(255)
         ffmpeg, target = self.folder / "ffmpeg", self.folder / "film.mp4"
@@ -134,10 +134,10 @@ class Cube(unittest.TestCase):
             self.assertEqual(plot_film.write_mp4(pictures, 5, target), target)
             self.assertEqual(target.read_bytes(), bytes([0] * 72 + [1] * 72 + [2] * 72))
             ffmpeg.write_text("#!/bin/sh\ncat > /dev/null\necho no such codec >&2\nexit 1\n")
-            told = io.StringIO()
-            with contextlib.redirect_stderr(told):
+            printed = io.StringIO()
+            with contextlib.redirect_stderr(printed):
                 self.assertIsNone(plot_film.write_mp4(pictures, 5, target))
-            self.assertEqual(told.getvalue(), "plot: ffmpeg failed: no film.mp4: no such codec\n")
+            self.assertEqual(printed.getvalue(), "plot: ffmpeg failed: no film.mp4: no such codec\n")
             self.assertFalse(target.exists())
         finally:
             os.environ["PATH"] = path

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What scripts/plot draws of probes, rasters and lines, on made-up results. Needs numpy, h5py, scipy and matplotlib."""
+"""Pictures of scripts/plot of probes, rasters and lines, on made-up results. Needs numpy, h5py, scipy and matplotlib."""
 
 import json
 import pathlib

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What mpm_tools.plot.outlines, units and runout tell of a run: outlines of rigid bodies against points inside them, units of axes,
+"""mpm_tools.plot.outlines, units and runout: outlines of rigid bodies against points inside them, units of axes,
 and the run-out of slides in any direction. Needs numpy, h5py and matplotlib."""
 
 import json

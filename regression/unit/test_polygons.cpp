@@ -18,7 +18,7 @@ double uniform(Dice& dice, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(dice);
 }
 
-/// What first_crossing says, by looking at every pair of edges.
+/// Result of first_crossing, by a test of every pair of edges.
 std::optional<std::pair<int, int>> first_of_all_pairs(const Polygon& polygon) {
   const int count = static_cast<int>(polygon.size());
   for (int i = 0; i < count; ++i)
@@ -91,7 +91,7 @@ Polygon divided_square(int parts) {
 
 }  // namespace
 
-TEST_CASE("crossings are those that a look at all pairs of edges finds", "[polygons]") {
+TEST_CASE("crossings are those that a test of all pairs of edges finds", "[polygons]") {
   Dice dice(5);
   int wrong = 0, right = 0;
   for (int trial = 0; trial < 6000; ++trial) {
@@ -119,7 +119,7 @@ TEST_CASE("an edge that is cut into parts does not cross itself, however it lies
   }
 }
 
-TEST_CASE("few pairs of edges are looked at, also of long thin teeth that lie askew", "[polygons]") {
+TEST_CASE("few pairs of edges are tested, also of long thin teeth that lie askew", "[polygons]") {
   Dice dice(7);
   for (const Polygon& upright : {comb(500), star(dice, 2000), divided_square(500)})
     for (int trial = 0; trial < 20; ++trial) {

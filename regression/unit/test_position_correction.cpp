@@ -16,7 +16,7 @@ constexpr double h = 0.1;         // m
 constexpr double k_shear = 2;     // 1/s, of the motion
 constexpr double k_elapsed = 10;  // s, so that the diffusion number is at its bound
 
-/// What moves: fluid, or elastic soil.
+/// Material that moves: fluid, or elastic soil.
 enum class Stuff { fluid, elastic };
 
 /// Velocity at a place [m]: a shear, and a translation.
@@ -159,7 +159,7 @@ TEST_CASE("a particle that is moved gets the velocity of its new place", "[posit
     double kept = 0, now = 0;
     for (std::size_t p = 0; p < before.id.size(); ++p) {
       const int cells[3] = {12, 10, 6};
-      bool inside = true;  // far from the walls, which the motion does not know
+      bool inside = true;  // far from the walls, which the motion ignores
       for (int d = 0; d < Dim; ++d)
         inside = inside && std::fabs(after.position[p * Dim + d] / h - cells[d] / 2.0) < cells[d] / 2.0 - 2.2;
       if (!inside) continue;

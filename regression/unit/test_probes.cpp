@@ -162,7 +162,7 @@ TEST_CASE("a gauge in a block has its depth and speed", "[probes]") {
   });
 }
 
-TEST_CASE("a section tells what of a block is beyond it, and what passes", "[probes]") {
+TEST_CASE("a section has the mass of a block beyond it, and the mass that passes", "[probes]") {
   for_each_build([](auto build) {
     using B = decltype(build);
     constexpr int Dim = B::dim;

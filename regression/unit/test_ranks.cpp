@@ -250,7 +250,7 @@ TEST_CASE("friction's impulses follow the nodes to the ranks that come to reach 
   for_each_reference([](auto build) {
     using B = decltype(build);
     Pair<B> pair(random_cloud<B::dim>(7), {PartitionKind::metis, 1.0001}, 9);
-    const auto set = [](auto& s) {  // a value that tells the node
+    const auto set = [](auto& s) {  // a value of this node alone
       const auto origin = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.patches.origin);
       const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), s.nodes.impulse);
       for (int i = 0; i < s.patches.node_count(); ++i)
@@ -276,7 +276,7 @@ TEST_CASE("friction's impulses follow the nodes to the ranks that come to reach 
   });
 }
 
-TEST_CASE("what is kept by id is told to whichever rank asks, whoever gave it", "[migration]") {
+TEST_CASE("values that are kept by id reach whichever rank asks, whoever gave them", "[migration]") {
   const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
   const auto number_of = [](long id) { return 1.0 / (3 + id); };
   for (const long total : {0L, 1L, 2L, 17L, 1000L}) {

@@ -47,7 +47,7 @@ class Line(unittest.TestCase):
     def test_a_case_that_was_not_run_says_so(self):
         self.assertEqual(self.cells(results())[1:7], ["", "", "", "not run", "not run", ""])
 
-    def test_both_precisions_are_told_once(self):
+    def test_both_precisions_are_reported_once(self):
         self.assertEqual(report.measured_on({"cuda-double": 0, "cuda-single": 0, "serial-single": 0}), "serial (single), cuda")
 
 

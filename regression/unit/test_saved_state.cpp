@@ -20,7 +20,7 @@ bool gives_same_bits(P2G how) {
   return B::backend() == Backend::serial || how == P2G::gather || how == P2G::sequential;
 }
 
-/// The same bits: where a test's cloud has burst, not-a-numbers too.
+/// Whether both have the same bits: where a test's cloud has burst, not-a-numbers too.
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }

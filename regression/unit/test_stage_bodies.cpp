@@ -205,7 +205,7 @@ TEST_CASE("pores that begin to drain leave the effective stress", "[stage_bodies
   CHECK(values_of(state, "stress")[3] == -1000);  // shear
 }
 
-TEST_CASE("soil that a law cannot start from is told by its place", "[stage_bodies]") {
+TEST_CASE("soil that a law cannot start from is reported with its place", "[stage_bodies]") {
   const InputReport report = read(
       "-materials clay,cured,cam -cam_model cam_clay -cam_density 1500 -cam_critical_state_ratio 1 "
       "-cam_lambda 0.1 "

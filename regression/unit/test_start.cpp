@@ -1,4 +1,4 @@
-// What the particles hold before the first step.
+// Particles before the first step.
 
 #include <unistd.h>
 
@@ -45,7 +45,7 @@ BodyParticles pair_of(int dim) {
   return particles;
 }
 
-/// What they hold on the device.
+/// Particles of the device at the start of a run with these particles.
 ParticleSnapshot start_of(const Config& config, BodyParticles particles) {
   const auto stepper = make_stepper(config);
   const int patch = patch_edge(config.dim);
@@ -67,12 +67,12 @@ struct File {
   std::string path = (folder / "particles.h5").string();
   File() { std::filesystem::create_directories(folder); }
   ~File() { std::filesystem::remove_all(folder); }
-  /// What is wrong with a file of these particles; empty where nothing is.
+  /// Fault of a file of these particles; empty where there is none.
   std::string fault(const ParticleSnapshot& particles, int dim = 2) {
     ParticleTable table;
     return fault(particles, table, dim);
   }
-  /// The same; a frame tells the dimension of its run.
+  /// Fault of the file, and its table; a frame has the dimension of its run.
   std::string fault(const ParticleSnapshot& particles, ParticleTable& table, int dim, int dim_of_frame = 0,
                     const FrameStyle& style = {}) {
     REQUIRE(write_frame(path, {0.5, 12, {particles}, {}, {}, dim_of_frame}, Precision::double_, style) ==

@@ -8,7 +8,8 @@
 
 namespace {
 
-/// Of many products that would be subnormal, and sums with a subnormal term, how many are not zero.
+/// Number of results that are not zero among many products that would be subnormal, and sums with a subnormal
+/// term.
 template <class Space, class T>
 int not_flushed() {
   constexpr T smallest = std::numeric_limits<T>::min(), subnormal = std::numeric_limits<T>::denorm_min();
@@ -35,7 +36,7 @@ void check_space() {
 }  // namespace
 
 TEST_CASE("every thread takes subnormal numbers for zero", "[subnormals]") {
-  if (!mpm::k_flushes_subnormals) SKIP("this processor is not told");
+  if (!mpm::k_flushes_subnormals) SKIP("this processor cannot flush subnormals");
   check_space<mpm::Processor>();
   check_space<Kokkos::DefaultHostExecutionSpace>();
 }

@@ -15,7 +15,7 @@ using namespace mpm::test;
 
 namespace {
 
-/// What the means of a curve over steps of dt add up to from one time to another.
+/// Sum of the means of a curve over steps of dt, times dt, from one time to another.
 double sum_of_means(const TimeCurve& curve, CurveUse use, double from, double to, double dt) {
   double sum = 0;
   int near = -1;
@@ -205,7 +205,7 @@ TEST_CASE("tables of one value give the same bits as the constants", "[time_tabl
   });
 }
 
-TEST_CASE("tables are read from a line or a file, and what is wrong with them is told", "[time_tables]") {
+TEST_CASE("tables are read from a line or a file, and their faults are reported", "[time_tables]") {
   const auto fault = [](const std::string& text, int dim = 2) {
     TableText read;
     return read_table(text, dim, 2, read);

@@ -54,7 +54,7 @@ Cloud slump(int seed, bool whole, Wall kind) {
     cloud.grid = grid_of<Dim>({2 * cells[0], cells[1], cells[2]}, k_edge, Wall::roller);
     cloud.grid.walls[1][0] = Wall::fixed;
   }
-  body.velocity_gradient.assign(body.position.size() * Dim, 0.0);  // else neighbours beyond the wall tell it
+  body.velocity_gradient.assign(body.position.size() * Dim, 0.0);  // else neighbours beyond the wall give it
   cloud.bodies = {body};
   return cloud;
 }

@@ -68,7 +68,7 @@ def run(binary, options, folder):
 
 
 def match(lines, fragments):
-    """What differs between the lines of stderr and the fragments expected, each in a line of its own."""
+    """Differences between the lines of stderr and the fragments expected, each in a line of its own."""
     left = list(lines)
     faults = []
     for fragment in fragments:

@@ -1,4 +1,4 @@
-"""When a force on a rigid may be told as a factor of the clay's strength, and that factor. Needs numpy."""
+"""When a force on a rigid may be given as a factor of the clay's strength, and that factor. Needs numpy."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What a run wrote, as arrays, and what follows from it: the bearing capacity of a footing. Needs numpy and h5py."""
+"""Results of a run as arrays, and values that follow from them: the bearing capacity of a footing. Needs numpy and h5py."""
 
 import csv
 import json
@@ -151,7 +151,7 @@ def extent(run, name):
 
 
 def in_mesh(run, left, right):
-    """What a side of the mesh leaves of an extent in x, m."""
+    """Part of an extent in x that a side of the mesh leaves, m."""
     return max(left, run.number("mesh_lower", left)), min(right, run.number("mesh_upper", right))
 
 

@@ -1,4 +1,4 @@
-"""What a slide does: its run-out, the stored curves beside it, and the velocity over its height. Needs numpy and h5py."""
+"""Motion of a slide: its run-out, the stored curves beside it, and the velocity over its height. Needs numpy and h5py."""
 
 import csv
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class Toe:
 
 def heading(run, body):
     """Horizontal direction [dim - 1] in which the centre of mass of a body has moved from its first row to the last; along x where
-    the history does not tell it."""
+    the history does not have it."""
     rows = there(run, body)
     across = [run.history.get(f"{body}_centre_{axis}") for axis in "xy"[:int(run.text("dim", "2")) - 1]]
     ahead = np.eye(len(across))[0]
@@ -62,7 +62,7 @@ def direction_text(direction):
 
 
 def toes(run, body):
-    """The furthest particle, and where it is known the 99.9th percentile, along the direction of motion. Rows of the history tell
+    """The furthest particle, and where there is one the 99.9th percentile, along the direction of motion. Rows of the history have
     them along an axis; along others frames do, if they are not too large to read."""
     direction, frames = heading(run, body), [path for path in run.frames if particles_in(path, body)]
     if np.abs(direction).max() <= ALIGNED and frames and sum(particles_in(path, body) for path in frames) < MOST_PARTICLES:
@@ -72,8 +72,8 @@ def toes(run, body):
     columns = [("furthest particle", f"{name}max"), ("99.9th percentile", f"{name}q999")] if sign > 0 else [("furthest particle", f"{name}min")]
     time = run.history["time"][rows]
     return sign * np.eye(len(direction))[axis], [
-        Toe(told, time, sign * (run.history[f"{body}_{column}"][rows] - run.history[f"{body}_{column}"][rows][0]))
-        for told, column in columns if f"{body}_{column}" in run.history]
+        Toe(name, time, sign * (run.history[f"{body}_{column}"][rows] - run.history[f"{body}_{column}"][rows][0]))
+        for name, column in columns if f"{body}_{column}" in run.history]
 
 
 def particles_in(path, body):
@@ -83,7 +83,7 @@ def particles_in(path, body):
 
 
 def toes_of_frames(frames, body, direction):
-    """The same from frames: by nearest rank as in the history."""
+    """Toes from frames: percentiles by nearest rank as in the history."""
     times, furthest, percentile = [], [], []
     for path in frames:
         with h5py.File(path) as file:

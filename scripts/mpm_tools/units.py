@@ -1,4 +1,4 @@
-"""Units of pictures: which multiple of an SI unit the numbers of an axis are told in. Needs numpy."""
+"""Units of pictures: the multiple of an SI unit for the numbers of an axis. Needs numpy."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ MULTIPLES = {"N": [("N", 1.0), ("kN", 1e3), ("MN", 1e6), ("GN", 1e9)], "Pa": [("
 USUAL = {"N": 1, "Pa": 1}  # an engineer's kN and kPa
 LARGEST, LEAST = 1e4, 0.1  # of an axis, in its unit
 
-# What a column of the history is in, by its end: docs/results.md.
+# Units of columns of the history, by the end of their names: docs/results.md.
 ENDS = [("step", "-"), ("wall_time", "s"), ("time", "s"), ("dt", "s"), ("_pressure", "Pa"), ("_area", "m2"), ("_mass_flux", "kg/s"), ("_volume_flux", "m3/s"),
         ("_mass", "kg"), ("_volume", "m3"), ("_grid_velocity", "m/s"), ("_speed", "m/s"), ("_depth", "m"), ("_surface", "m"), ("_base", "m"),
         ("_strays", "-"), ("_limited", "-"), ("_put_back", "-"), ("_stretched", "-"), ("_particles", "-"), ("_merged", "-"),

@@ -221,7 +221,7 @@ struct PersistentStep {
       for (int looks = 0; missing(); ++looks)
         if (impatient && looks == k_patience) {
           update.control().paused |= Pause::last;
-          tell({at.number, Pause::last});
+          publish({at.number, Pause::last});
         }
     });
     team.team_barrier();
@@ -230,7 +230,7 @@ struct PersistentStep {
   KOKKOS_INLINE_FUNCTION long long* signal_bits() const {
     return reinterpret_cast<long long*>(&launch_barrier().signal);
   }
-  KOKKOS_INLINE_FUNCTION void tell(const Signal& signal) const {
+  KOKKOS_INLINE_FUNCTION void publish(const Signal& signal) const {
     store_for_others(signal_bits(), Kokkos::bit_cast<long long>(signal));
   }
 
@@ -247,7 +247,7 @@ struct PersistentStep {
       launch_barrier().begun = 0;
       launch_barrier().before = at.arrivals;
       fence_of_teams();
-      if (WithNodes) tell({at.number + 1, at.found.paused});
+      if (WithNodes) publish({at.number + 1, at.found.paused});
     });
   }
 
@@ -259,7 +259,7 @@ struct PersistentStep {
       at.found.keep_in(update.control());
       update.control().steps += at.step;
       launch_barrier().before = at.arrivals;
-      tell({at.number + 1, at.found.paused});
+      publish({at.number + 1, at.found.paused});
     });
   }
 
@@ -297,11 +297,11 @@ struct PersistentStep {
       bool own = true;
       for (int d = 0; d < Dim; ++d) own = own && place[d] >= 0 && place[d] < Patch<Dim>::edge;
       if (slot.empty && !own) return KinematicValues<T, Dim>{};
-      double* const told = own && slot.contact > 0 ? force + place_of<Dim>(place) : nullptr;
-      for (int v = 0; v < nodes.value_count && told != nullptr; ++v) told[v * cells] = 0;
+      double* const on_rigids = own && slot.contact > 0 ? force + place_of<Dim>(place) : nullptr;
+      for (int v = 0; v < nodes.value_count && on_rigids != nullptr; ++v) on_rigids[v * cells] = 0;
       const bool beyond = image != n;  // of a wall, where a node has no motion of its own
       const KinematicValues<T, Dim> kinematics =
-          nodes.kinematics(present, bodies, number, in, slot.contact > 0, beyond ? nullptr : told);
+          nodes.kinematics(present, bodies, number, in, slot.contact > 0, beyond ? nullptr : on_rigids);
       if (own)
         nodes.keep(slot.number * cells + place_of<Dim>(place),
                    beyond ? KinematicValues<T, Dim>{} : kinematics);

@@ -25,7 +25,7 @@ struct OneOf<T, ModelList<Models...>> {
   T pore_stiffness = 0;  // Pa, of the water in the pores (physics/pore_water.hpp); 0: the pores drain
   alignas(16) unsigned char bytes[k_bytes];
 
-  /// The model, where it is known to be this one.
+  /// The model, where the caller has found it to be this one.
   template <template <class> class Model>
   KOKKOS_FORCEINLINE_FUNCTION const Model<T>& as() const {
     return *reinterpret_cast<const Model<T>*>(bytes);

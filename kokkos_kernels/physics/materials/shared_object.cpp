@@ -67,7 +67,7 @@ std::string fault_of_shared_object(const std::string& path) {
     return "it has an ELF header that is not sound";
   const std::uint64_t needed = needed_bytes(file, size, head);
   if (needed > size)
-    return "it is cut short: it has " + std::to_string(size) + " bytes, and its headers tell of " +
+    return "it is cut short: it has " + std::to_string(size) + " bytes, and its headers give " +
            std::to_string(needed);
   return "";
 }

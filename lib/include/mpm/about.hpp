@@ -15,10 +15,10 @@ std::string help_text();
 /// The text that the command line asks for in place of a run: that of --version or --help, where one of them
 /// (or -version, -help, -h) is among the words; else empty. Only the first process of a job has a text to
 /// print.
-struct Told {
+struct AboutAnswer {
   bool asked = false;  // the program then ends with status 0
   std::string text;
 };
-Told told_without_run(int argc, char** argv);
+AboutAnswer answer_without_run(int argc, char** argv);
 
 }  // namespace mpm

@@ -162,7 +162,7 @@ std::string read_checkpoint_particles(const ParticleSource& source, const MeshCo
   if (c.dim != dim) return "a checkpoint of a run in " + std::to_string(dim) + "D";
   MeshConfig there;
   BodyRows body{c.state.soil};
-  if (!read_mesh(c, there)) return "a checkpoint whose options tell its mesh";
+  if (!read_mesh(c, there)) return "a checkpoint whose options give its mesh";
   if (fault = find_body(c, source.group, body); !fault.empty()) return fault;
 
   for (const ParticleColumn& column : k_particle_columns)

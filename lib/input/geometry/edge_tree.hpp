@@ -1,5 +1,5 @@
 #pragma once
-// The edges of a polygon in a tree, so that those near an edge or in a row are found without looking at all.
+// The edges of a polygon in a tree, so that those near an edge or in a row are found without a test of all.
 
 #include <array>
 

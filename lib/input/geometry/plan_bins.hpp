@@ -1,6 +1,6 @@
 #pragma once
 // Triangles in square bins as seen from above, so that those above and below a point are found without
-// looking at all.
+// a test of all.
 
 #include <array>
 #include <vector>

@@ -13,7 +13,7 @@
 
 namespace mpm {
 
-/// -time_*. limit_courant, after the bodies, which tell which Courant numbers are stable.
+/// -time_*. limit_courant, after the bodies, which determine the stable Courant numbers.
 void read_time(OptionReader& in, TimeConfig& time);
 void limit_courant(OptionReader& in, Config& config);
 /// Gravity, water, damping, and how particles follow the soil. After the time.

@@ -69,7 +69,7 @@ bool count_cells(OptionReader& in, int dim, MeshConfig& mesh) {
     if (std::max(std::abs(mesh.lower[d]), std::abs(mesh.upper[d])) <= k_furthest * mesh.spacing) continue;
     in.reject(lower ? "mesh_lower" : "mesh_upper",
               "a corner at most " + text_of(k_furthest) + " cells of " + text_of(mesh.spacing) +
-                  " m from the origin, since its coordinates do not tell particles apart further out");
+                  " m from the origin, since its coordinates do not separate particles further out");
     return false;
   }
   mesh.cells = {1, 1, 1};

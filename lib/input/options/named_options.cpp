@@ -300,7 +300,7 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
       in, {.name = "water_regions", .meaning = "names of boxes in which the water has a level of its own"},
       names);
   const auto probes = read_names(
-      in, {.name = "probes", .meaning = "names of the probes, places of which the history tells"}, names);
+      in, {.name = "probes", .meaning = "names of the probes, places that the history reports"}, names);
   if (!in.listing()) {
     for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "water_regions", "probes"})
       leave_out(in, list, names);

@@ -34,7 +34,7 @@ void read_run(OptionReader& in, const std::vector<Backend>& backends, Config& co
             config.device_memory_limit);
   in.flag({.name = "dry_run",
            .meaning =
-               "tells particles, memory, steps, output and about how long the run takes, and writes nothing",
+               "prints particles, memory, steps, output and about how long the run takes, and writes nothing",
            .change = k_at_any_restart},
           config.dry_run);
 }
@@ -204,7 +204,7 @@ constexpr const char* k_usage =
     "mpm: a material point method for soil, in 2D and 3D\n\n"
     "  mpm -options_file DECK [-NAME VALUE] ...    runs a deck; what the command line gives takes "
     "precedence\n"
-    "  mpm -options_file DECK -dry_run             tells particles, memory, steps and run time; writes "
+    "  mpm -options_file DECK -dry_run             prints particles, memory, steps and run time; writes "
     "nothing\n"
     "  mpm -options_file DECK -restart latest      goes on from the last checkpoint\n"
     "  mpirun -n 4 mpm -options_file DECK          runs on four processes\n"

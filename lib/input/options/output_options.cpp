@@ -107,7 +107,7 @@ void read_output(OptionReader& in, const std::string& options_file, double time_
             output.history_interval);
   read_restarts(in, output);
   in.word({.name = "output_partition",
-           .meaning = "on: partition.csv tells at each frame which rank owns what",
+           .meaning = "on: partition.csv has, at each frame, the patches of each rank",
            .change = k_at_any_restart},
           Words<bool>{{"on", true}, {"off", false}}, output.partition);
   in.word({.name = "progress",

@@ -160,7 +160,7 @@ void read_rasters(OptionReader& in, const MeshConfig* mesh, Config& config) {
             rasters.spacing);
   if (mesh) check_columns(in, *mesh, config.dim, rasters.spacing);
   in.number({.name = "raster_interval",
-             .meaning = "time between looks at the soil",
+             .meaning = "time between updates of the rasters",
              .unit = "s",
              .range = k_positive,
              .standard = listing ? "history_interval" : "",

@@ -218,7 +218,7 @@ void check_absorbing(OptionReader& in, const Config& config) {
         if (!shear_wave_ratio(material))
           return in.reject(side_option(d, side),
                            "another kind of side where material " + material.name +
-                               " has no Poisson's ratio, which tells the speed of its shear waves");
+                               " has no Poisson's ratio, which determines the speed of its shear waves");
     }
 }
 

@@ -3,7 +3,7 @@
 Clay of 1800 kg/m3 that stands 2 m high is too weak to stand: it falls, strikes the wall and comes back. There is no exact
 answer, but soil that flows has no gaps and an even surface. The depth of a column of cells may differ from the mean of both
 neighbours by 2 % of the mean depth (standard deviation), and no cell below the surface may be empty. The wave breaks, so
-that a single run tells little: of 500 Pa the mean of seven strengths from 470 to 530 Pa is compared. With domains of a fixed
+that a single run means little: for 500 Pa the mean of seven strengths from 470 to 530 Pa is compared. With domains of a fixed
 size and FLIP the soil comes apart into fingers. With half the cells, APIC and corrected positions, columns that are 0.5 m and
 more away from the walls, where a wave stands, are even.
 """
@@ -41,7 +41,7 @@ def uneven_of(runs, names):
 
 
 def even_inside(frame):
-    """The same of the finer run, of columns that are not at a wall."""
+    """As even(), in the finer run, over columns that are not at a wall."""
     depth = depths(frame["position"], frame["volume"], frame["half_length_x"], LOWER, FINE, round(COUNT * SPACING / FINE))
     return unevenness(depth[AWAY:-AWAY])
 

@@ -33,7 +33,7 @@ def missing(run):
 
 
 def unbalanced(h):
-    """What the row leaves over, over the largest energy."""
+    """Energy that a row of the balance does not explain, over the largest energy."""
     works = sum(h[name] for name in h if name.startswith("work_"))
     held = h["energy_kinetic"] - h["energy_kinetic"][0] + h["energy_internal"] + h["energy_lost"]
     return np.abs(held - works - h["energy_error"]).max() / largest(h)

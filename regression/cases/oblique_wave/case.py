@@ -64,7 +64,7 @@ def returned(kind, degrees, factor, width):
     kx, ky, omega, amplitude = packet(kind, degrees, width)
 
     def traction(of, across):
-        """Of a wave of unit displacement and its dashpots, which must vanish in the sum: normal and tangential."""
+        """Tractions of a wave of unit displacement and its dashpots, which must vanish in the sum: normal and tangential."""
         p = polarization(of, kx + 0 * across, across)
         stress = stresses(kx, across, p)
         return np.array([stress[1] + omega * factor * DENSITY * FAST * p[..., 1], stress[2] + omega * factor * DENSITY * SLOW * p[..., 0]])

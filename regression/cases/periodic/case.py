@@ -5,7 +5,7 @@ starts with the block shifted by 11 of the 32 cells, so that the sides cut it fr
 the first run, to round-off. Its momentum must stay what it was.
 
 A wave of velocity $v_0 \\sin k(x - ct)$ and stress $-\\rho c v$ runs along a bar of the length $L = 2\\pi/k$ whose ends
-are one place, five times round. The phase of its first mode tells its speed, which must be $c = \\sqrt{E/\\rho}$; halving the
+are one place, five times round. The phase of its first mode gives its speed, which must be $c = \\sqrt{E/\\rho}$; halving the
 cells must quarter the error. Two such waves, one each way, make a standing wave.
 """
 
@@ -73,7 +73,7 @@ def ways(run):
 
 
 def mode(run):
-    """Of the first mode of the velocity at the end, the amplitude, m/s, and by what part of a turn it lags behind whole turns."""
+    """First mode of the velocity at the end: the amplitude, m/s, and the part of a turn by which it lags behind whole turns."""
     frame = last_frame(run, "soil")
     k = 2 * np.pi / LENGTH
     wave = 2j * np.mean(frame["velocity"][:, 0] * np.exp(-1j * k * (frame["position"][:, 0] - LOWER[0])))

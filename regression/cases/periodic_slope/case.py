@@ -34,7 +34,7 @@ END = 0.5  # s
 
 
 def safety(c, phi, beta, share=1):
-    """Of a plane at this share of the depth."""
+    """Factor of safety of a plane at this share of the depth."""
     p, b = np.radians((phi, beta))
     return c / (DENSITY * G * share * DEPTH * np.sin(b) * np.cos(b)) + np.tan(p) / np.tan(b)
 
@@ -79,7 +79,7 @@ def prepare(run, path, options):
 
 
 def acceleration(run):
-    """Of the centre of mass down the slope over the second half of the run, m/s2."""
+    """Acceleration of the centre of mass down the slope over the second half of the run, m/s2."""
     return slope(run.history["time"], run.history["soil_momentum_x"] / run.history["soil_mass"], END / 2)
 
 

@@ -1,8 +1,8 @@
 """Probes and rasters of a block of known motion
 
 A block, 1 m long and $H$ = 0.5 m high, moves with $v$ = 2 m/s, and nothing acts on it. Through a section the mass flux is
-$\\rho H v$ while the block passes, and the mass that has passed at the end is that of the block. A gauge tells $H$ and $v$ while the block
-is there. A point in it has its velocity. The particle that is followed moves by $v t$. The rasters tell $H$ as the greatest depth where the
+$\\rho H v$ while the block passes, and the mass that has passed at the end is that of the block. A gauge has $H$ and $v$ while the block
+is there. A point in it has its velocity. The particle that is followed moves by $v t$. The rasters have $H$ as the greatest depth where the
 block has been and none elsewhere, and as the time of arrival the time at which the front has filled a fifth of a cell, to the 0.01 s between two
 looks. In 3D the block is 0.6 m wide. Fluxes are means over a strip of one cell.
 """

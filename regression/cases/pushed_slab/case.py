@@ -27,7 +27,7 @@ def mass(run):
 
 
 def resistance(run):
-    """What holds the slab, F - M a, over tau_max A."""
+    """Force that holds the slab, F - M a, over tau_max A."""
     area = np.prod(np.subtract(run.numbers("soil_upper"), run.numbers("soil_lower"))[:-1])
     a = slope(run.history["time"], run.history["slab_velocity_x"], 0.05)
     return (run.number("slab_force") - mass(run) * a) / (LIMIT * area)

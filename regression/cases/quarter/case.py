@@ -3,7 +3,7 @@
 A cylinder of elastic soil on a fixed base, 1 m in radius $R$ and height, as a quarter in 3D between two planes of symmetry
 (`-soil_fill cut`) and as a body of revolution in section (`-geometry axisymmetric`), on meshes of the same spacing $d$. *Weight*: it
 stands under its own weight. *Pressure*: 10 kPa on its top; settlements are per load, because the area of the top in 3D is that of
-whole faces of particles. *Footing*: a circular plate of radius $a = R/2$ that is bonded to the top goes down by 0.2 mm; the base tells its load.
+whole faces of particles. *Footing*: a circular plate of radius $a = R/2$ that is bonded to the top goes down by 0.2 mm; its load is that of the base.
 
 The two meshes approach one solution, each with an error of first order. Particles at the curved face reach beyond it by
 $d/4$, a half particle, at most, which adds $d/2R$ to the section of the cylinder: the settlement may differ by this share. Contact acts at nodes within half
@@ -41,7 +41,7 @@ LONG = True
 
 
 def base_force(run, mesh):
-    """Of the whole cylinder, N."""
+    """Force on the base of the whole cylinder, N."""
     return run.history["wall_ymin_force_y"][-1] if mesh == "section" else 4 * run.history["wall_zmin_force_z"][-1]
 
 

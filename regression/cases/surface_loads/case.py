@@ -43,7 +43,7 @@ RUNS = {
 
 
 def integral(text, t):
-    """Of a straight table from 0 to the times t, by component."""
+    """Integral of a piecewise linear table from 0 to the times t, by component."""
     points = np.array([[float(x) for x in point.split(":")] for point in text.split(",")])
     sums = []
     for column in points[:, 1:].T:

@@ -1,4 +1,4 @@
-"""What the cases of a collapsing column share: the column at rest, its run-out, and the laws of the experiments."""
+"""Shared by the cases of a collapsing column: the column at rest, its run-out, and the laws of the experiments."""
 
 import numpy as np
 
@@ -28,7 +28,7 @@ def lagree(a):
 
 
 def options(a, spacing, material, run_out):
-    """Those of a column a m high and 1 m long, on a mesh that ends `run_out` m beyond it. The stiffness follows the
+    """Options of a column a m high and 1 m long, on a mesh that ends `run_out` m beyond it. The stiffness follows the
     height, so that columns of every height strain alike."""
     wave_modulus = DENSITY * SPEEDS**2 * 2 * G * a
     young = wave_modulus * 1.3 * 0.4 / 0.7  # nu = 0.3

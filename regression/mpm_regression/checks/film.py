@@ -1,4 +1,4 @@
-"""What the cases of a film on a slope share: laws, exact profiles, the film at the start, and what is measured.
+"""Shared by the cases of a film on a slope: laws, exact profiles, the film at the start, and what is measured.
 
 The mesh lies along the slope, and gravity is turned. x points downhill, y is the height above the base.
 """
@@ -15,7 +15,7 @@ START = 0.95  # share of the exact velocity at the start
 
 
 class Film:
-    """A film of the height H, m, on a slope. Subclasses tell its steady flow, `surface` and `flow`, m/s and m2/s, the time in
+    """A film of the height H, m, on a slope. Subclasses have its steady flow, `surface` and `flow`, m/s and m2/s, the time in
     which it comes to it, `relaxation`, s, and the options of its law, `law`."""
 
     def __init__(self, slope_deg, height, density, cells):

@@ -1,4 +1,4 @@
-"""What the cases of the strip footing share: its curve, and the distance of two curves."""
+"""Shared by the cases of the strip footing: its curve, and the distance of two curves."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What the cases of a strip footing on frictional soil share: set-up, exact values, and the load that is compared.
+"""Shared by the cases of a strip footing on frictional soil: set-up, exact values, and the load that is compared.
 
 Half of the problem, B = 1 m. The footing's edge lies midway between two nodes, because a node on the edge half belongs to a
 smooth footing and fully to a rough one. Soil with psi = phi dilates at a fixed ratio to its shear; four particles a cell

@@ -1,4 +1,4 @@
-"""What the cases of a block on an incline share: the block with the stress of its weight, and its acceleration."""
+"""Shared by the cases of a block on an incline: the block with the stress of its weight, and its acceleration."""
 
 import numpy as np
 

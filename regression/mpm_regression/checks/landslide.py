@@ -1,4 +1,4 @@
-"""What the cases of the submarine landslide share: toe, forces at rest, velocities at 4 s, and the curve."""
+"""Shared by the cases of the submarine landslide: toe, forces at rest, velocities at 4 s, and the curve."""
 
 import numpy as np
 

@@ -23,7 +23,7 @@ VARIANTS = {
     "small steps": {"time_courant": 0.1},
     "block thrown at a wall": {"dam_lower": (0.5, 0.5), "dam_upper": (1.5, 1.5), "dam_velocity": (8, 0)}}
 
-# What a core of 2020 does in a second, roughly: particles times steps. Decks are drawn until one takes long enough, and not too long.
+# Particles times steps that a core of 2020 does in a second, roughly. Decks are drawn until one takes long enough, and not too long.
 UPDATES_PER_SECOND = {2: 2.0e6, 3: 0.5e6}
 PLACES = ("lower", "upper", "centre", "point")  # options that are places, which the origin shifts
 
@@ -94,7 +94,7 @@ class Draw:
         return self.random.choices(list(weights), list(weights.values()))[0]
 
     def vector(self, x, y, z):
-        """What is x along, y across and z up, as the dimension takes it."""
+        """Vector of x along, y across and z up in the dimension of the deck; in 2D without y."""
         return (x, z) if self.dim == 2 else (x, y, z)
 
 

@@ -101,7 +101,7 @@ class Collapses(Deck):
         slack = self.bound(1e-9, 1e-4) * float(self.deck.value("mesh_spacing"))
         for axis, lower, upper in zip("xyz", *self.deck.mesh()):
             least, most = (values[f"{body}_{axis}{end}"][there] for end in ("min", "max"))
-            # What has passed a free side leaves at the next rebuild of the bins, after half a cell at most.
+            # A particle that has passed a free side leaves at the next rebuild of the bins, after half a cell at most.
             below, above = (slack + (self.deck.options.get(f"mesh_{axis}{end}") == "free") * float(self.deck.value("mesh_spacing")) / 2
                             for end in ("min", "max"))
             if there.any() and (least.min() < lower - below or most.max() > upper + above):

@@ -61,5 +61,5 @@ class Compression(Listed):
         kinetic, missing = last["energy_kinetic"] / elastic, last["energy_error"] / elastic
         far = 2 * last["body_centre_y"] / exact_centre(self.stretch) - 1
         self.note("kinetic energy", kinetic)
-        told = f"kinetic {kinetic:.1e}, missing {missing:.2%} of the elastic energy, centre {far:+.2%} of the exact height"
-        assert kinetic < 1e-3 and abs(missing) < 0.02 and abs(far) < 0.03, told
+        printed = f"kinetic {kinetic:.1e}, missing {missing:.2%} of the elastic energy, centre {far:+.2%} of the exact height"
+        assert kinetic < 1e-3 and abs(missing) < 0.02 and abs(far) < 0.03, printed

@@ -82,7 +82,7 @@ class Correction(Deck):
             assert error < self.bound(1e-8, 2e-3), f"{name} differs by {error:.3g} on two ranks"
 
     def check_elastic(self, whole):
-        """What the correction leaves alone goes on to the same bits."""
+        """Soil that the correction leaves alone goes on to the same bits."""
         none = self.go("none", "-rebuild_margin", "0.45", options=self.plain)
         lines, plain = rows(whole), rows(none)
         kept = [k for k, name in enumerate(lines[0]) if name in plain[0]]

@@ -166,7 +166,7 @@ class Deck:
         self.check_same_bits(cut, whole, f"cut at step {at} of {rows(whole)[-1][0]}", machine)
 
     def check_same_bits(self, folder, whole, what, machine=None):
-        """The same rows, beside those where the run was cut, frames and rasters."""
+        """Rows, frames and rasters of both folders have the same bits, except for rows where the run was cut."""
         sums = self.sums if machine and machine.ranks > 1 else ()
         mine, theirs = columns_but(folder, sums), columns_but(whole, sums)
         held = {tuple(line) for line in mine}

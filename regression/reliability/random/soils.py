@@ -156,9 +156,9 @@ class Soils(Collapses):
         yield from super().faults(folder)
         options = json.loads((folder / "options.json").read_text())["options"]
         for soil, fraction in self.fractions.items():
-            told = options[f"{soil}_f_bar_fraction"]
-            if float(told) != fraction:
-                yield f"-{soil}_f_bar_fraction is {told} where the rule says {fraction}"
+            given = options[f"{soil}_f_bar_fraction"]
+            if float(given) != fraction:
+                yield f"-{soil}_f_bar_fraction is {given} where the rule says {fraction}"
         for frame in (frames(folder)[0], frames(folder)[-1]):
             yield from self.strength_faults(frame)
         yield from self.yield_faults(frames(folder)[-1])

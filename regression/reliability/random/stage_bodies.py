@@ -177,8 +177,8 @@ class StageBodies(Staged):
 
     def check_dry(self):
         folder, done = self.launch("dry", "-dry_run")
-        told = re.findall(r"^stage (\w+) +to .*?: (\d+) steps", done.stdout, re.M)
-        assert [name for name, _ in told] == self.stages, f"the dry run tells of {told}"
+        printed = re.findall(r"^stage (\w+) +to .*?: (\d+) steps", done.stdout, re.M)
+        assert [name for name, _ in printed] == self.stages, f"the dry run prints {printed}"
         assert not folder.exists(), "the dry run has written a folder"
         if "-time_step" in self.options:
-            assert [int(steps) for _, steps in told] == self.steps, f"the dry run tells of {told} of {self.steps}"
+            assert [int(steps) for _, steps in printed] == self.steps, f"the dry run prints {printed} of {self.steps}"

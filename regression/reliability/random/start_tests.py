@@ -156,8 +156,8 @@ class StartTests(Deck):
         for options, lines in cases:
             folder = fresh(self.folder / "refused")
             done = run(self.given.binary, None, folder, "-backend", "serial", "-precision", self.precision, *options, status=2)
-            told = done.stderr.splitlines()
-            self.expect(len(told) == len(lines) and all(b in a for a, b in zip(told, lines)), f"{lines}: {told}")
+            errors = done.stderr.splitlines()
+            self.expect(len(errors) == len(lines) and all(b in a for a, b in zip(errors, lines)), f"{lines}: {errors}")
             self.expect(not folder.exists(), f"{lines}: {folder} was written")
         for source in (frame, mark):  # the run would remove what it starts from
             done = run(self.given.binary, None, first, "-precision", self.precision, *common, *from_file(source), status=2)

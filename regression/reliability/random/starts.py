@@ -60,5 +60,5 @@ class Starts(StartTests):
                 assert abs(state["mass"].sum(dtype=float) / total - 1) < 1e-14, f"{source.name}: total mass"
             strengths = (bodies(checkpoints(folder)[-1])["strength"] for folder in (whole, again))
             assert apart(*strengths) <= round_off, f"{source.name}: strengths"
-            told = f"(body soil, {'frame' if 'frame' in source.name else 'checkpoint'} of step"
-            assert told in done.stdout, f"{source.name}: the log does not tell where it starts"
+            printed = f"(body soil, {'frame' if 'frame' in source.name else 'checkpoint'} of step"
+            assert printed in done.stdout, f"{source.name}: the log does not say where it starts"

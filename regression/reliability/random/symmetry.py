@@ -118,7 +118,7 @@ class Symmetry(Deck):
         self.check_motion(folder, whole, 1, what)
 
     def check_motion(self, one, other, share, what):
-        """share: of the force on `other` that `one` tells."""
+        """share: of the force on `other` that `one` reports."""
         mine, theirs, tolerance = history(one), history(other), TOLERANCE[self.precision]
         for name, factor in ((f"tool_force_{self.up}", share), (f"tool_{self.up}", 1)):
             a, b = mine[name] * factor, theirs[name]

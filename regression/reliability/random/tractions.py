@@ -1,7 +1,7 @@
 """Loads on surfaces: pressures and tractions, constant and by tables, on bodies of random shapes.
 
 A body that touches nothing has up to three loads on parts of its surface. From row to row its momentum must change by the force that
-the history tells, and by its weight. A table of one value must give the same bits as the constant. Where the run has an energy
+the history has, and by its weight. A table of one value must give the same bits as the constant. Where the run has an energy
 balance, its row must hold. In some decks stages change the loads.
 """
 import numpy as np

@@ -102,7 +102,7 @@ class Turning(Deck):
                                 + values[f"{name}_contact_moment"] + round(body["moment"][0], 6), t)
 
     def check_gain(self, name, what, momentum, rate, t):
-        """What a body gains between two rows is the mean of the force over the interval."""
+        """Between two rows a body gains the momentum of the mean force over the interval."""
         gained = np.cumsum(rate[1:] * np.diff(t))
         scale = np.abs(momentum).max() + np.abs(rate[1:] * np.diff(t)).sum()
         error = np.abs(momentum[1:] - momentum[0] - gained).max() / scale

@@ -153,7 +153,7 @@ class Water(Collapses):
             yield f"the base carries {force:.15g} of the buoyant weight"
 
     def serial_faults(self, found, wanted):
-        """The same on one core by the strategy `sequential`."""
+        """The run on one core by the strategy `sequential` gives the same fields."""
         ground = self.deck.ground
         elastic = all(each.law["model"] == "linear_elastic" for each in ground.layers)
         bound = SERIAL["elastic" if elastic else "plastic"]

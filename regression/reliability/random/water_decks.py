@@ -118,7 +118,7 @@ class Layer:
 
 
 class Ground:
-    """What a ground deck is made of."""
+    """Parts of a ground deck."""
 
     def __init__(self, dice, dims):
         self.dice, self.dim = dice, dice.choice(dims)

@@ -47,7 +47,7 @@ def outline(soil):
 
 
 def difference(coarse, fine):
-    """Of two outlines, over the finer one [%]."""
+    """Difference of two outlines, over the finer one [%]."""
     return 100 * np.abs(coarse - fine).sum() / fine.sum()
 
 

@@ -91,13 +91,13 @@ def run_together(commands, log, clock, setting):
     sound = True
     for command, part, process in running:
         try:
-            told = f"exit status {process.wait(clock.left())}"
+            printed = f"exit status {process.wait(clock.left())}"
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
-            told = f"exit status {process.wait()}, ended for lack of time"
+            printed = f"exit status {process.wait()}, ended for lack of time"
         took = time.monotonic() - begin
         sound = sound and process.returncode == 0
-        text = f"$ {shlex.join(map(str, command))}\n{part.read_text(errors='replace')}{told} after {took:.0f} s at most\n"
+        text = f"$ {shlex.join(map(str, command))}\n{part.read_text(errors='replace')}{printed} after {took:.0f} s at most\n"
         with open(log, "a") as file:
             file.write(text)
         part.unlink()

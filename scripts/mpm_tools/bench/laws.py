@@ -16,9 +16,9 @@ from mpm_tools.tree import ROOT
 try:
     import h5py
 except ImportError:
-    h5py = None  # then the share that yields is not told
+    h5py = None  # then the share that yields is left out
 
-# Of about the stiffness and strength of the clay of inputs/footing.opts. From the initial stress the soil yields near the
+# Stiffness and strength are about those of the clay of inputs/footing.opts. From the initial stress the soil yields near the
 # footing; `weak` lets all soil yield as it expands at its surface and slides.
 STIFF = {"young": 1.5e6, "poisson": 0.3}
 GRAINS = {"mu_static": 0.38, "mu_dynamic": 0.64, "inertial_number": 0.28, "grain_diameter": 1e-3, "grain_density": 2500}

@@ -63,8 +63,8 @@ def print_tables(arguments, runs):
     rows = []
     for (name, spacing), of in runs.items():
         toes = [np.interp(TIMES, of.history["time"], run_out(of, "slide", column)) for column in ("xmax", "xq999")]
-        told = json.loads((of.folder / "performance.json").read_text())["particles"]
-        particles = of.history["slide_particles"][-1] if "slide_particles" in of.history else told
+        report = json.loads((of.folder / "performance.json").read_text())["particles"]
+        particles = of.history["slide_particles"][-1] if "slide_particles" in of.history else report
         cells = [f"{first:.2f} / {most:.2f}" for first, most in zip(*toes)]
         rows.append([name, spacing, f"{particles:,.0f}", *cells, f"{stop(of):.1f}"])
     print_table("Run-out (m) of the furthest particle / of the 99.9th percentile",

@@ -37,7 +37,7 @@ class Setting:
     strategy: str
 
     def size(self):
-        """What makes the problem as large: the options beside the deck's."""
+        """Options beside the deck's that give the problem its size."""
         if self.problem == "footing":
             length = f"{self.particles / 25600:.12g}"  # m, B = 1 m; 4 B deep, cells of B/40, 4 particles each
             return f"-mesh_upper {length},4.45 -soil_upper {length},4"
@@ -65,35 +65,35 @@ def run(program, options, folder):
 
 
 def performance(folder):
-    """What the run in a folder tells of its speed (docs/running.md)."""
+    """Report of the run in a folder on its speed (docs/running.md)."""
     return json.loads((folder / "performance.json").read_text())
 
 
 def environment():
-    """Open MPI refuses root unless told."""
+    """Variables with which Open MPI runs for root too."""
     return {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_PROC_BIND": "false", **os.environ}
 
 
 def backends(program):
-    """Those that the program was built with, serial, openmp, cuda."""
+    """Back ends that the program was built with: serial, openmp, cuda."""
     text = subprocess.run([str(program), "-help"], stdout=subprocess.PIPE, text=True, env=environment()).stdout
     return re.findall(r"\w+", re.search(r"-backend\n.*\n +takes (.*);", text)[1].replace(" or ", " "))
 
 
-def speed_of(told):
+def speed_of(report):
     """Of a performance.json: us a step in all and of each function {name: us}, bytes a particle, GB/s of a copy and of the
     steps, the strategy that ran, machine and device."""
-    steps, copy = told["steps"], told["copy_bandwidth_bytes_per_second"]
-    return {"us": 1e6 * told["stepping_seconds"] / steps, "steps": steps, "count": told["particles"], "ran": told["strategy"],
-            "functions": {each["name"]: 1e6 * each["seconds"] / steps for each in told["functions"]
+    steps, copy = report["steps"], report["copy_bandwidth_bytes_per_second"]
+    return {"us": 1e6 * report["stepping_seconds"] / steps, "steps": steps, "count": report["particles"], "ran": report["strategy"],
+            "functions": {each["name"]: 1e6 * each["seconds"] / steps for each in report["functions"]
                           if 2 * each["calls"] > steps or "rebuild" in each["name"]},  # others were done by few steps alone
-            "bytes": told["memory_bytes"] / told["particles"], "copy": copy and copy / 1e9,
-            "moved": copy and told["moved_bytes_per_second"] / 1e9,
-            "machine": f"{told['processor']}, {told['cores']} cores", "device": told["device"]}
+            "bytes": report["memory_bytes"] / report["particles"], "copy": copy and copy / 1e9,
+            "moved": copy and report["moved_bytes_per_second"] / 1e9,
+            "machine": f"{report['processor']}, {report['cores']} cores", "device": report["device"]}
 
 
 def commit():
-    """What was measured: the commit of the tree, or of the bundle."""
+    """Commit of the tree, or of the bundle, that was measured."""
     if (ROOT / "BUNDLE").exists():
         return re.search(r"commit (\S+?),", (ROOT / "BUNDLE").read_text())[1]
     done = subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, stdout=subprocess.PIPE, text=True)
@@ -101,7 +101,7 @@ def commit():
 
 
 def measure(program, setting, repeats, folder):
-    """The median of `repeats` runs: the setting, what speed_of tells, us of all repeats, date and commit."""
+    """The median of `repeats` runs: the setting, the results of speed_of, us of all repeats, date and commit."""
     options = (f"-options_file inputs/{setting.problem}.opts -backend {setting.backend} -precision {setting.precision}"
                f" -p2g {setting.strategy} -time_max_steps {setting.steps()} {setting.size()} {HISTORY}")
     done = sorted((speed_of(run(program, options, folder)) for _ in range(repeats)), key=lambda each: each["us"])

@@ -62,7 +62,7 @@ def command(program, case, folder):
 
 
 def measure(program, case, repeats, folder):
-    """The fastest of several runs, what it tells of the ranks, and where it was."""
+    """The fastest of several runs, its figures of the ranks, and its machine."""
     done = []
     for _ in range(repeats):
         shutil.rmtree(folder, ignore_errors=True)
@@ -71,16 +71,16 @@ def measure(program, case, repeats, folder):
                              env={"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMP_NUM_THREADS": "1", **environment()})
         if run.returncode != 0:
             return {"failed": f"{shlex.join(words)}: exit status {run.returncode}\n{run.stdout[-1500:]}"}
-        told = performance(folder)
-        done.append({**speed_of(told), **figures_of_ranks(told)})
+        report = performance(folder)
+        done.append({**speed_of(report), **figures_of_ranks(report)})
     best = min(done, key=lambda each: each["us"])
     return {**case.__dict__, **best, "all_us": [each["us"] for each in done], "date": date.today().isoformat(),
             "commit": commit()}
 
 
-def figures_of_ranks(told):
+def figures_of_ranks(report):
     """Balance of the particles, nodes and kB of the halo, and shares of the time, where there are several ranks."""
-    ranks = told["between_ranks"]
+    ranks = report["between_ranks"]
     if ranks is None:
         return {}
 
@@ -129,7 +129,7 @@ def table(runs, kind, backend):
 
 
 def details(runs, backend):
-    """What the ranks of the runs on several of them did."""
+    """Figures of the ranks of the runs on several of them."""
     lines = ["| case | ranks | particles, largest over mean | work, largest over mean | halo, nodes | kB a rank and step | "
              "waiting, share of the time | bytes a particle |", "| --- |" + " --- |" * 7]
     for each in runs:

@@ -16,7 +16,7 @@ SPEEDUPS = {"interpolation, soil to nodes": ("soil particles to nodes", (7.9, 9.
             "stress update and movement": ("stress update, movement", (76.0, 83.6, 80.7, 80.5, 82.3, 92.9, 85.7)),
             "nodal velocities": ("nodal velocities, contact", (23.5, 17.1, 10.3, 32.8, 50.4, 53.6, 86.9)),
             "overall": (None, (19.9, 21.3, 23.1, 28.1, 29.1, 30.0, 30.8))}
-# What is left of these, where `tile` sums ahead in the stress update of the step before, is the time to look at a clock.
+# Functions that are empty where `tile` sums ahead in the stress update of the step before; their time is that of reading a clock.
 AHEAD = ("initialise nodal variables", "soil particles to nodes")
 MOSAIC_SPEEDUP = 5.4  # at 5,898,240 particles, single precision
 

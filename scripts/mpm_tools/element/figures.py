@@ -45,7 +45,7 @@ def has_void_ratio(results):
 
 
 def with_pressure(test, found, measured):
-    """What was measured in a triaxial test, with the mean effective stress that follows from it: the lateral stress at the
+    """Measured values of a triaxial test with the mean effective stress that follows from them: the lateral stress at the
     start, a third of q, less the excess pore pressure."""
     if measured is None or test.kind != "triaxial" or "q" not in measured or "p" in measured:
         return measured

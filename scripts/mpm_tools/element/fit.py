@@ -57,7 +57,7 @@ def residuals_of(test, found, measured):
 class Fit:
     parameters: list
     values: np.ndarray
-    errors: np.ndarray  # standard errors; NaN where the data do not tell
+    errors: np.ndarray  # standard errors; NaN where the data do not determine them
     at_bound: list
     root_mean_square: float  # of the residuals, which are parts of the ranges measured
     points: int
@@ -65,7 +65,7 @@ class Fit:
 
 
 def standard_errors(jacobian, residuals):
-    """Of the parameters: sqrt of the diagonal of s^2 (J^T J)^-1 with s^2 the variance of the residuals (Seber & Wild
+    """Standard errors of the parameters: sqrt of the diagonal of s^2 (J^T J)^-1 with s^2 the variance of the residuals (Seber & Wild
     1989, ch. 2.1); NaN where J^T J is singular."""
     freedom = len(residuals) - jacobian.shape[1]
     _, singular, rotation = np.linalg.svd(jacobian, full_matrices=False)

@@ -13,7 +13,7 @@ COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
 ROUND_OFF = 1e-5  # of a stress or strain that a path was to reach, in single precision
 MEAN, EVEN = "dsxx+dsyy+dszz", "dsxx-dszz"  # sums of a path: of the mean stress, and of the two lateral stresses
 KINDS = ("triaxial", "biaxial", "oedometer", "isotropic", "shear")
-# What a laboratory plots against what: the abscissa of each kind, and what may be measured over it.
+# Plots of a laboratory: the abscissa of each kind, and the values that may be measured over it.
 ABSCISSA = {"triaxial": "axial_strain", "biaxial": "axial_strain", "oedometer": "vertical_stress", "isotropic": "p",
             "shear": "shear_strain"}
 MEASURED = {"triaxial": ("q", "volume_strain", "pore_pressure"), "biaxial": ("q", "volume_strain", "pore_pressure"),
@@ -267,7 +267,7 @@ def stages_of(test):
 
 
 def shares(stage):
-    """What of a stage's change is done at the end of each row."""
+    """Share of a stage's change that is done at the end of each row."""
     n = np.arange(1, stage.rows + 1) / stage.rows
     return n if stage.ratio == 1 else (stage.ratio**n - 1) / (stage.ratio - 1)
 
@@ -298,7 +298,7 @@ def write_path(test, path):
 
 
 def results(test, table, stage_of_row):
-    """What a laboratory reports of a test: arrays by name, from the start of the test proper, and `stage`, its turning."""
+    """Values that a laboratory reports of a test: arrays by name, from the start of the test proper, and `stage`, its turning."""
     skipped = len(consolidation(test))
     begin = int(np.searchsorted(stage_of_row, skipped)) - 1 if skipped else 0
     stress = {c: -np.array(table["s" + c]) for c in COMPONENTS}
@@ -347,7 +347,7 @@ def stage_of_measured(test, x):
 
 
 def at_measured(test, found, measured, name):
-    """What the model gives for `name` where it was measured, by the abscissa along each stage; NaN beyond its course."""
+    """Values of the model for `name` where it was measured, by the abscissa along each stage; NaN beyond its course."""
     x, stage = measured[ABSCISSA[test.kind]], stage_of_measured(test, measured[ABSCISSA[test.kind]])
     along, values = found[ABSCISSA[test.kind]], np.full(len(x), np.nan)
     for k in np.unique(stage):

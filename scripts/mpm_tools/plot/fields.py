@@ -20,7 +20,7 @@ DEFAULT_FIELDS = ["grid_velocity", "plastic_strain"]
 
 
 class NothingToDraw(Exception):
-    """What is to be drawn is not there; its text is the line that tells the user."""
+    """Raised where the data of a picture are not there; its text is the line for the user."""
 
 
 # ---------------------------------------------------------------------------------------------- fields
@@ -49,7 +49,7 @@ def effective_pressure_of(fields):
 
 
 def known_fields(datasets, units=None):
-    """{name: Field} of all that the datasets {name: array [N] or [N, 3 or 6]} of a body tell, with their units {name: unit}."""
+    """{name: Field} of all datasets {name: array [N] or [N, 3 or 6]} of a body, with their units {name: unit}."""
     known = {}
     if {"velocity", "grid_velocity"} & datasets.keys():  # older frames hold the particles' own only
         known["grid_velocity"] = Field("velocity of the nodes (m/s)", speed_of("grid_velocity"), False)
@@ -193,7 +193,7 @@ class Scene:
         return lower - margin, upper + margin
 
     def known(self):
-        """{name: Field} of all that the frame tells of its first body."""
+        """{name: Field} of the first body of the frame."""
         return known_fields(self.groups[self.bodies[0]], self.units)
 
     def field(self, name):

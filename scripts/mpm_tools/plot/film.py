@@ -20,13 +20,13 @@ def frames_of(run, until):
     return [frame for frame in run.frames if until is None or time_of(frame) <= until * (1 + 1e-9)]
 
 
-def scenes_of(run, frames, cut, tell=False):
+def scenes_of(run, frames, cut, report=False):
     """A Scene of each frame in which there is a body, one at a time: together they may be more than memory holds."""
     for frame in frames:
         try:
             yield Scene(run, frame, cut)
         except NothingToDraw as nothing:
-            if tell:
+            if report:
                 print(f"plot: {nothing}: it is left out of the film", file=sys.stderr)
 
 
@@ -86,7 +86,7 @@ def write_mp4(pictures, rate, path):
 def draw_film(run, fields=(), until=None, cut=None):
     """film.gif and film.mp4 of some fields over all frames, or those up to a time [s]. Returns the paths of those made."""
     frames = frames_of(run, until)
-    fields, box, limits = common_view(scenes_of(run, frames, cut, tell=True), list(fields))
+    fields, box, limits = common_view(scenes_of(run, frames, cut, report=True), list(fields))
     if box is None:
         raise NothingToDraw(f"--film: {run.folder}/frames holds no frame to show")
     pictures = [picture(scene, fields, box, limits) for scene in scenes_of(run, frames, cut)]

@@ -12,7 +12,7 @@ LINE = 400    # corners of a layer along the plane
 
 def outline(run, name, plane=(0, 1), at=None):
     """Corners [N, 2] of a rigid's shape at the start, in m, in the part that the mesh holds; in 3D of its section with the plane
-    of two axes that cuts the third one at a place [m]. None where options do not tell it: stl, files that are not there."""
+    of two axes that cuts the third one at a place [m]. None where options do not give it: stl, files that are not there."""
     three = run.text("dim", "2") == "3"
     if run.words(f"{name}_cut_out"):
         return None
@@ -158,14 +158,14 @@ def section(run, name, plane, at):
 
 
 def section_of_box(run, name, plane, across, at):
-    """Of a box without fillet, which may be turned about y where the plane is normal to y."""
+    """Section of a box without fillet, which may be turned about y where the plane is normal to y."""
     low, high = run.numbers(f"{name}_lower")[across], run.numbers(f"{name}_upper")[across]
     turned = run.number(f"{name}_angle_deg") != 0 and across != 1
     return None if turned or run.number(f"{name}_fillet") or not low <= at <= high else turned_box(run, name, plane)
 
 
 def section_of_revolved(run, name, plane, across, at):
-    """Of an upright cylinder or cone: the half width at each height."""
+    """Section of an upright cylinder or cone: the half width at each height."""
     centre, height, radius = np.array(run.numbers(f"{name}_centre")), *radius_over_height(run, name)
     if across == 2:
         here = np.interp(at, centre[2] + height, radius, 0, 0)

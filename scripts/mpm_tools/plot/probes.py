@@ -13,7 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.colors import LightSource
 
-# What the panels of a probe show: quantity, columns behind NAME_, and SI unit. {axis} stands for each axis of the run.
+# Panels of a probe: quantity, columns behind NAME_, and SI unit. {axis} stands for each axis of the run.
 PANELS = {
     "point": [("velocity", ["velocity_{axis}"], "m/s"), ("pressure", ["pressure", "pore_pressure"], "Pa")],
     "particle": [("displacement", ["displacement_{axis}"], "m"), ("velocity", ["velocity_{axis}"], "m/s")],
@@ -25,7 +25,7 @@ RASTERS = {"max_depth": ("greatest depth (m)", "YlOrRd"), "max_speed": ("greates
 
 
 def columns_of(run, probe, names):
-    """Those of the columns that the history has, with the axes of the run."""
+    """Columns of these names that the history has, with the axes of the run."""
     all_names = [name.format(axis=axis) for name in names for axis in ("xyz" if "{axis}" in name else "x")]
     return [name for name in all_names if f"{probe}_{name}" in run.history]
 

@@ -11,7 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 POINTS = 201
-REACH = 1.5  # cells, from a point to the particles that tell of it
+REACH = 1.5  # cells, from a point to the particles that count for it
 FIELDS = ["grid_velocity", "pressure"]
 
 
@@ -29,7 +29,7 @@ def bell(r):
 
 
 def linear_values(offsets, weights, values):
-    """Weighted fit of linear functions, at the place itself; the mean where the points do not tell a slope."""
+    """Weighted fit of linear functions, at the place itself; the mean where the points do not determine a slope."""
     ones = np.column_stack([np.ones(len(offsets)), offsets])
     matrix = ones.T @ (ones * weights[:, None])
     mean = weights @ values / weights.sum()

@@ -16,7 +16,7 @@ folder=${MPM_OUTPUT:-out/$(basename "$deck" .opts)}
 
 last_checkpoint() { ls -1 "$folder"/checkpoint_*.h5 2>/dev/null | sort -V | tail -1; }
 # The next job is this script with this job's limits; options on the command line of the first sbatch are given
-# in MPM_SBATCH_OPTIONS, too, since a job does not know them.
+# in MPM_SBATCH_OPTIONS, too, since a job does not see them.
 again() {
   # shellcheck disable=SC2086
   sbatch $MPM_SBATCH_OPTIONS "$script" "$deck" "$@"
@@ -25,13 +25,13 @@ again() {
 from=$(last_checkpoint)
 restart=()
 if [ -n "$from" ]; then restart=(-restart latest); fi
-# MPM_LAUNCH names another launcher, as "srun --mpi=pmix --cpu-bind=cores"; Debian's Open MPI knows no srun.
+# MPM_LAUNCH names another launcher, as "srun --mpi=pmix --cpu-bind=cores"; Debian's Open MPI has no support of srun.
 ${MPM_LAUNCH:-$launch} "$program" -options_file "$deck" -output_dir "$folder" -backend "$backend" "${restart[@]}" "$@" &
 child=$!
-told=yes
-trap 'told=yes; kill -USR1 $child' USR1
-while [ $told = yes ]; do  # a signal ends the wait, not the program
-  told=no
+signalled=yes
+trap 'signalled=yes; kill -USR1 $child' USR1
+while [ $signalled = yes ]; do  # a signal ends the wait, not the program
+  signalled=no
   wait $child
   status=$?
 done

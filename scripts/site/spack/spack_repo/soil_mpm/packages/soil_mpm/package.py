@@ -80,5 +80,5 @@ class SoilMpm(CMakePackage, CudaPackage):
         """a deck is read and tried, on the processor"""
         deck = join_path(self.prefix.share, "mpm", "inputs", "footing_coarse.opts")
         mpm = Executable(self.prefix.bin.mpm)
-        told = mpm("-options_file", deck, "-backend", "serial", "-dry_run", output=str.split)
-        assert "a dry run: nothing was written" in told
+        printed = mpm("-options_file", deck, "-backend", "serial", "-dry_run", output=str.split)
+        assert "a dry run: nothing was written" in printed
