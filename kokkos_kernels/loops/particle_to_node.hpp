@@ -194,6 +194,5 @@ KOKKOS_INLINE_FUNCTION void give_to_nodes(const Source& source, const NodePlaces
 }  // namespace mpm
 
 /// Instantiates a strategy for every source, space, real type and dimension.
-#define MPM_INSTANTIATE_SOURCE(Source, Space, T, Dim) \
-  template void MPM_STRATEGY(const Interpolation<Source<Space, T, Dim>>&);
+#define MPM_INSTANTIATE_SOURCE(...) template void MPM_STRATEGY(const Interpolation<__VA_ARGS__>&);
 #define MPM_INSTANTIATE_STRATEGY(Space, T, Dim) MPM_FOR_EACH_SOURCE(MPM_INSTANTIATE_SOURCE, Space, T, Dim)

@@ -327,27 +327,6 @@ template <class Source>
 inline constexpr std::size_t window_bytes =
     sizeof(typename Source::real) * Source::size* Patch<Source::dim>::window;
 
-/// The sources of soil whose domains stretch.
-template <class Space, class T, int Dim>
-using StretchedSoilSource = SoilSource<Space, T, Dim, ParticleDomain::stretch>;
-template <class Space, class T, int Dim>
-using StretchedAffineSource = AffineSource<Space, T, Dim, ParticleDomain::stretch>;
-template <class Space, class T, int Dim>
-using StretchedBoundarySource = BoundarySource<Space, T, Dim, ParticleDomain::stretch>;
-
-/// The sources of soil that is revolved about the axis.
-template <class Space, class T, int Dim>
-using RingSoilSource = SoilSource<Space, T, Dim, ParticleDomain::ring>;
-template <class Space, class T, int Dim>
-using RingAffineSource = AffineSource<Space, T, Dim, ParticleDomain::ring>;
-template <class Space, class T, int Dim>
-using RingBoundarySource = BoundarySource<Space, T, Dim, ParticleDomain::ring>;
-#define MPM_FOR_EACH_RING_SOURCE_2(X, Space, T) \
-  X(RingSoilSource, Space, T, 2)                \
-  X(RingAffineSource, Space, T, 2)              \
-  X(RingBoundarySource, Space, T, 2)
-#define MPM_FOR_EACH_RING_SOURCE_3(X, Space, T)
-
 /// Sources of one, two or three scalars, and of a vector. In 2D two scalars are also one for each direction.
 template <class Space, class T, int Dim, ParticleDomain domain = ParticleDomain::stretch>
 using ScalarSource = ValueSource<Space, T, Dim, 1, Kind::geometry, domain>;
@@ -357,35 +336,32 @@ template <class Space, class T, int Dim>
 using TripleSource = ValueSource<Space, T, Dim, 3, Kind::geometry>;
 template <class Space, class T, int Dim, ParticleDomain domain = ParticleDomain::stretch>
 using VectorSource = ValueSource<Space, T, Dim, Dim, Kind::motion, domain>;
-template <class Space, class T, int Dim>
-using RingScalarSource = ScalarSource<Space, T, Dim, ParticleDomain::ring>;
-template <class Space, class T, int Dim>
-using RingPairSource = PairSource<Space, T, Dim, ParticleDomain::ring>;
-template <class Space, class T, int Dim>
-using RingVectorSource = VectorSource<Space, T, Dim, ParticleDomain::ring>;
-#define MPM_FOR_EACH_VALUE_SOURCE_2(X, Space, T) \
-  X(RingScalarSource, Space, T, 2)               \
-  X(RingPairSource, Space, T, 2)                 \
-  X(RingVectorSource, Space, T, 2)
-#define MPM_FOR_EACH_VALUE_SOURCE_3(X, Space, T) X(TripleSource, Space, T, 3)
+
+/// Applies X(Source) to the sources of soil, or of values, whose particles have a domain.
+#define MPM_SOIL_SOURCES(X, Space, T, Dim, domain)       \
+  X(SoilSource<Space, T, Dim, ParticleDomain::domain>)   \
+  X(AffineSource<Space, T, Dim, ParticleDomain::domain>) \
+  X(BoundarySource<Space, T, Dim, ParticleDomain::domain>)
+#define MPM_VALUE_SOURCES(X, Space, T, Dim, domain)      \
+  X(ScalarSource<Space, T, Dim, ParticleDomain::domain>) \
+  X(PairSource<Space, T, Dim, ParticleDomain::domain>) X(VectorSource<Space, T, Dim, ParticleDomain::domain>)
+/// Bodies of revolution are in 2D alone; three scalars are summed in 3D alone.
+#define MPM_IN_2D_2(...) __VA_ARGS__
+#define MPM_IN_2D_3(...)
+#define MPM_IN_3D_2(...)
+#define MPM_IN_3D_3(...) __VA_ARGS__
 
 /// Applies X(Source) to the sources that most runs take in every step, of a space, real type and dimension.
 #define MPM_FOR_EACH_STEP_SOURCE(X, Space, T, Dim) \
-  X(SoilSource, Space, T, Dim)                     \
-  X(AffineSource, Space, T, Dim)                   \
-  X(BoundarySource, Space, T, Dim)                 \
-  X(RigidSource, Space, T, Dim)                    \
-  X(StretchedSoilSource, Space, T, Dim)            \
-  X(StretchedAffineSource, Space, T, Dim)          \
-  X(StretchedBoundarySource, Space, T, Dim)        \
-  MPM_FOR_EACH_RING_SOURCE_##Dim(X, Space, T)
+  MPM_SOIL_SOURCES(X, Space, T, Dim, fixed)        \
+  X(RigidSource<Space, T, Dim>)                    \
+  MPM_SOIL_SOURCES(X, Space, T, Dim, stretch)      \
+  MPM_IN_2D_##Dim(MPM_SOIL_SOURCES(X, Space, T, 2, ring))
 /// The others.
 #define MPM_FOR_EACH_OTHER_SOURCE(X, Space, T, Dim) \
-  X(ScalarSource, Space, T, Dim)                    \
-  X(PairSource, Space, T, Dim)                      \
-  X(VectorSource, Space, T, Dim)                    \
-  X(CentreSource, Space, T, Dim)                    \
-  MPM_FOR_EACH_VALUE_SOURCE_##Dim(X, Space, T)
+  MPM_VALUE_SOURCES(X, Space, T, Dim, stretch)      \
+  X(CentreSource<Space, T, Dim>)                    \
+  MPM_IN_2D_##Dim(MPM_VALUE_SOURCES(X, Space, T, 2, ring)) MPM_IN_3D_##Dim(X(TripleSource<Space, T, 3>))
 #define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
   MPM_FOR_EACH_STEP_SOURCE(X, Space, T, Dim)  \
   MPM_FOR_EACH_OTHER_SOURCE(X, Space, T, Dim)
