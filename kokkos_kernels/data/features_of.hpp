@@ -34,6 +34,7 @@ Features features_of(const State<Space, T, Dim>& s) {
                                     {F::turning_rigids, s.rigid_turns},
                                     {F::many_rigids, s.contact.near.listed},
                                     {F::rigid_pairs, s.pairs.in_use()},
+                                    {F::linked_rigids, s.links.in_use()},
                                     {F::revolved, s.soil.points.rings},
                                     {F::ranks, s.owned_nodes.extent(0) > 0},
                                     {F::batches, s.batches.in_use()}};

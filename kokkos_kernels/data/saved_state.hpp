@@ -95,6 +95,7 @@ struct SavedState {
   std::vector<long> alone;  // Grid::address_of the cells whose particles are alone
   int alone_known = 0;      // 1: `alone` holds; 0: the next step finds it
   std::vector<SavedRigid> rigids;
+  std::vector<double> joints, supports;  // JointTerms of each joint, SupportTerms of each rigid; or empty
   SavedImpulse impulse;
   SavedPairs pairs;
   std::vector<double> energy;  // k_saved_energy numbers where the run has an energy balance: the works, and

@@ -4,6 +4,7 @@
 #include "data/contact_core.hpp"
 #include "data/energy_works.hpp"
 #include "data/rigid_pairs.hpp"
+#include "data/rigid_links.hpp"
 #include "data/sides.hpp"
 #include "data/surface_loads.hpp"
 #include "data/timed_loads.hpp"
@@ -16,6 +17,7 @@ struct State : ContactCore<Space, T, Dim> {
   Sides<Space, Dim> sides;            // of the mesh, that act on the soil
   RigidPairs<Space, Dim> pairs;       // rigid bodies that may touch each other
   SurfaceLoads<Space, T, Dim> loads;  // on parts of bodies' surfaces
+  RigidLinks<Space, Dim> links;       // joints, springs and dashpots of rigid bodies
   EnergyWorks<Space, T, Dim> energy;  // in use where the run asks for an energy balance
 };
 

@@ -1,12 +1,13 @@
 #pragma once
 // Loads and motions that follow tables in time: gravity, velocities of sides, velocities and forces of rigid
-// bodies, and loads on surfaces. The end of a step sets those of the next step on the device, so that one
+// bodies, ends of joints, and loads on surfaces. The end of a step sets those of the next step on the device, so that one
 // launch can do many steps.
 
 #include "base/spaces.hpp"
 #include "base/time_curve.hpp"
 #include "base/types.hpp"
 #include "data/rigid.hpp"
+#include "data/rigid_links.hpp"
 #include "data/sides.hpp"
 #include "data/surface_loads.hpp"
 
@@ -26,14 +27,14 @@ struct TimedNumber {
   }
 };
 
-enum class LoadTarget : int { gravity, velocity, force, side, pressure, traction };
+enum class LoadTarget : int { gravity, velocity, force, side, pressure, traction, spin, moment, joint };
 
 /// A component of a quantity that follows a table: own + factor * gravity. For a rigid's force, the factor is
 /// the mass whose weight the force carries [kg]; 0 elsewhere.
 struct TimedLoad {
   LoadTarget target;
   int rigid, component;  // of a side, 2 direction + 1 for the upper one stands for the rigid; or the number
-                         // of a surface's load
+                         // of a surface's load or a joint
   TimedNumber own, gravity;
   double factor;
 };
@@ -75,6 +76,7 @@ struct LoadsOfStep {
   Vector<T, Dim>* gravity;
   Side<Dim>* sides;
   SurfaceLoad<Dim>* surfaces;
+  Joint<Dim>* joints;
   int count;
 
   /// Sets load n for the step that follows `steps` steps of a clock.
@@ -92,6 +94,12 @@ struct LoadsOfStep {
       surfaces[load.rigid].pressure = value;
     else if (load.target == LoadTarget::traction)
       surfaces[load.rigid].traction[d] = value;
+    else if (load.target == LoadTarget::spin)
+      rigids[load.rigid].motion.spin[d] = value;
+    else if (load.target == LoadTarget::moment)
+      rigids[load.rigid].force[Wrench<Dim>::moment + d] = value;
+    else if (load.target == LoadTarget::joint)
+      joints[load.rigid].velocity[d] = value;
     else
       rigids[load.rigid].force[Wrench<Dim>::force + d] = value;
   }
@@ -106,12 +114,13 @@ struct TimedLoads {
   Kokkos::View<Vector<T, Dim>, Memory> gravity;
   Kokkos::View<Side<Dim>*, Memory> sides;            // State::sides
   Kokkos::View<SurfaceLoad<Dim>*, Memory> surfaces;  // of State::loads
+  Kokkos::View<Joint<Dim>*, Memory> joints;          // of State::links
   bool moves_gravity = false, moves_sides = false;
 
   int count() const { return static_cast<int>(loads.extent(0)); }
   LoadsOfStep<T, Dim> of_step() const {
     return {loads.data(), points.data(),   clock.data(), moves_gravity ? gravity.data() : nullptr,
-            sides.data(), surfaces.data(), count()};
+            sides.data(), surfaces.data(), joints.data(), count()};
   }
 };
 

@@ -88,8 +88,10 @@ void sum_forces(ContactCore<Space, T, Dim>& s, const Space& stream) {
 
 template <class Space, class T, int Dim>
 void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed, double dt,
-                 const Space& stream) {
-  move_by(s, EndStep<Space, T, Dim>(s, timed, dt), stream);
+                 const Space& stream, const double* moved) {
+  EndStep<Space, T, Dim> end(s, timed, dt);
+  end.moved = moved;
+  move_by(s, end, stream);
 }
 
 template <class Space, class T, int Dim>
@@ -130,7 +132,7 @@ void restart_count(const Core<Space, T, Dim>& s) {
 #define MPM_INSTANTIATE(Space, T, Dim)                                                             \
   template void sum_forces(ContactCore<Space, T, Dim>&, const Space&);                             \
   template void move_rigids(ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&, double, \
-                            const Space&);                                                         \
+                            const Space&, const double*);                                          \
   template void move_touching_rigids(State<Space, T, Dim>&, double, const Space&);                 \
   template void move_rigid_points(ContactCore<Space, T, Dim>&, const Space&);                      \
   template void begin_loads(const ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&,   \

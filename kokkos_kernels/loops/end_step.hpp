@@ -54,6 +54,7 @@ struct EndStep {
   int count, slots, late;  // rigids, slots that leave forces
   int size;                // numbers of a wrench in `sums` and `forces`
   bool summed;             // the forces are in `sums` already
+  const double* moved = nullptr;  // cells, of each rigid, where the rigids have moved already
 
   EndStep(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& loads, double step,
           const Kokkos::View<PairAction<Dim>*, Memory>& actions = {})
@@ -120,6 +121,11 @@ struct EndStep {
     team.team_barrier();  // also: no thread reads `paused` any more
     MPM_ROLLED
     for (int r = rank; r < count; r += team.team_size()) {
+      if constexpr (MayTurn)
+        if (moved != nullptr) {
+          part[r * size] = moved[r];
+          continue;
+        }
       if (r > rank) rigid = left.rigids[r];
       Wrench<Dim> contact{};
       for (int k = 0; k < Wrench<Dim>::size; ++k) {

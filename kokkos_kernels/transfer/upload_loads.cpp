@@ -34,7 +34,7 @@ void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads) 
     s.timed.moves_sides = s.timed.moves_sides || in.target == LoadTarget::side;
     timed.push_back({in.target, in.rigid, in.component, number(in.own), number(in.gravity), in.factor});
   }
-  s.timed.sides = s.sides.all, s.timed.surfaces = s.loads.now;
+  s.timed.sides = s.sides.all, s.timed.surfaces = s.loads.now, s.timed.joints = s.links.joints;
   fill_view(s.timed.loads, "mpm::timed_loads", timed);
   fill_view(s.timed.points, "mpm::timed_points", points);
   s.timed.clock = decltype(s.timed.clock)("mpm::load_clock");

@@ -75,6 +75,7 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
 
   archive.points("soil", c.state.soil, soil);
   go_through_rigids(archive, c.state.rigids);
+  archive.list_of_some("joints", c.state.joints), archive.list_of_some("rigid_supports", c.state.supports);
   archive.value("particles", c.state.particles), archive.list("lost", c.state.lost);
   archive.list("unused", c.state.unused);
   std::string columns = join(c.state.columns), variables = join(c.state.variables, "\n");

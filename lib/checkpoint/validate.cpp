@@ -156,6 +156,12 @@ std::string state_fault(const SavedState& state, const Config& config) {
     return "a checkpoint with sound side_kinds, side_nodes and side_columns";
   for (const SavedRigid& rigid : state.rigids)
     if (!std::all_of(rigid.begin(), rigid.end(), finite)) return "a checkpoint with sound rigids";
+  if (state.joints.size() != JointTerms::size * config.joints.size() ||
+      !std::all_of(state.joints.begin(), state.joints.end(), finite))
+    return "a checkpoint with sound joints";
+  if ((!state.supports.empty() && state.supports.size() != SupportTerms::size * rigids) ||
+      !std::all_of(state.supports.begin(), state.supports.end(), finite))
+    return "a checkpoint with sound rigid_supports";
   if (!std::all_of(state.lost.begin(), state.lost.end(), finite)) return "a checkpoint with a sound lost";
   if (!std::all_of(state.energy.begin(), state.energy.end(), finite))
     return "a checkpoint with a sound energy";

@@ -71,10 +71,20 @@ struct RigidRow {
   // Where it may turn; in 2D the first of each, counter-clockwise. About its centre of mass.
   Vec3 angle{};             // rad, since the start: the rotation vector
   Vec3 angular_velocity{};  // rad/s
-  Vec3 moment{};            // N m, as the force
+  Vec3 moment{};            // N m, as the force; about the moment's point, where the options give one
   // Of other rigid bodies and sides of the mesh on it, likewise.
-  Vec3 contact_force{};   // N
-  Vec3 contact_moment{};  // N m
+  Vec3 contact_force{};                  // N
+  Vec3 contact_moment{};                 // N m
+  double kinetic_energy = 0;             // J, where forces move it
+  Vec3 spring_force{}, spring_moment{};  // N, N m, of springs and dashpots on it, mean as the force
+};
+
+/// One row of the history for one joint.
+struct JointReaction {
+  Vec3 force{};     // N, on its first body, mean over the interval since the last row
+  Vec3 moment{};    // N m, about the joint's point, likewise; in 2D the first
+  double peak = 0;  // N, largest force in a step of the interval
+  double work = 0;  // J, of its end on the ground since the start
 };
 
 /// One row of the history for one load on a surface.
@@ -106,6 +116,7 @@ struct HistoryRow {
   double time = 0, dt = 0, wall_time = 0;  // s
   std::vector<BodyRow> bodies;
   std::vector<RigidRow> rigids;
+  std::vector<JointReaction> joints{};
   std::array<std::array<Vec3, 2>, 3> walls{};  // N, of the soil on each side of the mesh
   std::vector<LoadRow> loads{};
   double load_work = 0;                    // J, of loads on surfaces, since the start

@@ -61,6 +61,13 @@ inline std::vector<std::pair<std::string, const TimeTable*>> tables_of(const Con
     add("-" + rigid.name + "_velocity_table", rigid.velocity_table);
     add("-" + rigid.name + "_displacement_table", rigid.displacement_table);
     add("-" + rigid.name + "_force_table", rigid.force_table);
+    add("-" + rigid.name + "_angular_velocity_table", rigid.angular_velocity_table);
+    add("-" + rigid.name + "_angle_table", rigid.angle_table);
+    add("-" + rigid.name + "_moment_table", rigid.moment_table);
+  }
+  for (const JointConfig& joint : config.joints) {
+    add("-" + joint.name + "_velocity_table", joint.velocity_table);
+    add("-" + joint.name + "_displacement_table", joint.displacement_table);
   }
   return tables;
 }

@@ -54,14 +54,20 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
     const RigidRow& rigid = row.rigids[r];
     for (const Vec3* vector : {&rigid.displacement, &rigid.velocity, &rigid.force})
       append(text, *vector, dim);
-    const bool turns = config.rigids[r].turns();
-    const int angular = dim == 2 ? 1 : 3;
-    if (turns)
-      for (const Vec3* vector : {&rigid.angle, &rigid.angular_velocity, &rigid.moment})
-        append(text, *vector, angular);
+    const RigidConfig& of = config.rigids[r];
+    const int spins = dim == 2 ? 1 : 3;
+    for (const Vec3* vector : {&rigid.angle, &rigid.angular_velocity, &rigid.moment})
+      if (of.turns()) append(text, *vector, spins);
+    if (has_energy(of)) text += "," + text_of(rigid.kinetic_energy);
+    if (of.is_sprung()) append(text, rigid.spring_force, dim);
+    if (of.is_sprung() && of.turns()) append(text, rigid.spring_moment, spins);
     if (!in_contact[r]) continue;
     append(text, rigid.contact_force, dim);
-    if (turns) append(text, rigid.contact_moment, angular);
+    if (of.turns()) append(text, rigid.contact_moment, spins);
+  }
+  for (const JointReaction& joint : row.joints) {
+    append(text, joint.force, dim), append(text, joint.moment, dim == 2 ? 1 : 3);
+    for (const double value : {joint.peak, joint.work}) text += "," + text_of(value);
   }
   for_each_wall(config, [&](int d, int side) { append(text, row.walls[d][side], dim); });
   for (const LoadRow& load : row.loads) {

@@ -24,6 +24,11 @@ class Columns {
   void add_vector(const std::string& beginning, const std::string& end = "") {
     for (int d = 0; d < dim_; ++d) add(beginning + k_axis[d] + end);
   }
+  /// BEGINNING in 2D, BEGINNING_x,BEGINNING_y,BEGINNING_z in 3D.
+  void add_rotation(const std::string& beginning) {
+    if (dim_ == 2) return add(beginning);
+    add_vector(beginning + "_");
+  }
 
  private:
   std::vector<HistoryColumn>& all_;
@@ -54,21 +59,17 @@ void add_body(Columns& to, const std::string& name, const Config& config) {
     for (const char* energy : {"_corrected_energy", "_raised_energy"}) to.add(name + energy);
 }
 
-void add_rigid(Columns& to, const RigidConfig& rigid, int dim, bool in_contact) {
+void add_rigid(Columns& to, const RigidConfig& rigid, bool in_contact) {
   to.begin("rigid_bodies", "rigid body", rigid.name);
   for (const char* quantity : {"_", "_velocity_", "_force_"}) to.add_vector(rigid.name + quantity);
-  const auto add_turning = [&](const std::string& name) {
-    if (dim == 2)
-      to.add(name);
-    else
-      to.add_vector(name + "_");
-  };
-  if (rigid.turns())
-    for (const char* quantity : {"_angle", "_angular_velocity", "_moment"})
-      add_turning(rigid.name + quantity);
+  for (const char* quantity : {"_angle", "_angular_velocity", "_moment"})
+    if (rigid.turns()) to.add_rotation(rigid.name + quantity);
+  if (has_energy(rigid)) to.add(rigid.name + "_kinetic_energy");
+  if (rigid.is_sprung()) to.add_vector(rigid.name + "_spring_force_");
+  if (rigid.is_sprung() && rigid.turns()) to.add_rotation(rigid.name + "_spring_moment");
   if (!in_contact) return;
   to.add_vector(rigid.name + "_contact_force_");
-  if (rigid.turns()) add_turning(rigid.name + "_contact_moment");
+  if (rigid.turns()) to.add_rotation(rigid.name + "_contact_moment");
 }
 
 }  // namespace
@@ -81,8 +82,13 @@ std::vector<HistoryColumn> history_columns(const Config& config) {
   for (const char* name : {"step", "time", "dt", "wall_time"}) to.add(name);
   for (const BodyConfig& body : config.bodies) add_body(to, body.name, config);
   const std::vector<char> in_contact = contact_columns(config);
-  for (std::size_t r = 0; r < config.rigids.size(); ++r)
-    add_rigid(to, config.rigids[r], config.dim, in_contact[r]);
+  for (std::size_t r = 0; r < config.rigids.size(); ++r) add_rigid(to, config.rigids[r], in_contact[r]);
+  for (const JointConfig& joint : config.joints) {
+    to.begin("joints", "joint", joint.name);
+    to.add_vector(joint.name + "_force_");
+    to.add_rotation(joint.name + "_moment");
+    for (const char* quantity : {"_peak_force", "_work"}) to.add(joint.name + quantity);
+  }
   for_each_wall(config, [&](int d, int side) {
     const std::string name = std::string(k_axis[d]) + (side == 0 ? "min" : "max");
     to.begin("", "side", name);

@@ -24,6 +24,9 @@ std::vector<HistoryColumn> history_columns(const Config& config);
 /// A line for the user where two columns have one name; empty where none have.
 std::string equal_columns(const Config& config);
 
+/// Whether the history has the kinetic energy of a rigid body.
+inline bool has_energy(const RigidConfig& rigid) { return rigid.motion == Motion::dynamic && rigid.turns(); }
+
 /// A column of the energy balance.
 struct EnergyColumn {
   const char* name;

@@ -132,11 +132,13 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::measure_rigids(double interval, H
       rigid.displacement[d] = r.motion.pose.displacement[d];
       rigid.velocity[d] = velocity_at(config.rigids[row->rigids.size()], d, r.motion.velocity[d], time);
       rigid.force[d] = interval > 0 ? impulse[Wrench<Dim>::force + d] / interval : 0;
+      rigid.kinetic_energy += r.inertia.mass * r.motion.velocity[d] * r.motion.velocity[d] / 2;
     }
     const AngularVector<Dim> angle = r.motion.pose.rotation.way_from({});
     for (int k = 0; k < k_turning_axes<Dim> && r.motion.pose.turns; ++k) {
       rigid.angle[k] = angle[k];
-      rigid.angular_velocity[k] = r.motion.spin[k];
+      rigid.angular_velocity[k] = spin_at(config.rigids[row->rigids.size()], k, r.motion.spin[k], time);
+      rigid.kinetic_energy += r.inertia.dynamic ? r.momentum[k] * r.motion.spin[k] / 2 : 0;
       rigid.moment[k] = interval > 0 ? impulse[Wrench<Dim>::moment + k] / interval : 0;
     }
     for (int k = 0; k < Wrench<Dim>::size && !actions.empty() && interval > 0; ++k) {

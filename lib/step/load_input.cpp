@@ -51,6 +51,13 @@ std::vector<LoadInput> load_input(const Config& config, const std::vector<double
   for (int r = 0; r < static_cast<int>(config.rigids.size()); ++r) {
     const RigidConfig& rigid = config.rigids[r];
     const bool weighs = rigid.motion == Motion::dynamic && (rigid.force_table || config.gravity_table);
+    for (int k = 0; k < (config.dim == 2 ? 1 : 3); ++k) {
+      if (rigid.angular_velocity_table)
+        add(LoadTarget::spin, r, k, number_of(rigid.angular_velocity_table, 0, k), {}, 0);
+      if (rigid.angle_table)
+        add(LoadTarget::spin, r, k, number_of(rigid.angle_table, 0, k, CurveUse::rate), {}, 0);
+      if (rigid.moment_table) add(LoadTarget::moment, r, k, number_of(rigid.moment_table, 0, k), {}, 0);
+    }
     for (int d = 0; d < config.dim; ++d) {
       if (rigid.velocity_table) add(LoadTarget::velocity, r, d, number_of(rigid.velocity_table, 0, d), {}, 0);
       if (rigid.displacement_table)
@@ -60,6 +67,13 @@ std::vector<LoadInput> load_input(const Config& config, const std::vector<double
             number_of(config.gravity_table, config.gravity[d], d), carried[r]);
     }
   }
+  for (int j = 0; j < static_cast<int>(config.joints.size()); ++j)
+    for (int d = 0; d < config.dim; ++d) {
+      const JointConfig& joint = config.joints[j];
+      if (joint.velocity_table) add(LoadTarget::joint, j, d, number_of(joint.velocity_table, 0, d), {}, 0);
+      if (joint.displacement_table)
+        add(LoadTarget::joint, j, d, number_of(joint.displacement_table, 0, d, CurveUse::rate), {}, 0);
+    }
   return loads;
 }
 
@@ -79,6 +93,13 @@ double velocity_at(const RigidConfig& rigid, int d, double present, double time)
   const auto& table = rigid.displacement_table;
   if (!table) return value_at(rigid.velocity_table, present, d, time);
   const auto points = points_of(*table, d);
+  return curve_of(points, table->smooth).rate(time);
+}
+
+double spin_at(const RigidConfig& rigid, int k, double present, double time) {
+  const auto& table = rigid.angle_table;
+  if (!table) return value_at(rigid.angular_velocity_table, present, k, time);
+  const auto points = points_of(*table, k);
   return curve_of(points, table->smooth).rate(time);
 }
 

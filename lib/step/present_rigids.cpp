@@ -60,6 +60,16 @@ PresentRigids::PresentRigids(const Config& config) : others_(config.rigids.size(
 Config PresentRigids::narrowed(const Config& config) const {
   Config out = config;
   std::erase_if(out.rigids, [](const RigidConfig& rigid) { return rigid.absent; });
+  for (JointConfig& joint : out.joints) {
+    bool is_there = true;
+    for (int& body : joint.bodies) {
+      if (body == JointConfig::k_ground) continue;
+      const auto found = std::find(place_.begin(), place_.end(), static_cast<std::size_t>(body));
+      is_there = is_there && found != place_.end();
+      body = static_cast<int>(found - place_.begin());
+    }
+    if (!is_there) joint.bodies = {JointConfig::k_ground, JointConfig::k_ground};
+  }
   return out;
 }
 
@@ -76,6 +86,7 @@ void PresentRigids::narrow(SavedState& state) {
   std::vector<long> number(others_.size(), -1);
   for (std::size_t k = 0; k < place_.size(); ++k) number[place_[k]] = static_cast<long>(k);
   state.pairs.contacts = renumbered(state.pairs.contacts, number);
+  state.supports = rearranged(state.supports, 0, SupportTerms::size, others_.size(), place_.size(), place_, here);
   state.rigids.clear();
   for (const std::size_t r : place_) state.rigids.push_back(others_[r]);
 }
@@ -92,6 +103,7 @@ void PresentRigids::widen(SavedState& state) const {
   state.pairs.impulses =
       rearranged(state.pairs.impulses, 0, SavedPairs::totals, place_.size(), others_.size(), here, place_);
   state.pairs.contacts = renumbered(state.pairs.contacts, std::vector<long>(place_.begin(), place_.end()));
+  state.supports = rearranged(state.supports, 0, SupportTerms::size, place_.size(), others_.size(), here, place_);
   std::vector<SavedRigid> rigids = others_;
   for (std::size_t k = 0; k < place_.size(); ++k) rigids[place_[k]] = state.rigids[k];
   state.rigids = std::move(rigids);

@@ -14,8 +14,10 @@ class PresentRigids {
  public:
   explicit PresentRigids(const Config& config);
 
-  /// The configuration with these rigids alone.
+  /// The configuration with these rigids alone. A joint without one of its bodies joins the ground to itself.
   Config narrowed(const Config& config) const;
+  /// Index among all rigids of the k-th that is there.
+  std::size_t place_of(std::size_t k) const { return place_[k]; }
   /// A state of all rigids becomes one of these; the others stay as they are then.
   void narrow(SavedState& state);
   /// A state of these rigids becomes one of all.

@@ -20,6 +20,7 @@ const char* words_of(FaultKind kind, const char* of_law) {
     case FaultKind::volume: return "has left 0.2 to 2 times its volume at the start (-stray_particles stop)";
     case FaultKind::law: return of_law;
     case FaultKind::state: return "has a state variable of its law that is not finite";
+    case FaultKind::joint: return "cannot move so that its joints hold; a shorter step (-time_step) may help";
     case FaultKind::alone: return "is alone, with no other soil in reach (-stray_particles stop)";
     default: return "moved more than a cell in one step";
   }

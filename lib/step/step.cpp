@@ -4,6 +4,7 @@
 
 #include "functions/energy_works.hpp"
 #include "functions/find_strays.hpp"
+#include "functions/link_rigids.hpp"
 #include "functions/rigid_pairs.hpp"
 #include "functions/split_patches.hpp"
 #include "functions/step_kernels.hpp"
@@ -202,10 +203,12 @@ struct Step {
     if (s.pairs.in_use()) {
       if (!s.forces_summed) sum_forces(s, stream);
       contact_of_rigids(s, dt, stream);
-      move_touching_rigids(s, dt, stream);
-    } else {
-      move_rigids(s, s.timed, dt, stream);
     }
+    if (s.links.in_use()) link_rigids(s, dt, stream);
+    if (s.pairs.in_use() && !s.links.in_use())
+      move_touching_rigids(s, dt, stream);
+    else
+      move_rigids(s, s.timed, dt, stream, s.links.moved.data());
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 3, the border first, unless its sums have been sent already.

@@ -38,6 +38,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   resampling_.set_up();
   set_options(model);
   PetscCallCXX(sides_.set_up(&grid));
+  PetscCallCXX(links_.set_up());
   PetscCallCXX(loads_.set_up(model.face_count, carried_masses(config, rigids)));
   PetscCallCXX(upload_pairs(s, pair_input(config), config.mesh.spacing));
   Fault fault{};
@@ -164,6 +165,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::measure(double interval, HistoryRow*
   PetscCall(measures_.count_cells(row));
   PetscCall(sides_.measure(interval, row));
   PetscCall(measures_.measure_rigids(interval, row));
+  PetscCallCXX(links_.measure(interval, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,6 +201,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscCall(loads_.save(saved));
   PetscCall(probes_.save(saved));
   PetscCall(measures_.save_strays(saved));
+  links_.save(saved);
   if (run_.ranks) PetscCall(run_.ranks->save(saved));
   run_.rigids.widen(*saved);
   PetscCall(sides_.save(&saved->sides));
@@ -222,6 +225,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   Failure unfit;
   PetscCallCXX(unfit.what = take_saved(s, saved));
   PetscCallCXX(restore_pairs(s, saved.pairs));
+  links_.restore(saved);
   loads_.restore(saved);
   energy_.restore(saved);
   probes_.restore(saved);

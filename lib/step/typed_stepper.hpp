@@ -4,6 +4,7 @@
 #include "step/applied_loads.hpp"
 #include "step/energy_balance.hpp"
 #include "step/history_measures.hpp"
+#include "step/linked_rigids.hpp"
 #include "step/mesh_sides.hpp"
 #include "step/resampling.hpp"
 #include "step/snapshots.hpp"
@@ -59,6 +60,7 @@ class TypedStepper final : public Stepper {
   BodyIds ids_;
   RunReports<Space, T, Dim> reports_{run_, ids_};
   StepLoop<Space, T, Dim> loop_{run_, reports_};
+  LinkedRigids<Space, T, Dim> links_{run_};
   AppliedLoads<Space, T, Dim> loads_{run_};
   MeshSides<Space, T, Dim> sides_{run_};
   EnergyBalance<Space, T, Dim> energy_{run_};

@@ -148,7 +148,14 @@ struct RigidConfig {
   /// Along x, y, z and about them: whether forces and moments move it (dynamic). In 2D it turns about z.
   std::array<bool, 6> free{true, true, true, false, false, false};
   Vec3 angular_velocity{};  // rad/s, initial (dynamic) or prescribed; in 2D the first, counter-clockwise
+  std::optional<TimeTable> angular_velocity_table;  // rad/s (prescribed)
+  std::optional<TimeTable> angle_table;  // rad, instead of it: its changes count (prescribed)
   Vec3 moment{};            // N m, external, likewise (dynamic)
+  std::optional<TimeTable> moment_table;  // N m, instead of it
+  std::optional<Vec3> moment_point;       // m, about which the history has the moment; else the centre
+  /// N/m and N m/rad, N s/m and N m s/rad, of springs and dashpots to the ground along x, y, z and about them
+  /// (dynamic).
+  std::array<double, 6> stiffness{}, viscosity{};
   Vec3 force{};             // N, external (dynamic), beside gravity
   std::optional<TimeTable> force_table;  // N, instead of it
   double shear_limit = 0;                // Pa, largest shear stress of the interface; 0 is smooth
@@ -167,8 +174,29 @@ struct RigidConfig {
   /// Whether it may turn.
   bool turns() const {
     const bool free_to = motion == Motion::dynamic && (free[3] || free[4] || free[5]);
-    return free_to || (motion != Motion::fixed && angular_velocity != Vec3{});
+    const bool driven = angular_velocity != Vec3{} || angular_velocity_table || angle_table;
+    return free_to || (motion != Motion::fixed && driven);
   }
+  /// Whether springs or dashpots hold it.
+  bool is_sprung() const {
+    return stiffness != std::array<double, 6>{} || viscosity != std::array<double, 6>{};
+  }
+};
+
+enum class JointKind { ball, hinge, slider, weld, rod, cable };
+
+/// A joint of two rigid bodies, or of a rigid body and the ground. In 2D a ball is a hinge.
+struct JointConfig {
+  static constexpr int k_ground = -1;
+  std::string name;
+  JointKind kind = JointKind::ball;
+  std::array<int, 2> bodies{k_ground, k_ground};  // indices into Config::rigids, or k_ground
+  Vec3 point{}, other_point{};              // m, at the start: of the first body, and of the second (rod, cable)
+  Vec3 axis{};                              // -, at the start (slider; hinge in 3D)
+  double length = 0;                        // m (rod, cable)
+  std::optional<std::array<double, 2>> stop;  // rad, of the first body against the second (hinge)
+  Vec3 velocity{};                          // m/s, of the end on the ground
+  std::optional<TimeTable> velocity_table, displacement_table;  // m/s, m, instead of it
 };
 
 /// Courant numbers above this are unstable (the energy of an elastic bar grows at 0.7).
@@ -370,6 +398,7 @@ struct Config {
   bool rigid_contact = true;             // rigid bodies touch each other, where one of two is dynamic
   bool rigid_contact_given = false;      // by the options
   std::optional<double> rigid_friction;  // -, of all pairs of rigid bodies
+  std::vector<JointConfig> joints;
   OutputConfig output;
   std::vector<LoadConfig> loads;
   std::vector<ProbeConfig> probes;

@@ -122,12 +122,18 @@ bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, 
 
 /// Rotation of a rigid that moves. turning_keys: its options, without the name of the rigid.
 const std::vector<std::string>& turning_keys();
-void read_turning(OptionReader& in, int dim, RigidConfig& rigid);
+void read_turning(OptionReader& in, int dim, double end, RigidConfig& rigid);
 void check_turning(OptionReader& in, const Config& config, const MeshConfig& mesh, const RigidConfig& rigid);
 
 /// Contact between rigid bodies: the options of all of them, and that of each.
 void read_rigid_contact(OptionReader& in, Config& config);
 void read_restitution(OptionReader& in, RigidConfig& rigid);
+/// Springs and dashpots that hold a rigid. support_keys: its options, without the name of the rigid.
+const std::vector<std::string>& support_keys();
+void read_support(OptionReader& in, int dim, RigidConfig& rigid);
+
+/// The options of one joint; the rigids and the time have been read. mesh: null where it is unsound.
+void read_joint(OptionReader& in, const MeshConfig* mesh, const Config& config, JointConfig& joint);
 
 /// The motion of a rigid and what moves it; `end` [s]: of the run.
 void read_motion(OptionReader& in, int dim, double end, RigidConfig& rigid);

@@ -28,7 +28,9 @@ void read_prescribed(OptionReader& in, int dim, double end, const Option& veloci
   const std::string displaced = rigid.name + "_displacement_table";
   Option required = velocity;
   required.required = !in.listing() && !in.given(velocity.name + "_table") && !in.given(displaced) &&
-                      !in.given(rigid.name + "_angular_velocity");
+                      !in.given(rigid.name + "_angular_velocity") &&
+                      !in.given(rigid.name + "_angular_velocity_table") &&
+                      !in.given(rigid.name + "_angle_table");
   in.vector(required, dim, rigid.velocity);
   read_timed(in, velocity, true, dim, end, rigid.velocity, rigid.velocity_table);
   read_timed(in,
@@ -83,11 +85,12 @@ void read_motion(OptionReader& in, int dim, double end, RigidConfig& rigid) {
     if (prescribed || in.listing()) read_prescribed(in, dim, end, velocity, rigid);
     if (dynamic) in.vector(velocity, dim, rigid.velocity);
     if (dynamic || in.listing()) read_dynamic(in, dim, end, rigid);
-    if (rigid.motion != Motion::fixed || in.listing()) read_turning(in, dim, rigid);
+    if (rigid.motion != Motion::fixed || in.listing()) read_turning(in, dim, end, rigid);
+    if (dynamic || in.listing()) read_support(in, dim, rigid);
   }
   const std::string why = rigid.name + "_motion is " + k_motions[static_cast<int>(rigid.motion)].first;
   std::vector<std::string> keys(std::begin(k_motion_keys), std::end(k_motion_keys));
-  keys.insert(keys.end(), turning_keys().begin(), turning_keys().end());
+  for (const auto* more : {&turning_keys(), &support_keys()}) keys.insert(keys.end(), more->begin(), more->end());
   for (const std::string& key : keys) {
     const std::string name = rigid.name + "_" + key;
     const auto& all = in.known();

@@ -1,4 +1,4 @@
-// -materials, -bodies, -rigid_bodies, -loads, -probes, and what each named thing owns.
+// -materials, -bodies, -rigid_bodies, -joints, -loads, -probes, and what each named thing owns.
 
 #include <algorithm>
 #include <cctype>
@@ -36,7 +36,7 @@ struct Names {
     if (reserved.count(key) || is_petsc_name(key + "_"))
       return "names other than " + name + ", which begins other options";
     if (used.count(key))
-      return "names that no other material, body, rigid, load or probe has; " + name + " is taken";
+      return "names that no other material, body, rigid, joint, load or probe has; " + name + " is taken";
     return "";
   }
 };
@@ -299,10 +299,11 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
   const auto regions = read_names(
       in, {.name = "water_regions", .meaning = "names of boxes in which the water has a level of its own"},
       names);
+  const auto joints = read_names(in, {.name = "joints", .meaning = "names of the joints of rigid bodies"}, names);
   const auto probes = read_names(
       in, {.name = "probes", .meaning = "names of the probes, places that the history reports"}, names);
   if (!in.listing()) {
-    for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "water_regions", "probes"})
+    for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "water_regions", "joints", "probes"})
       leave_out(in, list, names);
     forgive_unlisted(in, names);
   }
@@ -329,6 +330,10 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
     read_rigid(in, mesh, config, config.rigids.back());
   }
   read_rigid_contact(in, config);
+  for (const auto& name : joints) {
+    config.joints.emplace_back().name = name;
+    read_joint(in, mesh, config, config.joints.back());
+  }
   for (const auto& name : loads) {
     config.loads.emplace_back().name = name;
     read_load(in, config, config.loads.back());

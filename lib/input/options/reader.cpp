@@ -176,6 +176,7 @@ void OptionReader::section(const std::string& title) {
   owner_ = title.starts_with("Material") || title.starts_with("Each material") ? Owner::material
            : title.starts_with("Each rigid")                                   ? Owner::rigid
            : title.starts_with("Each body")                                    ? Owner::body
+           : title.starts_with("Each joint")                                   ? Owner::joint
            : title.starts_with("Each load")                                    ? Owner::load
            : title.starts_with("Each water region")                            ? Owner::water_region
                                                                                : Owner::run;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/text.hpp"
+#include "common/time_table.hpp"
 #include "input/geometry/shapes.hpp"
 #include "input/options/groups.hpp"
 
@@ -10,6 +11,7 @@ namespace mpm {
 namespace {
 
 constexpr const char* k_degrees[] = {"x", "y", "z", "rx", "ry", "rz"};
+constexpr Range k_spin{.lowest = -1e6, .highest = 1e6};  // rad/s
 const std::string k_free_2d = "some of x, y and rz", k_free_3d = "some of x, y, z, rx, ry and rz";
 
 /// Degrees of freedom by their words.
@@ -43,6 +45,54 @@ bool read_spin(OptionReader& in, int dim, const Option& option, Vec3& value) {
   return in.number(option, value[0]);
 }
 
+/// Numbers of a rotation.
+int spins_of(const OptionReader& in, int dim) { return dim == 3 || in.listing() ? 3 : 1; }
+
+/// Whether a table of angles turns the body about one axis alone: finite rotations do not add.
+bool about_one_axis(const TimeTable& table) {
+  int axes = 0;
+  for (int d = 0; d < 3; ++d)
+    axes += std::any_of(table.values.begin(), table.values.end(), [d](const Vec3& v) { return v[d] != 0; });
+  return axes <= 1;
+}
+
+/// An angular velocity in time, or an angle.
+void read_turning_tables(OptionReader& in, int dim, double end, const Option& spin, RigidConfig& rigid) {
+  const int spins = spins_of(in, dim);
+  const std::string angle = rigid.name + "_angle";
+  Option timed = spin;
+  timed.meaning = "prescribed: its angular velocity";
+  timed.change = k_by_choice;
+  read_timed(in, timed, true, spins, end, rigid.angular_velocity, rigid.angular_velocity_table);
+  read_timed(in,
+             {.name = angle,
+              .meaning = "prescribed: its rotation since the start, whose changes turn it; in 3D about one "
+                         "of the axes",
+              .unit = "rad",
+              .range = {.lowest = -1e6, .highest = 1e6},
+              .change = k_by_choice},
+             false, spins, end, {}, rigid.angle_table);
+  if (!in.listing() && in.given(angle + "_table"))
+    for (const std::string& other : {spin.name, spin.name + "_table"})
+      if (in.given(other)) in.reject(other, "nothing beside -" + angle + "_table");
+  if (rigid.angle_table && !about_one_axis(*rigid.angle_table))
+    in.reject(angle + "_table", "angles about one of the axes, and 0 about the others");
+  if (rigid.angular_velocity_table) rigid.angular_velocity = largest_of(*rigid.angular_velocity_table);
+  if (rigid.angle_table) rigid.angular_velocity = largest_rate(*rigid.angle_table);
+}
+
+void read_moment_point(OptionReader& in, int dim, RigidConfig& rigid) {
+  Vec3 point{};
+  if (in.vector({.name = rigid.name + "_moment_point",
+                 .meaning = "a point of the body, at the start, about which the history has the moment of the "
+                            "soil",
+                 .unit = "m",
+                 .range = {.lowest = -1e7, .highest = 1e7},
+                 .standard = "the centre of mass"},
+                dim, point))
+    rigid.moment_point = point;
+}
+
 void read_inertia(OptionReader& in, int dim, RigidConfig& rigid) {
   in.number({.name = rigid.name + "_mass",
              .meaning = "dynamic: its mass, instead of that of its shape by the density",
@@ -73,22 +123,34 @@ void read_inertia(OptionReader& in, int dim, RigidConfig& rigid) {
 }  // namespace
 
 const std::vector<std::string>& turning_keys() {
-  static const std::vector<std::string> keys{"free", "angular_velocity", "centre_of_mass", "moment",
-                                             "mass", "inertia"};
+  static const std::vector<std::string> keys{"free",
+                                             "angular_velocity",
+                                             "angular_velocity_table",
+                                             "angular_velocity_table_interpolation",
+                                             "angle_table",
+                                             "angle_table_interpolation",
+                                             "centre_of_mass",
+                                             "moment",
+                                             "moment_table",
+                                             "moment_table_interpolation",
+                                             "moment_point",
+                                             "mass",
+                                             "inertia"};
   return keys;
 }
 
-void read_turning(OptionReader& in, int dim, RigidConfig& rigid) {
+void read_turning(OptionReader& in, int dim, double end, RigidConfig& rigid) {
   const bool dynamic = rigid.motion == Motion::dynamic || in.listing();
   if (dynamic) read_free(in, dim, rigid);
-  read_spin(
-      in, dim,
-      {.name = rigid.name + "_angular_velocity",
-       .meaning = "prescribed: the velocity at which it turns about its centre of mass; dynamic: that at "
-                  "the start; in 2D one number, counter-clockwise",
-       .unit = "rad/s",
-       .range = {.lowest = -1e6, .highest = 1e6}},
-      rigid.angular_velocity);
+  const Option spin{
+      .name = rigid.name + "_angular_velocity",
+      .meaning = "prescribed: the velocity at which it turns about its centre of mass; dynamic: that at "
+                 "the start; in 2D one number, counter-clockwise",
+      .unit = "rad/s",
+      .range = k_spin};
+  read_spin(in, dim, spin, rigid.angular_velocity);
+  if (rigid.motion == Motion::prescribed || in.listing()) read_turning_tables(in, dim, end, spin, rigid);
+  read_moment_point(in, dim, rigid);
   Vec3 centre{};
   const bool has_centre = in.given(rigid.name + "_centre_of_mass");
   if ((has_centre || in.listing()) && in.vector({.name = rigid.name + "_centre_of_mass",
@@ -99,12 +161,13 @@ void read_turning(OptionReader& in, int dim, RigidConfig& rigid) {
                                                 dim, centre))
     rigid.centre_of_mass = centre;
   if (!dynamic) return;
-  read_spin(in, dim,
-            {.name = rigid.name + "_moment",
-             .meaning = "dynamic: external moment on it about the centre of mass; in 2D one number",
-             .unit = "N m",
-             .range = {.lowest = -1e15, .highest = 1e15}},
-            rigid.moment);
+  const Option moment{.name = rigid.name + "_moment",
+                      .meaning = "dynamic: external moment on it about the centre of mass; in 2D one number",
+                      .unit = "N m",
+                      .range = k_stress,
+                      .change = k_by_choice};
+  read_spin(in, dim, moment, rigid.moment);
+  read_timed(in, moment, true, spins_of(in, dim), end, rigid.moment, rigid.moment_table);
   read_inertia(in, dim, rigid);
 }
 
@@ -114,9 +177,10 @@ void check_turning(OptionReader& in, const Config& config, const MeshConfig& mes
   if (!rigid.turns()) {
     const std::string beside =
         rigid.motion == Motion::dynamic ? "_free with a rotation" : "_angular_velocity";
-    for (const char* key : {"_moment", "_inertia", "_centre_of_mass"})
+    for (const std::string key :
+         {"_moment", "_moment_table", "_inertia", "_centre_of_mass", "_moment_point"})
       if (in.given(rigid.name + key) && in.is_read(rigid.name + key) &&
-          (rigid.motion == Motion::dynamic || key == std::string("_centre_of_mass")))
+          (rigid.motion == Motion::dynamic || key == "_centre_of_mass" || key == "_moment_point"))
         in.reject(rigid.name + key, "a -" + rigid.name + beside + " beside it");
     return;
   }
