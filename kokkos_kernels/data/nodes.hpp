@@ -106,7 +106,7 @@ void for_each_nodal_field(F&& f, Nodes_& nodes, const NodeUses& uses) {
 }
 
 /// Why a run cannot go on.
-enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone, law, state, joint };
+enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone, law, state };
 
 /// The first fault that a kernel met.
 struct Fault {

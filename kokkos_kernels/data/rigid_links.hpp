@@ -23,20 +23,21 @@ struct Joint {
   bool pulls_only = false;             // or within it
   bool stops = false;                  // the angle between the bodies stays between the stops
   HeldTurn held_turn = HeldTurn::none;
-  double length = 0;                   // m
-  double stop[2] = {};                 // rad
-  Vector<double, Dim> velocity = {};   // m/s, of the end on the ground
-  Vector<double, Dim> way = {};        // m, of this end since the start
-  Wrench<Dim> impulse = {};            // N s, N m s, on the first body, the moment about its end
-  Wrench<Dim> of_step = {};            // N s, N m s, in the step at hand
-  double peak = 0;                     // N, largest force in a step
-  double work = 0;                     // J, of the end on the ground since the start
+  double length = 0;                  // m
+  double stop[2] = {};                // rad
+  Vector<double, Dim> velocity = {};  // m/s, of the end on the ground
+  Vector<double, Dim> way = {};       // m, of this end since the start
+  Wrench<Dim> impulse = {};           // N s, N m s, on the first body, the moment about its end
+  Wrench<Dim> of_step = {};           // N s, N m s, in the step at hand
+  double peak = 0;                    // N, largest force in a step
+  double work = 0;                    // J, of the end on the ground since the start
 
   /// Conditions that it sets.
   KOKKOS_INLINE_FUNCTION int rows() const {
     if (body[0] == k_ground) return 0;
     const int turns = held_turn == HeldTurn::all ? k_turning_axes<Dim> : held_turn == HeldTurn::none ? 0 : 2;
-    return turns + (holds_point ? Dim : 0) + (slides ? Dim - 1 : 0) + (holds_length ? 1 : 0) + (stops ? 1 : 0);
+    return turns + (holds_point ? Dim : 0) + (slides ? Dim - 1 : 0) + (holds_length ? 1 : 0) +
+           (stops ? 1 : 0);
   }
 };
 
@@ -57,10 +58,10 @@ struct RigidSupport {
 template <int Dim>
 struct JointRow {
   int joint = 0;
-  int body[2] = {};                    // of the joint
-  Vector<double, Dim> direction = {};  // -; 0 of a condition on rotations
-  AngularVector<Dim> moment[2] = {};   // m, or - of a condition on rotations
-  AngularVector<Dim> couple = {};      // -, part of the first moment that no force at the end has
+  int body[2] = {};                      // of the joint
+  Vector<double, Dim> direction = {};    // -; 0 of a condition on rotations
+  AngularVector<Dim> moment[2] = {};     // m, or - of a condition on rotations
+  AngularVector<Dim> couple = {};        // -, part of the first moment that no force at the end has
   Vector<double, Dim> velocity[2] = {};  // (m/s)/(N s), what an impulse of 1 gives each body
   AngularVector<Dim> spin[2] = {};       // (rad/s)/(N s)
   double error = 0;                      // m or rad; one-sided: above 0 is too far
@@ -73,9 +74,9 @@ struct JointRow {
 /// Places of a rigid body in the course of a step.
 template <int Dim>
 struct LinkedStart {
-  RigidPose<Dim> pose;             // before the step
-  Vector<double, Dim> kick = {};   // m/s, of half a step, by what does not depend on the place
-  AngularVector<Dim> turn = {};    // kg m2/s, likewise
+  RigidPose<Dim> pose;            // before the step
+  Vector<double, Dim> kick = {};  // m/s, of half a step, by what does not depend on the place
+  AngularVector<Dim> turn = {};   // kg m2/s, likewise
 };
 
 template <class Space, int Dim>

@@ -1,7 +1,7 @@
 #pragma once
 // Loads and motions that follow tables in time: gravity, velocities of sides, velocities and forces of rigid
-// bodies, ends of joints, and loads on surfaces. The end of a step sets those of the next step on the device, so that one
-// launch can do many steps.
+// bodies, ends of joints, and loads on surfaces. The end of a step sets those of the next step on the device,
+// so that one launch can do many steps.
 
 #include "base/spaces.hpp"
 #include "base/time_curve.hpp"
@@ -119,7 +119,7 @@ struct TimedLoads {
 
   int count() const { return static_cast<int>(loads.extent(0)); }
   LoadsOfStep<T, Dim> of_step() const {
-    return {loads.data(), points.data(),   clock.data(), moves_gravity ? gravity.data() : nullptr,
+    return {loads.data(), points.data(),   clock.data(),  moves_gravity ? gravity.data() : nullptr,
             sides.data(), surfaces.data(), joints.data(), count()};
   }
 };

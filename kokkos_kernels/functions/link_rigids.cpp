@@ -84,7 +84,7 @@ void link_rigids(State<Space, T, Dim>& s, double dt, const Space& stream) {
         const int r = step.solver.joints[open].body[0];
         const RigidPose<Dim>& pose = step.solver.rigids[r].motion.pose;
         const Vector<double, Dim> place = pose.to_world(step.solver.joints[open].end[0]);
-        report(control, FaultKind::joint, -1 - r, place.c, Dim);
+        report(control, FaultKind::law, -1 - r, place.c, Dim);
         moved(r) = Kokkos::Experimental::infinity_v<double>;
       });
 }
@@ -112,13 +112,13 @@ void put_links(State<Space, T, Dim>& s, const std::vector<Joint<Dim>>& joints,
   put(s.links.joints, joints), put(s.links.supports, supports);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                              \
-  template void upload_links(State<Space, T, Dim>&, const std::vector<Joint<Dim>>&,                 \
-                             const std::vector<RigidSupport<Dim>>&, double);                        \
-  template void link_rigids(State<Space, T, Dim>&, double, const Space&);                           \
-  template std::vector<Joint<Dim>> joints_of(const State<Space, T, Dim>&);                          \
-  template std::vector<RigidSupport<Dim>> supports_of(const State<Space, T, Dim>&);                 \
-  template void put_links(State<Space, T, Dim>&, const std::vector<Joint<Dim>>&,                    \
+#define MPM_INSTANTIATE(Space, T, Dim)                                              \
+  template void upload_links(State<Space, T, Dim>&, const std::vector<Joint<Dim>>&, \
+                             const std::vector<RigidSupport<Dim>>&, double);        \
+  template void link_rigids(State<Space, T, Dim>&, double, const Space&);           \
+  template std::vector<Joint<Dim>> joints_of(const State<Space, T, Dim>&);          \
+  template std::vector<RigidSupport<Dim>> supports_of(const State<Space, T, Dim>&); \
+  template void put_links(State<Space, T, Dim>&, const std::vector<Joint<Dim>>&,    \
                           const std::vector<RigidSupport<Dim>>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -51,9 +51,9 @@ struct EndStep {
   Kokkos::View<PairAction<Dim>*, Memory> pairs;  // on each rigid, where some are near each other
   LoadsOfStep<T, Dim> timed;
   double dt, spacing, margin, damping;
-  int count, slots, late;  // rigids, slots that leave forces
-  int size;                // numbers of a wrench in `sums` and `forces`
-  bool summed;             // the forces are in `sums` already
+  int count, slots, late;         // rigids, slots that leave forces
+  int size;                       // numbers of a wrench in `sums` and `forces`
+  bool summed;                    // the forces are in `sums` already
   const double* moved = nullptr;  // cells, of each rigid, where the rigids have moved already
 
   EndStep(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& loads, double step,

@@ -56,8 +56,8 @@ struct JointRows {
   const Joint<Dim>& joint;
   const Rigid<Dim>* rigids;
   JointRow<Dim>* row;
-  int number;                        // of the joint
-  double size;                       // m, of the mesh
+  int number;                          // of the joint
+  double size;                         // m, of the mesh
   Vector<double, Dim> end[2], arm[2];  // m, of the first end on the bodies
 
   /// way [m]: of the end on the ground.

@@ -13,8 +13,8 @@ template <int Dim>
 struct JointSystem {
   const JointRow<Dim>* rows;
   int count;
-  double* matrix;   // [count count]: below the diagonal L, on it 1 / D
-  int* first;       // [count]
+  double* matrix;  // [count count]: below the diagonal L, on it 1 / D
+  int* first;      // [count]
 
   KOKKOS_INLINE_FUNCTION double& at(int i, int j) const { return matrix[i * count + j]; }
 

@@ -15,8 +15,8 @@ KOKKOS_INLINE_FUNCTION AngularVector<3> moment_of_springs(const AngularVector<3>
   const AngularVector<3> f{stiffness[0] * a[0], stiffness[1] * a[1], stiffness[2] * a[2]};
   const AngularVector<3> once = cross(a, f), twice = cross(a, once);
   const double square = dot(a, a), angle = Kokkos::sqrt(square), half = angle / 2;
-  const double share = angle > 1e-3 ? (1 - half * Kokkos::cos(half) / Kokkos::sin(half)) / square
-                                    : 1.0 / 12 + square / 720;
+  const double share =
+      angle > 1e-3 ? (1 - half * Kokkos::cos(half) / Kokkos::sin(half)) / square : 1.0 / 12 + square / 720;
   AngularVector<3> moment;
   for (int k = 0; k < 3; ++k) moment[k] = -(f[k] + once[k] / 2 + share * twice[k]);
   return moment;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "check/spring_step.hpp"
 #include "common/courant.hpp"
 #include "common/text.hpp"
 
@@ -60,6 +61,7 @@ PetscErrorCode TimeStep::choose(Job& job, Clock& clock) {
     job.report.errors.push_back(formatted(
         "mpm: -time_step: given \"%g\", takes a time in s of at most %.6g, above which the step is unstable",
         dt, largest));
+  if (const std::string fault = spring_fault(config, dt); !fault.empty()) job.report.errors.push_back(fault);
   if (config.time.end / dt > k_most_steps)
     job.report.errors.push_back(
         formatted("mpm: -time_end: given \"%g\", takes at most %g s with time steps of %g s (1e12 steps)",

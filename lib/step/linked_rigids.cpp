@@ -92,9 +92,8 @@ void LinkedRigids<Space, T, Dim>::set_up() {
   std::vector<RigidSupport<Dim>> supports;
   for (const JointConfig& joint : config.joints) joints.push_back(joint_of<Dim>(config, joint));
   for (const RigidConfig& rigid : config.rigids) supports.push_back(support_of<Dim>(config, rigid));
-  const bool linked = !joints.empty() || std::any_of(supports.begin(), supports.end(), [](const auto& of) {
-    return of.on || of.has_point;
-  });
+  const bool linked = !joints.empty() || std::any_of(supports.begin(), supports.end(),
+                                                     [](const auto& of) { return of.on || of.has_point; });
   if (!linked) supports.clear();
   double size = 0;  // m
   for (int d = 0; d < Dim; ++d) size = std::max(size, config.mesh.upper[d] - config.mesh.lower[d]);
@@ -151,8 +150,8 @@ void LinkedRigids<Space, T, Dim>::restore(const SavedState& saved) {
     joints[j].impulse = join<Dim>(row + JointTerms::impulse, row + JointTerms::moment);
     joints[j].peak = row[JointTerms::peak], joints[j].work = row[JointTerms::work];
   }
-  for (std::size_t r = 0; saved.supports.size() == SupportTerms::size * supports.size() && r < supports.size();
-       ++r) {
+  for (std::size_t r = 0;
+       saved.supports.size() == SupportTerms::size * supports.size() && r < supports.size(); ++r) {
     const double* const row = &saved.supports[r * SupportTerms::size];
     supports[r].impulse = join<Dim>(row + SupportTerms::impulse, row + SupportTerms::moment);
   }

@@ -20,7 +20,6 @@ const char* words_of(FaultKind kind, const char* of_law) {
     case FaultKind::volume: return "has left 0.2 to 2 times its volume at the start (-stray_particles stop)";
     case FaultKind::law: return of_law;
     case FaultKind::state: return "has a state variable of its law that is not finite";
-    case FaultKind::joint: return "cannot move so that its joints hold; a shorter step (-time_step) may help";
     case FaultKind::alone: return "is alone, with no other soil in reach (-stray_particles stop)";
     default: return "moved more than a cell in one step";
   }
@@ -36,6 +35,7 @@ Failure RunReports<Space, T, Dim>::failure_of(const Fault& fault) const {
   const char* of_law = "";
   if (fault.particle < 0) {
     who = "rigid " + config.rigids[-1 - fault.particle].name;
+    of_law = "cannot move so that its joints hold; a shorter step (-time_step) may help";
   } else {
     const bool of_start = fault.particle < ids_.at_start();
     const std::size_t b = of_start ? ids_.body_of(fault.particle) : body_of(fault.particle);

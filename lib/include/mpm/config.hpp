@@ -149,14 +149,14 @@ struct RigidConfig {
   std::array<bool, 6> free{true, true, true, false, false, false};
   Vec3 angular_velocity{};  // rad/s, initial (dynamic) or prescribed; in 2D the first, counter-clockwise
   std::optional<TimeTable> angular_velocity_table;  // rad/s (prescribed)
-  std::optional<TimeTable> angle_table;  // rad, instead of it: its changes count (prescribed)
-  Vec3 moment{};            // N m, external, likewise (dynamic)
-  std::optional<TimeTable> moment_table;  // N m, instead of it
-  std::optional<Vec3> moment_point;       // m, about which the history has the moment; else the centre
+  std::optional<TimeTable> angle_table;             // rad, instead of it: its changes count (prescribed)
+  Vec3 moment{};                                    // N m, external, likewise (dynamic)
+  std::optional<TimeTable> moment_table;            // N m, instead of it
+  std::optional<Vec3> moment_point;  // m, about which the history has the moment; else the centre
   /// N/m and N m/rad, N s/m and N m s/rad, of springs and dashpots to the ground along x, y, z and about them
   /// (dynamic).
   std::array<double, 6> stiffness{}, viscosity{};
-  Vec3 force{};             // N, external (dynamic), beside gravity
+  Vec3 force{};                          // N, external (dynamic), beside gravity
   std::optional<TimeTable> force_table;  // N, instead of it
   double shear_limit = 0;                // Pa, largest shear stress of the interface; 0 is smooth
   std::optional<double> shear_fraction;  // -, the limit as a fraction of the soil's strength, instead of it
@@ -191,11 +191,11 @@ struct JointConfig {
   std::string name;
   JointKind kind = JointKind::ball;
   std::array<int, 2> bodies{k_ground, k_ground};  // indices into Config::rigids, or k_ground
-  Vec3 point{}, other_point{};              // m, at the start: of the first body, and of the second (rod, cable)
-  Vec3 axis{};                              // -, at the start (slider; hinge in 3D)
-  double length = 0;                        // m (rod, cable)
+  Vec3 point{}, other_point{};  // m, at the start: of the first body, and of the second (rod, cable)
+  Vec3 axis{};                  // -, at the start (slider; hinge in 3D)
+  double length = 0;            // m (rod, cable)
   std::optional<std::array<double, 2>> stop;  // rad, of the first body against the second (hinge)
-  Vec3 velocity{};                          // m/s, of the end on the ground
+  Vec3 velocity{};                            // m/s, of the end on the ground
   std::optional<TimeTable> velocity_table, displacement_table;  // m/s, m, instead of it
 };
 

@@ -76,7 +76,6 @@ std::string why_none(const std::string& name, const std::vector<std::string>& bo
     return "contact and friction belong to rigid bodies; deformable bodies stick together where they meet, "
            "see "
            "docs/method.md";
-  if (name == "joints") return "there are no joints between bodies, see docs/bodies.md";
   if (!beginning_of(name, rigids).empty() && has_one_of(name, rotation))
     return "docs/bodies.md has the options of rigid bodies that turn";
   return "";

@@ -45,8 +45,9 @@ void check_presence(OptionReader& in, const Config& config, const JointConfig& j
 /// The two bodies. Whether they are sound.
 bool read_joined(OptionReader& in, const Config& config, JointConfig& joint) {
   const Option option{.name = joint.name + "_bodies",
-                      .meaning = "two rigid bodies, as leg,foot, or a rigid body and the ground, as leg,ground; "
-                                 "one of them is dynamic",
+                      .meaning =
+                          "two rigid bodies, as leg,foot, or a rigid body and the ground, as leg,ground; "
+                          "one of them is dynamic",
                       .required = true};
   const std::string takes = "two names of -rigid_bodies, or one and ground";
   std::vector<std::string> words;
@@ -88,12 +89,13 @@ void read_length(OptionReader& in, int dim, JointConfig& joint) {
       in.not_taken(option, "-" + joint.name + "_kind is neither rod nor cable");
     return;
   }
-  const bool found = in.vector({.name = other,
-                                .meaning = "rod, cable: its end on the second body or the ground, at the start",
-                                .unit = "m",
-                                .range = k_coordinate,
-                                .required = true},
-                               dim, joint.other_point);
+  const bool found =
+      in.vector({.name = other,
+                 .meaning = "rod, cable: its end on the second body or the ground, at the start",
+                 .unit = "m",
+                 .range = k_coordinate,
+                 .required = true},
+                dim, joint.other_point);
   double square = 0;
   for (int d = 0; d < dim; ++d) square += std::pow(joint.point[d] - joint.other_point[d], 2);
   joint.length = std::sqrt(square);
@@ -171,19 +173,20 @@ void check_run(OptionReader& in, const MeshConfig& mesh, const Config& config, c
 void read_joint(OptionReader& in, const MeshConfig* mesh, const Config& config, JointConfig& joint) {
   in.section("Each joint NAME");
   const int dim = config.dim;
-  const bool known = in.word({.name = joint.name + "_kind",
-                              .meaning = "ball: two points stay together; hinge: and the bodies turn about an "
-                                         "axis alone; slider: they slide along an axis and do not turn "
-                                         "against each other; weld: they move as one; rod: two points keep "
-                                         "their distance; cable: it is at most the length",
-                              .required = true},
-                             Words<JointKind>{{"ball", JointKind::ball},
-                                              {"hinge", JointKind::hinge},
-                                              {"slider", JointKind::slider},
-                                              {"weld", JointKind::weld},
-                                              {"rod", JointKind::rod},
-                                              {"cable", JointKind::cable}},
-                             joint.kind);
+  const bool known =
+      in.word({.name = joint.name + "_kind",
+               .meaning = "ball: two points stay together; hinge: and the bodies turn about an "
+                          "axis alone; slider: they slide along an axis and do not turn "
+                          "against each other; weld: they move as one; rod: two points keep "
+                          "their distance; cable: it is at most the length",
+               .required = true},
+              Words<JointKind>{{"ball", JointKind::ball},
+                               {"hinge", JointKind::hinge},
+                               {"slider", JointKind::slider},
+                               {"weld", JointKind::weld},
+                               {"rod", JointKind::rod},
+                               {"cable", JointKind::cable}},
+              joint.kind);
   const bool joined = read_joined(in, config, joint);
   if ((!known || !joined) && !in.listing()) return in.ignore(joint.name + "_");  // these decide of the others
   in.vector({.name = joint.name + "_point",

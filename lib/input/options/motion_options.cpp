@@ -90,7 +90,8 @@ void read_motion(OptionReader& in, int dim, double end, RigidConfig& rigid) {
   }
   const std::string why = rigid.name + "_motion is " + k_motions[static_cast<int>(rigid.motion)].first;
   std::vector<std::string> keys(std::begin(k_motion_keys), std::end(k_motion_keys));
-  for (const auto* more : {&turning_keys(), &support_keys()}) keys.insert(keys.end(), more->begin(), more->end());
+  for (const auto* more : {&turning_keys(), &support_keys()})
+    keys.insert(keys.end(), more->begin(), more->end());
   for (const std::string& key : keys) {
     const std::string name = rigid.name + "_" + key;
     const auto& all = in.known();

@@ -299,11 +299,13 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
   const auto regions = read_names(
       in, {.name = "water_regions", .meaning = "names of boxes in which the water has a level of its own"},
       names);
-  const auto joints = read_names(in, {.name = "joints", .meaning = "names of the joints of rigid bodies"}, names);
+  const auto joints =
+      read_names(in, {.name = "joints", .meaning = "names of the joints of rigid bodies"}, names);
   const auto probes = read_names(
       in, {.name = "probes", .meaning = "names of the probes, places that the history reports"}, names);
   if (!in.listing()) {
-    for (const char* list : {"materials", "bodies", "rigid_bodies", "loads", "water_regions", "joints", "probes"})
+    for (const char* list :
+         {"materials", "bodies", "rigid_bodies", "loads", "water_regions", "joints", "probes"})
       leave_out(in, list, names);
     forgive_unlisted(in, names);
   }

@@ -17,8 +17,8 @@ void read_by_degrees(OptionReader& in, int dim, const Option& option, const Rigi
   if (plane) given = {given[0], given[1], 0, 0, 0, given[2]};
   for (int k = 0; k < 6; ++k)
     if (given[k] != 0 && !rigid.free[k])
-      return in.reject(option.name, std::string("0 for ") + k_degrees[k] + ", which is not in -" + rigid.name +
-                                        "_free");
+      return in.reject(option.name,
+                       std::string("0 for ") + k_degrees[k] + ", which is not in -" + rigid.name + "_free");
   value = given;
 }
 
@@ -30,14 +30,15 @@ const std::vector<std::string>& support_keys() {
 }
 
 void read_support(OptionReader& in, int dim, RigidConfig& rigid) {
-  read_by_degrees(in, dim,
-                  {.name = rigid.name + "_stiffness",
-                   .meaning = "dynamic: stiffness of springs to the ground along and about the axes, about its "
-                              "place at the start: x,y,rz in 2D, x,y,z,rx,ry,rz in 3D",
-                   .unit = "N/m, N m/rad",
-                   .range = {.lowest = 0, .highest = 1e15},
-                   .change = k_by_choice},
-                  rigid, rigid.stiffness);
+  read_by_degrees(
+      in, dim,
+      {.name = rigid.name + "_stiffness",
+       .meaning = "dynamic: stiffness of springs to the ground along and about the axes, about its "
+                  "place at the start: x,y,rz in 2D, x,y,z,rx,ry,rz in 3D",
+       .unit = "N/m, N m/rad",
+       .range = {.lowest = 0, .highest = 1e15},
+       .change = k_by_choice},
+      rigid, rigid.stiffness);
   read_by_degrees(in, dim,
                   {.name = rigid.name + "_viscosity",
                    .meaning = "dynamic: coefficients of dashpots to the ground, likewise",

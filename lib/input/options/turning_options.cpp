@@ -83,13 +83,14 @@ void read_turning_tables(OptionReader& in, int dim, double end, const Option& sp
 
 void read_moment_point(OptionReader& in, int dim, RigidConfig& rigid) {
   Vec3 point{};
-  if (in.vector({.name = rigid.name + "_moment_point",
-                 .meaning = "a point of the body, at the start, about which the history has the moment of the "
-                            "soil",
-                 .unit = "m",
-                 .range = {.lowest = -1e7, .highest = 1e7},
-                 .standard = "the centre of mass"},
-                dim, point))
+  if (in.vector(
+          {.name = rigid.name + "_moment_point",
+           .meaning = "a point of the body, at the start, about which the history has the moment of the "
+                      "soil",
+           .unit = "m",
+           .range = {.lowest = -1e7, .highest = 1e7},
+           .standard = "the centre of mass"},
+          dim, point))
     rigid.moment_point = point;
 }
 
@@ -144,8 +145,9 @@ void read_turning(OptionReader& in, int dim, double end, RigidConfig& rigid) {
   if (dynamic) read_free(in, dim, rigid);
   const Option spin{
       .name = rigid.name + "_angular_velocity",
-      .meaning = "prescribed: the velocity at which it turns about its centre of mass; dynamic: that at "
-                 "the start; in 2D one number, counter-clockwise",
+      .meaning =
+          "prescribed: the velocity at which it turns about its centre of mass; dynamic: that at "
+          "the start; in 2D one number, counter-clockwise",
       .unit = "rad/s",
       .range = k_spin};
   read_spin(in, dim, spin, rigid.angular_velocity);
@@ -177,8 +179,7 @@ void check_turning(OptionReader& in, const Config& config, const MeshConfig& mes
   if (!rigid.turns()) {
     const std::string beside =
         rigid.motion == Motion::dynamic ? "_free with a rotation" : "_angular_velocity";
-    for (const std::string key :
-         {"_moment", "_moment_table", "_inertia", "_centre_of_mass", "_moment_point"})
+    for (const std::string key : {"_moment", "_moment_table", "_inertia", "_centre_of_mass", "_moment_point"})
       if (in.given(rigid.name + key) && in.is_read(rigid.name + key) &&
           (rigid.motion == Motion::dynamic || key == "_centre_of_mass" || key == "_moment_point"))
         in.reject(rigid.name + key, "a -" + rigid.name + beside + " beside it");
