@@ -81,9 +81,9 @@ constexpr Features excluding(StepWay way) {
       return {F::other_strategy, F::xpic,   F::apic,  F::splits,   F::correction,
               F::submerged,      F::energy, F::loads, F::rayleigh, F::contact_sites};
     case StepWay::one_launch:
-      return excluding(StepWay::sums_ahead) |
-             Features{F::turning_rigids, F::many_rigids, F::rigid_pairs, F::linked_rigids,
-                      F::revolved,       F::ranks,       F::batches};
+      return excluding(StepWay::sums_ahead) | Features{F::turning_rigids, F::many_rigids, F::rigid_pairs,
+                                                       F::linked_rigids,  F::revolved,    F::ranks,
+                                                       F::batches};
     case StepWay::many_steps:
       return excluding(StepWay::one_launch) |
              Features{F::damping, F::shear_fraction, F::friction, F::acting_sides, F::pushed_mass_normals};

@@ -3,8 +3,8 @@
 
 #include "data/contact_core.hpp"
 #include "data/energy_works.hpp"
-#include "data/rigid_pairs.hpp"
 #include "data/rigid_links.hpp"
+#include "data/rigid_pairs.hpp"
 #include "data/sides.hpp"
 #include "data/surface_loads.hpp"
 #include "data/timed_loads.hpp"

@@ -17,8 +17,8 @@ struct LinkedStep {
   JointSolver<Dim> solver;
   RigidSupport<Dim>* supports;
   LinkedStart<Dim>* starts;
-  const double* contact;  // N, N m, of the soil on each rigid
-  int size;               // numbers of a wrench there
+  const double* contact;         // N, N m, of the soil on each rigid
+  int size;                      // numbers of a wrench there
   const PairAction<Dim>* pairs;  // of other rigid bodies on each; null where none is near
   double damping;
 

@@ -86,7 +86,8 @@ void PresentRigids::narrow(SavedState& state) {
   std::vector<long> number(others_.size(), -1);
   for (std::size_t k = 0; k < place_.size(); ++k) number[place_[k]] = static_cast<long>(k);
   state.pairs.contacts = renumbered(state.pairs.contacts, number);
-  state.supports = rearranged(state.supports, 0, SupportTerms::size, others_.size(), place_.size(), place_, here);
+  state.supports =
+      rearranged(state.supports, 0, SupportTerms::size, others_.size(), place_.size(), place_, here);
   state.rigids.clear();
   for (const std::size_t r : place_) state.rigids.push_back(others_[r]);
 }
@@ -103,7 +104,8 @@ void PresentRigids::widen(SavedState& state) const {
   state.pairs.impulses =
       rearranged(state.pairs.impulses, 0, SavedPairs::totals, place_.size(), others_.size(), here, place_);
   state.pairs.contacts = renumbered(state.pairs.contacts, std::vector<long>(place_.begin(), place_.end()));
-  state.supports = rearranged(state.supports, 0, SupportTerms::size, place_.size(), others_.size(), here, place_);
+  state.supports =
+      rearranged(state.supports, 0, SupportTerms::size, place_.size(), others_.size(), here, place_);
   std::vector<SavedRigid> rigids = others_;
   for (std::size_t k = 0; k < place_.size(); ++k) rigids[place_[k]] = state.rigids[k];
   state.rigids = std::move(rigids);

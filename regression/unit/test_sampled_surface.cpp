@@ -14,8 +14,8 @@ using namespace mpm::test;
 namespace {
 
 /// A prism along y over a polygon of x and z, anticlockwise and star-shaped about its first vertex.
-Corners prism(const std::vector<std::array<double, 2>>& outline, double low, double high) {
-  Corners corners;
+std::vector<Vec3> prism(const std::vector<std::array<double, 2>>& outline, double low, double high) {
+  std::vector<Vec3> corners;
   const auto at = [&](std::size_t k, double y) {
     const auto& p = outline[k % outline.size()];
     return Vec3{p[0], y, p[1]};
@@ -33,13 +33,13 @@ Corners prism(const std::vector<std::array<double, 2>>& outline, double low, dou
 }
 
 /// A ring about the z axis, which has vertices of saddles.
-Corners ring(double radius, double thick, int around, int across) {
+std::vector<Vec3> ring(double radius, double thick, int around, int across) {
   const auto at = [&](int i, int j) {
     const double a = 2 * std::numbers::pi * i / around, b = 2 * std::numbers::pi * j / across;
     const double r = radius + thick * std::cos(b);
     return Vec3{r * std::cos(a), r * std::sin(a), thick * std::sin(b)};
   };
-  Corners corners;
+  std::vector<Vec3> corners;
   for (int i = 0; i < around; ++i)
     for (int j = 0; j < across; ++j) {
       const int n = (i + 1) % around, m = (j + 1) % across;
@@ -66,10 +66,10 @@ double to_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
 }
 
 /// Shapes that are hard on signs: a thin wedge, a notch, saddles, a needle, and a mixture turned at random.
-std::vector<std::pair<std::string, Corners>> hard_surfaces() {
-  const Corners wedge = prism({{-1, 0}, {1, -0.02}, {1, 0.02}}, -0.7, 0.8);
-  const Corners notch = prism({{-0.2, -0.4}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}}, -1, 1);
-  const Corners needle = prism({{-0.01, 0}, {0, -0.01}, {0.01, 0}, {0, 0.01}}, -1, 1);
+std::vector<std::pair<std::string, std::vector<Vec3>>> hard_surfaces() {
+  const std::vector<Vec3> wedge = prism({{-1, 0}, {1, -0.02}, {1, 0.02}}, -0.7, 0.8);
+  const std::vector<Vec3> notch = prism({{-0.2, -0.4}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}}, -1, 1);
+  const std::vector<Vec3> needle = prism({{-0.01, 0}, {0, -0.01}, {0.01, 0}, {0, 0.01}}, -1, 1);
   return {{"wedge", wedge},
           {"notch", notch},
           {"ring", ring(1, 0.3, 13, 7)},
@@ -138,7 +138,7 @@ TEST_CASE("samples of an stl give the distance of the shape that it is", "[sampl
   ball_shape.kind = ShapeKind::disc, ball_shape.centre = {0.01, 0.02, 0.03}, ball_shape.radius = 0.5;
   struct Like {
     std::string name;
-    Corners corners;
+    std::vector<Vec3> corners;
     Shape shape;
     double value, normal;  // allowed: cells, -
   };

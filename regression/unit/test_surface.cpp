@@ -366,7 +366,7 @@ TEST_CASE("a patch counts as near a rigid if its particles reach a node that the
           Vector<double, Dim> x;
           for (int d = 0; d < Dim; ++d) x[d] = (origin(slot)[d] + at[d]) * spacing;
           const auto rigid = on_host(s.rigids)(0);
-          CHECK(distance_to(rigid.surface, on_host(s.vertices), x).value >
+          CHECK(distance_to(rigid.surface, on_host(s.vertices.vertices), x).value >
                 (std::sqrt(double(Dim)) + margin) * spacing);
         }
       }

@@ -60,7 +60,7 @@ bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, 
   if (!given) return in.given(name);
   TableText read;
   std::string fault = read_table(text, dim, end, read);
-  if (fault.empty() && read.columns == 1 && !has_constant)
+  if (fault.empty() && read.columns == 1 && dim > 1 && !has_constant)
     fault = formatted("a time and %d components in each point", dim);
   if (!fault.empty()) return in.reject(name, fault), true;
   read.table.smooth = smooth;
