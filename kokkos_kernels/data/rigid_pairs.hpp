@@ -71,7 +71,7 @@ struct PairMotion {
   Wrench<Dim> shift;                     // m, rad, correction of its place
 };
 
-/// What other rigid bodies do to one in a step.
+/// Action of other rigid bodies on one in a step.
 template <int Dim>
 struct PairAction {
   Wrench<Dim> wrench;   // N, N m
@@ -85,7 +85,7 @@ struct PairImpulse {
   double impulse[3];  // N s
 };
 
-/// What the kernels of contact between rigid bodies work on.
+/// Data of the kernels of contact between rigid bodies.
 template <class Space, int Dim>
 struct PairViews {
   using Memory = typename Space::memory_space;

@@ -44,8 +44,8 @@ struct SavedImpulse {
   std::vector<double> values;  // ImpulseTerms of each rigid [ImpulseTerms::size rigids M]; where some rigid
                                // has contact at sites, SiteTerms of each site, rigid by rigid
 };
-/// What contact between rigid bodies keeps: the impulses of its contacts in the last step, and those on each
-/// rigid body since the last row of the history.
+/// Impulses of contact between rigid bodies: of its contacts in the last step, and on each rigid body since
+/// the last row of the history.
 struct SavedPairs {
   static constexpr int width = 6, totals = 6;  // numbers of a contact and of a rigid
   std::vector<double> contacts;  // [width]: numbers of the two bodies (sides of the mesh are negative: -1 -

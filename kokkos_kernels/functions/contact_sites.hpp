@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// What ranks share of the sites: their gaps, how many serve a node, the momentum that they have for it, and
-/// the numbers that they keep for the next step.
+/// Values of the sites that ranks share: the gaps, the number of sites that serve a node, the momentum that
+/// they have for it, and the numbers that they keep for the next step.
 enum class SiteField { gaps, counts, momentum, kept };
 
 /// Passes over the sites of a state, each a kernel that does nothing while `control` is paused. dt: s

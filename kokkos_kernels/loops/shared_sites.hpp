@@ -1,5 +1,5 @@
 #pragma once
-// What ranks share of the sites of contact, node by node (loops/shared_words.hpp).
+// Values of the sites of contact that ranks share, node by node (functions/shared_words.hpp).
 
 #include "loops/sites.hpp"
 

@@ -164,7 +164,7 @@ void list_pairs(State<Space, T, Dim>& s) {
   if (!pairs.may_meet) return;
   const std::vector<PairImpulse> kept = pair_impulses(s);
   pairs.saved.clear();
-  // What two bodies may come nearer until the next rebuild, and in a step.
+  // The margin is the way by which two bodies may come nearer until the next rebuild, and in a step.
   const Meetings<Space, T, Dim> meetings(s, 2 * (s.p2g.margin + 1) * s.spacing);
   std::vector<RigidPair> found = meetings.all();
   const int bodies = static_cast<int>(meetings.poses.size());

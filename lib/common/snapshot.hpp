@@ -72,7 +72,7 @@ struct RigidRow {
   Vec3 angle{};             // rad, since the start: the rotation vector
   Vec3 angular_velocity{};  // rad/s
   Vec3 moment{};            // N m, as the force; about the moment's point, where the options give one
-  // Of other rigid bodies and sides of the mesh on it, likewise.
+  // The action of other rigid bodies and of sides of the mesh on it, likewise.
   Vec3 contact_force{};                  // N
   Vec3 contact_moment{};                 // N m
   double kinetic_energy = 0;             // J, where forces move it

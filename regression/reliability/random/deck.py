@@ -179,6 +179,15 @@ class Deck:
             assert path.read_bytes() == (folder / path.name).read_bytes(), f"{what}: {path.name} differs"
 
 
+def changer(words):
+    """A function that changes an option of `words` by f, from the numbers that it has to those of an image; absent options stay so."""
+    def change(option, f):
+        if option in words:
+            at = words.index(option) + 1
+            words[at] = vector(f([float(x) for x in words[at].split(",")]))
+    return change
+
+
 def columns_but(folder, beginnings):
     """Rows of the history without columns that begin so."""
     head, *lines = rows(folder)

@@ -6,7 +6,7 @@ moves as the mirror.
 """
 import numpy as np
 
-from deck import Deck, rounded, vector
+from deck import Deck, changer, rounded, vector
 from mpm_regression.folders import history
 
 SPIN = {2: ("",), 3: ("_x", "_y", "_z")}
@@ -205,11 +205,7 @@ class Joints(Deck):
 
     def mirror(self):
         words, width = list(self.options), self.top[0]
-
-        def change(option, f):
-            if option in words:
-                at = words.index(option) + 1
-                words[at] = vector(f([float(x) for x in words[at].split(",")]))
+        change = changer(words)
 
         for name in self.bodies:
             change(f"-{name}_centre", lambda c: [width - c[0], *c[1:]])

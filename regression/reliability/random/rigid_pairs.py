@@ -7,7 +7,7 @@ balls must not come into each other or into planes; the mirror image must move a
 """
 import numpy as np
 
-from deck import Deck, rounded, vector
+from deck import Deck, changer, rounded, vector
 from mpm_regression.folders import history
 
 SPIN = {2: ("",), 3: ("_x", "_y", "_z")}
@@ -158,11 +158,7 @@ class RigidPairs(Deck):
     def mirror(self):
         """The options of the mirror image."""
         words, width = list(self.options), self.top[0]
-
-        def change(option, f):
-            if option in words:
-                at = words.index(option) + 1
-                words[at] = vector(f([float(x) for x in words[at].split(",")]))
+        change = changer(words)
 
         def turned(w):
             return [-w[0]] if len(w) == 1 else [w[0], -w[1], -w[2]]

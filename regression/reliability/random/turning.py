@@ -6,7 +6,7 @@ to round-off; a body that is held in a degree must not move along it; its mirror
 """
 import numpy as np
 
-from deck import Deck, rounded, vector
+from deck import Deck, changer, rounded, vector
 from mpm_regression.folders import history
 
 SPIN = {2: ("",), 3: ("_x", "_y", "_z")}
@@ -126,11 +126,7 @@ class Turning(Deck):
     def mirror(self):
         """The options of the mirror image."""
         words, width = list(self.options), self.top[0]
-
-        def change(option, f):
-            if option in words:
-                at = words.index(option) + 1
-                words[at] = vector(f([float(x) for x in words[at].split(",")]))
+        change = changer(words)
 
         change("-gravity", lambda g: [-g[0], *g[1:]])
         for name in self.bodies:
