@@ -86,7 +86,7 @@ class Joints(Deck):
             words += [f"-{name}_other_point", vector(joint["other"])]
             joint["length"] = float(np.linalg.norm(joint["point"] - joint["other"]))
             if kind == "cable":
-                joint["length"] = round(joint["length"] * draw.choice([1.000001, 1.02]), 6)
+                joint["length"] = np.ceil(1e6 * joint["length"] * draw.choice([1.000001, 1.02])) / 1e6
                 words += [f"-{name}_length", str(joint["length"])]
         else:
             joint["point"] = np.round((from_ + to) / 2, 6)
