@@ -148,11 +148,17 @@ def has_factor(run, name, asked):
 
 
 def draw_curves(run, others, asked=False, time=None):
-    """curve.png: the forces on each rigid in a panel, with a factor where it has one. Returns its path, or None without
-    rigids or history."""
+    """curve.png: the forces on each rigid in a panel, with a factor where it has one; of many rigids those with the largest
+    forces. Returns its path, or None without rigids or history."""
+    most = 12  # panels that a reader takes in
     rigids = rigids_with_force(run)
     if not rigids:
         return None
+    if len(rigids) > most:
+        largest = {name: np.abs(run.columns(f"{name}_force_")).max() for name in rigids}
+        chosen = sorted(rigids, key=largest.get, reverse=True)[:most]
+        print(f"plot: curve.png has the {most} of {len(rigids)} rigid bodies with the largest forces", file=sys.stderr)
+        rigids = [name for name in rigids if name in chosen]
     figure, all_axes = plt.subplots(len(rigids), 1, figsize=(8.2, 5.4 * len(rigids)), squeeze=False, layout="constrained")
     for axes, name in zip(all_axes[:, 0], rigids):
         with_factor = has_factor(run, name, asked)
