@@ -75,15 +75,19 @@ struct PairSolution {
   /// Solves for the impulses. part: as many doubles as the team has warps. MPM_ROLLED keeps it short.
   template <class Team>
   KOKKOS_INLINE_FUNCTION void solve(const Team& team, double* part) const {
-    constexpr int k_sweeps = 60, k_shifts = 10;
-    constexpr double k_small = 1e-8, k_share = 0.01, k_step = 0.01;  // of the speed; of a shift; cells
+    constexpr int k_shifts = 10, k_softer = 8;
+    constexpr double k_share = 0.01, k_step = 0.01;  // of a shift; cells
     const double most = k_step * spacing, speed = largest(team, fastest(team), part);
+    relax(team, part, speed);
     MPM_ROLLED
-    for (int n = 0; n < k_sweeps; ++n)
+    for (int n = 1; n <= k_softer; ++n) {
       if (!(sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at) {
-              return relax_contact(at, pairs.motions(pair.a), pairs.motions(pair.b), pair.friction);
-            }) > k_small * speed))
+              return soften_impact(at, pairs.motions(pair.a), pairs.motions(pair.b), pair.friction,
+                                   n == k_softer);
+            }) > 0))
         break;
+      relax(team, part, speed);
+    }
     double change = 0, first = 0;
     MPM_ROLLED
     for (int n = 0; n < k_shifts; ++n) {
@@ -97,6 +101,18 @@ struct PairSolution {
   }
 
  private:
+  /// Improves all impulses until they change the velocities by little of the largest speed.
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION void relax(const Team& team, double* part, double speed) const {
+    constexpr int k_sweeps = 60;
+    constexpr double k_small = 1e-8;  // of the speed
+    MPM_ROLLED
+    for (int n = 0; n < k_sweeps; ++n)
+      if (!(sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at) {
+              return relax_contact(at, pairs.motions(pair.a), pairs.motions(pair.b), pair.friction);
+            }) > k_small * speed))
+        break;
+  }
   /// Gap up to which a contact of a body may matter in the step [m].
   KOKKOS_INLINE_FUNCTION double slack(const PairBody<Dim>& body, const PairMotion<Dim>& motion) const {
     constexpr double k_touch = 1e-4;  // cells

@@ -144,6 +144,17 @@ KOKKOS_INLINE_FUNCTION Vector<double, Dim> parting(const PairContact<Dim>& at, c
   return v;
 }
 
+/// The same at the beginning of the step.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION Vector<double, Dim> parting_before(const PairContact<Dim>& at,
+                                                          const PairMotion<Dim>& a,
+                                                          const PairMotion<Dim>& b) {
+  Vector<double, Dim> v = velocity_at<Dim>(a.before, a.spin_before, at.arms[0]);
+  const Vector<double, Dim> other = velocity_at<Dim>(b.before, b.spin_before, at.arms[1]);
+  for (int d = 0; d < Dim; ++d) v[d] -= other[d];
+  return v;
+}
+
 /// Adds an impulse [N s] at the end of an arm to a body.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION void push_body(PairMotion<Dim>& body, const Vector<double, Dim>& arm,
@@ -203,10 +214,7 @@ KOKKOS_INLINE_FUNCTION void set_bounds(PairContact<Dim>& at, const PairMotion<Di
                                        const PairMotion<Dim>& b, double restitution, double dt) {
   const auto& n = at.normal;
   const double v_free = dot(parting(at, a, b), n);
-  Vector<double, Dim> v = velocity_at<Dim>(a.before, a.spin_before, at.arms[0]);
-  const Vector<double, Dim> other = velocity_at<Dim>(b.before, b.spin_before, at.arms[1]);
-  for (int d = 0; d < Dim; ++d) v[d] -= other[d];
-  at.before = dot(v, n);
+  at.before = dot(parting_before(at, a, b), n);
   const bool meet = at.gap + dt / 2 * (at.before + v_free) < 0;
   at.least = Kokkos::fmin(0.0, -2 * Kokkos::fmax(0.0, at.gap) / dt - at.before);
   if (meet && -at.before > 2 * Kokkos::fabs(v_free - at.before))
@@ -242,6 +250,22 @@ KOKKOS_INLINE_FUNCTION double relax_contact(PairContact<Dim>& at, PairMotion<Dim
   push_body(a, at.arms[0], more, 1);
   push_body(b, at.arms[1], more, -1);
   return Kokkos::sqrt(dot(more, more)) * Kokkos::fmax(at.yield, at.slide);
+}
+
+/// Halves the velocity with which bodies part after an impact, or leaves nothing of it (`ends`), where the
+/// impact with friction would raise their energy, as Newton's law of restitution may (Kane & Levinson 1985).
+/// Returns 1 where it does so, else 0.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION double soften_impact(PairContact<Dim>& at, const PairMotion<Dim>& a,
+                                            const PairMotion<Dim>& b, double friction, bool ends) {
+  constexpr double k_round_off = 1e-9;
+  if (!(at.least > 0 && friction > 0)) return 0;
+  const Vector<double, Dim> v = parting(at, a, b), before = parting_before(at, a, b);
+  const double gain = dot(at.impulse, v) + dot(at.impulse, before);  // twice the work of the contact [J]
+  const double size = Kokkos::sqrt(dot(at.impulse, at.impulse) * (dot(v, v) + dot(before, before)));
+  if (!(gain > k_round_off * size)) return 0;
+  at.least = ends ? 0 : at.least / 2;
+  return 1;
 }
 
 /// Adds a shift of a body's place by an impulse, as its velocity would change [m].
