@@ -95,7 +95,8 @@ def value_of(random, takes, dim, names):
         return random.choice(words_of(takes)).replace("no value", "")
     vector = re.match(r"([2346]) numbers", takes)
     if vector:
-        count = int(vector[1]) if "3D" not in takes else {2: {2: 2, 3: 3}, 4: {2: 4, 3: 6}}[int(vector[1])][dim]
+        in_space = re.search(r"\(([2346]) in 3D", takes)
+        count = int((in_space if in_space and dim == 3 else vector)[1])
         return numbers(random, count, takes)
     if takes.startswith("x0,y0"):
         return a_polygon(random)
