@@ -20,7 +20,7 @@ inline bool have_contact(const Config& config, const RigidConfig& one, const Rig
 }
 
 /// Whether the history has the forces of other rigid bodies on each one: where one of two that may meet
-/// is dynamic, or -rigid_contact asks for contact. In a run with stages, by the options of the first.
+/// is dynamic, or -rigid_contact asks for contact. `config` is that of the history (history_config).
 inline std::vector<char> contact_columns(const Config& config) {
   const auto moves = [](const RigidConfig& rigid) { return rigid.motion == Motion::dynamic; };
   const auto dynamic = std::count_if(config.rigids.begin(), config.rigids.end(), moves);

@@ -65,10 +65,14 @@ void take_stage(Job& job, const Clock& clock) {
 
 Config history_config(const Job& job) {
   Config all = job.config;
-  for (const StageInput& input : job.report.stages)
+  for (const StageInput& input : job.report.stages) {
+    const Config& stage = input.config;
     for (int d = 0; d < 3; ++d)
       for (int side = 0; side < 2; ++side)
-        if (!is_open(input.config.mesh.walls[d][side])) all.mesh.walls[d][side] = Wall::roller;
+        if (!is_open(stage.mesh.walls[d][side])) all.mesh.walls[d][side] = Wall::roller;
+    for (std::size_t r = 0; r < stage.rigids.size(); ++r)
+      if (stage.rigids[r].motion == Motion::dynamic) all.rigids[r].motion = Motion::dynamic;
+  }
   return all;
 }
 
