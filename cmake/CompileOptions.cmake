@@ -40,6 +40,13 @@ if(NOT MPM_OPENMP)
   add_compile_definitions(MPM_NO_OPENMP)
 endif()
 
+if(NOT MPM_PROCESSOR)
+  if(NOT Kokkos_ENABLE_CUDA)
+    message(FATAL_ERROR "MPM_PROCESSOR=OFF leaves no back end: Kokkos in ${Kokkos_DIR} has no CUDA")
+  endif()
+  add_compile_definitions(MPM_ONLY_CUDA)
+endif()
+
 # The headers of others that most sources of a target include, parsed once, which spares a source 1 to 2 s. CMake does not do it for
 # what nvcc compiles, so that a build for CUDA shows whether sources of kernels include what they need.
 # CMAKE_DISABLE_PRECOMPILE_HEADERS leaves it out.

@@ -69,5 +69,11 @@ auto light(const Policy& policy) {
 #define MPM_FOR_CUDA(X)
 #endif
 
+#ifdef MPM_ONLY_CUDA
+#define MPM_FOR_PROCESSOR(X)
+#else
+#define MPM_FOR_PROCESSOR(X) MPM_FOR_EACH_REAL_DIM(X, mpm::Processor)
+#endif
+
 /// Applies X(Space, T, Dim) to everything that is built: explicit instantiation, run-time choice, tests.
-#define MPM_FOR_EACH(X) MPM_FOR_EACH_REAL_DIM(X, mpm::Processor) MPM_FOR_CUDA(X)
+#define MPM_FOR_EACH(X) MPM_FOR_PROCESSOR(X) MPM_FOR_CUDA(X)

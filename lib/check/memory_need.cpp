@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <type_traits>
 
 #include "common/host_memory.hpp"
 #include "common/material_table.hpp"
@@ -95,10 +96,11 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
 }
 template <class T, int Dim>
 void add_bytes(const Config& config, double cells, MemoryNeed& need) {
-#ifdef KOKKOS_ENABLE_CUDA
-  if (config.backend == Backend::cuda) return add_bytes<Kokkos::Cuda, T, Dim>(config, cells, need);
-#endif
-  add_bytes<Processor, T, Dim>(config, cells, need);
+#define MPM_ADD(Space, Real, Dims)                      \
+  if constexpr (std::is_same_v<Real, T> && Dims == Dim) \
+    if (runs_on<Space>(config.backend)) add_bytes<Space, Real, Dims>(config, cells, need);
+  MPM_FOR_EACH(MPM_ADD)
+#undef MPM_ADD
 }
 
 /// Cells that a shape fills.

@@ -10,12 +10,14 @@ namespace mpm {
 
 std::vector<Backend> available_backends() {
   return {
-      Backend::serial,
-#ifdef MPM_WITH_OPENMP
-      Backend::openmp,
+#ifndef MPM_ONLY_CUDA
+    Backend::serial,
+#endif
+#if defined(MPM_WITH_OPENMP) && !defined(MPM_ONLY_CUDA)
+        Backend::openmp,
 #endif
 #ifdef KOKKOS_ENABLE_CUDA
-      Backend::cuda,
+        Backend::cuda,
 #endif
   };
 }
