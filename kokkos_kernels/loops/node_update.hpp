@@ -66,7 +66,7 @@ struct UpdateNodes {
                                           double* force) const {
     for_team(team, cells, [&](int k) {
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
-      update(sums, slot * cells + k, true, force + k);
+      update<true>(sums, slot * cells + k, force + k);
       if (owned_nodes.extent(0) == 0 || (owned_nodes(slot) >> k & 1) != 0) return;
       for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank reports it
     });
@@ -87,12 +87,13 @@ struct UpdateNodes {
     }
   }
 
-  template <class Sums>
-  KOKKOS_INLINE_FUNCTION void update(const Sums& sums, int i, bool near, double* force) const {
+  /// Updates node i. near: a rigid may touch it; the kernel of the nodes far from all has no contact in it.
+  template <bool near, class Sums>
+  KOKKOS_INLINE_FUNCTION void update(const Sums& sums, int i, double* force) const {
     Coord<Dim> at = coord_of<Dim>(i);
     const Coord<Dim> from = places.origin(i / cells);
     for (int d = 0; d < Dim; ++d) at[d] += from[d];
-    keep(i, kinematics(sums, rigids.data(), i, at, near, force));
+    keep(i, kinematics<near>(sums, rigids.data(), i, at, near, force));
   }
   /// Rigids, of which value_count has the numbers of their wrenches.
   KOKKOS_INLINE_FUNCTION int rigid_count() const { return value_count / wrench(); }
@@ -163,9 +164,10 @@ struct UpdateNodes {
     return node;
   }
 
-  /// Motion of a node after the step; bodies: the rigids. Adds component k of the wrench on the rigid that is
+  /// Motion of a node after the step; bodies: the rigids; near: one of them may touch the node, which it does
+  /// not unless `touches`. Adds component k of the wrench on the rigid that is
   /// number n near the slot to force[(n Wrench::size + k) cells], unless it is null.
-  template <class Sums>
+  template <bool touches = true, class Sums>
   KOKKOS_INLINE_FUNCTION KinematicValues<T, Dim> kinematics(const Sums& sums, const Rigid<Dim>* bodies, int i,
                                                             const Coord<Dim>& at, bool near,
                                                             double* force) const {
@@ -180,7 +182,7 @@ struct UpdateNodes {
     Vector<T, Dim> v_old = filled<T, Dim>(0), v = v_old, a, brake;
     if (node.inv_m > 0) {
       accelerate(node.soil, node.inv_m, v_old, a);
-      v = advanced(sums, bodies, node, v_old, a, true, force, brake);
+      v = advanced<touches>(sums, bodies, node, v_old, a, true, force, brake);
     }
     KinematicValues<T, Dim> kinematics;
     for (int d = 0; d < Dim; ++d) {
@@ -192,13 +194,13 @@ struct UpdateNodes {
   }
 
   /// Acceleration a of a node as contact and sides leave it, without damping [m/s2].
-  template <class Sums>
+  template <bool touches = true, class Sums>
   KOKKOS_INLINE_FUNCTION Vector<T, Dim> held_acceleration(const Sums& sums, const Rigid<Dim>* bodies,
                                                           const Node& node, const Vector<T, Dim>& v_old,
                                                           Vector<T, Dim> a) const {
     Vector<T, Dim> v;
     for (int d = 0; d < Dim; ++d) v[d] = v_old[d] + a[d] * dt;
-    constrain(sums, bodies, node, v_old, v, false, nullptr);
+    constrain<touches>(sums, bodies, node, v_old, v, false, nullptr);
     for (int d = 0; d < Dim; ++d) a[d] = (v[d] - v_old[d]) * inv_dt;
     return a;
   }
@@ -207,23 +209,23 @@ struct UpdateNodes {
   /// local damping. It brakes the acceleration that contact and sides leave, which a rehearsal without
   /// damping finds: at rest there is none, and each reaction is that of the soil. ends: the step itself,
   /// after which walls, sides and friction keep what they took; else the rehearsal alone, for `brake`.
-  template <class Sums>
+  template <bool touches = true, class Sums>
   KOKKOS_INLINE_FUNCTION Vector<T, Dim> advanced(const Sums& sums, const Rigid<Dim>* bodies, const Node& node,
                                                  const Vector<T, Dim>& v_old, const Vector<T, Dim>& a,
                                                  bool ends, double* force, Vector<T, Dim>& brake) const {
     brake = filled<T, Dim>(0);
     if constexpr (acts)
       if (damping > 0 && !(at_sites && node.near))
-        brake = braking(node.is_held() ? held_acceleration(sums, bodies, node, v_old, a) : a, v_old);
+        brake = braking(node.is_held() ? held_acceleration<touches>(sums, bodies, node, v_old, a) : a, v_old);
     Vector<T, Dim> v = v_old;
     if (!ends) return v;
     for (int d = 0; d < Dim; ++d) v[d] += (a[d] - brake[d]) * dt;  // Eq. (9)
-    constrain(sums, bodies, node, v_old, v, true, force);
+    constrain<touches>(sums, bodies, node, v_old, v, true, force);
     return v;
   }
 
   /// Applies walls, sides that act and contact to the velocity v of a node.
-  template <class Sums>
+  template <bool touches, class Sums>
   KOKKOS_INLINE_FUNCTION void constrain(const Sums& sums, const Rigid<Dim>* bodies, const Node& node,
                                         const Vector<T, Dim>& v_old, Vector<T, Dim>& v, bool keeps,
                                         double* force) const {
@@ -231,7 +233,7 @@ struct UpdateNodes {
     if constexpr (acts)
       if (node.acting != 0) v = by_sides(acting_sides, side_node(node, keeps), v_old, v, true);
     MPM_ROLLED
-    for (int n = 0; n < node.touching; ++n) {
+    for (int n = 0; touches && n < node.touching; ++n) {
       const int r = near_bodies.body(node.i / cells, n);
       if (r < 0) break;
       if (!bodies[r].law.at_sites)
@@ -256,7 +258,7 @@ struct UpdateNodes {
   /// The nodes of a slot far from every rigid.
   template <class Team, class Sums>
   KOKKOS_INLINE_FUNCTION void update_far(const Team& team, const Sums& sums, int slot) const {
-    for_team(team, cells, [&](int k) { update(sums, slot * cells + k, false, nullptr); });
+    for_team(team, cells, [&](int k) { update<false>(sums, slot * cells + k, nullptr); });
     team.team_barrier();
     if (clears) clear_sums(team, nodes, slot, false, 0);
   }
