@@ -1,5 +1,6 @@
 #pragma once
-// Middle floor of the data of a time step (data/floors.hpp): rigid bodies and their contact with soil.
+// Middle floor of the data of a time step (data/floors.hpp): rigid bodies, their contact with soil and with
+// each other, and what joins them.
 
 #include <vector>
 
@@ -7,6 +8,8 @@
 #include "data/contact_slots.hpp"
 #include "data/core.hpp"
 #include "data/rigid.hpp"
+#include "data/rigid_links.hpp"
+#include "data/rigid_pairs.hpp"
 #include "data/surface_samples.hpp"
 
 namespace mpm {
@@ -19,6 +22,8 @@ struct ContactCore : Core<Space, T, Dim> {
   SurfaceTables<Memory> vertices;  // and samples, of the rigids' surfaces
   ContactSlots<Space> contact;
   ContactSites<Space, T, Dim> at_sites;
+  RigidPairs<Space, Dim> pairs;               // rigid bodies that may touch each other
+  RigidLinks<Space, Dim> links;               // joints, springs and dashpots of rigid bodies
   Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step
   bool forces_summed =
       false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them

@@ -8,7 +8,7 @@ namespace mpm {
 template <class Space, class T, int Dim>
 struct Core;
 
-/// Core, and the rigid bodies with their contact (data/contact_core.hpp).
+/// Core, and the rigid bodies with their contact and joints (data/contact_core.hpp).
 template <class Space, class T, int Dim>
 struct ContactCore;
 

@@ -3,8 +3,6 @@
 
 #include "data/contact_core.hpp"
 #include "data/energy_works.hpp"
-#include "data/rigid_links.hpp"
-#include "data/rigid_pairs.hpp"
 #include "data/sides.hpp"
 #include "data/surface_loads.hpp"
 #include "data/timed_loads.hpp"
@@ -15,9 +13,7 @@ template <class Space, class T, int Dim>
 struct State : ContactCore<Space, T, Dim> {
   TimedLoads<Space, T, Dim> timed;
   Sides<Space, Dim> sides;            // of the mesh, that act on the soil
-  RigidPairs<Space, Dim> pairs;       // rigid bodies that may touch each other
   SurfaceLoads<Space, T, Dim> loads;  // on parts of bodies' surfaces
-  RigidLinks<Space, Dim> links;       // joints, springs and dashpots of rigid bodies
   EnergyWorks<Space, T, Dim> energy;  // in use where the run asks for an energy balance
 };
 

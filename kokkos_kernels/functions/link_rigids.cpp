@@ -19,7 +19,7 @@ void fill(View& view, const std::string& label, const std::vector<Value>& values
 
 /// The step of all rigids on raw memory, for one thread of a kernel.
 template <class Space, class T, int Dim>
-LinkedStep<T, Dim> linked_step(const State<Space, T, Dim>& s, double dt) {
+LinkedStep<T, Dim> linked_step(const ContactCore<Space, T, Dim>& s, double dt) {
   const RigidLinks<Space, Dim>& links = s.links;
   const int rows = links.row_count();
   double* const numbers = links.numbers.data();
@@ -49,7 +49,7 @@ LinkedStep<T, Dim> linked_step(const State<Space, T, Dim>& s, double dt) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void upload_links(State<Space, T, Dim>& s, const std::vector<Joint<Dim>>& joints,
+void upload_links(ContactCore<Space, T, Dim>& s, const std::vector<Joint<Dim>>& joints,
                   const std::vector<RigidSupport<Dim>>& supports, double size) {
   RigidLinks<Space, Dim>& links = s.links;
   links = {};
@@ -68,7 +68,7 @@ void upload_links(State<Space, T, Dim>& s, const std::vector<Joint<Dim>>& joints
 }
 
 template <class Space, class T, int Dim>
-void link_rigids(State<Space, T, Dim>& s, double dt, const Space& stream) {
+void link_rigids(ContactCore<Space, T, Dim>& s, double dt, const Space& stream) {
   if (!s.forces_summed) sum_forces(s, stream);
   const LinkedStep<T, Dim> step = linked_step(s, dt);
   const auto control = s.control;
@@ -90,19 +90,19 @@ void link_rigids(State<Space, T, Dim>& s, double dt, const Space& stream) {
 }
 
 template <class Space, class T, int Dim>
-std::vector<Joint<Dim>> joints_of(const State<Space, T, Dim>& s) {
+std::vector<Joint<Dim>> joints_of(const ContactCore<Space, T, Dim>& s) {
   const auto host = mirror_of(s.links.joints);
   return {host.data(), host.data() + host.extent(0)};
 }
 
 template <class Space, class T, int Dim>
-std::vector<RigidSupport<Dim>> supports_of(const State<Space, T, Dim>& s) {
+std::vector<RigidSupport<Dim>> supports_of(const ContactCore<Space, T, Dim>& s) {
   const auto host = mirror_of(s.links.supports);
   return {host.data(), host.data() + host.extent(0)};
 }
 
 template <class Space, class T, int Dim>
-void put_links(State<Space, T, Dim>& s, const std::vector<Joint<Dim>>& joints,
+void put_links(ContactCore<Space, T, Dim>& s, const std::vector<Joint<Dim>>& joints,
                const std::vector<RigidSupport<Dim>>& supports) {
   const auto put = [](const auto& view, const auto& values) {
     const auto host = Kokkos::create_mirror_view(view);
@@ -112,13 +112,13 @@ void put_links(State<Space, T, Dim>& s, const std::vector<Joint<Dim>>& joints,
   put(s.links.joints, joints), put(s.links.supports, supports);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                              \
-  template void upload_links(State<Space, T, Dim>&, const std::vector<Joint<Dim>>&, \
-                             const std::vector<RigidSupport<Dim>>&, double);        \
-  template void link_rigids(State<Space, T, Dim>&, double, const Space&);           \
-  template std::vector<Joint<Dim>> joints_of(const State<Space, T, Dim>&);          \
-  template std::vector<RigidSupport<Dim>> supports_of(const State<Space, T, Dim>&); \
-  template void put_links(State<Space, T, Dim>&, const std::vector<Joint<Dim>>&,    \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                    \
+  template void upload_links(ContactCore<Space, T, Dim>&, const std::vector<Joint<Dim>>&, \
+                             const std::vector<RigidSupport<Dim>>&, double);              \
+  template void link_rigids(ContactCore<Space, T, Dim>&, double, const Space&);           \
+  template std::vector<Joint<Dim>> joints_of(const ContactCore<Space, T, Dim>&);          \
+  template std::vector<RigidSupport<Dim>> supports_of(const ContactCore<Space, T, Dim>&); \
+  template void put_links(ContactCore<Space, T, Dim>&, const std::vector<Joint<Dim>>&,    \
                           const std::vector<RigidSupport<Dim>>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -1,7 +1,6 @@
 #include <vector>
 
 #include "base/copy.hpp"
-#include "functions/rigid_pairs.hpp"
 #include "functions/step_kernels.hpp"
 #include "loops/end_step.hpp"
 #include "loops/particle_to_node.hpp"
@@ -70,13 +69,6 @@ struct Move {
   }
 };
 
-template <class Space, class T, int Dim>
-void move_by(ContactCore<Space, T, Dim>& s, const EndStep<Space, T, Dim>& end, const Space& stream) {
-  launch_end(end, stream, 1, Move{});
-  s.forces_summed = false;
-  if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, stream);
-}
-
 }  // namespace
 
 template <class Space, class T, int Dim>
@@ -91,12 +83,10 @@ void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>&
                  const Space& stream, const double* moved) {
   EndStep<Space, T, Dim> end(s, timed, dt);
   end.moved = moved;
-  move_by(s, end, stream);
-}
-
-template <class Space, class T, int Dim>
-void move_touching_rigids(State<Space, T, Dim>& s, double dt, const Space& stream) {
-  move_by(s, EndStep<Space, T, Dim>(s, s.timed, dt, s.pairs.actions), stream);
+  if (moved == nullptr && s.pairs.in_use()) end.pairs = s.pairs.actions;
+  launch_end(end, stream, 1, Move{});
+  s.forces_summed = false;
+  if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, stream);
 }
 
 template <class Space, class T, int Dim>
@@ -133,7 +123,6 @@ void restart_count(const Core<Space, T, Dim>& s) {
   template void sum_forces(ContactCore<Space, T, Dim>&, const Space&);                             \
   template void move_rigids(ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&, double, \
                             const Space&, const double*);                                          \
-  template void move_touching_rigids(State<Space, T, Dim>&, double, const Space&);                 \
   template void move_rigid_points(ContactCore<Space, T, Dim>&, const Space&);                      \
   template void begin_loads(const ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&,   \
                             const LoadClock&);                                                     \

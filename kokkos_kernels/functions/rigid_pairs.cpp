@@ -34,7 +34,7 @@ void launch(const PairSolution<Space, T, Dim>& solution, const Space& stream) {
 }  // namespace
 
 template <class Space, class T, int Dim>
-void contact_of_rigids(State<Space, T, Dim>& s, double dt, const Space& stream) {
+void contact_of_rigids(ContactCore<Space, T, Dim>& s, double dt, const Space& stream) {
   const PairSolution<Space, T, Dim> solution(s, dt);
   if constexpr (is_device<Space>) {
     launch(solution, stream);
@@ -48,7 +48,7 @@ void contact_of_rigids(State<Space, T, Dim>& s, double dt, const Space& stream) 
 }
 
 template <class Space, class T, int Dim>
-std::vector<PairAction<Dim>> take_pair_actions(State<Space, T, Dim>& s) {
+std::vector<PairAction<Dim>> take_pair_actions(ContactCore<Space, T, Dim>& s) {
   const auto host = mirror_of(s.pairs.actions);
   std::vector<PairAction<Dim>> actions(host.data(), host.data() + host.extent(0));
   const auto view = s.pairs.actions;
@@ -58,9 +58,9 @@ std::vector<PairAction<Dim>> take_pair_actions(State<Space, T, Dim>& s) {
   return actions;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                          \
-  template void contact_of_rigids(State<Space, T, Dim>&, double, const Space&); \
-  template std::vector<PairAction<Dim>> take_pair_actions(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                                \
+  template void contact_of_rigids(ContactCore<Space, T, Dim>&, double, const Space&); \
+  template std::vector<PairAction<Dim>> take_pair_actions(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

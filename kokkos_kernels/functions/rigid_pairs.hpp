@@ -3,21 +3,17 @@
 
 #include <vector>
 
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 
 namespace mpm {
 
 /// Part of 6, before move_rigids, where s.pairs is in use: leaves in s.pairs.actions what rigid bodies and
 /// sides of the mesh that touch do to each rigid body in a step of dt [s]. The forces of the soil are summed.
 template <class Space, class T, int Dim>
-void contact_of_rigids(State<Space, T, Dim>& s, double dt, const Space& stream);
-
-/// move_rigids where s.pairs is in use.
-template <class Space, class T, int Dim>
-void move_touching_rigids(State<Space, T, Dim>& s, double dt, const Space& stream);
+void contact_of_rigids(ContactCore<Space, T, Dim>& s, double dt, const Space& stream);
 
 /// The actions on each rigid body, whose impulses begin anew.
 template <class Space, class T, int Dim>
-std::vector<PairAction<Dim>> take_pair_actions(State<Space, T, Dim>& s);
+std::vector<PairAction<Dim>> take_pair_actions(ContactCore<Space, T, Dim>& s);
 
 }  // namespace mpm

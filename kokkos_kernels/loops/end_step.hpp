@@ -56,15 +56,13 @@ struct EndStep {
   bool summed;                    // the forces are in `sums` already
   const double* moved = nullptr;  // cells, of each rigid, where the rigids have moved already
 
-  EndStep(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& loads, double step,
-          const Kokkos::View<PairAction<Dim>*, Memory>& actions = {})
+  EndStep(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& loads, double step)
       : control(s.control),
         movements(s.movements),
         sums(s.rigid_force),
         forces(s.contact.forces),
         rigids(s.rigids),
         near(s.contact.near),
-        pairs(actions),
         timed(loads.of_step()),
         dt(step),
         spacing(s.spacing),

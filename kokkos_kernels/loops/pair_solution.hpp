@@ -2,7 +2,7 @@
 // Contact between rigid bodies in a step: the contacts of each pair, and the impulses of all of them.
 
 #include "base/serial_team.hpp"
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 #include "device/warp.hpp"
 #include "physics/pair_contact.hpp"
 
@@ -22,7 +22,7 @@ struct PairSolution {
   double dt, damping, spacing, room;  // s, -, m, m: more than any coordinate in the mesh
   int count, size;                    // rigids; numbers of a wrench in `forces`
 
-  PairSolution(const State<Space, T, Dim>& s, double step)
+  PairSolution(const ContactCore<Space, T, Dim>& s, double step)
       : control(s.control),
         rigids(s.rigids),
         forces(s.rigid_force),

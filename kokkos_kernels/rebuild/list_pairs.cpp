@@ -34,7 +34,7 @@ struct Meetings {
   std::vector<Vector<double, Dim>> centres;  // m
   double margin;                             // m: farther apart they cannot meet
 
-  Meetings(const State<Space, T, Dim>& s, double m)
+  Meetings(const ContactCore<Space, T, Dim>& s, double m)
       : pairs(s.pairs),
         rigids(static_cast<int>(s.rigid_points.size())),
         bodies(mirror_of(s.pairs.bodies)),
@@ -142,7 +142,7 @@ std::vector<int> sort_by_colours(std::vector<RigidPair>& pairs, int bodies, cons
 }  // namespace
 
 template <class Space, class T, int Dim>
-std::vector<PairImpulse> pair_impulses(const State<Space, T, Dim>& s) {
+std::vector<PairImpulse> pair_impulses(const ContactCore<Space, T, Dim>& s) {
   std::vector<PairImpulse> out = s.pairs.saved;
   if (!s.pairs.in_use()) return out;
   const auto list = mirror_of(s.pairs.list);
@@ -159,7 +159,7 @@ std::vector<PairImpulse> pair_impulses(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void list_pairs(State<Space, T, Dim>& s) {
+void list_pairs(ContactCore<Space, T, Dim>& s) {
   RigidPairs<Space, Dim>& pairs = s.pairs;
   if (!pairs.may_meet) return;
   const std::vector<PairImpulse> kept = pair_impulses(s);
@@ -193,7 +193,7 @@ void list_pairs(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void find_parts(State<Space, T, Dim>& s) {
+void find_parts(ContactCore<Space, T, Dim>& s) {
   constexpr double k_overlap = 0.01;  // cells
   RigidPairs<Space, Dim>& pairs = s.pairs;
   pairs.parts.clear();
@@ -212,10 +212,10 @@ void find_parts(State<Space, T, Dim>& s) {
   pairs.parts = std::move(parts);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                          \
-  template std::vector<PairImpulse> pair_impulses(const State<Space, T, Dim>&); \
-  template void list_pairs(State<Space, T, Dim>&);                              \
-  template void find_parts(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                                \
+  template std::vector<PairImpulse> pair_impulses(const ContactCore<Space, T, Dim>&); \
+  template void list_pairs(ContactCore<Space, T, Dim>&);                              \
+  template void find_parts(ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

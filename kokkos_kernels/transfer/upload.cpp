@@ -5,8 +5,7 @@
 #include <stdexcept>
 
 #include "base/copy.hpp"
-#include "data/state.hpp"
-#include "functions/follow_soil.hpp"
+#include "data/contact_core.hpp"
 #include "physics/domain.hpp"
 #include "physics/rigid_motion.hpp"
 #include "physics/surface.hpp"
@@ -73,7 +72,8 @@ std::vector<int> upload_surfaces(const std::vector<RigidInput>& rigids, SurfaceT
 }
 
 template <class Space, class T, int Dim>
-void upload_rigids(State<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut, Fault& fault) {
+void upload_rigids(ContactCore<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut,
+                   Fault& fault) {
   const double spacing = s.spacing;
   s.rigid_points.resize(rigids.size());
   for (std::size_t r = 0; r < rigids.size(); ++r) {
@@ -178,8 +178,9 @@ template Surface<2> surface_of(const SurfaceInput&, double);
 template Surface<3> surface_of(const SurfaceInput&, double);
 
 template <class Space, class T, int Dim>
-Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
-             const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids) {
+Fault upload(ContactCore<Space, T, Dim>& s, const GridInput& grid,
+             const std::vector<MaterialInput>& materials, const std::vector<BodyInput>& bodies,
+             const std::vector<RigidInput>& rigids) {
   // Shares of a particle's mass. A node's weight falls with the square of its gradient, so a node that is
   // left out with 1e-14 would have felt a ten-millionth of a particle's force, and with 1e-12 a millionth; a
   // rigid holds a node that it reaches by a thousandth of a cell.
@@ -247,15 +248,12 @@ Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<M
   upload_soil(s, materials, bodies, scratch_of_rigids<Space, T, Dim>(rigids), fault);
   upload_rigids(s, rigids, k_rigid_cut, fault);
   begin_near_bodies<Space, T, Dim>(rigids, grid.spacing, s.contact.near);
-  if (fault.kind != FaultKind::none) return fault;
-  find_parts(s);
-  sort_and_list(s);
-  begin_domains(s);
+  if (fault.kind == FaultKind::none) find_parts(s);
   return fault;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                              \
-  template Fault upload(State<Space, T, Dim>&, const GridInput&, const std::vector<MaterialInput>&, \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                    \
+  template Fault upload(ContactCore<Space, T, Dim>&, const GridInput&, const std::vector<MaterialInput>&, \
                         const std::vector<BodyInput>&, const std::vector<RigidInput>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -1,5 +1,5 @@
 #pragma once
-// From a description on the host to a State on the device.
+// From a description on the host to soil and rigid bodies on the device.
 
 #include <array>
 #include <memory>
@@ -104,10 +104,12 @@ struct RigidInput {
   double exponent = 6;          // -, of its decrease with the gap
 };
 
-/// Puts the particles on the device and makes patches, bins and lists. s.p2g and the scalars of s are set by
-/// the caller, before. Returns the first fault (a particle outside the mesh), if any.
+/// Puts the particles on the device; sort_and_list and begin_domains then make patches, bins, lists and
+/// domains. s.p2g and the scalars of s are set by the caller, before. Returns the first fault (a particle
+/// outside the mesh), if any.
 template <class Space, class T, int Dim>
-Fault upload(State<Space, T, Dim>& s, const GridInput& grid, const std::vector<MaterialInput>& materials,
-             const std::vector<BodyInput>& bodies, const std::vector<RigidInput>& rigids);
+Fault upload(ContactCore<Space, T, Dim>& s, const GridInput& grid,
+             const std::vector<MaterialInput>& materials, const std::vector<BodyInput>& bodies,
+             const std::vector<RigidInput>& rigids);
 
 }  // namespace mpm

@@ -1,14 +1,14 @@
 #include "transfer/upload_pairs.hpp"
 
 #include "base/copy.hpp"
-#include "data/state.hpp"
+#include "data/contact_core.hpp"
 #include "rebuild/list_pairs.hpp"
 #include "transfer/fill_view.hpp"
 
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void upload_pairs(State<Space, T, Dim>& s, const PairInput& in, double spacing) {
+void upload_pairs(ContactCore<Space, T, Dim>& s, const PairInput& in, double spacing) {
   RigidPairs<Space, Dim>& pairs = s.pairs;
   pairs.may_meet = !in.bodies.empty();
   pairs.friction = in.friction;
@@ -43,7 +43,7 @@ void upload_pairs(State<Space, T, Dim>& s, const PairInput& in, double spacing) 
 }
 
 template <class Space, class T, int Dim>
-SavedPairs save_pairs(const State<Space, T, Dim>& s) {
+SavedPairs save_pairs(const ContactCore<Space, T, Dim>& s) {
   SavedPairs saved;
   if (!s.pairs.may_meet) return saved;
   const int rigids = static_cast<int>(s.rigid_points.size());
@@ -60,7 +60,7 @@ SavedPairs save_pairs(const State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
-void restore_pairs(State<Space, T, Dim>& s, const SavedPairs& saved) {
+void restore_pairs(ContactCore<Space, T, Dim>& s, const SavedPairs& saved) {
   if (!s.pairs.may_meet) return;
   const int rigids = static_cast<int>(s.rigid_points.size());
   const auto number = [&](double n) { return static_cast<int>(n < 0 ? rigids - 1 - n : n); };
@@ -77,10 +77,10 @@ void restore_pairs(State<Space, T, Dim>& s, const SavedPairs& saved) {
   copy(s.pairs.actions, actions);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                         \
-  template void upload_pairs(State<Space, T, Dim>&, const PairInput&, double); \
-  template SavedPairs save_pairs(const State<Space, T, Dim>&);                 \
-  template void restore_pairs(State<Space, T, Dim>&, const SavedPairs&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                               \
+  template void upload_pairs(ContactCore<Space, T, Dim>&, const PairInput&, double); \
+  template SavedPairs save_pairs(const ContactCore<Space, T, Dim>&);                 \
+  template void restore_pairs(ContactCore<Space, T, Dim>&, const SavedPairs&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

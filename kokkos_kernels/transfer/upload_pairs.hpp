@@ -32,12 +32,12 @@ struct PairInput {
 
 /// Puts the surfaces on the device, before the rigid bodies. spacing [m]: edge of the cells.
 template <class Space, class T, int Dim>
-void upload_pairs(State<Space, T, Dim>& s, const PairInput& in, double spacing);
+void upload_pairs(ContactCore<Space, T, Dim>& s, const PairInput& in, double spacing);
 
 /// The contacts and impulses that a checkpoint keeps, and back from one, before the pairs are listed.
 template <class Space, class T, int Dim>
-SavedPairs save_pairs(const State<Space, T, Dim>& s);
+SavedPairs save_pairs(const ContactCore<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
-void restore_pairs(State<Space, T, Dim>& s, const SavedPairs& saved);
+void restore_pairs(ContactCore<Space, T, Dim>& s, const SavedPairs& saved);
 
 }  // namespace mpm

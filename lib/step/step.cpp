@@ -205,10 +205,7 @@ struct Step {
       contact_of_rigids(s, dt, stream);
     }
     if (s.links.in_use()) link_rigids(s, dt, stream);
-    if (s.pairs.in_use() && !s.links.in_use())
-      move_touching_rigids(s, dt, stream);
-    else
-      move_rigids(s, s.timed, dt, stream, s.links.moved.data());
+    move_rigids(s, s.timed, dt, stream, s.links.moved.data());
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 3, the border first, unless its sums have been sent already.

@@ -43,6 +43,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   PetscCallCXX(upload_pairs(s, pair_input(config), config.mesh.spacing));
   Fault fault{};
   PetscCallCXX(fault = upload(s, grid, materials, bodies, rigids));
+  if (fault.kind == FaultKind::none) PetscCallCXX((sort_and_list(s), begin_domains(s)));
   *failure = fault.kind == FaultKind::none ? reports_.failure_of_limit() : reports_.failure_of(fault);
   PetscCall(run_.share(failure));
   if (!model.owners.empty() && failure->what.empty()) {

@@ -12,6 +12,7 @@
 
 #include "data/state.hpp"
 #include "functions/energy_works.hpp"
+#include "functions/follow_soil.hpp"
 #include "functions/step_kernels.hpp"
 #include "physics/materials/any.hpp"
 #include "transfer/download.hpp"
@@ -153,6 +154,8 @@ StateOf<B> state_of(const Cloud& cloud, P2G how = P2G::sequential,
   upload_surface_loads(s, loads);
   if (upload(s, cloud.grid, cloud.materials, cloud.bodies, cloud.rigids).kind != FaultKind::none)
     throw std::runtime_error("a particle of the test lies outside the mesh");
+  sort_and_list(s);
+  begin_domains(s);
   if (cloud.energy) begin_works(s);
   return s;
 }
