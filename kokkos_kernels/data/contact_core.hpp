@@ -19,7 +19,7 @@ struct ContactCore : Core<Space, T, Dim> {
   using Memory = typename Space::memory_space;
   std::vector<ParticleSet<Space, RigidPoints<Space, T, Dim>>> rigid_points;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
-  SurfaceTables<Memory> vertices;  // and samples, of the rigids' surfaces
+  SurfaceTables<Memory, Dim> vertices;  // and samples, of the rigids' surfaces
   ContactSlots<Space> contact;
   ContactSites<Space, T, Dim> at_sites;
   RigidPairs<Space, Dim> pairs;               // rigid bodies that may touch each other

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "data/rigid_motion.hpp"
-#include "data/surface.hpp"
+#include "data/surface_samples.hpp"
 
 namespace mpm {
 
@@ -15,6 +15,7 @@ template <int Dim>
 struct SurfacePoint {
   Vector<double, Dim> x;       // m, in the body as it was placed at the start
   Vector<double, Dim> inward;  // m, way from there to a place a little inside; zero at the centre of a ball
+  double radius;               // m, of the sphere around x that is in the body
 };
 
 /// A rigid body, or a side of the mesh, for contact with others. Lengths in m from the mesh's lower corner,
@@ -23,8 +24,8 @@ template <int Dim>
 struct PairBody {
   Surface<Dim> surface;  // its edges are as sharp as those of the shape
   int first, count;      // of its surface points
-  double radius;         // m, of the sphere around each of these points that is in the body
   bool ball;             // its only point is the centre
+  bool sampled;          // the surface, or that of a part, has samples
   Vector<double, Dim> centre;
   double reach;        // m, from `centre` to its farthest point; infinite: it has no end
   double friction;     // -, negative: none is given
@@ -91,7 +92,8 @@ struct PairViews {
   using Memory = typename Space::memory_space;
   Kokkos::View<PairBody<Dim>*, Memory> bodies;  // rigid bodies, and behind them sides of the mesh
   Kokkos::View<SurfacePoint<Dim>*, Memory> points;
-  Kokkos::View<Vertex*, Memory> vertices;
+  SurfaceTables<Memory, Dim>
+      vertices;  // and parts of the surfaces; samples are those of the contact with soil
   Kokkos::View<PairAction<Dim>*, Memory> actions;  // of rigid bodies
   // Until the next rebuild.
   int count = 0, colours = 0;

@@ -5,7 +5,7 @@
 
 namespace mpm {
 
-enum class SurfaceKind : int { box, polygon, disc, half_plane, revolved, heights, sampled };
+enum class SurfaceKind : int { box, polygon, disc, half_plane, revolved, heights, sampled, parts };
 
 /// A vertex of a polygon in the plane of x and the vertical axis [m from the mesh's lower corner], and
 /// whether the edge that begins there lies on the mesh's boundary, where no soil can be behind it. For a
@@ -27,7 +27,7 @@ struct Surface {
   double cosine, sine;         // box: of the angle that turns x to the vertical axis
   int first, count;  // polygon; revolved: vertices of it or of its section, made smaller by the radius;
                      // heights: on a grid of squares of edge `radius` from `centre` on, x fastest;
-                     // sampled: number of the grid of its samples
+                     // sampled: number of the grid of its samples; parts: surfaces of them
   int columns;       // heights: in a row
   double round_off;  // m, of places: less has no direction
 };

@@ -27,9 +27,10 @@ struct SampleGrid {
 };
 
 /// Numbers of the surfaces of all rigid bodies, by kind of surface. vertices(v): a vertex of a polygon.
-template <class Memory>
+template <class Memory, int Dim>
 struct SurfaceTables {
   Kokkos::View<Vertex*, Memory> vertices;
+  Kokkos::View<Surface<Dim>*, Memory> parts;  // of bodies of several parts
   Kokkos::View<SampleGrid*, Memory> grids;
   Kokkos::View<int*, Memory> blocks;  // first sample of each block; -1: it has none
   Kokkos::View<SurfaceSample*, Memory> samples;
@@ -39,9 +40,15 @@ struct SurfaceTables {
 };
 
 /// Calls f(view) for all tables.
-template <class Memory, class F>
-void for_each_table(const SurfaceTables<Memory>& tables, F&& f) {
-  f(tables.vertices), f(tables.grids), f(tables.blocks), f(tables.samples), f(tables.edges);
+template <class Memory, int Dim, class F>
+void for_each_table(const SurfaceTables<Memory, Dim>& tables, F&& f) {
+  f(tables.vertices), f(tables.parts), f(tables.grids), f(tables.blocks), f(tables.samples), f(tables.edges);
+}
+
+/// Gives tables the samples of others.
+template <class Memory, int Dim>
+void share_samples(const SurfaceTables<Memory, Dim>& from, SurfaceTables<Memory, Dim>& to) {
+  to.grids = from.grids, to.blocks = from.blocks, to.samples = from.samples, to.edges = from.edges;
 }
 
 }  // namespace mpm

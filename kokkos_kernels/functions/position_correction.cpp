@@ -61,7 +61,7 @@ struct FindShift {
   ParticleValues<Space, T, Dim> shares, shifts;
   decltype(PositionCorrection<Space>::flow_column) flow_column;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
-  SurfaceTables<typename Space::memory_space> vertices;
+  SurfaceTables<typename Space::memory_space, Dim> vertices;
   ContactPlaces<Space> contact;
   int rigid_count;
   double rate, elapsed, spacing;

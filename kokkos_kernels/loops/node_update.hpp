@@ -41,7 +41,7 @@ struct UpdateNodes {
   NodePlaces<Space, T, Dim> places;
   Nodes<Space, T, Dim> nodes;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
-  SurfaceTables<typename Space::memory_space> vertices;
+  SurfaceTables<typename Space::memory_space, Dim> vertices;
   NearBodies<Space> near_bodies;
   Kokkos::View<double*, typename Space::memory_space> forces;
   Kokkos::View<std::uint64_t*, typename Space::memory_space> owned_nodes;

@@ -22,13 +22,13 @@ struct Nearness {
   Vector<double, Dim> place = {};                         // m, half way between the surfaces
 };
 
-/// Nearness of a point of the body `of` to the body `on`. The normal is that at a place a little inside `of`,
+/// Nearness of a point of a body to the body `on`. The normal is that at a place a little inside the first,
 /// and the gap that to the plane through the nearest place there: a corner of a block that stands on another
 /// one of the same width is as near to its side as to its top, and a place above the corner is not.
 template <int Dim, class Vertices>
-KOKKOS_INLINE_FUNCTION Nearness<Dim> nearness(const PairBody<Dim>& of, const RigidPose<Dim>& pose,
-                                              const SurfacePoint<Dim>& point, const PairBody<Dim>& on,
-                                              const RigidPose<Dim>& other, const Vertices& vertices) {
+KOKKOS_INLINE_FUNCTION Nearness<Dim> nearness(const RigidPose<Dim>& pose, const SurfacePoint<Dim>& point,
+                                              const PairBody<Dim>& on, const RigidPose<Dim>& other,
+                                              const Vertices& vertices) {
   constexpr double k_opposite = 0.05;  // of the way inward: less is a face that looks another way
   Nearness<Dim> out;
   Vector<double, Dim> x = pose.to_world(point.x);
@@ -38,9 +38,9 @@ KOKKOS_INLINE_FUNCTION Nearness<Dim> nearness(const PairBody<Dim>& of, const Rig
   const Vector<double, Dim> n = other.turn_to_world(found.normal);
   const double along = dot(n, inward), way = Kokkos::sqrt(dot(inward, inward));
   if (!(dot(n, n) > 0.5) || along < k_opposite * way) return out;
-  out.gap = found.value - along - of.radius;
+  out.gap = found.value - along - point.radius;
   out.normal = n;
-  for (int d = 0; d < Dim; ++d) out.place[d] = x[d] - n[d] * (of.radius + out.gap / 2);
+  for (int d = 0; d < Dim; ++d) out.place[d] = x[d] - n[d] * (point.radius + out.gap / 2);
   return out;
 }
 
@@ -56,8 +56,8 @@ struct PairPlaces {
   template <class Points, class Vertices>
   KOKKOS_INLINE_FUNCTION Nearness<Dim> operator()(int n, const Points& points,
                                                   const Vertices& vertices) const {
-    if (n < a.count) return nearness(a, pose_a, points(a.first + n), b, pose_b, vertices);
-    Nearness<Dim> out = nearness(b, pose_b, points(b.first + n - a.count), a, pose_a, vertices);
+    if (n < a.count) return nearness(pose_a, points(a.first + n), b, pose_b, vertices);
+    Nearness<Dim> out = nearness(pose_b, points(b.first + n - a.count), a, pose_a, vertices);
     for (int d = 0; d < Dim; ++d) out.normal[d] = -out.normal[d];
     return out;
   }

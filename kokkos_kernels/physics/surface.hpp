@@ -125,11 +125,10 @@ MPM_CALLED_FUNCTION Distance<3> distance_to_heights(const Surface<3>& body, cons
   return {(z - height_at(body, vertices, x, y)) * up, {-a * up, -b * up, up}, false};
 }
 
-/// Signed distance of x [m from the mesh's lower corner, less the body's displacement]. vertices: of the
-/// polygons, or SurfaceTables, which sampled surfaces take.
+/// Distance to a surface of one part, as distance_to.
 template <int Dim, class Vertices>
-KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const Vertices& vertices,
-                                                 const Vector<double, Dim>& x) {
+KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to_part(const Surface<Dim>& body, const Vertices& vertices,
+                                                      const Vector<double, Dim>& x) {
   constexpr int up = Dim - 1;
   Distance<Dim> out{};
   Vector<double, Dim> r;
@@ -175,6 +174,29 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
     }
   }
   return out;
+}
+
+/// Distance to a body of several parts: that to the part that is nearest, or deepest round the point.
+template <int Dim, class Vertices>
+MPM_SAME_BITS_FUNCTION Distance<Dim> distance_to_parts(const Surface<Dim>& body, const Vertices& vertices,
+                                                       const Vector<double, Dim>& x) {
+  Distance<Dim> least = distance_to_part(vertices.parts(body.first), vertices, x);
+  MPM_ROLLED
+  for (int n = 1; n < body.count; ++n) {
+    const Distance<Dim> other = distance_to_part(vertices.parts(body.first + n), vertices, x);
+    if (other.value < least.value) least = other;
+  }
+  return least;
+}
+
+/// Signed distance of x [m from the mesh's lower corner, less the body's displacement]. vertices: of the
+/// polygons, or SurfaceTables, which sampled surfaces and parts take.
+template <int Dim, class Vertices>
+KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const Vertices& vertices,
+                                                 const Vector<double, Dim>& x) {
+  if constexpr (requires { vertices.parts; })
+    if (body.kind == SurfaceKind::parts) return distance_to_parts(body, vertices, x);
+  return distance_to_part(body, vertices, x);
 }
 
 }  // namespace mpm

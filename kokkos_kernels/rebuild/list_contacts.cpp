@@ -27,7 +27,7 @@ struct NearSlot {
   Grid<T, Dim> grid;
   decltype(Patches<Space, Dim>::origin) origin;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
-  SurfaceTables<Memory> vertices;
+  SurfaceTables<Memory, Dim> vertices;
   NearBodies<Space> near;
   double spacing, far;  // m
 

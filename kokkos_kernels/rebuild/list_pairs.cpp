@@ -21,24 +21,34 @@ void fill(View& view, const std::string& label, int count, const Get& get) {
   copy(view, host);
 }
 
+/// Tables of surfaces on the host. Samples may be many: they are copied where `samples` asks for them.
+template <class Memory, int Dim>
+SurfaceTables<Kokkos::HostSpace, Dim> on_host(const SurfaceTables<Memory, Dim>& tables, bool samples) {
+  SurfaceTables<Kokkos::HostSpace, Dim> host;
+  host.vertices = mirror_of(tables.vertices), host.parts = mirror_of(tables.parts);
+  if (!samples) return host;
+  host.grids = mirror_of(tables.grids), host.blocks = mirror_of(tables.blocks);
+  host.samples = mirror_of(tables.samples), host.edges = mirror_of(tables.edges);
+  return host;
+}
+
 /// Bodies of pairs with their poses, on the host.
 template <class Space, class T, int Dim>
 struct Meetings {
   using Bodies = decltype(mirror_of(PairViews<Space, Dim>().bodies));
-  using Vertices = decltype(mirror_of(PairViews<Space, Dim>().vertices));
   const RigidPairs<Space, Dim>& pairs;
   int rigids;
   Bodies bodies;
-  Vertices vertices;
+  SurfaceTables<Kokkos::HostSpace, Dim> vertices;
   std::vector<RigidPose<Dim>> poses;
   std::vector<Vector<double, Dim>> centres;  // m
   double margin;                             // m: farther apart they cannot meet
 
-  Meetings(const ContactCore<Space, T, Dim>& s, double m)
+  Meetings(const ContactCore<Space, T, Dim>& s, double m, bool samples)
       : pairs(s.pairs),
         rigids(static_cast<int>(s.rigid_points.size())),
         bodies(mirror_of(s.pairs.bodies)),
-        vertices(mirror_of(s.pairs.vertices)),
+        vertices(on_host(s.pairs.vertices, samples)),
         margin(m) {
     const auto host = mirror_of(s.rigids);
     for (int n = 0; n < static_cast<int>(bodies.extent(0)); ++n) {
@@ -58,7 +68,7 @@ struct Meetings {
   }
   /// Whether the sphere around a body is near the surface of another one.
   bool sphere_near(int n, int other) const {
-    if (!ends(n)) return true;
+    if (!ends(n) || bodies(other).sampled) return true;
     const auto x = poses[other].to_body([&](int d) { return centres[n][d]; });
     return distance_to(bodies(other).surface, vertices, x).value - bodies(n).reach < margin;
   }
@@ -165,7 +175,7 @@ void list_pairs(ContactCore<Space, T, Dim>& s) {
   const std::vector<PairImpulse> kept = pair_impulses(s);
   pairs.saved.clear();
   // The margin is the way by which two bodies may come nearer until the next rebuild, and in a step.
-  const Meetings<Space, T, Dim> meetings(s, 2 * (s.p2g.margin + 1) * s.spacing);
+  const Meetings<Space, T, Dim> meetings(s, 2 * (s.p2g.margin + 1) * s.spacing, false);
   std::vector<RigidPair> found = meetings.all();
   const int bodies = static_cast<int>(meetings.poses.size());
   const std::vector<int> begin =
@@ -198,7 +208,7 @@ void find_parts(ContactCore<Space, T, Dim>& s) {
   RigidPairs<Space, Dim>& pairs = s.pairs;
   pairs.parts.clear();
   if (!pairs.may_meet) return;
-  const Meetings<Space, T, Dim> meetings(s, 0);
+  const Meetings<Space, T, Dim> meetings(s, 0, true);
   const auto points = mirror_of(pairs.points);
   std::vector<std::pair<int, int>> parts;
   for (const RigidPair& pair : meetings.all()) {

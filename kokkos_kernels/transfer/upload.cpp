@@ -12,6 +12,7 @@
 #include "rebuild/list_pairs.hpp"
 #include "rebuild/shift_particle.hpp"
 #include "transfer/fill_view.hpp"
+#include "transfer/host_tables.hpp"
 #include "transfer/place_points.hpp"
 #include "transfer/upload_soil.hpp"
 
@@ -37,40 +38,6 @@ void set_turning(const RigidTurning& in, Rigid<Dim>& rigid) {
     rigid.momentum = momentum_of(turning, motion.pose.rotation, motion.spin);
 }
 
-/// Puts the tables of all surfaces on the device. Returns the number of each one's first vertex, or of its
-/// grid of samples.
-template <class Memory>
-std::vector<int> upload_surfaces(const std::vector<RigidInput>& rigids, SurfaceTables<Memory>& tables) {
-  std::vector<Vertex> vertices;
-  std::vector<SampleGrid> grids;
-  std::vector<int> blocks, first;
-  std::vector<SurfaceSample> samples;
-  std::vector<unsigned char> edges;
-  for (const RigidInput& rigid : rigids) {
-    const SurfaceInput& in = rigid.surface;
-    const bool sampled = in.kind == SurfaceKind::sampled;
-    first.push_back(static_cast<int>(sampled ? grids.size() : vertices.size()));
-    vertices.insert(vertices.end(), in.vertices.begin(), in.vertices.end());
-    if (!sampled) continue;
-    const int before = static_cast<int>(samples.size());
-    grids.push_back(in.grid);
-    grids.back().first_block = static_cast<int>(blocks.size());
-    grids.back().first_corner = before;
-    for (const int block : in.blocks) blocks.push_back(block < 0 ? -1 : before + block);
-    samples.insert(samples.end(), in.samples.begin(), in.samples.end());
-    edges.insert(edges.end(), in.edges.begin(), in.edges.end());
-  }
-  const auto fill = [](auto& view, const char* label, const auto& from) {
-    fill_view(view, label, static_cast<int>(from.size()), [&](int n) { return from[n]; });
-  };
-  fill(tables.vertices, "mpm::vertices", vertices);
-  fill(tables.grids, "mpm::sample_grids", grids);
-  fill(tables.blocks, "mpm::sample_blocks", blocks);
-  fill(tables.samples, "mpm::samples", samples);
-  fill(tables.edges, "mpm::sample_edges", edges);
-  return first;
-}
-
 template <class Space, class T, int Dim>
 void upload_rigids(ContactCore<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut,
                    Fault& fault) {
@@ -94,7 +61,11 @@ void upload_rigids(ContactCore<Space, T, Dim>& s, const std::vector<RigidInput>&
       return x;
     });
   }
-  const std::vector<int> first_number = upload_surfaces(rigids, s.vertices);
+  HostTables<Dim> tables;
+  std::vector<Surface<Dim>> surfaces;
+  for (const RigidInput& rigid : rigids) surfaces.push_back(tables.add(rigid.surface, spacing));
+  tables.upload(s.vertices);
+  share_samples(s.vertices, s.pairs.vertices);
   fill_view(s.rigids, "mpm::rigids", static_cast<int>(rigids.size()), [&](int r) {
     Rigid<Dim> rigid{};
     for (int d = 0; d < Dim; ++d) {
@@ -117,8 +88,7 @@ void upload_rigids(ContactCore<Space, T, Dim>& s, const std::vector<RigidInput>&
                  .shear_fraction = rigids[r].shear_fraction > 0 ? rigids[r].shear_fraction : -1,
                  .friction = rigids[r].friction};
     rigid.surface_normal = rigids[r].surface_normal;
-    rigid.surface = surface_of<Dim>(rigids[r].surface, s.spacing);
-    rigid.surface.first = first_number[r];
+    rigid.surface = surfaces[r];
     rigid.mass_cut = cut * particle_mass;
     return rigid;
   });

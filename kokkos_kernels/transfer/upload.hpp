@@ -62,6 +62,7 @@ struct SurfaceInput {
   std::vector<int> blocks;  // as in SurfaceTables
   std::vector<SurfaceSample> samples;
   std::vector<unsigned char> edges;
+  std::vector<SurfaceInput> parts;
 };
 
 /// spacing [m]: edge of the cells, of which round-off is a share.

@@ -4,6 +4,7 @@
 #include "data/contact_core.hpp"
 #include "rebuild/list_pairs.hpp"
 #include "transfer/fill_view.hpp"
+#include "transfer/host_tables.hpp"
 
 namespace mpm {
 
@@ -13,28 +14,29 @@ void upload_pairs(ContactCore<Space, T, Dim>& s, const PairInput& in, double spa
   pairs.may_meet = !in.bodies.empty();
   pairs.friction = in.friction;
   if (!pairs.may_meet) return;
-  std::vector<Vertex> vertices;
+  HostTables<Dim> tables;
   std::vector<SurfacePoint<Dim>> points;
   std::vector<PairBody<Dim>> bodies;
   for (const PairBodyInput& of : in.bodies) {
     PairBody<Dim> body{};
-    body.surface = surface_of<Dim>(of.surface, spacing);
-    body.surface.first = static_cast<int>(vertices.size());
-    vertices.insert(vertices.end(), of.surface.vertices.begin(), of.surface.vertices.end());
-    body.first = static_cast<int>(points.size()), body.count = static_cast<int>(of.points.size());
-    for (std::size_t n = 0; n < of.points.size(); ++n) {
+    const int sampled = tables.sampled;
+    body.surface = tables.add(of.surface, spacing);
+    body.sampled = tables.sampled > sampled;
+    body.first = static_cast<int>(points.size()), body.count = static_cast<int>(of.points.points.size());
+    for (std::size_t n = 0; n < of.points.points.size(); ++n) {
       SurfacePoint<Dim>& point = points.emplace_back();
-      for (int d = 0; d < Dim; ++d) point.x[d] = of.points[n][d], point.inward[d] = of.inward[n][d];
+      for (int d = 0; d < Dim; ++d)
+        point.x[d] = of.points.points[n][d], point.inward[d] = of.points.inward[n][d];
+      point.radius = of.points.radius[n];
     }
-    body.radius = of.radius, body.ball = of.ball;
+    body.ball = of.ball;
     for (int d = 0; d < Dim; ++d) body.centre[d] = of.centre[d];
     body.reach = of.reach;
     body.friction = of.friction, body.restitution = of.restitution;
     body.dynamic = of.dynamic, body.sides = of.sides;
     bodies.push_back(body);
   }
-  fill_view(pairs.vertices, "mpm::pair_vertices", static_cast<int>(vertices.size()),
-            [&](int v) { return vertices[v]; });
+  tables.upload(pairs.vertices);
   fill_view(pairs.points, "mpm::pair_points", static_cast<int>(points.size()),
             [&](int n) { return points[n]; });
   fill_view(pairs.bodies, "mpm::pair_bodies", static_cast<int>(bodies.size()),

@@ -10,12 +10,17 @@
 
 namespace mpm {
 
+/// Points of the surface of a rigid body, as SurfacePoint [m, from the mesh's lower corner].
+struct SurfacePoints {
+  std::vector<std::array<double, 3>> points, inward;
+  std::vector<double> radius;
+};
+
 /// A rigid body, or a side of the mesh, for contact with others, as PairBody. Lengths in m from the mesh's
 /// lower corner.
 struct PairBodyInput {
   SurfaceInput surface;
-  std::vector<std::array<double, 3>> points, inward;  // m
-  double radius = 0;
+  SurfacePoints points;
   bool ball = false;
   std::array<double, 3> centre{};
   double reach = std::numeric_limits<double>::infinity();
@@ -30,7 +35,8 @@ struct PairInput {
   double friction = -1;  // -, of all pairs of rigid bodies; negative: that of the bodies
 };
 
-/// Puts the surfaces on the device, before the rigid bodies. spacing [m]: edge of the cells.
+/// Puts the surfaces on the device, before the rigid bodies, whose samples they take. spacing [m]: edge of
+/// the cells.
 template <class Space, class T, int Dim>
 void upload_pairs(ContactCore<Space, T, Dim>& s, const PairInput& in, double spacing);
 

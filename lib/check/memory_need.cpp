@@ -125,7 +125,7 @@ double count_particles(const Config& config, MemoryNeed& need) {
   }
   for (const RigidConfig& rigid : config.rigids) {
     if (rigid.absent) continue;
-    if (rigid.shape.kind == ShapeKind::stl) need.samples += sample_bytes(rigid.shape, config.mesh);
+    need.samples += sample_bytes(rigid.shape, config.mesh);
     need.rigids += cells_in(rigid.shape, config) * std::pow(rigid.shape.particles_per_cell, config.dim);
   }
   return cells;

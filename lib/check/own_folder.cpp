@@ -17,7 +17,7 @@ namespace {
 using Input = std::pair<std::string, std::string>;
 
 void add_files(const std::string& name, const Shape& shape, std::vector<Input>& inputs) {
-  for (const auto& [key, file] : files_of(shape)) inputs.emplace_back("-" + name + key, file);
+  for (const auto& [option, file] : files_of(name, shape)) inputs.emplace_back(option, file);
 }
 
 std::vector<Input> inputs_of(const Config& config, const InputReport& report) {

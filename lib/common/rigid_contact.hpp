@@ -9,9 +9,7 @@
 namespace mpm {
 
 /// Whether the surface of a rigid body is one that others may touch.
-inline bool is_touchable(const RigidConfig& rigid) {
-  return rigid.shape.kind != ShapeKind::stl && rigid.shape.kind != ShapeKind::particles;
-}
+inline bool is_touchable(const RigidConfig& rigid) { return rigid.shape.kind != ShapeKind::particles; }
 
 /// Whether two rigid bodies touch each other where they meet.
 inline bool have_contact(const Config& config, const RigidConfig& one, const RigidConfig& other) {

@@ -60,15 +60,15 @@ std::vector<EffectiveOption> options_to_keep(const std::vector<EffectiveOption>&
   std::vector<EffectiveOption> kept = options;
   for (const BodyConfig& body : config.bodies) {
     const std::string note = own_parameter_note(body, config), name = "-" + body.name;
-    for (const auto& [key, path] : files_of(body.shape)) {
+    for (const auto& [option, path] : files_of(body.name, body.shape)) {
       const bool listed = body.shape.kind == ShapeKind::particles;
-      keep_contents(name + key, path, listed ? note : "", kept);
+      keep_contents(option, path, listed ? note : "", kept);
     }
     if (!body.field.empty()) keep_contents(name + "_field", body.field, note, kept);
   }
   for (const RigidConfig& rigid : config.rigids)
-    for (const auto& [key, path] : files_of(rigid.shape))
-      keep_contents("-" + rigid.name + key, path, "", kept);
+    for (const auto& [option, path] : files_of(rigid.name, rigid.shape))
+      keep_contents(option, path, "", kept);
   for (const auto& [option, path] : table_files(config)) keep_contents(option, path, "", kept);
   return kept;
 }

@@ -180,7 +180,8 @@ class Sampler {
 
 double sample_bytes(const Shape& shape, const MeshConfig& mesh) {
   double bytes = 0;
-  spacing_of(*shape.triangles, mesh.spacing, &bytes);
+  if (shape.kind == ShapeKind::stl) spacing_of(*shape.triangles, mesh.spacing, &bytes);
+  for (const Shape& part : shape.parts) bytes += sample_bytes(part, mesh);
   return bytes;
 }
 

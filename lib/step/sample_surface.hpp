@@ -10,7 +10,7 @@ namespace mpm {
 /// lie on a side of the mesh, the surface goes on as its image beyond it.
 SurfaceInput sampled_surface(const Shape& shape, const MeshConfig& mesh);
 
-/// Bytes that its samples take at most.
+/// Bytes of the samples of a shape and its parts: about as many, and 0 of a shape that is no stl.
 double sample_bytes(const Shape& shape, const MeshConfig& mesh);
 
 }  // namespace mpm

@@ -5,6 +5,7 @@
 
 #include "input/geometry/height_surface.hpp"
 #include "input/geometry/revolved.hpp"
+#include "input/geometry/united.hpp"
 #include "step/sample_surface.hpp"
 
 namespace mpm {
@@ -207,8 +208,19 @@ SurfaceInput surface_input(const Shape& shape, const MeshConfig& mesh, int dim, 
   if (shape.kind == ShapeKind::polygon) return polygon(shape, mesh, dim, corners);
   if (is_revolved(shape)) return revolved(shape, mesh, corners);
   if (shape.kind == ShapeKind::layer) return layer(shape, mesh, dim, corners);
-  if (shape.kind == ShapeKind::stl) return sampled_surface(shape, mesh);
+  if (shape.kind == ShapeKind::parts) {
+    SurfaceInput all;
+    all.kind = SurfaceKind::parts;
+    for (const Shape& part : grown_parts(shape, mesh, dim))
+      all.parts.push_back(surface_input(part, mesh, dim, corners));
+    return all;
+  }
+  if (shape.kind == ShapeKind::stl && corners == Corners::rounded) return sampled_surface(shape, mesh);
   SurfaceInput out;
+  if (shape.kind == ShapeKind::stl) {
+    out.kind = SurfaceKind::sampled;
+    return out;
+  }
   out.kind = shape.kind == ShapeKind::disc ? SurfaceKind::disc : SurfaceKind::half_plane;
   const Vec3& centre = shape.kind == ShapeKind::disc ? shape.centre : shape.point;
   for (int d = 0; d < dim; ++d) out.centre[d] = centre[d] - mesh.lower[d];

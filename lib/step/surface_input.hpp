@@ -11,7 +11,7 @@ namespace mpm {
 enum class Corners { rounded, sharp };
 
 /// The surface of a shape. A face on the mesh's boundary is none: no soil can be behind it, so the body goes
-/// on beyond the mesh.
+/// on beyond the mesh. That of an stl with sharp corners has no samples: the rounded one has them.
 SurfaceInput surface_input(const Shape& shape, const MeshConfig& mesh, int dim,
                            Corners corners = Corners::rounded);
 

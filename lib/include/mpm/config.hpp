@@ -55,7 +55,7 @@ inline bool is_periodic(const MeshConfig& mesh) {
   return is_periodic(mesh, 0) || is_periodic(mesh, 1) || is_periodic(mesh, 2);
 }
 
-enum class ShapeKind { box, polygon, disc, cylinder, cone, half_plane, stl, layer, particles };
+enum class ShapeKind { box, polygon, disc, cylinder, cone, half_plane, stl, layer, particles, parts };
 enum class Fill { centre, cell, cut };
 
 class TriangleSurface;
@@ -78,11 +78,13 @@ struct Shape {
   bool tip_up = false;     // cone: its tip is its highest point, not its lowest
   Vec3 point{}, normal{};  // m, -, half_plane: on its face; outward, of length 1
   std::shared_ptr<const TriangleSurface> triangles;  // stl: closed
-  std::shared_ptr<const HeightSurface> top, base;    // layer: what it is between
-  std::string top_file, base_file;                   // layer: of its surfaces that are rasters
-  std::string file, file_body;  // stl: its file; particles (of a body): the HDF5 file that
-                                // lists them, and the body's name there
-  int particles_per_cell = 2;   // in each direction
+  std::vector<std::string> part_names;               // parts: of which it is the union
+  std::vector<Shape> parts;
+  std::shared_ptr<const HeightSurface> top, base;  // layer: what it is between
+  std::string top_file, base_file;                 // layer: of its surfaces that are rasters
+  std::string file, file_body;                     // stl: its file; particles (of a body): the HDF5 file that
+                                                   // lists them, and the body's name there
+  int particles_per_cell = 2;                      // in each direction
   Fill fill = Fill::centre;
 };
 

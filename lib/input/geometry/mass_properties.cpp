@@ -8,6 +8,7 @@
 #include "input/geometry/region.hpp"
 #include "input/geometry/revolved.hpp"
 #include "input/geometry/triangle_surface.hpp"
+#include "input/geometry/united.hpp"
 
 namespace mpm {
 namespace {
@@ -179,6 +180,7 @@ std::optional<MassProperties> mass_properties(const Shape& shape, int dim) {
     case ShapeKind::cylinder:
     case ShapeKind::cone: return revolved_properties(shape);
     case ShapeKind::stl: return surface_properties(*shape.triangles);
+    case ShapeKind::parts: return united_properties(shape, dim);
     default: return std::nullopt;
   }
 }

@@ -18,8 +18,9 @@ struct MassProperties {
   Sym6 inertia{};
 };
 
-/// Mass properties of a whole shape, by closed forms, also where planes of symmetry would cut it. None of a
-/// half plane and a layer, which end with the mesh, and of a list of particles.
+/// Mass properties of a whole shape, by closed forms, also where planes of symmetry would cut it; what parts
+/// of a union share by points (united_properties). None of a half plane and a layer, which end with the mesh,
+/// and of a list of particles.
 std::optional<MassProperties> mass_properties(const Shape& shape, int dim);
 
 }  // namespace mpm

@@ -31,11 +31,13 @@ Vec3 turned(const Vec3& x, const Vec3& about, double angle, int dim) {
 Region::Region(const Shape& shape, int dim, double slack)
     : shape_(shape), dim_(dim), slack_(slack), low_(k_everywhere), high_(-k_everywhere) {
   if (shape.kind == ShapeKind::polygon) tree_.emplace(shape.polygon);
+  for (const Shape& part : shape.parts) parts_.emplace_back(part, dim, slack);
 }
 
 void Region::enter_row(double low, double high) {
   if (low == low_ && high == high_) return;
   low_ = low, high_ = high;
+  for (Region& part : parts_) part.enter_row(low, high);
   edges_.clear();
   if (tree_)
     tree_->in_row(low - slack_, high + slack_, [&](int k) { edges_.push_back(edge_of(shape_.polygon, k)); });
@@ -72,6 +74,15 @@ Region::Span Region::span_behind(double low, double high) const {
   return n[0] > 0 ? Span{-k_everywhere, x} : Span{x, k_everywhere};
 }
 
+Region::Span Region::span_of_parts(double low, double high) const {
+  Span all{k_everywhere, -k_everywhere};
+  for (const Region& part : parts_) {
+    const Span span = part.span(low, high);
+    if (span.from <= span.to) all = {std::min(all.from, span.from), std::max(all.to, span.to)};
+  }
+  return all;
+}
+
 Region::Span Region::span(double low, double high) const {
   switch (shape_.kind) {
     case ShapeKind::polygon: return span_of_edges();
@@ -79,6 +90,7 @@ Region::Span Region::span(double low, double high) const {
     case ShapeKind::cylinder:
     case ShapeKind::cone: return span_of_disc(low, high);
     case ShapeKind::half_plane: return span_behind(low, high);
+    case ShapeKind::parts: return span_of_parts(low, high);
     default: return {-k_everywhere, k_everywhere};  // a box: its own lattice has no other sites
   }
 }
@@ -119,6 +131,8 @@ bool Region::holds(const Vec3& x) const {
     case ShapeKind::half_plane: return beyond <= slack_;
     case ShapeKind::stl: return shape_.triangles->holds(x, slack_);
     case ShapeKind::layer: return layer_holds(x);
+    case ShapeKind::parts:
+      return std::any_of(parts_.begin(), parts_.end(), [&](const Region& part) { return part.holds(x); });
     default: return false;  // a list of particles has no inside
   }
 }

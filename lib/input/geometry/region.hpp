@@ -41,8 +41,10 @@ class Region {
   Span span_of_edges() const;
   Span span_of_disc(double low, double high) const;
   Span span_behind(double low, double high) const;
+  Span span_of_parts(double low, double high) const;
 
   const Shape& shape_;
+  std::vector<Region> parts_;
   int dim_;
   double slack_;
   std::optional<EdgeTree> tree_;  // polygon: of its edges

@@ -11,6 +11,7 @@
 #include "input/geometry/revolved.hpp"
 #include "input/geometry/round_volume.hpp"
 #include "input/geometry/shapes.hpp"
+#include "input/geometry/united.hpp"
 
 namespace mpm {
 namespace {
@@ -152,6 +153,7 @@ double shape_volume(const Shape& shape, const MeshConfig& mesh, int dim) {
     case ShapeKind::half_plane: return part_behind(shape, mesh, dim);
     case ShapeKind::stl: return shape.triangles->volume();
     case ShapeKind::layer: return Facets(shape, mesh, dim, mesh.spacing).volume();
+    case ShapeKind::parts: return united_volume(shape, mesh, dim);
     default: return 0;
   }
 }
@@ -166,6 +168,7 @@ Bounds bounds_of(const Shape& shape, const MeshConfig& mesh, int dim) {
     case ShapeKind::half_plane: return behind_bounds(shape, mesh, dim);
     case ShapeKind::stl: return {shape.triangles->bounds().lower, shape.triangles->bounds().upper};
     case ShapeKind::layer: return layer_bounds(shape, mesh, dim);
+    case ShapeKind::parts: return united_bounds(shape, mesh, dim);
     default: return {mesh.lower, mesh.upper};
   }
 }

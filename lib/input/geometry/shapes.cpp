@@ -183,11 +183,15 @@ class Holes {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> files_of(const Shape& shape) {
+std::vector<std::pair<std::string, std::string>> files_of(const std::string& name, const Shape& shape) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const auto& [key, file] :
        {std::pair{"_file", shape.file}, {"_top", shape.top_file}, {"_base", shape.base_file}})
-    if (!file.empty()) files.emplace_back(key, file);
+    if (!file.empty()) files.emplace_back("-" + name + key, file);
+  for (std::size_t n = 0; n < shape.parts.size(); ++n) {
+    const auto more = files_of(shape.part_names[n], shape.parts[n]);
+    files.insert(files.end(), more.begin(), more.end());
+  }
   return files;
 }
 

@@ -51,8 +51,8 @@ double fill_bytes(const Shape& shape, const MeshConfig& mesh, int dim);
 bool holds_particle(const Shape& shape, const MeshConfig& mesh, int dim,
                     const std::vector<Shape>& cut_out = {});
 
-/// The options that name files of a shape, without its name, and these files.
-std::vector<std::pair<std::string, std::string>> files_of(const Shape& shape);
+/// The options that name files of the shape of a body and of its parts, and these files.
+std::vector<std::pair<std::string, std::string>> files_of(const std::string& name, const Shape& shape);
 
 /// The shapes that are cut out of a body as it is placed: those of bodies and rigids that are placed at the
 /// same time. A shape that is placed earlier or later cuts when the later of the two is placed (overlap.hpp).

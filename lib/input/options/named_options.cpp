@@ -227,6 +227,18 @@ void read_shear_fraction(OptionReader& in, const Config& config, RigidConfig& ri
     in.reject(name, "nothing here: no body has a material with a strength");
 }
 
+/// The names of the parts of a rigid body, where it has several.
+void read_part_names(OptionReader& in, Names& names, RigidConfig& rigid) {
+  if (in.listing()) in.section("Each rigid NAME");
+  const Option option{.name = rigid.name + "_parts",
+                      .meaning =
+                          "names of its parts, instead of a shape: each has the options of a shape, as "
+                          "-fluke_shape; the body is their union"};
+  if (!in.listing() && !in.given(option.name)) return;
+  const auto parts = read_names(in, option, names);
+  if (!in.listing()) rigid.shape.part_names = parts;
+}
+
 void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, RigidConfig& rigid) {
   const int dim = config.dim;
   rigid.shape.particles_per_cell = 4;
@@ -329,6 +341,7 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
   for (const auto& name : rigids) {
     config.rigids.emplace_back().name = name;
     note_presence(config.stage, config.rigids.back());
+    read_part_names(in, names, config.rigids.back());
     read_rigid(in, mesh, config, config.rigids.back());
   }
   read_rigid_contact(in, config);

@@ -1,5 +1,7 @@
 // Checks of the other options in a mesh with periodic sides.
 
+#include <algorithm>
+
 #include "common/text.hpp"
 #include "input/geometry/height_surface.hpp"
 #include "input/geometry/shapes.hpp"
@@ -33,6 +35,9 @@ bool goes_through(const Shape& shape, const MeshConfig& mesh, int dim, int d) {
     case ShapeKind::polygon: return dim == 3 && d == 1 && spans(shape.width[0], shape.width[1]);
     case ShapeKind::layer:
       return d < dim - 1 && shape.top->is_level() && (!shape.base || shape.base->is_level());
+    case ShapeKind::parts:
+      return std::all_of(shape.parts.begin(), shape.parts.end(),
+                         [&](const Shape& part) { return goes_through(part, mesh, dim, d); });
     default: return false;
   }
 }

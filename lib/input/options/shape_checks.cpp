@@ -78,6 +78,9 @@ bool check_overlaps(OptionReader& in, const std::string& name, const Shape& shap
 
 void check_shape(OptionReader& in, const std::string& name, const Shape& shape, const MeshConfig& mesh,
                  int dim) {
+  for (std::size_t k = 0; k < shape.parts.size(); ++k)
+    check_shape(in, shape.part_names[k], shape.parts[k], mesh, dim);
+  if (shape.kind == ShapeKind::parts) return;
   if (shape.kind == ShapeKind::layer && !check_layer(in, name, shape, mesh, dim)) return;
   const Cuts cuts = cuts_of(shape, mesh, dim);
   for (int d = 0; d < dim; ++d)

@@ -155,7 +155,7 @@ void read_cone(OptionReader& in, const std::string& name, Shape& shape) {
 void read_file(OptionReader& in, const std::string& name, Shape& shape) {
   in.text({.name = name + "_file",
            .meaning = "particles: a frame or checkpoint of another run, or an HDF5 file laid out as a frame; "
-                      "stl: a closed surface of triangles, ASCII or binary",
+                      "stl: a closed surface of triangles, STL (ASCII or binary) or OBJ",
            .required = true},
           shape.file);
   shape.file_body = name;
@@ -192,7 +192,7 @@ const std::vector<std::pair<ShapeKind, std::vector<std::string>>> k_keys = {
     {ShapeKind::cylinder, {"centre", "radius", "height", "tip_angle_deg"}},
     {ShapeKind::cone, {"centre", "radius", "height", "tip_angle_deg", "tip"}},
     {ShapeKind::half_plane, {"point", "normal"}},
-    {ShapeKind::stl, {"file", "scale"}},
+    {ShapeKind::stl, {"file", "scale", "offset"}},
     {ShapeKind::layer, {"top", "base"}},
     {ShapeKind::particles, {"file", "file_body"}}};
 
@@ -255,10 +255,29 @@ bool read_kind(OptionReader& in, const std::string& name, const Config& config, 
   return read_geometry(in, name, config, words[index], shape);
 }
 
+/// Reads the shapes of the parts of a rigid body, instead of its own.
+bool read_parts(OptionReader& in, const std::string& name, const Config& config, Shape& shape) {
+  const std::string given = name + "_parts is given";
+  in.not_taken(name + "_shape", given);
+  std::set<std::string> keys;
+  for (const auto& [kind, of_kind] : k_keys) keys.insert(of_kind.begin(), of_kind.end());
+  for (const std::string& key : keys) in.not_taken(name + "_" + key, given);
+  shape.kind = ShapeKind::parts;
+  bool whole = true;
+  for (const std::string& part : shape.part_names) {
+    Shape& of = shape.parts.emplace_back();
+    whole = read_kind(in, part, config, /*listed*/ false, of) && whole;
+    if (of.kind == ShapeKind::half_plane || of.kind == ShapeKind::layer)
+      in.reject(part + "_shape", "a shape that ends in the mesh, for it is a part of " + name);
+  }
+  return whole;
+}
+
 /// Which particles a shape has. Those of a rigid have one volume.
 void read_fill(OptionReader& in, const std::string& name, bool body, Shape& shape) {
   static const Words<Fill> fills = {{"centre", Fill::centre}, {"cell", Fill::cell}, {"cut", Fill::cut}};
-  const bool ground = shape.kind == ShapeKind::stl || shape.kind == ShapeKind::layer;
+  const bool ground =
+      shape.kind == ShapeKind::stl || shape.kind == ShapeKind::layer || shape.kind == ShapeKind::parts;
   if (body && ground) shape.fill = Fill::cut;
   in.word(
       {.name = name + "_fill",
@@ -273,20 +292,24 @@ void read_fill(OptionReader& in, const std::string& name, bool body, Shape& shap
   else if (shape.fill == Fill::cut && !has_facets(shape) && !in.listing())
     in.reject(name + "_fill", "centre or cell" + of_kind + in.given_text(name + "_shape"));
   else if (shape.fill == Fill::cell && ground)
-    in.reject(name + "_fill", (body ? "centre or cut" : "centre") + of_kind + in.given_text(name + "_shape"));
+    in.reject(name + "_fill", shape.kind == ShapeKind::parts ? "centre where " + name + "_parts is given"
+                                                             : (body ? "centre or cut" : "centre") + of_kind +
+                                                                   in.given_text(name + "_shape"));
 }
 
 }  // namespace
 
 bool read_shape(OptionReader& in, const std::string& name, const Config& config, bool listed, Shape& shape) {
   const auto errors = in.errors();
-  const bool whole = read_kind(in, name, config, listed, shape);
+  const bool whole = shape.part_names.empty() ? read_kind(in, name, config, listed, shape)
+                                              : read_parts(in, name, config, shape);
   in.integer({.name = name + "_particles_per_cell",
               .meaning = "particles in each direction of a cell; of a file: their width is a cell's over it",
               .unit = "-",
               .range = {.lowest = 1, .highest = 16},
               .standard = in.listing() ? "2, for a rigid 4" : ""},
              shape.particles_per_cell);
+  for (Shape& part : shape.parts) part.particles_per_cell = shape.particles_per_cell;
   if (shape.kind == ShapeKind::particles && !in.listing())
     in.not_taken(name + "_fill", "the particles are those of " + name + "_file");
   else
