@@ -11,7 +11,7 @@ install(TARGETS mpm_lib mpm_kernels EXPORT mpmTargets ARCHIVE)
 install(DIRECTORY lib/include/mpm TYPE INCLUDE FILES_MATCHING PATTERN "*.hpp")
 # config.hpp includes these two.
 install(FILES kokkos_kernels/base/choices.hpp kokkos_kernels/base/side_kinds.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mpm)
-install(DIRECTORY inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN "*.opts"
+install(DIRECTORY inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN "*.opts" PATTERN "*.csv" PATTERN "*.stl"
   PATTERN "umat/*.f" PATTERN "umat/*.c" PATTERN "umat/ABA_PARAM.INC")
 install(FILES kokkos_kernels/physics/materials/umat_symbols.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
 install(FILES README.md LICENSE CHANGELOG.md CITATION.cff TYPE DOC)

@@ -11,6 +11,7 @@
 #include "common/text.hpp"
 #include "common/time_table.hpp"
 #include "input/geometry/shapes.hpp"
+#include "input/geometry/thickness.hpp"
 #include "input/options/groups.hpp"
 #include "step/stepper.hpp"
 
@@ -114,23 +115,36 @@ void warn_of_units(const Config& config, const MaterialConfig& material, const S
                   material.name.c_str(), soil.young));
 }
 
-void warn_of_thin(const Config& config, const RigidConfig& rigid, const Bounds& bounds, Lines& lines) {
+/// rigid: the name of a rigid body, or of a part of one.
+void warn_of_thin(const Config& config, const std::string& rigid, const Shape& shape, Lines& lines) {
   constexpr double k_least = 3;  // cells
-  if (rigid.shape.kind == ShapeKind::half_plane) return;
+  for (std::size_t n = 0; n < shape.parts.size(); ++n)
+    warn_of_thin(config, shape.part_names[n], shape.parts[n], lines);
+  if (shape.kind == ShapeKind::half_plane || shape.kind == ShapeKind::parts) return;
+  const Bounds bounds = bounds_of(shape, config.mesh, config.dim);
   double across = std::numeric_limits<double>::infinity();
-  const bool turned = rigid.shape.kind == ShapeKind::box && rigid.shape.angle != 0;
+  const bool turned = shape.kind == ShapeKind::box && shape.angle != 0;
   for (int d = 0; d < config.dim; ++d) {
     if (reaches(config, bounds, d, 0) || reaches(config, bounds, d, 1)) continue;
-    across = std::min(
-        across, turned ? rigid.shape.upper[d] - rigid.shape.lower[d] : bounds.upper[d] - bounds.lower[d]);
+    across = std::min(across, turned ? shape.upper[d] - shape.lower[d] : bounds.upper[d] - bounds.lower[d]);
   }
   const double cells = across / config.mesh.spacing;
-  if (cells < k_least * (1 - 1e-6))
+  if (cells < k_least * (1 - 1e-6)) {
     lines.push_back(
         formatted("warning: rigid %s is %.4g m across, %.3g times a cell; soil may pass through what is "
                   "thinner than %g "
                   "cells: take smaller cells, or make it thicker away from the soil",
-                  rigid.name.c_str(), across, cells, k_least));
+                  rigid.c_str(), across, cells, k_least));
+    return;
+  }
+  if (shape.kind != ShapeKind::stl) return;
+  if (const auto thin = thinnest_twentieth(*shape.triangles, k_least * config.mesh.spacing))
+    lines.push_back(
+        formatted("warning: a twentieth of the surface of rigid %s or more is %.3g m thick or less, as at "
+                  "%s, %.2g times a cell; soil "
+                  "may pass through what is thinner than %g cells: take smaller cells",
+                  rigid.c_str(), thin->value, text_of(thin->place, 3).c_str(),
+                  thin->value / config.mesh.spacing, k_least));
 }
 
 /// The option that makes a rigid move, without the rigid's name.
@@ -256,7 +270,7 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
   }
   for (const RigidConfig& rigid : config.rigids) {
     const Bounds bounds = bounds_of(rigid.shape, config.mesh, config.dim);
-    warn_of_thin(config, rigid, bounds, lines);
+    warn_of_thin(config, rigid.name, rigid.shape, lines);
     warn_of_speed(config, rigid, lines);
     warn_of_walls(config, rigid, bounds, lines);
   }

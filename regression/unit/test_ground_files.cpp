@@ -148,6 +148,31 @@ TEST_CASE("STL files are read, ASCII and binary", "[ground]") {
   CHECK(read_stl(path, 1, surface).find("its header says 512 triangles") != std::string::npos);
 }
 
+TEST_CASE("OBJ files are read: faces of more corners, numbers of textures, vertices from the last one back",
+          "[ground]") {
+  const Folder folder;
+  const std::string path = folder.path / "cube.OBJ";
+  const auto read = [&](const std::string& faces, std::shared_ptr<const TriangleSurface>& surface) {
+    std::ofstream(path) << "# a cube\no cube\nv 0 0 0\nv 2 0 0 1.0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 "
+                           "2 2\nv 0 2 2\nvn 0 0 1\n"
+                        << faces;
+    return read_stl(path, 0.5, surface);
+  };
+  std::shared_ptr<const TriangleSurface> cube;
+  const std::string five =
+      "f 1/1 4/2 3/3 2/4\r\nf 5//1 6//1 7//1 8//1\nf 1/1/1 2/2/1 6/3/1 5/4/1\nf 2 3 7 6\nf 3 4 8 7\n";
+  CHECK(read(five + "f -5 -8 -4 -1\n", cube).empty());
+  REQUIRE(cube);
+  CHECK(cube->size() == 12);
+  CHECK(cube->vertices() == 8);
+  CHECK(cube->volume() == Approx(1));
+  CHECK(read(five, cube).find("4 of its edges") != std::string::npos);  // open
+  CHECK(read("f 1 2 9\n", cube).find("line 12 takes numbers of the 8 vertices before it") !=
+        std::string::npos);
+  CHECK(read("f 1 2\n", cube).find("line 12 takes 3 numbers or more") != std::string::npos);
+  CHECK(read("", cube).find("faces (f)") != std::string::npos);
+}
+
 TEST_CASE("ESRI ASCII grids are read, and faults of one are reported", "[ground]") {
   const Folder folder;
   const std::string path = folder.path / "grid.asc";

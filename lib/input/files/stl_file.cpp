@@ -7,6 +7,7 @@
 
 #include "common/text.hpp"
 #include "common/text_file.hpp"
+#include "input/files/obj_file.hpp"
 
 namespace mpm {
 namespace {
@@ -30,6 +31,11 @@ float real_at(const char* bytes) {
 /// A binary file may begin as an ASCII one does, but its length is that of its triangles.
 bool is_binary(std::string_view text) {
   return text.size() >= k_header && text.size() == k_header + k_triangle * std::size_t(count_of(text));
+}
+
+bool is_obj(const std::string& path) {
+  constexpr std::string_view k_end = ".obj";
+  return path.size() > k_end.size() && lower_case(path.substr(path.size() - k_end.size())) == k_end;
 }
 
 bool is_ascii(std::string_view text) {
@@ -84,15 +90,18 @@ std::string read_ascii(std::string_view text, double scale, std::vector<Vec3>& c
 
 }  // namespace
 
-std::string read_stl(const std::string& path, double scale, std::shared_ptr<const TriangleSurface>& surface) {
+std::string read_stl(const std::string& path, double scale, std::shared_ptr<const TriangleSurface>& surface,
+                     const Vec3& offset) {
   std::string text;
   constexpr double k_copies = 14;  // of the triangles' bytes: corners, vertices, edges, the tree and the bins
   std::string fault = read_whole(path, k_copies, text);
   if (!fault.empty()) return fault;
   std::vector<Vec3> corners;
-  const bool binary = is_binary(text);
+  const bool binary = !is_obj(path) && is_binary(text);
   if (binary && count_of(text) > k_most) return formatted("an STL file of at most %.0f triangles", k_most);
-  if (binary)
+  if (is_obj(path))
+    fault = read_obj(text, scale, corners);
+  else if (binary)
     fault = read_binary(text, scale, corners);
   else if (is_ascii(text))
     fault = read_ascii(text, scale, corners);
@@ -102,6 +111,8 @@ std::string read_stl(const std::string& path, double scale, std::shared_ptr<cons
   else
     fault = "an STL file, ASCII or binary";
   if (!fault.empty()) return fault;
+  for (Vec3& x : corners)
+    for (int d = 0; d < 3; ++d) x[d] += offset[d];
   const auto read = std::make_shared<const TriangleSurface>(corners);
   fault = fault_of(*read);
   if (fault.empty()) surface = read;

@@ -99,8 +99,14 @@ void read_stl_shape(OptionReader& in, const std::string& name, Shape& shape) {
              .unit = "-",
              .range = k_positive},
             scale);
+  Vec3 offset{};
+  in.vector({.name = name + "_offset",
+             .meaning = "stl: what is added to the file's coordinates, after the scale",
+             .unit = "m",
+             .range = {.lowest = -1e7, .highest = 1e7}},
+            3, offset);
   if (in.listing() || in.errors() != errors) return;
-  const std::string fault = read_stl(shape.file, scale, shape.triangles);
+  const std::string fault = read_stl(shape.file, scale, shape.triangles, offset);
   if (!fault.empty()) in.reject(name + "_file", fault);
 }
 

@@ -1,10 +1,12 @@
 """Rigid bodies that hit each other, the sides of the mesh and fixed bodies, in flight, in heaps and on soil.
 
-A deck has three to six bodies of random shapes, dynamic, fixed or prescribed, over a rigid plane or over soil, with random friction and
+A deck has three to six bodies of random shapes, some of two parts or of triangles, dynamic, fixed or prescribed, over a rigid plane or over soil, with random friction and
 restitution. What a dynamic body gains of momentum must be the impulse of the soil, of contact and of its weight; what contact gives to
 all bodies together must be nothing where no side of the mesh can be reached; without soil and driven bodies the energy must not grow;
 balls must not come into each other or into planes; the mirror image must move as the mirror, and bodies in another order likewise.
 """
+import pathlib
+
 import numpy as np
 
 from deck import Deck, changer, rounded, vector
@@ -12,6 +14,7 @@ from mpm_regression.folders import history
 
 SPIN = {2: ("",), 3: ("_x", "_y", "_z")}
 SPACING = 0.25
+CUBE = pathlib.Path(__file__).with_name("cube.obj")  # of edge 1, about the origin
 
 
 class RigidPairs(Deck):
@@ -36,7 +39,7 @@ class RigidPairs(Deck):
             self.options[self.options.index(f"-mesh_{self.up}min") + 1] = "fixed"
         self.friction = draw.choice([0.0, 0.3, 0.6])
         self.options += ["-rigid_friction", str(self.friction)]
-        self.bodies, words = {}, []
+        self.bodies, self.parts, words = {}, [], []
         places = [(x, z) for x in (1.2, 2.5, 3.8) for z in (1.45, 2.3)]
         draw.shuffle(places)
         for k, (x, z) in enumerate(places[:draw.randint(3, 5)]):
@@ -62,12 +65,19 @@ class RigidPairs(Deck):
         middle = [1.0 + draw.uniform(-0.1, 0.1)] * (dim - 2)
         centre = [x, *middle, z]
         low, high = [x - a, *(m - a for m in middle), z - b], [x + a, *(m + a for m in middle), z + b]
-        shape = draw.choice(["disc", "disc", "box", "polygon", *(["cylinder"] if dim == 3 else [])])
+        shape = draw.choice(["disc", "disc", "box", "polygon", "parts", *(["cylinder", "stl"] if dim == 3 else [])])
         words = {"disc": f"-{name}_shape disc -{name}_centre {rounded(centre)} -{name}_radius {a:.6f}",
                  "box": f"-{name}_shape box -{name}_lower {rounded(low)} -{name}_upper {rounded(high)}",
                  "polygon": f"-{name}_shape polygon -{name}_polygon {rounded([x - a, z - b, x + a, z - b, x + a / 3, z + b])}"
                             + (f" -{name}_width {low[1]:.6f},{high[1]:.6f}" if dim == 3 else ""),
-                 "cylinder": f"-{name}_shape cylinder -{name}_centre {rounded([*centre[:-1], z - b])} -{name}_radius {a:.6f} -{name}_height {2 * b:.6f}"}[shape].split()
+                 "cylinder": f"-{name}_shape cylinder -{name}_centre {rounded([*centre[:-1], z - b])} -{name}_radius {a:.6f} -{name}_height {2 * b:.6f}",
+                 "parts": f"-{name}_parts {name}_foot,{name}_leg,{name}_head -{name}_foot_shape box -{name}_foot_lower {rounded(low)} "
+                          f"-{name}_foot_upper {rounded([*high[:-1], z - b / 3])} -{name}_leg_shape box "
+                          f"-{name}_leg_lower {rounded([*low[:-1], z - b / 3])} -{name}_leg_upper {rounded([x, *high[1:-1], z + b])} "
+                          f"-{name}_head_shape disc -{name}_head_centre {rounded([x - a / 2, *middle, z + b])} -{name}_head_radius {a / 2:.6f}",
+                 "stl": f"-{name}_shape stl -{name}_file {CUBE} -{name}_scale {2 * a:.6f} -{name}_offset {rounded(centre)}"}[shape].split()
+        if shape == "parts":
+            self.parts += [f"{name}_foot", f"{name}_leg", f"{name}_head"]
         body = {"motion": draw.choice(["dynamic"] * 6 + ["fixed", "prescribed"]) if self.bodies else "dynamic", "shape": shape,
                 "centre": np.array(centre), "radius": round(a, 6)}
         self.bodies[name] = body
@@ -165,10 +175,10 @@ class RigidPairs(Deck):
 
         for option in ("-gravity", "-floor_normal"):
             change(option, lambda v: [-v[0], *v[1:]])
-        for name in (*self.bodies, "pad", "floor"):
+        for name in (*self.bodies, *self.parts, "pad", "floor"):
             change(f"-{name}_angular_velocity", turned)
             change(f"-{name}_velocity", lambda v: [-v[0], *v[1:]])
-            for place in ("centre", "point"):
+            for place in ("centre", "point", "offset"):
                 change(f"-{name}_{place}", lambda c: [width - c[0], *c[1:]])
             if f"-{name}_lower" in words:
                 low, high = ([float(x) for x in words[words.index(f"-{name}_{end}") + 1].split(",")] for end in ("lower", "upper"))

@@ -1,0 +1,21 @@
+#pragma once
+// How thick a body is whose surface is of triangles.
+
+#include <optional>
+
+#include "input/geometry/triangle_surface.hpp"
+
+namespace mpm {
+
+/// Thickness across a surface at a place of it [m].
+struct Thickness {
+  double value;
+  Vec3 place;
+};
+
+/// Thickness [m] that a twentieth of a surface, or more of it, is below, with a place as thin; none where it
+/// is `most` or more. Measured at points spread evenly over the surface, straight inwards, to a twelfth of
+/// `most`: edges and tips count little.
+std::optional<Thickness> thinnest_twentieth(const TriangleSurface& surface, double most);
+
+}  // namespace mpm
