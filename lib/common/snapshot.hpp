@@ -21,6 +21,8 @@ struct ParticleSnapshot : ParticleColumns {
   std::vector<double> grid_velocity{};   // m/s [3 N], of the nodes, interpolated to the particles
   std::vector<std::string> own_names{};  // of those of `state` that are each particle's own parameters
   std::vector<double> number{};          // - [N], of nodes: in the whole mesh, x fastest
+  std::vector<double> vertices{};  // m [3 V], of a rigid with a surface of triangles: where they are now
+  std::vector<int> triangles{};    // [3 M], numbers of their vertices
 };
 
 /// The attribute of a body's group in a frame that names the parameters of which each particle has its own,

@@ -7,6 +7,7 @@
 
 #include "common/hdf5_handle.hpp"
 #include "common/text.hpp"
+#include "output/frame_surface.hpp"
 #include "output/shared_file.hpp"
 
 namespace mpm {
@@ -183,6 +184,7 @@ PetscErrorCode write_groups(hid_t file, const std::string& path, const Snapshot&
     PetscCall(write_group(file, path, body, Framed::bodies, precision, style, reserve));
   for (const ParticleSnapshot& rigid : snapshot.rigids)
     PetscCall(write_group(file, path, rigid, Framed::all, precision, style));
+  for (const ParticleSnapshot& rigid : snapshot.rigids) PetscCall(write_surface(file, path, rigid));
   for (const ParticleSnapshot& nodes : snapshot.nodes)
     PetscCall(write_group(file, path, nodes, Framed::nodes, precision, style));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -93,6 +93,8 @@ std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes) {
         text_of(frame.time) + "\"/>\n";
     for (const FrameEntry::Group& group : frame.groups)
       if (group.count > 0) text += format_grid(frame, group, real_bytes);
+    for (const FrameEntry::Group& group : frame.groups)
+      if (group.surface.triangles > 0) text += surface_grid(frame.file, group.name, group.surface);
     text += "      </Grid>\n";
   }
   return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
@@ -110,6 +112,7 @@ std::optional<FrameEntry> read_entry(const std::string& folder, const std::strin
     if (group == k_nodes && H5Lexists(file.id, k_nodes, H5P_DEFAULT) <= 0) continue;
     entry.groups.push_back({group});
     if (!read_group(file.id, entry.groups.back())) return std::nullopt;
+    entry.groups.back().surface = surface_size(file.id, group);
   }
   return entry;
 }

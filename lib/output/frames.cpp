@@ -76,9 +76,11 @@ PetscErrorCode Frames::write(const Snapshot& snapshot) {
   FrameEntry entry{file, snapshot.time, {}};
   const auto add = [&](const std::vector<ParticleSnapshot>& groups, Framed kind) {
     for (const auto& group : groups)
-      entry.groups.push_back({group.name,
-                              group.total < 0 ? static_cast<long>(group.position.size() / 3) : group.total,
-                              written_fields(group, kind, style_)});
+      entry.groups.push_back(
+          {group.name,
+           group.total < 0 ? static_cast<long>(group.position.size() / 3) : group.total,
+           written_fields(group, kind, style_),
+           {static_cast<long>(group.vertices.size() / 3), static_cast<long>(group.triangles.size() / 3)}});
   };
   add(snapshot.bodies, Framed::bodies), add(snapshot.rigids, Framed::all), add(snapshot.nodes, Framed::nodes);
   entries_.push_back(std::move(entry));

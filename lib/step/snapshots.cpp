@@ -6,6 +6,8 @@
 #include "common/material_table.hpp"
 #include "common/text.hpp"
 #include "functions/grid_velocity.hpp"
+#include "input/geometry/triangle_surface.hpp"
+#include "output/frame_surface.hpp"
 #include "parallel/gather.hpp"
 #include "rebuild/batches.hpp"
 #include "step/load_input.hpp"
@@ -85,6 +87,30 @@ void add_component(const std::string& name, int d, const std::vector<double>& va
   StateField field{name + "_" + "xyz" [d], {}};
   for (std::size_t p = rows.from; p < rows.to; ++p) field.values.push_back(values[p * Dim + d]);
   body->state.push_back(std::move(field));
+}
+
+/// Adds the triangles of a shape and its parts, where they are in a pose. lower [m]: corner of the mesh.
+template <int Dim>
+void add_triangles(const Shape& shape, const RigidPose<Dim>& pose, const Vec3& lower, ParticleSnapshot* to) {
+  for (const Shape& part : shape.parts) add_triangles(part, pose, lower, to);
+  if (shape.kind != ShapeKind::stl) return;
+  const TriangleSurface& surface = *shape.triangles;
+  const int before = static_cast<int>(to->vertices.size() / 3);
+  for (int v = 0; v < surface.vertices(); ++v) {
+    Vector<double, Dim> x;
+    for (int d = 0; d < Dim; ++d) x[d] = surface.vertex(v)[d] - lower[d];
+    x = pose.to_world(x);
+    for (int d = 0; d < Dim; ++d) to->vertices.push_back(x[d] + lower[d]);
+  }
+  for (int k = 0; k < surface.size(); ++k)
+    for (const int v : surface.triangle(k)) to->triangles.push_back(before + v);
+}
+
+/// Whether a body or rigid has a name.
+bool is_name(const Config& config, const std::string& name) {
+  const auto is = [&](const auto& thing) { return thing.name == name; };
+  return std::any_of(config.bodies.begin(), config.bodies.end(), is) ||
+         std::any_of(config.rigids.begin(), config.rigids.end(), is);
 }
 
 /// Vectors with three components, positions from the origin.
@@ -174,6 +200,8 @@ std::vector<ParticleSnapshot> Snapshots<Space, T, Dim>::rigids_at(double time) c
         rigid.velocity[3 * p + d] = v[d];
       }
     }
+    if (!is_name(config, surface_group(rigid.name)))
+      add_triangles(config.rigids[r].shape, motion.pose, config.mesh.lower, &rigid);
     groups.push_back(std::move(rigid));
   }
   run_.rigids.widen(groups);

@@ -17,6 +17,7 @@ sys.dont_write_bytecode = True
 from mpm_tools import results, runout, units  # noqa: E402
 from mpm_tools.ground import raster  # noqa: E402
 from mpm_tools.plot import fields as plot_fields, outlines  # noqa: E402
+from mpm_tools.plot.surfaces import section_of_triangles  # noqa: E402
 
 PLANE = {"dim": "2", "mesh_lower": "0,0", "mesh_upper": "8,6", "mesh_spacing": "0.25", "bodies": "soil", "rigid_bodies": "body"}
 SPACE = {**PLANE, "dim": "3", "mesh_lower": "0,0,0", "mesh_upper": "8,5,6"}
@@ -115,17 +116,40 @@ class Outlines(Folder):
         run = self.run_of({**PLANE, "body_motion": "prescribed", "body_lower": "2,1", "body_upper": "5,2", **options}, history, [(2.0, groups)])
         return plot_fields.Scene(run, run.frame)
 
+    def test_parts_have_an_outline_each(self):
+        points = np.stack(np.meshgrid(np.arange(2.125, 5, 0.25), np.arange(1.125, 2, 0.25), 0.0), -1).reshape(-1, 3)
+        options = {**PLANE, "body_motion": "prescribed", "body_parts": "a,b", "a_shape": "box", "a_lower": "2,1", "a_upper": "3,2",
+                   "b_shape": "box", "b_lower": "3,1", "b_upper": "5,2"}
+        groups = {"soil": {"position": points + [0, 2, 0], "volume": np.full(len(points), 1 / 16)}, "body": {"position": points + [0.5, 0, 0]}}
+        run = self.run_of(options, {"time": [0, 2], "body_x": [0, 0.5], "body_y": [0, 0]}, [(2.0, groups)])
+        a, b = plot_fields.Scene(run, run.frame).outlines("body")
+        np.testing.assert_allclose([a.min(axis=0), b.max(axis=0)], [[2.5, 1], [5.5, 2]])
+
+    def test_sections_of_triangles_are_those_of_the_body(self):
+        vertices = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]) + [4, 2, 3]
+        triangles = np.array([[x, y, z] for x in (0, 1) for y in (2, 3) for z in (4, 5)])
+        out = np.cross(vertices[triangles[:, 1]] - vertices[triangles[:, 0]], vertices[triangles[:, 2]] - vertices[triangles[:, 0]])
+        inward = np.einsum("ij,ij->i", out, vertices[triangles].mean(axis=1) - [4, 2, 3]) < 0
+        triangles[inward] = triangles[inward][:, ::-1]
+        for axis, middle in ((0, (2, 3)), (1, (4, 3)), (2, (4, 2))):
+            centre = [4, 2, 3][axis]
+            for place in (centre - 0.4, centre, centre + 0.25):
+                loop, = section_of_triangles(vertices, triangles, axis, place)
+                np.testing.assert_allclose(np.abs(loop - middle).sum(axis=1), 1 - abs(place - centre), atol=1e-12)
+                self.assertEqual(len(np.unique(loop.round(9), axis=0)), 4)
+            self.assertEqual(section_of_triangles(vertices, triangles, axis, centre + 1.5), [])
+
     def test_an_outline_moves_with_its_body(self):
         moved = {"time": [0, 2], "body_x": [0, 0], "body_y": [0, -0.75]}
-        corners = self.scene(moved).outline("body")
+        corners = self.scene(moved).outlines("body")[0]
         np.testing.assert_allclose([corners.min(axis=0), corners.max(axis=0)], [[2, 0.25], [5, 1.25]])
 
     def test_a_reset_does_not_move_a_body_back(self):
         staged = {"time": [0, 1, 2], "body_x": [0, 0, 0], "body_y": [0, -0.5, -0.25], "stage": [1, 1, 2]}
-        np.testing.assert_allclose(self.scene(staged, stages="a,b", a_reset="on").outline("body").min(axis=0), [2, 0.25])
+        np.testing.assert_allclose(self.scene(staged, stages="a,b", a_reset="on").outlines("body")[0].min(axis=0), [2, 0.25])
 
     def test_where_the_particles_lie_elsewhere_they_are_drawn(self):
-        self.assertIsNone(self.scene({"time": [0, 2], "body_x": [0, 1.5], "body_y": [0, -0.75]}).outline("body"))
+        self.assertIsNone(self.scene({"time": [0, 2], "body_x": [0, 1.5], "body_y": [0, -0.75]}).outlines("body"))
 
 
 class Units(Folder):

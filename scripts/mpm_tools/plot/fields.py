@@ -8,6 +8,7 @@ import numpy as np
 
 from mpm_tools.plot.curves import COLOURS, save
 from mpm_tools.plot.outlines import outline
+from mpm_tools.plot.surfaces import section_of_triangles
 from mpm_tools.results import read_frame, stage_of, units_of
 from mpm_tools.runout import grid_velocity, profile, slides, time_of_frame
 
@@ -146,6 +147,7 @@ class Scene:
         self.time, groups = read_frame(frame)
         self.units = units_of(frame)
         self.groups = {name: fields for name, fields in groups.items() if "position" in fields}
+        self.triangles = {name: groups[f"{name}_surface"] for name in self.groups if "triangles" in groups.get(f"{name}_surface", {})}
         self.bodies = [name for name, fields in self.groups.items() if len(fields["position"]) and self.is_body(name, fields)]
         stage = stage_of(frame)
         self.plane, self.place = [0, 1], None
@@ -220,23 +222,34 @@ class Scene:
         cell = self.run.number("mesh_spacing", 1.0)
         return self.run.number(f"{material}_xi95") * self.run.number(f"{material}_xi95_cell", cell) / cell
 
-    def outline(self, rigid):
-        """Corners [N, 2] of a rigid in the plane seen [m], None where they are not known or its particles lie elsewhere."""
+    def outlines(self, rigid):
+        """Corners [N, 2] of a rigid and of each of its parts in the plane seen [m], None where they are not known or its particles
+        lie elsewhere. Those of triangles are as they are turned."""
+        parts, across = self.run.words(f"{rigid}_parts"), 3 - sum(self.plane)
+        if rigid in self.triangles and not parts:
+            return section_of_triangles(*(self.triangles[rigid][key] for key in ("vertices", "triangles")), across, self.place)
         points, moved = self.groups[rigid]["position"][:, self.plane], self.run.displacement(rigid, self.time)
         if not len(points) or moved is None:
             return None
-        across = 3 - sum(self.plane)
-        corners = outline(self.run, rigid, self.plane, None if self.place is None else self.place - moved[across])
-        if corners is None:
+        at = None if self.place is None else self.place - moved[across]
+        found = [outline(self.run, name, self.plane, at) for name in parts or [rigid]]
+        if self.dim == 3 and parts:  # some are elsewhere; the points tell whether one is missing
+            found = [corners for corners in found if corners is not None]
+        if not found or any(corners is None for corners in found):
             return None
-        corners, reach = corners + moved[self.plane], 2.5 * self.size(rigid)
+        whole, reach = self.moved_with(rigid, np.concatenate(found), points, moved), 2.5 * self.size(rigid)
+        ends = [np.abs(end(whole, axis=0) - end(points, axis=0)).max() for end in (np.min, np.max)]
+        return np.split(whole, np.cumsum([len(corners) for corners in found])[:-1]) if max(ends) <= reach else None
+
+    def moved_with(self, rigid, corners, points, moved):
+        """Corners as the rigid has moved, and in 2D turned."""
+        corners = corners + moved[self.plane]
         angle = self.run.angle(rigid, self.time)
         if angle != 0:  # about the centre of mass
             given = self.run.text(f"{rigid}_centre_of_mass", "")
             centre = points.mean(axis=0) if not given else np.array([float(x) for x in given.split(",")]) + moved
             corners = centre + (corners - centre) @ [[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]
-        ends = [np.abs(end(corners, axis=0) - end(points, axis=0)).max() for end in (np.min, np.max)]
-        return corners if max(ends) <= reach else None
+        return corners
 
     def draw(self, axes, name, limits=None, box=None):
         """Draws a field in colour and the rigids in grey: [(collection, particle's size [m])], the size yet to be set."""
@@ -250,10 +263,10 @@ class Scene:
         beyond = ["neither", "min", "max", "both"][(values.min() < least) + 2 * (values.max() > most)]
         axes.figure.colorbar(drawn[0][0], ax=axes, shrink=0.8, pad=0.02, extend=beyond)
         for rigid in sorted(self.groups.keys() - set(self.bodies) - {"nodes"}):
-            corners, points = self.outline(rigid), self.groups[rigid]["position"][:, self.plane]
-            if corners is not None:
+            parts, points = self.outlines(rigid), self.groups[rigid]["position"][:, self.plane]
+            for corners in parts or []:
                 axes.fill(*corners.T, color="0.25", lw=0, zorder=2)
-            else:
+            if parts is None:
                 drawn.append((axes.scatter(*points.T, color="0.25", marker="s", lw=0), self.size(rigid)))
         lower, upper = box or self.box()
         axes.set(xlim=(lower[0], upper[0]), ylim=(lower[1], upper[1]), title=f"{field.title}, {self.where}",
