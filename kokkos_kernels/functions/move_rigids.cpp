@@ -32,7 +32,7 @@ void launch_end_by_teams(const EndStep<Space, T, Dim>& end, const Space& stream,
                          const Work& work) {
   constexpr int threads = 1024;
   using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<threads, 1>>;
-  const int room = end.room(threads);
+  const int room = end.room(threads, Work::shares);
   const std::size_t bytes = scratch_bytes<double>(room);
   const int level = bytes > 32 * 1024 ? 1 : 0;
   Kokkos::parallel_for(
@@ -50,22 +50,27 @@ void launch_end(const EndStep<Space, T, Dim>& end, const Space& stream, int team
   if constexpr (is_device<Space>) {
     launch_end_by_teams(end, stream, teams, work);
   } else {
-    std::vector<double> part(end.room(1));
+    std::vector<double> part(end.room(1, Work::shares));
     for (int team = 0; team < teams && !end.control().paused; ++team)
       work(end, SerialTeam{team}, part.data());
   }
 }
 
 struct Sum {
+  static constexpr int shares = 1;
   template <class End, class Team>
   KOKKOS_INLINE_FUNCTION void operator()(const End& end, const Team& team, double* part) const {
     end.sum(team, team.league_rank(), part);
   }
 };
+/// MayTurn: some rigid body turns, touches others or is joined; without, the kernel is short. of: shares of
+/// the sum of each force.
+template <bool MayTurn, int of>
 struct Move {
+  static constexpr int shares = of;
   template <class End, class Team>
   KOKKOS_INLINE_FUNCTION void operator()(const End& end, const Team& team, double* part) const {
-    end(team, part);
+    end.template end<MayTurn, of>(team, part);
   }
 };
 
@@ -84,7 +89,15 @@ void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>&
   EndStep<Space, T, Dim> end(s, timed, dt);
   end.moved = moved;
   if (moved == nullptr && s.pairs.in_use()) end.pairs = s.pairs.actions;
-  launch_end(end, stream, 1, Move{});
+  // Persistent steps, of few patches, sum each force in one share: a run gives the same bits by both.
+  constexpr int k_many = 256, k_shares = is_device<Space> ? 16 : 1;
+  const bool many = s.plan.form != StepForm::persistent && !s.contact.near.listed && s.contact.count > k_many;
+  if (s.rigid_turns || moved != nullptr || s.pairs.in_use())
+    launch_end(end, stream, 1, Move<true, 1>{});
+  else if (many)
+    launch_end(end, stream, 1, Move<false, k_shares>{});
+  else
+    launch_end(end, stream, 1, Move<false, 1>{});
   s.forces_summed = false;
   if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, stream);
 }

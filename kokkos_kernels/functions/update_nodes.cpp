@@ -21,9 +21,11 @@ void reset_nodes(ContactCore<Space, T, Dim>& s) {
 
 namespace {
 
-/// So many teams share a multiprocessor that contact, which needs many registers, hides what it waits for.
-template <class Space, int Dim>
-using NodeTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, 12>>;
+/// So many teams share a multiprocessor that the nodes far from contact hide what it waits for.
+template <class Space, int Dim, int teams = 12>
+using NodeTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, teams>>;
+/// Teams of a launch of nodes near rigids alone: contact needs many registers.
+inline constexpr int k_near_teams = 8;
 
 template <bool acts, class Space, class T, int Dim>
 void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stream) {
@@ -37,13 +39,13 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stre
   const std::size_t near_bytes = scratch_bytes<double>(room) + k_scratch_slack;
   constexpr std::size_t k_fast = 32 * 1024;  // bytes that every back end has; some thirty rigids need more
   const int level = near_bytes > k_fast ? 1 : 0;
-  const auto some_near = [&](const Space& space, int teams) {
-    return light(
-        Team(space, teams, node_threads<Space, Dim>).set_scratch_size(level, Kokkos::PerTeam(near_bytes)));
+  const auto scratched = [&](auto policy) {
+    return light(policy.set_scratch_size(level, Kokkos::PerTeam(near_bytes)));
   };
   if (s.contact.count > 0 && !s.plan.nodes_apart)
     return Kokkos::parallel_for(
-        "mpm::update_nodes", some_near(s.space, s.patches.slots), KOKKOS_LAMBDA(const Member& team) {
+        "mpm::update_nodes", scratched(Team(s.space, s.patches.slots, node_threads<Space, Dim>)),
+        KOKKOS_LAMBDA(const Member& team) {
           if (control().paused) return;
           const int slot = team.league_rank(), n = contact(slot);
           if (n > 0)
@@ -60,7 +62,8 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stre
       });
   if (s.plan.nodes_apart)
     Kokkos::parallel_for(
-        "mpm::update_nodes_near_rigids", some_near(stream, s.contact.count),
+        "mpm::update_nodes_near_rigids",
+        scratched(NodeTeam<Space, Dim, k_near_teams>(stream, s.contact.count, node_threads<Space, Dim>)),
         KOKKOS_LAMBDA(const Member& team) {
           const int n = team.league_rank();
           if (!control().paused)

@@ -77,8 +77,10 @@ struct EndStep {
   /// Numbers of the wrenches on all rigids.
   KOKKOS_INLINE_FUNCTION int values() const { return size * count; }
   static constexpr int warps(int threads) { return (threads + k_warp - 1) / k_warp; }
-  /// Doubles that a team of so many threads needs.
-  int room(int threads) const { return values() + warps(threads); }
+  /// Doubles that a team of so many threads needs: of the forces, the warps, and the parts of the forces.
+  int room(int threads, int shares = 1) const {
+    return values() * (shares > 1 ? 1 + shares : 1) + warps(threads);
+  }
 
   /// Input of the end of a step: the rigids, the forces of the slots' nodes on them, the movements of
   /// particles, and where the forces on the rigids go [N], unless it is null.
@@ -93,10 +95,10 @@ struct EndStep {
   }
 
   /// part: room(threads).
-  template <class Team>
-  KOKKOS_INLINE_FUNCTION void operator()(const Team& team, double* part) const {
+  template <bool MayTurn, int shares, class Team>
+  KOKKOS_INLINE_FUNCTION void end(const Team& team, double* part) const {
     const int done = control().steps + 1;
-    const StepEnd found = move<true>(team, StepEnd(control()), left(), true, part);
+    const StepEnd found = move<MayTurn, shares>(team, StepEnd(control()), left(), true, part);
     set_timed(team, done);
     once(team, [&] {
       found.keep_in(control());
@@ -107,14 +109,14 @@ struct EndStep {
   /// Moves the rigids. found: the end of the step before; clears: the movements begin anew. Returns, to all
   /// threads, the end of this step; until all have it, they need `part`: room(threads). MayTurn: as in
   /// RigidPose.
-  template <bool MayTurn, class Team>
+  template <bool MayTurn, int shares = 1, class Team>
   KOKKOS_INLINE_FUNCTION StepEnd move(const Team& team, StepEnd found, const Left& left, bool clears,
                                       double* part) const {
     const int values = this->values(), parts = warps(team.team_size()), rank = team.team_rank();
     MovingRigid<Dim> rigid{};
     if (rank < count) rigid = left.rigids[rank];
     const Noted noted = noted_movements(team, left.movements, clears);
-    if (!summed) sum_by_warps(team, left.forces, 0, values, part);
+    if (!summed) sum_by_warps<shares>(team, left.forces, 0, values, part);
     keep(team, largest_of_warp(noted.largest()), part + values);
     team.team_barrier();  // also: no thread reads `paused` any more
     MPM_ROLLED
@@ -129,7 +131,7 @@ struct EndStep {
       for (int k = 0; k < Wrench<Dim>::size; ++k) {
         if (k >= size) break;
         const int v = r * size + k;
-        contact[k] = summed ? sums(v) : part[v];
+        contact[k] = summed ? sums(v) : summed_force<shares>(team, part, v);
         if (!summed && left.sums != nullptr) left.sums[v] = contact[k];
       }
       const PairAction<Dim>* action = nullptr;
@@ -180,7 +182,7 @@ struct EndStep {
     Vector<double, Dim> a{};
     if constexpr (Dynamic) {
       team.team_barrier();  // what was there before is done with
-      if (rigid.inertia.dynamic) sum_by_warps(team, forces.data(), r * size, size, part);
+      if (rigid.inertia.dynamic) sum_by_warps<1>(team, forces.data(), r * size, size, part);
       team.team_barrier();
       Wrench<Dim> contact{};
       for (int k = 0; k < size && rigid.inertia.dynamic; ++k) contact[k] = part[k];
@@ -216,16 +218,32 @@ struct EndStep {
     }
     return noted;
   }
-  /// Sums the forces number `first` to first + n over the slots into part[n], a warp each.
-  template <class Team>
+  /// Place of the parts of the forces.
+  template <int shares, class Team>
+  KOKKOS_INLINE_FUNCTION double* parts_of_forces(const Team& team, double* part) const {
+    return shares == 1 ? part : part + values() + warps(team.team_size());
+  }
+  /// Sums the forces number `first` to first + n over the slots in so many shares, a warp each: over many
+  /// slots one warp would wait for the memory. After a barrier summed_force(v) is force number first + v.
+  template <int shares, class Team>
   KOKKOS_INLINE_FUNCTION void sum_by_warps(const Team& team, const double* of_slots, int first, int n,
                                            double* part) const {
     const int size = team.team_size(), rank = team.team_rank(), lanes = size < k_warp ? size : k_warp;
+    double* const to = parts_of_forces<shares>(team, part);
     MPM_ROLLED
-    for (int v = rank / k_warp; v < n; v += warps(size)) {
-      const double sum = sum_of_warp(sum_of_thread(of_slots, first + v, rank % k_warp, lanes));
-      if (rank % k_warp == 0) part[v] = sum;
+    for (int k = rank / k_warp; k < n * shares; k += warps(size)) {
+      const int thread = k % shares * lanes + rank % k_warp;
+      const double sum = sum_of_warp(sum_of_thread(of_slots, first + k / shares, thread, shares * lanes));
+      if (rank % k_warp == 0) to[k] = sum;
     }
+  }
+  template <int shares, class Team>
+  KOKKOS_INLINE_FUNCTION double summed_force(const Team& team, double* part, int v) const {
+    const double* const from = parts_of_forces<shares>(team, part) + v * shares;
+    double sum = from[0];
+    MPM_ROLLED
+    for (int k = 1; k < shares; ++k) sum += from[k];
+    return sum;
   }
   /// Part of a force that a thread sums, number `rank` of the threads that share the slots, in an order that
   /// is always the same.

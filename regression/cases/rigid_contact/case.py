@@ -34,7 +34,7 @@ ALPHA = np.arctan(0.2 / 0.8)
 def rocks(share):
     """A block that is turned by a share of alpha about its left lower corner."""
     return (FLOOR.format("block") + " -rigid_friction 2 -block_shape box -block_lower 4,0.5 -block_upper 4.2,1.3 -block_motion dynamic"
-            f" -block_density 2600 -block_free x,y,rz -block_angle_deg {np.degrees(share * ALPHA)!r} -time_step 2e-4 -time_end 0.6"
+            f" -block_density 2600 -block_free x,y,rz -block_angle_deg {np.degrees(share * ALPHA):.17g} -time_step 2e-4 -time_end 0.6"
             " -history_interval 1e-3")
 
 
@@ -43,8 +43,8 @@ STACK = FLOOR.format(",".join(NAMES)) + " -rigid_friction 0.5 -time_end 5 -histo
     f" -b{n}_shape box -b{n}_lower 4,{0.5 + 0.3 * n!r} -b{n}_upper 4.3,{0.8 + 0.3 * n!r} -b{n}_motion dynamic -b{n}_density 2600"
     f" -b{n}_free x,y,rz" for n in range(10))
 RUNS = {"line": line(1), "line_half": line(0.5), "rolls": "",
-        "slips": f"-rigid_friction 0.1 -slope_normal {np.sin(STEEP)!r},{np.cos(STEEP)!r} -wheel_centre {1 + 0.5 * np.sin(STEEP)!r},"
-                 f"{3 + 0.5 * np.cos(STEEP)!r} -time_end 0.6",
+        "slips": f"-rigid_friction 0.1 -slope_normal {np.sin(STEEP):.17g},{np.cos(STEEP):.17g} -wheel_centre {1 + 0.5 * np.sin(STEEP):.17g},"
+                 f"{3 + 0.5 * np.cos(STEEP):.17g} -time_end 0.6",
         "sets": SETS, "slides": BLOCK, "rocks_25": rocks(0.25), "rocks_50": rocks(0.5), "rocks_75": rocks(0.75), "stack": STACK}
 
 
