@@ -5,6 +5,7 @@
 
 #include "base/copy.hpp"
 #include "functions/step_kernels.hpp"
+#include "physics/rigid_motion.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
 #include "transfer/fill_view.hpp"
@@ -231,6 +232,8 @@ void restore_rigid(const SavedRigid& row, Rigid<Dim>& rigid) {
     rigid.momentum[k] = row[MotionTerms::momentum + k];
     rigid.motion.spin[k] = row[MotionTerms::spin + k];
   }
+  if (row[MotionTerms::turns] == MotionTerms::k_new_spin && rigid.inertia.dynamic)
+    rigid.momentum = momentum_of(rigid.inertia.turning, rigid.motion.pose.rotation, rigid.motion.spin);
 }
 
 /// binned: the rigids stand where their points were binned, else where they are.

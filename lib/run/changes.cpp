@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <map>
 
@@ -141,14 +142,23 @@ std::vector<OptionChange> changes_between(const std::vector<EffectiveOption>& be
 void apply_changes(const std::vector<OptionChange>& changes, const Config& config, SavedState& state) {
   for (std::size_t r = 0; r < std::min(config.rigids.size(), state.rigids.size()); ++r) {
     const RigidConfig& rigid = config.rigids[r];
-    const bool changed = std::any_of(changes.begin(), changes.end(), [&](const OptionChange& change) {
-      for (const char* key : {"_motion", "_velocity", "_velocity_table", "_displacement_table"})
-        if (lower_case(change.name) == "-" + lower_case(rigid.name) + key) return true;
-      return false;
-    });
-    if (changed)
-      set_vector(state.rigids[r], MotionTerms::velocity,
-                 rigid.motion == Motion::fixed ? Vec3{} : rigid.velocity);
+    SavedRigid& row = state.rigids[r];
+    const auto changed = [&](std::initializer_list<const char*> keys) {
+      return std::any_of(changes.begin(), changes.end(), [&](const OptionChange& change) {
+        return std::any_of(keys.begin(), keys.end(), [&](const char* key) {
+          return lower_case(change.name) == "-" + lower_case(rigid.name) + key;
+        });
+      });
+    };
+    const bool moves = rigid.motion != Motion::fixed;
+    if (changed({"_motion", "_velocity", "_velocity_table", "_displacement_table"}))
+      set_vector(row, MotionTerms::velocity, moves ? rigid.velocity : Vec3{});
+    const bool spins = changed({"_motion", "_angular_velocity", "_angular_velocity_table", "_angle_table"});
+    if (!(spins || changed({"_free"})) || row[MotionTerms::turns] == 0) continue;
+    for (int k = 0; k < (config.dim == 2 ? 1 : 3); ++k)
+      if (spins || !rigid.free[config.dim == 2 ? 5 : 3 + k])
+        row[MotionTerms::spin + k] = moves ? rigid.angular_velocity[k] : 0;
+    row[MotionTerms::turns] = MotionTerms::k_new_spin;
   }
 }
 

@@ -70,8 +70,11 @@ Config history_config(const Job& job) {
     for (int d = 0; d < 3; ++d)
       for (int side = 0; side < 2; ++side)
         if (!is_open(stage.mesh.walls[d][side])) all.mesh.walls[d][side] = Wall::roller;
-    for (std::size_t r = 0; r < stage.rigids.size(); ++r)
-      if (stage.rigids[r].motion == Motion::dynamic) all.rigids[r].motion = Motion::dynamic;
+    for (std::size_t r = 0; r < stage.rigids.size(); ++r) {
+      const RigidConfig& rigid = stage.rigids[r];
+      if (rigid.motion == Motion::dynamic) all.rigids[r].motion = Motion::dynamic;
+      if (rigid.is_sprung()) all.rigids[r].stiffness = rigid.stiffness, all.rigids[r].viscosity = rigid.viscosity;
+    }
   }
   return all;
 }

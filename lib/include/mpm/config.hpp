@@ -133,7 +133,7 @@ enum class ContactNormal { surface, gradient };
 
 enum class Motion { fixed, prescribed, dynamic };
 
-/// A rigid body: it translates.
+/// A rigid body.
 struct RigidConfig {
   std::string name;
   Shape shape;
@@ -172,12 +172,13 @@ struct RigidConfig {
   double contact_gap_exponent = 6;  // -
   bool has_shear_limit = false;     // -NAME_shear_limit was given (it then bounds the friction too)
   bool absent = false;              // not in the run in this stage: a later one places it, or it was removed
+  bool turns_in_run = false;        // it may turn in some stage of the run
 
-  /// Whether it may turn.
+  /// Whether it may turn, or may have turned in a stage before.
   bool turns() const {
     const bool free_to = motion == Motion::dynamic && (free[3] || free[4] || free[5]);
     const bool driven = angular_velocity != Vec3{} || angular_velocity_table || angle_table;
-    return free_to || (motion != Motion::fixed && driven);
+    return turns_in_run || free_to || (motion != Motion::fixed && driven);
   }
   /// Whether springs or dashpots hold it.
   bool is_sprung() const {

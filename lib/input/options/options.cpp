@@ -1,6 +1,7 @@
 #include "input/options/options.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "common/snapshot.hpp"
 #include "common/text.hpp"
@@ -160,9 +161,32 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   in.report_unknown();
 }
 
+/// Lets a rigid body keep its rotation, about the same point, in the stages in which it does not turn.
+void keep_rotations(std::vector<StageInput>& stages) {
+  for (const StageInput& input : stages)
+    for (std::size_t r = 0; r < input.config.rigids.size(); ++r) {
+      const RigidConfig& rigid = input.config.rigids[r];
+      for (StageInput& other : stages) {
+        if (!rigid.turns() || r >= other.config.rigids.size()) continue;
+        RigidConfig& same = other.config.rigids[r];
+        same.turns_in_run = true;
+        if (!same.centre_of_mass) same.centre_of_mass = rigid.centre_of_mass;
+        if (!same.moment_point) same.moment_point = rigid.moment_point;
+      }
+    }
+}
+
+/// Reports options given for all stages that none takes; aside: what each stage has set aside.
+void report_untaken(const std::vector<std::map<std::string, std::string>>& aside, InputReport& report) {
+  for (const auto& [name, line] : aside.front())
+    if (std::all_of(aside.begin(), aside.end(), [&](const auto& of) { return of.count(name) > 0; }))
+      report.errors.push_back(line);
+}
+
 /// Every stage as a run of its own, by the options of the run with those of the stage in their place.
 void read_stages(OptionReader& in, const std::vector<Backend>& backends,
                  const std::vector<std::string>& names, InputReport& report) {
+  std::vector<std::map<std::string, std::string>> aside;
   for (const std::string& name : names) {
     InputReport of_stage;
     StageInput& input = report.stages.emplace_back();
@@ -177,6 +201,7 @@ void read_stages(OptionReader& in, const std::vector<Backend>& backends,
     check_water_kept(reader, report.stages.front().config, input.config);
     check_periodic_kept(reader, input.config.dim, report.stages.front().config.mesh, input.config.mesh);
     input.options = std::move(of_stage.options);
+    aside.push_back(reader.set_aside());
     for (const std::string& key : reader.of_stage())
       report.stage_options.push_back({"-" + name + "_" + key, reader.given_text(key), "", false});
     for (auto [from, to] :
@@ -184,6 +209,8 @@ void read_stages(OptionReader& in, const std::vector<Backend>& backends,
       for (const std::string& line : *from)
         if (std::find(to->begin(), to->end(), line) == to->end()) to->push_back(line);
   }
+  report_untaken(aside, report);
+  keep_rotations(report.stages);
 }
 
 /// Puts the options that are ours into PETSc's database, once for all simulations of a program. The files of

@@ -244,9 +244,20 @@ void OptionReader::note(const std::string& name, const std::string& what) {
 }
 
 void OptionReader::not_taken(const std::string& name, const std::string& why) {
+  refuse(name, "nothing here: " + why);
+}
+
+void OptionReader::refuse(const std::string& name, const std::string& takes) {
   if (listing_) return;
-  read_.insert(lower_case(name));
-  if (given(name)) reject(name, "nothing here: " + why);
+  const std::string low = lower_case(name);
+  read_.insert(low);
+  if (!given(name)) return;
+  reject(name, takes);
+  if (stage_.empty() || of_stage_.count(low) > 0) return;
+  // Given for all stages: another one may take it.
+  set_aside_[low] = report_->errors.back();
+  report_->errors.pop_back();
+  given_.erase(low);
 }
 
 bool OptionReader::number(const Option& option, double& value) {

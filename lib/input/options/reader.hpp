@@ -98,8 +98,13 @@ class OptionReader {
   bool is_read(const std::string& name) const { return read_.count(name) > 0; }
   /// The text given, in lieu of a value.
   std::string given_text(const std::string& name) const;
-  /// Reports the option, if given, as one that has no place here.
+  /// Reports the option, if given, as one that has no place here. Where it is given for all stages, a reader
+  /// of one of them sets it aside, as if it were not given.
   void not_taken(const std::string& name, const std::string& why);
+  /// The same by what it takes.
+  void refuse(const std::string& name, const std::string& takes);
+  /// Reports by lower-case names of what this reader of a stage has set aside.
+  const std::map<std::string, std::string>& set_aside() const { return set_aside_; }
   /// Reports an option that parsed but does not fit the others.
   void reject(const std::string& name, const std::string& takes);
   /// Warns of an option that is given: "warning: -NAME: given "...", WHAT".
@@ -158,6 +163,7 @@ class OptionReader {
   std::map<std::string, std::string> former_;         // names as given, by lower-case name
   std::string stage_;               // of what this reader reads, with its underscore; empty: of the run
   std::set<std::string> of_stage_;  // lower-case names that it gives
+  std::map<std::string, std::string> set_aside_;
   std::map<std::string, std::vector<std::string>> left_out_;  // names by their list
 };
 

@@ -24,7 +24,8 @@ void read_free(OptionReader& in, int dim, RigidConfig& rigid) {
            "dynamic: degrees of freedom that move by forces and moments: along x, y, z, and about "
            "parallels of them through the centre of mass, rx, ry, rz (2D: rz alone). In 3D it turns about "
            "one of them or about all",
-       .standard = "x, y and z: it does not turn"},
+       .standard = "x, y and z: it does not turn",
+       .change = k_by_choice},
       takes, words);
   if (!found) return;
   rigid.free = {};
@@ -62,7 +63,6 @@ void read_turning_tables(OptionReader& in, int dim, double end, const Option& sp
   const std::string angle = rigid.name + "_angle";
   Option timed = spin;
   timed.meaning = "prescribed: its angular velocity";
-  timed.change = k_by_choice;
   read_timed(in, timed, true, spins, end, rigid.angular_velocity, rigid.angular_velocity_table);
   read_timed(in,
              {.name = angle,
@@ -149,7 +149,8 @@ void read_turning(OptionReader& in, int dim, double end, RigidConfig& rigid) {
           "prescribed: the velocity at which it turns about its centre of mass; dynamic: that at "
           "the start; in 2D one number, counter-clockwise",
       .unit = "rad/s",
-      .range = k_spin};
+      .range = k_spin,
+      .change = k_by_choice};
   read_spin(in, dim, spin, rigid.angular_velocity);
   if (rigid.motion == Motion::prescribed || in.listing()) read_turning_tables(in, dim, end, spin, rigid);
   read_moment_point(in, dim, rigid);
@@ -182,7 +183,7 @@ void check_turning(OptionReader& in, const Config& config, const MeshConfig& mes
     for (const std::string key : {"_moment", "_moment_table", "_inertia", "_centre_of_mass", "_moment_point"})
       if (in.given(rigid.name + key) && in.is_read(rigid.name + key) &&
           (rigid.motion == Motion::dynamic || key == "_centre_of_mass" || key == "_moment_point"))
-        in.reject(rigid.name + key, "a -" + rigid.name + beside + " beside it");
+        in.refuse(rigid.name + key, "a -" + rigid.name + beside + " beside it");
     return;
   }
   const std::string option = free ? rigid.name + "_free" : spin, none = free ? "no rotation" : "0";

@@ -69,6 +69,7 @@ class Stages(Staged):
         across = [3.0, 2.5] if dim == 2 else [3.0, 1.5, 2.5]
         self.bodies = ["left", "right", "top"][:draw.randint(1, 3)]
         self.rigids = draw.sample(["plate", "pile"], draw.randint(0, 2))
+        self.turning, self.degrees = [], "x,y,rz" if dim == 2 else "x,y,z,rx,ry,rz"
         zero, flat = [0.0] * dim, [0.0] * (dim - 2)
         boxes = {"left": ([0.0, *flat, 0.0], [1.5, *across[1:-1], 1.0]), "right": ([1.5, *flat, 0.0], [3.0, *across[1:-1], 1.0]),
                  "top": ([0.5, *flat, 1.0], [1.0, *across[1:-1], 1.5])}
@@ -85,6 +86,9 @@ class Stages(Staged):
             lower = [1.2 + 0.9 * k, *[0.3] * (dim - 2), 1.1]
             self.options += f"-{name}_shape box -{name}_lower {vector(lower)} -{name}_upper {vector(x + 0.6 for x in lower)}".split()
             self.options += draw.choice([[], [f"-{name}_friction", "0.3"]])
+            if draw.random() < 0.5:  # it turns, in stages that do not hold it
+                self.turning.append(name)
+                self.options += f"-{name}_motion dynamic -{name}_density 1800 -{name}_free {self.degrees}".split()
         self.stages = ["one", "two", "three", "four"][:draw.randint(2, 4)]
         self.steps = [draw.randint(*STEPS) for _ in self.stages]
         self.changes = [[]] + [self.some_changes() for _ in self.stages[1:]]
@@ -108,7 +112,12 @@ class Stages(Staged):
                 motion = draw.choice(["fixed", "prescribed", "dynamic"])
                 velocity = vector([draw.uniform(-0.3, 0.3) for _ in range(dim)])
                 found += [(f"{name}_motion", motion)] + [(f"{name}_velocity", velocity)] * (motion != "fixed")
-                found += [(f"{name}_density", "1800")] * (motion == "dynamic")
+                if name not in self.turning:
+                    found += [(f"{name}_density", "1800")] * (motion == "dynamic")
+                elif motion == "prescribed":
+                    found.append((f"{name}_angular_velocity", "0.5" if dim == 2 else "0.3,-0.2,0.1"))
+            elif name in self.turning and draw.random() < 0.5:
+                found.append((f"{name}_free", draw.choice([self.degrees, self.degrees[:3 + 2 * (dim - 2)]])))
             if draw.random() < 0.3:
                 found.append((f"{name}_friction", draw.choice(["0.1", "0.5"])))
         return found
@@ -139,6 +148,8 @@ class Stages(Staged):
         first = self.go("first", "-time_end", self.ends[0], "-checkpoint_interval", 1e3, options=self.plain)
         changed = {f"-{key}": value for key, value in self.changes[1]}
         options = {**dict(zip(self.plain[::2], self.plain[1::2])), **changed, "-time_end": f"{sum(self.steps[:2]) * DT:.12g}"}
-        listed = ["-restart_change", ",".join(key[1:] for key in changed)] if changed else []
+        untaken = [f"-{name}_{key}" for name in self.turning if options[f"-{name}_motion"] != "dynamic" for key in ("density", "free")]
+        options = {key: value for key, value in options.items() if key not in untaken}
+        listed = ["-restart_change", ",".join(key[1:] for key in [*changed, *untaken])] if changed else []
         again = self.go("first", "-restart", checkpoints(first)[-1], *listed, options=[word for pair in options.items() for word in pair])
         check_same_fields(again, staged, [*self.bodies, *self.rigids], "a restart in the place of a stage")
