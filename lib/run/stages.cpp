@@ -73,7 +73,8 @@ Config history_config(const Job& job) {
     for (std::size_t r = 0; r < stage.rigids.size(); ++r) {
       const RigidConfig& rigid = stage.rigids[r];
       if (rigid.motion == Motion::dynamic) all.rigids[r].motion = Motion::dynamic;
-      if (rigid.is_sprung()) all.rigids[r].stiffness = rigid.stiffness, all.rigids[r].viscosity = rigid.viscosity;
+      if (rigid.is_sprung())
+        all.rigids[r].stiffness = rigid.stiffness, all.rigids[r].viscosity = rigid.viscosity;
     }
   }
   return all;
