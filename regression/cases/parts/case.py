@@ -36,7 +36,9 @@ FALL = ("-rigid_bodies ell,floor -floor_shape half_plane -floor_point 0,1.9 -flo
         " -clay_young 1e5 -ell_motion dynamic -ell_density 2600 -ell_free x,y,rz -rigid_friction 0.4 -time_step 5e-4 -time_end 0.8"
         " -mesh_upper 4,4 ")
 PLACE = 1.4  # m, of the L over its drawing
-RUNS = {"polygon": WHOLE, "on_each_other": pair(("1.5,1.7", "2.5,2.1"), ("1.8,1.2", "2.2,1.7")),
+SITES = " -tee_contact sites"
+RUNS = {"polygon": WHOLE, "sites": WHOLE + SITES, "on_each_other_sites": pair(("1.5,1.7", "2.5,2.1"), ("1.8,1.2", "2.2,1.7")) + SITES,
+        "on_each_other": pair(("1.5,1.7", "2.5,2.1"), ("1.8,1.2", "2.2,1.7")),
         "overlap": pair(("1.5,1.7", "2.5,2.1"), ("1.8,1.2", "2.2,2")),
         "plate": "-tee_shape box -tee_lower 1.5,1.2 -tee_upper 2.5,1.6",
         "halves": pair(("1.5,1.2", "1.9,1.6"), ("1.9,1.2", "2.5,1.6")),
@@ -55,6 +57,7 @@ def check(runs):
     source = "the body as one polygon"
     for name in ("on_each_other", "overlap"):
         yield Row(f"force on a T of two boxes off that on the polygon, over the largest, {name}", off(runs, name, "polygon"), 0, 0.02, source)
+    yield Row("the same with contact at sites", off(runs, "on_each_other_sites", "sites"), 0, 1e-9, source, single=0.02)
     yield Row("force on a plate in two halves off that on the whole, over the largest", off(runs, "halves", "plate"), 0, 1e-9,
               "the whole plate", single=0.02)
     for column, unit in (("ell_x", "m"), ("ell_y", "m"), ("ell_angle", "rad")):
