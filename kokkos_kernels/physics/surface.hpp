@@ -176,27 +176,27 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to_part(const Surface<Dim>& body, 
   return out;
 }
 
-/// Distance to a body of several parts: that to the part that is nearest, or deepest round the point.
-template <int Dim, class Vertices>
-MPM_SAME_BITS_FUNCTION Distance<Dim> distance_to_parts(const Surface<Dim>& body, const Vertices& vertices,
-                                                       const Vector<double, Dim>& x) {
-  Distance<Dim> least = distance_to_part(vertices.parts(body.first), vertices, x);
-  MPM_ROLLED
-  for (int n = 1; n < body.count; ++n) {
-    const Distance<Dim> other = distance_to_part(vertices.parts(body.first + n), vertices, x);
-    if (other.value < least.value) least = other;
-  }
-  return least;
-}
-
-/// Signed distance of x [m from the mesh's lower corner, less the body's displacement]. vertices: of the
-/// polygons, or SurfaceTables, which sampled surfaces and parts take.
+/// Signed distance of x [m from the mesh's lower corner, less the body's displacement]; that to a body of
+/// several parts is that to the part which is nearest, or deepest round the point. vertices: of the polygons,
+/// or SurfaceTables, which sampled surfaces and parts take. One loop for one part and several keeps the
+/// kernels short.
 template <int Dim, class Vertices>
 KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const Vertices& vertices,
                                                  const Vector<double, Dim>& x) {
-  if constexpr (requires { vertices.parts; })
-    if (body.kind == SurfaceKind::parts) return distance_to_parts(body, vertices, x);
-  return distance_to_part(body, vertices, x);
+  if constexpr (!requires { vertices.parts; }) {
+    return distance_to_part(body, vertices, x);
+  } else {
+    const bool several = body.kind == SurfaceKind::parts;
+    const Surface<Dim>* part = several ? &vertices.parts(body.first) : &body;
+    const int count = several ? body.count : 1;
+    Distance<Dim> least{Kokkos::Experimental::infinity_v<double>, {}, false};
+    MPM_ROLLED
+    for (int n = 0; n < count; ++n) {
+      const Distance<Dim> other = distance_to_part(part[n], vertices, x);
+      if (n == 0 || other.value < least.value) least = other;
+    }
+    return least;
+  }
 }
 
 }  // namespace mpm
