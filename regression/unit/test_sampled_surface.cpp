@@ -4,6 +4,7 @@
 
 #include "ground_shapes.hpp"
 #include "input/geometry/rounded_surface.hpp"
+#include "input/geometry/thickness.hpp"
 #include "input/geometry/vectors.hpp"
 #include "physics/surface.hpp"
 #include "step/surface_input.hpp"
@@ -207,4 +208,24 @@ TEST_CASE("rounded edges of triangles are those of a box, and inner edges stay s
   const auto inner = rounded_ell.at({0.1, 0, -0.02}, guess);
   CHECK(std::abs(inner.value - 0.02) < 1e-9);
   CHECK(length_of(difference(inner.normal, {0, 0, -1})) < 1e-9);
+}
+
+TEST_CASE("thin bodies of triangles are found, and edges and tips do not count", "[sampled_surface]") {
+  const double most = 0.3;
+  const auto of = [&](const std::vector<Vec3>& corners) {
+    return thinnest_twentieth(*stl(corners).triangles, most);
+  };
+  const auto plate = of(box({0, 0, 0}, {2, 2, 0.1}));
+  REQUIRE(plate);
+  CHECK((plate->value >= 0.1 && plate->value <= 0.1 + most / 12 + 1e-12));
+  CHECK(std::min(std::abs(plate->place[2]), std::abs(plate->place[2] - 0.1)) < 1e-12);
+  CHECK_FALSE(of(box({0, 0, 0}, {1, 1, 1})));
+  CHECK_FALSE(of(ball({0, 0, 0}, 1, 4)));
+  // A fin on a block: a sixth of the surface is thin.
+  std::vector<Vec3> both = box({0, 0, 0}, {1, 1, 1});
+  const std::vector<Vec3> fin = box({2, 0, 0}, {2.05, 0.8, 0.8});
+  both.insert(both.end(), fin.begin(), fin.end());
+  const auto found = of(both);
+  REQUIRE(found);
+  CHECK((found->value < 0.1 && found->place[0] >= 2));
 }
