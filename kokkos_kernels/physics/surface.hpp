@@ -54,8 +54,8 @@ template <class Vertices>
 KOKKOS_INLINE_FUNCTION Distance<2> distance_to_polygon(const Vertices& vertices, int first, int count,
                                                        double x, double z, double round_off) {
   double least = Kokkos::Experimental::finite_max<double>::value;
-  Vector<double, 2> ways, faces;  // from the nearest places; normals of their edges
-  double turn = 0;                // twice the area: which way round the polygon goes
+  Vector<double, 2> ways{}, faces{};  // from the nearest places; normals of their edges
+  double turn = 0;                    // twice the area: which way round the polygon goes
   bool inside = false, turned = false;
   MPM_ROLLED
   for (int k = 0; k < count; ++k) {
