@@ -12,6 +12,7 @@ import numpy as np
 
 from mpm_regression.row import Row
 
+LONG = True
 G = 9.81
 
 
