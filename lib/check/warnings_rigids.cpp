@@ -9,6 +9,7 @@
 #include "common/text.hpp"
 #include "common/time_table.hpp"
 #include "input/geometry/shapes.hpp"
+#include "step/light_rigids.hpp"
 
 namespace mpm {
 namespace {
@@ -225,6 +226,15 @@ void warn_of_narrow_faces(const Config& config, const Way& way, Lines& lines) {
   }
 }
 
+void warn_of_lightness(const Config& config, const RigidConfig& rigid, Lines& lines) {
+  const Lightness of = lightness_of(config, rigid);
+  if (!of.is_light()) return;
+  lines.push_back(
+      formatted("warning: rigid %s has %.4g kg, less than %g times the soil of a layer of cells at its face, "
+                "%.4g kg: contact may throw it; smaller cells or a heavier body do not",
+                rigid.name.c_str(), of.mass, Lightness::k_layers, of.layer));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of_rigids(const Config& config) {
@@ -239,6 +249,7 @@ std::vector<std::string> warnings_of_rigids(const Config& config) {
     warn_of_drag(config, way, lines);
     warn_of_gradient(way.rigid, lines);
     warn_of_narrow_faces(config, way, lines);
+    warn_of_lightness(config, way.rigid, lines);
   }
   return lines;
 }

@@ -1,0 +1,30 @@
+#include "step/light_rigids.hpp"
+
+#include <algorithm>
+
+#include "common/revolution.hpp"
+#include "input/geometry/shapes.hpp"
+
+namespace mpm {
+
+Lightness lightness_of(const Config& config, const RigidConfig& rigid) {
+  Lightness out;
+  if (rigid.motion != Motion::dynamic || rigid.absent) return out;
+  const Bounds bounds = within(bounds_of(rigid.shape, config.mesh, config.dim), config.mesh, config.dim);
+  Vec3 edge{1, 1, 1};  // m
+  for (int d = 0; d < config.dim; ++d) edge[d] = bounds.upper[d] - bounds.lower[d];
+  const double middle = (bounds.lower[0] + bounds.upper[0]) / 2, ring = revolved_length(config, middle);
+  const double volume = shape_volume(rigid.shape, config.mesh, config.dim) * ring;
+  out.mass = rigid.mass.value_or(rigid.density * volume);
+  double face = 0, heaviest = 0;  // m2 (m in 2D), kg/m3
+  for (int d = 0; d < config.dim; ++d) {
+    double area = d == 0 ? revolved_length(config, bounds.upper[0]) : ring;
+    for (int k = 0; k < config.dim; ++k) area *= k == d ? 1 : edge[k];
+    face = std::max(face, area);
+  }
+  for (const BodyConfig& body : config.bodies) heaviest = std::max(heaviest, density_of(config, body));
+  out.layer = heaviest * face * config.mesh.spacing;
+  return out;
+}
+
+}  // namespace mpm

@@ -1,0 +1,21 @@
+#pragma once
+// Rigid bodies that are light against the soil that they touch.
+
+#include "mpm/config.hpp"
+
+namespace mpm {
+
+/// Mass of a rigid body, and of a layer of cells of the heaviest soil at the largest face of its bounds [kg].
+struct Lightness {
+  double mass = 0, layer = 0;
+
+  /// Contact at nodes that takes such a body as infinitely heavy throws it up: a disc of half a cell that
+  /// falls on clay begins to gain energy at a quarter of a layer, one of one and a half cells at a third.
+  static constexpr double k_layers = 1;
+  bool is_light() const { return mass < k_layers * layer; }
+};
+
+/// Lightness of a rigid body; one that no force moves is not light.
+Lightness lightness_of(const Config& config, const RigidConfig& rigid);
+
+}  // namespace mpm
