@@ -11,8 +11,6 @@
 namespace mpm {
 namespace {
 
-constexpr double k_flush = 1e-3;  // cells: nearer to a side of the mesh a body is on it
-
 /// The sphere around a body.
 void set_reach(const Config& config, const Shape& shape, PairBodyInput& body) {
   const MeshConfig& mesh = config.mesh;

@@ -15,7 +15,6 @@ namespace {
 constexpr double k_apart = 0.5;    // cells, between points of a surface at most
 constexpr double k_inward = 0.05;  // cells, from a point to the place inside at most
 constexpr double k_thin = 0.05;    // of the shortest edge of the bounds, likewise
-constexpr double k_flush = 1e-3;   // cells: nearer to a side of the mesh a body is on it
 
 /// Points of a surface that are in the mesh.
 class PointsInMesh {
