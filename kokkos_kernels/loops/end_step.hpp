@@ -94,7 +94,7 @@ struct EndStep {
     return {rigids.data(), forces.data(), movements.of(0), sums.data()};
   }
 
-  /// part: room(threads).
+  /// Does the end of a step. part: room(threads, shares), of which each force is summed in so many shares.
   template <bool MayTurn, int shares, class Team>
   KOKKOS_INLINE_FUNCTION void end(const Team& team, double* part) const {
     const int done = control().steps + 1;

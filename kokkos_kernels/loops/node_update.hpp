@@ -164,9 +164,9 @@ struct UpdateNodes {
     return node;
   }
 
-  /// Motion of a node after the step; bodies: the rigids; near: one of them may touch the node, which it does
-  /// not unless `touches`. Adds component k of the wrench on the rigid that is
-  /// number n near the slot to force[(n Wrench::size + k) cells], unless it is null.
+  /// Motion of a node after the step; bodies: the rigids; near: one of them may touch the node. Without
+  /// `touches` the kernel has no contact. Adds component k of the wrench on the rigid that is number n near
+  /// the slot to force[(n Wrench::size + k) cells], unless it is null.
   template <bool touches = true, class Sums>
   KOKKOS_INLINE_FUNCTION KinematicValues<T, Dim> kinematics(const Sums& sums, const Rigid<Dim>* bodies, int i,
                                                             const Coord<Dim>& at, bool near,

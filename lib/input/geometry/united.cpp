@@ -70,7 +70,7 @@ struct CellSums {
   }
 };
 
-/// What each two parts share in a box and no earlier part has, by the cells of a lattice.
+/// Solids that two parts share in a box and that no part before these two has, by the cells of a lattice.
 std::vector<MassProperties> shared_solids(const Shape& shape, const Bounds& box, int dim) {
   const int count = dim == 2 ? 500 : 60;  // in each direction
   Parts parts(shape.parts, dim, 0);
