@@ -230,9 +230,9 @@ void warn_of_lightness(const Config& config, const RigidConfig& rigid, Lines& li
   const Lightness of = lightness_of(config, rigid);
   if (!of.is_light()) return;
   lines.push_back(
-      formatted("warning: rigid %s has %.4g kg, less than %g times the soil of a layer of cells at its face, "
-                "%.4g kg: contact may throw it; smaller cells or a heavier body do not",
-                rigid.name.c_str(), of.mass, Lightness::k_layers, of.layer));
+      formatted("warning: rigid %s has %.4g kg, less than a layer of soil one cell thick at its face, "
+                "%.4g kg: contact may throw it up; take smaller cells or a heavier body",
+                rigid.name.c_str(), of.mass, of.layer));
 }
 
 }  // namespace

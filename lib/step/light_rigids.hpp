@@ -11,8 +11,7 @@ struct Lightness {
 
   /// Contact at nodes that takes such a body as infinitely heavy throws it up: a disc of half a cell that
   /// falls on clay begins to gain energy at a quarter of a layer, one of one and a half cells at a third.
-  static constexpr double k_layers = 1;
-  bool is_light() const { return mass < k_layers * layer; }
+  bool is_light() const { return mass < layer; }
 };
 
 /// Lightness of a rigid body; one that no force moves is not light.
