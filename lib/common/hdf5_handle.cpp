@@ -27,6 +27,12 @@ PetscErrorCode check_hdf5(const Hdf5Fault& fault, const std::string& path) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode check_hdf5(hid_t result, const std::string& path, const char* what) {
+  PetscFunctionBeginUser;
+  if (result < 0) PetscCall(check_hdf5(hdf5_fault(what), path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 void keep_hdf5_memory() {
   // Free lists of HDF5: bytes of all lists of a kind, and of one list; the last four are its defaults.
   constexpr int k_cache = 640 << 10, k_files = 2, k_kilo = 1024;

@@ -40,6 +40,8 @@ Hdf5Fault hdf5_fault(const std::string& what);
 
 /// A fault is an error that names the file; one of memory is PETSC_ERR_MEM.
 PetscErrorCode check_hdf5(const Hdf5Fault& fault, const std::string& path);
+/// Checks the result of a call of HDF5: a negative one is an error that names the file and its part.
+PetscErrorCode check_hdf5(hid_t result, const std::string& path, const char* what);
 
 /// HDF5 prints nothing in this scope; the caller reports failures from the results.
 class Quiet {

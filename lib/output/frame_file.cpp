@@ -15,29 +15,22 @@ namespace {
 
 constexpr long k_piece = 1 << 16;  // rows, at most
 
-/// Every HDF5 call passes here: a negative result is an error that names the file.
-PetscErrorCode check(hid_t result, const std::string& path, const char* what) {
-  PetscFunctionBeginUser;
-  if (result < 0) PetscCall(check_hdf5(hdf5_fault(what), path));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode write_attribute(hid_t where, const std::string& path, const char* name, hid_t type,
                                const void* value) {
   PetscFunctionBeginUser;
   Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  PetscCall(check(space.id, path, name));
+  PetscCall(check_hdf5(space.id, path, name));
   Handle attribute(H5Acreate2(where, name, type, space.id, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  PetscCall(check(attribute.id, path, name));
-  PetscCall(check(H5Awrite(attribute.id, type, value), path, name));
+  PetscCall(check_hdf5(attribute.id, path, name));
+  PetscCall(check_hdf5(H5Awrite(attribute.id, type, value), path, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode write_text(hid_t where, const std::string& path, const char* name, const std::string& text) {
   PetscFunctionBeginUser;
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  PetscCall(check(type.id, path, name));
-  PetscCall(check(H5Tset_size(type.id, text.size()), path, name));
+  PetscCall(check_hdf5(type.id, path, name));
+  PetscCall(check_hdf5(H5Tset_size(type.id, text.size()), path, name));
   PetscCall(write_attribute(where, path, name, type.id, text.data()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -70,10 +63,10 @@ PetscErrorCode create_field(hid_t group, const std::string& path, const Field& f
   PetscFunctionBeginUser;
   const hsize_t sizes[2] = {static_cast<hsize_t>(rows), static_cast<hsize_t>(field.components)};
   Handle space(H5Screate_simple(field.components == 1 ? 1 : 2, sizes, nullptr), H5Sclose);
-  PetscCall(check(space.id, path, field.name));
+  PetscCall(check_hdf5(space.id, path, field.name));
   *data =
       H5Dcreate2(group, field.name, file_type(field, precision), space.id, H5P_DEFAULT, layout, H5P_DEFAULT);
-  PetscCall(check(*data, path, field.name));
+  PetscCall(check_hdf5(*data, path, field.name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,8 +83,8 @@ PetscErrorCode write_field(hid_t group, const std::string& path, const Field& fi
   Handle data(-1, H5Dclose);
   PetscCall(create_field(group, path, field, count, precision, layout.id, &data.id));
   if (count > 0)
-    PetscCall(check(H5Dwrite(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path,
-                    field.name));
+    PetscCall(check_hdf5(H5Dwrite(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+                         path, field.name));
   PetscCall(write_unit(data.id, path, field.unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -101,9 +94,9 @@ PetscErrorCode reserve_whole(hid_t group, const std::string& path, Precision pre
   PetscFunctionBeginUser;
   const char* name = slab.field->name;
   Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  PetscCall(check(layout.id, path, name));
-  PetscCall(check(H5Pset_alloc_time(layout.id, H5D_ALLOC_TIME_EARLY), path, name));
-  PetscCall(check(H5Pset_fill_time(layout.id, H5D_FILL_TIME_NEVER), path, name));
+  PetscCall(check_hdf5(layout.id, path, name));
+  PetscCall(check_hdf5(H5Pset_alloc_time(layout.id, H5D_ALLOC_TIME_EARLY), path, name));
+  PetscCall(check_hdf5(H5Pset_fill_time(layout.id, H5D_FILL_TIME_NEVER), path, name));
   Handle data(-1, H5Dclose);
   PetscCall(create_field(group, path, *slab.field, slab.rows, precision, layout.id, &data.id));
   PetscCall(write_unit(data.id, path, slab.field->unit));
@@ -128,9 +121,11 @@ PetscErrorCode reserve_pieces(hid_t group, const std::string& path, Precision pr
     unsigned skipped = 0;
     haddr_t address = HADDR_UNDEF;
     hsize_t size = 0;
-    PetscCall(check(H5Dwrite_chunk(data.id, H5P_DEFAULT, slab.skipped, place, zeros.size(), zeros.data()),
-                    path, field.name));
-    PetscCall(check(H5Dget_chunk_info_by_coord(data.id, place, &skipped, &address, &size), path, field.name));
+    PetscCall(
+        check_hdf5(H5Dwrite_chunk(data.id, H5P_DEFAULT, slab.skipped, place, zeros.size(), zeros.data()),
+                   path, field.name));
+    PetscCall(
+        check_hdf5(H5Dget_chunk_info_by_coord(data.id, place, &skipped, &address, &size), path, field.name));
     slab.offset = static_cast<long long>(address);
     (void)::fallocate(descriptor, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, slab.offset, slab.size);
   }
@@ -150,7 +145,7 @@ PetscErrorCode write_group(hid_t file, const std::string& path, const ParticleSn
   PetscFunctionBeginUser;
   const char* name = particles.name.c_str();
   Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-  PetscCall(check(group.id, path, name));
+  PetscCall(check_hdf5(group.id, path, name));
   if (!particles.own_names.empty())
     PetscCall(write_text(group.id, path, k_own_parameter, join(particles.own_names, ",")));
   for (const Field& field : frame_fields()) {
@@ -195,10 +190,10 @@ PetscErrorCode create_in_memory(const std::string& path, hid_t* file) {
   constexpr size_t k_growth = 4 << 20;  // bytes
   PetscFunctionBeginUser;
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  PetscCall(check(access.id, path, "access"));
-  PetscCall(check(H5Pset_fapl_core(access.id, k_growth, /*backing_store*/ false), path, "access"));
+  PetscCall(check_hdf5(access.id, path, "access"));
+  PetscCall(check_hdf5(H5Pset_fapl_core(access.id, k_growth, /*backing_store*/ false), path, "access"));
   *file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id);
-  PetscCall(check(*file, path, "creation"));
+  PetscCall(check_hdf5(*file, path, "creation"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -211,11 +206,11 @@ PetscErrorCode frame_image(const std::string& path, const Snapshot& snapshot, Pr
   Handle file(-1, H5Fclose);
   PetscCall(create_in_memory(path, &file.id));
   PetscCall(write_groups(file.id, path, snapshot, precision, style));
-  PetscCall(check(H5Fflush(file.id, H5F_SCOPE_GLOBAL), path, "flush"));
+  PetscCall(check_hdf5(H5Fflush(file.id, H5F_SCOPE_GLOBAL), path, "flush"));
   const ssize_t size = H5Fget_file_image(file.id, nullptr, 0);
-  PetscCall(check(size, path, "size"));
+  PetscCall(check_hdf5(size, path, "size"));
   image->resize(static_cast<size_t>(size));
-  PetscCall(check(H5Fget_file_image(file.id, image->data(), image->size()), path, "image"));
+  PetscCall(check_hdf5(H5Fget_file_image(file.id, image->data(), image->size()), path, "image"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -253,15 +248,15 @@ PetscErrorCode pack_slab(const std::string& path, const std::vector<double>& val
   Handle layout(layout_of(piece, field.components, compression), H5Pclose);
   PetscCall(create_field(file.id, path, field, piece, single ? Precision::single : Precision::double_,
                          layout.id, &data.id));
-  PetscCall(check(H5Dwrite(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), path,
-                  field.name));
-  PetscCall(check(H5Dflush(data.id), path, field.name));
+  PetscCall(check_hdf5(H5Dwrite(data.id, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+                       path, field.name));
+  PetscCall(check_hdf5(H5Dflush(data.id), path, field.name));
   const hsize_t place[2] = {0, 0};
   hsize_t size = 0;
-  PetscCall(check(H5Dget_chunk_storage_size(data.id, place, &size), path, field.name));
+  PetscCall(check_hdf5(H5Dget_chunk_storage_size(data.id, place, &size), path, field.name));
   bytes->resize(size);
-  PetscCall(
-      check(H5Dread_chunk(data.id, H5P_DEFAULT, place, &slab->skipped, bytes->data()), path, field.name));
+  PetscCall(check_hdf5(H5Dread_chunk(data.id, H5P_DEFAULT, place, &slab->skipped, bytes->data()), path,
+                       field.name));
   slab->size = static_cast<long long>(size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -273,7 +268,7 @@ PetscErrorCode lay_out_frame(const std::string& path, const Snapshot& snapshot, 
   PetscCall(open_layout(&name, descriptor));
   Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   ::unlink(name.c_str());
-  PetscCall(check(file.id, path, "creation"));
+  PetscCall(check_hdf5(file.id, path, "creation"));
   Reserve reserve{*slabs, *descriptor};
   PetscCall(write_groups(file.id, path, snapshot, precision, style, &reserve));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -5,22 +5,16 @@
 namespace mpm {
 namespace {
 
-PetscErrorCode check(hid_t result, const std::string& path, const char* what) {
-  PetscFunctionBeginUser;
-  if (result < 0) PetscCall(check_hdf5(hdf5_fault(what), path));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /// Writes rows of three numbers.
 PetscErrorCode write_rows(hid_t group, const std::string& path, const char* name, std::size_t rows,
                           hid_t file_type, hid_t type, const void* values, hid_t* data) {
   PetscFunctionBeginUser;
   const hsize_t sizes[2] = {rows, 3};
   Handle space(H5Screate_simple(2, sizes, nullptr), H5Sclose);
-  PetscCall(check(space.id, path, name));
+  PetscCall(check_hdf5(space.id, path, name));
   *data = H5Dcreate2(group, name, file_type, space.id, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  PetscCall(check(*data, path, name));
-  PetscCall(check(H5Dwrite(*data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path, name));
+  PetscCall(check_hdf5(*data, path, name));
+  PetscCall(check_hdf5(H5Dwrite(*data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -43,7 +37,7 @@ PetscErrorCode write_surface(hid_t file, const std::string& path, const Particle
   if (rigid.triangles.empty()) PetscFunctionReturn(PETSC_SUCCESS);
   const std::string name = surface_group(rigid.name);
   Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-  PetscCall(check(group.id, path, name.c_str()));
+  PetscCall(check_hdf5(group.id, path, name.c_str()));
   Handle vertices(-1, H5Dclose), triangles(-1, H5Dclose);
   PetscCall(write_rows(group.id, path, "vertices", rigid.vertices.size() / 3, H5T_IEEE_F64LE,
                        H5T_NATIVE_DOUBLE, rigid.vertices.data(), &vertices.id));

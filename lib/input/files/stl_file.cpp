@@ -33,10 +33,7 @@ bool is_binary(std::string_view text) {
   return text.size() >= k_header && text.size() == k_header + k_triangle * std::size_t(count_of(text));
 }
 
-bool is_obj(const std::string& path) {
-  constexpr std::string_view k_end = ".obj";
-  return path.size() > k_end.size() && lower_case(path.substr(path.size() - k_end.size())) == k_end;
-}
+bool is_obj(const std::string& path) { return lower_case(path).ends_with(".obj"); }
 
 bool is_ascii(std::string_view text) {
   return lower_case(text.substr(0, 5)) == "solid" &&

@@ -16,7 +16,7 @@ Bounds common(const Bounds& a, const Bounds& b, int dim) {
   return out;
 }
 
-/// Shapes that are asked whether they hold a point.
+/// Tests of the parts of a union for points.
 class Parts {
  public:
   Parts(const std::vector<Shape>& parts, int dim, double slack) : up_(dim - 1) {
@@ -32,8 +32,8 @@ class Parts {
   std::vector<Region> regions_;
 };
 
-/// Sums over cells of a lattice that are in a solid, of numbers without round-off: twice the coordinates of
-/// their middles, in cells.
+/// Sums over the cells of a lattice whose middles are in a solid. The numbers have no round-off: twice the
+/// coordinates of the middles, in cells.
 struct CellSums {
   double count = 0;
   std::array<double, 3> first{};
@@ -54,7 +54,8 @@ struct CellSums {
     for (int d = 0; d < dim; ++d) {
       of.centre[d] = lower[d] + edge[d] * first[d] / count / 2;
       const int next = (d + 1) % 3;
-      const double one = 1.0 / 3;  // of a cell itself, for its twice as long edge
+      const double one =
+          1.0 / 3;  // mean square of a cell about its middle, in quarters of the square of its edge
       spread[d] = edge[d] * edge[d] / 4 * (second[d] / count - first[d] / count * first[d] / count + one);
       if (next < dim)
         spread[3 + d] =
@@ -132,7 +133,7 @@ struct Sum {
   }
 };
 
-/// An end of a box or a cylinder, that may be moved outwards: lattice points of it.
+/// End of a box or a cylinder, which may be moved outwards.
 struct End {
   int axis;
   bool upper;
