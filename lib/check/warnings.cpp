@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "check/alike.hpp"
 #include "check/warnings_rigids.hpp"
 #include "check/warnings_soil.hpp"
 #include "common/f_bar.hpp"
@@ -275,7 +276,7 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
     warn_of_walls(config, rigid, bounds, lines);
   }
   for (const std::string& line : warnings_of_rigids(config)) lines.push_back(line);
-  return lines;
+  return without_alike(lines);
 }
 
 }  // namespace mpm

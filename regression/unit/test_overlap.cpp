@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "check/alike.hpp"
 #include "check/overlap.hpp"
 #include "check/warnings.hpp"
 #include "input/files/particle_file.hpp"
@@ -68,6 +69,16 @@ std::vector<double> overlaps(const Config& config) {
 bool any_has(const std::vector<std::string>& lines, const std::string& text) {
   return std::any_of(lines.begin(), lines.end(),
                      [&](const auto& line) { return line.find(text) != std::string::npos; });
+}
+
+TEST_CASE("warnings of many rigid bodies that are alike are one line", "[warnings]") {
+  std::vector<std::string> lines{"warning: -gravity: 0", "warning: rigid far is held"};
+  for (int n = 0; n < 5; ++n)
+    lines.push_back("warning: rigid b" + std::to_string(n) + " is 0." + std::to_string(n + 1) + " m across");
+  const std::vector<std::string> few = without_alike(lines);
+  CHECK(few == std::vector<std::string>{lines[0], lines[1], lines[2] + "; and so for 4 other rigid bodies"});
+  lines.resize(5);
+  CHECK(without_alike(lines) == lines);
 }
 
 }  // namespace
