@@ -79,8 +79,11 @@ std::vector<int> own_side_rows(const State<Space, T, Dim>& s) {
       inside = inside && at[d] >= -1 && at[d] <= s.grid.cells[d] + 1;
     }
     const unsigned sides = sides_of(s.grid, at) & s.sides.mask;
-    for (int n = 0; n < 2 * Dim && inside; ++n)
-      if (sides >> n & 1u) own[s.sides.host[n].row(at)] = 1;
+    for (int n = 0; n < 2 * Dim && inside; ++n) {
+      // The node beyond the side has the same row, and may be another rank's.
+      const bool on = at[n / 2] == (n % 2 == 0 ? 0 : s.grid.cells[n / 2]);
+      if (on && (sides >> n & 1u)) own[s.sides.host[n].row(at)] = 1;
+    }
   }
   return own;
 }
