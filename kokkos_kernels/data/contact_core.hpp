@@ -7,6 +7,7 @@
 #include "data/contact_sites.hpp"
 #include "data/contact_slots.hpp"
 #include "data/core.hpp"
+#include "data/light_rigids.hpp"
 #include "data/rigid.hpp"
 #include "data/rigid_links.hpp"
 #include "data/rigid_pairs.hpp"
@@ -24,6 +25,7 @@ struct ContactCore : Core<Space, T, Dim> {
   ContactSites<Space, T, Dim> at_sites;
   RigidPairs<Space, Dim> pairs;               // rigid bodies that may touch each other
   RigidLinks<Space, Dim> links;               // joints, springs and dashpots of rigid bodies
+  LightRigids<Space, Dim> light_rigids;       // and how contact takes them
   Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step
   bool forces_summed =
       false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them

@@ -10,6 +10,7 @@
 #include "loops/particle_to_node.hpp"
 #include "loops/window.hpp"
 #include "physics/contact.hpp"
+#include "physics/light_touch.hpp"
 #include "physics/local_damping.hpp"
 #include "physics/sides.hpp"
 #include "physics/surface.hpp"
@@ -37,12 +38,15 @@ template <class Space, class T, int Dim, bool acts = true>
 struct UpdateNodes {
   using S = SoilTerms<Dim>;
   static constexpr int cells = Patch<Dim>::cells;
+  /// Nodes whose systems of light bodies are apart in memory: those of a slot, each the work of a thread.
+  static constexpr int light_stride = is_device<Space> ? cells : 1;
   int value_count;  // of the wrenches on the rigids near a slot
   NodePlaces<Space, T, Dim> places;
   Nodes<Space, T, Dim> nodes;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   SurfaceTables<typename Space::memory_space, Dim> vertices;
   NearBodies<Space> near_bodies;
+  const LightMotion<Dim>* light;  // velocity of light rigids, by number; null where there are none
   Kokkos::View<double*, typename Space::memory_space> forces;
   Kokkos::View<std::uint64_t*, typename Space::memory_space> owned_nodes;
   Vector<T, Dim> g;
@@ -193,6 +197,25 @@ struct UpdateNodes {
     return kinematics;
   }
 
+  /// Adds what contact at node i does to the light bodies near it to system[0], system[light_stride] ...,
+  /// as LightTerms for each body near the slot. Nothing is kept. damps: with local damping.
+  template <class Sums>
+  KOKKOS_INLINE_FUNCTION void rehearse(const Sums& sums, int i, bool damps, double* system) const {
+    Coord<Dim> at = coord_of<Dim>(i);
+    const Coord<Dim> from = places.origin(i / cells);
+    for (int d = 0; d < Dim; ++d) at[d] += from[d];
+    const Node node = node_of(sums, i, at, true);
+    if (!(node.inv_m > 0 && node.touching > 0)) return;
+    Vector<T, Dim> v_old, a, v, brake;
+    accelerate(node.soil, node.inv_m, v_old, a);
+    if (damps) {
+      advanced<true, true>(sums, rigids.data(), node, v_old, a, true, system, brake);
+    } else {
+      for (int d = 0; d < Dim; ++d) v[d] = v_old[d] + a[d] * dt;
+      constrain<true, true>(sums, rigids.data(), node, v_old, v, false, system);
+    }
+  }
+
   /// Acceleration a of a node as contact and sides leave it, without damping [m/s2].
   template <bool touches = true, class Sums>
   KOKKOS_INLINE_FUNCTION Vector<T, Dim> held_acceleration(const Sums& sums, const Rigid<Dim>* bodies,
@@ -209,7 +232,8 @@ struct UpdateNodes {
   /// local damping. It brakes the acceleration that contact and sides leave, which a rehearsal without
   /// damping finds: at rest there is none, and each reaction is that of the soil. ends: the step itself,
   /// after which walls, sides and friction keep what they took; else the rehearsal alone, for `brake`.
-  template <bool touches = true, class Sums>
+  /// of_light: the step is a rehearsal for light bodies, and `force` their system.
+  template <bool touches = true, bool of_light = false, class Sums>
   KOKKOS_INLINE_FUNCTION Vector<T, Dim> advanced(const Sums& sums, const Rigid<Dim>* bodies, const Node& node,
                                                  const Vector<T, Dim>& v_old, const Vector<T, Dim>& a,
                                                  bool ends, double* force, Vector<T, Dim>& brake) const {
@@ -220,12 +244,12 @@ struct UpdateNodes {
     Vector<T, Dim> v = v_old;
     if (!ends) return v;
     for (int d = 0; d < Dim; ++d) v[d] += (a[d] - brake[d]) * dt;  // Eq. (9)
-    constrain<touches>(sums, bodies, node, v_old, v, true, force);
+    constrain<touches, of_light>(sums, bodies, node, v_old, v, !of_light, force);
     return v;
   }
 
   /// Applies walls, sides that act and contact to the velocity v of a node.
-  template <bool touches, class Sums>
+  template <bool touches, bool of_light = false, class Sums>
   KOKKOS_INLINE_FUNCTION void constrain(const Sums& sums, const Rigid<Dim>* bodies, const Node& node,
                                         const Vector<T, Dim>& v_old, Vector<T, Dim>& v, bool keeps,
                                         double* force) const {
@@ -236,8 +260,11 @@ struct UpdateNodes {
     for (int n = 0; touches && n < node.touching; ++n) {
       const int r = near_bodies.body(node.i / cells, n);
       if (r < 0) break;
+      constexpr int system = LightTerms<Dim>::size;
+      const int numbers = of_light ? system * light_stride : wrench() * cells;
       if (!bodies[r].law.at_sites)
-        touch(sums, node, bodies[r], r, n, v, keeps, force == nullptr ? force : force + n * wrench() * cells);
+        touch<of_light>(sums, node, bodies[r], r, n, v, keeps,
+                        force == nullptr ? force : force + n * numbers);
     }
     if constexpr (acts)
       if (node.acting != 0 && node.touching > 0)
@@ -285,8 +312,8 @@ struct UpdateNodes {
   }
 
   /// Contact with rigid r, number n near the slot; adds the force of the soil on it (Eq. 10) to force[0],
-  /// force[cells] ..., unless it is null. keeps: friction uses up normal impulse.
-  template <class Sums>
+  /// force[cells] ..., unless it is null. keeps: friction uses up normal impulse. of_light: as in advanced.
+  template <bool of_light = false, class Sums>
   KOKKOS_INLINE_FUNCTION void touch(const Sums& sums, const Node& node, const Rigid<Dim>& rigid, int r, int n,
                                     Vector<T, Dim>& v, bool keeps, double* force) const {
     T given[RigidTerms<Dim>::size] = {};  // read before the test of the rigid, to hide the latency
@@ -295,7 +322,13 @@ struct UpdateNodes {
     Opponent<T, Dim> other;
     Vector<T, Dim> boundary;
     const auto place = place_at(node.at);
-    const Vector<double, Dim> velocity = rigid.motion.template velocity_at<acts>(place);
+    Vector<double, Dim> velocity = rigid.motion.template velocity_at<acts>(place);
+    if constexpr (acts)
+      if (light != nullptr && light[r].light) {
+        const bool for_damping = !keeps && !of_light;  // held_acceleration
+        const Twist<Dim>& twist = for_damping ? light[r].undamped : light[r].end;
+        velocity = RigidMotion<Dim>{rigid.motion.pose, twist.velocity, twist.spin}.velocity_at(place);
+      }
     for (int d = 0; d < Dim; ++d) {
       other.velocity[d] = static_cast<T>(velocity[d]);
       boundary[d] = node.boundary[BoundaryTerms<Dim>::area + d];
@@ -338,6 +371,10 @@ struct UpdateNodes {
       interface.pressed = {nodes.impulse(row + ImpulseTerms::sum, node.i),
                            nodes.impulse(row + ImpulseTerms::weight, node.i),
                            nodes.impulse(row + ImpulseTerms::store, node.i) * node.inv_m};
+      if constexpr (of_light)
+        interface.pressed = {interface.pressed.sum * kept_share(ImpulseTerms::sum, fresh),
+                             interface.pressed.weight * kept_share(ImpulseTerms::weight, fresh),
+                             interface.pressed.store * kept_share(ImpulseTerms::store, fresh)};
       interface.fresh = fresh;
     }
     const Vector<T, Dim> change = contact_correction(v, other, interface);
@@ -348,11 +385,16 @@ struct UpdateNodes {
     }
     for (int d = 0; d < Dim; ++d) {
       v[d] += change[d];
-      if (force != nullptr)
+      if (force != nullptr && !of_light)
         force[(Wrench<Dim>::force + d) * cells] -= static_cast<double>(m_i) * change[d] * inv_dt;
     }
     if constexpr (acts)
-      if (force != nullptr && turns && rigid.motion.pose.turns) add_moment(rigid, place, m_i, change, force);
+      if (force != nullptr && !of_light && turns && rigid.motion.pose.turns)
+        add_moment(rigid, place, m_i, change, force);
+    if constexpr (of_light)
+      if (light[r].open)
+        add_touch(Touch<T, Dim>{other.normal, change, m_i, interface.stopped, interface.held},
+                  rigid.motion.pose, place, light_stride, force);
   }
 
   /// Adds the moment about the centre of a rigid of the force that changes a node's velocity (touch).
@@ -453,6 +495,7 @@ UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, d
       .rigids = s.rigids,
       .vertices = s.vertices,
       .near_bodies = s.contact.near,
+      .light = s.light_rigids.in_use ? s.light_rigids.motions.data() : nullptr,
       .forces = s.contact.forces,
       .owned_nodes = s.owned_nodes,
       .g = {},

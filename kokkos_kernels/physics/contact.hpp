@@ -90,6 +90,7 @@ struct Interface {
   Pressed<T> pressed{};  // m/s: normal impulses over nodal mass
   T gap_scaling = 1;     // -, fraction of the normal correction
   bool separates = true;
+  T stopped = 0, held = 0;  // -, fractions of the approach and of the slip that the contact takes away
 };
 
 /// Correction dV of the soil's velocity v at a node. No soil moves into the opponent. Shear acts while it
@@ -122,6 +123,10 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
   }
   const T hold = other.share * speed;  // change of the soil's velocity that ends the slip
   const T factor = largest >= hold ? T(1) : largest / hold;
+  interface.stopped = approach > 0 || !interface.separates
+                          ? other.share * (other.within_soil ? T(0) : interface.gap_scaling)
+                          : T(0);
+  interface.held = other.share * factor;
   if (interface.friction > 0) interface.pressed.store -= factor * hold / interface.friction;
   for (int d = 0; d < Dim; ++d) change[d] = -stop * n[d] - factor * (other.share * slip[d]);
   return change;

@@ -185,6 +185,8 @@ void make_room_for_contact(ContactCore<Space, T, Dim>& s) {
     ensure(s.at_sites.gaps, nodes * k_sites<Dim> * width);
     ensure(s.at_sites.sums, nodes);
   }
+  if (s.light_rigids.in_use)
+    ensure(s.light_rigids.of_slots, std::size_t(s.contact.count) * LightTerms<Dim>::size * width);
   ensure(s.contact.forces, 2 * std::size_t(s.contact.count) * Wrench<Dim>::size * width);
 }
 

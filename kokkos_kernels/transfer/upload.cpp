@@ -38,6 +38,18 @@ void set_turning(const RigidTurning& in, Rigid<Dim>& rigid) {
     rigid.momentum = momentum_of(turning, motion.pose.rotation, motion.spin);
 }
 
+template <class Space, int Dim>
+void upload_light_rigids(const std::vector<RigidInput>& rigids, LightRigids<Space, Dim>& to) {
+  const auto is_light = [](const RigidInput& rigid) { return rigid.light; };
+  to.in_use = std::any_of(rigids.begin(), rigids.end(), is_light);
+  fill_view(to.motions, "mpm::light_motions", static_cast<int>(rigids.size()), [&](int r) {
+    LightMotion<Dim> motion{};
+    motion.light = rigids[r].light;
+    return motion;
+  });
+  to.sums = decltype(to.sums)("mpm::light_sums", to.in_use ? LightTerms<Dim>::size * rigids.size() + 1 : 0);
+}
+
 template <class Space, class T, int Dim>
 void upload_rigids(ContactCore<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut,
                    Fault& fault) {
@@ -217,6 +229,7 @@ Fault upload(ContactCore<Space, T, Dim>& s, const GridInput& grid,
   s.rigid_force = decltype(s.rigid_force)("mpm::rigid_force", Wrench<Dim>::size * rigids.size());
   upload_soil(s, materials, bodies, scratch_of_rigids<Space, T, Dim>(rigids), fault);
   upload_rigids(s, rigids, k_rigid_cut, fault);
+  upload_light_rigids(rigids, s.light_rigids);
   begin_near_bodies<Space, T, Dim>(rigids, grid.spacing, s.contact.near);
   if (fault.kind == FaultKind::none) find_parts(s);
   return fault;

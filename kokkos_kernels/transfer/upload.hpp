@@ -91,6 +91,7 @@ struct RigidInput {
   std::array<double, 3> velocity{};  // m/s
   std::array<double, 3> force{};     // N, external and weight
   bool dynamic = false;
+  bool light = false;          // against the soil, so that contact at nodes solves for its velocity
   bool timed = false;          // its velocity follows a table
   std::array<bool, 3> held{};  // no force moves it along these axes
   RigidTurning turning;        // where it may turn

@@ -226,9 +226,10 @@ void warn_of_narrow_faces(const Config& config, const Way& way, Lines& lines) {
   }
 }
 
+/// Light bodies that contact takes as infinitely heavy: at sites, or where a joint or a spring acts.
 void warn_of_lightness(const Config& config, const RigidConfig& rigid, Lines& lines) {
   const Lightness of = lightness_of(config, rigid);
-  if (!of.is_light()) return;
+  if (!of.is_light() || solves_for_velocity(config, rigid)) return;
   lines.push_back(
       formatted("warning: rigid %s has %.4g kg, less than a layer of soil one cell thick at its face, "
                 "%.4g kg: contact may throw it up; take smaller cells or a heavier body",

@@ -74,14 +74,32 @@ PetscErrorCode Decomposition<Space, T, Dim>::add_forces(State_& s) {
   // sums the forces without waiting for the inner patches.
   const Space& space = sent_ahead() ? side_.space() : s.space;
   sum_forces(s, space);
-  const auto sums = Kokkos::create_mirror_view(s.rigid_force);
-  copy(space, sums, s.rigid_force);
-  space.fence("mpm::add_forces");
+  PetscCall(add_numbers(s.rigid_force, space, s.space));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode Decomposition<Space, T, Dim>::add_light_sums(State_& s, const Space& stream, bool* open) {
+  PetscFunctionBeginUser;
+  double count = 0;
+  PetscCall(add_numbers(s.light_rigids.sums, stream, stream, &count));
+  *open = count > 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode Decomposition<Space, T, Dim>::add_numbers(const Kokkos::View<double*, Memory>& numbers,
+                                                         const Space& from, const Space& to, double* last) {
+  PetscFunctionBeginUser;
+  const auto sums = Kokkos::create_mirror_view(numbers);
+  copy(from, sums, numbers);
+  from.fence("mpm::add_numbers");
   clock_.pause();
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.extent(0)), MPI_DOUBLE, MPI_SUM, comm_));
   clock_.go_on();
-  copy(s.space, s.rigid_force, sums);
+  copy(to, numbers, sums);
+  if (last != nullptr) *last = sums(sums.extent(0) - 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,13 +130,15 @@ std::size_t Decomposition<Space, T, Dim>::memory() const {
          bytes(lists_.begin) + bytes(lists_.source);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                               \
-  template PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm, const PartitionConfig&,      \
-                                                              const Owners&, State<Space, T, Dim>&); \
-  template void Decomposition<Space, T, Dim>::send_owners_to_device();                               \
-  template PetscErrorCode Decomposition<Space, T, Dim>::add_forces(State<Space, T, Dim>&);           \
-  template RankReport Decomposition<Space, T, Dim>::report(const State<Space, T, Dim>&) const;       \
-  template std::string Decomposition<Space, T, Dim>::halo_words(const State<Space, T, Dim>&) const;  \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                      \
+  template PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm, const PartitionConfig&,             \
+                                                              const Owners&, State<Space, T, Dim>&);        \
+  template void Decomposition<Space, T, Dim>::send_owners_to_device();                                      \
+  template PetscErrorCode Decomposition<Space, T, Dim>::add_forces(State<Space, T, Dim>&);                  \
+  template PetscErrorCode Decomposition<Space, T, Dim>::add_light_sums(State<Space, T, Dim>&, const Space&, \
+                                                                       bool*);                              \
+  template RankReport Decomposition<Space, T, Dim>::report(const State<Space, T, Dim>&) const;              \
+  template std::string Decomposition<Space, T, Dim>::halo_words(const State<Space, T, Dim>&) const;         \
   template std::size_t Decomposition<Space, T, Dim>::memory() const;
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

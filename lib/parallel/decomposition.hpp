@@ -86,6 +86,9 @@ class Decomposition {
   PetscErrorCode add_present_soil(State_& s);
   /// The sum over ranks of the forces on dynamic rigids.
   PetscErrorCode add_forces(State_& s);
+  /// The sum over ranks of the systems of light rigids, which are made on `stream`. open: the solution of
+  /// some rigid goes on, on all ranks or on none.
+  PetscErrorCode add_light_sums(State_& s, const Space& stream, bool* open);
   /// The movement bound of all ranks some steps ago (GlobalBound::k_late).
   PetscErrorCode look_back(bool* known, BoundReport* all) { return bound_.last_but_one(known, all); }
   /// Call it once a step. Whether a rebuild is due now that was already due in the checkpoint of a restart.
@@ -123,6 +126,10 @@ class Decomposition {
 
  private:
   using Memory = typename Space::memory_space;
+  /// The sum over ranks of numbers that are made on the stream `from`, for the stream `to`. last: the last of
+  /// the sums.
+  PetscErrorCode add_numbers(const Kokkos::View<double*, Memory>& numbers, const Space& from, const Space& to,
+                             double* last = nullptr);
   /// Memory of the host that a device writes to.
   using Staging = std::conditional_t<is_device<Space>, Kokkos::SharedHostPinnedSpace, Memory>;
   /// Fields that travel together, next to each other in an entry.

@@ -8,6 +8,7 @@
 #include "common/revolution.hpp"
 #include "input/geometry/shapes.hpp"
 #include "physics/materials/any.hpp"
+#include "step/light_rigids.hpp"
 #include "step/rigid_inertia.hpp"
 #include "step/surface_input.hpp"
 #include "step/water.hpp"
@@ -138,6 +139,7 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
   if (config.geometry == Geometry::axisymmetric) in.held[0] = true;
   for (int d = 0; d < config.dim; ++d) in.held[d] = in.held[d] || (in.dynamic && !rigid.free[d]);
   in.turning = turning_of(config, rigid, in);
+  in.light = solves_for_velocity(config, rigid);
   set_contact(config, rigid, &in);
   return in;
 }

@@ -17,4 +17,8 @@ struct Lightness {
 /// Lightness of a rigid body; one that no force moves is not light.
 Lightness lightness_of(const Config& config, const RigidConfig& rigid);
 
+/// Whether contact takes a light rigid body with its velocity at the end of the step. It does so at nodes,
+/// and where no joint or spring acts on the body.
+bool solves_for_velocity(const Config& config, const RigidConfig& rigid);
+
 }  // namespace mpm

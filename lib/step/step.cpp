@@ -4,6 +4,7 @@
 
 #include "functions/energy_works.hpp"
 #include "functions/find_strays.hpp"
+#include "functions/light_rigids.hpp"
 #include "functions/link_rigids.hpp"
 #include "functions/rigid_pairs.hpp"
 #include "functions/split_patches.hpp"
@@ -72,7 +73,7 @@ struct Step {
     PetscCall(run(StepPhase::soil_to_nodes, [&] { sum_soil(stream); }));
     if (ranks) PetscCall(ranks->add_soil(s, stream));
     PetscCall(complete_nodes(stream));
-    PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt, stream); }));
+    PetscCall(run(StepPhase::nodes, [&] { return update_nodes_on(stream); }));
     if (parted) overlap->join(s.space);
     if (parted && !ranks) sum_forces(s, stream);
     PetscCall(run(StepPhase::particles, [&] { update_patches_and(ends); }));
@@ -91,7 +92,7 @@ struct Step {
     PetscCall(run(StepPhase::soil_to_nodes, [&] { return send_soil(); }));
     PetscCall(ranks->add_soil(s, stream));
     PetscCall(complete_nodes(stream));
-    PetscCall(run(StepPhase::nodes, [&] { update_nodes(s, dt, stream); }));
+    PetscCall(run(StepPhase::nodes, [&] { return update_nodes_on(stream); }));
     if (parted) overlap->join(s.space);
     if (parted && moves && !ranks->forces_shared()) sum_forces(s, stream);
     PetscCall(
@@ -164,10 +165,37 @@ struct Step {
     if (wants_split(s) && s.split.parts.empty()) split_patches(s, stream);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  /// The velocity at the end of the step of light rigid bodies. All ranks do the same rounds, also where the
+  /// steps of one are paused.
+  PetscErrorCode solve_for_light(bool damps, const Space& stream) const {
+    PetscFunctionBeginUser;
+    begin_light_rigids(s, dt, damps, stream);
+    for (int n = 0; n < k_light_rounds; ++n) {
+      bool open = true;
+      sum_light_rigids(s, dt, damps, stream);
+      if (ranks)
+        PetscCall(ranks->add_light_sums(s, stream, &open));
+      else
+        open = light_rigids_open(s);
+      if (!open) break;
+      solve_light_rigids(s, dt, damps, stream);
+    }
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Function 4, with the velocity at the end of the step of rigid bodies that are light.
+  PetscErrorCode update_nodes_on(const Space& stream) const {
+    PetscFunctionBeginUser;
+    if (s.light_rigids.in_use) {
+      PetscCall(solve_for_light(false, stream));
+      if (s.scheme.damping > 0) PetscCall(solve_for_light(true, stream));
+    }
+    update_nodes(s, dt, stream);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   /// Function 4, contact at sites, and the work of loads and their areas.
   PetscErrorCode update_all_nodes() const {
     PetscFunctionBeginUser;
-    update_nodes(s, dt);
+    PetscCall(update_nodes_on(s.space));
     if (s.at_sites.in_use) PetscCall(contact_at_sites(s, dt, ranks));
     if (s.loads.in_use()) follow_surfaces(s, s.loads, s.energy, dt);
     PetscFunctionReturn(PETSC_SUCCESS);

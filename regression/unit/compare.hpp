@@ -58,6 +58,22 @@ int run_steps(State<Space, T, Dim>& s, double dt, int n) {
   return rebuilds;
 }
 
+/// Momentum of soil particles and rigids.
+template <class Space, class T, int Dim>
+Vector<double, Dim> total_momentum(const State<Space, T, Dim>& s) {
+  const auto velocity = on_host(s.soil.points.velocity);
+  const auto body = on_host(s.soil.points.body);
+  const auto bodies = on_host(s.soil.points.bodies);
+  const auto rigids = on_host(s.rigids);
+  auto sum = filled<double, Dim>(0);
+  for (int d = 0; d < Dim; ++d) {
+    for (int p = 0; p < s.soil.points.count; ++p) sum[d] += double(bodies(body(p)).mass) * velocity(p)[d];
+    for (std::size_t r = 0; r < rigids.extent(0); ++r)
+      sum[d] += rigids(r).inertia.mass * rigids(r).motion.velocity[d];
+  }
+  return sum;
+}
+
 /// Values by place: of node i of the whole grid of patches, or of particle id.
 struct Table {
   int width = 0;
