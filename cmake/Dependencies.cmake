@@ -29,14 +29,12 @@ if(Kokkos_ENABLE_CUDA AND Kokkos_VERSION VERSION_LESS 4.7.02 AND IMPL_MDSPAN IN_
     "or build it with -DKokkos_ENABLE_IMPL_MDSPAN=OFF")
 endif()
 
-# Adds sources that include Kokkos to a target. Those that nvcc compiles get -O3: the processor runs a step's loops in them,
-# unless MPM_PROCESSOR=OFF leaves those out.
+# Adds sources that include Kokkos to a target. Those that nvcc compiles get -O3: the processor runs a step's loops in them.
 function(mpm_kokkos_sources target)
   target_sources(${target} PRIVATE ${ARGN})
   set_source_files_properties(${ARGN} PROPERTIES LANGUAGE ${MPM_KOKKOS_LANGUAGE})
   if(MPM_KOKKOS_LANGUAGE STREQUAL CUDA)
-    set_source_files_properties(${ARGN} PROPERTIES
-      COMPILE_OPTIONS "$<$<CONFIG:Release>:$<IF:$<BOOL:${MPM_PROCESSOR}>,-O3,-Xcompiler=-Og>>")
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O3>")
   endif()
 endfunction()
 
