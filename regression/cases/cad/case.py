@@ -16,11 +16,11 @@ G, ANGLE = 9.81, np.radians(20)
 CENTRE, EDGE = np.array([2.5, 1.0, 1.2]), 0.5
 LOWER, UPPER = (",".join(f"{x:.12g}" for x in CENTRE + sign * EDGE / 2) for sign in (-1, 1))
 TILT = 0.4  # rad, from x to z, about the lower corner
-FLAT, TILTED = f"-body_shape box -body_lower {LOWER} -body_upper {UPPER}", f" -body_angle_deg {np.degrees(TILT)!r}"
+FLAT, TILTED = f"-body_shape box -body_lower {LOWER} -body_upper {UPPER}", f" -body_angle_deg {float(np.degrees(TILT))!r}"
 FILE = "-body_shape stl -body_file {start}"
 BOUNCES = " -body_restitution 0.5 -time_end 1.5"
 SIDE = " -rigid_bodies body -rigid_contact on -time_end 1"
-NORMAL = f"{np.sin(ANGLE)!r},0,{np.cos(ANGLE)!r}"
+NORMAL = f"{float(np.sin(ANGLE))!r},0,{float(np.cos(ANGLE))!r}"
 RUNS = {"drops_box": FLAT + BOUNCES, "drops": FILE + BOUNCES, "side_box": FLAT + SIDE, "side": FILE + SIDE,
         "tumbles_box": FLAT + TILTED + " -body_angular_velocity 0,1,0", "tumbles": FILE + " -body_angular_velocity 0,1,0",
         "rolls": FILE + f" -plane_point 1,1,1.5 -plane_normal {NORMAL} -mesh_upper 6,2,4 -time_end 0.8"}

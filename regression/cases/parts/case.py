@@ -44,7 +44,7 @@ RUNS = {"polygon": WHOLE, "sites": WHOLE + SITES, "on_each_other_sites": pair(("
         "halves": pair(("1.5,1.2", "1.9,1.6"), ("1.9,1.2", "2.5,1.6")),
         "falls": FALL + "-ell_shape polygon -ell_polygon " + turned(ELL + [0, PLACE]),
         "falls_in_parts": FALL + pair(corner(1, 1 + PLACE, 0.8, 0.2), corner(1, 1.2 + PLACE, 0.2, 0.8), "ell", ("foot", "leg"),
-                                      f" -{{0}}_angle_deg {np.degrees(TILT)!r}")}
+                                      f" -{{0}}_angle_deg {float(np.degrees(TILT))!r}")}
 
 
 def off(runs, name, whole, columns="tee_force_"):
