@@ -4,7 +4,7 @@
 
 #include "common/text.hpp"
 #include "input/geometry/mass_properties.hpp"
-#include "input/geometry/shapes.hpp"
+#include "step/light_rigids.hpp"
 
 namespace mpm {
 namespace {
@@ -28,9 +28,8 @@ double least_inertia(const Config& config, const RigidConfig& rigid, double mass
 std::string spring_fault(const Config& config, double dt) {
   constexpr double k_largest = 1;  // of omega dt, and of the rate of a dashpot times dt
   for (const RigidConfig& rigid : config.rigids) {
-    if (!rigid.is_sprung() || rigid.absent) continue;
-    const double mass =
-        rigid.mass.value_or(rigid.density * shape_volume(rigid.shape, config.mesh, config.dim));
+    if (!rigid.is_sprung() || rigid.absent || rigid.motion != Motion::dynamic) continue;
+    const double mass = lightness_of(config, rigid).mass;
     const double inertia = least_inertia(config, rigid, mass);
     for (int k = 0; k < 6; ++k) {
       const double resists = k < 3 ? mass : inertia, k_most = resists * std::pow(k_largest / dt, 2);

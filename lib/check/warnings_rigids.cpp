@@ -36,8 +36,8 @@ struct Way {
     if (rigid.motion != Motion::dynamic) return;
     const double volume = shape_volume(rigid.shape, config.mesh, config.dim) *
                           revolved_length(config, (bounds.lower[0] + bounds.upper[0]) / 2);
-    for (int d = 0; d < config.dim; ++d)
-      acceleration[d] = config.gravity[d] + rigid.force[d] / (rigid.density * volume);
+    const double mass = rigid.mass.value_or(rigid.density * volume);
+    for (int d = 0; d < config.dim; ++d) acceleration[d] = config.gravity[d] + rigid.force[d] / mass;
     constexpr int k_times = 400;
     for (int k = 0; k <= k_times && soil < 0; ++k) {
       const double time = config.time.end * k / k_times;

@@ -129,7 +129,8 @@ RigidInput rigid_input(const Config& config, const RigidConfig& rigid, BodyParti
   in.half_length = particles.spacing / config.mesh.spacing / 2;
   in.dynamic = rigid.motion == Motion::dynamic;
   const double volume = in.particle_volume * static_cast<double>(in.position.size() / config.dim);
-  if (in.dynamic) in.density = rigid.mass && volume > 0 ? *rigid.mass / volume : rigid.density;
+  const double whole = in.revolved_volume > 0 ? in.revolved_volume : volume;
+  if (in.dynamic) in.density = rigid.mass && whole > 0 ? *rigid.mass / whole : rigid.density;
   if (rigid.motion != Motion::fixed) in.velocity = rigid.velocity;
   const double carried = carried_mass(config, in);
   for (int d = 0; d < 3; ++d) in.force[d] = rigid.force[d] + carried * config.gravity[d];
