@@ -62,6 +62,12 @@ class Cube(unittest.TestCase):
         self.assertEqual(self.scene(across, **softening, clay_xi95_cell="0.25").limits("plastic_strain"), (0, 1))
         self.assertGreater(self.scene(across, **softening).limits("mises")[1], 2)
 
+    def test_rings_are_drawn_as_large_as_their_section(self):
+        write_cube(self.folder)
+        with h5py.File(self.folder / "frames" / "frame_00001.h5", "a") as file:
+            file["soil/volume"][:] = 0.25 ** 2 * 2 * np.pi * file["soil/position"][:, 0]
+        self.assertAlmostEqual(self.scene(dim="2", geometry="axisymmetric").size("soil"), 0.25)
+
     def test_places_of_slices(self):
         self.assertEqual(plot_fields.parse_slice("auto"), plot_fields.Slice(1, None))
         self.assertEqual(plot_fields.parse_slice("z"), plot_fields.Slice(2, None))

@@ -167,6 +167,8 @@ class Scene:
         """Edge of a body's or rigid's particles, m."""
         if "volume" in self.groups[name]:
             volume = self.groups[name]["volume"]
+            if self.run.text("geometry", "plane_strain") == "axisymmetric":  # that of the whole ring
+                volume = volume / (2 * np.pi * self.groups[name]["position"][:, 0])
             return np.median(volume) ** (1 / self.dim) if len(volume) else 0.0
         per_cell = self.run.number(f"{name}_particles_per_cell", 2 if name in self.bodies else 4)
         return self.run.number("mesh_spacing", 1.0) / per_cell
