@@ -18,6 +18,9 @@ Lightness lightness_of(const Config& config, const RigidConfig& rigid) {
   out.mass = rigid.mass.value_or(rigid.density * volume);
   double face = 0, heaviest = 0;  // m2 (m in 2D), kg/m3
   for (int d = 0; d < config.dim; ++d) {
+    const bool across = config.geometry == Geometry::axisymmetric &&
+                        d == 0;  // a body of revolution moves along the axis alone
+    if (across || !(rigid.free[d] || rigid.turns())) continue;
     double area = d == 0 ? revolved_length(config, bounds.upper[0]) : ring;
     for (int k = 0; k < config.dim; ++k) area *= k == d ? 1 : edge[k];
     face = std::max(face, area);

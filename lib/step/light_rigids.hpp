@@ -14,7 +14,8 @@ struct Lightness {
   bool is_light() const { return mass < layer; }
 };
 
-/// Lightness of a rigid body; one that no force moves is not light.
+/// Lightness of a rigid body, by the largest of the faces across the axes along which it may move; one that
+/// no force moves is not light.
 Lightness lightness_of(const Config& config, const RigidConfig& rigid);
 
 /// Whether contact takes a light rigid body with its velocity at the end of the step. It does so at nodes,
