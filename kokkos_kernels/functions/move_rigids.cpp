@@ -1,6 +1,7 @@
 #include <vector>
 
 #include "base/copy.hpp"
+#include "base/ensure.hpp"
 #include "functions/step_kernels.hpp"
 #include "loops/end_step.hpp"
 #include "loops/particle_to_node.hpp"
@@ -30,8 +31,9 @@ namespace {
 template <class Space, class T, int Dim, class Work>
 void launch_end_by_teams(const EndStep<Space, T, Dim>& end, const Space& stream, int teams,
                          const Work& work) {
-  constexpr int threads = 1024;
-  using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<threads, 1>>;
+  constexpr int k_most = 1024, k_few = 32;  // threads; few slots are near one of many bodies
+  using Team = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<k_most, 1>>;
+  const int threads = teams > 1 && end.near.listed ? k_few : k_most;
   const int room = end.room(threads, Work::shares);
   const std::size_t bytes = scratch_bytes<double>(room);
   const int level = bytes > 32 * 1024 ? 1 : 0;
@@ -63,6 +65,18 @@ struct Sum {
     end.sum(team, team.league_rank(), part);
   }
 };
+
+/// Moves many bodies by a thread each, and leaves in `moved` how far [cells]: in one team they would wait for
+/// each other. The forces on them are summed.
+template <class Space, class T, int Dim>
+void move_by_threads(const EndStep<Space, T, Dim>& end, const Space& stream,
+                     const Kokkos::View<double*, typename Space::memory_space>& moved) {
+  Kokkos::parallel_for(
+      "mpm::move_many_rigids", light(Kokkos::RangePolicy<Space>(stream, 0, end.count)), KOKKOS_LAMBDA(int r) {
+        if (!end.control().paused) moved(r) = end.move_one(r);
+      });
+}
+
 /// MayTurn: some rigid body turns, touches others or is joined; without, the kernel is short. of: shares of
 /// the sum of each force.
 template <bool MayTurn, int of>
@@ -88,11 +102,19 @@ void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>&
                  const Space& stream, const double* moved) {
   EndStep<Space, T, Dim> end(s, timed, dt);
   end.moved = moved;
-  if (moved == nullptr && s.pairs.in_use()) end.pairs = s.pairs.actions;
+  if (!s.links.in_use() && s.pairs.in_use()) end.pairs = s.pairs.actions;
+  const bool apart = is_device<Space> && s.contact.near.listed && !s.links.in_use();
+  if (apart) {
+    if (!s.forces_summed) sum_forces(s, stream);
+    end.summed = true;
+    ensure(s.links.moved, s.rigid_points.size());
+    move_by_threads(end, stream, s.links.moved);
+    end.moved = s.links.moved.data();
+  }
   // Persistent steps, of few patches, sum each force in one share: a run gives the same bits by both.
   constexpr int k_many = 256, k_shares = is_device<Space> ? 16 : 1;
   const bool many = s.plan.form != StepForm::persistent && !s.contact.near.listed && s.contact.count > k_many;
-  if (s.rigid_turns || moved != nullptr || s.pairs.in_use())
+  if (s.rigid_turns || end.moved != nullptr || s.pairs.in_use())
     launch_end(end, stream, 1, Move<true, 1>{});
   else if (many)
     launch_end(end, stream, 1, Move<false, k_shares>{});

@@ -22,10 +22,18 @@ void reset_nodes(ContactCore<Space, T, Dim>& s) {
 namespace {
 
 /// So many teams share a multiprocessor that the nodes far from contact hide what it waits for.
-template <class Space, int Dim, int teams = 12>
+inline constexpr int k_teams = 12;
+template <class Space, int Dim, int teams = k_teams>
 using NodeTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<node_threads<Space, Dim>, teams>>;
 /// Teams of a launch of nodes near rigids alone: contact needs many registers.
 inline constexpr int k_near_teams = 8;
+
+/// Bytes of fast scratch memory of a team where so many teams are to share a multiprocessor.
+template <class Space>
+std::size_t fast_bytes(const Space& space, int teams) {
+  constexpr std::size_t k_kept = 1024;  // that the device keeps of a team's share
+  return space.cuda_device_prop().sharedMemPerMultiprocessor / teams - k_kept;
+}
 
 template <bool acts, class Space, class T, int Dim>
 void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stream) {
@@ -37,8 +45,8 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stre
   const auto contact = s.contact.place, contact_slots = s.contact.slots;
   const auto control = s.control;
   const std::size_t near_bytes = scratch_bytes<double>(room) + k_scratch_slack;
-  constexpr std::size_t k_fast = 32 * 1024;  // bytes that every back end has; some thirty rigids need more
-  const int level = near_bytes > k_fast ? 1 : 0;
+  // Some rigids near a slot need more than its teams have.
+  const int level = near_bytes > fast_bytes(s.space, s.plan.nodes_apart ? k_near_teams : k_teams) ? 1 : 0;
   const auto scratched = [&](auto policy) {
     return light(policy.set_scratch_size(level, Kokkos::PerTeam(near_bytes)));
   };

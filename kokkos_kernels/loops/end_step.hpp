@@ -116,16 +116,15 @@ struct EndStep {
     MovingRigid<Dim> rigid{};
     if (rank < count) rigid = left.rigids[rank];
     const Noted noted = noted_movements(team, left.movements, clears);
+    double most = noted.largest();
+    const int here = MayTurn && moved != nullptr ? 0 : count;  // rigids that this team moves
+    if constexpr (MayTurn)
+      for (int r = rank; r < count - here; r += team.team_size()) most = Kokkos::fmax(most, moved[r]);
     if (!summed) sum_by_warps<shares>(team, left.forces, 0, values, part);
-    keep(team, largest_of_warp(noted.largest()), part + values);
+    keep(team, largest_of_warp(most), part + values);
     team.team_barrier();  // also: no thread reads `paused` any more
     MPM_ROLLED
-    for (int r = rank; r < count; r += team.team_size()) {
-      if constexpr (MayTurn)
-        if (moved != nullptr) {
-          part[r * size] = moved[r];
-          continue;
-        }
+    for (int r = rank; r < here; r += team.team_size()) {
       if (r > rank) rigid = left.rigids[r];
       Wrench<Dim> contact{};
       for (int k = 0; k < Wrench<Dim>::size; ++k) {
@@ -145,9 +144,20 @@ struct EndStep {
     MPM_ROLLED
     for (int w = 0; w < parts; ++w) furthest = Kokkos::fmax(furthest, part[values + w]);
     MPM_ROLLED
-    for (int r = 0; r < count; ++r) furthest = Kokkos::fmax(furthest, part[r * size]);
+    for (int r = 0; r < here; ++r) furthest = Kokkos::fmax(furthest, part[r * size]);
     found.add(furthest, Kokkos::Experimental::epsilon<T>::value, margin, late);
     return found;
+  }
+
+  /// Moves rigid r under the force on it, which is in `sums`; returns how far [cells].
+  KOKKOS_INLINE_FUNCTION double move_one(int r) const {
+    MovingRigid<Dim> rigid = rigids(r);
+    Wrench<Dim> contact{};
+    for (int k = 0; k < size && k < Wrench<Dim>::size; ++k) contact[k] = sums(r * size + k);
+    const PairAction<Dim>* const action = pairs.extent(0) > 0 ? pairs.data() + r : nullptr;
+    const double way = advance_rigid<T, true>(rigid, contact, damping, dt, action) / spacing;
+    rigid.template keep_in<true>(rigids(r));
+    return way;
   }
 
   /// Sets what follows tables for the step after so many.

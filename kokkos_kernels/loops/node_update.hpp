@@ -68,24 +68,32 @@ struct UpdateNodes {
   template <class Team, class Sums>
   KOKKOS_INLINE_FUNCTION void update_near(const Team& team, const Sums& sums, int slot, int n,
                                           double* force) const {
+    const int values = bodies_near(slot) * wrench();
     for_team(team, cells, [&](int k) {
-      for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;
+      for (int v = 0; v < values; ++v) force[v * cells + k] = 0;
       update<true>(sums, slot * cells + k, force + k);
       if (owned_nodes.extent(0) == 0 || (owned_nodes(slot) >> k & 1) != 0) return;
-      for (int v = 0; v < value_count; ++v) force[v * cells + k] = 0;  // another rank reports it
+      for (int v = 0; v < values; ++v) force[v * cells + k] = 0;  // another rank reports it
     });
     team.team_barrier();
-    leave_forces(team, force, n);
+    leave_forces(team, force, values, n);
     if (clears) clear_sums(team, nodes, slot, has_boundary, has_mass_normals ? rigids.extent(0) : 0);
   }
 
-  /// Sums the forces on the rigids of a slot's nodes, number n of those near a rigid: a warp each.
+  KOKKOS_INLINE_FUNCTION int bodies_near(int slot) const {
+    int n = near_bodies.listed ? 0 : near_bodies.width;
+    while (n < near_bodies.width && near_bodies.of(slot * near_bodies.width + n) >= 0) ++n;
+    return n;
+  }
+
+  /// Sums the forces on the rigids of a slot's nodes, number n of those near a rigid: a warp each. Only the
+  /// first `values` are there.
   template <class Team>
-  KOKKOS_INLINE_FUNCTION void leave_forces(const Team& team, const double* force, int n) const {
+  KOKKOS_INLINE_FUNCTION void leave_forces(const Team& team, const double* force, int values, int n) const {
     const int thread = team.team_rank(), size = team.team_size(), lanes = size < k_warp ? size : k_warp;
     for (int v = thread / k_warp; v < value_count; v += (size + k_warp - 1) / k_warp) {
       double sum = 0;
-      for (int k = thread % k_warp; k < cells; k += lanes) sum += force[v * cells + k];
+      for (int k = thread % k_warp; v < values && k < cells; k += lanes) sum += force[v * cells + k];
       sum = sum_of_warp(sum);
       if (thread % k_warp == 0) forces(n * value_count + v) = sum;
     }
@@ -178,7 +186,8 @@ struct UpdateNodes {
     MPM_ROLLED
     for (int m = 0; m < near_bodies.width && has_friction; ++m) {
       const int r = near_bodies.body(i / cells, m);
-      if (r >= 0 && bodies[r].law.at_sites) continue;  // sites keep numbers of their own
+      if (r < 0) break;
+      if (bodies[r].law.at_sites) continue;  // sites keep numbers of their own
       for (int n = 0; n < ImpulseTerms::size; ++n)
         nodes.impulse(impulse_stride * m + n, i) *= kept_share(n, fresh);
     }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "base/copy.hpp"
 #include "physics/p2g_terms.hpp"
@@ -11,13 +13,17 @@
 namespace mpm {
 namespace {
 
+/// Half the window of the nodes that particles of a patch reach, with the reach of a contact, a cell along
+/// each axis; and what a point may move beyond the margin [cells].
+template <int Dim>
+inline constexpr double k_half_window = 0.5 * Patch<Dim>::edge + 2;
+inline constexpr double k_step_beyond_margin = 0.5;
+
 /// Distance [cells] of a surface from the middle of a patch, beyond which it touches no node that particles
-/// of the patch reach, until the next rebuild: half the diagonal of their window, the reach of a contact (a
-/// cell along each axis), and the movement till then.
+/// of the patch reach, until the next rebuild: half the diagonal of their window, and the movement till then.
 template <int Dim>
 double far_from_patch(double margin) {
-  constexpr double half = 0.5 * Patch<Dim>::edge + 1, step_beyond_margin = 0.5;
-  return std::sqrt(static_cast<double>(Dim)) * (half + 1) + margin + step_beyond_margin;
+  return std::sqrt(static_cast<double>(Dim)) * k_half_window<Dim> + margin + k_step_beyond_margin;
 }
 
 /// Whether a rigid body may touch soil at the nodes of a slot.
@@ -29,7 +35,7 @@ struct NearSlot {
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   SurfaceTables<Memory, Dim> vertices;
   NearBodies<Space> near;
-  double spacing, far;  // m
+  double spacing, far, moves;  // m; moves: till the next rebuild
 
   explicit NearSlot(const ContactCore<Space, T, Dim>& s)
       : grid(s.grid),
@@ -38,7 +44,8 @@ struct NearSlot {
         vertices(s.vertices),
         near(s.contact.near),
         spacing(s.spacing),
-        far(far_from_patch<Dim>(s.p2g.margin + s.p2g.reserve) * s.spacing) {}
+        far(far_from_patch<Dim>(s.p2g.margin + s.p2g.reserve) * s.spacing),
+        moves((s.p2g.margin + s.p2g.reserve + k_step_beyond_margin) * s.spacing) {}
 
   /// A place of the slot's patch, so many cells from its origin [m], in the body as it was at the start.
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> place(int slot, int r, const Coord<Dim>& from) const {
@@ -64,10 +71,22 @@ struct NearSlot {
       squares += way * way;
     }
     const double reach = near.spheres(r, Dim) + far;
-    return squares < reach * reach && distance_to(rigid.surface, vertices, middle).value <= far;
+    return squares < reach * reach && reaches_window(rigid, distance_to(rigid.surface, vertices, middle));
   }
 
  private:
+  /// Whether a surface, of which the middle of the patch has this distance, comes near the nodes of the
+  /// window. A convex one lies behind the plane through its nearest point, so that the window's corner before
+  /// this plane decides; of others the window's diagonal does.
+  KOKKOS_INLINE_FUNCTION bool reaches_window(const Rigid<Dim>& rigid, const Distance<Dim>& middle) const {
+    const SurfaceKind kind = rigid.surface.kind;
+    if (kind != SurfaceKind::disc && kind != SurfaceKind::box && kind != SurfaceKind::half_plane)
+      return middle.value <= far;
+    const Vector<double, Dim> out = rigid.motion.pose.turn_to_world(middle.normal);
+    double corner = 0;  // of the window, along the normal [cells]
+    for (int d = 0; d < Dim; ++d) corner += k_half_window<Dim> * Kokkos::fabs(out[d]);
+    return middle.value <= corner * spacing + moves;
+  }
   /// Whether the ground is near at any column of nodes of the patch's window.
   KOKKOS_INLINE_FUNCTION bool is_over_ground(int slot, int r) const {
     constexpr int width = Patch<Dim>::edge + 3;
@@ -133,41 +152,26 @@ void list_bodies(ContactCore<Space, T, Dim>& s) {
       });
 }
 
-/// The entries of a body in the lists of slots.
-template <class Space>
-struct EntriesOfBody {
-  Kokkos::View<int*, typename Space::memory_space> slots, of;
-  int count, width;
-
-  /// Calls f(place) for each, in the order of slots.
-  template <class F>
-  KOKKOS_INLINE_FUNCTION void operator()(int body, const F& f) const {
-    for (int n = 0; n < count; ++n)
-      for (int m = 0; m < width; ++m)
-        if (of(slots(n) * width + m) == body) f(n * width + m);
-  }
-};
-
-/// Lists the entries of each body.
+/// Lists the entries of each body, in the order of slots. The host goes through them once for all bodies.
 template <class Space, class T, int Dim>
 void list_entries(ContactCore<Space, T, Dim>& s) {
-  using Range = Kokkos::RangePolicy<Space>;
   NearBodies<Space>& list = s.contact.near;
-  const int bodies = static_cast<int>(s.rigid_points.size());
-  const EntriesOfBody<Space> for_each_entry{s.contact.slots, list.of, s.contact.count, list.width};
+  const int bodies = static_cast<int>(s.rigid_points.size()), width = list.width;
   ensure(list.first, bodies + 1);
-  ensure(list.place, std::size_t(s.contact.count) * list.width);
-  const auto first = list.first, place = list.place;
-  Kokkos::parallel_scan(
-      "mpm::count_entries", Range(s.space, 0, bodies + 1), KOKKOS_LAMBDA(int r, int& sum, bool last) {
-        if (last) first(r) = sum;
-        if (r < bodies) for_each_entry(r, [&](int) { ++sum; });
-      });
-  Kokkos::parallel_for(
-      "mpm::list_entries", Range(s.space, 0, bodies), KOKKOS_LAMBDA(int r) {
-        int at = first(r);
-        for_each_entry(r, [&](int entry) { place(at++) = entry; });
-      });
+  ensure(list.place, std::size_t(s.contact.count) * width);
+  const auto slots = mirror_of(s.contact.slots), of = mirror_of(list.of);
+  const auto first = Kokkos::create_mirror_view(list.first), place = Kokkos::create_mirror_view(list.place);
+  const auto for_each_entry = [&](auto&& f) {
+    for (int n = 0; n < s.contact.count; ++n)
+      for (int m = 0; m < width && of(slots(n) * width + m) >= 0; ++m)
+        f(of(slots(n) * width + m), n * width + m);
+  };
+  std::vector<int> begin(bodies + 1, 0);
+  for_each_entry([&](int body, int) { ++begin[body + 1]; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::copy(begin.begin(), begin.end(), first.data());
+  for_each_entry([&](int body, int entry) { place(begin[body]++) = entry; });
+  copy(list.first, first), copy(list.place, place);
 }
 
 template <class Space, class T, int Dim>

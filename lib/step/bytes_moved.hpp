@@ -60,11 +60,11 @@ template <class Space, class T, int Dim>
 double bytes_of(StepPhase f, const State<Space, T, Dim>& s) {
   double points = 0, sorted = s.soil.points.count * bytes_of_point(s.soil.points);  // of the rigids; of all
   for (const auto& set : s.rigid_points) {
-    points += set.points.count;
-    sorted += set.points.count * bytes_of_point(set.points);
+    if (!set.points.surface_normal) points += set.points.count;
+    if (!s.contact.near.listed) sorted += set.points.count * bytes_of_point(set.points);
   }
   constexpr double place = sizeof(Vector<T, Dim>) + sizeof(int), home = sizeof(Vector<double, Dim>);
-  const double rigid_sums = s.rigid_points.size() * RigidTerms<Dim>::size;
+  const double rigid_sums = s.mass_normals ? s.rigid_points.size() * RigidTerms<Dim>::size : 0;
   const double sums = s.patches.node_count() * sizeof(T) * (SoilTerms<Dim>::size + rigid_sums);
   const double soil_sums = s.patches.node_count() * double(sizeof(T) * SoilTerms<Dim>::size);
   const bool ahead = s.plan.sums_ahead;  // then functions 1 and 3 are part of 4 and 5 of the step before

@@ -313,7 +313,7 @@ struct PersistentStep {
     clear_sums(team, last, slot.number, nodes.has_boundary, nodes.has_mass_normals ? rigid_bodies : 0);
     if (slot.contact == 0) return;
     team.team_barrier();
-    nodes.leave_forces(team, force, slot.contact - 1 + force_turn(at) * end.slots);
+    nodes.leave_forces(team, force, nodes.value_count, slot.contact - 1 + force_turn(at) * end.slots);
   }
 
   /// Copies the rigids to scratch memory, where a node may read their values one after the other.
