@@ -186,8 +186,9 @@ struct UpdateNodes {
     MPM_ROLLED
     for (int m = 0; m < near_bodies.width && has_friction; ++m) {
       const int r = near_bodies.body(i / cells, m);
-      if (r < 0) break;
-      if (bodies[r].law.at_sites) continue;  // sites keep numbers of their own
+      if constexpr (is_device<Space>)
+        if (r < 0) break;                              // the processor's kernels keep their bits without it
+      if (r >= 0 && bodies[r].law.at_sites) continue;  // sites keep numbers of their own
       for (int n = 0; n < ImpulseTerms::size; ++n)
         nodes.impulse(impulse_stride * m + n, i) *= kept_share(n, fresh);
     }
