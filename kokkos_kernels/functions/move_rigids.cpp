@@ -101,7 +101,7 @@ template <class Space, class T, int Dim>
 void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed, double dt,
                  const Space& stream, const double* moved) {
   EndStep<Space, T, Dim> end(s, timed, dt);
-  end.moved = moved;
+  end.moved = s.links.in_use() ? moved : nullptr;
   if (!s.links.in_use() && s.pairs.in_use()) end.pairs = s.pairs.actions;
   const bool apart = is_device<Space> && s.contact.near.listed && !s.links.in_use();
   if (apart) {
