@@ -11,8 +11,15 @@ Lightness lightness_of(const Config& config, const RigidConfig& rigid) {
   Lightness out;
   if (rigid.motion != Motion::dynamic || rigid.absent) return out;
   const Bounds bounds = within(bounds_of(rigid.shape, config.mesh, config.dim), config.mesh, config.dim);
+  const Cuts cuts = cuts_of(rigid.shape, config.mesh, config.dim);
   Vec3 edge{1, 1, 1};  // m
-  for (int d = 0; d < config.dim; ++d) edge[d] = bounds.upper[d] - bounds.lower[d];
+  double parts =
+      1;  // of the whole body, of which planes of symmetry leave one: a half is as light as the whole
+  for (int d = 0; d < config.dim; ++d) {
+    const double images = cuts[d][0] || cuts[d][1] ? 2 : 1;
+    edge[d] = images * (bounds.upper[d] - bounds.lower[d]);
+    parts *= images;
+  }
   const double middle = (bounds.lower[0] + bounds.upper[0]) / 2, ring = revolved_length(config, middle);
   const double volume = shape_volume(rigid.shape, config.mesh, config.dim) * ring;
   out.mass = rigid.mass.value_or(rigid.density * volume);
@@ -26,7 +33,7 @@ Lightness lightness_of(const Config& config, const RigidConfig& rigid) {
     face = std::max(face, area);
   }
   for (const BodyConfig& body : config.bodies) heaviest = std::max(heaviest, density_of(config, body));
-  out.layer = heaviest * face * config.mesh.spacing;
+  out.layer = heaviest * face * config.mesh.spacing / parts;
   return out;
 }
 

@@ -15,7 +15,7 @@ struct Lightness {
 };
 
 /// Lightness of a rigid body, by the largest of the faces across the axes along which it may move; one that
-/// no force moves is not light.
+/// no force moves is not light. Both masses are of the part that planes of symmetry leave in the mesh.
 Lightness lightness_of(const Config& config, const RigidConfig& rigid);
 
 /// Whether contact takes a light rigid body with its velocity at the end of the step. It does so at nodes,
