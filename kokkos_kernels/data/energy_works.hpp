@@ -1,6 +1,7 @@
 #pragma once
 // The works that an energy balance sums from step to step (-output_energy).
 
+#include "base/ensure.hpp"
 #include "base/spaces.hpp"
 #include "base/types.hpp"
 #include "data/rigid_pose.hpp"
@@ -40,6 +41,10 @@ struct EnergyWorks {
   Kokkos::View<SymTensor<T, Dim>*, Memory> strain;  // -, of each particle in the step
   Kokkos::View<T*, Memory> volume;                  // m3, of each particle before the step
   Kokkos::View<RigidPose<Dim>*, Memory> rigid_at;   // of each rigid before the step
+
+  void make_room(int particles) {
+    ensure(stress, particles), ensure(strain, particles), ensure(volume, particles);
+  }
 };
 
 }  // namespace mpm

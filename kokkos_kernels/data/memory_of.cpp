@@ -3,12 +3,9 @@
 namespace mpm {
 
 template <class Space, class T, int Dim>
-std::size_t memory_of(const State<Space, T, Dim>& s) {
+std::size_t memory_of(const ContactCore<Space, T, Dim>& s, const NodeUses& uses) {
   std::size_t bytes = 0;
-  const auto add = [&](const auto& view) {
-    const bool at_host = view.use_count() == 0;  // memory of Batches::store
-    if (!at_host) bytes += view.span() * sizeof(*view.data());
-  };
+  const auto add = [&](const auto& view) { bytes += bytes_of(view); };
   const auto add_set = [&](const auto& set) {
     add(set.points.cell), add(set.points.id), add(set.address), add(set.order);
     add(set.bins.begin), add(set.bins.active_slots), add(set.bins.list_begin), add(set.bins.list),
@@ -20,24 +17,21 @@ std::size_t memory_of(const State<Space, T, Dim>& s) {
   for (const auto& set : s.rigid_points) add_set(set);
   add(s.patches.slot_of), add(s.patches.number), add(s.patches.origin), add(s.patches.neighbours),
       add(s.marks), add(s.scratch);
-  for_each_nodal_field([&](const char*, bool, const auto& field) { add(field); }, s.nodes, uses_of_nodes(s));
+  for_each_nodal_field([&](const char*, bool, const auto& field) { add(field); }, s.nodes, uses);
   add(s.contact.near.of), add(s.contact.near.place);
   add(s.nodes.impulse), add(s.nodes.rigid), add(s.contact.place);
   for_each_table(s.vertices, add);
-  add(s.loads.loaded), add(s.loads.windows.sums);
-  add(s.loads.coordinate), add(s.loads.force), add(s.loads.half_length);
   add(s.strays.alone), add(s.split.slots);
   add(s.at_sites.sites), add(s.at_sites.gaps), add(s.at_sites.sums);
   add(s.contact.boundary.sums), add(s.contact.strength.sums);
   for (const auto* more : {&s.launch.next_sums, &s.launch.last_sums})
     add(more->soil), add(more->boundary), add(more->rigid);
-  add(s.energy.stress), add(s.energy.strain), add(s.energy.volume);
-  add(s.batches.room), add(s.batches.slots), add(s.timed.loads), add(s.timed.points), add(s.sides.nodes),
-      add(s.sides.columns);
+  add(s.batches.room), add(s.batches.slots);
   return bytes;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template std::size_t memory_of(const State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim) \
+  template std::size_t memory_of(const ContactCore<Space, T, Dim>&, const NodeUses&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -7,9 +7,6 @@
 #include "base/time_curve.hpp"
 #include "base/types.hpp"
 #include "data/rigid.hpp"
-#include "data/rigid_links.hpp"
-#include "data/sides.hpp"
-#include "data/surface_loads.hpp"
 
 namespace mpm {
 
@@ -37,6 +34,7 @@ struct TimedLoad {
                          // of a surface's load or a joint
   TimedNumber own, gravity;
   double factor;
+  double* place;  // of the value on the device; null: gravity or a rigid's, which kernels may hold a copy of
 };
 
 /// The times of steps: step k of those that Control::steps counts begins at origin + (first + k) dt. With the
@@ -74,9 +72,6 @@ struct LoadsOfStep {
   const CurvePoint* points;
   LoadClock* clock;
   Vector<T, Dim>* gravity;
-  Side<Dim>* sides;
-  SurfaceLoad<Dim>* surfaces;
-  Joint<Dim>* joints;
   int count;
 
   /// Sets load n for the step that follows `steps` steps of a clock.
@@ -84,22 +79,16 @@ struct LoadsOfStep {
     TimedLoad& load = loads[n];
     const double value = mean_of_load(load, points, by, steps);
     const int d = load.component;
-    if (load.target == LoadTarget::gravity)
+    if (load.place != nullptr)
+      *load.place = value;
+    else if (load.target == LoadTarget::gravity)
       (*gravity)[d] = static_cast<T>(value);
     else if (load.target == LoadTarget::velocity)
       rigids[load.rigid].motion.velocity[d] = value;
-    else if (load.target == LoadTarget::side)
-      sides[load.rigid].velocity[d] = value;
-    else if (load.target == LoadTarget::pressure)
-      surfaces[load.rigid].pressure = value;
-    else if (load.target == LoadTarget::traction)
-      surfaces[load.rigid].traction[d] = value;
     else if (load.target == LoadTarget::spin)
       rigids[load.rigid].motion.spin[d] = value;
     else if (load.target == LoadTarget::moment)
       rigids[load.rigid].force[Wrench<Dim>::moment + d] = value;
-    else if (load.target == LoadTarget::joint)
-      joints[load.rigid].velocity[d] = value;
     else
       rigids[load.rigid].force[Wrench<Dim>::force + d] = value;
   }
@@ -112,15 +101,11 @@ struct TimedLoads {
   Kokkos::View<CurvePoint*, Memory> points;
   Kokkos::View<LoadClock, Memory> clock;  // allocated with loads
   Kokkos::View<Vector<T, Dim>, Memory> gravity;
-  Kokkos::View<Side<Dim>*, Memory> sides;            // State::sides
-  Kokkos::View<SurfaceLoad<Dim>*, Memory> surfaces;  // of State::loads
-  Kokkos::View<Joint<Dim>*, Memory> joints;          // of State::links
   bool moves_gravity = false, moves_sides = false;
 
   int count() const { return static_cast<int>(loads.extent(0)); }
   LoadsOfStep<T, Dim> of_step() const {
-    return {loads.data(), points.data(),   clock.data(),  moves_gravity ? gravity.data() : nullptr,
-            sides.data(), surfaces.data(), joints.data(), count()};
+    return {loads.data(), points.data(), clock.data(), moves_gravity ? gravity.data() : nullptr, count()};
   }
 };
 

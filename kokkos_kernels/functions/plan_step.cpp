@@ -1,15 +1,14 @@
-#include "data/features_of.hpp"
+#include "data/contact_core.hpp"
 #include "functions/step_kernels.hpp"
 #include "loops/gpu/patch_update.hpp"
 
 namespace mpm {
 
 template <class Space, class T, int Dim>
-StepPlan plan_step(const State<Space, T, Dim>& s) {
+StepPlan plan_step(const ContactCore<Space, T, Dim>& s, const Features& features, bool launch_has_room) {
   constexpr int k_few =
       2000;  // patches that a device has all at once, so that a step should take few launches
   const bool few = s.patches.slots < k_few, batches = s.batches.in_use();
-  const Features features = features_of(s);
   // One thread gains nothing by sums ahead, and the log has a line for each of its functions. On a GPU the
   // scratch memory must hold the update and the sums.
   const bool fit = is_device<Space> ? sums_fit<Space, T, Dim> : has_windows(s.space);
@@ -26,12 +25,13 @@ StepPlan plan_step(const State<Space, T, Dim>& s) {
     plan.form = StepForm::fused;
   if constexpr (is_device<Space>)
     if (plan.form == StepForm::fused && few && s.soil.points.count > 0 &&
-        can(StepWay::one_launch, features) && ends_in_launch(s))
+        can(StepWay::one_launch, features) && launch_has_room)
       plan.form = StepForm::persistent;
   return plan;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template StepPlan plan_step(const State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim) \
+  template StepPlan plan_step(const ContactCore<Space, T, Dim>&, const Features&, bool);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 // The functions of a time step, except the interpolation to nodes; each is one function of the paper.
 
 #include "base/spaces.hpp"
+#include "base/step_features.hpp"
 #include "data/floors.hpp"
 #include "data/nodes.hpp"
 #include "data/particles.hpp"
@@ -14,9 +15,9 @@ struct TimedLoads;
 struct LoadClock;
 
 /// The plan of the steps until the next rebuild, on one rank; several ranks may overlap theirs. After lists
-/// are made.
+/// are made. features: of the run, as they are; launch_has_room: ends_in_launch.
 template <class Space, class T, int Dim>
-StepPlan plan_step(const State<Space, T, Dim>& s);
+StepPlan plan_step(const ContactCore<Space, T, Dim>& s, const Features& features, bool launch_has_room);
 
 /// 1. Sets the nodal sums to zero, where they have to be.
 template <class Space, class T, int Dim>

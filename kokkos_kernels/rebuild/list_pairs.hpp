@@ -8,7 +8,8 @@
 namespace mpm {
 
 /// Lists the pairs of bodies that may touch before the next rebuild in s.pairs, with the impulses of contacts
-/// that were there before. Part of sort_and_list.
+/// that were there before. Part of
+/// sort_points_and_list.
 template <class Space, class T, int Dim>
 void list_pairs(ContactCore<Space, T, Dim>& s);
 

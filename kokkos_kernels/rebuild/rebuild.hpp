@@ -1,12 +1,12 @@
 #pragma once
 // Function 7: bins, patch table and lists anew, before a particle can have moved further than the margin.
+// Here are the parts; rebuild/rebuild_state.hpp does them in turn.
 
 #include <algorithm>
 
 #include "base/ensure.hpp"
 #include "base/spaces.hpp"
 #include "data/contact_core.hpp"
-#include "functions/follow_soil.hpp"
 
 namespace mpm {
 
@@ -23,19 +23,17 @@ template <class Space, class T, int Dim>
 void locate_rigids(ContactCore<Space, T, Dim>& s);
 
 /// Makes the patch table, the order of the points, their bins and the strategy's lists from the points'
-/// addresses, and resets the movement bound. Nodal fields are laid out anew and hold nothing.
+/// addresses.
 template <class Space, class T, int Dim>
-void sort_and_list(State<Space, T, Dim>& s);
+void sort_points_and_list(ContactCore<Space, T, Dim>& s);
 
-/// Both of them, with domains that follow the soil: a whole rebuild on one rank, but for what splits, merges
-/// and moves particles.
+/// Lays out the nodal fields that the run uses anew; they hold nothing. After the plan of the steps is made.
 template <class Space, class T, int Dim>
-void rebuild(State<Space, T, Dim>& s) {
-  if (s.soil.points.has_domain) sum_drift(s), stretch_domains(s);
-  locate(s);
-  sort_and_list(s);
-  begin_domains(s);
-}
+void make_room(ContactCore<Space, T, Dim>& s, const NodeUses& uses);
+
+/// Begins the bound of the points' movements anew.
+template <class Space, class T, int Dim>
+void reset_bound(const Core<Space, T, Dim>& s);
 
 /// Nodal impulses that outlive a rebuild, with the patches that they were of.
 template <class Space, class T, int Dim>
@@ -46,7 +44,7 @@ struct KeptImpulse {
   int slots = 0;
 };
 
-// Parts of sort_and_list.
+// Parts of sort_points_and_list.
 template <class Space, class T, int Dim>
 KeptImpulse<Space, T, Dim> keep_impulse(const ContactCore<Space, T, Dim>& s);
 template <class Space, class T, int Dim>

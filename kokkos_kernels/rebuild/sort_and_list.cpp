@@ -1,18 +1,12 @@
-// A rebuild: patches, order, lists and the room for nodal fields, and the plan of the steps until the next
-// one.
+// A rebuild of the two lower floors: patches, order, lists and the room for nodal fields.
 
-#include "data/memory_of.hpp"
-#include "data/state.hpp"
-#include "functions/step_kernels.hpp"
-#include "functions/surface_loads.hpp"
-#include "rebuild/batches.hpp"
 #include "rebuild/list_pairs.hpp"
 #include "rebuild/rebuild.hpp"
 
 namespace mpm {
 
 template <class Space, class T, int Dim>
-void sort_and_list(State<Space, T, Dim>& s) {
+void sort_points_and_list(ContactCore<Space, T, Dim>& s) {
   const auto kept = keep_impulse(s);
   activate_patches(s);
   sort_points(s);
@@ -21,33 +15,30 @@ void sort_and_list(State<Space, T, Dim>& s) {
   if (impulse_rows(s) > 0) restore_impulse(s, kept);
   list_pairs(s);
   if (s.f_bar.fraction > 0 && !s.f_bar.keeps_stress) average_pressure(s);
+}
 
-  s.plan = plan_step(s);
+template <class Space, class T, int Dim>
+void make_room(ContactCore<Space, T, Dim>& s, const NodeUses& uses) {
   s.summed = {};
   s.strays.known = false;
   s.split.parts.clear();
   ensure(s.strays.alone, s.patches.slots);
   Kokkos::deep_copy(s.space, s.strays.alone, 0);
   const int nodes = s.patches.node_count();
-  const auto make_room = [nodes](const char*, bool in_use, auto& field) {
+  const auto ensure_field = [nodes](const char*, bool in_use, auto& field) {
     if (in_use) ensure(field, nodes);
   };
-  for_each_nodal_field(make_room, s.nodes, uses_of_nodes(s));
-  if (s.loads.in_use()) list_loaded(s, s.loads);
+  for_each_nodal_field(ensure_field, s.nodes, uses);
   if (s.mass_normals && static_cast<int>(s.nodes.rigid.extent(1)) < nodes)
     s.nodes.rigid = decltype(s.nodes.rigid)(
         Kokkos::view_alloc("mpm::nodes.rigid", Kokkos::WithoutInitializing), s.rigid_points.size(),
         nodes + (s.nodes.rigid.extent(1) > 0 ? nodes / 16 : 0));
   if (s.mass_normals && s.plan.writes_sums)
     Kokkos::deep_copy(s.space, s.nodes.rigid, T(0));  // only those near rigids are written
-  if (s.energy.on) {
-    ensure(s.energy.stress, s.soil.points.count), ensure(s.energy.strain, s.soil.points.count);
-    ensure(s.energy.volume, s.soil.points.count);
-  }
-  if (s.batches.in_use()) {
-    drop_batches(s);
-    plan_batches(s, memory_of(s));
-  }
+}
+
+template <class Space, class T, int Dim>
+void reset_bound(const Core<Space, T, Dim>& s) {
   const auto control = s.control;
   Kokkos::parallel_for(
       "mpm::reset_bound", Kokkos::RangePolicy<Space>(s.space, 0, 1), KOKKOS_LAMBDA(int) {
@@ -58,7 +49,10 @@ void sort_and_list(State<Space, T, Dim>& s) {
       });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim) template void sort_and_list(State<Space, T, Dim>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                                   \
+  template void sort_points_and_list(ContactCore<Space, T, Dim>&);       \
+  template void make_room(ContactCore<Space, T, Dim>&, const NodeUses&); \
+  template void reset_bound(const Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

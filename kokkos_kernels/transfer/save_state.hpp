@@ -2,7 +2,6 @@
 // From the state of a run to a SavedState and back. Between two steps only, with no rebuild due.
 
 #include <string>
-#include <utility>
 
 #include "base/spaces.hpp"
 #include "data/contact_core.hpp"
@@ -16,29 +15,13 @@ SavedState save_state(const ContactCore<Space, T, Dim>& s);
 
 // A saved state takes the place of what `upload` made from the same input in three parts, between which
 // several ranks bring its points to their owners: the points, their order and lists, and all that hangs on
-// these. The next step then gives the bits that it would have given, where space and real type are the same.
+// these (transfer/restore_state.hpp). The next step then gives the bits that it would have given, where space
+// and real type are the same.
 
 /// Empty, or what does not fit.
 template <class Space, class T, int Dim>
 std::string take_saved(ContactCore<Space, T, Dim>& s, const SavedState& saved);
 template <class Space, class T, int Dim>
-void list_saved(State<Space, T, Dim>& s) {
-  // A rebuild brings the pressures of a cell together (F-bar); here none is made, only its tables.
-  const bool keeps = std::exchange(s.f_bar.keeps_stress, true);
-  sort_and_list(s);
-  s.f_bar.keeps_stress = keeps;
-}
-template <class Space, class T, int Dim>
 void finish_saved(ContactCore<Space, T, Dim>& s, const SavedState& saved);
-
-/// All of it, on one rank. Empty, or what does not fit.
-template <class Space, class T, int Dim>
-std::string restore_state(State<Space, T, Dim>& s, const SavedState& saved) {
-  const std::string unfit = take_saved(s, saved);
-  if (!unfit.empty()) return unfit;
-  list_saved(s);
-  finish_saved(s, saved);
-  return {};
-}
 
 }  // namespace mpm

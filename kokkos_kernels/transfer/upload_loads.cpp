@@ -16,6 +16,19 @@ void fill_view(View& view, const std::string& label, const std::vector<Value>& v
   copy(view, host);
 }
 
+/// The place of a load's value on the device: in the views that the kernels of sides, of loads on surfaces
+/// and of joints hold. Null for gravity and rigid bodies.
+template <class Space, class T, int Dim>
+double* place_of(const State<Space, T, Dim>& s, const LoadInput& in) {
+  switch (in.target) {
+    case LoadTarget::side: return &s.sides.all.data()[in.rigid].velocity[in.component];
+    case LoadTarget::pressure: return &s.loads.now.data()[in.rigid].pressure;
+    case LoadTarget::traction: return &s.loads.now.data()[in.rigid].traction[in.component];
+    case LoadTarget::joint: return &s.links.joints.data()[in.rigid].velocity[in.component];
+    default: return nullptr;
+  }
+}
+
 }  // namespace
 
 template <class Space, class T, int Dim>
@@ -32,9 +45,9 @@ void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads) 
   for (const LoadInput& in : loads) {
     s.timed.moves_gravity = s.timed.moves_gravity || in.target == LoadTarget::gravity;
     s.timed.moves_sides = s.timed.moves_sides || in.target == LoadTarget::side;
-    timed.push_back({in.target, in.rigid, in.component, number(in.own), number(in.gravity), in.factor});
+    timed.push_back(
+        {in.target, in.rigid, in.component, number(in.own), number(in.gravity), in.factor, place_of(s, in)});
   }
-  s.timed.sides = s.sides.all, s.timed.surfaces = s.loads.now, s.timed.joints = s.links.joints;
   fill_view(s.timed.loads, "mpm::timed_loads", timed);
   fill_view(s.timed.points, "mpm::timed_points", points);
   s.timed.clock = decltype(s.timed.clock)("mpm::load_clock");

@@ -28,7 +28,8 @@ struct LoadInput {
 template <class Space, class T, int Dim>
 void upload_surface_loads(State<Space, T, Dim>& s, const std::vector<SurfaceLoad<Dim>>& loads);
 
-/// Puts the loads on the device; begin_loads sets their first values. s.gravity is that of the start.
+/// Puts the loads on the device, behind the sides, the loads on surfaces and the joints that they set;
+/// begin_loads sets their first values. s.gravity is that of the start.
 template <class Space, class T, int Dim>
 void upload_loads(State<Space, T, Dim>& s, const std::vector<LoadInput>& loads);
 

@@ -6,7 +6,7 @@
 #include "common/collectives.hpp"
 #include "functions/follow_soil.hpp"
 #include "functions/step_kernels.hpp"
-#include "rebuild/rebuild.hpp"
+#include "rebuild/rebuild_state.hpp"
 
 namespace mpm {
 namespace {

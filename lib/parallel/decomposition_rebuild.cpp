@@ -10,8 +10,8 @@
 #include "functions/step_kernels.hpp"
 #include "parallel/decomposition.hpp"
 #include "parallel/partition.hpp"
-#include "rebuild/rebuild.hpp"
-#include "transfer/save_state.hpp"
+#include "rebuild/rebuild_state.hpp"
+#include "transfer/restore_state.hpp"
 
 namespace mpm {
 namespace {

@@ -6,7 +6,7 @@
 #include "base/copy.hpp"
 #include "common/material_table.hpp"
 #include "common/text.hpp"
-#include "data/memory_of.hpp"
+#include "data/state_memory.hpp"
 #include "physics/materials/any.hpp"
 #include "step/bytes_moved.hpp"
 

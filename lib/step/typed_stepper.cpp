@@ -14,7 +14,7 @@
 #include "step/follow_soil.hpp"
 #include "step/pair_input.hpp"
 #include "step/water.hpp"
-#include "transfer/save_state.hpp"
+#include "transfer/restore_state.hpp"
 
 namespace mpm {
 

@@ -15,6 +15,7 @@
 #include "functions/follow_soil.hpp"
 #include "functions/step_kernels.hpp"
 #include "physics/materials/any.hpp"
+#include "rebuild/rebuild_state.hpp"
 #include "transfer/download.hpp"
 #include "transfer/upload.hpp"
 #include "transfer/upload_loads.hpp"

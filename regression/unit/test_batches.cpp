@@ -6,10 +6,10 @@
 #include <set>
 
 #include "compare.hpp"
-#include "data/memory_of.hpp"
+#include "data/state_memory.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/download.hpp"
-#include "transfer/save_state.hpp"
+#include "transfer/restore_state.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

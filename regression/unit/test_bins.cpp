@@ -6,7 +6,7 @@
 
 #include "compare.hpp"
 #include "data/footprint.hpp"
-#include "data/memory_of.hpp"
+#include "data/state_memory.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

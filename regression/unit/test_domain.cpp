@@ -7,7 +7,7 @@
 #include "physics/stretch_domain.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/measure.hpp"
-#include "transfer/save_state.hpp"
+#include "transfer/restore_state.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

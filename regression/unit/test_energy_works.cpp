@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "compare.hpp"
-#include "rebuild/rebuild.hpp"
+#include "rebuild/rebuild_state.hpp"
 #include "transfer/measure.hpp"
 
 using namespace mpm;

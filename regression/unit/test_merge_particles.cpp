@@ -10,7 +10,7 @@
 #include "rebuild/shift_particle.hpp"
 #include "rebuild/split_particles.hpp"
 #include "split_soil.hpp"
-#include "transfer/save_state.hpp"
+#include "transfer/restore_state.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -6,7 +6,7 @@
 #include "functions/velocity_update.hpp"
 #include "rebuild/batches.hpp"
 #include "transfer/measure.hpp"
-#include "transfer/save_state.hpp"
+#include "transfer/restore_state.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "compare.hpp"
-#include "rebuild/rebuild.hpp"
+#include "rebuild/rebuild_state.hpp"
 #include "step/correct_positions.hpp"
 
 using namespace mpm;

@@ -9,7 +9,7 @@
 #include "output/linear_fit.hpp"
 #include "output/probes.hpp"
 #include "output/rasters.hpp"
-#include "rebuild/rebuild.hpp"
+#include "rebuild/rebuild_state.hpp"
 #include "transfer/column_sums.hpp"
 #include "transfer/probe_particles.hpp"
 #include "transfer/section_sums.hpp"

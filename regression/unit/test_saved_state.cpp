@@ -7,7 +7,7 @@
 #include <random>
 
 #include "compare.hpp"
-#include "transfer/save_state.hpp"
+#include "transfer/restore_state.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
