@@ -5,8 +5,9 @@
     tidy.py BUILD --all [--jobs N]    every source of app, lib and kokkos_kernels
     tidy.py BUILD SOURCE ...          these sources
 
-A source that passed is not checked again until it, a header of the tree that it includes, its flags or .clang-tidy changes:
-BUILD/tidy has a digest of each.
+The sources of one of the FOLDERS are checked as one text, since the headers of the system take most of the time: no two of them
+may define the same name in unnamed namespaces. What passed is not checked again until a source, a header of the tree that it
+includes, its flags or .clang-tidy changes: BUILD/tidy has a digest of each text.
 """
 import argparse
 import concurrent.futures
@@ -72,17 +73,25 @@ def main():
         path = pathlib.Path(entry["file"])
         if path.is_relative_to(ROOT) and not path.is_relative_to(build):
             commands[str(path.relative_to(ROOT))] = entry["command"]
-    folders = ("app/", "lib/", "kokkos_kernels/") if args.all else FOLDERS
-    sources = args.sources or [f for f in commands if f.startswith(folders)]
+    if args.all or args.sources:
+        groups = [[f] for f in args.sources or commands if args.sources or f.startswith(("app/", "lib/", "kokkos_kernels/"))]
+    else:
+        groups = [group for folder in FOLDERS if (group := [f for f in commands if f.startswith(folder)])]
 
-    def check(source):
-        flags = flags_of(commands[source], build)
-        state = [str(flags), (ROOT / ".clang-tidy").read_text()] + [(ROOT / f).read_text() for f in files_of(source)]
+    def check(sources):
+        flags = flags_of(commands[sources[0]], build)
+        files = {file for source in sources for file in files_of(source)}
+        state = [str(flags), (ROOT / ".clang-tidy").read_text()] + [(ROOT / f).read_text() for f in sorted(files)]
         digest = hashlib.sha256("\0".join(state).encode()).hexdigest()
-        stamp = build / "tidy" / (source.replace("/", "+") + ".passed")
+        name = sources[0] if len(sources) == 1 else str(pathlib.PurePath(sources[0]).parent)
+        stamp = build / "tidy" / (name.replace("/", "+") + ".passed")
         if stamp.exists() and stamp.read_text() == digest:
             return ""
-        run = subprocess.run([tool, "--quiet", "--checks=-clang-analyzer-*", "--warnings-as-errors=*", source, "--", *flags],
+        text = ROOT / name
+        if len(sources) > 1:
+            text = stamp.with_suffix(".cpp")
+            text.write_text("".join(f'#include "{ROOT / f}"  // NOLINT(bugprone-suspicious-include)\n' for f in sources))
+        run = subprocess.run([tool, "--quiet", "--checks=-clang-analyzer-*", "--warnings-as-errors=*", str(text), "--", *flags],
                              cwd=ROOT, capture_output=True, text=True)
         if run.returncode == 0:
             stamp.write_text(digest)
@@ -91,9 +100,10 @@ def main():
 
     start = time.time()
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
-        reports = [report for report in pool.map(check, sources) if report]
-    print("".join(reports) + f"{len(sources) - len(reports)} of {len(sources)} sources pass ({time.time() - start:.0f} s)")
-    return bool(reports or not sources)
+        reports = [report for report in pool.map(check, groups) if report]
+    count = sum(map(len, groups))
+    print("".join(reports) + f"{len(groups) - len(reports)} of {len(groups)} texts of {count} sources pass ({time.time() - start:.0f} s)")
+    return bool(reports or not groups)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ namespace mpm {
 namespace {
 
 /// Which rank's block a number falls into.
-int rank_of(long id, long total, int ranks) {
+int rank_of_id(long id, long total, int ranks) {
   int rank = static_cast<int>(static_cast<double>(id) * ranks / std::max(total, 1L));
   rank = std::clamp(rank, 0, ranks - 1);
   while (rank > 0 && id < block_of(total, rank, ranks).first) --rank;
@@ -52,7 +52,8 @@ PetscErrorCode send_to_blocks(MPI_Comm comm, long total, int ranks, SavedPoints&
   Traffic t;
   t.to.assign(ranks, 0), t.from.assign(ranks, 0);
   std::vector<int> goes_to(points.id.size()), order(points.id.size());
-  for (std::size_t p = 0; p < points.id.size(); ++p) ++t.to[goes_to[p] = rank_of(points.id[p], total, ranks)];
+  for (std::size_t p = 0; p < points.id.size(); ++p)
+    ++t.to[goes_to[p] = rank_of_id(points.id[p], total, ranks)];
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return goes_to[a] < goes_to[b]; });
   PetscCallMPI(MPI_Alltoall(t.to.data(), 1, MPI_INT, t.from.data(), 1, MPI_INT, comm));

@@ -13,7 +13,7 @@ namespace mpm {
 namespace {
 
 constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* k_axis[3] = {"x", "y", "z"};
+constexpr const char* k_component[3] = {"x", "y", "z"};
 constexpr const char* k_stress[6] = {"xx", "yy", "zz", "xy", "yz", "zx"};
 constexpr double k_reach = 1.5;  // cells, of a point to the particles that its values come from
 
@@ -26,7 +26,7 @@ struct Taken {
 };
 
 void add_vector(std::vector<std::string>& columns, const std::string& name, int dim) {
-  for (int d = 0; d < dim; ++d) columns.push_back(name + k_axis[d]);
+  for (int d = 0; d < dim; ++d) columns.push_back(name + k_component[d]);
 }
 
 /// Velocity, stress, pressure and pore pressure, as columns.
