@@ -41,7 +41,7 @@ struct LightRigids {
   bool in_use = false;                              // some body is light
   Kokkos::View<LightMotion<Dim>*, Memory> motions;  // [rigids]
   Kokkos::View<double*, Memory> of_slots;           // [contact slot][near body][LightTerms]
-  Kokkos::View<double*, Memory> sums;               // [rigids][LightTerms], and the number of open solutions
+  Kokkos::View<double*, Memory> sums;  // [rigids][LightTerms], number of open solutions, [rigids][LightPast]
 };
 
 }  // namespace mpm

@@ -91,7 +91,7 @@ bool light_rigids_open(const State<Space, T, Dim>& s) {
   if constexpr (is_device<Space>)
     return true;
   else
-    return s.light_rigids.sums(s.light_rigids.sums.extent(0) - 1) > 0;
+    return s.light_rigids.sums(light_numbers<Dim>(static_cast<int>(s.rigid_points.size())) - 1) > 0;
 }
 
 template <class Space, class T, int Dim>

@@ -1,6 +1,7 @@
 #pragma once
 // The velocity of light rigid bodies under the soil's contact (docs/method.md, "Light bodies").
 
+#include "data/light_past.hpp"
 #include "loops/node_update.hpp"
 #include "physics/pair_contact.hpp"
 
@@ -12,6 +13,7 @@ namespace mpm {
 template <class Space, class T, int Dim>
 struct LightSystem {
   using Terms = LightTerms<Dim>;
+  using Past = LightPast<Dim>;
   using Memory = typename Space::memory_space;
   static constexpr int cells = Patch<Dim>::cells, unknowns = Terms::unknowns;
   static constexpr int stride = UpdateNodes<Space, T, Dim>::light_stride;
@@ -44,6 +46,7 @@ struct LightSystem {
   KOKKOS_INLINE_FUNCTION void begin(int r) const {
     LightMotion<Dim>& motion = motions(r);
     motion.open = motion.light;
+    for (int n = 0; n < Past::size; ++n) past(r)[n] = 0;
     if (!motion.light || damps) return;  // with damping it goes on from the solution without it
     const PairMotion<Dim> free = free_motion<T>(update.rigids(r), Wrench<Dim>{}, 0, dt);
     const Vector<double, Dim> pressed = impulse_of_others(r);
@@ -103,20 +106,22 @@ struct LightSystem {
 
   /// Improves the velocity of body r: Newton's method for M (v - v_free) = J(v), with the change of the
   /// soil's impulse J by the nodes that are stopped now, and of those that slip as if a dashpot held them.
+  /// Such steps descend, but are short where nodes slip: go_on() lengthens them.
   KOKKOS_INLINE_FUNCTION void solve(int r) const {
     constexpr double k_small = sizeof(T) == sizeof(double) ? 1e-10 : 1e-6;  // of the velocity and its change
     LightMotion<Dim>& motion = motions(r);
     if (!motion.open) return;
     const PairMotion<Dim> free = free_motion<T>(update.rigids(r), Wrench<Dim>{}, 0, dt);
     const double* const system = &sums(r * Terms::size);
-    double rows[unknowns][unknowns + 1];  // the system, and its right-hand side
-    double column[unknowns], end[unknowns], change[unknowns];
+    double rows[unknowns][columns];
+    double column[unknowns], end[unknowns], change[unknowns], residual[unknowns];
     for (int k = 0; k < unknowns; ++k) column[k] = system[Terms::impulse + k];
     yield(free, column);
     for (int k = 0; k < unknowns; ++k) {
       end[k] = k < Dim ? motion.end.velocity[k] : motion.end.spin[k - Dim];
       change[k] = end[k] - (k < Dim ? motion.free.velocity[k] : motion.free.spin[k - Dim]);
-      rows[k][unknowns] = column[k] - change[k];
+      rows[k][unknowns] = residual[k] = column[k] - change[k];
+      rows[k][unknowns + 1] = past(r)[Past::residual + k] - residual[k];
     }
     for (int k = 0; k < unknowns; ++k) {
       for (int n = 0; n < unknowns; ++n) column[n] = system[Terms::loss_at(n < k ? k : n, n < k ? n : k)];
@@ -124,15 +129,43 @@ struct LightSystem {
       for (int n = 0; n < unknowns; ++n) rows[n][k] = column[n] + (n == k ? 1 : 0);
     }
     eliminate(rows);
-    for (int k = 0; k < unknowns; ++k) column[k] = rows[k][unknowns];
+    go_on(free, residual, rows, past(r), column);
     for (int d = 0; d < Dim; ++d) motion.end.velocity[d] += column[d];
     for (int k = 0; k < k_turning_axes<Dim>; ++k) motion.end.spin[k] += column[Dim + k];
-    const double most = k_small * k_small * (square_of(free, end) + square_of(free, change));
-    motion.open = !(square_of(free, column) <= most);
+    const double most = k_small * k_small * (product_of(free, end, end) + product_of(free, change, change));
+    motion.open = !(product_of(free, column, column) <= most);
     if (!damps) motion.undamped = motion.end;
   }
 
  private:
+  /// Of the system: the unknowns, the residual, and what the step before took from the residual.
+  static constexpr int columns = unknowns + 2;
+  /// Numbers of LightPast of body r.
+  KOKKOS_INLINE_FUNCTION double* past(int r) const {
+    return &sums(light_numbers<Dim>(static_cast<int>(motions.extent(0))) + r * Past::size);
+  }
+  /// The step of a body by a system that is solved, and keeps it. Where the step before left some of the
+  /// residual along it, the system is corrected by what it took (Broyden's method), by one such step more at
+  /// most: a longer one would pass the velocity at which nodes begin to stick, and come back for ever.
+  KOKKOS_INLINE_FUNCTION static void go_on(const PairMotion<Dim>& body, const double (&residual)[unknowns],
+                                           const double (&rows)[unknowns][columns], double* past,
+                                           double (&step)[unknowns]) {
+    double before[unknowns], taken[unknowns];
+    for (int k = 0; k < unknowns; ++k) {
+      before[k] = past[Past::step + k];
+      taken[k] = past[Past::residual + k] - residual[k];
+      step[k] = rows[k][unknowns];
+    }
+    const double left = product_of(body, before, residual), took = product_of(body, before, taken);
+    if (left > 0 && took > 0) {
+      const double more = Kokkos::fmin(1.0, left / took);
+      for (int k = 0; k < unknowns; ++k) step[k] += more * (before[k] - rows[k][unknowns + 1]);
+    }
+    for (int k = 0; k < unknowns; ++k) {
+      past[Past::step + k] = step[k];
+      past[Past::residual + k] = residual[k];
+    }
+  }
   /// Whether the solution of body number m of those near a slot goes on.
   KOKKOS_INLINE_FUNCTION bool is_open(int slot, int m) const {
     const int r = near.body(slot, m);
@@ -159,40 +192,41 @@ struct LightSystem {
     for (int d = 0; d < Dim; ++d) numbers[d] *= body.lightness[d];
     for (int k = 0; k < k_turning_axes<Dim>; ++k) numbers[Dim + k] = moment[k];
   }
-  /// Square of a velocity and spin, the spin times the radius of gyration [m2/s2].
-  KOKKOS_INLINE_FUNCTION static double square_of(const PairMotion<Dim>& body,
-                                                 const double (&motion)[unknowns]) {
+  /// Product of two velocities and spins, the spins times the radius of gyration [m2/s2].
+  KOKKOS_INLINE_FUNCTION static double product_of(const PairMotion<Dim>& body, const double (&a)[unknowns],
+                                                  const double (&b)[unknowns]) {
     double lightness = 0, sum = 0;
     for (int d = 0; d < Dim; ++d) {
       lightness = Kokkos::fmax(lightness, body.lightness[d]);
-      sum += motion[d] * motion[d];
+      sum += a[d] * b[d];
     }
     for (int k = 0; k < k_turning_axes<Dim>; ++k) {
       double unit[unknowns] = {};
       unit[Dim + k] = 1;
       yield(body, unit);
       const bool both = lightness > 0 && unit[Dim + k] > 0;
-      sum += motion[Dim + k] * motion[Dim + k] * (both ? lightness / unit[Dim + k] : 1);
+      sum += a[Dim + k] * b[Dim + k] * (both ? lightness / unit[Dim + k] : 1);
     }
     return sum;
   }
-  /// Solves a system by elimination with row exchanges; the last column becomes the solution.
-  KOKKOS_INLINE_FUNCTION static void eliminate(double (&rows)[unknowns][unknowns + 1]) {
+  /// Solves a system by elimination with row exchanges; its last columns become the solutions.
+  KOKKOS_INLINE_FUNCTION static void eliminate(double (&rows)[unknowns][columns]) {
     for (int k = 0; k < unknowns; ++k) {
       int largest = k;
       for (int n = k + 1; n < unknowns; ++n)
         if (Kokkos::fabs(rows[n][k]) > Kokkos::fabs(rows[largest][k])) largest = n;
-      for (int m = k; m <= unknowns; ++m) {
+      for (int m = k; m < columns; ++m) {
         const double value = rows[k][m];
         rows[k][m] = rows[largest][m], rows[largest][m] = value;
       }
       for (int n = 0; n < unknowns; ++n) {
         if (n == k) continue;
         const double factor = rows[n][k] / rows[k][k];
-        for (int m = k; m <= unknowns; ++m) rows[n][m] -= factor * rows[k][m];
+        for (int m = k; m < columns; ++m) rows[n][m] -= factor * rows[k][m];
       }
     }
-    for (int k = 0; k < unknowns; ++k) rows[k][unknowns] /= rows[k][k];
+    for (int k = 0; k < unknowns; ++k)
+      for (int m = unknowns; m < columns; ++m) rows[k][m] /= rows[k][k];
   }
 };
 

@@ -376,6 +376,9 @@ struct UpdateNodes {
       // The gap of a rough boundary differs from node to node: shear acts at all that are about in touch.
       if (other.gap > Kokkos::fmax(T(law.reach), places.grid.spacing / 2)) return;
     }
+    if constexpr (acts)
+      if (light != nullptr && light[r].light)
+        interface.touch = touch_at_begin(rigid.motion.velocity_at(place), v, other, interface);
     const int row = impulse_stride * n;
     if (has_friction) {
       interface.pressed = {nodes.impulse(row + ImpulseTerms::sum, node.i),
@@ -405,6 +408,21 @@ struct UpdateNodes {
       if (light[r].open)
         add_touch(Touch<T, Dim>{other.normal, change, m_i, interface.stopped, interface.held},
                   rigid.motion.pose, place, light_stride, force);
+  }
+
+  /// Whether shear acts between a light body and a node of velocity v, by the body's velocity at the begin of
+  /// the step. Shear that came and went with the velocity at its end would leave the solution for this none.
+  KOKKOS_INLINE_FUNCTION static typename Interface<T>::Touch touch_at_begin(const Vector<double, Dim>& begin,
+                                                                            const Vector<T, Dim>& v,
+                                                                            const Opponent<T, Dim>& other,
+                                                                            const Interface<T>& interface) {
+    Vector<T, Dim> slip;
+    for (int d = 0; d < Dim; ++d) slip[d] = v[d] - static_cast<T>(begin[d]);
+    const T approach = dot(slip, other.normal);
+    for (int d = 0; d < Dim; ++d) slip[d] -= approach * other.normal[d];
+    const T speed = Kokkos::sqrt(dot(slip, slip));
+    return feels_shear(approach, speed, other.within_soil, interface) ? Interface<T>::Touch::some
+                                                                      : Interface<T>::Touch::none;
   }
 
   /// Adds the moment about the centre of a rigid of the force that changes a node's velocity (touch).

@@ -90,8 +90,21 @@ struct Interface {
   Pressed<T> pressed{};  // m/s: normal impulses over nodal mass
   T gap_scaling = 1;     // -, fraction of the normal correction
   bool separates = true;
+  enum class Touch { by_velocity, none, some };
+  Touch touch = Touch::by_velocity;  // whether shear acts, if the velocities do not say so
   T stopped = 0, held = 0;  // -, fractions of the approach and of the slip that the contact takes away
 };
+
+/// Whether shear acts at a node: while it moves in or is pressed in. approach, slip: of its velocity [m/s]
+template <class T>
+KOKKOS_INLINE_FUNCTION bool feels_shear(T approach, T slip, bool within_soil, const Interface<T>& interface) {
+  constexpr T k_leaves = T(0.1);  // of the slip: a node in the soil that moves away faster is not in touch
+  constexpr T k_along = T(1e-6);  // of the slip: a motion along the face is along it but for round-off
+  // Share of the slip by which round-off presses a node whose forces balance, towards the rigid or away.
+  constexpr T k_balanced = sizeof(T) == sizeof(double) ? T(1e-10) : T(1e-6);
+  return !interface.separates || approach > k_along * slip || interface.pressing > k_balanced * slip ||
+         (within_soil && -approach < k_leaves * slip);
+}
 
 /// Correction dV of the soil's velocity v at a node. No soil moves into the opponent. Shear acts while it
 /// moves in or is pressed in. Friction is a fraction of the usable normal impulse. Of the relative velocity
@@ -109,13 +122,9 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
   Vector<T, Dim> slip;
   for (int d = 0; d < Dim; ++d) slip[d] = relative[d] - approach * n[d];
   const T speed = Kokkos::sqrt(dot(slip, slip));
-  constexpr T k_leaves = T(0.1);  // of the slip: a node in the soil that moves away faster is not in touch
-  constexpr T k_along = T(1e-6);  // of the slip: a motion along the face is along it but for round-off
-  // Share of the slip by which round-off presses a node whose forces balance, towards the rigid or away.
-  constexpr T k_balanced = sizeof(T) == sizeof(double) ? T(1e-10) : T(1e-6);
-  const bool touches = !interface.separates || approach > k_along * speed ||
-                       interface.pressing > k_balanced * speed ||
-                       (other.within_soil && -approach < k_leaves * speed);
+  const bool touches = interface.touch == Interface<T>::Touch::by_velocity
+                           ? feels_shear(approach, speed, other.within_soil, interface)
+                           : interface.touch == Interface<T>::Touch::some;
   T largest = touches ? interface.shear_speed : T(0);
   if (interface.friction >= 0) {
     const T normal = usable_impulse(interface.pressed, interface.fresh, stop);

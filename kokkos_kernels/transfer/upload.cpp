@@ -6,6 +6,7 @@
 
 #include "base/copy.hpp"
 #include "data/contact_core.hpp"
+#include "data/light_past.hpp"
 #include "physics/domain.hpp"
 #include "physics/rigid_motion.hpp"
 #include "physics/surface.hpp"
@@ -47,7 +48,9 @@ void upload_light_rigids(const std::vector<RigidInput>& rigids, LightRigids<Spac
     motion.light = rigids[r].light;
     return motion;
   });
-  to.sums = decltype(to.sums)("mpm::light_sums", to.in_use ? LightTerms<Dim>::size * rigids.size() + 1 : 0);
+  const int count = static_cast<int>(rigids.size());
+  const int numbers = light_numbers<Dim>(count) + LightPast<Dim>::size * count;
+  to.sums = decltype(to.sums)("mpm::light_sums", to.in_use ? numbers : 0);
 }
 
 template <class Space, class T, int Dim>

@@ -4,6 +4,7 @@
 
 #include "base/copy.hpp"
 #include "common/collectives.hpp"
+#include "data/light_past.hpp"
 #include "functions/follow_soil.hpp"
 #include "functions/step_kernels.hpp"
 #include "rebuild/rebuild_state.hpp"
@@ -82,7 +83,8 @@ template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::add_light_sums(State_& s, const Space& stream, bool* open) {
   PetscFunctionBeginUser;
   double count = 0;
-  PetscCall(add_numbers(s.light_rigids.sums, stream, stream, &count));
+  const int numbers = light_numbers<Dim>(static_cast<int>(s.rigid_points.size()));
+  PetscCall(add_numbers(head(s.light_rigids.sums, numbers), stream, stream, &count));
   *open = count > 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
