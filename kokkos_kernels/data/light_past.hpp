@@ -1,5 +1,5 @@
 #pragma once
-// What a round of the solution for a light rigid body knows of the one before.
+// Numbers that a round of the solution for a light rigid body keeps from the round before.
 
 #include "data/light_rigids.hpp"
 
