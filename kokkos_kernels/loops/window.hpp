@@ -23,15 +23,6 @@ KOKKOS_INLINE_FUNCTION int window_place(const Coord<Dim>& cell, const Weights& a
   return n;
 }
 
-/// Calls f(place in the window, number) for every node of a slot's window.
-template <int Dim, class Team, class Neighbours, class F>
-KOKKOS_INLINE_FUNCTION void for_each_of_window(const Team& team, const Neighbours& neighbours, int slot,
-                                               F&& f) {
-  Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Dim>::window), [&](int n) {
-    f(n, number_at<Neighbours, Dim>(neighbours, slot, window_coord<Dim>(n)));
-  });
-}
-
 /// The weights along every axis of a particle that is near the cell where it was binned.
 template <class T, int Dim, class Domain, class F>
 KOKKOS_INLINE_FUNCTION void with_weights_near(const Vector<T, Dim>& x, const Domain& domain, F&& f) {

@@ -46,7 +46,6 @@ class Facets {
   void add_surface(const HeightSurface& surface, bool upper);
   void add_outline(const std::vector<std::array<double, 2>>& outline, double from, double to);
   void add_revolved(const std::vector<std::array<double, 2>>& side, const Vec3& centre, double width);
-  void add_curved(const Shape& shape, double width);
 
   MeshConfig mesh_;
   int dim_;
