@@ -71,6 +71,13 @@ struct Particle {
   T volume;                  // m3
 };
 
+/// Calls f(value, field) for each value of a particle and the field of the soil that it is loaded from and
+/// stored to, on processors and on GPUs.
+template <class F, class Particle_, class Soil_>
+KOKKOS_FORCEINLINE_FUNCTION void for_each_value(F&& f, Particle_& q, const Soil_& soil) {
+  f(q.x, soil.coordinate), f(q.v, soil.velocity), f(q.volume, soil.volume), f(q.stress, soil.stress);
+}
+
 /// The law of particle p, which is one of the list Laws, with its state in memory. A particle that flies
 /// freely, being alone, carries no stress, nor an excess pore pressure, and keeps its state.
 template <class Space, class T, int Dim, class Laws>

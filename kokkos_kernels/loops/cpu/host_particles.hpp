@@ -220,10 +220,9 @@ struct HostParticles {
   KOKKOS_INLINE_FUNCTION void move_block(int p, int count, int slot, const Stage& stage, int n,
                                          R& moved) const {
     Particle<R, Dim> q;
-    load_field(soil.coordinate, p, count, q.x.c);
-    load_field(soil.velocity, p, count, q.v.c);
-    load_field(soil.stress, p, count, q.stress.c);
-    load_field(soil.volume, p, count, q.volume);
+    for_each_value([&](auto& value, const auto& field)
+                       MPM_INLINE_LAMBDA { load_field(field, p, count, value); },
+                   q, soil);
     const GridSample<R, Dim, slopes> t = stage.samples.get(n);
     LawLanes<R, Space, T, Dim> law{.soil = soil, .p = p, .count = count, .one_law = stage.one_body};
     law.corner = origin(slot), law.spacing = spacing;
@@ -233,10 +232,9 @@ struct HostParticles {
     const R volume = q.volume, own = advance(q, law, t, R::load(stage.mean + n), by, domain_at(p, count));
     if (law.some_fly) q.volume = select(law.flies > 0, volume, q.volume);
     if (stage.at_wall) put_back_on_walls(q, p, count, slot);
-    store_field(q.x.c, soil.coordinate, p, count);
-    store_field(q.v.c, soil.velocity, p, count);
-    store_field(q.stress.c, soil.stress, p, count);
-    store_field(q.volume, soil.volume, p, count);
+    for_each_value([&](auto& value, const auto& field)
+                       MPM_INLINE_LAMBDA { store_field(value, field, p, count); },
+                   q, soil);
     const bool limited = by.volume_is_fault && any_of(is_volume_limited(q, by, domain_at(p, count)));
     if (limited || any_of(!(is_finite(q) & (own <= 1)))) find_faults(q, own, p, count, slot);
     moved = Kokkos::fmax(moved, own);

@@ -63,10 +63,13 @@ KOKKOS_FORCEINLINE_FUNCTION void load_field(const Field& field, int p, int count
   else
     load_some(from, count, a);
 }
-/// A field of one value a particle.
-template <class R, class Field>
-KOKKOS_FORCEINLINE_FUNCTION void load_field(const Field& field, int p, int count, R& a) {
-  load_field(field, p, count, reinterpret_cast<R(&)[1]>(a));
+/// A field of one value a particle, or of a vector or tensor.
+template <class Value, class Field>
+KOKKOS_FORCEINLINE_FUNCTION void load_field(const Field& field, int p, int count, Value& a) {
+  if constexpr (requires { a.c; })
+    load_field(field, p, count, a.c);
+  else
+    load_field(field, p, count, reinterpret_cast<Value(&)[1]>(a));
 }
 template <class R, class Field, int N>
 KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field, int p, int count) {
@@ -76,9 +79,12 @@ KOKKOS_FORCEINLINE_FUNCTION void store_field(const R (&a)[N], const Field& field
   else
     store_some(a, count, to);
 }
-template <class R, class Field>
-KOKKOS_FORCEINLINE_FUNCTION void store_field(const R& a, const Field& field, int p, int count) {
-  store_field(reinterpret_cast<const R(&)[1]>(a), field, p, count);
+template <class Value, class Field>
+KOKKOS_FORCEINLINE_FUNCTION void store_field(const Value& a, const Field& field, int p, int count) {
+  if constexpr (requires { a.c; })
+    store_field(a.c, field, p, count);
+  else
+    store_field(reinterpret_cast<const Value(&)[1]>(a), field, p, count);
 }
 
 /// Prefetches memory that is needed soon.

@@ -172,8 +172,8 @@ struct UpdateParticles {
     const auto& soil = source.points;
     const int end = begin((slot + 1) * cells);
     for (int p = begin(slot * cells) + team.team_rank(); is_device<Space> && p < end; p += threads) {
-      prefetch(&soil.coordinate(p)), prefetch(&soil.velocity(p)), prefetch(&soil.stress(p));
-      prefetch(&soil.volume(p));
+      Particle<T, Dim> q;
+      for_each_value([&](auto&, const auto& field) { prefetch(&field(p)); }, q, soil);
       if constexpr (domain == ParticleDomain::stretch) prefetch(&soil.half_length(p));
       if constexpr (Dim == 2) {  // the forms that spill least: scripts/bench/law_registers
         for (int k = 0; k < most_state(Laws{}, true); ++k)
@@ -245,7 +245,8 @@ struct UpdateParticles {
     const BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
     const int place = soil.cell(p) - slot * cells;
     const Coord<Dim> cell = coord_of<Dim>(place);
-    Particle<T, Dim> q{soil.coordinate(p), soil.velocity(p), soil.stress(p), soil.volume(p)};
+    Particle<T, Dim> q;
+    for_each_value([&](auto& value, const auto& field) { value = field(p); }, q, soil);
     const bool flies = kind != PatchKind::common && (lone >> place & 1) != 0;
     T own = 0;
     const Domain half_length = domain_of<domain>(soil, p, body);
@@ -255,11 +256,8 @@ struct UpdateParticles {
                     by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by, step_domain<domain>(soil, p));
     });
     if (flies) q.volume = soil.volume(p);
-    soil.coordinate(p) = q.x;
-    soil.velocity(p) = q.v;
+    for_each_value([&](auto& value, const auto& field) { field(p) = value; }, q, soil);
     if constexpr (kind != PatchKind::common) put_back_particle(images, slot, place, p, q);
-    soil.volume(p) = q.volume;
-    soil.stress(p) = q.stress;
     FaultKind fault = fault_of(q, own, by, step_domain<domain>(soil, p));
     if (fault != FaultKind::none) {
       if (fault == FaultKind::not_finite) fault = cause_of<Laws>(soil, p);
