@@ -58,7 +58,7 @@ HeldState<Space, T, Dim> state_on(const Space& space, const Cloud& cloud, P2G ho
 #define MPM_INSTANTIATE(Space, T, Dim)      \
   template struct HeldState<Space, T, Dim>; \
   template HeldState<Space, T, Dim> state_on<Space, T, Dim>(const Space&, const Cloud&, P2G);
-MPM_FOR_EACH(MPM_INSTANTIATE)
+MPM_FOR_TESTED(MPM_INSTANTIATE)
 #undef MPM_INSTANTIATE
 
 template <int Dim>

@@ -74,9 +74,17 @@ struct HeldState : State<Space, T, Dim> {
 template <class B>
 using StateOf = HeldState<typename B::Space, typename B::real, B::dim>;
 
-/// Calls f(Build) for what the kernels are built for, on processors with one thread and then with several:
-/// all of it with MPM_TEST_EVERY_BUILD, else without several threads in single precision, which whole runs
-/// test.
+// Applies X(Space, T, Dim) to what unit tests run on: with MPM_TEST_EVERY_BUILD to all that the kernels are
+// built for, else on processors to single precision in 2D alone, since whole runs test it in 3D.
+#if defined(MPM_TEST_EVERY_BUILD) || defined(MPM_ONLY_DOUBLE)
+#define MPM_FOR_TESTED_ON_PROCESSOR(X) MPM_FOR_EACH_REAL_DIM(X, Processor)
+#else
+#define MPM_FOR_TESTED_ON_PROCESSOR(X) MPM_FOR_EACH_DIM(X, Processor, double) X(Processor, float, 2)
+#endif
+#define MPM_FOR_TESTED(X) MPM_FOR_TESTED_ON_PROCESSOR(X) MPM_FOR_CUDA(X)
+
+/// Calls f(Build) for what is tested, on processors with one thread and then with several; without
+/// MPM_TEST_EVERY_BUILD not with several in single precision, which whole runs test.
 template <class F>
 void for_each_build(F&& f) {
 #ifdef MPM_TEST_EVERY_BUILD
@@ -94,7 +102,7 @@ void for_each_build(F&& f) {
   if (all || sizeof(T) == sizeof(double) || !threads.in_use()) MPM_TEST_BUILD(Space, T, Dim)
   for (int n = 0; n < k_most; ++n) {
     const SeveralThreads threads(n > 0);
-    MPM_FOR_EACH_REAL_DIM(MPM_TEST_THREADS, Processor)
+    MPM_FOR_TESTED_ON_PROCESSOR(MPM_TEST_THREADS)
   }
   MPM_FOR_CUDA(MPM_TEST_BUILD)
 #undef MPM_TEST_THREADS

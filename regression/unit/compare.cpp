@@ -113,7 +113,7 @@ double largest_difference(const std::vector<Table>& got, const std::vector<Table
   template std::vector<Table> nodal_fields(const State<Space, T, Dim>&); \
   template std::vector<Table> soil_fields(const State<Space, T, Dim>&);  \
   template void drift_within_margin(State<Space, T, Dim>&);
-MPM_FOR_EACH(MPM_INSTANTIATE)
+MPM_FOR_TESTED(MPM_INSTANTIATE)
 #undef MPM_INSTANTIATE
 
 }  // namespace mpm::test
