@@ -27,6 +27,8 @@ struct ContactCore : Core<Space, T, Dim> {
   RigidLinks<Space, Dim> links;               // joints, springs and dashpots of rigid bodies
   LightRigids<Space, Dim> light_rigids;       // and how contact takes them
   Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step
+  Kokkos::View<double*, Memory> rigid_moved;  // cells, of each rigid in this step, where a kernel before
+                                              // move_rigids moves it: some are linked, or there are many
   bool forces_summed =
       false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them
   bool rigid_moves = false;     // some rigid is not fixed

@@ -17,6 +17,19 @@ struct LightTerms {
   }
 };
 
+/// Numbers of a light body that a round of the solution keeps for the next one: the last change of its
+/// velocity and spin, and the residual before this change, in m/s and rad/s too.
+template <int Dim>
+struct LightPast {
+  static constexpr int step = 0, residual = Wrench<Dim>::size, size = 2 * Wrench<Dim>::size;
+};
+
+/// Numbers that ranks sum for so many rigids: their systems, and the number of open solutions.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION constexpr int light_numbers(int rigids) {
+  return rigids * LightTerms<Dim>::size + 1;
+}
+
 /// Velocity of a rigid body.
 template <int Dim>
 struct Twist {
@@ -30,7 +43,7 @@ struct LightMotion {
   Twist<Dim> end;       // with contact, which takes the body so
   Twist<Dim> free;      // without contact with soil
   Twist<Dim> undamped;  // with contact of soil that has no local damping
-  bool light;           // else contact takes the velocity at the begin of the step
+  bool light;           // else contact takes the velocity at the beginning of the step
   bool open;            // the solution of this step goes on
 };
 
@@ -41,7 +54,7 @@ struct LightRigids {
   bool in_use = false;                              // some body is light
   Kokkos::View<LightMotion<Dim>*, Memory> motions;  // [rigids]
   Kokkos::View<double*, Memory> of_slots;           // [contact slot][near body][LightTerms]
-  Kokkos::View<double*, Memory> sums;  // [rigids][LightTerms], number of open solutions, [rigids][LightPast]
+  Kokkos::View<double*, Memory> sums;               // light_numbers(rigids), and [rigids][LightPast]
 };
 
 }  // namespace mpm

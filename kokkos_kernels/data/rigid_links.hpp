@@ -89,7 +89,6 @@ struct RigidLinks {
   Kokkos::View<double*, Memory> numbers;              // k_numbers [rows]
   Kokkos::View<int*, Memory> first;                   // column of a row of the matrix where it begins
   Kokkos::View<LinkedStart<Dim>*, Memory> starts;     // of each rigid
-  Kokkos::View<double*, Memory> moved;                // cells, of each rigid in the step
   double size = 1;                                    // m, of the mesh
   static constexpr int k_numbers = 3;
 

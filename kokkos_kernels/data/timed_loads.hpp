@@ -30,11 +30,11 @@ enum class LoadTarget : int { gravity, velocity, force, side, pressure, traction
 /// the mass whose weight the force carries [kg]; 0 elsewhere.
 struct TimedLoad {
   LoadTarget target;
-  int rigid, component;  // of a side, 2 direction + 1 for the upper one stands for the rigid; or the number
-                         // of a surface's load or a joint
+  int rigid, component;  // where `place` is null
   TimedNumber own, gravity;
   double factor;
-  double* place;  // of the value on the device; null: gravity or a rigid's, which kernels may hold a copy of
+  double*
+      place;  // on the device, of the value; null: of gravity or a rigid, of which kernels may hold copies
 };
 
 /// The times of steps: step k of those that Control::steps counts begins at origin + (first + k) dt. With the

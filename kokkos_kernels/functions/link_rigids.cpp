@@ -64,7 +64,7 @@ void upload_links(ContactCore<Space, T, Dim>& s, const std::vector<Joint<Dim>>& 
   links.matrix = decltype(links.matrix)("mpm::joint_matrix", rows * rows);
   links.numbers = decltype(links.numbers)("mpm::joint_numbers", links.k_numbers * rows);
   links.first = decltype(links.first)("mpm::joint_first", rows);
-  links.moved = decltype(links.moved)("mpm::linked_moved", supports.size());
+  s.rigid_moved = decltype(s.rigid_moved)("mpm::rigid_moved", supports.size());
 }
 
 template <class Space, class T, int Dim>
@@ -72,7 +72,7 @@ void link_rigids(ContactCore<Space, T, Dim>& s, double dt, const Space& stream) 
   if (!s.forces_summed) sum_forces(s, stream);
   const LinkedStep<T, Dim> step = linked_step(s, dt);
   const auto control = s.control;
-  const auto moved = s.links.moved;
+  const auto moved = s.rigid_moved;
   const int count = static_cast<int>(moved.extent(0));
   const double spacing = s.spacing;
   Kokkos::parallel_for(

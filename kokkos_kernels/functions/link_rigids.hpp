@@ -14,7 +14,7 @@ void upload_links(ContactCore<Space, T, Dim>& s, const std::vector<Joint<Dim>>& 
                   const std::vector<RigidSupport<Dim>>& supports, double size);
 
 /// Moves the rigids of a run where s.links is in use, by a step of dt [s], under the forces on them; leaves
-/// their movements in s.links.moved [cells] for move_rigids.
+/// their movements in s.rigid_moved [cells] for move_rigids.
 template <class Space, class T, int Dim>
 void link_rigids(ContactCore<Space, T, Dim>& s, double dt, const Space& stream);
 

@@ -99,18 +99,17 @@ void sum_forces(ContactCore<Space, T, Dim>& s, const Space& stream) {
 
 template <class Space, class T, int Dim>
 void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed, double dt,
-                 const Space& stream, const double* moved) {
+                 const Space& stream) {
   EndStep<Space, T, Dim> end(s, timed, dt);
-  end.moved = s.links.in_use() ? moved : nullptr;
-  if (!s.links.in_use() && s.pairs.in_use()) end.pairs = s.pairs.actions;
-  const bool apart = is_device<Space> && s.contact.near.listed && !s.links.in_use();
-  if (apart) {
+  const bool linked = s.links.in_use(), by_threads = is_device<Space> && s.contact.near.listed && !linked;
+  if (!linked && s.pairs.in_use()) end.pairs = s.pairs.actions;
+  if (by_threads) {
     if (!s.forces_summed) sum_forces(s, stream);
     end.summed = true;
-    ensure(s.links.moved, s.rigid_points.size());
-    move_by_threads(end, stream, s.links.moved);
-    end.moved = s.links.moved.data();
+    ensure(s.rigid_moved, s.rigid_points.size());
+    move_by_threads(end, stream, s.rigid_moved);
   }
+  if (linked || by_threads) end.moved = s.rigid_moved.data();
   // Persistent steps, of few patches, sum each force in one share: a run gives the same bits by both.
   constexpr int k_many = 256, k_shares = is_device<Space> ? 16 : 1;
   const bool many = s.plan.form != StepForm::persistent && !s.contact.near.listed && s.contact.count > k_many;
@@ -157,7 +156,7 @@ void restart_count(const Core<Space, T, Dim>& s) {
 #define MPM_INSTANTIATE(Space, T, Dim)                                                             \
   template void sum_forces(ContactCore<Space, T, Dim>&, const Space&);                             \
   template void move_rigids(ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&, double, \
-                            const Space&, const double*);                                          \
+                            const Space&);                                                         \
   template void move_rigid_points(ContactCore<Space, T, Dim>&, const Space&);                      \
   template void begin_loads(const ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&,   \
                             const LoadClock&);                                                     \

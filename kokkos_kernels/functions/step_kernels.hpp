@@ -82,11 +82,10 @@ template <class Space, class T, int Dim>
 void sum_forces(ContactCore<Space, T, Dim>& s, const Space& stream);
 
 /// 6. Moves the rigid bodies (Eq. 7), counts the step, sets what follows tables in time for the next, and
-/// adds what any point can have moved to the bound. dt [s]. moved [cells]: how far each rigid has moved where
-/// link_rigids did it, else null.
+/// adds what any point can have moved to the bound. dt [s]. Linked bodies have been moved by link_rigids.
 template <class Space, class T, int Dim>
 void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed, double dt,
-                 const Space& stream, const double* moved = nullptr);
+                 const Space& stream);
 template <class Space, class T, int Dim>
 void move_rigids(State<Space, T, Dim>& s, double dt) {
   move_rigids(s, s.timed, dt, s.space);

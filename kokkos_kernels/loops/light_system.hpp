@@ -1,7 +1,7 @@
 #pragma once
 // The velocity of light rigid bodies under the soil's contact (docs/method.md, "Light bodies").
 
-#include "data/light_past.hpp"
+#include "data/light_rigids.hpp"
 #include "loops/node_update.hpp"
 #include "physics/pair_contact.hpp"
 
@@ -106,7 +106,7 @@ struct LightSystem {
 
   /// Improves the velocity of body r: Newton's method for M (v - v_free) = J(v), with the change of the
   /// soil's impulse J by the nodes that are stopped now, and of those that slip as if a dashpot held them.
-  /// Such steps descend, but are short where nodes slip: go_on() lengthens them.
+  /// Such steps descend, but are short where nodes slip: correct_step() lengthens them.
   KOKKOS_INLINE_FUNCTION void solve(int r) const {
     constexpr double k_small = sizeof(T) == sizeof(double) ? 1e-10 : 1e-6;  // of the velocity and its change
     LightMotion<Dim>& motion = motions(r);
@@ -129,7 +129,7 @@ struct LightSystem {
       for (int n = 0; n < unknowns; ++n) rows[n][k] = column[n] + (n == k ? 1 : 0);
     }
     eliminate(rows);
-    go_on(free, residual, rows, past(r), column);
+    correct_step(free, residual, rows, past(r), column);
     for (int d = 0; d < Dim; ++d) motion.end.velocity[d] += column[d];
     for (int k = 0; k < k_turning_axes<Dim>; ++k) motion.end.spin[k] += column[Dim + k];
     const double most = k_small * k_small * (product_of(free, end, end) + product_of(free, change, change));
@@ -138,18 +138,21 @@ struct LightSystem {
   }
 
  private:
-  /// Of the system: the unknowns, the residual, and what the step before took from the residual.
+  /// Columns of the system: a matrix of the unknowns, the residual, and the change of the residual by the
+  /// round before.
   static constexpr int columns = unknowns + 2;
   /// Numbers of LightPast of body r.
   KOKKOS_INLINE_FUNCTION double* past(int r) const {
     return &sums(light_numbers<Dim>(static_cast<int>(motions.extent(0))) + r * Past::size);
   }
-  /// The step of a body by a system that is solved, and keeps it. Where the step before left some of the
-  /// residual along it, the system is corrected by what it took (Broyden's method), by one such step more at
-  /// most: a longer one would pass the velocity at which nodes begin to stick, and come back for ever.
-  KOKKOS_INLINE_FUNCTION static void go_on(const PairMotion<Dim>& body, const double (&residual)[unknowns],
-                                           const double (&rows)[unknowns][columns], double* past,
-                                           double (&step)[unknowns]) {
+  /// Change of a body's velocity by the solved system, corrected by Broyden's method where a part of the
+  /// residual along the change of the round before is left; `past` keeps the new change and the residual. The
+  /// correction is at most the change of the round before: a longer one would pass the velocity at which
+  /// nodes begin to stick, and the rounds would go to and fro.
+  KOKKOS_INLINE_FUNCTION static void correct_step(const PairMotion<Dim>& body,
+                                                  const double (&residual)[unknowns],
+                                                  const double (&rows)[unknowns][columns], double* past,
+                                                  double (&step)[unknowns]) {
     double before[unknowns], taken[unknowns];
     for (int k = 0; k < unknowns; ++k) {
       before[k] = past[Past::step + k];

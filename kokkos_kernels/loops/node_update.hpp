@@ -80,6 +80,7 @@ struct UpdateNodes {
     if (clears) clear_sums(team, nodes, slot, has_boundary, has_mass_normals ? rigids.extent(0) : 0);
   }
 
+  /// Number of rigid bodies near a slot; without lists, of all.
   KOKKOS_INLINE_FUNCTION int bodies_near(int slot) const {
     int n = near_bodies.listed ? 0 : near_bodies.width;
     while (n < near_bodies.width && near_bodies.of(slot * near_bodies.width + n) >= 0) ++n;
@@ -187,7 +188,7 @@ struct UpdateNodes {
     for (int m = 0; m < near_bodies.width && has_friction; ++m) {
       const int r = near_bodies.body(i / cells, m);
       if constexpr (is_device<Space>)
-        if (r < 0) break;                              // the processor's kernels keep their bits without it
+        if (r < 0) break;  // of a list; processors do without, since gcc then contracts other products
       if (r >= 0 && bodies[r].law.at_sites) continue;  // sites keep numbers of their own
       for (int n = 0; n < ImpulseTerms::size; ++n)
         nodes.impulse(impulse_stride * m + n, i) *= kept_share(n, fresh);
@@ -378,7 +379,7 @@ struct UpdateNodes {
     }
     if constexpr (acts)
       if (light != nullptr && light[r].light)
-        interface.touch = touch_at_begin(rigid.motion.velocity_at(place), v, other, interface);
+        interface.shear = shear_of_light(rigid.motion.velocity_at(place), v, other, interface);
     const int row = impulse_stride * n;
     if (has_friction) {
       interface.pressed = {nodes.impulse(row + ImpulseTerms::sum, node.i),
@@ -410,9 +411,10 @@ struct UpdateNodes {
                   rigid.motion.pose, place, light_stride, force);
   }
 
-  /// Whether shear acts between a light body and a node of velocity v, by the body's velocity at the begin of
-  /// the step. Shear that came and went with the velocity at its end would leave the solution for this none.
-  KOKKOS_INLINE_FUNCTION static typename Interface<T>::Touch touch_at_begin(const Vector<double, Dim>& begin,
+  /// Whether shear acts between a light body and a node of velocity v, by the body's velocity at the
+  /// beginning of the step. Were shear decided by the velocity at the end, which is solved for, some steps
+  /// would have no solution.
+  KOKKOS_INLINE_FUNCTION static typename Interface<T>::Shear shear_of_light(const Vector<double, Dim>& begin,
                                                                             const Vector<T, Dim>& v,
                                                                             const Opponent<T, Dim>& other,
                                                                             const Interface<T>& interface) {
@@ -421,8 +423,8 @@ struct UpdateNodes {
     const T approach = dot(slip, other.normal);
     for (int d = 0; d < Dim; ++d) slip[d] -= approach * other.normal[d];
     const T speed = Kokkos::sqrt(dot(slip, slip));
-    return feels_shear(approach, speed, other.within_soil, interface) ? Interface<T>::Touch::some
-                                                                      : Interface<T>::Touch::none;
+    return feels_shear(approach, speed, other.within_soil, interface) ? Interface<T>::Shear::acts
+                                                                      : Interface<T>::Shear::none;
   }
 
   /// Adds the moment about the centre of a rigid of the force that changes a node's velocity (touch).

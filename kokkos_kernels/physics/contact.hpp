@@ -90,12 +90,13 @@ struct Interface {
   Pressed<T> pressed{};  // m/s: normal impulses over nodal mass
   T gap_scaling = 1;     // -, fraction of the normal correction
   bool separates = true;
-  enum class Touch { by_velocity, none, some };
-  Touch touch = Touch::by_velocity;  // whether shear acts, if the velocities do not say so
+  enum class Shear { by_velocity, none, acts };
+  Shear shear = Shear::by_velocity;  // whether it acts: by the velocities, or as a light body has it
   T stopped = 0, held = 0;  // -, fractions of the approach and of the slip that the contact takes away
 };
 
-/// Whether shear acts at a node: while it moves in or is pressed in. approach, slip: of its velocity [m/s]
+/// Whether shear acts at a node: while the node moves in or is pressed in. approach, slip: parts of its
+/// velocity relative to the opponent [m/s].
 template <class T>
 KOKKOS_INLINE_FUNCTION bool feels_shear(T approach, T slip, bool within_soil, const Interface<T>& interface) {
   constexpr T k_leaves = T(0.1);  // of the slip: a node in the soil that moves away faster is not in touch
@@ -122,9 +123,9 @@ KOKKOS_INLINE_FUNCTION Vector<T, Dim> contact_correction(const Vector<T, Dim>& v
   Vector<T, Dim> slip;
   for (int d = 0; d < Dim; ++d) slip[d] = relative[d] - approach * n[d];
   const T speed = Kokkos::sqrt(dot(slip, slip));
-  const bool touches = interface.touch == Interface<T>::Touch::by_velocity
+  const bool touches = interface.shear == Interface<T>::Shear::by_velocity
                            ? feels_shear(approach, speed, other.within_soil, interface)
-                           : interface.touch == Interface<T>::Touch::some;
+                           : interface.shear == Interface<T>::Shear::acts;
   T largest = touches ? interface.shear_speed : T(0);
   if (interface.friction >= 0) {
     const T normal = usable_impulse(interface.pressed, interface.fresh, stop);

@@ -6,7 +6,7 @@
 
 #include "base/copy.hpp"
 #include "data/contact_core.hpp"
-#include "data/light_past.hpp"
+#include "data/light_rigids.hpp"
 #include "physics/domain.hpp"
 #include "physics/rigid_motion.hpp"
 #include "physics/surface.hpp"

@@ -18,7 +18,8 @@ struct NumberInput {
 /// A component of what follows a table in time, as TimedLoad has it.
 struct LoadInput {
   LoadTarget target = LoadTarget::gravity;
-  int rigid = 0, component = 0;
+  int rigid = 0, component = 0;  // of a side, 2 direction + 1 for the upper one stands for the rigid; or the
+                                 // number of a surface's load or a joint
   NumberInput own, gravity;
   double factor = 0;
 };

@@ -4,7 +4,6 @@
 
 #include "common/text.hpp"
 #include "input/geometry/mass_properties.hpp"
-#include "step/light_rigids.hpp"
 
 namespace mpm {
 namespace {
@@ -29,7 +28,7 @@ std::string spring_fault(const Config& config, double dt) {
   constexpr double k_largest = 1;  // of omega dt, and of the rate of a dashpot times dt
   for (const RigidConfig& rigid : config.rigids) {
     if (!rigid.is_sprung() || rigid.absent || rigid.motion != Motion::dynamic) continue;
-    const double mass = lightness_of(config, rigid).mass;
+    const double mass = mass_of(config, rigid);
     const double inertia = least_inertia(config, rigid, mass);
     for (int k = 0; k < 6; ++k) {
       const double resists = k < 3 ? mass : inertia, k_most = resists * std::pow(k_largest / dt, 2);

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "check/rigid_places.hpp"
-#include "common/revolution.hpp"
 #include "common/rigid_contact.hpp"
 #include "common/text.hpp"
 #include "common/time_table.hpp"
+#include "input/geometry/mass_properties.hpp"
 #include "input/geometry/shapes.hpp"
 #include "step/light_rigids.hpp"
 
@@ -34,9 +34,7 @@ struct Way {
   Way(const Config& c, const RigidConfig& r)
       : config(c), rigid(r), bounds(bounds_of(r.shape, c.mesh, c.dim)), end(c.time.end) {
     if (rigid.motion != Motion::dynamic) return;
-    const double volume = shape_volume(rigid.shape, config.mesh, config.dim) *
-                          revolved_length(config, (bounds.lower[0] + bounds.upper[0]) / 2);
-    const double mass = rigid.mass.value_or(rigid.density * volume);
+    const double mass = mass_of(config, rigid);
     for (int d = 0; d < config.dim; ++d) acceleration[d] = config.gravity[d] + rigid.force[d] / mass;
     constexpr int k_times = 400;
     for (int k = 0; k <= k_times && soil < 0; ++k) {

@@ -4,7 +4,7 @@
 
 #include "base/copy.hpp"
 #include "common/collectives.hpp"
-#include "data/light_past.hpp"
+#include "data/light_rigids.hpp"
 #include "functions/follow_soil.hpp"
 #include "functions/step_kernels.hpp"
 #include "rebuild/rebuild_state.hpp"

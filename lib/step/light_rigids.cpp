@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/revolution.hpp"
+#include "input/geometry/mass_properties.hpp"
 #include "input/geometry/shapes.hpp"
 
 namespace mpm {
@@ -13,21 +14,20 @@ Lightness lightness_of(const Config& config, const RigidConfig& rigid) {
   const Bounds bounds = within(bounds_of(rigid.shape, config.mesh, config.dim), config.mesh, config.dim);
   const Cuts cuts = cuts_of(rigid.shape, config.mesh, config.dim);
   Vec3 edge{1, 1, 1};  // m
-  double parts =
-      1;  // of the whole body, of which planes of symmetry leave one: a half is as light as the whole
+  // Planes of symmetry leave one of so many parts of a body, which is as light as the whole.
+  double parts = 1;
   for (int d = 0; d < config.dim; ++d) {
     const double images = cuts[d][0] || cuts[d][1] ? 2 : 1;
     edge[d] = images * (bounds.upper[d] - bounds.lower[d]);
     parts *= images;
   }
   const double middle = (bounds.lower[0] + bounds.upper[0]) / 2, ring = revolved_length(config, middle);
-  const double volume = shape_volume(rigid.shape, config.mesh, config.dim) * ring;
-  out.mass = rigid.mass.value_or(rigid.density * volume);
+  out.mass = mass_of(config, rigid);
   double face = 0, heaviest = 0;  // m2 (m in 2D), kg/m3
   for (int d = 0; d < config.dim; ++d) {
-    const bool across = config.geometry == Geometry::axisymmetric &&
-                        d == 0;  // a body of revolution moves along the axis alone
-    if (across || !(rigid.free[d] || rigid.turns())) continue;
+    // A body of revolution moves along the axis alone.
+    const bool radial = config.geometry == Geometry::axisymmetric && d == 0;
+    if (radial || !(rigid.free[d] || rigid.turns())) continue;
     double area = d == 0 ? revolved_length(config, bounds.upper[0]) : ring;
     for (int k = 0; k < config.dim; ++k) area *= k == d ? 1 : edge[k];
     face = std::max(face, area);

@@ -233,7 +233,7 @@ struct Step {
       contact_of_rigids(s, dt, stream);
     }
     if (s.links.in_use()) link_rigids(s, dt, stream);
-    move_rigids(s, s.timed, dt, stream, s.links.moved.data());
+    move_rigids(s, s.timed, dt, stream);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 3, the border first, unless its sums have been sent already.

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/revolution.hpp"
 #include "input/geometry/polygon.hpp"
 #include "input/geometry/region.hpp"
 #include "input/geometry/revolved.hpp"
+#include "input/geometry/shapes.hpp"
 #include "input/geometry/triangle_surface.hpp"
 #include "input/geometry/united.hpp"
 
@@ -183,6 +185,15 @@ std::optional<MassProperties> mass_properties(const Shape& shape, int dim) {
     case ShapeKind::parts: return united_properties(shape, dim);
     default: return std::nullopt;
   }
+}
+
+double mass_of(const Config& config, const RigidConfig& rigid) {
+  if (rigid.mass) return *rigid.mass;
+  const Bounds bounds = within(bounds_of(rigid.shape, config.mesh, config.dim), config.mesh, config.dim);
+  const auto whole = mass_properties(rigid.shape, config.dim);
+  const bool is_whole = whole && !cuts_of(rigid.shape, config.mesh, config.dim)[0][0];
+  const double radius = is_whole ? whole->centre[0] : (bounds.lower[0] + bounds.upper[0]) / 2;
+  return rigid.density * shape_volume(rigid.shape, config.mesh, config.dim) * revolved_length(config, radius);
 }
 
 }  // namespace mpm

@@ -23,4 +23,9 @@ struct MassProperties {
 /// and of a list of particles.
 std::optional<MassProperties> mass_properties(const Shape& shape, int dim);
 
+/// Mass of the part of a rigid body that is in the mesh [kg; kg/m in plane strain]: -NAME_mass, or by its
+/// density; of a body of revolution, of the whole ring, and an estimate where the axis cuts its section (the
+/// radius of the middle stands for that of the centroid).
+double mass_of(const Config& config, const RigidConfig& rigid);
+
 }  // namespace mpm
