@@ -11,7 +11,7 @@ namespace {
 /// At most the least principal moment of inertia of a rigid body [kg m2], and not less than 4/9 of it: the
 /// two others together are at most the trace. 0: it does not turn.
 double least_inertia(const Config& config, const RigidConfig& rigid, double mass) {
-  const auto of = mass_properties(rigid.shape, config.dim);
+  const auto of = whole_properties(rigid.shape, config.mesh, config.dim);
   if (!rigid.turns() || !(of || rigid.inertia)) return 0;
   std::array<double, 6> tensor = rigid.inertia ? *rigid.inertia : of->inertia;
   if (!rigid.inertia)

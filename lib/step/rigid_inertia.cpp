@@ -84,7 +84,8 @@ RigidTurning turning_of(const Config& config, const RigidConfig& rigid, const Ri
   if (!rigid.turns()) return to;
   const double edge = 2 * in.half_length * config.mesh.spacing;
   to.turns = true;
-  const MassProperties of = mass_properties(rigid.shape, dim).value();  // the options refuse other shapes
+  const MassProperties of =
+      whole_properties(rigid.shape, config.mesh, dim).value();  // the options refuse other shapes
   const Vec3 centre = rigid.centre_of_mass.value_or(of.centre);
   for (int d = 0; d < dim; ++d) to.centre[d] = centre[d] - config.mesh.lower[d];
   to.spin = rigid.angular_velocity, to.moment = rigid.moment;

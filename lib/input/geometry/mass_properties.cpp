@@ -172,6 +172,18 @@ MassProperties surface_properties(const TriangleSurface& surface) {
   return about_centre(sum, origin, 3);
 }
 
+/// A shape of which boxes end at the mirror image of their other end where a plane of symmetry cuts them.
+Shape with_image(Shape shape, const MeshConfig& mesh, int dim) {
+  for (Shape& part : shape.parts) part = with_image(part, mesh, dim);
+  if (shape.kind != ShapeKind::box) return shape;
+  const Cuts cuts = cuts_of(shape, mesh, dim);
+  for (int d = 0; d < dim; ++d) {
+    if (cuts[d][0]) shape.lower[d] = 2 * mesh.lower[d] - shape.upper[d];
+    if (cuts[d][1]) shape.upper[d] = 2 * mesh.upper[d] - shape.lower[d];
+  }
+  return shape;
+}
+
 }  // namespace
 
 std::optional<MassProperties> mass_properties(const Shape& shape, int dim) {
@@ -194,6 +206,10 @@ double mass_of(const Config& config, const RigidConfig& rigid) {
   const bool is_whole = whole && !cuts_of(rigid.shape, config.mesh, config.dim)[0][0];
   const double radius = is_whole ? whole->centre[0] : (bounds.lower[0] + bounds.upper[0]) / 2;
   return rigid.density * shape_volume(rigid.shape, config.mesh, config.dim) * revolved_length(config, radius);
+}
+
+std::optional<MassProperties> whole_properties(const Shape& shape, const MeshConfig& mesh, int dim) {
+  return mass_properties(with_image(shape, mesh, dim), dim);
 }
 
 }  // namespace mpm

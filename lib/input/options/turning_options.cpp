@@ -1,9 +1,12 @@
 // Rotation of a rigid body: what is free, how fast it turns, and its inertia.
 
 #include <algorithm>
+#include <cmath>
 
+#include "common/numbers.hpp"
 #include "common/text.hpp"
 #include "common/time_table.hpp"
+#include "input/geometry/mass_properties.hpp"
 #include "input/geometry/shapes.hpp"
 #include "input/options/groups.hpp"
 
@@ -121,6 +124,37 @@ void read_inertia(OptionReader& in, int dim, RigidConfig& rigid) {
   rigid.inertia = inertia;
 }
 
+/// A body that a plane of symmetry cuts turns with its mirror image: in 3D about the normal of the plane, and
+/// the two have their centre in it. Returns whether it may turn as the options say.
+bool check_cut_turning(OptionReader& in, const std::string& option, const MeshConfig& mesh, int dim,
+                       const RigidConfig& rigid) {
+  const bool dynamic = rigid.motion == Motion::dynamic;
+  const Cuts cuts = cuts_of(rigid.shape, mesh, dim);
+  for (int d = 0; d < dim; ++d) {
+    if (!cuts[d][0] && !cuts[d][1]) continue;
+    const std::string where =
+        std::string(" where the plane of symmetry across ") + "xyz"[d] + " cuts the shape";
+    const std::string about =
+        dim == 3 ? std::string("a rotation about ") + "xyz"[d] + " alone" : "no rotation";
+    bool sound = dim == 3 && !(cuts[d][0] && cuts[d][1]);
+    for (int e = 0; e < 3; ++e)
+      if (e != d) sound = sound && rigid.angular_velocity[e] == 0 && !(dynamic && rigid.free[3 + e]);
+    if (!sound) return in.reject(option, about + where), false;
+    const double plane = cuts[d][0] ? mesh.lower[d] : mesh.upper[d], slack = 1e-6 * mesh.spacing;
+    const auto whole = whole_properties(rigid.shape, mesh, dim);
+    const std::string there = std::string(" at ") + "xyz"[d] + " = " + text_of(plane);
+    if (rigid.centre_of_mass && std::abs((*rigid.centre_of_mass)[d] - plane) > slack)
+      return in.reject(rigid.name + "_centre_of_mass", "a point of the plane of symmetry" + there), false;
+    const bool given = rigid.centre_of_mass && (rigid.inertia || !dynamic);
+    if (!given && std::abs(whole->centre[d] - plane) > slack)
+      return in.reject(option, "a shape that is its own image in the plane of symmetry" + there + ", or -" +
+                                   rigid.name + "_centre_of_mass" +
+                                   (dynamic ? " and -" + rigid.name + "_inertia" : "") + " beside it"),
+             false;
+  }
+  return true;
+}
+
 }  // namespace
 
 const std::vector<std::string>& turning_keys() {
@@ -204,13 +238,9 @@ void check_turning(OptionReader& in, const Config& config, const MeshConfig& mes
     return in.reject(option, none + " of a layer, a half plane or a list of particles");
   if (rigid.contact_normal == ContactNormal::gradient)
     return in.reject(option, none + " where -" + rigid.name + "_contact_normal is gradient");
-  const Cuts cuts = cuts_of(rigid.shape, mesh, config.dim);
-  for (int d = 0; d < config.dim; ++d) {
-    if (cuts[d][0] || cuts[d][1])
-      return in.reject(option,
-                       none + " where a plane of symmetry cuts the shape, as that across " + "xyz"[d]);
+  for (int d = 0; d < config.dim; ++d)
     if (is_periodic(mesh, d)) return in.reject(option, none + " in a mesh with periodic sides");
-  }
+  if (!check_cut_turning(in, option, mesh, config.dim, rigid)) return;
   if (rigid.centre_of_mass && config.water.level && rigid.motion == Motion::dynamic)
     in.reject(rigid.name + "_centre_of_mass",
               "nothing where -water_level is given: the buoyancy acts at the centre of the shape");

@@ -39,7 +39,10 @@ class Symmetry(Deck):
         else:
             self.make_round(place)
         self.common += ["-soil_cut_out", "tool"] if self.buried else []
-        self.add_motion(weighs and not polygon)  # the plane does not hold a polygon that ends there
+        self.turned_by = lambda cuts: []
+        weighs = weighs and not polygon  # the plane does not hold a polygon that ends there
+        self.add_motion(weighs)
+        self.add_spin(weighs)
         self.add_interface()
         self.common += ["-velocity_update", draw.choice(["flip", "flip", "apic"]), "-damping", draw.choice(["0", "0", "0.05"])]
         self.options = self.of(0)
@@ -85,6 +88,17 @@ class Symmetry(Deck):
             up = self.buried and draw.random() < 0.3
             self.common += ["-tool_motion", "prescribed", "-tool_velocity", rounded(across + [0.3 if up else -0.4])]
 
+    def add_spin(self, weighs):
+        """Half a body turns about the normal of the plane, driven or by its weight and a moment."""
+        draw = self.draw
+        self.spins = self.dim == 3 and self.cuts == 1 and self.kind != "prism" and draw.random() < 0.6
+        if not self.spins:
+            return
+        self.common += ["-tool_angular_velocity", f"{draw.uniform(-1.5, 1.5):.4f},0,0"]
+        if weighs:
+            moment = draw.uniform(-40, 40)
+            self.turned_by = lambda cuts: ["-tool_free", "y,z,rx", "-tool_moment", f"{moment / 2 ** cuts:.6f},0,0"]
+
     def add_interface(self):
         draw = self.draw
         shear = draw.choice(["", "-tool_shear_limit 2e3", "-tool_friction 0.3", "-tool_friction 0.5 -tool_shear_limit 1e3"])
@@ -100,13 +114,14 @@ class Symmetry(Deck):
         """Options with so many planes of symmetry."""
         half = [1.0 if self.dim == 2 else 0.75] * (self.dim - 1)
         low = [0.0 if d < cuts else -h for d, h in enumerate(half)]
-        return [*self.common, "-tool_shape", *self.shape(cuts).split(), "-mesh_lower", rounded([*low, -1]), "-mesh_upper", rounded([*half, 1.25]),
+        return [*self.common, *self.turned_by(cuts), "-tool_shape", *self.shape(cuts).split(), "-mesh_lower", rounded([*low, -1]), "-mesh_upper", rounded([*half, 1.25]),
                 "-soil_lower", rounded([*low, -1]), "-soil_upper", rounded([*half, 0])]
 
     def check(self, folder):
         values = history(folder)
         force = np.column_stack([values[f"tool_force_{axis}"] for axis in self.axes])
-        size, across = np.abs(force).max(), np.abs(force[:, :-1]).max()
+        size = np.abs(force).max()
+        across = np.abs(force[:, 0 if self.spins else slice(-1)]).max()
         self.note("touched", size > 1)
         assert across < TOLERANCE[self.precision] * size + 1e-9, f"the whole has a force across of {across / size:.3g} of that along"
 
@@ -120,7 +135,10 @@ class Symmetry(Deck):
     def check_motion(self, one, other, share, what):
         """share: of the force on `other` that `one` reports."""
         mine, theirs, tolerance = history(one), history(other), TOLERANCE[self.precision]
-        for name, factor in ((f"tool_force_{self.up}", share), (f"tool_{self.up}", 1)):
+        names = [(f"tool_force_{self.up}", share), (f"tool_{self.up}", 1)]
+        if self.spins:
+            names += [("tool_moment_x", share), ("tool_angle_x", 1), ("tool_force_y", share), ("tool_y", 1)]
+        for name, factor in names:
             a, b = mine[name] * factor, theirs[name]
             assert len(a) == len(b), f"{what}: {len(a)} and {len(b)} rows"
             size = np.abs(b - (0 if "force" in name else b[0])).max() + 1e-9
