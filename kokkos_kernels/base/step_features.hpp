@@ -32,6 +32,7 @@ enum class Feature {
   rigid_pairs,          // rigid bodies near each other, whose contact goes before their movement
   linked_rigids,        // rigid bodies with joints or springs, likewise
   light_rigids,         // rigid bodies light against soil, whose velocity is solved for before the nodes move
+  united_rigids,        // rigid bodies of several parts, whose surfaces short kernels of nodes do not have
   revolved,             // body of revolution, whose particles are rings
   ranks,                // several ranks
   batches,              // soil that goes through the device's memory in batches
@@ -83,8 +84,8 @@ constexpr Features excluding(StepWay way) {
               F::submerged,      F::energy, F::loads, F::rayleigh, F::contact_sites};
     case StepWay::one_launch:
       return excluding(StepWay::sums_ahead) | Features{F::turning_rigids, F::many_rigids,  F::rigid_pairs,
-                                                       F::linked_rigids,  F::light_rigids, F::revolved,
-                                                       F::ranks,          F::batches};
+                                                       F::linked_rigids,  F::light_rigids, F::united_rigids,
+                                                       F::revolved,       F::ranks,        F::batches};
     case StepWay::many_steps:
       return excluding(StepWay::one_launch) |
              Features{F::damping, F::shear_fraction, F::friction, F::acting_sides, F::pushed_mass_normals};

@@ -36,6 +36,7 @@ Features features_of(const State<Space, T, Dim>& s) {
                                     {F::rigid_pairs, s.pairs.in_use()},
                                     {F::linked_rigids, s.links.in_use()},
                                     {F::light_rigids, s.light_rigids.in_use},
+                                    {F::united_rigids, s.vertices.has_parts()},
                                     {F::revolved, s.soil.points.rings},
                                     {F::ranks, s.owned_nodes.extent(0) > 0},
                                     {F::batches, s.batches.in_use()}};

@@ -37,6 +37,7 @@ struct SurfaceTables {
   Kokkos::View<unsigned char*, Memory> edges;  // of the samples: 1 where an edge is nearest
 
   KOKKOS_INLINE_FUNCTION const Vertex& operator()(int v) const { return vertices(v); }
+  bool has_parts() const { return parts.extent(0) > 0; }  // some body has several parts
 };
 
 /// Calls f(view) for all tables.

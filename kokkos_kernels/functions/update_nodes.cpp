@@ -85,7 +85,8 @@ template <class Space, class T, int Dim>
 void update_nodes(State<Space, T, Dim>& s, double dt, const Space& stream) {
   if (s.sides.has_columns()) advance_columns(s, dt);
   if constexpr (is_device<Space>)
-    s.sides.in_use() || s.scheme.damping > 0 || s.rigid_turns || s.light_rigids.in_use
+    s.sides.in_use() || s.scheme.damping > 0 || s.rigid_turns || s.light_rigids.in_use ||
+            s.vertices.has_parts()
         ? update_nodes_by_teams<true>(s, dt, stream)
         : update_nodes_by_teams<false>(s, dt, stream);
   else

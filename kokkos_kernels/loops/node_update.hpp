@@ -33,7 +33,7 @@ KOKKOS_INLINE_FUNCTION void clear_sums(const Team& team, const NodeSums<Space, T
 }
 
 /// The node's part of the step. acts: some side of the mesh acts (data/sides.hpp), local damping does, or a
-/// rigid may turn; kernels without that take fewer registers of a GPU.
+/// rigid may turn, is light or has several parts; kernels without that take less time on a GPU.
 template <class Space, class T, int Dim, bool acts = true>
 struct UpdateNodes {
   using S = SoilTerms<Dim>;
@@ -471,6 +471,15 @@ struct UpdateNodes {
     return m_r > rigid.mass_cut && inward_normal(places.grid, sides, m_r, n);
   }
 
+  /// Distance of x from a surface, as distance_to. Kernels without `acts` have no bodies of several parts.
+  KOKKOS_INLINE_FUNCTION Distance<Dim> distance_from(const Surface<Dim>& surface,
+                                                     const Vector<double, Dim>& x) const {
+    if constexpr (acts)
+      return distance_to(surface, vertices, x);
+    else
+      return distance_to_part(surface, vertices, x);
+  }
+
   /// Distance [m] of a node from the rigid's own surface, and the normal out of it that contact takes. Where
   /// the soil's boundary says that the soil is at another face, as in a thin plate, or where no face is the
   /// nearest (the normal is then zero), the node looks a second time, from a cell's edge further towards the
@@ -487,7 +496,7 @@ struct UpdateNodes {
     bool reaches = true;
     MPM_ROLLED
     for (int look = 0; look < 2; ++look) {
-      const Distance<Dim> to = distance_to(rigid.surface, vertices, x);
+      const Distance<Dim> to = distance_from(rigid.surface, x);
       out = rigid.motion.pose.template turn_to_world<acts>(to.normal);
       if (look > 0) break;
       distance = to.value;

@@ -41,6 +41,7 @@ void put(State_& s, Feature f) {
     case Feature::rigid_pairs: s.pairs.count = 1; break;
     case Feature::linked_rigids: s.links.supports = decltype(s.links.supports)("supports", 1); break;
     case Feature::light_rigids: s.light_rigids.in_use = true; break;
+    case Feature::united_rigids: s.vertices.parts = decltype(s.vertices.parts)("parts", 1); break;
     case Feature::revolved: s.soil.points.rings = true; break;
     case Feature::ranks: s.owned_nodes = Kokkos::View<std::uint64_t*, Memory>("owned", 1); break;
     case Feature::batches: s.batches.limit = 1; break;
