@@ -11,6 +11,9 @@ else()
 endif()
 if(MPM_KOKKOS_LANGUAGE STREQUAL CUDA)
   set(CMAKE_CUDA_ARCHITECTURES ${Kokkos_CUDA_ARCHITECTURES})
+  if(CMAKE_BUILD_TYPE STREQUAL Check)  # to compile, not to run: PTX alone
+    list(TRANSFORM CMAKE_CUDA_ARCHITECTURES APPEND -virtual)
+  endif()
   set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
   enable_language(CUDA)
   # nvcc's -O is for the code of the processor alone, and each source has its own.

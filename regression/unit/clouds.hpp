@@ -75,37 +75,28 @@ template <class B>
 using StateOf = HeldState<typename B::Space, typename B::real, B::dim>;
 
 // Applies X(Space, T, Dim) to what unit tests run on: with MPM_TEST_EVERY_BUILD to all that the kernels are
-// built for, else on processors to single precision in 2D alone, since whole runs test it in 3D.
-#if defined(MPM_TEST_EVERY_BUILD) || defined(MPM_ONLY_DOUBLE)
+// built for, else on processors not to single precision, which whole runs test.
+#ifdef MPM_TEST_EVERY_BUILD
 #define MPM_FOR_TESTED_ON_PROCESSOR(X) MPM_FOR_EACH_REAL_DIM(X, Processor)
 #else
-#define MPM_FOR_TESTED_ON_PROCESSOR(X) MPM_FOR_EACH_DIM(X, Processor, double) X(Processor, float, 2)
+#define MPM_FOR_TESTED_ON_PROCESSOR(X) MPM_FOR_EACH_DIM(X, Processor, double)
 #endif
 #define MPM_FOR_TESTED(X) MPM_FOR_TESTED_ON_PROCESSOR(X) MPM_FOR_CUDA(X)
 
-/// Calls f(Build) for what is tested, on processors with one thread and then with several; without
-/// MPM_TEST_EVERY_BUILD not with several in single precision, which whole runs test.
+/// Calls f(Build) for what is tested, on processors with one thread and then with several.
 template <class F>
 void for_each_build(F&& f) {
-#ifdef MPM_TEST_EVERY_BUILD
-  constexpr bool all = true;
-#else
-  constexpr bool all = false;
-#endif
 #ifdef MPM_WITH_OPENMP
   constexpr int k_most = 2;
 #else
   constexpr int k_most = 1;
 #endif
 #define MPM_TEST_BUILD(Space, T, Dim) f(Build<Space, T, Dim>{});
-#define MPM_TEST_THREADS(Space, T, Dim) \
-  if (all || sizeof(T) == sizeof(double) || !threads.in_use()) MPM_TEST_BUILD(Space, T, Dim)
   for (int n = 0; n < k_most; ++n) {
     const SeveralThreads threads(n > 0);
-    MPM_FOR_TESTED_ON_PROCESSOR(MPM_TEST_THREADS)
+    MPM_FOR_TESTED_ON_PROCESSOR(MPM_TEST_BUILD)
   }
   MPM_FOR_CUDA(MPM_TEST_BUILD)
-#undef MPM_TEST_THREADS
 #undef MPM_TEST_BUILD
 }
 /// Calls f(Build) for each dimension of the reference.

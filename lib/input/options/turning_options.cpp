@@ -130,13 +130,16 @@ bool check_cut_turning(OptionReader& in, const std::string& option, const MeshCo
                        const RigidConfig& rigid) {
   const bool dynamic = rigid.motion == Motion::dynamic;
   const Cuts cuts = cuts_of(rigid.shape, mesh, dim);
+  int planes = 0;
+  for (const auto& sides : cuts) planes += sides[0] + sides[1];
+  const bool may_turn = dim == 3 && planes == 1;
   for (int d = 0; d < dim; ++d) {
     if (!cuts[d][0] && !cuts[d][1]) continue;
     const std::string where =
         std::string(" where the plane of symmetry across ") + "xyz"[d] + " cuts the shape";
     const std::string about =
-        dim == 3 ? std::string("a rotation about ") + "xyz"[d] + " alone" : "no rotation";
-    bool sound = dim == 3 && !(cuts[d][0] && cuts[d][1]);
+        may_turn ? std::string("a rotation about ") + "xyz"[d] + " alone" : "no rotation";
+    bool sound = may_turn;
     for (int e = 0; e < 3; ++e)
       if (e != d) sound = sound && rigid.angular_velocity[e] == 0 && !(dynamic && rigid.free[3 + e]);
     if (!sound) return in.reject(option, about + where), false;
