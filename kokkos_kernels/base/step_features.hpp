@@ -32,7 +32,7 @@ enum class Feature {
   rigid_pairs,          // rigid bodies near each other, whose contact goes before their movement
   linked_rigids,        // rigid bodies with joints or springs, likewise
   light_rigids,         // rigid bodies light against soil, whose velocity is solved for before the nodes move
-  united_rigids,        // rigid bodies of several parts, whose surfaces short kernels of nodes do not have
+  united_rigids,        // rigid bodies of several parts, whose surfaces UpdateNodes without `acts` lacks
   revolved,             // body of revolution, whose particles are rings
   ranks,                // several ranks
   batches,              // soil that goes through the device's memory in batches

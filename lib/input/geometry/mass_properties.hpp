@@ -28,8 +28,8 @@ std::optional<MassProperties> mass_properties(const Shape& shape, int dim);
 /// radius of the middle stands for that of the centroid).
 double mass_of(const Config& config, const RigidConfig& rigid);
 
-/// Those of a shape and its mirror images beyond the planes of symmetry that cut it. Round shapes that may be
-/// cut are their own images, if their centre is in the plane.
+/// Mass properties of a shape with its mirror images beyond the planes of symmetry that cut it. Round shapes
+/// are taken for their own images, as they are where their centre is in the plane.
 std::optional<MassProperties> whole_properties(const Shape& shape, const MeshConfig& mesh, int dim);
 
 }  // namespace mpm
