@@ -77,8 +77,8 @@ void move_by_threads(const EndStep<Space, T, Dim>& end, const Space& stream,
       });
 }
 
-/// MayTurn: some rigid body turns, touches others or is joined; without, the kernel is short. of: shares of
-/// the sum of each force.
+/// MayTurn: some rigid body turns, touches others, is joined or is not near all slots; without, the kernel
+/// is short. of: shares of the sum of each force.
 template <bool MayTurn, int of>
 struct Move {
   static constexpr int shares = of;
@@ -113,7 +113,8 @@ void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>&
   // Persistent steps, of few patches, sum each force in one share: a run gives the same bits by both.
   constexpr int k_many = 256, k_shares = is_device<Space> ? 16 : 1;
   const bool many = s.plan.form != StepForm::persistent && !s.contact.near.listed && s.contact.count > k_many;
-  if (s.rigid_turns || end.moved != nullptr || s.pairs.in_use())
+  const bool plain = !s.rigid_turns && !s.pairs.in_use() && !s.contact.near.listed;
+  if (!plain || end.moved != nullptr)
     launch_end(end, stream, 1, Move<true, 1>{});
   else if (many)
     launch_end(end, stream, 1, Move<false, k_shares>{});

@@ -74,8 +74,15 @@ struct EndStep {
         size(wrench_size<Dim>(s.rigid_turns)),
         summed(s.forces_summed) {}
 
-  /// Numbers of the wrenches on all rigids.
-  KOKKOS_INLINE_FUNCTION int values() const { return size * count; }
+  /// Numbers of a wrench, and of the wrenches on all rigids. MayTurn: as in move.
+  template <bool MayTurn = true>
+  KOKKOS_INLINE_FUNCTION int wrench() const {
+    return MayTurn ? size : wrench_size<Dim>(false);
+  }
+  template <bool MayTurn = true>
+  KOKKOS_INLINE_FUNCTION int values() const {
+    return wrench<MayTurn>() * count;
+  }
   static constexpr int warps(int threads) { return (threads + k_warp - 1) / k_warp; }
   /// Doubles that a team of so many threads needs: of the forces, the warps, and the parts of the forces.
   int room(int threads, int shares = 1) const {
@@ -98,7 +105,7 @@ struct EndStep {
   template <bool MayTurn, int shares, class Team>
   KOKKOS_INLINE_FUNCTION void end(const Team& team, double* part) const {
     const int done = control().steps + 1;
-    const StepEnd found = move<MayTurn, shares>(team, StepEnd(control()), left(), true, part);
+    const StepEnd found = move<MayTurn, shares>(team, StepEnd(control()), left(), true, part, damping);
     set_timed(team, done);
     once(team, [&] {
       found.keep_in(control());
@@ -108,11 +115,13 @@ struct EndStep {
 
   /// Moves the rigids. found: the end of the step before; clears: the movements begin anew. Returns, to all
   /// threads, the end of this step; until all have it, they need `part`: room(threads). MayTurn: as in
-  /// RigidPose.
+  /// RigidPose; without, all rigids are near all slots, and the code is short. damping: of
+  /// the rigids.
   template <bool MayTurn, int shares = 1, class Team>
   KOKKOS_INLINE_FUNCTION StepEnd move(const Team& team, StepEnd found, const Left& left, bool clears,
-                                      double* part) const {
-    const int values = this->values(), parts = warps(team.team_size()), rank = team.team_rank();
+                                      double* part, double damping) const {
+    const int size = wrench<MayTurn>(), values = this->values<MayTurn>();
+    const int parts = warps(team.team_size()), rank = team.team_rank();
     MovingRigid<Dim> rigid{};
     if (rank < count) rigid = left.rigids[rank];
     const Noted noted = noted_movements(team, left.movements, clears);
@@ -120,7 +129,7 @@ struct EndStep {
     const int here = MayTurn && moved != nullptr ? 0 : count;  // rigids that this team moves
     if constexpr (MayTurn)
       for (int r = rank; r < count - here; r += team.team_size()) most = Kokkos::fmax(most, moved[r]);
-    if (!summed) sum_by_warps<shares>(team, left.forces, 0, values, part);
+    if (!summed) sum_by_warps<MayTurn, shares>(team, left.forces, 0, values, part);
     keep(team, largest_of_warp(most), part + values);
     team.team_barrier();  // also: no thread reads `paused` any more
     MPM_ROLLED
@@ -130,7 +139,7 @@ struct EndStep {
       for (int k = 0; k < Wrench<Dim>::size; ++k) {
         if (k >= size) break;
         const int v = r * size + k;
-        contact[k] = summed ? sums(v) : summed_force<shares>(team, part, v);
+        contact[k] = summed ? sums(v) : summed_force<MayTurn, shares>(team, part, v);
         if (!summed && left.sums != nullptr) left.sums[v] = contact[k];
       }
       const PairAction<Dim>* action = nullptr;
@@ -173,7 +182,8 @@ struct EndStep {
   /// The team of a value sums it. part: room(threads)
   template <class Team>
   KOKKOS_INLINE_FUNCTION void sum(const Team& team, int value, double* part) const {
-    keep(team, sum_of_warp(sum_of_thread(forces.data(), value, team.team_rank(), team.team_size())), part);
+    keep(team, sum_of_warp(sum_of_thread<true>(forces.data(), value, team.team_rank(), team.team_size())),
+         part);
     team.team_barrier();
     once(team, [&] {
       double sum = 0;
@@ -192,7 +202,7 @@ struct EndStep {
     Vector<double, Dim> a{};
     if constexpr (Dynamic) {
       team.team_barrier();  // what was there before is done with
-      if (rigid.inertia.dynamic) sum_by_warps<1>(team, forces.data(), r * size, size, part);
+      if (rigid.inertia.dynamic) sum_by_warps<false, 1>(team, forces.data(), r * size, size, part);
       team.team_barrier();
       Wrench<Dim> contact{};
       for (int k = 0; k < size && rigid.inertia.dynamic; ++k) contact[k] = part[k];
@@ -229,27 +239,28 @@ struct EndStep {
     return noted;
   }
   /// Place of the parts of the forces.
-  template <int shares, class Team>
+  template <bool MayTurn, int shares, class Team>
   KOKKOS_INLINE_FUNCTION double* parts_of_forces(const Team& team, double* part) const {
-    return shares == 1 ? part : part + values() + warps(team.team_size());
+    return shares == 1 ? part : part + values<MayTurn>() + warps(team.team_size());
   }
   /// Sums the forces number `first` to first + n over the slots in so many shares, a warp each: over many
   /// slots one warp would wait for the memory. After a barrier summed_force(v) is force number first + v.
-  template <int shares, class Team>
+  template <bool MayTurn, int shares, class Team>
   KOKKOS_INLINE_FUNCTION void sum_by_warps(const Team& team, const double* of_slots, int first, int n,
                                            double* part) const {
     const int size = team.team_size(), rank = team.team_rank(), lanes = size < k_warp ? size : k_warp;
-    double* const to = parts_of_forces<shares>(team, part);
+    double* const to = parts_of_forces<MayTurn, shares>(team, part);
     MPM_ROLLED
     for (int k = rank / k_warp; k < n * shares; k += warps(size)) {
       const int thread = k % shares * lanes + rank % k_warp;
-      const double sum = sum_of_warp(sum_of_thread(of_slots, first + k / shares, thread, shares * lanes));
+      const double sum =
+          sum_of_warp(sum_of_thread<MayTurn>(of_slots, first + k / shares, thread, shares * lanes));
       if (rank % k_warp == 0) to[k] = sum;
     }
   }
-  template <int shares, class Team>
+  template <bool MayTurn, int shares, class Team>
   KOKKOS_INLINE_FUNCTION double summed_force(const Team& team, double* part, int v) const {
-    const double* const from = parts_of_forces<shares>(team, part) + v * shares;
+    const double* const from = parts_of_forces<MayTurn, shares>(team, part) + v * shares;
     double sum = from[0];
     MPM_ROLLED
     for (int k = 1; k < shares; ++k) sum += from[k];
@@ -257,10 +268,11 @@ struct EndStep {
   }
   /// Part of a force that a thread sums, number `rank` of the threads that share the slots, in an order that
   /// is always the same.
+  template <bool MayTurn>
   KOKKOS_INLINE_FUNCTION double sum_of_thread(const double* of_slots, int value, int rank,
                                               int threads) const {
-    if (!near.listed) {
-      const int values = this->values();
+    if (!MayTurn || !near.listed) {
+      const int values = this->values<MayTurn>();
       return sum_of_places(slots, rank, threads, [&](int slot) { return of_slots[slot * values + value]; });
     }
     const int r = value / size, first = near.first(r);

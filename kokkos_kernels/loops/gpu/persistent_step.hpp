@@ -169,8 +169,9 @@ struct PersistentStep {
       if (at.part < at.others) left.sums = nullptr;
     }
     if (!at.by_all) at.found = StepEnd(update.control());
-    at.found =
-        end.template move<false>(team, at.found, left, !at.by_all, Scratch(scratch).template take<double>(0));
+    const double damping = WithNodes ? 0 : end.damping;  // which excludes many steps
+    at.found = end.template move<false>(team, at.found, left, !at.by_all,
+                                        Scratch(scratch).template take<double>(0), damping);
     if (!at.by_all)
       answer(team, at);
     else if (at.part == at.others && (at.found.paused != 0 || at.step + 1 == steps))
