@@ -4,7 +4,7 @@
 Usage: history_columns.py PATH_TO_mpm
 
 Short runs of wrong_input/base.opts, with options that bring every kind of column, write the headers. In the table of the page
-BODY, RIGID, JOINT, LOAD and PROBE stand for names, an axis x for each axis, and xx for each component of stress. Each column of a header
+BODY, RIGID, PART, JOINT, LOAD and PROBE stand for names, an axis x for each axis, and xx for each component of stress. Each column of a header
 must match one text in code of the table's first column, and each such text a column of some header.
 """
 import pathlib
@@ -16,7 +16,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 PAGE = HERE.parent / "docs" / "results.md"
 HEADING = "## The history\n"
-NAMES = {"BODY": "soil|boulder|bank", "RIGID": "floor|press|pipe", "JOINT": "line", "LOAD": "strip", "PROBE": "gate|tip|toe|pier"}
+NAMES = {"BODY": "soil|boulder|bank", "RIGID": "floor|press|pipe", "PART": "rim|hub", "JOINT": "line", "LOAD": "strip", "PROBE": "gate|tip|toe|pier"}
 PROBES = ("-probes gate,tip,toe,pier -gate_kind section -gate_axis x -gate_at 4 -tip_kind particle -tip_at {at} -toe_kind gauge -toe_at {line} "
           "-pier_kind point -pier_at {at}")
 LINE = "-joints line -line_kind rod -line_bodies pipe,ground -line_point {at} -line_other_point {other}"
@@ -25,12 +25,15 @@ RUNS = {
     "plane strain": "",
     "a wheel": "-pipe_free x,y,rz",
     "a wheel on a line": "-pipe_free x,y,rz -pipe_stiffness 1e3,0,1e2 " + LINE.format(at="5,4", other="7,5"),
+    "a wheel in parts": "-pipe_free x,y,rz -pipe_parts rim,hub -pipe_part_forces on -rim_shape disc -rim_centre 5,4 -rim_radius 0.4 -hub_shape box "
+    "-hub_lower 4.7,3.9 -hub_upper 5.8,4.1",
     "particles that split": "-particle_domain split -position_correction delta",
     "stages under water with loads": "-gravity 0,-9.81 -water_level 5.2 -output_energy on -stages rest,push -rest_end equilibrium "
     + PROBES.format(at="2,1", line="2") + " " + LOAD.format(lower="0,0", upper="8,6"),
     "3D": "-dim 3 -mesh_lower 0,0,0 -mesh_upper 8,6,2 -soil_lower 0,0.5,0 -soil_upper 8,2,2 -boulder_shape ball -boulder_centre 2,3.5,1 "
     "-bank_shape box -bank_lower 6,2,0 -bank_upper 8,3,2 -floor_lower 0,0,0 -floor_upper 8,0.5,2 -press_lower 6,4.5,0 "
-    "-press_upper 8,5.5,2 -press_velocity 0,-0.1,0 -pipe_shape ball -pipe_centre 5,4.5,1 -pipe_free x,y,z,rx,ry,rz -mesh_xmin fixed -mesh_zmin friction -mesh_zmin_friction 0.3 "
+    "-press_upper 8,5.5,2 -press_velocity 0,-0.1,0 -pipe_parts rim,hub -pipe_part_forces on -rim_shape ball -rim_centre 5,4.5,1 "
+    "-rim_radius 0.4 -hub_shape box -hub_lower 4.7,4.4,0.9 -hub_upper 5.8,4.6,1.1 -pipe_free x,y,z,rx,ry,rz -mesh_xmin fixed -mesh_zmin friction -mesh_zmin_friction 0.3 "
     "-pipe_viscosity 0,0,0,1,0,0 " + LINE.format(at="5,4.5,1", other="7,5,1.5") + " "
     + PROBES.format(at="2,1,1", line="2,1") + " " + LOAD.format(lower="0,0,0", upper="8,6,2"),
 }
@@ -59,6 +62,7 @@ def header(binary, options):
         lines = [line.split(maxsplit=1) for line in deck.read_text().splitlines() if line.startswith("-")]
         given = re.findall(r"(?:^|\s)-([a-z]\w*)", options)
         left_out = {"bank_polygon"} if "bank_shape" in given else set()
+        left_out |= {"pipe_shape", "pipe_centre", "pipe_radius"} if "pipe_parts" in given else set()
         copy = pathlib.Path(folder) / "deck.opts"
         copy.write_text("\n".join(" ".join(words) for words in lines if words[0].lstrip("-") not in left_out) + "\n")
         command = [binary, "-options_file", str(copy), *options.split(), "-backend", "serial", "-p2g", "sequential",

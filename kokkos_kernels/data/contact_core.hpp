@@ -8,6 +8,7 @@
 #include "data/contact_slots.hpp"
 #include "data/core.hpp"
 #include "data/light_rigids.hpp"
+#include "data/part_forces.hpp"
 #include "data/rigid.hpp"
 #include "data/rigid_links.hpp"
 #include "data/rigid_pairs.hpp"
@@ -23,10 +24,11 @@ struct ContactCore : Core<Space, T, Dim> {
   SurfaceTables<Memory, Dim> vertices;  // and samples, of the rigids' surfaces
   ContactSlots<Space> contact;
   ContactSites<Space, T, Dim> at_sites;
-  RigidPairs<Space, Dim> pairs;               // rigid bodies that may touch each other
-  RigidLinks<Space, Dim> links;               // joints, springs and dashpots of rigid bodies
-  LightRigids<Space, Dim> light_rigids;       // and how contact takes them
-  Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step
+  RigidPairs<Space, Dim> pairs;          // rigid bodies that may touch each other
+  RigidLinks<Space, Dim> links;          // joints, springs and dashpots of rigid bodies
+  LightRigids<Space, Dim> light_rigids;  // and how contact takes them
+  PartForces<Space, Dim> part_forces;
+  Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step, and on each part
   Kokkos::View<double*, Memory> rigid_moved;  // cells, of each rigid in this step, where a kernel before
                                               // move_rigids moves it: some are linked, or there are many
   bool forces_summed =
@@ -40,6 +42,12 @@ struct ContactCore : Core<Space, T, Dim> {
   bool has_friction = false;    // some contact at nodes has Coulomb friction
   double friction_time = 1;     // s, over which friction takes the mean normal impulse
 };
+
+/// Wrenches that contact leaves at a slot: on the bodies near it, and on parts of bodies.
+template <class Space, class T, int Dim>
+int wrenches_of_slot(const ContactCore<Space, T, Dim>& s) {
+  return s.contact.near.width + s.part_forces.count;
+}
 
 /// Numbers of one rigid body at a node in Nodes::impulse; 0: no contact keeps any.
 template <class Space, class T, int Dim>

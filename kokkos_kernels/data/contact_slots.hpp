@@ -16,8 +16,8 @@ struct ContactSlots {
   int count = 0;                         // of `slots`
   NearBodies<Space> near;                // by slot
   Windows<Space> boundary, strength;     // of the soil, BoundaryTerms and StrengthTerms, in these slots
-  Kokkos::View<double*, Memory> forces;  // N, [turn of a persistent step, else 0][of slots][near body][of
-                                         // Wrench], of the soil on the rigids
+  Kokkos::View<double*, Memory> forces;  // N, [turn of a persistent step, else 0][of slots][near body, then
+                                         // part][of Wrench], of the soil on the rigids
 };
 
 /// Places of slots among those where a contact may be, as ContactSlots::place.

@@ -103,7 +103,8 @@ void SitePasses<Space, T, Dim>::end() const {
   if (s.contact.count == 0) return;
   using Team = Kokkos::TeamPolicy<Space>;
   constexpr int threads = node_threads<Space, Dim>;
-  const int room = Wrench<Dim>::size * Patch<Dim>::cells, bodies = s.contact.near.width;
+  const int room = (1 + s.part_forces.count) * Wrench<Dim>::size * Patch<Dim>::cells;
+  const int bodies = s.contact.near.width;
   const std::size_t bytes = scratch_bytes<double>(room) + k_scratch_slack;
   const auto control = this->control;
   Kokkos::parallel_for(

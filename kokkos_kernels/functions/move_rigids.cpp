@@ -92,7 +92,8 @@ struct Move {
 
 template <class Space, class T, int Dim>
 void sum_forces(ContactCore<Space, T, Dim>& s, const Space& stream) {
-  const int values = wrench_size<Dim>(s.rigid_turns) * static_cast<int>(s.rigid_points.size());
+  const int wrenches = static_cast<int>(s.rigid_points.size()) + s.part_forces.count;
+  const int values = wrench_size<Dim>(s.rigid_turns) * wrenches;
   if (values > 0) launch_end(EndStep<Space, T, Dim>(s, {}, 0), stream, values, Sum{});
   s.forces_summed = true;
 }

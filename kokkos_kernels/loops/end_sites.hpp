@@ -30,25 +30,30 @@ struct EndSites : Sites<Space, T, Dim> {
   }
 
   /// Ends the sites of the body that is number `near` of those near contact slot number n, and leaves the
-  /// force of this rank's soil on it there. force: [Wrench::size][cells]
+  /// force of this rank's soil on it and on its parts there. force: [body, then parts][Wrench::size][cells]
   template <class Team>
   KOKKOS_INLINE_FUNCTION void end_body(const Team& team, int near, int n, double* force) const {
     const int r = update.near_bodies.body(contact_slots(n), near);
     if (r < 0 || !body(r).law.at_sites) return;
-    const int size = update.wrench();
+    const int size = update.wrench(), all = (1 + parts_of(r)) * size;
+    const int behind = (update.near_bodies.width + body(r).surface.first - 1) * size;  // place of part 1
     for_team(team, cells, [&](int k) {
-      for (int v = 0; v < size; ++v) force[v * cells + k] = 0;
+      for (int v = 0; v < all; ++v) force[v * cells + k] = 0;
       end_sites(near, n + 1, k, force + k);
     });
     team.team_barrier();
-    for_team(team, size, [&](int v) {
+    for_team(team, all, [&](int v) {
       double sum = 0;
       for (int k = 0; k < cells; ++k) sum += force[v * cells + k];
-      update.forces(n * update.value_count + near * size + v) = sum;
+      update.forces(n * update.value_count + (v < size ? near * size : behind) + v) = sum;
     });
   }
 
  private:
+  /// Parts of a body whose forces are wanted.
+  KOKKOS_INLINE_FUNCTION int parts_of(int r) const {
+    return update.parts != nullptr && body(r).surface.kind == SurfaceKind::parts ? body(r).surface.count : 0;
+  }
   /// Keeps the impulses of a body's sites of a node for the next step, and adds those on it to force[0],
   /// force[cells] ... [N].
   KOKKOS_INLINE_FUNCTION void end_sites(int near, int place, int k, double* force) const {
@@ -79,14 +84,24 @@ struct EndSites : Sites<Space, T, Dim> {
   }
   KOKKOS_INLINE_FUNCTION void add_force(const Place& of, const Site& site, double* force) const {
     Vector<double, Dim> given;  // N, to the soil
-    for (int d = 0; d < Dim; ++d) {
+    for (int d = 0; d < Dim; ++d)
       given[d] = (double(site.press) * site.normal[d] + site.shear[d]) * update.inv_dt;
-      force[(Wrench<Dim>::force + d) * cells] -= given[d];
-    }
-    const RigidPose<Dim>& pose = body(of.rigid).motion.pose;
-    if (!update.turns || !pose.turns) return;
     const Coord<Dim> at = node_at(of);
     const auto in_space = [&](int d) { return (at[d] + double(site.place[d])) * update.spacing; };
+    const RigidPose<Dim>& pose = body(of.rigid).motion.pose;
+    subtract(pose, in_space, given, force);
+    if (parts_of(of.rigid) == 0) return;
+    const Surface<Dim>& surface = body(of.rigid).surface;
+    const int part =
+        nearest_part(surface, update.parts, update.vertices, pose.to_body(in_space)) - surface.first;
+    subtract(pose, in_space, given, force + (1 + part) * update.wrench() * cells);
+  }
+  /// Subtracts a force that acts at a place, and its moment about the centre of a body.
+  template <class InSpace>
+  KOKKOS_INLINE_FUNCTION void subtract(const RigidPose<Dim>& pose, const InSpace& in_space,
+                                       const Vector<double, Dim>& given, double* force) const {
+    for (int d = 0; d < Dim; ++d) force[(Wrench<Dim>::force + d) * cells] -= given[d];
+    if (!update.turns || !pose.turns) return;
     const AngularVector<Dim> moment = moment_of(pose.arm_to(in_space), given);
     for (int k = 0; k < k_turning_axes<Dim>; ++k) force[(Wrench<Dim>::moment + k) * cells] -= moment[k];
   }

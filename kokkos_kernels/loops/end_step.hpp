@@ -53,6 +53,7 @@ struct EndStep {
   double dt, spacing, margin, damping;
   int count, slots, late;         // rigids, slots that leave forces
   int size;                       // numbers of a wrench in `sums` and `forces`
+  int stride;                     // of a slot in `forces`, without lists
   bool summed;                    // the forces are in `sums` already
   const double* moved = nullptr;  // cells, of each rigid, where the rigids have moved already
 
@@ -72,6 +73,7 @@ struct EndStep {
         slots(s.contact.count),
         late(s.rebuild_late),
         size(wrench_size<Dim>(s.rigid_turns)),
+        stride(size * wrenches_of_slot(s)),
         summed(s.forces_summed) {}
 
   /// Numbers of a wrench, and of the wrenches on all rigids. MayTurn: as in move.
@@ -272,8 +274,8 @@ struct EndStep {
   KOKKOS_INLINE_FUNCTION double sum_of_thread(const double* of_slots, int value, int rank,
                                               int threads) const {
     if (!MayTurn || !near.listed) {
-      const int values = this->values<MayTurn>();
-      return sum_of_places(slots, rank, threads, [&](int slot) { return of_slots[slot * values + value]; });
+      const int stride = MayTurn ? this->stride : values<false>();
+      return sum_of_places(slots, rank, threads, [&](int slot) { return of_slots[slot * stride + value]; });
     }
     const int r = value / size, first = near.first(r);
     return sum_of_places(near.first(r + 1) - first, rank, threads,

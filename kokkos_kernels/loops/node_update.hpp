@@ -40,12 +40,13 @@ struct UpdateNodes {
   static constexpr int cells = Patch<Dim>::cells;
   /// Nodes whose systems of light bodies are apart in memory: those of a slot, each the work of a thread.
   static constexpr int light_stride = is_device<Space> ? cells : 1;
-  int value_count;  // of the wrenches on the rigids near a slot
+  int value_count;  // of the wrenches on the rigids near a slot, and on parts
   NodePlaces<Space, T, Dim> places;
   Nodes<Space, T, Dim> nodes;
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   SurfaceTables<typename Space::memory_space, Dim> vertices;
   NearBodies<Space> near_bodies;
+  const Surface<Dim>* parts;      // of rigids, whose forces are wanted; else null
   const LightMotion<Dim>* light;  // velocity of light rigids, by number; null where there are none
   Kokkos::View<double*, typename Space::memory_space> forces;
   Kokkos::View<std::uint64_t*, typename Space::memory_space> owned_nodes;
@@ -68,7 +69,7 @@ struct UpdateNodes {
   template <class Team, class Sums>
   KOKKOS_INLINE_FUNCTION void update_near(const Team& team, const Sums& sums, int slot, int n,
                                           double* force) const {
-    const int values = bodies_near(slot) * wrench();
+    const int values = near_bodies.listed ? bodies_near(slot) * wrench() : value_count;
     for_team(team, cells, [&](int k) {
       for (int v = 0; v < values; ++v) force[v * cells + k] = 0;
       update<true>(sums, slot * cells + k, force + k);
@@ -405,6 +406,9 @@ struct UpdateNodes {
     if constexpr (acts)
       if (force != nullptr && !of_light && turns && rigid.motion.pose.turns)
         add_moment(rigid, place, m_i, change, force);
+    if constexpr (acts)
+      if (force != nullptr && !of_light && parts != nullptr)
+        add_to_part(rigid, place, m_i, change, force + (near_bodies.width - n) * wrench() * cells);
     if constexpr (of_light)
       if (light[r].open)
         add_touch(Touch<T, Dim>{other.normal, change, m_i, interface.stopped, interface.held},
@@ -435,6 +439,19 @@ struct UpdateNodes {
     for (int d = 0; d < Dim; ++d) given[d] = static_cast<double>(m_i) * change[d] * inv_dt;
     const AngularVector<Dim> moment = moment_of(rigid.motion.pose.arm_to(place), given);
     for (int k = 0; k < k_turning_axes<Dim>; ++k) force[(Wrench<Dim>::moment + k) * cells] -= moment[k];
+  }
+
+  /// Adds the force that changes a node's velocity (touch) to that on the nearest part of a rigid. force: of
+  /// all parts.
+  template <class Component>
+  KOKKOS_INLINE_FUNCTION void add_to_part(const Rigid<Dim>& rigid, const Component& place, T m_i,
+                                          const Vector<T, Dim>& change, double* force) const {
+    const int part = nearest_part(rigid.surface, parts, vertices, rigid.motion.pose.to_body(place));
+    if (part < 0) return;
+    double* const of_part = force + part * wrench() * cells;
+    for (int d = 0; d < Dim; ++d)
+      of_part[(Wrench<Dim>::force + d) * cells] -= static_cast<double>(m_i) * change[d] * inv_dt;
+    if (turns && rigid.motion.pose.turns) add_moment(rigid, place, m_i, change, of_part);
   }
 
   /// Largest shear stress of the interface at node i [Pa], infinite where only the friction limits.
@@ -528,12 +545,13 @@ struct UpdateNodes {
 template <bool acts = true, class Space, class T, int Dim>
 UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, double dt) {
   UpdateNodes<Space, T, Dim, acts> update{
-      .value_count = wrench_size<Dim>(s.rigid_turns) * s.contact.near.width,
+      .value_count = wrench_size<Dim>(s.rigid_turns) * wrenches_of_slot(s),
       .places = {s.grid, s.patches},
       .nodes = s.nodes,
       .rigids = s.rigids,
       .vertices = s.vertices,
       .near_bodies = s.contact.near,
+      .parts = s.part_forces.count > 0 ? s.part_forces.places.data() : nullptr,
       .light = s.light_rigids.in_use ? s.light_rigids.motions.data() : nullptr,
       .forces = s.contact.forces,
       .owned_nodes = s.owned_nodes,

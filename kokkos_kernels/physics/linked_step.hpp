@@ -92,15 +92,8 @@ struct LinkedStep {
   /// Adds the impulse of the soil on a rigid to that since the host last took it.
   KOKKOS_INLINE_FUNCTION void add_impulse(int r, const Wrench<Dim>& soil) const {
     MovingRigid<Dim>& rigid = solver.rigids[r];
-    const RigidPose<Dim>& pose = rigid.motion.pose;
-    for (int k = 0; k < wrench_size<Dim>(pose.turns); ++k) rigid.impulse[k] += solver.dt * soil[k];
-    if (!supports[r].has_point || !pose.turns) return;
-    const Vector<double, Dim> point = pose.to_world(supports[r].point);
-    const Vector<double, Dim> arm = pose.arm_to([&](int d) { return point[d]; });
-    Vector<double, Dim> force;
-    for (int d = 0; d < Dim; ++d) force[d] = solver.dt * soil[Wrench<Dim>::force + d];
-    const AngularVector<Dim> moment = moment_of(arm, force);
-    for (int k = 0; k < spins; ++k) rigid.impulse[Wrench<Dim>::moment + k] -= moment[k];
+    mpm::add_impulse(rigid.motion.pose, soil, solver.dt, supports[r].has_point ? &supports[r].point : nullptr,
+                     rigid.impulse);
   }
   /// Adds the reaction of this step to that since the host last took it.
   KOKKOS_INLINE_FUNCTION void book(Joint<Dim>& joint) const {

@@ -164,6 +164,21 @@ KOKKOS_INLINE_FUNCTION double turn_rigid(MovingRigid<Dim>& rigid, const Wrench<D
   return (dt * Kokkos::sqrt(squares) + shift) * body.reach;
 }
 
+/// Adds the impulse of a wrench [N, N m] on a body over dt [s] to `impulse`: its moment about the centre, or
+/// about a point of the body as it was placed at the start [m], unless that is null.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void add_impulse(const RigidPose<Dim>& pose, const Wrench<Dim>& wrench, double dt,
+                                        const Vector<double, Dim>* about, Wrench<Dim>& impulse) {
+  for (int k = 0; k < wrench_size<Dim>(pose.turns); ++k) impulse[k] += dt * wrench[k];
+  if (about == nullptr || !pose.turns) return;
+  const Vector<double, Dim> point = pose.to_world(*about);
+  const Vector<double, Dim> arm = pose.arm_to([&](int d) { return point[d]; });
+  Vector<double, Dim> force;
+  for (int d = 0; d < Dim; ++d) force[d] = dt * wrench[Wrench<Dim>::force + d];
+  const AngularVector<Dim> moment = moment_of(arm, force);
+  for (int k = 0; k < k_turning_axes<Dim>; ++k) impulse[Wrench<Dim>::moment + k] -= moment[k];
+}
+
 /// Moves a rigid body by a step of dt [s]; contact [N, N m]: wrench of the soil on it; pairs: what other
 /// rigid bodies do to it, which nothing damps, null where none is near. Returns the largest component of the
 /// movement of its points [m], or a little more. MayTurn: as in RigidPose.

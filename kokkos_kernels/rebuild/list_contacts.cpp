@@ -191,7 +191,7 @@ void make_room_for_contact(ContactCore<Space, T, Dim>& s) {
   }
   if (s.light_rigids.in_use)
     ensure(s.light_rigids.of_slots, std::size_t(s.contact.count) * LightTerms<Dim>::size * width);
-  ensure(s.contact.forces, 2 * std::size_t(s.contact.count) * Wrench<Dim>::size * width);
+  ensure(s.contact.forces, 2 * std::size_t(s.contact.count) * Wrench<Dim>::size * wrenches_of_slot(s));
 }
 
 }  // namespace

@@ -53,6 +53,28 @@ void upload_light_rigids(const std::vector<RigidInput>& rigids, LightRigids<Spac
   to.sums = decltype(to.sums)("mpm::light_sums", to.in_use ? numbers : 0);
 }
 
+/// Puts the parts of rigids where their forces are measured on the device. surfaces: of the rigids, whose
+/// parts are in the tables.
+template <class Space, int Dim>
+void upload_parts(const std::vector<RigidInput>& rigids, const std::vector<Surface<Dim>>& surfaces,
+                  double spacing, HostTables<Dim>& tables, PartForces<Space, Dim>& forces) {
+  forces = {};
+  if (std::none_of(rigids.begin(), rigids.end(), [](const RigidInput& of) { return of.part_forces; })) return;
+  std::vector<int> rigid;
+  std::vector<Surface<Dim>> places;
+  for (std::size_t r = 0; r < rigids.size(); ++r)
+    for (std::size_t n = 0; n < rigids[r].parts.size(); ++n) {
+      const SurfaceInput& part = rigids[r].parts[n];
+      const bool sampled = part.kind == SurfaceKind::sampled;
+      places.push_back(sampled ? tables.parts[surfaces[r].first + n] : tables.add(part, spacing));
+      rigid.push_back(static_cast<int>(r));
+    }
+  forces.count = static_cast<int>(places.size());
+  fill_view(forces.places, "mpm::part_places", forces.count, [&](int n) { return places[n]; });
+  fill_view(forces.rigid, "mpm::part_rigids", forces.count, [&](int n) { return rigid[n]; });
+  forces.impulse = decltype(forces.impulse)("mpm::part_impulse", forces.count);
+}
+
 template <class Space, class T, int Dim>
 void upload_rigids(ContactCore<Space, T, Dim>& s, const std::vector<RigidInput>& rigids, double cut,
                    Fault& fault) {
@@ -79,6 +101,7 @@ void upload_rigids(ContactCore<Space, T, Dim>& s, const std::vector<RigidInput>&
   HostTables<Dim> tables;
   std::vector<Surface<Dim>> surfaces;
   for (const RigidInput& rigid : rigids) surfaces.push_back(tables.add(rigid.surface, spacing));
+  upload_parts(rigids, surfaces, spacing, tables, s.part_forces);
   tables.upload(s.vertices);
   share_samples(s.vertices, s.pairs.vertices);
   fill_view(s.rigids, "mpm::rigids", static_cast<int>(rigids.size()), [&](int r) {
@@ -115,7 +138,9 @@ void begin_near_bodies(const std::vector<RigidInput>& rigids, double spacing, Ne
   const auto by_surface = [](const RigidInput& rigid) { return rigid.surface_normal; };
   near = {};
   near.width = static_cast<int>(rigids.size());
-  near.listed = near.width > k_few_bodies && std::all_of(rigids.begin(), rigids.end(), by_surface);
+  const auto without_parts = [](const RigidInput& rigid) { return !rigid.part_forces; };
+  near.listed = near.width > k_few_bodies && std::all_of(rigids.begin(), rigids.end(), by_surface) &&
+                std::all_of(rigids.begin(), rigids.end(), without_parts);
   if (!near.listed) return;
   near.spheres = decltype(near.spheres)("mpm::spheres", rigids.size(), Dim + 1);
   const auto spheres = Kokkos::create_mirror_view(near.spheres);
@@ -229,9 +254,10 @@ Fault upload(ContactCore<Space, T, Dim>& s, const GridInput& grid,
   s.launch.barrier = decltype(s.launch.barrier)("mpm::launch_barrier");
   s.movements.bits = decltype(s.movements.bits)("mpm::movements");
   s.launch.movements.bits = decltype(s.launch.movements.bits)("mpm::launch_movements");
-  s.rigid_force = decltype(s.rigid_force)("mpm::rigid_force", Wrench<Dim>::size * rigids.size());
   upload_soil(s, materials, bodies, scratch_of_rigids<Space, T, Dim>(rigids), fault);
   upload_rigids(s, rigids, k_rigid_cut, fault);
+  const std::size_t wrenches = rigids.size() + s.part_forces.count;
+  s.rigid_force = decltype(s.rigid_force)("mpm::rigid_force", Wrench<Dim>::size * wrenches);
   upload_light_rigids(rigids, s.light_rigids);
   begin_near_bodies<Space, T, Dim>(rigids, grid.spacing, s.contact.near);
   if (fault.kind == FaultKind::none) find_parts(s);

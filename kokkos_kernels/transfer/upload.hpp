@@ -99,11 +99,13 @@ struct RigidInput {
   double shear_fraction = -1;  // -, of the soil's strength instead of the limit; negative: none
   double friction = -1;        // -, negative: none
   SurfaceInput surface;
-  bool surface_normal = false;  // contact normals from the surface, not from the mass gradient
-  bool at_sites = false;        // contact at sites, not at nodes
-  bool separates = true;        // the soil may part from it
-  double reach = 0;             // m, gap at which the contact ends; 0: it does not depend on the gap
-  double exponent = 6;          // -, of its decrease with the gap
+  std::vector<SurfaceInput> parts;  // of several, as they were given; sampled ones without samples
+  bool part_forces = false;         // the forces on them are wanted
+  bool surface_normal = false;      // contact normals from the surface, not from the mass gradient
+  bool at_sites = false;            // contact at sites, not at nodes
+  bool separates = true;            // the soil may part from it
+  double reach = 0;                 // m, gap at which the contact ends; 0: it does not depend on the gap
+  double exponent = 6;              // -, of its decrease with the gap
 };
 
 /// Puts the particles on the device; sort_and_list and begin_domains then make patches, bins, lists and

@@ -65,6 +65,12 @@ struct BodyRow {
   long put_back = 0, lost_count = 0;  // particles put back at walls, and lost, since the start
 };
 
+/// One row of the history for one part of a rigid.
+struct PartRow {
+  Vec3 force{};   // N, of the soil on it, mean over the interval since the last row
+  Vec3 moment{};  // N m, likewise, where the body may turn; about the same point as the body's
+};
+
 /// One row of the history for one rigid.
 struct RigidRow {
   Vec3 displacement{};  // m, since the start
@@ -79,6 +85,7 @@ struct RigidRow {
   Vec3 contact_moment{};                 // N m
   double kinetic_energy = 0;             // J, where forces move it
   Vec3 spring_force{}, spring_moment{};  // N, N m, of springs and dashpots on it, mean as the force
+  std::vector<PartRow> parts;            // where their forces are wanted, and the body is there
 };
 
 /// One row of the history for one joint.

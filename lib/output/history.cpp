@@ -61,9 +61,13 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
     if (has_energy(of)) text += "," + text_of(rigid.kinetic_energy);
     if (of.is_sprung()) append(text, rigid.spring_force, dim);
     if (of.is_sprung() && of.turns()) append(text, rigid.spring_moment, spins);
-    if (!in_contact[r]) continue;
-    append(text, rigid.contact_force, dim);
-    if (of.turns()) append(text, rigid.contact_moment, spins);
+    if (in_contact[r]) append(text, rigid.contact_force, dim);
+    if (in_contact[r] && of.turns()) append(text, rigid.contact_moment, spins);
+    for (std::size_t n = 0; of.part_forces && n < of.shape.parts.size(); ++n) {
+      const PartRow part = n < rigid.parts.size() ? rigid.parts[n] : PartRow{};
+      append(text, part.force, dim);
+      if (of.turns()) append(text, part.moment, spins);
+    }
   }
   for (const JointReaction& joint : row.joints) {
     append(text, joint.force, dim), append(text, joint.moment, dim == 2 ? 1 : 3);

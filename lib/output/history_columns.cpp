@@ -67,9 +67,12 @@ void add_rigid(Columns& to, const RigidConfig& rigid, bool in_contact) {
   if (has_energy(rigid)) to.add(rigid.name + "_kinetic_energy");
   if (rigid.is_sprung()) to.add_vector(rigid.name + "_spring_force_");
   if (rigid.is_sprung() && rigid.turns()) to.add_rotation(rigid.name + "_spring_moment");
-  if (!in_contact) return;
-  to.add_vector(rigid.name + "_contact_force_");
-  if (rigid.turns()) to.add_rotation(rigid.name + "_contact_moment");
+  if (in_contact) to.add_vector(rigid.name + "_contact_force_");
+  if (in_contact && rigid.turns()) to.add_rotation(rigid.name + "_contact_moment");
+  for (std::size_t n = 0; rigid.part_forces && n < rigid.shape.part_names.size(); ++n) {
+    to.add_vector(rigid.shape.part_names[n] + "_force_");
+    if (rigid.turns()) to.add_rotation(rigid.shape.part_names[n] + "_moment");
+  }
 }
 
 }  // namespace

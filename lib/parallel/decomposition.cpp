@@ -41,6 +41,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::start(MPI_Comm comm, const Partitio
   PetscCall(transport_.start(comm, config.halo_path));
   if (overlaps(s)) side_.open(s.space);
   const auto rigids = mirror_of(s.rigids);
+  forces_shared_ = s.part_forces.count > 0;
   for (std::size_t r = 0; r < rigids.extent(0); ++r)
     forces_shared_ = forces_shared_ || rigids(r).inertia.dynamic;
   reserve_particles(s, k_least_room);

@@ -112,6 +112,11 @@ void set_contact(const Config& config, const RigidConfig& rigid, RigidInput* in)
   in->shear_fraction = rigid.shear_fraction.value_or(-1);
   in->friction = rigid.friction.value_or(-1);
   in->surface = surface_input(rigid.shape, config.mesh, config.dim);
+  for (const Shape& part : rigid.shape.parts)
+    in->parts.push_back(part.kind == ShapeKind::stl
+                            ? SurfaceInput{.kind = SurfaceKind::sampled}
+                            : surface_input(part, config.mesh, config.dim, Corners::sharp));
+  in->part_forces = rigid.part_forces;
   in->surface_normal = rigid.contact_normal == ContactNormal::surface;
   in->separates = rigid.separates;
   in->at_sites = rigid.contact_at_sites;

@@ -5,6 +5,7 @@
 
 #include "base/copy.hpp"
 #include "functions/grid_velocity.hpp"
+#include "functions/part_forces.hpp"
 #include "functions/rigid_pairs.hpp"
 #include "rebuild/batches.hpp"
 #include "step/contact_at_sites.hpp"
@@ -148,8 +149,23 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::measure_rigids(double interval, H
     }
     row->rigids.push_back(rigid);
   }
+  measure_parts(interval, row);
   run_.rigids.widen(row->rigids);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+void HistoryMeasures<Space, T, Dim>::measure_parts(double interval, HistoryRow* row) {
+  const auto impulses = take_part_impulses(run_.state);
+  std::size_t n = 0;
+  for (std::size_t r = 0; r < row->rigids.size() && !impulses.empty(); ++r)
+    for (std::size_t k = 0; k < run_.config.rigids[r].shape.parts.size(); ++k, ++n) {
+      PartRow& part = row->rigids[r].parts.emplace_back();
+      const double scale = interval > 0 ? 1 / interval : 0;
+      for (int d = 0; d < Dim; ++d) part.force[d] = scale * impulses[n][Wrench<Dim>::force + d];
+      for (int d = 0; d < k_turning_axes<Dim>; ++d)
+        part.moment[d] = scale * impulses[n][Wrench<Dim>::moment + d];
+    }
 }
 
 template <class Space, class T, int Dim>

@@ -41,6 +41,20 @@ std::vector<double> renumbered(const std::vector<double>& contacts, const std::v
   return out;
 }
 
+/// Impulses on parts of bodies with other numbers, likewise.
+std::vector<double> parts_of_others(const std::vector<double>& parts, const std::vector<long>& to) {
+  std::vector<double> out;
+  for (std::size_t at = 0; at + k_saved_part <= parts.size(); at += k_saved_part) {
+    const auto known = parts[at] >= 0 && parts[at] < static_cast<double>(to.size());
+    const long now = known ? to[static_cast<std::size_t>(parts[at])] : -1;
+    if (now < 0) continue;
+    out.push_back(static_cast<double>(now));
+    out.insert(out.end(), parts.begin() + static_cast<long>(at) + 1,
+               parts.begin() + static_cast<long>(at) + k_saved_part);
+  }
+  return out;
+}
+
 /// 0, 1, ...
 std::vector<std::size_t> counted(std::size_t count) {
   std::vector<std::size_t> numbers(count);
@@ -86,6 +100,7 @@ void PresentRigids::narrow(SavedState& state) {
   std::vector<long> number(others_.size(), -1);
   for (std::size_t k = 0; k < place_.size(); ++k) number[place_[k]] = static_cast<long>(k);
   state.pairs.contacts = renumbered(state.pairs.contacts, number);
+  state.part_impulses = parts_of_others(state.part_impulses, number);
   state.supports =
       rearranged(state.supports, 0, SupportTerms::size, others_.size(), place_.size(), place_, here);
   state.rigids.clear();
@@ -103,7 +118,9 @@ void PresentRigids::widen(SavedState& state) const {
                             others_.size(), here, place_);
   state.pairs.impulses =
       rearranged(state.pairs.impulses, 0, SavedPairs::totals, place_.size(), others_.size(), here, place_);
-  state.pairs.contacts = renumbered(state.pairs.contacts, std::vector<long>(place_.begin(), place_.end()));
+  const std::vector<long> places(place_.begin(), place_.end());
+  state.pairs.contacts = renumbered(state.pairs.contacts, places);
+  state.part_impulses = parts_of_others(state.part_impulses, places);
   state.supports =
       rearranged(state.supports, 0, SupportTerms::size, place_.size(), others_.size(), here, place_);
   std::vector<SavedRigid> rigids = others_;

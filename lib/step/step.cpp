@@ -6,6 +6,7 @@
 #include "functions/find_strays.hpp"
 #include "functions/light_rigids.hpp"
 #include "functions/link_rigids.hpp"
+#include "functions/part_forces.hpp"
 #include "functions/rigid_pairs.hpp"
 #include "functions/split_patches.hpp"
 #include "functions/step_kernels.hpp"
@@ -228,6 +229,7 @@ struct Step {
     PetscFunctionBeginUser;
     if (ranks) PetscCall(ranks->add_forces(s));
     const Space& stream = on_stream ? overlap->fork(s.space) : s.space;
+    if (s.part_forces.count > 0) add_part_impulses(s, dt, stream);
     if (s.pairs.in_use()) {
       if (!s.forces_summed) sum_forces(s, stream);
       contact_of_rigids(s, dt, stream);

@@ -7,6 +7,7 @@
 #include "common/text.hpp"
 #include "device/device_agrees.hpp"
 #include "functions/find_strays.hpp"
+#include "functions/part_forces.hpp"
 #include "functions/step_kernels.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/limit_volumes.hpp"
@@ -196,6 +197,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   collect_soil(run_.state);
   PetscCallCXX(*saved = save_state(run_.state));
   PetscCallCXX(saved->pairs = save_pairs(run_.state));
+  PetscCallCXX(saved->part_impulses = save_part_impulses(run_.state));
   PetscCall(snapshots_.save_for_starts(saved));
   ids_.save(saved);
   PetscCall(energy_.save(saved));
@@ -226,6 +228,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   Failure unfit;
   PetscCallCXX(unfit.what = take_saved(s, saved));
   PetscCallCXX(restore_pairs(s, saved.pairs));
+  PetscCallCXX(restore_part_impulses(s, saved.part_impulses));
   links_.restore(saved);
   loads_.restore(saved);
   energy_.restore(saved);

@@ -154,6 +154,7 @@ struct RigidConfig {
   std::optional<TimeTable> angle_table;             // rad, instead of it: its changes count (prescribed)
   Vec3 moment{};                                    // N m, external, likewise (dynamic)
   std::optional<TimeTable> moment_table;            // N m, instead of it
+  bool part_forces = false;                         // the history has the forces on its parts
   std::optional<Vec3> moment_point;  // m, about which the history has the moment; else the centre
   /// N/m and N m/rad, N s/m and N m s/rad, of springs and dashpots to the ground along x, y, z and about them
   /// (dynamic).

@@ -239,6 +239,17 @@ void read_part_names(OptionReader& in, Names& names, RigidConfig& rigid) {
   if (!in.listing()) rigid.shape.part_names = parts;
 }
 
+/// Whether the history has the forces on the parts of a rigid body.
+void read_part_forces(OptionReader& in, RigidConfig& rigid) {
+  const std::string name = rigid.name + "_part_forces";
+  const bool one_shape = rigid.shape.part_names.empty() && !in.listing();
+  if (one_shape && !in.given(name)) return;
+  in.word({.name = name, .meaning = "whether the history has the force of the soil on each of its parts"},
+          Words<bool>{{"on", true}, {"off", false}}, rigid.part_forces);
+  if (one_shape && rigid.part_forces)
+    in.reject(name, "off where the body has one shape; -" + rigid.name + "_parts gives it several");
+}
+
 void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, RigidConfig& rigid) {
   const int dim = config.dim;
   rigid.shape.particles_per_cell = 4;
@@ -272,6 +283,7 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
            .change = k_by_choice},
           Words<bool>{{"free", true}, {"none", false}}, rigid.separates);
   read_gap_scaling(in, rigid);
+  read_part_forces(in, rigid);
   if (!sound || !mesh) return;
   if (rigid.mass) rigid.density = *rigid.mass / shape_volume(rigid.shape, *mesh, dim);
   check_turning(in, config, *mesh, rigid);

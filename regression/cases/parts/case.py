@@ -1,7 +1,7 @@
 """A rigid body of several parts
 
 *Pressed*: a T that is pressed into clay beyond its two inner corners, as one polygon, and as the union of two boxes, on each other
-or one in the other. *Halves*: a plate, whole, and in two halves that share an end. *Falls*: an L that falls on a corner of its foot onto a
+or one in the other. *Halves*: a plate, whole, and in two halves that share an end; *even* halves take the same force. *Falls*: an L that falls on a corner of its foot onto a
 rigid plane and turns until it stands, as one polygon, and as the union of two boxes. The polygon is the exact answer.
 """
 
@@ -37,11 +37,15 @@ FALL = ("-rigid_bodies ell,floor -floor_shape half_plane -floor_point 0,1.9 -flo
         " -mesh_upper 4,4 ")
 PLACE = 1.4  # m, of the L over its drawing
 SITES = " -tee_contact sites"
+FORCES = " -tee_part_forces on"
+EVEN = " -tee_velocity 0,-1.2 -mesh_upper 4.1,2.8 -soil_upper 4.1,1.2 -mesh_xmin roller -mesh_xmax roller"
 RUNS = {"polygon": WHOLE, "sites": WHOLE + SITES, "on_each_other_sites": pair(("1.5,1.7", "2.5,2.1"), ("1.8,1.2", "2.2,1.7")) + SITES,
         "on_each_other": pair(("1.5,1.7", "2.5,2.1"), ("1.8,1.2", "2.2,1.7")),
         "overlap": pair(("1.5,1.7", "2.5,2.1"), ("1.8,1.2", "2.2,2")),
         "plate": "-tee_shape box -tee_lower 1.5,1.2 -tee_upper 2.5,1.6",
-        "halves": pair(("1.5,1.2", "1.9,1.6"), ("1.9,1.2", "2.5,1.6")),
+        "halves": pair(("1.5,1.2", "1.9,1.6"), ("1.9,1.2", "2.5,1.6")) + FORCES,
+        "even": pair(("1.5,1.2", "2.05,1.6"), ("2.05,1.2", "2.6,1.6")) + FORCES + EVEN,
+        "even_sites": pair(("1.5,1.2", "2.05,1.6"), ("2.05,1.2", "2.6,1.6")) + FORCES + EVEN + SITES,
         "falls": FALL + "-ell_shape polygon -ell_polygon " + turned(ELL + [0, PLACE]),
         "falls_in_parts": FALL + pair(corner(1, 1 + PLACE, 0.8, 0.2), corner(1, 1.2 + PLACE, 0.2, 0.8), "ell", ("foot", "leg"),
                                       f" -{{0}}_angle_deg {float(np.degrees(TILT))!r}")}
@@ -60,6 +64,13 @@ def check(runs):
     yield Row("the same with contact at sites", off(runs, "on_each_other_sites", "sites"), 0, 1e-9, source, single=0.02)
     yield Row("force on a plate in two halves off that on the whole, over the largest", off(runs, "halves", "plate"), 0, 1e-9,
               "the whole plate", single=0.02)
+    for name in ("halves", "even", "even_sites"):
+        of = [runs[name].columns(f"{part}_force_") for part in ("tee", "cap", "stem")]
+        yield Row(f"forces on the parts added, off that on the plate, over the largest, {name}",
+                  np.abs(of[1] + of[2] - of[0]).max() / np.abs(of[0]).max(), 0, 1e-12, "the force on the body")
+        if name != "halves":  # a site on the border belongs to one part
+            yield Row(f"force on half a plate off that on the other, over the largest, {name}",
+                      np.abs(of[1] - of[2] * [-1, 1]).max() / np.abs(of[0]).max(), 0, 1e-6 if name == "even" else 0.06, "symmetry", single=0.06)
     for column, unit in (("ell_x", "m"), ("ell_y", "m"), ("ell_angle", "rad")):
         exact = runs["falls"].history[column]
         yield Row(f"{column} of an L that falls, largest difference ({unit})",

@@ -78,6 +78,7 @@ class RigidPairs(Deck):
                  "stl": f"-{name}_shape stl -{name}_file {CUBE} -{name}_scale {2 * a:.6f} -{name}_offset {rounded(centre)}"}[shape].split()
         if shape == "parts":
             self.parts += [f"{name}_foot", f"{name}_leg", f"{name}_head"]
+            words += [f"-{name}_part_forces", "on"]
         body = {"motion": draw.choice(["dynamic"] * 6 + ["fixed", "prescribed"]) if self.bodies else "dynamic", "shape": shape,
                 "centre": np.array(centre), "radius": round(a, 6)}
         self.bodies[name] = body
@@ -129,7 +130,18 @@ class RigidPairs(Deck):
             grown = max((energy[k:] - energy[k]).max() for k in range(len(energy))) / kinetic
             self.note("growth of energy over its range", grown)
             assert grown < 0.01, f"the energy grows by {grown:.3g} of its range"
+        self.check_parts(values)
         self.check_gaps(values)
+
+    def check_parts(self, values):
+        """What the soil does to the parts of a body adds up to what it does to the body."""
+        for name in {part.split("_")[0] for part in self.parts}:
+            spins = [f"moment{end}" for end in SPIN[self.dim]] if self.bodies[name].get("turns") else []
+            for kind in [f"force_{axis}" for axis in self.axes] + spins:
+                of = np.array([values[f"{name}_{part}{kind}"] for part in ("", "foot_", "leg_", "head_")])
+                off = np.abs(of[1:].sum(axis=0) - of[0]).max() / max(1.0, np.abs(of).max())
+                self.note("force on the parts off that on the body", off)
+                assert off < 1e-9, f"{name}: the {kind} of its parts is {off:.3g} off that of the body"
 
     def check_gaps(self, values):
         """Balls against balls, and against the floor."""
