@@ -228,6 +228,12 @@ void warn_of_narrow_faces(const Config& config, const Way& way, Lines& lines) {
 void warn_of_lightness(const Config& config, const RigidConfig& rigid, Lines& lines) {
   const Lightness of = lightness_of(config, rigid);
   if (!of.is_light() || solves_for_velocity(config, rigid)) return;
+  if (of.mass >= of.layer)
+    return lines.push_back(
+        formatted("warning: rigid %s has %.3g of the moment of inertia of a layer of soil one cell thick, "
+                  "which sticks to "
+                  "it: contact may turn it more and more; take smaller cells or a heavier body",
+                  rigid.name.c_str(), of.turning));
   lines.push_back(
       formatted("warning: rigid %s has %.4g kg, less than a layer of soil one cell thick at its face, "
                 "%.4g kg: contact may throw it up; take smaller cells or a heavier body",

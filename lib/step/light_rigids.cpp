@@ -7,6 +7,49 @@
 #include "input/geometry/shapes.hpp"
 
 namespace mpm {
+namespace {
+
+/// Whether soil all round a body moves with its surface.
+bool sticks_to_soil(const RigidConfig& rigid) {
+  const bool shears =
+      rigid.shear_limit > 0 || rigid.shear_fraction.value_or(0) > 0 || rigid.friction.value_or(0) > 0;
+  return !rigid.separates && shears;
+}
+
+/// Moment of inertia, about axis k through the middle, of a layer of 1 kg/m2 on the faces of a box of these
+/// half edges [kg m2]; half[2] is half a metre in 2D, where the layer is open across z.
+double inertia_of_layer(const Vec3& half, int k, int dim) {
+  double sum = 0;
+  for (int d = 0; d < dim; ++d) {  // the two faces across d
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    double squares = 0;  // mean of the squared distances from the axis
+    for (int n = 0; n < 3; ++n)
+      if (n != k) squares += half[n] * half[n] * (n == d ? 1 : 1.0 / 3);
+    sum += 8 * half[e] * half[f] * squares;
+  }
+  return sum;
+}
+
+/// Smallest ratio of the moments of inertia of a body and of a layer of soil round it. edge [m]: of the
+/// bounds; mass [kg]: of the whole body; layer: kg/m2.
+double turning_ratio(const Config& config, const RigidConfig& rigid, const Vec3& edge, double mass,
+                     double layer) {
+  const auto whole = whole_properties(rigid.shape, config.mesh, config.dim);
+  if (!whole) return HUGE_VAL;
+  Vec3 half{edge[0] / 2, edge[1] / 2, edge[2] / 2};
+  const double filled =
+      whole->volume / (edge[0] * edge[1] * edge[2]);  // the layer of a round body is smaller
+  double least = HUGE_VAL;
+  for (int k = config.dim == 2 ? 2 : 0; k < 3; ++k) {
+    const double own =
+        rigid.inertia ? (*rigid.inertia)[config.dim == 2 ? 0 : k] : mass / whole->volume * whole->inertia[k];
+    if (rigid.free[3 + k])
+      least = std::min(least, own / (filled * layer * inertia_of_layer(half, k, config.dim)));
+  }
+  return least;
+}
+
+}  // namespace
 
 Lightness lightness_of(const Config& config, const RigidConfig& rigid) {
   Lightness out;
@@ -34,6 +77,8 @@ Lightness lightness_of(const Config& config, const RigidConfig& rigid) {
   }
   for (const BodyConfig& body : config.bodies) heaviest = std::max(heaviest, density_of(config, body));
   out.layer = heaviest * face * config.mesh.spacing / parts;
+  if (rigid.turns() && sticks_to_soil(rigid))
+    out.turning = turning_ratio(config, rigid, edge, out.mass * parts, heaviest * config.mesh.spacing);
   return out;
 }
 

@@ -1,17 +1,21 @@
 #pragma once
 // Rigid bodies that are light against the soil that they touch.
 
+#include <cmath>
+
 #include "mpm/config.hpp"
 
 namespace mpm {
 
 /// Mass of a rigid body, and of a layer of cells of the heaviest soil at the largest face of its bounds [kg].
+/// Of a body that turns and to which soil sticks on all sides: smallest ratio of its moment of inertia to that
+/// of such a layer round it; else infinite.
 struct Lightness {
-  double mass = 0, layer = 0;
+  double mass = 0, layer = 0, turning = HUGE_VAL;
 
   /// Contact at nodes that takes such a body as infinitely heavy throws it up: a disc of half a cell that
   /// falls on clay begins to gain energy at a quarter of a layer, one of one and a half cells at a third.
-  bool is_light() const { return mass < layer; }
+  bool is_light() const { return mass < layer || turning < 1; }
 };
 
 /// Lightness of a rigid body, by the largest of the faces across the axes along which it may move; one that

@@ -1,9 +1,11 @@
 // Checks of the other options in a mesh with periodic sides.
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/text.hpp"
 #include "input/geometry/height_surface.hpp"
+#include "input/geometry/mass_properties.hpp"
 #include "input/geometry/shapes.hpp"
 #include "input/options/groups.hpp"
 
@@ -13,10 +15,9 @@ namespace {
 constexpr double k_slack = 1e-6;  // cells
 constexpr double k_reach = 2;     // cells, further than a rigid acts on soil
 
-/// The option that makes a rigid move along a direction; empty where it does not. Forces may move a dynamic
-/// one along any.
+/// The option that makes a rigid move along a direction; empty where it does not.
 std::string moving_option(const RigidConfig& rigid, int d) {
-  if (rigid.motion == Motion::dynamic) return rigid.name + "_motion";
+  if (rigid.motion == Motion::dynamic && rigid.free[d]) return rigid.name + "_motion";
   if (rigid.motion == Motion::fixed || rigid.velocity[d] == 0) return "";
   return rigid.name + (rigid.displacement_table ? "_displacement_table"
                        : rigid.velocity_table   ? "_velocity_table"
@@ -42,25 +43,55 @@ bool goes_through(const Shape& shape, const MeshConfig& mesh, int dim, int d) {
   }
 }
 
+/// A turning body stays away from the sides, wherever it has turned.
+void check_circle(OptionReader& in, const Config& config, const RigidConfig& rigid, int d,
+                  const std::string& where) {
+  const MeshConfig& mesh = config.mesh;
+  const Bounds bounds = bounds_of(rigid.shape, mesh, config.dim);
+  const auto whole = whole_properties(rigid.shape, mesh, config.dim);
+  Vec3 centre{};
+  double squares = 0;
+  for (int e = 0; e < config.dim; ++e) {
+    centre[e] = rigid.centre_of_mass ? (*rigid.centre_of_mass)[e]
+                : whole              ? whole->centre[e]
+                                     : (bounds.lower[e] + bounds.upper[e]) / 2;
+    const double far = std::max(centre[e] - bounds.lower[e], bounds.upper[e] - centre[e]);
+    squares += far * far;
+  }
+  const double free = std::min(centre[d] - mesh.lower[d], mesh.upper[d] - centre[d]) - std::sqrt(squares);
+  if (free >= (k_reach - k_slack) * mesh.spacing) return;
+  const bool dynamic = rigid.motion == Motion::dynamic;
+  in.reject(rigid.name + (dynamic ? "_free" : "_angular_velocity"),
+            std::string(dynamic ? "no rotation" : "0") +
+                " of a rigid that comes within 2 cells of a side as it turns" + where);
+}
+
 void check_rigid(OptionReader& in, const Config& config, const RigidConfig& rigid, int d) {
   const MeshConfig& mesh = config.mesh;
   const std::string along = std::string(" along ") + "xyz"[d], moving = moving_option(rigid, d),
                     where = ", where -" + side_option(d, 0) + " is periodic";
   if (goes_through(rigid.shape, mesh, config.dim, d)) {
+    if (rigid.turns())
+      in.reject(rigid.name + (rigid.motion == Motion::dynamic ? "_free" : "_angular_velocity"),
+                std::string(rigid.motion == Motion::dynamic ? "no rotation" : "0") +
+                    " of a rigid that goes through the mesh" + along + where);
     if (!moving.empty() && rigid.contact_normal == ContactNormal::gradient)
       in.reject(rigid.name + "_contact_normal", "surface of a rigid that moves" + along + where);
     return;
   }
   if (!moving.empty())
-    return in.reject(
-        moving,
-        std::string(rigid.motion == Motion::dynamic ? "fixed, or prescribed without motion" : "no motion") +
-            along + " of a rigid that has ends there" + where);
+    return in.reject(moving, std::string(rigid.motion == Motion::dynamic
+                                             ? "fixed, prescribed without motion, or dynamic with a -" +
+                                                   rigid.name + "_free without motion,"
+                                             : "no motion") +
+                                 along + " of a rigid that has ends there" + where);
   const Bounds bounds = bounds_of(rigid.shape, mesh, config.dim);
   const double least = (k_reach - k_slack) * mesh.spacing;
   if (bounds.lower[d] - mesh.lower[d] < least || mesh.upper[d] - bounds.upper[d] < least)
     in.reject(rigid.name + "_shape", "a box, half plane, level layer or prism that goes through the mesh" +
                                          along + ", or a shape 2 cells away from the sides" + where);
+  else if (rigid.turns())
+    check_circle(in, config, rigid, d, where);
 }
 
 }  // namespace

@@ -241,8 +241,6 @@ void check_turning(OptionReader& in, const Config& config, const MeshConfig& mes
     return in.reject(option, none + " of a layer, a half plane or a list of particles");
   if (rigid.contact_normal == ContactNormal::gradient)
     return in.reject(option, none + " where -" + rigid.name + "_contact_normal is gradient");
-  for (int d = 0; d < config.dim; ++d)
-    if (is_periodic(mesh, d)) return in.reject(option, none + " in a mesh with periodic sides");
   if (!check_cut_turning(in, option, mesh, config.dim, rigid)) return;
   if (rigid.centre_of_mass && config.water.level && rigid.motion == Motion::dynamic)
     in.reject(rigid.name + "_centre_of_mass",
