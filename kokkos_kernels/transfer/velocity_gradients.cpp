@@ -12,17 +12,14 @@ using Cell = std::array<int, 3>;
 using Square = std::array<std::array<double, 3>, 3>;
 
 /// Rows of C with C M = R, M symmetric and not negative, by elimination with diagonal pivots; a direction
-/// whose pivot is round-off gets zero.
-Square solve(Square M, Square R, int dim) {
-  constexpr double k_singular = 1e-9;
-  double trace = 0;
-  for (int d = 0; d < dim; ++d) trace += M[d][d];
+/// whose pivot is at most `least` gets zero.
+Square solve(Square M, Square R, double least, int dim) {
   std::array<bool, 3> used{};
   for (int n = 0; n < dim; ++n) {
     int best = -1;
     for (int d = 0; d < dim; ++d)
       if (!used[d] && (best < 0 || M[d][d] > M[best][best])) best = d;
-    if (!(M[best][best] > k_singular * trace)) break;
+    if (!(M[best][best] > least)) break;
     used[best] = true;
     for (int row = 0; row < dim; ++row) {
       if (row == best) continue;
@@ -62,11 +59,13 @@ std::vector<double> velocity_gradients(const std::vector<double>& position,
   gradient.reserve(count * dim * dim);
   for (std::size_t p = 0; p < count; ++p) {
     Square M{}, R{};
+    std::size_t others = 0;
     const Cell own = cell_of(p);
     for (int n = 0; n < (dim == 3 ? 27 : 9); ++n) {
       const auto found = in.find({in_period(0, own[0] + n % 3 - 1), in_period(1, own[1] + n / 3 % 3 - 1),
                                   in_period(2, own[2] + (dim == 3 ? n / 9 - 1 : 0))});
       if (found == in.end()) continue;
+      others += found->second.size();
       for (const std::size_t q : found->second)
         for (int e = 0; e < dim; ++e) {
           const double r = way(p, q, e);
@@ -76,7 +75,9 @@ std::vector<double> velocity_gradients(const std::vector<double>& position,
           }
         }
     }
-    const Square C = solve(M, R, dim);
+    // A layer of one particle has no gradient across: over less than this, differences are noise.
+    constexpr double k_flat = 0.1;  // cells, root mean square
+    const Square C = solve(M, R, k_flat * k_flat * static_cast<double>(others), dim);
     for (int d = 0; d < dim; ++d) gradient.insert(gradient.end(), C[d].begin(), C[d].begin() + dim);
   }
   return gradient;

@@ -349,5 +349,7 @@ TEST_CASE("the gradient of velocities is exact for a linear field, and zero wher
   CHECK(std::fabs(row[2] - 4) < 1e-12);
   CHECK(row[1] == 0);
   CHECK(row[3] == 0);
+  const auto uneven = velocity_gradients({0.2, 0.3, 0.7, 0.302, 1.2, 0.299}, {0, 0, 1, 2, 2, 5}, 2);
+  for (std::size_t p = 0; p < 3; ++p) CHECK((uneven[4 * p + 1] == 0 && uneven[4 * p + 3] == 0));
   CHECK(velocity_gradients({5.5, 0.5, 1.5}, {1, 2, 3}, 3) == std::vector<double>(9, 0.0));
 }

@@ -114,11 +114,13 @@ class Soils(Collapses):
     def draw_deck(self):
         """`fractions` of F-bar by soil; `strengths` of the particles by body, or None."""
         dice, dim, inside = self.draw, self.dim, [np.zeros(1)]
-        while not all(rows.any() for rows in inside):
+        while not all(rows.any() for rows in inside) or thinnest < 0.51:
             h = round(math.exp(dice.uniform(math.log(0.05), math.log(1))), 3)
             per_cell = dice.choice([1, 2, 2, 2, 3]) if dim == 2 else dice.choice([1, 2, 2])
             boxes, extent = soils_of(dice, dim, h)
             lattice = particles.lattice([0] * dim, boxes[-1][1], h / per_cell)
+            # The lattice of a box follows the box, which then needs half a particle's width.
+            thinnest = min(np.subtract(upper, lower).min() for lower, upper in boxes) * per_cell / h
             inside = [((lattice > lower) & (lattice < upper)).all(axis=1) for lower, upper in boxes]
         names = [f"soil{n}" for n in range(len(boxes))]
         o = {"dim": dim, "mesh_lower": (0,) * dim, "mesh_upper": tuple(round(x, 9) for x in extent), "mesh_spacing": h,
