@@ -229,11 +229,10 @@ void warn_of_lightness(const Config& config, const RigidConfig& rigid, Lines& li
   const Lightness of = lightness_of(config, rigid);
   if (!of.is_light() || solves_for_velocity(config, rigid)) return;
   if (of.mass >= of.layer)
-    return lines.push_back(
-        formatted("warning: rigid %s has %.3g of the moment of inertia of a layer of soil one cell thick, "
-                  "which sticks to "
-                  "it: contact may turn it more and more; take smaller cells or a heavier body",
-                  rigid.name.c_str(), of.turning));
+    return lines.push_back(formatted(
+        "warning: rigid %s has %.3g of the moment of inertia of a layer of soil one cell thick that "
+        "sticks to it: contact may turn it more and more; take smaller cells or a heavier body",
+        rigid.name.c_str(), of.turning));
   lines.push_back(
       formatted("warning: rigid %s has %.4g kg, less than a layer of soil one cell thick at its face, "
                 "%.4g kg: contact may throw it up; take smaller cells or a heavier body",

@@ -8,8 +8,8 @@
 namespace mpm {
 
 /// Mass of a rigid body, and of a layer of cells of the heaviest soil at the largest face of its bounds [kg].
-/// Of a body that turns and to which soil sticks on all sides: smallest ratio of its moment of inertia to that
-/// of such a layer round it; else infinite.
+/// Of a body that turns and to which soil sticks on all sides: smallest ratio of its moment of inertia to
+/// that of such a layer round it; else infinite.
 struct Lightness {
   double mass = 0, layer = 0, turning = HUGE_VAL;
 

@@ -58,6 +58,8 @@ void check_circle(OptionReader& in, const Config& config, const RigidConfig& rig
     const double far = std::max(centre[e] - bounds.lower[e], bounds.upper[e] - centre[e]);
     squares += far * far;
   }
+  if (rigid.shape.kind == ShapeKind::disc && !rigid.centre_of_mass)
+    squares = rigid.shape.radius * rigid.shape.radius;
   const double free = std::min(centre[d] - mesh.lower[d], mesh.upper[d] - centre[d]) - std::sqrt(squares);
   if (free >= (k_reach - k_slack) * mesh.spacing) return;
   const bool dynamic = rigid.motion == Motion::dynamic;
