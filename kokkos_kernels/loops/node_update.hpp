@@ -73,12 +73,27 @@ struct UpdateNodes {
     for_team(team, cells, [&](int k) {
       for (int v = 0; v < values; ++v) force[v * cells + k] = 0;
       update<true>(sums, slot * cells + k, force + k);
+      if constexpr (acts)
+        if (parts != nullptr) share_with_parts(slot * cells + k, force + k);
       if (owned_nodes.extent(0) == 0 || (owned_nodes(slot) >> k & 1) != 0) return;
       for (int v = 0; v < values; ++v) force[v * cells + k] = 0;  // another rank reports it
     });
     team.team_barrier();
     leave_forces(team, force, values, n);
     if (clears) clear_sums(team, nodes, slot, has_boundary, has_mass_normals ? rigids.extent(0) : 0);
+  }
+
+  /// Adds the force of node i on each rigid to that on the nearest of its parts. force: as in kinematics.
+  MPM_SELDOM_FUNCTION void share_with_parts(int i, double* force) const {
+    Coord<Dim> at = coord_of<Dim>(i);
+    const Coord<Dim> from = places.origin(i / cells);
+    for (int d = 0; d < Dim; ++d) at[d] += from[d];
+    for (int r = 0; r < near_bodies.width; ++r) {
+      const auto x = rigids(r).motion.pose.to_body(place_at(at));
+      const int part = nearest_part(rigids(r).surface, parts, vertices, x);
+      for (int k = 0; k < wrench() && part >= 0; ++k)
+        force[((near_bodies.width + part) * wrench() + k) * cells] += force[(r * wrench() + k) * cells];
+    }
   }
 
   /// Number of rigid bodies near a slot; without lists, of all.
@@ -406,9 +421,6 @@ struct UpdateNodes {
     if constexpr (acts)
       if (force != nullptr && !of_light && turns && rigid.motion.pose.turns)
         add_moment(rigid, place, m_i, change, force);
-    if constexpr (acts)
-      if (force != nullptr && !of_light && parts != nullptr)
-        add_to_part(rigid, place, m_i, change, force + (near_bodies.width - n) * wrench() * cells);
     if constexpr (of_light)
       if (light[r].open)
         add_touch(Touch<T, Dim>{other.normal, change, m_i, interface.stopped, interface.held},
@@ -439,19 +451,6 @@ struct UpdateNodes {
     for (int d = 0; d < Dim; ++d) given[d] = static_cast<double>(m_i) * change[d] * inv_dt;
     const AngularVector<Dim> moment = moment_of(rigid.motion.pose.arm_to(place), given);
     for (int k = 0; k < k_turning_axes<Dim>; ++k) force[(Wrench<Dim>::moment + k) * cells] -= moment[k];
-  }
-
-  /// Adds the force that changes a node's velocity (touch) to that on the nearest part of a rigid. force: of
-  /// all parts.
-  template <class Component>
-  KOKKOS_INLINE_FUNCTION void add_to_part(const Rigid<Dim>& rigid, const Component& place, T m_i,
-                                          const Vector<T, Dim>& change, double* force) const {
-    const int part = nearest_part(rigid.surface, parts, vertices, rigid.motion.pose.to_body(place));
-    if (part < 0) return;
-    double* const of_part = force + part * wrench() * cells;
-    for (int d = 0; d < Dim; ++d)
-      of_part[(Wrench<Dim>::force + d) * cells] -= static_cast<double>(m_i) * change[d] * inv_dt;
-    if (turns && rigid.motion.pose.turns) add_moment(rigid, place, m_i, change, of_part);
   }
 
   /// Largest shear stress of the interface at node i [Pa], infinite where only the friction limits.

@@ -5,6 +5,7 @@
 
 #include "common/gravity_on_soil.hpp"
 #include "common/text.hpp"
+#include "input/geometry/shapes.hpp"
 
 namespace mpm {
 namespace {
@@ -30,6 +31,25 @@ double most_work(const BodyRow& now, const BodyRow& before, double interval, dou
   return mass * gain * speed;
 }
 
+/// The most by which the point of the history's moments may be off the centre of mass of a rigid [m].
+double arm_of(const Config& config, std::size_t r) {
+  if (!config.rigids[r].moment_point) return 0;
+  const Bounds bounds = bounds_of(config.rigids[r].shape, config.mesh, config.dim);
+  double squares = 0;
+  for (int d = 0; d < config.dim; ++d) squares += std::pow(bounds.upper[d] - bounds.lower[d], 2);
+  return std::sqrt(squares);
+}
+
+/// The most work [J] of the soil on a rigid by its rotation between two rows.
+double work_of_turning(const RigidRow& now, const RigidRow& before, double interval, double arm) {
+  double force = 0, work = 0;
+  for (int d = 0; d < 3; ++d) force += std::fabs(now.force[d]);
+  for (int d = 0; d < 3; ++d)
+    work += (std::fabs(now.moment[d]) + arm * force) * interval *
+            std::max(std::fabs(now.angular_velocity[d]), std::fabs(before.angular_velocity[d]));
+  return work;
+}
+
 }  // namespace
 
 void EnergyWatch::begin(const HistoryRow& row, double wave_energy) {
@@ -53,10 +73,13 @@ void EnergyWatch::add_work(const HistoryRow& row, const Config& config) {
   }
   add(row.side_work);
   add(row.load_work - last_.load_work);
-  for (std::size_t r = 0; r < row.rigids.size(); ++r)
+  for (std::size_t r = 0; r < row.rigids.size(); ++r) {
+    const RigidRow &rigid = row.rigids[r], &before = last_.rigids[r];
     for (int d = 0; d < config.dim; ++d)
-      add(std::fabs(row.rigids[r].force[d] *
-                    (row.rigids[r].displacement[d] - last_.rigids[r].displacement[d])));
+      add(std::fabs(rigid.force[d] * (rigid.displacement[d] - before.displacement[d])));
+    if (config.rigids[r].turns())
+      add(work_of_turning(rigid, before, row.time - last_.time, arm_of(config, r)));
+  }
 }
 
 std::string EnergyWatch::check(const HistoryRow& row, const Config& config) {

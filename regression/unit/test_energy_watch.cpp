@@ -61,6 +61,25 @@ TEST_CASE("gravity in time gives at most its largest value times the way, though
   CHECK(watch.check(row, config).empty());
 }
 
+TEST_CASE("a rigid body that only turns gives soil the work of its moment", "[energy_watch]") {
+  Config config = config_of_one_body();
+  config.gravity = {};
+  RigidConfig vane;
+  vane.motion = Motion::prescribed, vane.angular_velocity = {3, 0, 0};
+  config.rigids.push_back(vane);
+  const auto row = [](double time, double energy) {
+    HistoryRow at = row_of(2, energy);
+    at.time = time, at.rigids.resize(1);
+    at.rigids[0].moment = {-20, 0, 0}, at.rigids[0].angular_velocity = {3, 0, 0};
+    return at;
+  };
+  EnergyWatch watch;
+  watch.begin(row(0, 0), 1e6);
+  CHECK(watch.check(row(0.5, 29), config).empty());  // 20 N m over 1.5 rad
+  watch.begin(row(0, 0), 1e6);
+  CHECK_FALSE(watch.check(row(0.5, 46), config).empty());  // beyond half of what has passed
+}
+
 TEST_CASE("water that covers all soil of one density takes the same share of gravity everywhere",
           "[energy_watch][pore_water]") {
   Config config = config_of_one_body();
@@ -98,7 +117,8 @@ TEST_CASE("a body that sinks through covering water has the buoyant weight's ene
 }
 
 TEST_CASE("stored energy and the work of rigids are sources", "[energy_watch]") {
-  const Config config = config_of_one_body();
+  Config config = config_of_one_body();
+  config.rigids.resize(1);
   EnergyWatch watch;
   HistoryRow start = row_of(2, 0);
   start.bodies[0].stored_energy = 5;
