@@ -4,7 +4,7 @@
 impact after the other. *Rolls*, *slips*: a wheel on a rigid plane. *Sets*: a wheel that is set on a level plane while it slides rolls
 after $v / (3 \\mu g)$, with 2/3 of the velocity. *Slides*: a block on a plane with a friction less than its slope. *Rocks*: a slender
 block that is let go beside its upright place turns about one corner, and after the impact about the other one; its quarter periods and
-the loss of spin are Housner's. *Stack*: ten blocks on each other rest.
+the loss of spin are Housner's. *Sphere*: a sphere slips or rolls down a plane of 45° in 3D. *Stack*: ten blocks on each other rest.
 """
 
 import numpy as np
@@ -38,6 +38,10 @@ def rocks(share):
             " -history_interval 1e-3")
 
 
+SPHERE = ("-dim 3 -mesh_lower 0,0,0 -mesh_upper 26,4,26 -mesh_ymax roller -mesh_zmax free -mesh_spacing 0.5 -gravity 0,0,-9.81 -pad_lower 25,0,25 -pad_upper 25.5,0.5,25.5"
+          f" -wheel_shape ball -wheel_radius 1 -wheel_centre {1 + 0.5**0.5!r},2,{24 + 0.5**0.5!r} -wheel_free x,y,z,rx,ry,rz"
+          " -slope_point 1,2,24 -slope_normal 1,0,1 -time_end 3 -history_interval 0.1 -rigid_friction {0}")
+SPHERES = {0: 31.215, 0.1: 28.094, 0.2: 24.972, 0.4: 22.297, 1: 22.297}  # friction: way after 3 s, m
 NAMES = [f"b{n}" for n in range(10)]
 STACK = FLOOR.format(",".join(NAMES)) + " -rigid_friction 0.5 -time_end 5 -history_interval 0.1" + "".join(
     f" -b{n}_shape box -b{n}_lower 4,{0.5 + 0.3 * n!r} -b{n}_upper 4.3,{0.8 + 0.3 * n!r} -b{n}_motion dynamic -b{n}_density 2600"
@@ -45,7 +49,8 @@ STACK = FLOOR.format(",".join(NAMES)) + " -rigid_friction 0.5 -time_end 5 -histo
 RUNS = {"line": line(1), "line_half": line(0.5), "rolls": "",
         "slips": f"-rigid_friction 0.1 -slope_normal {np.sin(STEEP):.17g},{np.cos(STEEP):.17g} -wheel_centre {1 + 0.5 * np.sin(STEEP):.17g},"
                  f"{3 + 0.5 * np.cos(STEEP):.17g} -time_end 0.6",
-        "sets": SETS, "slides": BLOCK, "rocks_25": rocks(0.25), "rocks_50": rocks(0.5), "rocks_75": rocks(0.75), "stack": STACK}
+        "sets": SETS, "slides": BLOCK, "rocks_25": rocks(0.25), "rocks_50": rocks(0.5), "rocks_75": rocks(0.75), "stack": STACK,
+        **{f"sphere_{friction:g}": SPHERE.format(friction) for friction in SPHERES}}
 
 
 def along(run, name):
@@ -88,6 +93,10 @@ def check(runs):
                   relative=True)
         yield Row("its spin after the impact over that before", spin[peak + 2] / spin[peak], 1 - 1.5 * np.sin(ALPHA) ** 2, 0.01, HOUSNER,
                   relative=True)
+    for friction, way in SPHERES.items():
+        h = runs[f"sphere_{friction:g}"].history
+        yield Row(f"way of a sphere down 45 degrees after 3 s, friction {friction:g} (m)", np.hypot(h["wheel_x"][-1], h["wheel_z"][-1]), way, 1e-3,
+                  "rolling" if friction > 2 / 7 else "Coulomb friction", relative=True)
     run = runs["stack"]
     drift = max(np.abs(run.columns(f"{name}_")[:, 0]).max() for name in NAMES)
     sink = max(-run.columns(f"{name}_")[:, 1].min() for name in NAMES)
