@@ -27,4 +27,10 @@ struct SupportTerms {
   static constexpr int impulse = 0, moment = 3, size = 6;
 };
 
+/// Numbers of a part of a rigid body, in 2D too: number of the body, number of the part in it, impulse of the
+/// soil on it since the last row [N s], and its moment [N m s].
+struct PartTerms {
+  static constexpr int rigid = 0, part = 1, impulse = 2, moment = 5, size = 8;
+};
+
 }  // namespace mpm

@@ -12,12 +12,11 @@ namespace mpm {
 template <class Space, int Dim>
 struct PartForces {
   using Memory = typename Space::memory_space;
-  int count = 0;                     // parts; 0: nobody asks for the forces on them
-  Kokkos::View<int*, Memory> rigid;  // of each part
-  Kokkos::View<Surface<Dim>*, Memory>
-      places;  // of each part as it was given, which does not reach into others
-  Kokkos::View<Wrench<Dim>*, Memory> impulse;  // N s, N m s, since the host last took it; the moment is about
-                                               // the body's centre, or the point for its moments
+  int count = 0;                                 // parts; 0: nobody asks for the forces on them
+  Kokkos::View<int*, Memory> rigid;              // of each part
+  Kokkos::View<Surface<Dim>*, Memory> surfaces;  // of the parts as given, not lengthened into each other
+  Kokkos::View<Wrench<Dim>*, Memory> impulse;    // N s, N m s, since the host last took it; the moment is
+                                                 // about the body's centre or its -NAME_moment_point
 };
 
 }  // namespace mpm

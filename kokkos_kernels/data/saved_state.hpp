@@ -73,9 +73,6 @@ inline constexpr int k_lost = 11, k_lost_left = 0, k_lost_merged = 6;
 /// Numbers of a rank in SavedState::bounds, beside MotionTerms::impulse_size a rigid that follow them.
 inline constexpr int k_saved_bounds = 8;
 
-/// Numbers of a part of a rigid body in SavedState::part_impulses.
-inline constexpr int k_saved_part = 8;
-
 /// Numbers of SavedState::energy.
 inline constexpr int k_saved_energy = 8;
 
@@ -101,9 +98,7 @@ struct SavedState {
   std::vector<double> joints, supports;  // JointTerms of each joint, SupportTerms of each rigid; or empty
   SavedImpulse impulse;
   SavedPairs pairs;
-  std::vector<double> part_impulses;  // k_saved_part numbers a part of a rigid, where forces on parts are
-                                      // measured: numbers of the rigid and of its part, impulse of the soil
-                                      // since the last row of the history and its moment [N s, N m s]
+  std::vector<double> part_impulses;  // PartTerms of each part of a rigid, where forces on parts are measured
   std::vector<double> energy;  // k_saved_energy numbers where the run has an energy balance: the works, and
                                // kinetic and elastic energy at the start [J], of all ranks; behind them,
                                // where there are loads on surfaces, their work since the start [J]

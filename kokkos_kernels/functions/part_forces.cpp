@@ -1,7 +1,7 @@
 #include "functions/part_forces.hpp"
 
 #include "base/copy.hpp"
-#include "data/saved_state.hpp"
+#include "data/motion_terms.hpp"
 #include "functions/step_kernels.hpp"
 #include "physics/rigid_motion.hpp"
 
@@ -55,10 +55,12 @@ std::vector<double> save_part_impulses(const ContactCore<Space, T, Dim>& s) {
   const auto impulse = mirror_of(s.part_forces.impulse);
   std::vector<double> saved;
   for (std::size_t n = 0; n < rigid.extent(0); ++n) {
-    double row[k_saved_part] = {double(rigid(n)), double(number_in_body(rigid, n))};
-    for (int d = 0; d < Dim; ++d) row[2 + d] = impulse(n)[Wrench<Dim>::force + d];
-    for (int k = 0; k < k_turning_axes<Dim>; ++k) row[5 + k] = impulse(n)[Wrench<Dim>::moment + k];
-    saved.insert(saved.end(), row, row + k_saved_part);
+    double row[PartTerms::size] = {};
+    row[PartTerms::rigid] = rigid(n), row[PartTerms::part] = number_in_body(rigid, n);
+    for (int d = 0; d < Dim; ++d) row[PartTerms::impulse + d] = impulse(n)[Wrench<Dim>::force + d];
+    for (int k = 0; k < k_turning_axes<Dim>; ++k)
+      row[PartTerms::moment + k] = impulse(n)[Wrench<Dim>::moment + k];
+    saved.insert(saved.end(), row, row + PartTerms::size);
   }
   return saved;
 }
@@ -68,10 +70,12 @@ void restore_part_impulses(ContactCore<Space, T, Dim>& s, const std::vector<doub
   const auto rigid = mirror_of(s.part_forces.rigid);
   const auto impulse = mirror_of(s.part_forces.impulse);
   for (std::size_t n = 0; n < rigid.extent(0); ++n)
-    for (std::size_t at = 0; at + k_saved_part <= saved.size(); at += k_saved_part) {
-      if (saved[at] != rigid(n) || saved[at + 1] != number_in_body(rigid, n)) continue;
-      for (int d = 0; d < Dim; ++d) impulse(n)[Wrench<Dim>::force + d] = saved[at + 2 + d];
-      for (int k = 0; k < k_turning_axes<Dim>; ++k) impulse(n)[Wrench<Dim>::moment + k] = saved[at + 5 + k];
+    for (std::size_t at = 0; at + PartTerms::size <= saved.size(); at += PartTerms::size) {
+      const double* const row = &saved[at];
+      if (row[PartTerms::rigid] != rigid(n) || row[PartTerms::part] != number_in_body(rigid, n)) continue;
+      for (int d = 0; d < Dim; ++d) impulse(n)[Wrench<Dim>::force + d] = row[PartTerms::impulse + d];
+      for (int k = 0; k < k_turning_axes<Dim>; ++k)
+        impulse(n)[Wrench<Dim>::moment + k] = row[PartTerms::moment + k];
     }
   copy(s.part_forces.impulse, impulse);
 }

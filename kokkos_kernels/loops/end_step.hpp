@@ -117,7 +117,7 @@ struct EndStep {
 
   /// Moves the rigids. found: the end of the step before; clears: the movements begin anew. Returns, to all
   /// threads, the end of this step; until all have it, they need `part`: room(threads). MayTurn: as in
-  /// RigidPose; without, all rigids are near all slots, and the code is short. damping: of
+  /// RigidPose; without, all rigids are near all slots, and the code is short. damping [-]: local damping of
   /// the rigids.
   template <bool MayTurn, int shares = 1, class Team>
   KOKKOS_INLINE_FUNCTION StepEnd move(const Team& team, StepEnd found, const Left& left, bool clears,

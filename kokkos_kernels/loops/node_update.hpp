@@ -46,7 +46,7 @@ struct UpdateNodes {
   Kokkos::View<Rigid<Dim>*, typename Space::memory_space> rigids;
   SurfaceTables<typename Space::memory_space, Dim> vertices;
   NearBodies<Space> near_bodies;
-  const Surface<Dim>* parts;      // of rigids, whose forces are wanted; else null
+  const Surface<Dim>* parts;      // surfaces of the parts of rigids; null where no forces on parts are wanted
   const LightMotion<Dim>* light;  // velocity of light rigids, by number; null where there are none
   Kokkos::View<double*, typename Space::memory_space> forces;
   Kokkos::View<std::uint64_t*, typename Space::memory_space> owned_nodes;
@@ -550,7 +550,7 @@ UpdateNodes<Space, T, Dim, acts> node_update_of(const State<Space, T, Dim>& s, d
       .rigids = s.rigids,
       .vertices = s.vertices,
       .near_bodies = s.contact.near,
-      .parts = s.part_forces.count > 0 ? s.part_forces.places.data() : nullptr,
+      .parts = s.part_forces.count > 0 ? s.part_forces.surfaces.data() : nullptr,
       .light = s.light_rigids.in_use ? s.light_rigids.motions.data() : nullptr,
       .forces = s.contact.forces,
       .owned_nodes = s.owned_nodes,

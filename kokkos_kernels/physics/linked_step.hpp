@@ -55,7 +55,7 @@ struct LinkedStep {
     for (int d = 0; d < Dim; ++d) start.kick[d] = solver.dt / 2 * a[d];
     start.turn = turns_by_moments(rigid) ? kick_of<T>(rigid, soil, damping, solver.dt) : AngularVector<Dim>{};
     if (pairs != nullptr) add_pairs(pairs[r], rigid, start);
-    add_impulse(r, soil);
+    add_soil_impulse(r, soil);
     push_by_support(supports[r], rigid, solver.dt, false);
     kick(rigid, start);
   }
@@ -90,10 +90,10 @@ struct LinkedStep {
     rigid.motion.spin = spin_by(rigid, rigid.momentum);
   }
   /// Adds the impulse of the soil on a rigid to that since the host last took it.
-  KOKKOS_INLINE_FUNCTION void add_impulse(int r, const Wrench<Dim>& soil) const {
+  KOKKOS_INLINE_FUNCTION void add_soil_impulse(int r, const Wrench<Dim>& soil) const {
     MovingRigid<Dim>& rigid = solver.rigids[r];
-    mpm::add_impulse(rigid.motion.pose, soil, solver.dt, supports[r].has_point ? &supports[r].point : nullptr,
-                     rigid.impulse);
+    add_impulse(rigid.motion.pose, soil, solver.dt, supports[r].has_point ? &supports[r].point : nullptr,
+                rigid.impulse);
   }
   /// Adds the reaction of this step to that since the host last took it.
   KOKKOS_INLINE_FUNCTION void book(Joint<Dim>& joint) const {

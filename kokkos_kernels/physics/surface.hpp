@@ -200,16 +200,16 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to(const Surface<Dim>& body, const
 }
 
 /// Number of the part of a body, in the order of all parts, that is nearest to x; -1: the body has one shape.
-/// places: of all parts.
+/// parts: surfaces of the parts of all bodies.
 template <int Dim, class Tables>
-KOKKOS_INLINE_FUNCTION int nearest_part(const Surface<Dim>& body, const Surface<Dim>* places,
+KOKKOS_INLINE_FUNCTION int nearest_part(const Surface<Dim>& body, const Surface<Dim>* parts,
                                         const Tables& tables, const Vector<double, Dim>& x) {
   if (body.kind != SurfaceKind::parts) return -1;
   int nearest = body.first;
   double least = Kokkos::Experimental::infinity_v<double>;
   MPM_ROLLED
   for (int n = body.first; n < body.first + body.count; ++n) {
-    const double distance = distance_to_part(places[n], tables, x).value;
+    const double distance = distance_to_part(parts[n], tables, x).value;
     if (distance < least) least = distance, nearest = n;
   }
   return nearest;

@@ -53,24 +53,24 @@ void upload_light_rigids(const std::vector<RigidInput>& rigids, LightRigids<Spac
   to.sums = decltype(to.sums)("mpm::light_sums", to.in_use ? numbers : 0);
 }
 
-/// Puts the parts of rigids where their forces are measured on the device. surfaces: of the rigids, whose
-/// parts are in the tables.
+/// Puts the parts of rigids on the device where the forces on them are wanted. surfaces: of the rigids; the
+/// surfaces of their parts are in the tables.
 template <class Space, int Dim>
 void upload_parts(const std::vector<RigidInput>& rigids, const std::vector<Surface<Dim>>& surfaces,
                   double spacing, HostTables<Dim>& tables, PartForces<Space, Dim>& forces) {
   forces = {};
   if (std::none_of(rigids.begin(), rigids.end(), [](const RigidInput& of) { return of.part_forces; })) return;
   std::vector<int> rigid;
-  std::vector<Surface<Dim>> places;
+  std::vector<Surface<Dim>> parts;
   for (std::size_t r = 0; r < rigids.size(); ++r)
     for (std::size_t n = 0; n < rigids[r].parts.size(); ++n) {
       const SurfaceInput& part = rigids[r].parts[n];
       const bool sampled = part.kind == SurfaceKind::sampled;
-      places.push_back(sampled ? tables.parts[surfaces[r].first + n] : tables.add(part, spacing));
+      parts.push_back(sampled ? tables.parts[surfaces[r].first + n] : tables.add(part, spacing));
       rigid.push_back(static_cast<int>(r));
     }
-  forces.count = static_cast<int>(places.size());
-  fill_view(forces.places, "mpm::part_places", forces.count, [&](int n) { return places[n]; });
+  forces.count = static_cast<int>(parts.size());
+  fill_view(forces.surfaces, "mpm::part_surfaces", forces.count, [&](int n) { return parts[n]; });
   fill_view(forces.rigid, "mpm::part_rigids", forces.count, [&](int n) { return rigid[n]; });
   forces.impulse = decltype(forces.impulse)("mpm::part_impulse", forces.count);
 }

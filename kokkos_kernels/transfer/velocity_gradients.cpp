@@ -59,13 +59,13 @@ std::vector<double> velocity_gradients(const std::vector<double>& position,
   gradient.reserve(count * dim * dim);
   for (std::size_t p = 0; p < count; ++p) {
     Square M{}, R{};
-    std::size_t others = 0;
+    std::size_t neighbours = 0;
     const Cell own = cell_of(p);
     for (int n = 0; n < (dim == 3 ? 27 : 9); ++n) {
       const auto found = in.find({in_period(0, own[0] + n % 3 - 1), in_period(1, own[1] + n / 3 % 3 - 1),
                                   in_period(2, own[2] + (dim == 3 ? n / 9 - 1 : 0))});
       if (found == in.end()) continue;
-      others += found->second.size();
+      neighbours += found->second.size();
       for (const std::size_t q : found->second)
         for (int e = 0; e < dim; ++e) {
           const double r = way(p, q, e);
@@ -77,7 +77,7 @@ std::vector<double> velocity_gradients(const std::vector<double>& position,
     }
     // A layer of one particle has no gradient across: over less than this, differences are noise.
     constexpr double k_flat = 0.1;  // cells, root mean square
-    const Square C = solve(M, R, k_flat * k_flat * static_cast<double>(others), dim);
+    const Square C = solve(M, R, k_flat * k_flat * static_cast<double>(neighbours), dim);
     for (int d = 0; d < dim; ++d) gradient.insert(gradient.end(), C[d].begin(), C[d].begin() + dim);
   }
   return gradient;

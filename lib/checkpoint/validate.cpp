@@ -151,7 +151,7 @@ std::string state_fault(const SavedState& state, const Config& config) {
     return "a checkpoint with a sound section_lost";
   if (!std::all_of(state.impulse.values.begin(), state.impulse.values.end(), finite))
     return "a checkpoint with a sound impulse";
-  if (state.part_impulses.size() % k_saved_part != 0 ||
+  if (state.part_impulses.size() % PartTerms::size != 0 ||
       !std::all_of(state.part_impulses.begin(), state.part_impulses.end(), finite))
     return "a checkpoint with sound part_impulses";
   if (!sound_pairs(state.pairs, config)) return "a checkpoint with sound pair_contacts and pair_impulses";

@@ -31,9 +31,10 @@ double inertia_of_layer(const Vec3& half, int k, int dim) {
 }
 
 /// Smallest ratio of the moments of inertia of a body and of a layer of soil round it. edge [m]: of the
-/// bounds; mass [kg]: of the whole body; layer: kg/m2.
-double turning_ratio(const Config& config, const RigidConfig& rigid, const Vec3& edge, double mass,
-                     double layer) {
+/// bounds of the whole body, of which planes of symmetry leave one of so many parts; mass [kg]: of this part;
+/// layer: kg/m2.
+double turning_ratio(const Config& config, const RigidConfig& rigid, const Vec3& edge, double parts,
+                     double mass, double layer) {
   const auto whole = whole_properties(rigid.shape, config.mesh, config.dim);
   if (!whole) return HUGE_VAL;
   Vec3 half{edge[0] / 2, edge[1] / 2, edge[2] / 2};
@@ -41,8 +42,8 @@ double turning_ratio(const Config& config, const RigidConfig& rigid, const Vec3&
       whole->volume / (edge[0] * edge[1] * edge[2]);  // the layer of a round body is smaller
   double least = HUGE_VAL;
   for (int k = config.dim == 2 ? 2 : 0; k < 3; ++k) {
-    const double own =
-        rigid.inertia ? (*rigid.inertia)[config.dim == 2 ? 0 : k] : mass / whole->volume * whole->inertia[k];
+    const double own = parts * (rigid.inertia ? (*rigid.inertia)[config.dim == 2 ? 0 : k]
+                                              : mass / whole->volume * whole->inertia[k]);
     if (rigid.free[3 + k])
       least = std::min(least, own / (filled * layer * inertia_of_layer(half, k, config.dim)));
   }
@@ -78,7 +79,7 @@ Lightness lightness_of(const Config& config, const RigidConfig& rigid) {
   for (const BodyConfig& body : config.bodies) heaviest = std::max(heaviest, density_of(config, body));
   out.layer = heaviest * face * config.mesh.spacing / parts;
   if (rigid.turns() && sticks_to_soil(rigid))
-    out.turning = turning_ratio(config, rigid, edge, out.mass * parts, heaviest * config.mesh.spacing);
+    out.turning = turning_ratio(config, rigid, edge, parts, out.mass, heaviest * config.mesh.spacing);
   return out;
 }
 

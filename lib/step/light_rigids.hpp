@@ -8,10 +8,11 @@
 namespace mpm {
 
 /// Mass of a rigid body, and of a layer of cells of the heaviest soil at the largest face of its bounds [kg].
-/// Of a body that turns and to which soil sticks on all sides: smallest ratio of its moment of inertia to
-/// that of such a layer round it; else infinite.
 struct Lightness {
-  double mass = 0, layer = 0, turning = HUGE_VAL;
+  double mass = 0, layer = 0;
+  /// Smallest ratio [-] of the moment of inertia of the body to that of a layer of soil round it; infinite
+  /// for a body that does not turn or to which soil does not stick on all sides.
+  double turning = HUGE_VAL;
 
   /// Contact at nodes that takes such a body as infinitely heavy throws it up: a disc of half a cell that
   /// falls on clay begins to gain energy at a quarter of a layer, one of one and a half cells at a third.

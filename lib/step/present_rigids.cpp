@@ -23,36 +23,34 @@ std::vector<double> rearranged(const std::vector<double>& rows, std::size_t head
   return out;
 }
 
-/// Contacts of bodies with other numbers: number n becomes to[n], where to[n] < 0 has none. Sides stay.
-std::vector<double> renumbered(const std::vector<double>& contacts, const std::vector<long>& to) {
-  constexpr int width = SavedPairs::width;
+/// Rows of `width` numbers, which begin with the numbers of so many bodies, for bodies with other numbers:
+/// number n becomes to[n]. Rows of a body whose to[n] < 0 are left out; sides, whose numbers are negative,
+/// stay.
+std::vector<double> renumbered(const std::vector<double>& rows, std::size_t width, std::size_t bodies,
+                               const std::vector<long>& to) {
   std::vector<double> out;
   const auto now = [&](double n) {
     const auto known = n >= 0 && n < static_cast<double>(to.size());
-    return n < 0 ? n : known ? static_cast<double>(to[static_cast<std::size_t>(n)]) : -HUGE_VAL;
+    return n < 0 ? n : known ? static_cast<double>(to[static_cast<std::size_t>(n)]) : -1;
   };
-  for (std::size_t at = 0; at + width <= contacts.size(); at += width) {
-    const double a = now(contacts[at]), b = now(contacts[at + 1]);
-    if (a < 0 || (contacts[at + 1] >= 0 && b < 0)) continue;
-    out.insert(out.end(), {a, b});
-    out.insert(out.end(), contacts.begin() + static_cast<long>(at) + 2,
-               contacts.begin() + static_cast<long>(at) + width);
+  for (std::size_t at = 0; at + width <= rows.size(); at += width) {
+    std::vector<double> row(rows.begin() + static_cast<long>(at),
+                            rows.begin() + static_cast<long>(at + width));
+    bool left_out = false;
+    for (std::size_t k = 0; k < bodies; ++k) {
+      left_out = left_out || (row[k] >= 0 && now(row[k]) < 0);
+      row[k] = now(row[k]);
+    }
+    if (!left_out) out.insert(out.end(), row.begin(), row.end());
   }
   return out;
 }
 
-/// Impulses on parts of bodies with other numbers, likewise.
+std::vector<double> contacts_of_others(const std::vector<double>& contacts, const std::vector<long>& to) {
+  return renumbered(contacts, SavedPairs::width, 2, to);
+}
 std::vector<double> parts_of_others(const std::vector<double>& parts, const std::vector<long>& to) {
-  std::vector<double> out;
-  for (std::size_t at = 0; at + k_saved_part <= parts.size(); at += k_saved_part) {
-    const auto known = parts[at] >= 0 && parts[at] < static_cast<double>(to.size());
-    const long now = known ? to[static_cast<std::size_t>(parts[at])] : -1;
-    if (now < 0) continue;
-    out.push_back(static_cast<double>(now));
-    out.insert(out.end(), parts.begin() + static_cast<long>(at) + 1,
-               parts.begin() + static_cast<long>(at) + k_saved_part);
-  }
-  return out;
+  return renumbered(parts, PartTerms::size, 1, to);
 }
 
 /// 0, 1, ...
@@ -99,7 +97,7 @@ void PresentRigids::narrow(SavedState& state) {
       rearranged(state.pairs.impulses, 0, SavedPairs::totals, others_.size(), place_.size(), place_, here);
   std::vector<long> number(others_.size(), -1);
   for (std::size_t k = 0; k < place_.size(); ++k) number[place_[k]] = static_cast<long>(k);
-  state.pairs.contacts = renumbered(state.pairs.contacts, number);
+  state.pairs.contacts = contacts_of_others(state.pairs.contacts, number);
   state.part_impulses = parts_of_others(state.part_impulses, number);
   state.supports =
       rearranged(state.supports, 0, SupportTerms::size, others_.size(), place_.size(), place_, here);
@@ -119,7 +117,7 @@ void PresentRigids::widen(SavedState& state) const {
   state.pairs.impulses =
       rearranged(state.pairs.impulses, 0, SavedPairs::totals, place_.size(), others_.size(), here, place_);
   const std::vector<long> places(place_.begin(), place_.end());
-  state.pairs.contacts = renumbered(state.pairs.contacts, places);
+  state.pairs.contacts = contacts_of_others(state.pairs.contacts, places);
   state.part_impulses = parts_of_others(state.part_impulses, places);
   state.supports =
       rearranged(state.supports, 0, SupportTerms::size, place_.size(), others_.size(), here, place_);

@@ -169,7 +169,7 @@ struct PersistentStep {
       if (at.part < at.others) left.sums = nullptr;
     }
     if (!at.by_all) at.found = StepEnd(update.control());
-    const double damping = WithNodes ? 0 : end.damping;  // which excludes many steps
+    const double damping = WithNodes ? 0 : end.damping;  // local damping excludes many steps
     at.found = end.template move<false>(team, at.found, left, !at.by_all,
                                         Scratch(scratch).template take<double>(0), damping);
     if (!at.by_all)

@@ -43,7 +43,23 @@ bool goes_through(const Shape& shape, const MeshConfig& mesh, int dim, int d) {
   }
 }
 
-/// A turning body stays away from the sides, wherever it has turned.
+/// Whether a rigid turns about another axis than d, so that its rotation moves its ends along d.
+bool turns_across(const RigidConfig& rigid, int dim, int d) {
+  if (dim == 2 || rigid.turns_in_run) return rigid.turns();
+  for (int k = 0; k < 3; ++k) {
+    const bool turns = rigid.motion == Motion::dynamic ? rigid.free[3 + k] : rigid.angular_velocity[k] != 0;
+    if (k != d && turns) return true;
+  }
+  return false;
+}
+
+void reject_rotation(OptionReader& in, const RigidConfig& rigid, const std::string& why) {
+  const bool dynamic = rigid.motion == Motion::dynamic;
+  in.reject(rigid.name + (dynamic ? "_free" : "_angular_velocity"),
+            (dynamic ? "no rotation of a rigid that " : "0 of a rigid that ") + why);
+}
+
+/// Checks that a turning rigid stays away from the sides, however far it has turned.
 void check_circle(OptionReader& in, const Config& config, const RigidConfig& rigid, int d,
                   const std::string& where) {
   const MeshConfig& mesh = config.mesh;
@@ -62,10 +78,7 @@ void check_circle(OptionReader& in, const Config& config, const RigidConfig& rig
     squares = rigid.shape.radius * rigid.shape.radius;
   const double free = std::min(centre[d] - mesh.lower[d], mesh.upper[d] - centre[d]) - std::sqrt(squares);
   if (free >= (k_reach - k_slack) * mesh.spacing) return;
-  const bool dynamic = rigid.motion == Motion::dynamic;
-  in.reject(rigid.name + (dynamic ? "_free" : "_angular_velocity"),
-            std::string(dynamic ? "no rotation" : "0") +
-                " of a rigid that comes within 2 cells of a side as it turns" + where);
+  reject_rotation(in, rigid, "comes within 2 cells of a side as it turns" + where);
 }
 
 void check_rigid(OptionReader& in, const Config& config, const RigidConfig& rigid, int d) {
@@ -73,26 +86,22 @@ void check_rigid(OptionReader& in, const Config& config, const RigidConfig& rigi
   const std::string along = std::string(" along ") + "xyz"[d], moving = moving_option(rigid, d),
                     where = ", where -" + side_option(d, 0) + " is periodic";
   if (goes_through(rigid.shape, mesh, config.dim, d)) {
-    if (rigid.turns())
-      in.reject(rigid.name + (rigid.motion == Motion::dynamic ? "_free" : "_angular_velocity"),
-                std::string(rigid.motion == Motion::dynamic ? "no rotation" : "0") +
-                    " of a rigid that goes through the mesh" + along + where);
+    if (rigid.turns()) reject_rotation(in, rigid, "goes through the mesh" + along + where);
     if (!moving.empty() && rigid.contact_normal == ContactNormal::gradient)
       in.reject(rigid.name + "_contact_normal", "surface of a rigid that moves" + along + where);
     return;
   }
   if (!moving.empty())
-    return in.reject(moving, std::string(rigid.motion == Motion::dynamic
-                                             ? "fixed, prescribed without motion, or dynamic with a -" +
-                                                   rigid.name + "_free without motion,"
-                                             : "no motion") +
-                                 along + " of a rigid that has ends there" + where);
+    return in.reject(moving, moving == rigid.name + "_motion"
+                                 ? "fixed, or a -" + rigid.name + "_free without " + "xyz"[d] +
+                                       " beside it, for a rigid that has ends" + along + where
+                                 : "no motion" + along + " of a rigid that has ends there" + where);
   const Bounds bounds = bounds_of(rigid.shape, mesh, config.dim);
   const double least = (k_reach - k_slack) * mesh.spacing;
   if (bounds.lower[d] - mesh.lower[d] < least || mesh.upper[d] - bounds.upper[d] < least)
     in.reject(rigid.name + "_shape", "a box, half plane, level layer or prism that goes through the mesh" +
                                          along + ", or a shape 2 cells away from the sides" + where);
-  else if (rigid.turns())
+  else if (turns_across(rigid, config.dim, d))
     check_circle(in, config, rigid, d, where);
 }
 

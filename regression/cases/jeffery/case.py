@@ -10,7 +10,7 @@ import numpy as np
 from mpm_regression.row import Row
 
 RATIOS = (2, 3)
-SHORT = {3: "The ellipse has five cells over its short axis. That of 2 to 1 errs by 10 % with four cells, and by 2 % with eight."}
+SHORT = {3: "The ellipse has five cells over its short axis. That of 2 to 1 errs by 6 % with four cells, and by 2 % with eight."}
 LONG = True
 
 

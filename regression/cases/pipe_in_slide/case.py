@@ -2,7 +2,7 @@
 
 A pipe across a deep slide takes a force per length $F = N_p\\, s_u D + C_d\\, \\rho v^2 D / 2$ with $N_p$ = 11.9 and $C_d$ = 0.4 (Randolph & White 2012, for a rough pipe; the first
 part is the limit load of Randolph & Houlsby 1984). Here the pipe moves through mud at rest with $s_u$ = 1 kPa, $\\rho$ = 1600 kg/m³ and $D$ = 1 m, and the mean from 2.5 to 4.5 $D$ of its way
-is compared. The pipe has 32 cells over its diameter. Their formula has no stiffness, and fits computed flows.
+is compared. The pipe has 32 cells over its diameter. Their formula is a fit to computed flows of mud without stiffness.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ STRENGTH, DENSITY, WAY = 1000.0, 1600.0, 4.6  # Pa, kg/m3, m
 SPEEDS = (0.5, 1.6, 2.5, 4.3, 7.9)  # m/s
 RUNS = {f"v{speed:g}": f"-pipe_velocity {speed},0 -time_end {WAY / speed:.6g} -history_interval {WAY / speed / 230:.6g}" for speed in SPEEDS}
 LONG = True
-FAST = ("Stiffness, cells and velocity update change the force of fast mud; which of them is wrong was not separated. Shear waves of the mud have 7.9 m/s.")
+FAST = "Stiffness, cells and velocity update change the force of fast mud; which of them is wrong was not separated. Shear waves of the mud have 7.9 m/s."
 
 
 def published(speed):
