@@ -122,14 +122,7 @@ void warn_of_thin(const Config& config, const std::string& rigid, const Shape& s
   for (std::size_t n = 0; n < shape.parts.size(); ++n)
     warn_of_thin(config, shape.part_names[n], shape.parts[n], lines);
   if (shape.kind == ShapeKind::half_plane || shape.kind == ShapeKind::parts) return;
-  const Bounds bounds = bounds_of(shape, config.mesh, config.dim);
-  double across = std::numeric_limits<double>::infinity();
-  const bool turned = shape.kind == ShapeKind::box && shape.angle != 0;
-  for (int d = 0; d < config.dim; ++d) {
-    if (reaches(config, bounds, d, 0) || reaches(config, bounds, d, 1)) continue;
-    across = std::min(across, turned ? shape.upper[d] - shape.lower[d] : bounds.upper[d] - bounds.lower[d]);
-  }
-  const double cells = across / config.mesh.spacing;
+  const double across = narrowest(shape, config.mesh, config.dim), cells = across / config.mesh.spacing;
   if (cells < k_least * (1 - 1e-6)) {
     lines.push_back(
         formatted("warning: rigid %s is %.4g m across, %.3g times a cell; soil may pass through what is "

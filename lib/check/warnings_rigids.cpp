@@ -7,9 +7,9 @@
 #include "common/rigid_contact.hpp"
 #include "common/text.hpp"
 #include "common/time_table.hpp"
+#include "input/geometry/light_rigids.hpp"
 #include "input/geometry/mass_properties.hpp"
 #include "input/geometry/shapes.hpp"
-#include "step/light_rigids.hpp"
 
 namespace mpm {
 namespace {
@@ -209,19 +209,12 @@ void warn_of_gradient(const RigidConfig& rigid, Lines& lines) {
 }
 
 /// Faces have no sites beside sharp edges.
-void warn_of_narrow_faces(const Config& config, const Way& way, Lines& lines) {
-  const ShapeKind kind = way.rigid.shape.kind;
-  if (!way.rigid.contact_at_sites || kind == ShapeKind::disc || kind == ShapeKind::half_plane) return;
-  constexpr double k_wide = 2;  // cells; a face of 1.1 cells has one row of sites
-  for (int d = 0; d < config.dim; ++d) {
-    const double cells = (way.bounds.upper[d] - way.bounds.lower[d]) / config.mesh.spacing;
-    if (cells >= k_wide) continue;
-    lines.push_back(
-        formatted("warning: -%s_contact: given \"sites\", but the rigid is %.3g cells across %c: faces of "
-                  "less than 1.1 cells let soil through; take nodes or smaller cells",
-                  way.rigid.name.c_str(), cells, "xyz"[d]));
-    return;
-  }
+void warn_of_narrow_faces(const Config& config, const RigidConfig& rigid, Lines& lines) {
+  if (!rigid.contact_at_sites || is_wide_for_sites(rigid.shape, config.mesh, config.dim)) return;
+  lines.push_back(
+      formatted("warning: -%s_contact: given \"sites\", but the rigid is %.3g cells across: faces of less "
+                "than 1.1 cells let soil through; take nodes or smaller cells",
+                rigid.name.c_str(), narrowest(rigid.shape, config.mesh, config.dim) / config.mesh.spacing));
 }
 
 /// Light bodies that contact takes as infinitely heavy: at sites, or where a joint or a spring acts.
@@ -252,7 +245,7 @@ std::vector<std::string> warnings_of_rigids(const Config& config) {
     warn_of_turning(config, way, lines);
     warn_of_drag(config, way, lines);
     warn_of_gradient(way.rigid, lines);
-    warn_of_narrow_faces(config, way, lines);
+    warn_of_narrow_faces(config, way.rigid, lines);
     warn_of_lightness(config, way.rigid, lines);
   }
   return lines;

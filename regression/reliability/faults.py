@@ -430,7 +430,7 @@ class Checks:
     def check_failing_computation(self):
         """A particle that is too fast, soil that is alone, and a rigid that leaves: status 3, and what was written is whole."""
         for words, options in (("moved more than a cell", ("-soil_velocity", "1e6,1e6")),
-                               ("is alone", ("-soil_velocity", "0,30", "-stray_particles", "stop")),
+                               ("is alone", ("-soil_velocity", "0,30", "-stray_particles", "stop", "-stone_contact", "nodes")),
                                ("rigid plate", ("-plate_velocity", "20,1", "-rigid_contact", "off"))):
             folder = fresh(self.base / "failing")
             done = run(self.binary, DECK, folder, "-backend", "serial", *options, status=3)

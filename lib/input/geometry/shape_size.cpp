@@ -173,6 +173,29 @@ Bounds bounds_of(const Shape& shape, const MeshConfig& mesh, int dim) {
   }
 }
 
+double narrowest(const Shape& shape, const MeshConfig& mesh, int dim) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Shape& part : shape.parts) least = std::min(least, narrowest(part, mesh, dim));
+  if (shape.kind == ShapeKind::half_plane || shape.kind == ShapeKind::parts) return least;
+  const Bounds bounds = bounds_of(shape, mesh, dim);
+  const bool turned = shape.kind == ShapeKind::box && shape.angle != 0;
+  const double slack = 1e-6 * mesh.spacing;
+  for (int d = 0; d < dim; ++d) {
+    if (bounds.lower[d] <= mesh.lower[d] + slack || bounds.upper[d] >= mesh.upper[d] - slack) continue;
+    least = std::min(least, turned ? shape.upper[d] - shape.lower[d] : bounds.upper[d] - bounds.lower[d]);
+  }
+  return least;
+}
+
+bool is_wide_for_sites(const Shape& shape, const MeshConfig& mesh, int dim) {
+  constexpr double k_wide = 2;  // cells; a face of 1.1 cells has one row of sites
+  if (shape.kind == ShapeKind::disc) return true;
+  if (shape.kind == ShapeKind::parts)
+    return std::all_of(shape.parts.begin(), shape.parts.end(),
+                       [&](const Shape& part) { return is_wide_for_sites(part, mesh, dim); });
+  return narrowest(shape, mesh, dim) >= k_wide * mesh.spacing * (1 - 1e-6);
+}
+
 Cuts cuts_of(const Shape& shape, const MeshConfig& mesh, int dim) {
   const Bounds bounds = bounds_of(shape, mesh, dim);
   const double slack = 1e-9 * mesh.spacing;

@@ -71,6 +71,14 @@ Bounds bounds_of(const Shape& shape, const MeshConfig& mesh, int dim);
 /// Part of the bounds that is in the mesh.
 Bounds within(Bounds bounds, const MeshConfig& mesh, int dim);
 
+/// Smallest width [m] of a shape or of a part of a union: of the edges of a box that is turned, else of the
+/// bounds, along axes on which they end within the mesh. Infinite for a half plane.
+double narrowest(const Shape& shape, const MeshConfig& mesh, int dim);
+
+/// Whether a shape has no flat faces so narrow that contact at sites, which keep off sharp edges by 0.55
+/// cells, may let soil through. Discs and half planes have no edges.
+bool is_wide_for_sites(const Shape& shape, const MeshConfig& mesh, int dim);
+
 /// The sides of the mesh that a shape reaches beyond, and so is cut by: [direction][0 lower, 1 upper].
 using Cuts = std::array<std::array<bool, 2>, 3>;
 Cuts cuts_of(const Shape& shape, const MeshConfig& mesh, int dim);

@@ -125,6 +125,11 @@ const std::vector<std::string>& turning_keys();
 void read_turning(OptionReader& in, int dim, double end, RigidConfig& rigid);
 void check_turning(OptionReader& in, const Config& config, const MeshConfig& mesh, const RigidConfig& rigid);
 
+/// Contact of one rigid with soil.
+void read_contact(OptionReader& in, const Config& config, RigidConfig& rigid);
+/// Where contact acts on the rigids for which no option gives it, as in the stage before, if there is one
+/// (else null). After all names, without an error.
+void choose_contact(OptionReader& in, const Config* before, Config& config);
 /// Contact between rigid bodies: the options of all of them, and that of each.
 void read_rigid_contact(OptionReader& in, Config& config);
 void read_restitution(OptionReader& in, RigidConfig& rigid);

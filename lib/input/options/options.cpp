@@ -143,6 +143,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   read_named(in, sound ? &config.mesh : nullptr, config, before);
   read_raster_bodies(in, config, config.rasters);
   if (sound && in.errors() == errors) choose_lid(in, before, config);
+  if (sound && in.errors() == errors) choose_contact(in, before, config);
   if (sound) check_absorbing(in, config);
   check_rayleigh(in, config);
   check_batches(in, config);

@@ -82,7 +82,7 @@ class Symmetry(Deck):
     def add_motion(self, weighs):
         draw, across = self.draw, [0.0] * (self.dim - 1)
         if weighs:
-            self.common += f"-tool_motion dynamic -tool_density {draw.choice([2500, 8000])} -tool_velocity {rounded(across + [-0.3])}".split()
+            self.common += f"-tool_motion dynamic -tool_contact nodes -tool_density {draw.choice([2500, 8000])} -tool_velocity {rounded(across + [-0.3])}".split()
             self.common += ["-gravity", rounded(across + [-9.81])]
         else:
             up = self.buried and draw.random() < 0.3

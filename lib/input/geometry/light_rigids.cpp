@@ -1,4 +1,4 @@
-#include "step/light_rigids.hpp"
+#include "input/geometry/light_rigids.hpp"
 
 #include <algorithm>
 
@@ -83,12 +83,16 @@ Lightness lightness_of(const Config& config, const RigidConfig& rigid) {
   return out;
 }
 
-bool solves_for_velocity(const Config& config, const RigidConfig& rigid) {
-  if (rigid.contact_at_sites || rigid.is_sprung() || !lightness_of(config, rigid).is_light()) return false;
-  return std::none_of(config.joints.begin(), config.joints.end(), [&](const JointConfig& joint) {
+bool is_jointed(const Config& config, const RigidConfig& rigid) {
+  return std::any_of(config.joints.begin(), config.joints.end(), [&](const JointConfig& joint) {
     return std::any_of(joint.bodies.begin(), joint.bodies.end(),
                        [&](int r) { return r >= 0 && &config.rigids[r] == &rigid; });
   });
+}
+
+bool solves_for_velocity(const Config& config, const RigidConfig& rigid) {
+  return !rigid.contact_at_sites && !rigid.is_sprung() && !is_jointed(config, rigid) &&
+         lightness_of(config, rigid).is_light();
 }
 
 }  // namespace mpm

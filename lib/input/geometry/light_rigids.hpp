@@ -23,6 +23,9 @@ struct Lightness {
 /// no force moves is not light. Both masses are of the part that planes of symmetry leave in the mesh.
 Lightness lightness_of(const Config& config, const RigidConfig& rigid);
 
+/// Whether a joint holds a rigid body of the run.
+bool is_jointed(const Config& config, const RigidConfig& rigid);
+
 /// Whether contact takes a light rigid body with its velocity at the end of the step. It does so at nodes,
 /// and where no joint or spring acts on the body.
 bool solves_for_velocity(const Config& config, const RigidConfig& rigid);
