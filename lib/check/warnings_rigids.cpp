@@ -211,10 +211,14 @@ void warn_of_gradient(const RigidConfig& rigid, Lines& lines) {
 /// Faces have no sites beside sharp edges.
 void warn_of_narrow_faces(const Config& config, const RigidConfig& rigid, Lines& lines) {
   if (!rigid.contact_at_sites || is_wide_for_sites(rigid.shape, config.mesh, config.dim)) return;
+  const double cells = narrowest(rigid.shape, config.mesh, config.dim) / config.mesh.spacing;
+  const std::string what = cells < 2 * (1 - 1e-6)
+                               ? formatted("the rigid is %.3g cells across", cells)
+                               : std::string("a twentieth of it or more is less than 2 cells thick");
   lines.push_back(
-      formatted("warning: -%s_contact: given \"sites\", but the rigid is %.3g cells across: faces of less "
-                "than 1.1 cells let soil through; take nodes or smaller cells",
-                rigid.name.c_str(), narrowest(rigid.shape, config.mesh, config.dim) / config.mesh.spacing));
+      formatted("warning: -%s_contact: given \"sites\", but %s: faces of less than 1.1 cells let soil "
+                "through; take nodes or smaller cells",
+                rigid.name.c_str(), what.c_str()));
 }
 
 /// Light bodies that contact takes as infinitely heavy: at sites, or where a joint or a spring acts.

@@ -229,3 +229,22 @@ TEST_CASE("thin bodies of triangles are found, and edges and tips do not count",
   REQUIRE(found);
   CHECK((found->value < 0.1 && found->place[0] >= 2));
 }
+
+TEST_CASE("thin polygons are found, and corners do not count", "[sampled_surface]") {
+  const double most = 0.25;
+  const Point2 lower{-10, -10}, upper{10, 10};
+  const auto thin = [&](Polygon polygon) {
+    const bool found = is_thin(polygon, lower, upper, most);
+    std::reverse(polygon.begin(), polygon.end());
+    CHECK(is_thin(polygon, lower, upper, most) == found);
+    return found;
+  };
+  CHECK(thin({{0, 0}, {2, 1.5}, {1.9, 1.65}, {-0.1, 0.15}}));             // a strip of 0.18 that leans
+  CHECK_FALSE(thin({{0, 0}, {2, 1.5}, {1.82, 1.74}, {-0.18, 0.24}}));     // one of 0.3
+  CHECK(thin({{0, 0}, {1, 0}, {1, 1}, {0.8, 1}, {0.8, 0.3}, {0, 0.3}}));  // the upright part of an L
+  CHECK_FALSE(thin({{0, 0}, {1, 0}, {0.5, 0.87}}));
+  CHECK_FALSE(thin({{0, 0}, {1, 0}, {1, 0.01}, {0.99, 0.02}, {0.98, 1}, {0, 1}}));
+  // Half of a strip of 0.4 along its plane of symmetry, and one that goes on beyond the mesh.
+  CHECK_FALSE(thin({{0, -10}, {1, -10}, {1, -9.8}, {0, -9.8}}));
+  CHECK_FALSE(thin({{0, -11}, {1, -11}, {1, -9.8}, {0, -9.8}}));
+}

@@ -11,6 +11,7 @@
 #include "input/geometry/revolved.hpp"
 #include "input/geometry/round_volume.hpp"
 #include "input/geometry/shapes.hpp"
+#include "input/geometry/thickness.hpp"
 #include "input/geometry/united.hpp"
 
 namespace mpm {
@@ -193,7 +194,11 @@ bool is_wide_for_sites(const Shape& shape, const MeshConfig& mesh, int dim) {
   if (shape.kind == ShapeKind::parts)
     return std::all_of(shape.parts.begin(), shape.parts.end(),
                        [&](const Shape& part) { return is_wide_for_sites(part, mesh, dim); });
-  return narrowest(shape, mesh, dim) >= k_wide * mesh.spacing * (1 - 1e-6);
+  const double least = k_wide * mesh.spacing * (1 - 1e-6);
+  if (narrowest(shape, mesh, dim) < least) return false;
+  if (shape.kind == ShapeKind::stl) return !thinnest_twentieth(*shape.triangles, least);
+  const Point2 lower{mesh.lower[0], mesh.lower[dim - 1]}, upper{mesh.upper[0], mesh.upper[dim - 1]};
+  return shape.kind != ShapeKind::polygon || !is_thin(shape.polygon, lower, upper, least);
 }
 
 Cuts cuts_of(const Shape& shape, const MeshConfig& mesh, int dim) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "input/geometry/vectors.hpp"
 
@@ -16,6 +19,23 @@ double thickness_at(const TriangleSurface& surface, const Vec3& x, const Vec3& i
     if (!surface.holds(along(x, way, inward), 0)) return way;
   }
   return most;
+}
+
+/// Way [m] from a point straight inwards to the next of the edges, which go round anticlockwise, that lies
+/// across it to 30 degrees: corners are not thin.
+double way_across(const std::vector<Edge>& edges, const Point2& x, const Point2& inward) {
+  constexpr double k_facing = 0.866;
+  const auto cross = [](const Point2& a, const Point2& b) { return a[0] * b[1] - a[1] * b[0]; };
+  double least = std::numeric_limits<double>::infinity();
+  for (const Edge& edge : edges) {
+    const Point2 along{edge.to[0] - edge.from[0], edge.to[1] - edge.from[1]},
+        from{edge.from[0] - x[0], edge.from[1] - x[1]};
+    const double across = cross(inward, along), way = cross(from, along) / across,
+                 share = cross(from, inward) / across;
+    if (across > k_facing * std::hypot(along[0], along[1]) && way > 0 && share >= 0 && share <= 1)
+      least = std::min(least, way);
+  }
+  return least;
 }
 
 }  // namespace
@@ -44,6 +64,44 @@ std::optional<Thickness> thinnest_twentieth(const TriangleSurface& surface, doub
   std::nth_element(found.begin(), found.begin() + k_twentieth, found.end(), thinner);
   const Thickness& least = found[k_twentieth];
   return least.value < most ? std::optional(least) : std::nullopt;
+}
+
+bool is_thin(const Polygon& polygon, const Point2& lower, const Point2& upper, double most) {
+  constexpr int k_points = 400;
+  const double slack = 1e-6 * most;
+  const auto is_beyond = [&](const Edge& edge) {
+    bool beyond = false;
+    for (int c = 0; c < 2; ++c)
+      beyond = beyond || std::max(edge.from[c], edge.to[c]) <= lower[c] + slack ||
+               std::min(edge.from[c], edge.to[c]) >= upper[c] - slack;
+    return beyond;
+  };
+  const auto length_of = [](const Edge& edge) {
+    return std::hypot(edge.to[0] - edge.from[0], edge.to[1] - edge.from[1]);
+  };
+  const bool clockwise = signed_area_of(polygon) < 0;
+  std::vector<Edge> edges;
+  double around = 0;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    Edge edge = edge_of(polygon, k);
+    if (is_beyond(edge)) continue;
+    if (clockwise) std::swap(edge.from, edge.to);
+    edges.push_back(edge), around += length_of(edge);
+  }
+  const double share = around / k_points;
+  double passed = 0;  // length of the edges before
+  int found = 0, thin = 0;
+  for (const Edge& edge : edges) {
+    const double length = length_of(edge);
+    const Point2 unit{(edge.to[0] - edge.from[0]) / length, (edge.to[1] - edge.from[1]) / length};
+    for (; passed + length > share * (found + 0.5); ++found) {
+      const double at = share * (found + 0.5) - passed;
+      const Point2 x{edge.from[0] + at * unit[0], edge.from[1] + at * unit[1]};
+      thin += way_across(edges, x, {-unit[1], unit[0]}) < most;
+    }
+    passed += length;
+  }
+  return 20 * thin > found;
 }
 
 }  // namespace mpm

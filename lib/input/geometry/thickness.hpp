@@ -1,8 +1,9 @@
 #pragma once
-// How thick a body is whose surface is of triangles.
+// How thick a body is whose surface is of triangles, or whose section is a polygon.
 
 #include <optional>
 
+#include "input/geometry/polygon.hpp"
 #include "input/geometry/triangle_surface.hpp"
 
 namespace mpm {
@@ -17,5 +18,9 @@ struct Thickness {
 /// is `most` or more. Measured at points spread evenly over the surface, straight inwards, to a twelfth of
 /// `most`: edges and tips count little.
 std::optional<Thickness> thinnest_twentieth(const TriangleSurface& surface, double most);
+
+/// Whether a twentieth of a polygon's edges in the mesh, or more, has another one, parallel to 30 degrees,
+/// within `most` [m] behind it. Beyond the mesh, from `lower` to `upper`, a polygon goes on.
+bool is_thin(const Polygon& polygon, const Point2& lower, const Point2& upper, double most);
 
 }  // namespace mpm
