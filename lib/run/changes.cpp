@@ -123,6 +123,25 @@ Comparison compare_options(const Checkpoint& checkpoint, const std::vector<Effec
   return found;
 }
 
+void keep_contact(const std::vector<EffectiveOption>& then, Config& config,
+                  std::vector<EffectiveOption>& now) {
+  for (RigidConfig& rigid : config.rigids) {
+    const std::string name = "-" + rigid.name + "_contact", gap = name + "_gap_";
+    const auto is_default = [&](const auto& o) { return o.name == name && o.standard; };
+    const auto former = std::find_if(then.begin(), then.end(), is_default);
+    const auto own = std::find_if(now.begin(), now.end(), is_default);
+    if (own == now.end() || former == then.end() || own->value == former->value) continue;
+    const bool sites = former->value == "sites",
+               gap_given = std::any_of(now.begin(), now.end(),
+                                       [&](const auto&o) { return !o.standard && o.name.starts_with(gap); });
+    if (sites && (gap_given || config.device_memory_limit)) continue;
+    own->value = former->value;
+    rigid.contact_at_sites = sites;
+    rigid.contact_gap_scaling = !sites && rigid.separates && rigid.contact_normal == ContactNormal::surface;
+    if (sites) std::erase_if(now, [&](const auto& o) { return o.name.starts_with(gap); });
+  }
+}
+
 std::vector<OptionChange> changes_between(const std::vector<EffectiveOption>& before,
                                           const std::vector<EffectiveOption>& now) {
   std::map<std::string, std::string> then;

@@ -37,6 +37,11 @@ Comparison compare_options(const Checkpoint& checkpoint, const std::vector<Effec
                            const Config& config, const std::string& file,
                            const std::vector<std::string>& allowed = {});
 
+/// Where contact of rigids acts by default stays as it was by default in the checkpoint of options `then`,
+/// also where other options changed that decide on it at a start.
+void keep_contact(const std::vector<EffectiveOption>& then, Config& config,
+                  std::vector<EffectiveOption>& now);
+
 /// Differences between the options in force before and now.
 std::vector<OptionChange> changes_between(const std::vector<EffectiveOption>& before,
                                           const std::vector<EffectiveOption>& now);

@@ -101,6 +101,8 @@ PetscErrorCode Restarts::enter_stage(Job& job, TimeStep& time_step, Clock& clock
 /// Compares the options and the state with the checkpoint. Returns what that should have been; contradicting
 /// options are lines of the report.
 std::string Restarts::compare(Job& job) {
+  keep_contact(checkpoint_->options, job.config, job.report.options);
+  for (StageInput& stage : job.report.stages) keep_contact(checkpoint_->options, stage.config, stage.options);
   const Config& config = job.config;
   const Comparison found = compare_options(*checkpoint_, options_to_keep(job.report.options, config), config,
                                            file_, config.output.restart_change);
