@@ -102,6 +102,20 @@ PetscErrorCode report_need(Job& job, const Clock& clock, Stepper& stepper) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Where rigid bodies touch the soil.
+PetscErrorCode report_contact(const Config& config, Log& log) {
+  PetscFunctionBeginUser;
+  std::string at[2];  // nodes, sites
+  for (const RigidConfig& rigid : config.rigids) {
+    std::string& names = at[rigid.contact_at_sites ? 1 : 0];
+    names += (names.empty() ? "" : ", ") + rigid.name;
+  }
+  for (int sites = 0; sites < 2; ++sites)
+    if (!at[sites].empty())
+      PetscCall(log.print("contact       at %s: %s", sites ? "sites" : "nodes", at[sites].c_str()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode report_rasters(const Config& config, Log& log) {
   PetscFunctionBeginUser;
   if (!config.rasters.on) PetscFunctionReturn(PETSC_SUCCESS);
@@ -180,6 +194,7 @@ PetscErrorCode dry_run(Job& job, TimeStep& time_step, Clock& clock) {
     PetscCall(fail(job, clock, failure.what));
   } else {
     PetscCall(report_need(job, clock, *stepper));
+    PetscCall(report_contact(job.config, job.log));
     PetscCall(report_rasters(job.config, job.log));
     PetscCall(report_wall_time(job, clock, *stepper, &step_seconds));
   }

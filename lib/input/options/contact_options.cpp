@@ -137,8 +137,10 @@ void choose_contact(OptionReader& in, const Config* before, Config& config) {
     if (!rigid.contact_at_sites) continue;
     rigid.contact_gap_scaling = false;
     in.settle(rigid.name + "_contact", "sites", "");
-    for (const char* key : k_gap_keys)
+    for (const char* key : k_gap_keys) {
       in.not_taken(rigid.name + key, rigid.name + "_contact is sites, as in the stage before");
+      in.unlist(rigid.name + key);
+    }
   }
 }
 

@@ -217,6 +217,11 @@ void OptionReader::settle(const std::string& name, const std::string& value, con
   if (!warning.empty()) report_->warnings.push_back("warning: -" + prefix_ + name + ": " + warning);
 }
 
+void OptionReader::unlist(const std::string& name) {
+  std::erase_if(report_->options,
+                [&](const EffectiveOption& option) { return option.name == "-" + prefix_ + name; });
+}
+
 bool OptionReader::fail(const Option& option, const std::string& takes) {
   reject(option.name, takes);
   return false;

@@ -111,6 +111,8 @@ class OptionReader {
   void warn(const std::string& name, const std::string& what);
   /// The default that an option takes which is not given, once others are read, and a warning, unless empty.
   void settle(const std::string& name, const std::string& value, const std::string& warning);
+  /// Takes an option that is not given from the list of options: once others are read, it has no place.
+  void unlist(const std::string& name);
   /// Notes for the log what became of an option that is given: "mpm: note: -NAME: WHAT".
   void note(const std::string& name, const std::string& what);
   /// No unknown option that begins so is reported: what it belongs to was wrong itself.
