@@ -16,7 +16,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 PAGE = HERE.parent / "docs" / "results.md"
 HEADING = "## The history\n"
-NAMES = {"BODY": "soil|boulder|bank", "RIGID": "floor|press|pipe", "PART": "rim|hub", "JOINT": "line", "LOAD": "strip", "PROBE": "gate|tip|toe|pier"}
+NAMES = {"BODY": "soil|boulder|bank", "RIGID": "floor|press|pipe", "PART": "rim|hub", "JOINT": "line", "LOAD": "strip", "PAIR": "boulder_bank", "PROBE": "gate|tip|toe|pier"}
 PROBES = ("-probes gate,tip,toe,pier -gate_kind section -gate_axis x -gate_at 4 -tip_kind particle -tip_at {at} -toe_kind gauge -toe_at {line} "
           "-pier_kind point -pier_at {at}")
 LINE = "-joints line -line_kind rod -line_bodies pipe,ground -line_point {at} -line_other_point {other}"
@@ -27,6 +27,7 @@ RUNS = {
     "a wheel on a line": "-pipe_free x,y,rz -pipe_stiffness 1e3,0,1e2 " + LINE.format(at="5,4", other="7,5"),
     "a wheel in parts": "-pipe_free x,y,rz -pipe_parts rim,hub -pipe_part_forces on -rim_shape disc -rim_centre 5,4 -rim_radius 0.4 -hub_shape box "
     "-hub_lower 4.7,3.9 -hub_upper 5.8,4.1",
+    "bodies that touch": "-contact_pairs boulder:bank",
     "particles that split": "-particle_domain split -position_correction delta",
     "stages under water with loads": "-gravity 0,-9.81 -water_level 5.2 -output_energy on -stages rest,push -rest_end equilibrium "
     + PROBES.format(at="2,1", line="2") + " " + LOAD.format(lower="0,0", upper="8,6"),

@@ -26,6 +26,7 @@ enum class Feature {
   gravity_table,        // gravity by a table, set where rigid bodies move, when no node may be updated
   side_table,           // motion of a side by a table, set likewise
   contact_sites,        // contact at sites, which reads nodal sums between functions 4 and 5
+  interfaces,           // contact of deformable bodies, which changes nodal sums before function 4
   pushed_mass_normals,  // rigid body that forces move, with normals of its mass gradient
   turning_rigids,       // rigid bodies that may turn, which steps in one launch do not move
   many_rigids,          // lists of the rigid bodies near slots, which steps in one launch do not have
@@ -73,15 +74,16 @@ constexpr Features excluding(StepWay way) {
   using F = Feature;
   switch (way) {
     case StepWay::sums_ahead:
-      return {F::other_strategy, F::xpic,  F::apic,     F::submerged,
-              F::energy,         F::loads, F::rayleigh, F::contact_sites};
+      return {F::other_strategy, F::xpic,     F::apic,          F::submerged, F::energy,
+              F::loads,          F::rayleigh, F::contact_sites, F::interfaces};
     case StepWay::nodes_apart: return {F::gravity_table, F::side_table, F::columns, F::rayleigh};
     case StepWay::nodes_aside: return excluding(StepWay::nodes_apart) | Features{F::shear_fraction};
     case StepWay::overlapped:
-      return {F::other_strategy, F::submerged, F::energy, F::loads, F::rayleigh, F::contact_sites};
+      return {F::other_strategy, F::submerged,     F::energy,    F::loads,
+              F::rayleigh,       F::contact_sites, F::interfaces};
     case StepWay::in_batches:
-      return {F::other_strategy, F::xpic,   F::apic,  F::splits,   F::correction,
-              F::submerged,      F::energy, F::loads, F::rayleigh, F::contact_sites};
+      return {F::other_strategy, F::xpic,  F::apic,     F::splits,        F::correction, F::submerged,
+              F::energy,         F::loads, F::rayleigh, F::contact_sites, F::interfaces};
     case StepWay::one_launch:
       return excluding(StepWay::sums_ahead) | Features{F::turning_rigids, F::many_rigids,  F::rigid_pairs,
                                                        F::linked_rigids,  F::light_rigids, F::united_rigids,

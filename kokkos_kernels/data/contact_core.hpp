@@ -7,6 +7,7 @@
 #include "data/contact_sites.hpp"
 #include "data/contact_slots.hpp"
 #include "data/core.hpp"
+#include "data/interfaces.hpp"
 #include "data/light_rigids.hpp"
 #include "data/part_forces.hpp"
 #include "data/rigid.hpp"
@@ -28,6 +29,7 @@ struct ContactCore : Core<Space, T, Dim> {
   RigidLinks<Space, Dim> links;          // joints, springs and dashpots of rigid bodies
   LightRigids<Space, Dim> light_rigids;  // and how contact takes them
   PartForces<Space, Dim> part_forces;
+  Interfaces<Space, Dim> interfaces;          // of deformable bodies
   Kokkos::View<double*, Memory> rigid_force;  // N, of the soil on each rigid in this step, and on each part
   Kokkos::View<double*, Memory> rigid_moved;  // cells, of each rigid in this step, where a kernel before
                                               // move_rigids moves it: some are linked, or there are many

@@ -30,6 +30,7 @@ Features features_of(const State<Space, T, Dim>& s) {
                                     {F::gravity_table, s.timed.moves_gravity},
                                     {F::side_table, s.timed.moves_sides},
                                     {F::contact_sites, s.at_sites.in_use},
+                                    {F::interfaces, s.interfaces.in_use()},
                                     {F::pushed_mass_normals, s.rigid_dynamic && s.mass_normals},
                                     {F::turning_rigids, s.rigid_turns},
                                     {F::many_rigids, s.contact.near.listed},

@@ -26,6 +26,7 @@ std::size_t memory_of(const ContactCore<Space, T, Dim>& s, const NodeUses& uses)
   add(s.contact.boundary.sums), add(s.contact.strength.sums);
   for (const auto* more : {&s.launch.next_sums, &s.launch.last_sums})
     add(more->soil), add(more->boundary), add(more->rigid);
+  add(s.interfaces.slots), add(s.interfaces.force), add(s.interfaces.sums);
   add(s.batches.room), add(s.batches.slots);
   return bytes;
 }

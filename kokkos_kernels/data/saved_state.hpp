@@ -99,6 +99,7 @@ struct SavedState {
   SavedImpulse impulse;
   SavedPairs pairs;
   std::vector<double> part_impulses;  // PartTerms of each part of a rigid, where forces on parts are measured
+  std::vector<double> interfaces;     // InterfaceTerms of each pair of bodies in -contact_pairs
   std::vector<double> energy;  // k_saved_energy numbers where the run has an energy balance: the works, and
                                // kinetic and elastic energy at the start [J], of all ranks; behind them,
                                // where there are loads on surfaces, their work since the start [J]

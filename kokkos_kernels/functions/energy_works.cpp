@@ -16,6 +16,7 @@ struct WorkAtNodes {
   UpdateNodes<Space, T, Dim> update;
   ControlView<Space> control;
   ContactPlaces<Space> contact;
+  Interfaces<Space, Dim> interfaces;
   bool in_water;
 
   KOKKOS_INLINE_FUNCTION void operator()(int i, NodeWorks& sum) const {
@@ -38,13 +39,20 @@ struct WorkAtNodes {
       if (!owned) continue;
       const double force = heavy ? double(update.nodes.soil(i, S::force + d)) : 0, weight = m_i * g[d];
       const double damped = -m_i * double(braking[d]);
-      sum.internal += force * way;
+      const double pressed = of_other_fields(i, d);
+      sum.internal += (force - pressed) * way;
       sum.gravity += weight * way;
       sum.damping += damped * way;
-      sum.boundary += (m_i * (v - v_old) / update.dt - force - weight - damped) * way;
+      sum.boundary += (m_i * (v - v_old) / update.dt - force - weight - damped + pressed) * way;
     }
   }
 
+  /// Force of other velocity fields on node i [N], which is in the sums.
+  KOKKOS_INLINE_FUNCTION double of_other_fields(int i, int d) const {
+    if (!interfaces.in_use()) return 0;
+    const int entry = interfaces.entry(i / cells);
+    return entry == 0 ? 0 : interfaces.force((std::size_t(entry - 1) * Dim + d) * cells + i % cells);
+  }
   /// Deceleration of node i by local damping in the step [m/s2].
   KOKKOS_INLINE_FUNCTION Vector<T, Dim> braking_of(int i) const {
     const bool touches = update.rigids.extent(0) > 0 && contact(i / cells) > 0;
@@ -154,10 +162,10 @@ void add_node_works(State<Space, T, Dim>& s, double dt) {
   const auto& works = s.energy;
   const Kokkos::RangePolicy<Space> nodes(s.space, 0, s.patches.node_count());
   const auto sum = works.of_nodes;
-  Kokkos::parallel_reduce(
-      "mpm::node_works", nodes,
-      WorkAtNodes<Space, T, Dim>{node_update_of(s, dt), s.control, s.contact.place, s.water.is_there()},
-      Kokkos::Sum<NodeWorks, typename Space::memory_space>(sum));
+  Kokkos::parallel_reduce("mpm::node_works", nodes,
+                          WorkAtNodes<Space, T, Dim>{node_update_of(s, dt), s.control, s.contact.place,
+                                                     s.interfaces, s.water.is_there()},
+                          Kokkos::Sum<NodeWorks, typename Space::memory_space>(sum));
   const auto work = works.work;
   const auto rigid_at = works.rigid_at;
   const auto rigids = s.rigids;

@@ -121,6 +121,17 @@ void mark_by_points(const ContactCore<Space, T, Dim>& s, int r) {
       });
 }
 
+/// Marks the slots in patches where several velocity fields are active.
+template <class Space, class T, int Dim>
+void mark_interfaces(const ContactCore<Space, T, Dim>& s) {
+  const auto marks = s.contact.place, entry = s.interfaces.entry;
+  Kokkos::parallel_for(
+      "mpm::mark_interfaces", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.slots),
+      KOKKOS_LAMBDA(int slot) {
+        if (entry(slot) > 0) marks(slot) = 1;
+      });
+}
+
 /// Lists the bodies near each slot, and marks the slots that have some.
 template <class Space, class T, int Dim>
 void list_bodies(ContactCore<Space, T, Dim>& s) {
@@ -205,6 +216,7 @@ void list_contacts(ContactCore<Space, T, Dim>& s) {
     list_bodies(s);
   else
     for (int r = 0; r < static_cast<int>(s.rigid_points.size()); ++r) mark_by_points(s, r);
+  if (s.interfaces.in_use()) mark_interfaces(s);
   ensure(s.contact.slots, slots);
   const auto list = s.contact.slots, place = s.contact.place;
   Kokkos::parallel_scan(

@@ -158,6 +158,22 @@ std::vector<int> count_by_patch(const Core<Space, T, Dim>& s) {
   return {host.data(), host.data() + host.extent(0)};
 }
 
+template <class Space, class T, int Dim>
+std::vector<std::uint8_t> occupied_by_field(const Core<Space, T, Dim>& s) {
+  const Kokkos::View<std::uint8_t*, typename Space::memory_space> marks("mpm::occupied_by_field",
+                                                                        s.grid.patch_count());
+  const auto address = s.soil.address;
+  Kokkos::parallel_for(
+      "mpm::occupied_by_field", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.all),
+      KOKKOS_LAMBDA(int p) {
+        if (address(p) >= 0)
+          Kokkos::atomic_store(&marks(address(p) / Patch<Dim>::cells), static_cast<std::uint8_t>(1));
+      });
+  s.space.fence("mpm::occupied_by_field");
+  const auto host = mirror_of(marks);
+  return {host.data(), host.data() + host.extent(0)};
+}
+
 #define MPM_INSTANTIATE(Space, T, Dim)                                                                     \
   template std::size_t record_size(const Core<Space, T, Dim>&);                                            \
   template std::vector<Leaver> find_leavers(Core<Space, T, Dim>&,                                          \
@@ -165,7 +181,8 @@ std::vector<int> count_by_patch(const Core<Space, T, Dim>& s) {
   template std::vector<char> take_particles(Core<Space, T, Dim>&, const std::vector<int>&);                \
   template void add_particles(Core<Space, T, Dim>&, const std::vector<char>&);                             \
   template void reserve_particles(Core<Space, T, Dim>&, int);                                              \
-  template std::vector<int> count_by_patch(const Core<Space, T, Dim>&);
+  template std::vector<int> count_by_patch(const Core<Space, T, Dim>&);                                    \
+  template std::vector<std::uint8_t> occupied_by_field(const Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

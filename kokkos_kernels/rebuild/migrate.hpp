@@ -41,4 +41,8 @@ void reserve_particles(Core<Space, T, Dim>& s, int n);
 template <class Space, class T, int Dim>
 std::vector<int> count_by_patch(const Core<Space, T, Dim>& s);
 
+/// Whether particles of this rank are in each patch of each velocity field, by their addresses: 0 or 1.
+template <class Space, class T, int Dim>
+std::vector<std::uint8_t> occupied_by_field(const Core<Space, T, Dim>& s);
+
 }  // namespace mpm

@@ -55,6 +55,9 @@ template <class Space, class T, int Dim>
 void sort_points(ContactCore<Space, T, Dim>& s);
 template <class Space, class T, int Dim>
 void build_lists(ContactCore<Space, T, Dim>& s);
+/// Lists the patches in which several velocity fields are active in s.interfaces.
+template <class Space, class T, int Dim>
+void list_interfaces(ContactCore<Space, T, Dim>& s);
 /// Lists the slots where a contact may be: a node that soil and a rigid share is reached from no other slot.
 template <class Space, class T, int Dim>
 void list_contacts(ContactCore<Space, T, Dim>& s);

@@ -74,6 +74,15 @@ void mark_soil(const ContactCore<Space, T, Dim>& s, const Marks& marks) {
       });
 }
 
+/// Marks the patches that this rank has for fields which meet its soil.
+template <class Space, class T, int Dim, class Marks>
+void mark_borrowed(const ContactCore<Space, T, Dim>& s, const Marks& marks) {
+  const auto borrowed = s.interfaces.borrowed;
+  Kokkos::parallel_for(
+      "mpm::mark_borrowed", Kokkos::RangePolicy<Space>(s.space, 0, borrowed.extent(0)),
+      KOKKOS_LAMBDA(int n) { marks(borrowed(n)) = k_soil; });
+}
+
 /// Marks the patches of the first velocity field that hold points of a rigid and lie at those of the soil: no
 /// other point of it reaches a node that soil reaches before the next rebuild. Contact in the other fields
 /// asks the rigid's surface alone.
@@ -185,6 +194,7 @@ void activate_patches(ContactCore<Space, T, Dim>& s) {
   const auto slot_of = patches.slot_of;
   Kokkos::deep_copy(s.space, marks, 0);
   mark_soil(s, marks);
+  if (s.interfaces.borrowed.extent(0) > 0) mark_borrowed(s, marks);
   for (const auto& set : s.rigid_points) mark_rigid(s, set, marks);
 
   const Coord<Dim> turn = patches.turn = shortest_first(grid);

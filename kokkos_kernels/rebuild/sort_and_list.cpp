@@ -11,7 +11,8 @@ void sort_points_and_list(ContactCore<Space, T, Dim>& s) {
   activate_patches(s);
   sort_points(s);
   build_lists(s);
-  if (!s.rigid_points.empty()) list_contacts(s);
+  if (s.interfaces.in_use()) list_interfaces(s);
+  if (!s.rigid_points.empty() || s.interfaces.in_use()) list_contacts(s);
   if (impulse_rows(s) > 0) restore_impulse(s, kept);
   list_pairs(s);
   if (s.f_bar.fraction > 0 && !s.f_bar.keeps_stress) average_pressure(s);

@@ -67,19 +67,34 @@ std::vector<std::string> warnings_of_excavations(const Config& config) {
   return lines;
 }
 
+namespace {
+
+/// Whether -contact_pairs has two bodies that may slide on each other.
+bool is_pair(const Config& config, const BodyConfig& one, const BodyConfig& other) {
+  return std::any_of(
+      config.contact_pairs.begin(), config.contact_pairs.end(), [&](const ContactPairConfig& pair) {
+        const BodyConfig *a = &config.bodies[pair.bodies[0]], *b = &config.bodies[pair.bodies[1]];
+        return !pair.welded && ((a == &one && b == &other) || (a == &other && b == &one));
+      });
+}
+
+}  // namespace
+
 std::string note_of_touching(const Config& config) {
   constexpr std::size_t k_most = 8;
   std::vector<std::string> names;
   const bool all = moves(config);
   for (const BodyConfig& body : config.bodies) {
     const bool meets = std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& other) {
-      return &other != &body && (all || touch(config, body, other));
+      return &other != &body && !is_pair(config, body, other) && (all || touch(config, body, other));
     });
     if (meets) names.push_back(body.name);
   }
   if (names.empty()) return "";
   if (names.size() > k_most) names.resize(k_most), names.emplace_back("...");
-  return "the bodies " + join(names, ", ") + " stick to each other where they touch or meet: no slip, no gap";
+  return "the bodies " + join(names, ", ") +
+         " stick to each other where they touch or meet: no slip, no gap; -contact_pairs lets them slide and "
+         "part";
 }
 
 }  // namespace mpm

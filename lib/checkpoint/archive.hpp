@@ -90,6 +90,7 @@ void go_through(Archive& archive, Checkpoint& c, std::string& options, IdBlock& 
   archive.list_of_some("pair_contacts", c.state.pairs.contacts);
   archive.list_of_some("pair_impulses", c.state.pairs.impulses);
   archive.list_of_some("part_impulses", c.state.part_impulses);
+  archive.list_of_some("interfaces", c.state.interfaces);
   archive.list("side_kinds", c.state.sides.kinds), archive.list("side_nodes", c.state.sides.values);
   archive.list("side_columns", c.state.sides.columns);
   archive.list("section_lost", c.state.sections), archive.list("section_zero", c.probes.section_zero);

@@ -154,6 +154,8 @@ std::string state_fault(const SavedState& state, const Config& config) {
   if (state.part_impulses.size() % PartTerms::size != 0 ||
       !std::all_of(state.part_impulses.begin(), state.part_impulses.end(), finite))
     return "a checkpoint with sound part_impulses";
+  if (!std::all_of(state.interfaces.begin(), state.interfaces.end(), finite))
+    return "a checkpoint with sound interfaces";
   if (!sound_pairs(state.pairs, config)) return "a checkpoint with sound pair_contacts and pair_impulses";
   if (!sound_sides(state.sides, config))
     return "a checkpoint with sound side_kinds, side_nodes and side_columns";

@@ -96,6 +96,13 @@ struct JointReaction {
   double work = 0;  // J, of its end on the ground since the start
 };
 
+/// One row of the history for a pair of deformable bodies that touch.
+struct InterfaceRow {
+  Vec3 force{};     // N, on the first body, mean over the interval since the last row
+  double area = 0;  // m2, in touch, likewise
+  double work = 0;  // J, of friction since the start
+};
+
 /// One row of the history for one load on a surface.
 struct LoadRow {
   Vec3 force{};     // N, of the load on the soil
@@ -126,6 +133,7 @@ struct HistoryRow {
   std::vector<BodyRow> bodies;
   std::vector<RigidRow> rigids;
   std::vector<JointReaction> joints{};
+  std::vector<InterfaceRow> interfaces{};      // of the pairs of bodies in -contact_pairs
   std::array<std::array<Vec3, 2>, 3> walls{};  // N, of the soil on each side of the mesh
   std::vector<LoadRow> loads{};
   double load_work = 0;                    // J, of loads on surfaces, since the start

@@ -73,6 +73,10 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
     append(text, joint.force, dim), append(text, joint.moment, dim == 2 ? 1 : 3);
     for (const double value : {joint.peak, joint.work}) text += "," + text_of(value);
   }
+  for (const InterfaceRow& pair : row.interfaces) {
+    append(text, pair.force, dim);
+    for (const double value : {pair.area, pair.work}) text += "," + text_of(value);
+  }
   for_each_wall(config, [&](int d, int side) { append(text, row.walls[d][side], dim); });
   for (const LoadRow& load : row.loads) {
     append(text, load.force, dim);

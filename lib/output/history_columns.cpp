@@ -92,6 +92,11 @@ std::vector<HistoryColumn> history_columns(const Config& config) {
     to.add_rotation(joint.name + "_moment");
     for (const char* quantity : {"_peak_force", "_work"}) to.add(joint.name + quantity);
   }
+  for (const ContactPairConfig& pair : config.contact_pairs) {
+    to.begin("contact_pairs", "pair", pair.name);
+    to.add_vector(pair.name + "_force_");
+    for (const char* quantity : {"_area", "_friction_work"}) to.add(pair.name + quantity);
+  }
   for_each_wall(config, [&](int d, int side) {
     const std::string name = std::string(k_axis[d]) + (side == 0 ? "min" : "max");
     to.begin("", "side", name);

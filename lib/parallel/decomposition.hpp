@@ -175,6 +175,7 @@ class Decomposition {
   PetscErrorCode rebalance(State_& s);
   PetscErrorCode choose_owners(State_& s, const std::vector<double>& figures, double imbalance, bool timed);
   PetscErrorCode migrate(State_& s, long* moved);
+  PetscErrorCode borrow_patches(State_& s);
   PetscErrorCode make_lists(State_& s);
   PetscErrorCode exchange_impulses(State_& s, const NodeImpulses<T>& own);
   void send_owners_to_device();
@@ -186,6 +187,7 @@ class Decomposition {
   Owners owners_;
   Kokkos::View<int*, Memory> owner_;
   std::vector<std::uint8_t> occupied_;  // by patch, on all ranks together
+  std::vector<long> borrowed_;          // patches of all ranks, as Interfaces::borrowed
 
   HaloLists<Space> lists_;
   Transport<Space, T> transport_;

@@ -135,6 +135,34 @@ PetscErrorCode Decomposition<Space, T, Dim>::migrate(State_& s, long* moved) {
   add_particles(s, in);
   long own = static_cast<long>(leavers.size());
   PetscCallMPI(MPI_Allreduce(&own, moved, 1, MPI_LONG, MPI_SUM, comm_));
+  if (s.interfaces.in_use()) PetscCall(borrow_patches(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Finds the patches in which soil of one velocity field meets nodes of another that particles of other ranks
+/// may reach: their rank takes part in the sums of both fields.
+template <class Space, class T, int Dim>
+PetscErrorCode Decomposition<Space, T, Dim>::borrow_patches(State_& s) {
+  PetscFunctionBeginUser;
+  std::vector<std::uint8_t> occupied = occupied_by_field(s);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, occupied.data(), static_cast<int>(occupied.size()),
+                             MPI_UNSIGNED_CHAR, MPI_MAX, comm_));
+  const long count = grid_.count();
+  std::vector<int> own;
+  borrowed_.clear();
+  for (long patch = 0; patch < count; ++patch)
+    for (int field = 0; field < grid_.fields; ++field) {
+      const long n = field * count + patch;
+      bool met = false, near = false;
+      for (int other = 0; other < grid_.fields; ++other) met |= occupied[other * count + patch] != 0;
+      if (!met || occupied[n] != 0) continue;
+      grid_.for_each_around(n, [&](long at, const std::array<int, 3>&) { near |= occupied[at] != 0; });
+      if (!near) continue;
+      borrowed_.push_back(n);
+      if (owners_[patch] == rank_) own.push_back(static_cast<int>(n));
+    }
+  s.interfaces.borrowed = decltype(s.interfaces.borrowed)("mpm::borrowed", own.size());
+  fill(s.interfaces.borrowed, own);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -150,6 +178,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::make_lists(State_& s) {
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, occupied_.data(), static_cast<int>(occupied_.size()),
                              MPI_UNSIGNED_CHAR, MPI_MAX, comm_));
 
+  for (const long n : borrowed_) occupied_[n] = 1;
   const HaloPlan plan = plan_halo(grid_, owners_, occupied_, slots, rank_);
   lists_.sent = static_cast<int>(plan.node.size());
   lists_.shared = static_cast<int>(plan.shared.size());

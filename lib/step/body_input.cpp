@@ -6,6 +6,7 @@
 #include "common/f_bar.hpp"
 #include "common/material_table.hpp"
 #include "common/revolution.hpp"
+#include "common/velocity_fields.hpp"
 #include "input/geometry/light_rigids.hpp"
 #include "input/geometry/shapes.hpp"
 #include "physics/materials/any.hpp"
@@ -171,8 +172,11 @@ std::vector<double> shear_ratios(const Config& config) {
 template <int Dim>
 std::vector<BodyInput> body_input(const Config& config, std::vector<BodyParticles>& particles) {
   std::vector<BodyInput> bodies;
-  for (std::size_t b = 0; b < particles.size(); ++b)
+  const VelocityFields fields = velocity_fields(config);
+  for (std::size_t b = 0; b < particles.size(); ++b) {
     bodies.push_back(body_input<Dim>(config, config.bodies[b], std::move(particles[b])));
+    bodies.back().velocity_field = fields.of_body[b];
+  }
   return bodies;
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/copy.hpp"
 #include "functions/grid_velocity.hpp"
+#include "functions/interfaces.hpp"
 #include "functions/part_forces.hpp"
 #include "functions/rigid_pairs.hpp"
 #include "rebuild/batches.hpp"
@@ -150,6 +151,7 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::measure_rigids(double interval, H
     row->rigids.push_back(rigid);
   }
   measure_parts(interval, row);
+  PetscCall(measure_interfaces(interval, row));
   run_.rigids.widen(row->rigids);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,6 +171,24 @@ void HistoryMeasures<Space, T, Dim>::measure_parts(double interval, HistoryRow* 
 }
 
 template <class Space, class T, int Dim>
+PetscErrorCode HistoryMeasures<Space, T, Dim>::measure_interfaces(double interval, HistoryRow* row) {
+  using Terms = InterfaceTerms<Dim>;
+  PetscFunctionBeginUser;
+  std::vector<double> totals;
+  PetscCallCXX(totals = take_interface_totals(run_.state));
+  PetscCall(run_.sum(totals.data(), static_cast<int>(totals.size())));
+  const double scale = interval > 0 ? 1 / interval : 0;
+  for (std::size_t at = 0; at < totals.size(); at += Terms::size) {
+    InterfaceRow& pair = row->interfaces.emplace_back();
+    for (int d = 0; d < Dim; ++d) pair.force[d] = scale * totals[at + Terms::impulse + d];
+    pair.area = scale * totals[at + Terms::area];
+    pair.work = totals[at + Terms::work];
+  }
+  row->interfaces.resize(run_.config.contact_pairs.size());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
 PetscErrorCode HistoryMeasures<Space, T, Dim>::unbalanced_ratio(double dt, double* ratio) {
   PetscFunctionBeginUser;
   auto& s = run_.state;
@@ -177,6 +197,7 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::unbalanced_ratio(double dt, doubl
   loads_to_nodes(s);
   if (run_.ranks) PetscCall(run_.ranks->add_present_soil(s));
   if (s.shear_fraction) PetscCall(strength_to_nodes(s, run_.ranks.get()));
+  if (s.interfaces.in_use()) press_fields(s, dt, false);
   if (s.at_sites.in_use) PetscCall(sum_site_forces(s, dt, run_.ranks.get()));
   const UnbalancedForces own = unbalanced_forces(s, dt);
   double sums[2] = {own.force, own.weight};

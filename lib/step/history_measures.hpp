@@ -30,6 +30,7 @@ class HistoryMeasures {
  private:
   /// Measures the parts of rigid bodies that have rows, and takes their impulses.
   void measure_parts(double interval, HistoryRow* row);
+  PetscErrorCode measure_interfaces(double interval, HistoryRow* row);
   PetscErrorCode measure_body(int body, BodyRow* row) const;
   PetscErrorCode sum_measure(BodyMeasure* m) const;
   /// Measures soil that has left the run, and counts particles that were put back on a wall.

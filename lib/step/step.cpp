@@ -4,6 +4,7 @@
 
 #include "functions/energy_works.hpp"
 #include "functions/find_strays.hpp"
+#include "functions/interfaces.hpp"
 #include "functions/light_rigids.hpp"
 #include "functions/link_rigids.hpp"
 #include "functions/part_forces.hpp"
@@ -183,9 +184,11 @@ struct Step {
     }
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  /// Function 4, with the velocity at the end of the step of rigid bodies that are light.
+  /// Function 4, after contact of deformable bodies, with the velocity at the end of the step of rigid bodies
+  /// that are light.
   PetscErrorCode update_nodes_on(const Space& stream) const {
     PetscFunctionBeginUser;
+    if (s.interfaces.in_use()) press_fields(s, dt, true);
     if (s.light_rigids.in_use) {
       PetscCall(solve_for_light(false, stream));
       if (s.scheme.damping > 0) PetscCall(solve_for_light(true, stream));

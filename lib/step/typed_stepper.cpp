@@ -7,12 +7,14 @@
 #include "common/text.hpp"
 #include "device/device_agrees.hpp"
 #include "functions/find_strays.hpp"
+#include "functions/interfaces.hpp"
 #include "functions/part_forces.hpp"
 #include "functions/step_kernels.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/limit_volumes.hpp"
 #include "step/body_input.hpp"
 #include "step/follow_soil.hpp"
+#include "step/interface_input.hpp"
 #include "step/pair_input.hpp"
 #include "step/water.hpp"
 #include "transfer/restore_state.hpp"
@@ -44,6 +46,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   PetscCallCXX(upload_pairs(s, pair_input(config), config.mesh.spacing));
   Fault fault{};
   PetscCallCXX(fault = upload(s, grid, materials, bodies, rigids));
+  PetscCallCXX(upload_interfaces(s, interface_input(config)));
   if (fault.kind == FaultKind::none) PetscCallCXX((sort_and_list(s), begin_domains(s)));
   *failure = fault.kind == FaultKind::none ? reports_.failure_of_limit() : reports_.failure_of(fault);
   PetscCall(run_.share(failure));
@@ -198,6 +201,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscCallCXX(*saved = save_state(run_.state));
   PetscCallCXX(saved->pairs = save_pairs(run_.state));
   PetscCallCXX(saved->part_impulses = save_part_impulses(run_.state));
+  PetscCallCXX(saved->interfaces = save_interface_totals(run_.state));
   PetscCall(snapshots_.save_for_starts(saved));
   ids_.save(saved);
   PetscCall(energy_.save(saved));
@@ -229,6 +233,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   PetscCallCXX(unfit.what = take_saved(s, saved));
   PetscCallCXX(restore_pairs(s, saved.pairs));
   PetscCallCXX(restore_part_impulses(s, saved.part_impulses));
+  PetscCallCXX(restore_interface_totals(s, saved.interfaces));
   links_.restore(saved);
   loads_.restore(saved);
   energy_.restore(saved);

@@ -203,6 +203,15 @@ struct JointConfig {
   std::optional<TimeTable> velocity_table, displacement_table;  // m/s, m, instead of it
 };
 
+/// A pair of deformable bodies that touch.
+struct ContactPairConfig {
+  std::string name;                                             // those of the bodies, with an underscore
+  std::array<int, 2> bodies{};                                  // indices into Config::bodies
+  bool welded = false;                                          // they move as one
+  double adhesion = 0;                                          // Pa
+  std::optional<double> friction, shear_limit, shear_fraction;  // -, Pa, - of the weaker soil's strength
+};
+
 /// Courant numbers above this are unstable (the energy of an elastic bar grows at 0.7).
 inline constexpr double k_largest_courant = 0.6;
 
@@ -403,6 +412,7 @@ struct Config {
   bool rigid_contact_given = false;      // by the options
   std::optional<double> rigid_friction;  // -, of all pairs of rigid bodies
   std::vector<JointConfig> joints;
+  std::vector<ContactPairConfig> contact_pairs;
   OutputConfig output;
   std::vector<LoadConfig> loads;
   std::vector<ProbeConfig> probes;

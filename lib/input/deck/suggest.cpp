@@ -72,10 +72,8 @@ std::string why_none(const std::string& name, const std::vector<std::string>& bo
                                                     "torque", "centre_of_mass", "hinge"};
   if (has_one_of(name, flow) || name.ends_with("_water"))
     return "there is no flow of water, see docs/water.md";
-  if (name == "contact_pairs" || (!beginning_of(name, bodies).empty() && has_one_of(name, contact)))
-    return "contact and friction belong to rigid bodies; deformable bodies stick together where they meet, "
-           "see "
-           "docs/method.md";
+  if (!beginning_of(name, bodies).empty() && has_one_of(name, contact))
+    return "contact of deformable bodies is that of pairs: -contact_pairs, see docs/contact.md";
   if (!beginning_of(name, rigids).empty() && has_one_of(name, rotation))
     return "docs/bodies.md has the options of rigid bodies that turn";
   return "";

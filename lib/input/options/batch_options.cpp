@@ -40,6 +40,8 @@ constexpr Refusal k_refusals[] = {
      "nothing where -device_memory_limit sends the soil in batches"},
     {Feature::rayleigh, [](const Config& c) { return c.rayleigh_mass > 0 || c.rayleigh_stiffness > 0; },
      "rayleigh_ratio", "0 where -device_memory_limit sends the soil in batches"},
+    {Feature::interfaces, [](const Config& c) { return !c.contact_pairs.empty(); }, "contact_pairs",
+     "nothing where -device_memory_limit sends the soil in batches"},
     {Feature::contact_sites,
      [](const Config& c) {
        return std::any_of(c.rigids.begin(), c.rigids.end(),

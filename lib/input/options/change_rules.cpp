@@ -44,6 +44,7 @@ ChangeRule change_rule(const std::string& name, const Config& config) {
   note_longest(config.bodies, low, Owner::body, length, owner);
   note_longest(config.rigids, low, Owner::rigid, length, owner);
   note_longest(config.joints, low, Owner::joint, length, owner);
+  note_longest(config.contact_pairs, low, Owner::contact_pair, length, owner);
   note_longest(config.loads, low, Owner::load, length, owner);
   note_longest(config.water.regions, low, Owner::water_region, length, owner);
   if (config.dim == 2 && low.starts_with("mesh_z")) return {};

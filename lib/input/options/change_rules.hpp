@@ -11,7 +11,7 @@
 namespace mpm {
 
 /// Whose an option is: -gravity of the run, -NAME_young of a material NAME, and so on.
-enum class Owner { run, material, body, rigid, joint, load, water_region };
+enum class Owner { run, material, body, rigid, joint, load, water_region, contact_pair };
 
 /// Where an option may have another value than before.
 struct ChangeRule {

@@ -130,6 +130,8 @@ void read_contact(OptionReader& in, const Config& config, RigidConfig& rigid);
 /// Where contact acts on the rigids for which no option gives it, as in the stage before, if there is one
 /// (else null). After all names, without an error.
 void choose_contact(OptionReader& in, const Config* before, Config& config);
+/// -contact_pairs and the options of each pair; bodies and rigids have been read.
+void read_contact_pairs(OptionReader& in, Config& config);
 /// Contact between rigid bodies: the options of all of them, and that of each.
 void read_rigid_contact(OptionReader& in, Config& config);
 void read_restitution(OptionReader& in, RigidConfig& rigid);

@@ -261,6 +261,7 @@ void read_named(OptionReader& in, const MeshConfig* mesh, Config& config, const 
     read_rigid(in, mesh, config, config.rigids.back());
   }
   read_rigid_contact(in, config);
+  read_contact_pairs(in, config);
   for (const auto& name : joints) {
     config.joints.emplace_back().name = name;
     read_joint(in, mesh, config, config.joints.back());

@@ -177,6 +177,7 @@ void OptionReader::section(const std::string& title) {
            : title.starts_with("Each rigid")                                   ? Owner::rigid
            : title.starts_with("Each body")                                    ? Owner::body
            : title.starts_with("Each joint")                                   ? Owner::joint
+           : title.starts_with("Each contact pair")                            ? Owner::contact_pair
            : title.starts_with("Each load")                                    ? Owner::load
            : title.starts_with("Each water region")                            ? Owner::water_region
                                                                                : Owner::run;

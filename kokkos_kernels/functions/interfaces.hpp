@@ -1,0 +1,27 @@
+#pragma once
+// Contact between the velocity fields of deformable bodies in a step.
+
+#include <vector>
+
+#include "data/state.hpp"
+
+namespace mpm {
+
+/// Part of 4, before update_nodes, where s.interfaces is in use: adds to the forces at the nodes that several
+/// velocity fields share what the fields do to each other in a step of dt [s]. The sums at nodes are
+/// complete. keeps: the totals of the interfaces grow.
+template <class Space, class T, int Dim>
+void press_fields(State<Space, T, Dim>& s, double dt, bool keeps);
+
+/// InterfaceTerms of the pairs of bodies since they were last taken (the work: since the start); impulses and
+/// areas begin anew.
+template <class Space, class T, int Dim>
+std::vector<double> take_interface_totals(ContactCore<Space, T, Dim>& s);
+
+/// The same as a checkpoint keeps them, and back from one.
+template <class Space, class T, int Dim>
+std::vector<double> save_interface_totals(const ContactCore<Space, T, Dim>& s);
+template <class Space, class T, int Dim>
+void restore_interface_totals(ContactCore<Space, T, Dim>& s, const std::vector<double>& saved);
+
+}  // namespace mpm
