@@ -7,6 +7,7 @@
 
 #include "checkpoint/checkpoint.hpp"
 #include "checkpoint/earlier.hpp"
+#include "common/velocity_fields.hpp"
 #include "data/column_terms.hpp"
 #include "data/side_terms.hpp"
 #include "data/site_terms.hpp"
@@ -21,7 +22,9 @@ constexpr std::size_t k_most_columns = 100;
 
 /// Whether an address (patch number in the grid with its ring, times cells of a patch, plus place) is that of
 /// a cell at most `ring` cells outside the mesh.
-bool in_mesh(long address, const MeshConfig& mesh, int dim, int ring) {
+bool in_mesh(long address, const Config& config, int fields, int ring) {
+  const MeshConfig& mesh = config.mesh;
+  const int dim = config.dim;
   const int edge = patch_edge(dim);
   long cells_of_patch = 1;
   for (int d = 0; d < dim; ++d) cells_of_patch *= edge;
@@ -33,7 +36,7 @@ bool in_mesh(long address, const MeshConfig& mesh, int dim, int ring) {
     if (cell < -ring || cell >= mesh.cells[d] + ring) return false;
     patch /= patches, place /= edge;
   }
-  return patch == 0;
+  return patch < fields;
 }
 
 /// The fields that the soil of every checkpoint has, with their components; restoring asks for those that
@@ -53,7 +56,8 @@ std::string missing_field(const SavedPoints& points, const Config& config) {
 std::string points_fault(const SavedPoints& points, const Config& config, const std::string& name) {
   if (const std::string missing = missing_field(points, config); !missing.empty())
     return "a checkpoint with a sound " + name + "/" + missing;
-  const auto inside = [&](long address) { return in_mesh(address, config.mesh, config.dim, 0); };
+  const int fields = velocity_fields(config).count;
+  const auto inside = [&](long address) { return in_mesh(address, config, fields, 0); };
   if (!std::all_of(points.address.begin(), points.address.end(), inside))
     return "a checkpoint whose " + name + " is inside the mesh";
   for (const SavedField& field : points.fields) {
@@ -133,8 +137,9 @@ std::string state_fault(const SavedState& state, const Config& config) {
   const std::size_t energies = (config.output.energy ? k_saved_energy : 0) + (config.loads.empty() ? 0 : 1);
   if (state.energy.size() != energies)
     return "a checkpoint with an energy balance where the run has one, and the work of loads";
+  const int fields = velocity_fields(config).count;
   for (const long address : state.alone)
-    if (!in_mesh(address, config.mesh, config.dim, 0)) return "a checkpoint with a sound alone";
+    if (!in_mesh(address, config, fields, 0)) return "a checkpoint with a sound alone";
   const std::size_t rigids = config.rigids.size();
   const std::size_t rows = state.impulse.address.size() * rigids, values = state.impulse.values.size();
   const std::size_t at_sites =
@@ -143,8 +148,7 @@ std::string state_fault(const SavedState& state, const Config& config) {
     return "a checkpoint with a sound impulse";
   const int ring = patch_edge(config.dim);
   for (const long address : state.impulse.address)
-    if (!in_mesh(address, config.mesh, config.dim, 2 * ring))
-      return "a checkpoint with a sound impulse_address";
+    if (!in_mesh(address, config, fields, 2 * ring)) return "a checkpoint with a sound impulse_address";
   const auto finite = [](double x) { return std::isfinite(x); };
   if (state.sections.size() != 2 * planes_of(config).size() ||
       !std::all_of(state.sections.begin(), state.sections.end(), finite))

@@ -81,8 +81,7 @@ void read_shear(OptionReader& in, const Config& config, ContactPairConfig& pair)
 void read_pair(OptionReader& in, const Config& config, ContactPairConfig& pair) {
   in.section("Each contact pair NAME, the names of its bodies with an underscore");
   in.word({.name = pair.name + "_contact",
-           .meaning = "slide: the bodies part, and shear as the options below say; weld: they move as one",
-           .change = k_by_choice},
+           .meaning = "slide: the bodies part, and shear as the options below say; weld: they move as one"},
           Words<bool>{{"slide", false}, {"weld", true}}, pair.welded);
   if (!pair.welded || in.listing()) return read_shear(in, config, pair);
   for (const char* key : {"_friction", "_adhesion", "_shear_limit", "_shear_fraction"})
