@@ -160,14 +160,13 @@ std::vector<int> count_by_patch(const Core<Space, T, Dim>& s) {
 
 template <class Space, class T, int Dim>
 std::vector<std::uint8_t> occupied_by_field(const Core<Space, T, Dim>& s) {
-  const Kokkos::View<std::uint8_t*, typename Space::memory_space> marks("mpm::occupied_by_field",
-                                                                        s.grid.patch_count());
+  const Kokkos::View<int*, typename Space::memory_space> marks("mpm::occupied_by_field",
+                                                               s.grid.patch_count());
   const auto address = s.soil.address;
   Kokkos::parallel_for(
       "mpm::occupied_by_field", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.all),
       KOKKOS_LAMBDA(int p) {
-        if (address(p) >= 0)
-          Kokkos::atomic_store(&marks(address(p) / Patch<Dim>::cells), static_cast<std::uint8_t>(1));
+        if (address(p) >= 0) Kokkos::atomic_store(&marks(address(p) / Patch<Dim>::cells), 1);
       });
   s.space.fence("mpm::occupied_by_field");
   const auto host = mirror_of(marks);
