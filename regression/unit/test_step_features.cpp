@@ -35,6 +35,10 @@ void put(State_& s, Feature f) {
     case Feature::gravity_table: s.timed.moves_gravity = true; break;
     case Feature::side_table: s.timed.moves_sides = true; break;
     case Feature::contact_sites: s.at_sites.in_use = true; break;
+    case Feature::interfaces:
+      s.interfaces.fields = 2;
+      s.interfaces.laws = decltype(s.interfaces.laws)("laws", 4);
+      break;
     case Feature::pushed_mass_normals: s.rigid_dynamic = s.mass_normals = true; break;
     case Feature::turning_rigids: s.rigid_turns = true; break;
     case Feature::many_rigids: s.contact.near.listed = true; break;
