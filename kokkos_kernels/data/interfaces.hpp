@@ -3,24 +3,21 @@
 
 #include <limits>
 
+#include "base/most_fields.hpp"
 #include "base/spaces.hpp"
 #include "base/types.hpp"
 
 namespace mpm {
 
-/// Most velocity fields of a run.
-inline constexpr int k_most_fields = 8;
-
-/// What acts between the soil of two velocity fields.
+/// Law of contact between the soil of two velocity fields.
 struct InterfaceLaw {
-  bool welded = true;     // they move as one where they share nodes
-  bool separates = true;  // they may part; else contact pulls as well
-  double friction = 0;    // -, Coulomb coefficient
-  double adhesion = 0;    // Pa, shear stress at no normal stress, beside friction
+  bool welded = true;   // the fields move as one where they share nodes
+  double friction = 0;  // -, Coulomb coefficient; negative: neither friction nor adhesion is given
+  double adhesion = 0;  // Pa, shear stress at no normal stress, beside friction
   double shear_limit = std::numeric_limits<double>::infinity();  // Pa
   double shear_fraction = -1;  // -, shear limit over the strength of the weaker soil; negative: none is given
-  int row = -1;                // of the pair of bodies that has this law; -1: none has
-  int first = 1;               // 1: the first body of the pair has the lower field; else -1
+  int row = -1;                // of the pair of bodies that has this law; -1: no pair has it
+  int sign = 1;                // of forces on the lower field in the row: -1 where the pair lists it second
 };
 
 /// Sums over the nodes of an interface: impulse on the first body [N s], area in touch times time [m2 s] and
@@ -30,8 +27,8 @@ struct InterfaceTerms {
   static constexpr int impulse = 0, area = Dim, work = Dim + 1, size = Dim + 2;
 };
 
-/// Nodes that several velocity fields share, and what acts there. A place is a patch of the mesh in which two
-/// fields or more are active.
+/// Nodes that several velocity fields share, with the laws and the forces there. A place is a patch of the
+/// mesh in which two fields or more are active.
 template <class Space, int Dim>
 struct Interfaces {
   using Memory = typename Space::memory_space;
@@ -40,8 +37,8 @@ struct Interfaces {
   int count = 0;                             // places, until the next rebuild
   Kokkos::View<InterfaceLaw*, Memory> laws;  // of fields a and b: a * fields + b
   Kokkos::View<int*, Memory> slots;          // [place][field]; -1: the field is not active there
-  /// Patches that this rank answers for, as if they held soil: that of another field is there, and soil of
-  /// other ranks reaches their nodes.
+  /// Patches of a field that this rank takes as holding soil, though they hold none: they hold soil of
+  /// another field, and soil of other ranks may reach their nodes.
   Kokkos::View<int*, Memory> borrowed;
   Kokkos::View<int*, Memory> entry;      // by slot: its place * fields + field, from 1 on; 0: none
   Kokkos::View<double*, Memory> force;   // N, of other fields on a node: [place][field][component][cell]

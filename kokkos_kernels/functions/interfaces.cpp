@@ -66,13 +66,9 @@ struct PressFields {
       apply_walls(update.places.grid, node.sides, side.velocity);
       cancel_at_rollers(update.places.grid, node.sides, side.area);
       side.volume = node.boundary[B::volume];
-      side.strength = has_strength ? strength_at(node.i) : T(0);
+      side.strength = has_strength ? update.mean_strength(node.i) : T(0);
     }
     return count;
-  }
-  KOKKOS_INLINE_FUNCTION T strength_at(int i) const {
-    const T volume = update.nodes.strength(i, StrengthTerms::volume);
-    return volume > 0 ? update.nodes.strength(i, StrengthTerms::strength) / volume : T(0);
   }
 
   KOKKOS_INLINE_FUNCTION const InterfaceLaw& law_of(const Side& a, const Side& b) const {
@@ -148,7 +144,8 @@ struct PressFields {
       if (round == 0) first = largest;
     }
   }
-  /// Brings two fields together; the largest component of the impulse [N s].
+  /// Takes contact, or the weld, of two fields into their velocities and forces; returns the largest
+  /// component of the impulse [N s].
   KOKKOS_INLINE_FUNCTION T press(Side& a, Side& b, T face, double* sums) const {
     const InterfaceLaw& law = law_of(a, b);
     const T spacing = update.places.grid.spacing;
@@ -175,8 +172,7 @@ struct PressFields {
   KOKKOS_INLINE_FUNCTION void add(const InterfaceLaw& law, const InterfaceImpulse<T, Dim>& impulse,
                                   double* sums) const {
     double* const own = sums + law.row * Terms::size * cells;
-    for (int d = 0; d < Dim; ++d)
-      own[(Terms::impulse + d) * cells] += law.first * double(impulse.on_first[d]);
+    for (int d = 0; d < Dim; ++d) own[(Terms::impulse + d) * cells] += law.sign * double(impulse.on_first[d]);
     own[Terms::area * cells] += double(impulse.area) * update.dt;
     own[Terms::work * cells] += impulse.work;
   }

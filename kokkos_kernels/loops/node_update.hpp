@@ -456,9 +456,12 @@ struct UpdateNodes {
   /// Largest shear stress of the interface at node i [Pa], infinite where only the friction limits.
   KOKKOS_INLINE_FUNCTION T shear_limit(const ContactLaw& law, int i) const {
     if (law.shear_fraction < 0) return static_cast<T>(law.shear_limit);
+    return static_cast<T>(law.shear_fraction) * mean_strength(i);
+  }
+  /// Mean strength of the soil at node i [Pa].
+  KOKKOS_INLINE_FUNCTION T mean_strength(int i) const {
     const T volume = nodes.strength(i, StrengthTerms::volume);
-    if (!(volume > 0)) return 0;
-    return static_cast<T>(law.shear_fraction) * (nodes.strength(i, StrengthTerms::strength) / volume);
+    return volume > 0 ? nodes.strength(i, StrengthTerms::strength) / volume : T(0);
   }
 
   /// Place of a node [m], by component.

@@ -26,8 +26,8 @@ struct Meeting {
   T gap, area;            // m, negative where they overlap; m2
 };
 
-/// The meeting of fields a and b, whose boundaries at the node are known; false where they have none, as deep
-/// in soil. spacing [m], face [m2]: of a cell. The normal is that of the boundary which covers more of the
+/// Normal, gap and area between fields a and b at a node; false where neither has a boundary, as deep in
+/// soil. spacing [m], face [m2]: of a cell. The normal is that of the boundary which covers more of the
 /// node's cells: the corner of a block on flat ground takes the ground's.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool meet(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b, T spacing,
@@ -65,34 +65,32 @@ KOKKOS_INLINE_FUNCTION T shear_bound(const InterfaceLaw& law, const InterfaceSid
   if (law.shear_fraction >= 0) limit = T(law.shear_fraction) * Kokkos::fmin(a.strength, b.strength);
   if (law.shear_limit < none) limit = Kokkos::fmin(limit, T(law.shear_limit));
   const T by_area = limit < none ? limit * area * dt : none;
-  if (law.friction < 0) return by_area;  // none is given
-  const T coulomb = T(law.friction) * Kokkos::fmax(T(0), normal) + T(law.adhesion) * area * dt;
+  if (law.friction < 0) return by_area;
+  const T coulomb = T(law.friction) * normal + T(law.adhesion) * area * dt;
   return Kokkos::fmin(by_area, coulomb);
 }
 
-/// What a law does between fields a and b in a step of dt [s]. A gap closes before contact acts: the fields
-/// may approach by it. Contact is inelastic.
+/// Impulses of a law between fields a and b in a step of dt [s]. Fields may approach by their gap. Contact is
+/// inelastic.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION InterfaceImpulse<T, Dim> impulse_between(const InterfaceLaw& law,
                                                                 const InterfaceSide<T, Dim>& a,
                                                                 const InterfaceSide<T, Dim>& b,
                                                                 const Meeting<T, Dim>& at, T spacing, T dt) {
-  constexpr T k_pulls = T(0.5), k_shears = T(0.15);  // cells, gaps within which they act
+  constexpr T k_shears = T(0.15);  // cells, gap within which shear acts without a normal impulse
   InterfaceImpulse<T, Dim> out;
   const T mass = a.mass * b.mass / (a.mass + b.mass);
   Vector<T, Dim> slip;
   for (int d = 0; d < Dim; ++d) slip[d] = a.velocity[d] - b.velocity[d];
   const T approach = dot(slip, at.normal);
-  T normal = mass * (approach - Kokkos::fmax(T(0), at.gap) / dt);
-  if (!law.separates && at.gap < k_pulls * spacing) normal = mass * approach;
-  if (law.separates || at.gap >= k_pulls * spacing) normal = Kokkos::fmax(T(0), normal);
-  if (!(normal != 0 || at.gap < k_shears * spacing)) return out;
+  const T normal = mass * Kokkos::fmax(T(0), approach - Kokkos::fmax(T(0), at.gap) / dt);
+  if (!(normal > 0 || at.gap < k_shears * spacing)) return out;
   for (int d = 0; d < Dim; ++d) slip[d] -= approach * at.normal[d];
   const T speed = Kokkos::sqrt(dot(slip, slip));
   const T shear = Kokkos::fmin(mass * speed, shear_bound(law, a, b, normal, at.area, dt));
   const T along = speed > 0 ? shear / speed : T(0);
   for (int d = 0; d < Dim; ++d) out.on_first[d] = -normal * at.normal[d] - along * slip[d];
-  if (normal != 0 || shear > 0) out.area = at.area;
+  if (normal > 0 || shear > 0) out.area = at.area;
   out.work = shear * (speed - shear / (2 * mass));
   return out;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What acts between the velocity fields of deformable bodies, to the device.
+// Laws of contact between the velocity fields of deformable bodies, to the device.
 
 #include <vector>
 

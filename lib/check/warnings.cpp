@@ -248,6 +248,7 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
   warn_of_gravity(config, lines);
   warn_of_water(config, lines);
   for (const std::string& line : warnings_of_excavations(config)) lines.push_back(line);
+  for (const std::string& line : warnings_of_pairs(config)) lines.push_back(line);
   std::vector<char> warned(config.materials.size());
   for (const BodyConfig& body : config.bodies) {
     warn_of_tension(body, config.dim, lines);

@@ -212,7 +212,7 @@ void warn_of_gradient(const RigidConfig& rigid, Lines& lines) {
 void warn_of_narrow_faces(const Config& config, const RigidConfig& rigid, Lines& lines) {
   if (!rigid.contact_at_sites || is_wide_for_sites(rigid.shape, config.mesh, config.dim)) return;
   const double cells = narrowest(rigid.shape, config.mesh, config.dim) / config.mesh.spacing;
-  const std::string what = cells < 2 * (1 - 1e-6)
+  const std::string what = cells < k_wide_for_sites * (1 - 1e-6)
                                ? formatted("the rigid is %.3g cells across", cells)
                                : std::string("a twentieth of it or more is less than 2 cells thick");
   lines.push_back(

@@ -80,6 +80,28 @@ bool is_pair(const Config& config, const BodyConfig& one, const BodyConfig& othe
 
 }  // namespace
 
+std::vector<std::string> warnings_of_pairs(const Config& config) {
+  constexpr double k_least = 2;  // cells; both faces of a thinner body reach the same nodes
+  std::vector<std::string> lines;
+  for (std::size_t b = 0; b < config.bodies.size(); ++b) {
+    const BodyConfig& body = config.bodies[b];
+    const auto slides = [&](const ContactPairConfig& pair) {
+      return !pair.welded && std::count(pair.bodies.begin(), pair.bodies.end(), static_cast<int>(b)) > 0;
+    };
+    if (body.shape.kind == ShapeKind::particles ||
+        std::none_of(config.contact_pairs.begin(), config.contact_pairs.end(), slides))
+      continue;
+    const double cells = narrowest(body.shape, config.mesh, config.dim) / config.mesh.spacing;
+    if (cells < k_least * (1 - 1e-6))
+      lines.push_back(
+          formatted("warning: body %s of -contact_pairs is %.3g cells across; below %g cells its two faces "
+                    "share nodes, "
+                    "and contact takes the wrong normals: take smaller cells",
+                    body.name.c_str(), cells, k_least));
+  }
+  return lines;
+}
+
 std::string note_of_touching(const Config& config) {
   constexpr std::size_t k_most = 8;
   std::vector<std::string> names;

@@ -9,6 +9,9 @@ namespace mpm {
 /// Excavations of a stage that fill with water: a line for each ("warning: ...").
 std::vector<std::string> warnings_of_excavations(const Config& config);
 
+/// Warnings of bodies of -contact_pairs that are too thin for their cells.
+std::vector<std::string> warnings_of_pairs(const Config& config);
+
 /// Line of the log for deformable bodies that touch or may meet; empty where none do.
 std::string note_of_touching(const Config& config);
 

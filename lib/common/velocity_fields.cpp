@@ -38,4 +38,13 @@ VelocityFields velocity_fields(const Config& config) {
   return fields;
 }
 
+std::vector<ContactPairConfig> pairs_of_fields(const Config& config) {
+  const VelocityFields fields = velocity_fields(config);
+  std::vector<ContactPairConfig> pairs = config.contact_pairs;
+  std::erase_if(pairs, [&](const ContactPairConfig& pair) {
+    return fields.of_body[pair.bodies[0]] == fields.of_body[pair.bodies[1]];
+  });
+  return pairs;
+}
+
 }  // namespace mpm

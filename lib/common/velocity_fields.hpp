@@ -3,18 +3,22 @@
 
 #include <vector>
 
+#include "base/most_fields.hpp"
 #include "mpm/config.hpp"
 
 namespace mpm {
 
-inline constexpr int k_most_velocity_fields = 8;
-
-/// The velocity field of each body, and how many there are. A body that -contact_pairs names has one of its
-/// own; all others share the first.
+/// Velocity field of each body, and number of fields. A body that -contact_pairs names has a field of its
+/// own, or that of the body with which it is welded, if no other pair has either; all others share the first
+/// field.
 struct VelocityFields {
   std::vector<int> of_body;
   int count = 1;
 };
 VelocityFields velocity_fields(const Config& config);
+
+/// Pairs whose two bodies have fields of their own, in the order of Config::contact_pairs: the history has
+/// rows of them.
+std::vector<ContactPairConfig> pairs_of_fields(const Config& config);
 
 }  // namespace mpm

@@ -4,6 +4,7 @@
 
 #include "common/rigid_contact.hpp"
 #include "common/text.hpp"
+#include "common/velocity_fields.hpp"
 #include "output/probes.hpp"
 
 namespace mpm {
@@ -92,7 +93,7 @@ std::vector<HistoryColumn> history_columns(const Config& config) {
     to.add_rotation(joint.name + "_moment");
     for (const char* quantity : {"_peak_force", "_work"}) to.add(joint.name + quantity);
   }
-  for (const ContactPairConfig& pair : config.contact_pairs) {
+  for (const ContactPairConfig& pair : pairs_of_fields(config)) {
     to.begin("contact_pairs", "pair", pair.name);
     to.add_vector(pair.name + "_force_");
     for (const char* quantity : {"_area", "_friction_work"}) to.add(pair.name + quantity);

@@ -187,7 +187,6 @@ class Decomposition {
   Owners owners_;
   Kokkos::View<int*, Memory> owner_;
   std::vector<std::uint8_t> occupied_;  // by patch, on all ranks together
-  std::vector<long> borrowed_;          // patches of all ranks, as Interfaces::borrowed
 
   HaloLists<Space> lists_;
   Transport<Space, T> transport_;

@@ -26,6 +26,14 @@ void fill(View& view, const std::vector<Value>& values) {
   copy(Kokkos::subview(view, Kokkos::make_pair(std::size_t(0), values.size())), host);
 }
 
+/// Sets the marks that any rank has set.
+PetscErrorCode share_marks(MPI_Comm comm, std::vector<std::uint8_t>* marks) {
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, marks->data(), static_cast<int>(marks->size()), MPI_UNSIGNED_CHAR,
+                             MPI_MAX, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 // Numbers of a rank in SavedState::bounds: bound, increment, whether a report is under way, the two numbers
 // of it, sum, and the two numbers of the next report.
 constexpr int k_bounds = k_saved_bounds;
@@ -139,17 +147,16 @@ PetscErrorCode Decomposition<Space, T, Dim>::migrate(State_& s, long* moved) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Finds the patches in which soil of one velocity field meets nodes of another that particles of other ranks
-/// may reach: their rank takes part in the sums of both fields.
+/// Finds the patches that hold soil on any rank (occupied_). A patch with soil of one velocity field counts
+/// as occupied by another field that reaches its nodes: its rank takes part in the sums of both.
 template <class Space, class T, int Dim>
 PetscErrorCode Decomposition<Space, T, Dim>::borrow_patches(State_& s) {
   PetscFunctionBeginUser;
   std::vector<std::uint8_t> occupied = occupied_by_field(s);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, occupied.data(), static_cast<int>(occupied.size()),
-                             MPI_UNSIGNED_CHAR, MPI_MAX, comm_));
+  PetscCall(share_marks(comm_, &occupied));
   const long count = grid_.count();
   std::vector<int> own;
-  borrowed_.clear();
+  occupied_ = occupied;
   for (long patch = 0; patch < count; ++patch)
     for (int field = 0; field < grid_.fields; ++field) {
       const long n = field * count + patch;
@@ -158,7 +165,7 @@ PetscErrorCode Decomposition<Space, T, Dim>::borrow_patches(State_& s) {
       if (!met || occupied[n] != 0) continue;
       grid_.for_each_around(n, [&](long at, const std::array<int, 3>&) { near |= occupied[at] != 0; });
       if (!near) continue;
-      borrowed_.push_back(n);
+      occupied_[n] = 1;
       if (owners_[patch] == rank_) own.push_back(static_cast<int>(n));
     }
   s.interfaces.borrowed = decltype(s.interfaces.borrowed)("mpm::borrowed", own.size());
@@ -173,12 +180,11 @@ PetscErrorCode Decomposition<Space, T, Dim>::make_lists(State_& s) {
   const int holding = s.soil.bins.last_active;
   const auto held = mirror_of(s.soil.bins.active_slots, holding);
   const std::vector<long> slots(number.data(), number.data() + s.patches.slots);
-  occupied_.assign(grid_.fields * grid_.count(), 0);
-  for (int n = 0; n < holding; ++n) occupied_[slots[held(n)]] = 1;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, occupied_.data(), static_cast<int>(occupied_.size()),
-                             MPI_UNSIGNED_CHAR, MPI_MAX, comm_));
-
-  for (const long n : borrowed_) occupied_[n] = 1;
+  if (!s.interfaces.in_use()) {  // else borrow_patches has found them
+    occupied_.assign(grid_.fields * grid_.count(), 0);
+    for (int n = 0; n < holding; ++n) occupied_[slots[held(n)]] = 1;
+    PetscCall(share_marks(comm_, &occupied_));
+  }
   const HaloPlan plan = plan_halo(grid_, owners_, occupied_, slots, rank_);
   lists_.sent = static_cast<int>(plan.node.size());
   lists_.shared = static_cast<int>(plan.shared.size());

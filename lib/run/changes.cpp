@@ -137,7 +137,7 @@ void keep_contact(const std::vector<EffectiveOption>& then, Config& config,
     if (sites && (gap_given || config.device_memory_limit)) continue;
     own->value = former->value;
     rigid.contact_at_sites = sites;
-    rigid.contact_gap_scaling = !sites && rigid.separates && rigid.contact_normal == ContactNormal::surface;
+    rigid.contact_gap_scaling = rigid.scales_by_gap();
     if (sites) std::erase_if(now, [&](const auto& o) { return o.name.starts_with(gap); });
   }
 }

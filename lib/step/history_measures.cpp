@@ -184,7 +184,6 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::measure_interfaces(double interva
     pair.area = scale * totals[at + Terms::area];
     pair.work = totals[at + Terms::work];
   }
-  row->interfaces.resize(run_.config.contact_pairs.size());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -24,16 +24,14 @@ InterfaceInput interface_input(const Config& config) {
   InterfaceInput in;
   const VelocityFields fields = velocity_fields(config);
   if (fields.count < 2) return in;
-  in.fields = fields.count, in.rows = static_cast<int>(config.contact_pairs.size());
+  const std::vector<ContactPairConfig> pairs = pairs_of_fields(config);
+  in.fields = fields.count, in.rows = static_cast<int>(pairs.size());
   in.laws.resize(std::size_t(in.fields) * in.fields);
-  for (std::size_t n = 0; n < config.contact_pairs.size(); ++n) {
-    const ContactPairConfig& pair = config.contact_pairs[n];
-    const int a = fields.of_body[pair.bodies[0]], b = fields.of_body[pair.bodies[1]];
-    if (a == b) continue;
-    InterfaceLaw& law = in.laws[a * in.fields + b];
-    law = law_of(pair, static_cast<int>(n));
-    law.first = a < b ? 1 : -1;
-    in.laws[b * in.fields + a] = law;
+  for (int n = 0; n < in.rows; ++n) {
+    const int a = fields.of_body[pairs[n].bodies[0]], b = fields.of_body[pairs[n].bodies[1]];
+    InterfaceLaw law = law_of(pairs[n], n);
+    law.sign = a < b ? 1 : -1;
+    in.laws[a * in.fields + b] = in.laws[b * in.fields + a] = law;
   }
   return in;
 }

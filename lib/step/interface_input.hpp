@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// What acts between the velocity fields of a run; nothing where it has one.
+/// Laws between the velocity fields of a run; none where it has one field.
 InterfaceInput interface_input(const Config& config);
 
 }  // namespace mpm

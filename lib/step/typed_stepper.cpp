@@ -202,6 +202,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::save(SavedState* saved) const {
   PetscCallCXX(saved->pairs = save_pairs(run_.state));
   PetscCallCXX(saved->part_impulses = save_part_impulses(run_.state));
   PetscCallCXX(saved->interfaces = save_interface_totals(run_.state));
+  PetscCall(run_.sum(saved->interfaces.data(), static_cast<int>(saved->interfaces.size())));
   PetscCall(snapshots_.save_for_starts(saved));
   ids_.save(saved);
   PetscCall(energy_.save(saved));
@@ -233,7 +234,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   PetscCallCXX(unfit.what = take_saved(s, saved));
   PetscCallCXX(restore_pairs(s, saved.pairs));
   PetscCallCXX(restore_part_impulses(s, saved.part_impulses));
-  PetscCallCXX(restore_interface_totals(s, saved.interfaces));
+  if (run_.is_first()) PetscCallCXX(restore_interface_totals(s, saved.interfaces));
   links_.restore(saved);
   loads_.restore(saved);
   energy_.restore(saved);

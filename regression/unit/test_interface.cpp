@@ -1,115 +1,103 @@
-// The interface of a rigid and the soil: shear as a fraction of the strength, and planes of symmetry.
+// Contact between two velocity fields at a node.
 
+#include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 
-#include "compare.hpp"
+#include "physics/interface.hpp"
 
-using namespace mpm;
-using namespace mpm::test;
-
+namespace mpm {
 namespace {
 
-/// A plate that rubs soil, whose strength at a height [cells] is strength(height) [Pa].
-template <int Dim, class Strength>
-Cloud rubbed_soil(double spacing, Strength&& strength) {
-  Cloud cloud;
-  cloud.grid = grid_of<Dim>({20, 20, 20}, spacing, Wall::roller);
-  cloud.materials = clays();
-  cloud.bodies = {body_of<Dim>(lattice<Dim>({0, 0, 0}, {20, 12, 12}, 2, spacing), 2, spacing, 1)};
-  BodyInput& body = cloud.bodies[0];
-  for (std::size_t p = 0; p < strength_of(body).size(); ++p)
-    strength_of(body)[p] = strength(body.position[p * Dim + Dim - 1] / spacing);
-  // OverlapStream the lattice, where round-off would decide which nodes have a normal.
-  std::array<double, 3> low{5.07, 5.11, 5.16}, high{13.07, 13.11, 13.16};
-  low[Dim - 1] = 11.8, high[Dim - 1] = 13;
-  RigidInput plate = rigid_of<Dim>(lattice<Dim>(low, high, 4, spacing), 4, spacing);
-  plate.surface_normal = true;
-  plate.velocity = {1, -0.5, -0.5};
-  plate.reach = 0.15 * spacing;
-  for (int d = 0; d < 3; ++d) {
-    plate.surface.half[d] = (high[d] - low[d]) * spacing / 2;
-    plate.surface.centre[d] = (high[d] + low[d]) * spacing / 2;
-  }
-  plate.surface.radius = spacing / 2;
-  cloud.rigids = {plate};
-  return cloud;
+using Catch::Approx;
+using Side = InterfaceSide<double, 2>;
+
+constexpr double k_spacing = 0.1, k_step = 1e-3;
+
+/// A field of so much mass, whose face through the node is normal to y and covers the node's cells.
+Side side_of(double mass, double out, Vector<double, 2> velocity) {
+  Side side{};
+  side.mass = mass, side.velocity = velocity, side.strength = 1e3;
+  side.area = {0, out * k_spacing};
+  side.volume = k_spacing * k_spacing / 2;
+  return side;
+}
+
+Meeting<double, 2> meeting_of(const Side& a, const Side& b) {
+  Meeting<double, 2> at{};
+  REQUIRE(meet(a, b, k_spacing, k_spacing, at));
+  return at;
+}
+
+InterfaceLaw law_with(double friction) {
+  InterfaceLaw law;
+  law.welded = false, law.friction = friction;
+  return law;
+}
+
+InterfaceImpulse<double, 2> impulse_of(const InterfaceLaw& law, const Side& a, const Side& b) {
+  return impulse_between(law, a, b, meeting_of(a, b), k_spacing, k_step);
 }
 
 }  // namespace
 
-TEST_CASE("a fraction of one strength is the limit that it comes to", "[interface]") {
-  for_each_build([](auto build) {
-    using B = decltype(build);
-    for (const bool surface : {true, false})
-      for (P2G how : k_strategies) {
-        Cloud cloud = rubbed_soil<B::dim>(0.1, [](double) { return 3000.; });
-        cloud.rigids[0].surface_normal = surface;
-        if (!surface) cloud.rigids[0].reach = 0;
-        cloud.rigids[0].shear_limit = 0.4 * 3000;
-        auto limited = state_of<B>(cloud, how);
-        cloud.rigids[0].shear_limit = 0;
-        auto smooth = state_of<B>(cloud, how);
-        cloud.rigids[0].shear_fraction = 0.4;
-        auto shared = state_of<B>(cloud, how);
-        // A node that was in contact has no relative velocity but round-off, which then decides whether it
-        // still touches. With mass gradients and sums of threads or teams in any order, only the first step
-        // is the same twice.
-        const bool any_order = how == P2G::atomic ||
-                               (is_device<typename B::Space> && how != P2G::gather && how != P2G::sequential);
-        const int steps = any_order && !surface ? 1 : 6;
-        for (auto* s : {&limited, &smooth, &shared}) run_steps(*s, 1e-4, steps);
-        INFO(build.name() << ' ' << word_of(how) << (surface ? " surface" : " gradient"));
-        CHECK(largest_difference(soil_fields(shared), soil_fields(limited)) < B::of(1e-11, 1e-3));
-        CHECK(largest_difference(soil_fields(shared), soil_fields(smooth)) > (steps == 1 ? 3e-3 : 1e-2));
-      }
-  });
+TEST_CASE("fields that approach in touch leave with one velocity along the normal", "[interface]") {
+  const Side a = side_of(2, 1, {0.3, 1}), b = side_of(6, -1, {0, -1});
+  const Meeting<double, 2> at = meeting_of(a, b);
+  CHECK(at.normal[1] == Approx(1));
+  CHECK(at.gap == Approx(0).margin(1e-12));
+  CHECK(at.area == Approx(k_spacing));
+  const auto impulse = impulse_of(law_with(0), a, b);
+  CHECK(a.velocity[1] + impulse.on_first[1] / a.mass == Approx(b.velocity[1] - impulse.on_first[1] / b.mass));
+  CHECK(impulse.on_first[0] == Approx(0).margin(1e-15));
 }
 
-TEST_CASE("a strength that grows with depth is that of the depth at each node near a rigid", "[interface]") {
-  for_each_build([](auto build) {
-    using B = decltype(build);
-    constexpr int Dim = B::dim;
-    const auto strength = [](double height) { return 5000 - 300 * height; };
-    for (P2G how : k_strategies) {
-      Cloud cloud = rubbed_soil<Dim>(0.1, strength);
-      cloud.rigids[0].shear_fraction = 1;
-      auto s = state_of<B>(cloud, how);
-      for (int n = 0; n < 2; ++n) {  // the second finds the sums of the first
-        interpolate(s);
-        REQUIRE(strength_to_nodes<typename B::Space, typename B::real, Dim>(s, nullptr) == PETSC_SUCCESS);
-      }
-      const Table field = nodes_of(s, s.nodes.strength);
-      double largest = 0;
-      for (int z = 8; z <= 11; ++z)
-        for (int x = 7; x <= 11; ++x) {
-          Coord<Dim> node{x, z};
-          if constexpr (Dim == 3) node = {x, 8, z};
-          const double* value = &field.value[s.grid.address_of(node) * field.width];
-          const double got = value[StrengthTerms::strength] / value[StrengthTerms::volume];
-          largest = std::max(largest, std::fabs(got / strength(z) - 1));
-        }
-      INFO(build.name() << ' ' << word_of(how));
-      CHECK(largest < B::of(1e-12, 1e-5));
-    }
-  });
+TEST_CASE("fields that part feel nothing, and a gap closes before they feel each other", "[interface]") {
+  const Side a = side_of(2, 1, {0.3, -1}), b = side_of(6, -1, {0, 1});
+  CHECK(impulse_of(law_with(0.5), a, b).on_first[1] == 0);
+  Side low = side_of(2, 1, {0, 1}), high = side_of(6, -1, {0, 0});
+  low.area[1] *= 0.8, low.volume *= 0.64;  // its face is 0.2 cells below the node
+  CHECK(meeting_of(low, high).gap == Approx(0.2 * k_spacing));
+  CHECK(impulse_of(law_with(0.5), low, high).on_first[1] == 0);
+  low.velocity[1] = 1.5 * 0.2 * k_spacing / k_step;
+  const double mass = 2.0 * 6 / 8;
+  CHECK(impulse_of(law_with(0), low, high).on_first[1] == Approx(-mass * low.velocity[1] / 3));
 }
 
-TEST_CASE("a rigid that a plane of symmetry cuts does not move across it by force", "[interface]") {
-  for_each_build([](auto build) {
-    using B = decltype(build);
-    constexpr int Dim = B::dim;
-    for (const bool held : {false, true}) {
-      Cloud cloud = rubbed_soil<Dim>(0.1, [](double) { return 3000.; });
-      RigidInput& plate = cloud.rigids[0];
-      plate.dynamic = true, plate.velocity = {}, plate.force = {1e3, 2e3, 3e3};
-      plate.held[0] = held;
-      auto s = state_of<B>(cloud, P2G::tile);
-      run_steps(s, 1e-4, 20);
-      const auto rigid = on_host(s.rigids)(0);
-      INFO(build.name());
-      CHECK((rigid.motion.pose.displacement[0] == 0) == held);
-      CHECK((rigid.motion.velocity[0] == 0) == held);
-      for (int d = 1; d < Dim; ++d) CHECK(rigid.motion.pose.displacement[d] > 0);
-    }
-  });
+TEST_CASE("shear is the least of what stops the slip, friction with adhesion, and the limit", "[interface]") {
+  const Side a = side_of(2, 1, {3, 1}), b = side_of(6, -1, {0, -1});
+  const double mass = 1.5, normal = mass * 2, stops = mass * 3;
+  CHECK(impulse_of(law_with(0.5), a, b).on_first[0] == Approx(-0.5 * normal));
+  CHECK(impulse_of(law_with(9), a, b).on_first[0] == Approx(-stops));
+  InterfaceLaw law = law_with(0.5);
+  law.adhesion = 2000;
+  CHECK(impulse_of(law, a, b).on_first[0] == Approx(-0.5 * normal - 2000 * k_spacing * k_step));
+  law.shear_fraction = 0.5;  // of 1 kPa
+  CHECK(impulse_of(law, a, b).on_first[0] == Approx(-500 * k_spacing * k_step));
+  InterfaceLaw limit = law_with(-1);
+  limit.shear_limit = 800;
+  CHECK(impulse_of(limit, a, b).on_first[0] == Approx(-800 * k_spacing * k_step));
 }
+
+TEST_CASE("friction takes the kinetic energy of the slip that it stops", "[interface]") {
+  const Side a = side_of(2, 1, {3, 1}), b = side_of(6, -1, {0, -1});
+  const auto impulse = impulse_of(law_with(9), a, b);
+  CHECK(impulse.work == Approx(1.5 * 3 * 3 / 2));
+}
+
+TEST_CASE("the corner of a block on flat ground has the normal of the ground", "[interface]") {
+  Side corner = side_of(2, -1, {0, -1}), ground = side_of(6, 1, {0, 0});
+  corner.area = {0.5 * k_spacing, -0.5 * k_spacing}, corner.volume /= 2;
+  const Meeting<double, 2> at = meeting_of(corner, ground);
+  CHECK(at.normal[0] / at.normal[1] == Approx(0).margin(0.05));
+  CHECK(at.area < k_spacing);
+}
+
+TEST_CASE("welded fields leave with one velocity", "[interface]") {
+  const Side a = side_of(2, 1, {3, 1}), b = side_of(6, -1, {0, -1});
+  const auto impulse = weld(a, b);
+  for (int d = 0; d < 2; ++d)
+    CHECK(a.velocity[d] + impulse.on_first[d] / a.mass ==
+          Approx(b.velocity[d] - impulse.on_first[d] / b.mass));
+}
+
+}  // namespace mpm

@@ -181,6 +181,10 @@ struct RigidConfig {
     const bool driven = angular_velocity != Vec3{} || angular_velocity_table || angle_table;
     return turns_in_run || free_to || (motion != Motion::fixed && driven);
   }
+  /// Whether contact decreases with the gap by default: the gap is known, and may open.
+  bool scales_by_gap() const {
+    return separates && contact_normal == ContactNormal::surface && !contact_at_sites;
+  }
   /// Whether springs or dashpots hold it.
   bool is_sprung() const {
     return stiffness != std::array<double, 6>{} || viscosity != std::array<double, 6>{};

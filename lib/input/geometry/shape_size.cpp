@@ -189,12 +189,11 @@ double narrowest(const Shape& shape, const MeshConfig& mesh, int dim) {
 }
 
 bool is_wide_for_sites(const Shape& shape, const MeshConfig& mesh, int dim) {
-  constexpr double k_wide = 2;  // cells; a face of 1.1 cells has one row of sites
   if (shape.kind == ShapeKind::disc) return true;
   if (shape.kind == ShapeKind::parts)
     return std::all_of(shape.parts.begin(), shape.parts.end(),
                        [&](const Shape& part) { return is_wide_for_sites(part, mesh, dim); });
-  const double least = k_wide * mesh.spacing * (1 - 1e-6);
+  const double least = k_wide_for_sites * mesh.spacing * (1 - 1e-6);
   if (narrowest(shape, mesh, dim) < least) return false;
   if (shape.kind == ShapeKind::stl) return !thinnest_twentieth(*shape.triangles, least);
   const Point2 lower{mesh.lower[0], mesh.lower[dim - 1]}, upper{mesh.upper[0], mesh.upper[dim - 1]};

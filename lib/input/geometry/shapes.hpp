@@ -75,6 +75,9 @@ Bounds within(Bounds bounds, const MeshConfig& mesh, int dim);
 /// bounds, along axes on which they end within the mesh. Infinite for a half plane.
 double narrowest(const Shape& shape, const MeshConfig& mesh, int dim);
 
+/// Least width of a shape with contact at sites [cells]: a face of 1.1 cells has one row of sites.
+inline constexpr double k_wide_for_sites = 2;
+
 /// Whether a shape has no flat faces so narrow that contact at sites, which keep off sharp edges by 0.55
 /// cells, may let soil through. Discs and half planes have no edges.
 bool is_wide_for_sites(const Shape& shape, const MeshConfig& mesh, int dim);

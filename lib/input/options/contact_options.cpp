@@ -34,8 +34,7 @@ void read_contact_points(OptionReader& in, RigidConfig& rigid) {
 /// The gap counts by default where it is known and may open.
 void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
   const std::string name = rigid.name + "_contact_gap_scaling";
-  rigid.contact_gap_scaling =
-      rigid.separates && rigid.contact_normal == ContactNormal::surface && !rigid.contact_at_sites;
+  rigid.contact_gap_scaling = rigid.scales_by_gap();
   if ((rigid.separates && !rigid.contact_at_sites) || in.listing())
     in.word(
         {.name = name,
@@ -76,10 +75,7 @@ void read_shear_fraction(OptionReader& in, const Config& config, RigidConfig& ri
                  .range = {.lowest = 0, .highest = 1},
                  .change = k_by_choice},
                 rigid.shear_fraction);
-  const auto strong = [&](const BodyConfig& body) {
-    return body.material < static_cast<int>(config.materials.size()) &&
-           has_strength(config.materials[body.material]);
-  };
+  const auto strong = [&](const BodyConfig& body) { return has_strength(config, body); };
   if (found && std::none_of(config.bodies.begin(), config.bodies.end(), strong))
     in.reject(name, "nothing here: no body has a material with a strength");
 }

@@ -17,7 +17,18 @@ int body_of(const Config& config, const std::string& name) {
   return found == config.bodies.end() ? -1 : static_cast<int>(found - config.bodies.begin());
 }
 
-/// What is wrong with a pair, as the end of "takes ..."; empty where it is sound.
+/// Fault of the name of a pair, with which its options and columns begin; empty where nothing else has it.
+std::string name_clash(const Config& config, const std::string& name) {
+  const auto has = [&](const auto& things) {
+    return std::any_of(things.begin(), things.end(),
+                       [&](const auto& thing) { return lower_case(thing.name) == lower_case(name); });
+  };
+  if (!has(config.materials) && !has(config.bodies) && !has(config.rigids) && !has(config.contact_pairs))
+    return "";
+  return "pairs whose options begin as those of nothing else; " + name + " is taken";
+}
+
+/// Fault of a pair, as the end of "takes ..."; empty where it is sound.
 std::string pair_fault(const Config& config, const std::vector<std::string>& words,
                        const ContactPairConfig& pair) {
   if (words.size() != 2) return k_form;
@@ -31,16 +42,13 @@ std::string pair_fault(const Config& config, const std::vector<std::string>& wor
   for (const ContactPairConfig& other : config.contact_pairs)
     if (std::minmax(pair.bodies[0], pair.bodies[1]) == std::minmax(other.bodies[0], other.bodies[1]))
       return "each pair once; " + other.name + " is there already";
-  return "";
+  return name_clash(config, pair.name);
 }
 
-/// Whether the soil of a body of a pair has a strength that a fraction of it may limit shear by.
+/// Whether both bodies of a pair have a strength, of which a fraction may limit the shear.
 bool has_strengths(const Config& config, const ContactPairConfig& pair) {
-  return std::all_of(pair.bodies.begin(), pair.bodies.end(), [&](int b) {
-    const int material = b < 0 ? -1 : config.bodies[b].material;
-    return material >= 0 && material < static_cast<int>(config.materials.size()) &&
-           has_strength(config.materials[material]);
-  });
+  return std::all_of(pair.bodies.begin(), pair.bodies.end(),
+                     [&](int b) { return has_strength(config, config.bodies[b]); });
 }
 
 /// The shear of the interface.
@@ -119,9 +127,9 @@ void read_contact_pairs(OptionReader& in, Config& config) {
     read_pair(in, config, pair);
     config.contact_pairs.push_back(pair);
   }
-  if (velocity_fields(config).count > k_most_velocity_fields)
-    in.reject(option.name, "pairs of at most " + std::to_string(k_most_velocity_fields) + " bodies, or of " +
-                               std::to_string(k_most_velocity_fields - 1) + " where there are others");
+  if (velocity_fields(config).count > k_most_fields)
+    in.reject(option.name, "pairs of at most " + std::to_string(k_most_fields) + " bodies, or of " +
+                               std::to_string(k_most_fields - 1) + " where there are others");
   for (const RigidConfig& rigid : config.rigids)
     if (!config.contact_pairs.empty() && rigid.contact_normal == ContactNormal::gradient)
       in.reject(rigid.name + "_contact_normal", "surface where there are -contact_pairs");

@@ -102,6 +102,8 @@ void check_starts(OptionReader& in, const MeshConfig& mesh, const Config& config
 
 /// Whether soil of a material has a strength, somewhere.
 bool has_strength(const MaterialConfig& material);
+/// Whether the material of a body is sound and has a strength.
+bool has_strength(const Config& config, const BodyConfig& body);
 
 /// The geometry and lattice of a body or rigid, where `body` says which. Whether all of it was sound. A file
 /// may list the particles of a body. The bodies before it have been read.

@@ -359,4 +359,9 @@ bool has_strength(const MaterialConfig& material) {
   return strength_at(law, -k_far) > 0 || strength_at(law, k_far) > 0;
 }
 
+bool has_strength(const Config& config, const BodyConfig& body) {
+  return body.material < static_cast<int>(config.materials.size()) &&
+         has_strength(config.materials[body.material]);
+}
+
 }  // namespace mpm

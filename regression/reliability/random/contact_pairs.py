@@ -13,6 +13,8 @@ from mpm_regression.folders import history
 
 class ContactPairs(Deck):
     strategies = ("tile", "tile", "gather", "sequential", "mosaic")
+    ranks = (1, 1, 2)
+    sums = tuple(f"{pair[0]}_{pair[1]}_" for pair in itertools.combinations("abcd", 2))
     apart = {"double": 1e-6, "single": 0.2}  # bodies that slide amplify round-off
 
     def make(self):
