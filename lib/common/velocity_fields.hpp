@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "base/most_fields.hpp"
 #include "mpm/config.hpp"
 
 namespace mpm {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/most_fields.hpp"
 #include "common/text.hpp"
 #include "common/velocity_fields.hpp"
 #include "input/options/groups.hpp"
