@@ -27,6 +27,12 @@ struct InterfaceTerms {
   static constexpr int impulse = 0, area = Dim, work = Dim + 1, size = Dim + 2;
 };
 
+/// At one node: force on the first body [N], normal out of it, and area [m2].
+template <int Dim>
+struct InterfaceTraction {
+  static constexpr int force = 0, normal = Dim, area = 2 * Dim, size = 2 * Dim + 1;
+};
+
 /// Nodes that several velocity fields share, with the laws and the forces there. A place is a patch of the
 /// mesh in which two fields or more are active.
 template <class Space, int Dim>

@@ -68,7 +68,7 @@ enum class GivenBy { none, velocity, stress };
 enum class Common { zero, velocity, volume, mass };
 
 /// Groups of a frame that have a column.
-enum class Framed { no, bodies, nodes, bodies_and_nodes, all };
+enum class Framed { no, bodies, nodes, bodies_and_nodes, contacts, all };
 
 /// Bounds of magnitude that the arithmetic has room for.
 enum class Bound { none, speed, stress, volume, mass, coordinate, domain };

@@ -1,182 +1,10 @@
 #include "functions/interfaces.hpp"
 
 #include "base/copy.hpp"
-#include "functions/step_kernels.hpp"
-#include "loops/node_update.hpp"
-#include "physics/interface.hpp"
+#include "loops/press_fields.hpp"
 
 namespace mpm {
 namespace {
-
-/// The nodes of a place, a patch in which several velocity fields are active.
-template <class Space, class T, int Dim>
-struct PressFields {
-  using S = SoilTerms<Dim>;
-  using B = BoundaryTerms<Dim>;
-  using Side = InterfaceSide<T, Dim>;
-  using Terms = InterfaceTerms<Dim>;
-  static constexpr int cells = Patch<Dim>::cells;
-  UpdateNodes<Space, T, Dim> update;
-  Interfaces<Space, Dim> of;
-  bool has_strength, owns_all;
-
-  /// Node k of a place. sums: InterfaceTerms of each row, `cells` apart.
-  KOKKOS_INLINE_FUNCTION void operator()(int place, int k, double* sums) const {
-    Side sides[k_most_fields];
-    unsigned at_sides = 0;
-    Coord<Dim> at{};
-    const int count = find_sides(place, k, sides, at, at_sides);
-    for (int f = 0; f < of.fields; ++f)
-      for (int d = 0; d < Dim; ++d) of.force(force_at(place, f, d, k)) = 0;
-    if (count < 2) return;
-    join_welded(sides, count, sums);
-    solve(sides, count, update.face(at, at_sides), sums);
-    for (int n = 0; n < count; ++n)
-      for (int d = 0; d < Dim; ++d) {
-        of.force(force_at(place, sides[n].field, d, k)) = sides[n].force[d];
-        update.nodes.soil(sides[n].i, S::force + d) += static_cast<T>(sides[n].force[d]);
-      }
-  }
-
- private:
-  KOKKOS_INLINE_FUNCTION std::size_t force_at(int place, int field, int d, int k) const {
-    return ((std::size_t(place) * of.fields + field) * Dim + d) * cells + k;
-  }
-
-  /// The fields with soil at node k of a place, with their velocities as walls and other forces leave them.
-  KOKKOS_INLINE_FUNCTION int find_sides(int place, int k, Side* sides, Coord<Dim>& at,
-                                        unsigned& at_sides) const {
-    int count = 0;
-    for (int f = 0; f < of.fields; ++f) {
-      const int slot = of.slots(place * of.fields + f);
-      if (slot < 0) continue;
-      at = coord_of<Dim>(k);
-      for (int d = 0; d < Dim; ++d) at[d] += update.places.origin(slot)[d];
-      const auto node = update.node_of(update.nodes, slot * cells + k, at, true);
-      if (!(node.soil[S::mass] > update.mass_cut)) continue;
-      at_sides = node.sides;
-      Side& side = sides[count];
-      side.field = f, side.i = node.i, side.mass = node.soil[S::mass], side.welded = count++;
-      Vector<T, Dim> v_old, a;
-      update.accelerate(node.soil, node.inv_m, v_old, a);
-      for (int d = 0; d < Dim; ++d) {
-        side.velocity[d] = v_old[d] + a[d] * update.dt;
-        side.area[d] = node.boundary[B::area + d], side.force[d] = 0;
-      }
-      apply_walls(update.places.grid, node.sides, side.velocity);
-      cancel_at_rollers(update.places.grid, node.sides, side.area);
-      side.volume = node.boundary[B::volume];
-      side.strength = has_strength ? update.mean_strength(node.i) : T(0);
-    }
-    return count;
-  }
-
-  KOKKOS_INLINE_FUNCTION const InterfaceLaw& law_of(const Side& a, const Side& b) const {
-    return of.laws(a.field * of.fields + b.field);
-  }
-
-  /// Gives fields that are welded, one to the other, the velocity and the acceleration of one field: so the
-  /// halves of a body are equal to the whole.
-  KOKKOS_INLINE_FUNCTION void join_welded(Side* sides, int count, double* sums) const {
-    for (int n = 0; n < count; ++n)
-      for (int m = 0; m < n; ++m)
-        if (law_of(sides[m], sides[n]).welded) unite(sides, count, sides[m].welded, sides[n].welded);
-    for (int n = 0; n < count; ++n)
-      if (sides[n].welded == n) share(sides, count, n, sums);
-  }
-  /// Makes two groups of sides one, with the smaller number.
-  KOKKOS_INLINE_FUNCTION static void unite(Side* sides, int count, int a, int b) {
-    const int first = a < b ? a : b, second = a < b ? b : a;
-    for (int n = 0; n < count; ++n)
-      if (sides[n].welded == second) sides[n].welded = first;
-  }
-  /// Shares momentum and force among the sides of a group by their masses.
-  KOKKOS_INLINE_FUNCTION void share(Side* sides, int count, int group, double* sums) const {
-    double mass = 0;
-    Vector<double, Dim> momentum{}, force{}, moved{};
-    int members = 0;
-    for (int n = 0; n < count; ++n) {
-      if (sides[n].welded != group) continue;
-      ++members, mass += sides[n].mass;
-      for (int d = 0; d < Dim; ++d) {
-        momentum[d] += update.nodes.soil(sides[n].i, S::momentum + d);
-        force[d] += update.nodes.soil(sides[n].i, S::force + d);
-        moved[d] += double(sides[n].mass) * sides[n].velocity[d];
-      }
-    }
-    if (members < 2) return;
-    for (int n = 0; n < count; ++n)
-      for (int m = 0; m < n; ++m)
-        if (sides[n].welded == group && sides[m].welded == group) add_shared(sides[m], sides[n], mass, sums);
-    for (int n = 0; n < count; ++n) {
-      if (sides[n].welded != group) continue;
-      const double part = sides[n].mass / mass;
-      for (int d = 0; d < Dim; ++d) {
-        update.nodes.soil(sides[n].i, S::momentum + d) = static_cast<T>(part * momentum[d]);
-        sides[n].force[d] += part * force[d] - double(update.nodes.soil(sides[n].i, S::force + d));
-        sides[n].velocity[d] = static_cast<T>(moved[d] / mass);
-      }
-    }
-  }
-  /// Adds the force that passes from one welded side to another.
-  KOKKOS_INLINE_FUNCTION void add_shared(const Side& a, const Side& b, double mass, double* sums) const {
-    const InterfaceLaw& law = law_of(a, b);
-    if (law.row < 0 || !counts(a.i)) return;
-    InterfaceImpulse<T, Dim> impulse;
-    for (int d = 0; d < Dim; ++d)
-      impulse.on_first[d] = static_cast<T>((a.mass * double(update.nodes.soil(b.i, S::force + d)) -
-                                            b.mass * double(update.nodes.soil(a.i, S::force + d))) /
-                                           mass * update.dt);
-    add(law, impulse, sums);
-  }
-
-  /// Brings the fields of a node together, pair by pair, until impulses are a thousandth of the first ones.
-  KOKKOS_INLINE_FUNCTION void solve(Side* sides, int count, T face, double* sums) const {
-    constexpr int k_rounds = 8;
-    constexpr T k_small = T(1e-3);
-    T first = 0;
-    for (int round = 0; round < k_rounds; ++round) {
-      T largest = 0;
-      for (int m = 0; m < count; ++m)
-        for (int n = m + 1; n < count; ++n)
-          largest = Kokkos::fmax(largest, press(sides[m], sides[n], face, sums));
-      if (count == 2 || largest <= k_small * first) break;
-      if (round == 0) first = largest;
-    }
-  }
-  /// Takes contact, or the weld, of two fields into their velocities and forces; returns the largest
-  /// component of the impulse [N s].
-  KOKKOS_INLINE_FUNCTION T press(Side& a, Side& b, T face, double* sums) const {
-    const InterfaceLaw& law = law_of(a, b);
-    const T spacing = update.places.grid.spacing;
-    Meeting<T, Dim> meeting;
-    InterfaceImpulse<T, Dim> impulse;
-    if (law.welded)
-      impulse = weld(a, b);
-    else if (meet(a, b, spacing, face, meeting))
-      impulse = impulse_between(law, a, b, meeting, spacing, update.dt);
-    T largest = 0;
-    for (int d = 0; d < Dim; ++d) {
-      const T j = impulse.on_first[d];
-      a.velocity[d] += j / a.mass, b.velocity[d] -= j / b.mass;
-      a.force[d] += double(j) * update.inv_dt, b.force[d] -= double(j) * update.inv_dt;
-      largest = Kokkos::fmax(largest, Kokkos::fabs(j));
-    }
-    if (law.row >= 0 && counts(a.i)) add(law, impulse, sums);
-    return largest;
-  }
-  /// Whether this rank reports a node.
-  KOKKOS_INLINE_FUNCTION bool counts(int i) const {
-    return owns_all || (update.owned_nodes(i / cells) >> (i % cells) & 1) != 0;
-  }
-  KOKKOS_INLINE_FUNCTION void add(const InterfaceLaw& law, const InterfaceImpulse<T, Dim>& impulse,
-                                  double* sums) const {
-    double* const own = sums + law.row * Terms::size * cells;
-    for (int d = 0; d < Dim; ++d) own[(Terms::impulse + d) * cells] += law.sign * double(impulse.on_first[d]);
-    own[Terms::area * cells] += double(impulse.area) * update.dt;
-    own[Terms::work * cells] += impulse.work;
-  }
-};
 
 /// Adds the sums of a step to the totals, in an order that is always the same.
 template <class Space, class T, int Dim>
@@ -198,18 +26,15 @@ void add_totals(const State<Space, T, Dim>& s) {
       });
 }
 
-}  // namespace
-
+/// press_fields, with the tractions at all nodes where `tractions` has room for them.
 template <class Space, class T, int Dim>
-void press_fields(State<Space, T, Dim>& s, double dt, bool keeps) {
+void press_places(State<Space, T, Dim>& s, double dt, const ControlView<Space>& control,
+                  const Kokkos::View<double*, typename Space::memory_space>& tractions) {
   using Team = Kokkos::TeamPolicy<Space>;
   constexpr int cells = Patch<Dim>::cells;
-  finish_sums(s);
-  const auto control = keeps ? s.control : s.never_paused;
   const auto of = s.interfaces;
-  if (of.count == 0) return;
   const PressFields<Space, T, Dim> fields{node_update_of(s, dt), of, s.shear_fraction,
-                                          s.owned_nodes.extent(0) == 0};
+                                          s.owned_nodes.extent(0) == 0, tractions};
   const int values = of.rows * InterfaceTerms<Dim>::size, room = values * cells;
   const std::size_t bytes = scratch_bytes<double>(room) + k_scratch_slack;
   constexpr std::size_t k_fast = 32768;
@@ -232,39 +57,55 @@ void press_fields(State<Space, T, Dim>& s, double dt, bool keeps) {
           of.sums(std::size_t(place) * values + v) = sum;
         });
       });
-  if (keeps && of.rows > 0) add_totals(s);
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void press_fields(State<Space, T, Dim>& s, double dt, bool keeps) {
+  finish_sums(s);
+  if (s.interfaces.count == 0) return;
+  press_places(s, dt, keeps ? s.control : s.never_paused, {});
+  if (keeps && s.interfaces.rows > 0) add_totals(s);
 }
 
 template <class Space, class T, int Dim>
-std::vector<double> save_interface_totals(const ContactCore<Space, T, Dim>& s) {
-  const auto host = mirror_of(s.interfaces.totals);
-  return std::vector<double>(host.data(), host.data() + host.extent(0));
+std::vector<InterfaceNode> interface_nodes(State<Space, T, Dim>& s, double dt) {
+  using Traction = InterfaceTraction<Dim>;
+  constexpr int cells = Patch<Dim>::cells;
+  finish_sums(s);
+  const auto& of = s.interfaces;
+  const std::size_t pieces = std::size_t(of.count) * of.rows;
+  std::vector<InterfaceNode> nodes;
+  if (pieces == 0) return nodes;
+  const Kokkos::View<double*, typename Space::memory_space> tractions("mpm::tractions",
+                                                                      pieces * Traction::size * cells);
+  press_places(s, dt, s.never_paused, tractions);
+  const auto values = mirror_of(tractions);
+  const auto slots = mirror_of(of.slots);
+  const auto origin = mirror_of(s.patches.origin);
+  for (std::size_t piece = 0; piece < pieces; ++piece) {
+    const std::size_t place = piece / of.rows;
+    int slot = -1;
+    for (int f = 0; f < of.fields && slot < 0; ++f) slot = slots(place * of.fields + f);
+    for (int k = 0; k < cells; ++k) {
+      const auto value = [&](int v) { return values((piece * Traction::size + v) * cells + k); };
+      InterfaceNode node{.row = static_cast<int>(piece % of.rows), .area = value(Traction::area)};
+      bool pressed = false;
+      for (int d = 0; d < Dim; ++d) {
+        node.position[d] = double(origin(slot)[d] + coord_of<Dim>(k)[d]) * s.spacing;
+        node.force[d] = value(Traction::force + d), node.normal[d] = value(Traction::normal + d);
+        pressed = pressed || node.force[d] != 0;
+      }
+      if (pressed) nodes.push_back(node);
+    }
+  }
+  return nodes;
 }
 
-template <class Space, class T, int Dim>
-std::vector<double> take_interface_totals(ContactCore<Space, T, Dim>& s) {
-  using Terms = InterfaceTerms<Dim>;
-  const std::vector<double> totals = save_interface_totals(s);
-  std::vector<double> left = totals;
-  for (std::size_t n = 0; n < left.size(); ++n)
-    if (static_cast<int>(n % Terms::size) != Terms::work) left[n] = 0;
-  restore_interface_totals(s, left);
-  return totals;
-}
-
-template <class Space, class T, int Dim>
-void restore_interface_totals(ContactCore<Space, T, Dim>& s, const std::vector<double>& saved) {
-  const auto host = Kokkos::create_mirror_view(s.interfaces.totals);
-  if (host.extent(0) == 0 || saved.size() != host.extent(0)) return;
-  for (std::size_t n = 0; n < saved.size(); ++n) host(n) = saved[n];
-  copy(s.interfaces.totals, host);
-}
-
-#define MPM_INSTANTIATE(Space, T, Dim)                                                   \
-  template void press_fields(State<Space, T, Dim>&, double, bool);                       \
-  template std::vector<double> take_interface_totals(ContactCore<Space, T, Dim>&);       \
-  template std::vector<double> save_interface_totals(const ContactCore<Space, T, Dim>&); \
-  template void restore_interface_totals(ContactCore<Space, T, Dim>&, const std::vector<double>&);
+#define MPM_INSTANTIATE(Space, T, Dim)                             \
+  template void press_fields(State<Space, T, Dim>&, double, bool); \
+  template std::vector<InterfaceNode> interface_nodes(State<Space, T, Dim>&, double);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #pragma once
 // Contact between the velocity fields of deformable bodies in a step.
 
+#include <array>
 #include <vector>
 
 #include "data/state.hpp"
@@ -12,6 +13,19 @@ namespace mpm {
 /// complete. keeps: the totals of the interfaces grow.
 template <class Space, class T, int Dim>
 void press_fields(State<Space, T, Dim>& s, double dt, bool keeps);
+
+/// Contact of a pair of bodies at a node of the mesh.
+struct InterfaceNode {
+  int row = 0;                                          // of the pair
+  std::array<double, 3> position{}, force{}, normal{};  // m from the lower corner of the mesh; N, on the
+                                                        // first body; of length 1, out of the first body
+  double area = 0;                                      // m2
+};
+
+/// The nodes at which pairs of bodies act on each other in a step of dt [s] from the present state, those of
+/// this rank. The sums at nodes are complete.
+template <class Space, class T, int Dim>
+std::vector<InterfaceNode> interface_nodes(State<Space, T, Dim>& s, double dt);
 
 /// InterfaceTerms of the pairs of bodies since they were last taken (the work: since the start); impulses and
 /// areas begin anew.

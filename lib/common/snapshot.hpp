@@ -33,11 +33,12 @@ inline constexpr const char* k_own_parameter = "own_parameter";
 inline constexpr const char* k_nodes = "nodes";
 
 /// One frame: bodies first, then rigids, in the order of the options, then nodes that hold soil, if they are
-/// asked for (position, velocity, mass and number).
+/// asked for (position, velocity, mass and number), then the nodes at which bodies act on each other, for
+/// each of Config::contact_pairs (position, and fields in `state`).
 struct Snapshot {
   double time = 0;  // s
   long step = 0;
-  std::vector<ParticleSnapshot> bodies, rigids, nodes{};
+  std::vector<ParticleSnapshot> bodies, rigids, nodes{}, contacts{};
   int dim = 0;          // 0: the file has none
   std::string stage{};  // its name; empty: the run has none
 };

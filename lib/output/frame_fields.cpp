@@ -38,7 +38,12 @@ const std::vector<Field>& frame_fields() {
                           {"load_area_x", "m2", 1, Framed::bodies, nullptr},
                           {"load_area_y", "m2", 1, Framed::bodies, nullptr},
                           {"load_area_z", "m2", 1, Framed::bodies, nullptr},
-                          {"number", "-", 1, Framed::nodes, &ParticleSnapshot::number}};
+                          {"number", "-", 1, Framed::nodes, &ParticleSnapshot::number},
+                          {"contact_force", "N", 3, Framed::contacts, nullptr},
+                          {"contact_normal", "-", 3, Framed::contacts, nullptr},
+                          {"contact_area", "m2", 1, Framed::contacts, nullptr},
+                          {"contact_pressure", "Pa", 1, Framed::contacts, nullptr},
+                          {"contact_shear", "Pa", 3, Framed::contacts, nullptr}};
     all.insert(all.end(), std::begin(last), std::end(last));
     return all;
   }();

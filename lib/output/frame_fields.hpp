@@ -36,6 +36,7 @@ inline bool is_position(const Field& field) { return field.values == &ParticleSn
 
 /// Whether the groups of a kind (all: rigids) have a field.
 inline bool belongs_to(const Field& field, Framed group) {
+  if (group == Framed::contacts) return is_position(field) || field.of == group;
   return field.of == Framed::all || field.of == group ||
          (field.of == Framed::bodies_and_nodes && (group == Framed::bodies || group == Framed::nodes));
 }
@@ -45,11 +46,11 @@ inline bool is_exact(const Field& field) {
   return is_position(field) || field.values == &ParticleSnapshot::reference_height;
 }
 
-/// Whether a group of this kind is written with a field in this style. Nodes have all of theirs.
+/// Whether a group of this kind is written with a field in this style. Nodes and contacts have all of theirs.
 inline bool is_written(const ParticleSnapshot& particles, const Field& field, Framed group,
                        const FrameStyle& style) {
   if (!belongs_to(field, group) || values_of(particles, field) == nullptr) return false;
-  return is_position(field) || group == Framed::nodes || style.fields.empty() ||
+  return is_position(field) || group == Framed::nodes || group == Framed::contacts || style.fields.empty() ||
          std::find(style.fields.begin(), style.fields.end(), field.name) != style.fields.end();
 }
 
@@ -66,7 +67,8 @@ inline std::vector<std::string> written_fields(const ParticleSnapshot& particles
 inline std::vector<std::string> frame_field_names() {
   std::vector<std::string> names;
   for (const Field& field : frame_fields())
-    if (!is_position(field) && field.of != Framed::nodes) names.push_back(field.name);
+    if (!is_position(field) && field.of != Framed::nodes && field.of != Framed::contacts)
+      names.push_back(field.name);
   return names;
 }
 /// The list for a message, which names only the first and the last of numbered names: "state_1 to state_9".

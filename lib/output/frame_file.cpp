@@ -182,6 +182,8 @@ PetscErrorCode write_groups(hid_t file, const std::string& path, const Snapshot&
   for (const ParticleSnapshot& rigid : snapshot.rigids) PetscCall(write_surface(file, path, rigid));
   for (const ParticleSnapshot& nodes : snapshot.nodes)
     PetscCall(write_group(file, path, nodes, Framed::nodes, precision, style));
+  for (const ParticleSnapshot& contacts : snapshot.contacts)
+    PetscCall(write_group(file, path, contacts, Framed::contacts, precision, style));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -83,6 +83,7 @@ PetscErrorCode Frames::write(const Snapshot& snapshot) {
            {static_cast<long>(group.vertices.size() / 3), static_cast<long>(group.triangles.size() / 3)}});
   };
   add(snapshot.bodies, Framed::bodies), add(snapshot.rigids, Framed::all), add(snapshot.nodes, Framed::nodes);
+  add(snapshot.contacts, Framed::contacts);
   entries_.push_back(std::move(entry));
   ++count_;
   PetscCall(agree(comm_, rank_of(comm_) == 0 ? write_index() : PETSC_SUCCESS));

@@ -21,7 +21,7 @@ namespace {
 double frame_bytes(const Snapshot& snapshot, const Config& config, bool first) {
   const double real = config.precision == Precision::single ? 4 : 8;
   double bytes = 0;
-  for (const auto* groups : {&snapshot.bodies, &snapshot.rigids, &snapshot.nodes})
+  for (const auto* groups : {&snapshot.bodies, &snapshot.rigids, &snapshot.nodes, &snapshot.contacts})
     for (const ParticleSnapshot& group : *groups) {
       if (!first && groups != &snapshot.bodies) continue;
       for (const Field& field : frame_fields())

@@ -191,11 +191,7 @@ template <class Space, class T, int Dim>
 PetscErrorCode HistoryMeasures<Space, T, Dim>::unbalanced_ratio(double dt, double* ratio) {
   PetscFunctionBeginUser;
   auto& s = run_.state;
-  sum_present_soil(s);
-  buoyancy_to_nodes(s);
-  loads_to_nodes(s);
-  if (run_.ranks) PetscCall(run_.ranks->add_present_soil(s));
-  if (s.shear_fraction) PetscCall(strength_to_nodes(s, run_.ranks.get()));
+  PetscCall(sum_present_forces(s, run_.ranks.get()));
   if (s.interfaces.in_use()) press_fields(s, dt, false);
   if (s.at_sites.in_use) PetscCall(sum_site_forces(s, dt, run_.ranks.get()));
   const UnbalancedForces own = unbalanced_forces(s, dt);

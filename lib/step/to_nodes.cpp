@@ -127,6 +127,17 @@ void sum_present_soil(State<Space, T, Dim>& s) {
 }
 
 template <class Space, class T, int Dim>
+PetscErrorCode sum_present_forces(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
+  PetscFunctionBeginUser;
+  sum_present_soil(s);
+  buoyancy_to_nodes(s);
+  loads_to_nodes(s);
+  if (ranks) PetscCall(ranks->add_present_soil(s));
+  if (s.shear_fraction) PetscCall(strength_to_nodes(s, ranks));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
 PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
   PetscFunctionBeginUser;
   for (int pass = 0; pass < s.scheme.xpic_order; ++pass) {
@@ -145,16 +156,17 @@ PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                             \
-  template void rigids_to_nodes(const State<Space, T, Dim>&, const Space&);                        \
-  template void soil_to_nodes(const State<Space, T, Dim>&, const Space&);                          \
-  template void soil_to_nodes(const State<Space, T, Dim>&, const Part<Space>&);                    \
-  template void buoyancy_to_nodes(State<Space, T, Dim>&);                                          \
-  template void loads_to_nodes(State<Space, T, Dim>&);                                             \
-  template PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>&, Rayleigh<Space, T, Dim>&,       \
-                                            Decomposition<Space, T, Dim>*);                        \
-  template PetscErrorCode strength_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*); \
-  template void sum_present_soil(State<Space, T, Dim>&);                                           \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                              \
+  template void rigids_to_nodes(const State<Space, T, Dim>&, const Space&);                         \
+  template void soil_to_nodes(const State<Space, T, Dim>&, const Space&);                           \
+  template void soil_to_nodes(const State<Space, T, Dim>&, const Part<Space>&);                     \
+  template void buoyancy_to_nodes(State<Space, T, Dim>&);                                           \
+  template void loads_to_nodes(State<Space, T, Dim>&);                                              \
+  template PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>&, Rayleigh<Space, T, Dim>&,        \
+                                            Decomposition<Space, T, Dim>*);                         \
+  template PetscErrorCode strength_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);  \
+  template PetscErrorCode sum_present_forces(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*); \
+  template void sum_present_soil(State<Space, T, Dim>&);                                            \
   template PetscErrorCode update_velocities(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

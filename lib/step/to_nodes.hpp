@@ -43,6 +43,11 @@ PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T
 template <class Space, class T, int Dim>
 void sum_present_soil(State<Space, T, Dim>& s);
 
+/// All of the soil's nodal sums as it is now, with buoyancy and loads, of all ranks: the forces but for those
+/// of contact.
+template <class Space, class T, int Dim>
+PetscErrorCode sum_present_forces(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks);
+
 /// The velocities of the soil's particles, where XPIC or APIC is chosen: a part of function 5.
 template <class Space, class T, int Dim>
 PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks);

@@ -15,6 +15,7 @@
 #include "step/body_input.hpp"
 #include "step/follow_soil.hpp"
 #include "step/interface_input.hpp"
+#include "step/interface_snapshot.hpp"
 #include "step/pair_input.hpp"
 #include "step/water.hpp"
 #include "transfer/restore_state.hpp"
@@ -179,8 +180,22 @@ PetscErrorCode TypedStepper<Space, T, Dim>::unbalanced_ratio(double time, double
   PetscFunctionBeginUser;
   collect_soil(run_.state);
   loads_.set_time(time);
+  PetscCall(measures_.unbalanced_ratio(present_step(), ratio));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
+double TypedStepper<Space, T, Dim>::present_step() const {
   const double dt = loop_.step_size();
-  PetscCall(measures_.unbalanced_ratio(dt > 0 ? dt : critical_time_step(run_.config), ratio));
+  return dt > 0 ? dt : critical_time_step(run_.config);
+}
+
+template <class Space, class T, int Dim>
+PetscErrorCode TypedStepper<Space, T, Dim>::snapshot(Snapshot* snapshot) {
+  PetscFunctionBeginUser;
+  PetscCall(snapshots_.take(snapshot));
+  loads_.set_time(snapshot->time);
+  PetscCall(add_interfaces(run_, present_step(), snapshot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

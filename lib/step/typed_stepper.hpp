@@ -35,7 +35,7 @@ class TypedStepper final : public Stepper {
     return measures_.fastest_wave(compression, speed);
   }
   PetscErrorCode closing_speed(double* speed) override { return measures_.closing_speed(speed); }
-  PetscErrorCode snapshot(Snapshot* snapshot) override { return snapshots_.take(snapshot); }
+  PetscErrorCode snapshot(Snapshot* snapshot) override;
   PetscErrorCode ownership(std::vector<OwnedPatch>* patches) override { return reports_.ownership(patches); }
   std::string drain_log() override { return run_.ranks ? run_.ranks->drain_log() : ""; }
   std::optional<RankFigures> rank_figures() const override { return reports_.of_ranks(); }
@@ -49,6 +49,8 @@ class TypedStepper final : public Stepper {
   std::string batches_report() const override { return reports_.of_batches(loop_.seconds()); }
 
  private:
+  /// Length of the last step, or of the first one before it is done [s].
+  double present_step() const;
   /// Copies options from the configuration to the state.
   void set_options(const Model& model);
   /// Brings particles to new places and cells, merges and splits them, and makes the lists.
