@@ -50,7 +50,8 @@ void update_nodes_by_teams(State<Space, T, Dim>& s, double dt, const Space& stre
   const auto scratched = [&](auto policy) {
     return light(policy.set_scratch_size(level, Kokkos::PerTeam(near_bytes)));
   };
-  if (s.contact.count > 0 && !s.plan.nodes_apart)
+  // Without rigid bodies, slots of contact are those where deformable bodies meet, which press_fields takes.
+  if (values > 0 && s.contact.count > 0 && !s.plan.nodes_apart)
     return Kokkos::parallel_for(
         "mpm::update_nodes", scratched(Team(s.space, s.patches.slots, node_threads<Space, Dim>)),
         KOKKOS_LAMBDA(const Member& team) {
