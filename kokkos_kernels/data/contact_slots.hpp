@@ -13,9 +13,10 @@ struct ContactSlots {
   using Memory = typename Space::memory_space;
   Kokkos::View<int*, Memory> place;  // by slot: its place in `slots`, from 1 on; 0: it has no contact
   Kokkos::View<int*, Memory> slots;
-  int count = 0;                         // of `slots`
-  NearBodies<Space> near;                // by slot
-  Windows<Space> boundary, strength;     // of the soil, BoundaryTerms and StrengthTerms, in these slots
+  int count = 0;           // of `slots`
+  NearBodies<Space> near;  // by slot
+  Windows<Space> boundary, strength,
+      cloud;  // of the soil, BoundaryTerms, StrengthTerms and CloudTerms, in these slots
   Kokkos::View<double*, Memory> forces;  // N, [turn of a persistent step, else 0][of slots][near body, then
                                          // part][of Wrench], of the soil on the rigids
 };

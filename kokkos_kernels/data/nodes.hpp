@@ -44,6 +44,16 @@ template <int Dim>
 struct RigidTerms {
   static constexpr int mass = 0, normal = 1, size = 1 + Dim;
 };
+/// How the soil lies round a node: the sums over its particles of the volume times the way from the node
+/// [m3 cells], and times the products of the way's components [m3 cells2], first the squares.
+template <int Dim>
+struct CloudTerms {
+  static constexpr int way = 0, spread = Dim, size = Dim + Dim * (Dim + 1) / 2;
+  /// Place in `spread` of the product of two components.
+  KOKKOS_INLINE_FUNCTION static constexpr int place(int i, int j) {
+    return i == j ? i : Dim == 2 ? 2 : 2 + i + j;
+  }
+};
 /// Values that a node gives the soil: velocity at the end of the step [m/s], acceleration [m/s2].
 template <int Dim>
 struct NodeKinematics {
@@ -75,6 +85,7 @@ struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, Dim> residual;  // kg m/s, of what XPIC has left to show the nodes; allocated for it
   NodeField<Space, T, Dim> shares;    // of the position correction (shares_of); allocated for it
   NodeField<Space, T, CentreTerms<Dim>::size> centre;  // of the soil, where domains stretch
+  NodeField<Space, T, CloudTerms<Dim>::size> cloud;    // of the soil, where bodies have velocity fields
   NodeField<Space, T, Dim> drift;  // kg cells, mass times the way since domains changed last; likewise
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
       impulse;  // N s, [ImpulseTerms::size a rigid][node], kept from step to step
@@ -89,6 +100,7 @@ struct NodeUses {
   bool residual = false;    // XPIC
   bool correction = false;  // correction of the particles' positions
   bool domains = false;     // domains stretch
+  bool cloud = false;       // contact of deformable bodies
 };
 
 /// Calls f(name, in_use, field) for every nodal field with one entry a node. The one table of nodal fields: a
@@ -102,6 +114,7 @@ void for_each_nodal_field(F&& f, Nodes_& nodes, const NodeUses& uses) {
   f("load", uses.loads, nodes.load);
   f("residual", uses.residual, nodes.residual);
   f("shares", uses.correction, nodes.shares);
+  f("cloud", uses.cloud, nodes.cloud);
   f("centre", uses.domains, nodes.centre), f("drift", uses.domains, nodes.drift);
 }
 

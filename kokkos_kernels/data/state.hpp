@@ -26,7 +26,8 @@ NodeUses uses_of_nodes(const State<Space, T, Dim>& s) {
           .loads = s.loads.in_use(),
           .residual = s.scheme.xpic_order > 0,
           .correction = s.correction.on,
-          .domains = s.soil.points.has_domain};
+          .domains = s.soil.points.has_domain,
+          .cloud = s.interfaces.in_use()};
 }
 
 }  // namespace mpm

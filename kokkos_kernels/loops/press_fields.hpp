@@ -69,7 +69,7 @@ struct PressFields {
       if (!(node.soil[S::mass] > update.mass_cut)) continue;
       at_sides = node.sides;
       Side& side = sides[count];
-      side.field = f, side.i = node.i, side.mass = node.soil[S::mass], side.welded = count++;
+      side.field = f, side.i = node.i, side.mass = side.moving = node.soil[S::mass], side.welded = count++;
       Vector<T, Dim> v_old, a;
       update.accelerate(node.soil, node.inv_m, v_old, a);
       for (int d = 0; d < Dim; ++d) {
@@ -79,9 +79,27 @@ struct PressFields {
       apply_walls(update.places.grid, node.sides, side.velocity);
       cancel_at_rollers(update.places.grid, node.sides, side.area);
       side.volume = node.boundary[B::volume];
+      side.cloud = cloud_of(side.i, side.volume, at_sides);
       side.strength = has_strength ? update.mean_strength(node.i) : T(0);
     }
     return count;
+  }
+
+  /// At a plane of symmetry half of the soil is in the mesh.
+  KOKKOS_INLINE_FUNCTION SoilCloud<T, Dim> cloud_of(int i, T volume, unsigned at_sides) const {
+    using C = CloudTerms<Dim>;
+    SoilCloud<T, Dim> cloud;
+    const T scale = volume > 0 ? 1 / volume : T(0);
+    for (int d = 0; d < Dim; ++d) cloud.centre[d] = scale * update.nodes.cloud(i, C::way + d);
+    Vector<T, Dim> kept = filled<T, Dim>(1);  // 0 across planes of symmetry
+    cancel_at_rollers(update.places.grid, at_sides, kept);
+    for (int d = 0; d < Dim; ++d) cloud.centre[d] *= kept[d];
+    for (int d = 0; d < Dim; ++d)
+      for (int e = 0; e < Dim; ++e)
+        cloud.spread[d][e] =
+            (d == e ? T(1) : kept[d] * kept[e]) * scale * update.nodes.cloud(i, C::spread + C::place(d, e)) -
+            cloud.centre[d] * cloud.centre[e];
+    return cloud;
   }
 
   KOKKOS_INLINE_FUNCTION const InterfaceLaw& law_of(const Side& a, const Side& b) const {
@@ -129,6 +147,7 @@ struct PressFields {
         sides[n].force[d] += part * force[d] - double(update.nodes.soil(sides[n].i, S::force + d));
         sides[n].velocity[d] = static_cast<T>(moved[d] / mass);
       }
+      sides[n].moving = static_cast<T>(mass);
     }
   }
   /// Adds the force that passes from one welded side to another.
@@ -146,37 +165,69 @@ struct PressFields {
 
   /// Brings the fields of a node together, pair by pair, until impulses are a thousandth of the first ones.
   KOKKOS_INLINE_FUNCTION void solve(Side* sides, int count, const Results& out) const {
+    if (count == 2) {
+      PairImpulse<T, Dim> so_far;
+      press(sides, count, 0, 1, so_far, out);
+      return;
+    }
     constexpr int k_rounds = 8;
     constexpr T k_small = T(1e-3);
+    PairImpulse<T, Dim> so_far[k_most_fields * (k_most_fields - 1) / 2];
     T first = 0;
     for (int round = 0; round < k_rounds; ++round) {
       T largest = 0;
-      for (int m = 0; m < count; ++m)
-        for (int n = m + 1; n < count; ++n) largest = Kokkos::fmax(largest, press(sides[m], sides[n], out));
-      if (count == 2 || largest <= k_small * first) break;
+      for (int m = 0, pair = 0; m < count; ++m)
+        for (int n = m + 1; n < count; ++n, ++pair)
+          largest = Kokkos::fmax(largest, press(sides, count, m, n, so_far[pair], out));
+      if (largest <= k_small * first) break;
       if (round == 0) first = largest;
     }
   }
-  /// Takes contact, or the weld, of two fields into their velocities and forces; returns the largest
-  /// component of the impulse [N s].
-  KOKKOS_INLINE_FUNCTION T press(Side& a, Side& b, const Results& out) const {
+  /// Takes contact of two fields, and of those that are welded to them, into their velocities and forces.
+  /// so_far: what the two have had in this step. Returns the largest component of the impulse [N s].
+  KOKKOS_INLINE_FUNCTION T press(Side* sides, int count, int m, int n, PairImpulse<T, Dim>& so_far,
+                                 const Results& out) const {
+    const Side &a = sides[m], &b = sides[n];
+    if (a.welded == b.welded) return 0;
     const InterfaceLaw& law = law_of(a, b);
     const T spacing = update.places.grid.spacing;
     Meeting<T, Dim> meeting;
-    InterfaceImpulse<T, Dim> impulse;
-    if (law.welded)
-      impulse = weld(a, b);
-    else if (meet(a, b, spacing, out.face, meeting))
-      impulse = impulse_between(law, a, b, meeting, spacing, update.dt);
+    if (!meet(a, b, spacing, out.face, meeting)) return 0;
+    const auto impulse = impulse_between(law, a, b, meeting, spacing, update.dt, so_far);
     T largest = 0;
-    for (int d = 0; d < Dim; ++d) {
-      const T j = impulse.on_first[d];
-      a.velocity[d] += j / a.mass, b.velocity[d] -= j / b.mass;
-      a.force[d] += double(j) * update.inv_dt, b.force[d] -= double(j) * update.inv_dt;
-      largest = Kokkos::fmax(largest, Kokkos::fabs(j));
-    }
+    for (int d = 0; d < Dim; ++d) largest = Kokkos::fmax(largest, Kokkos::fabs(impulse.on_first[d]));
     if (law.row >= 0 && counts(a.i)) add(law, a, b, impulse, out);
+    Vector<T, Dim> back;
+    for (int d = 0; d < Dim; ++d) back[d] = -impulse.on_first[d];
+    push(sides, count, m, impulse.on_first, out);
+    push(sides, count, n, back, out);
     return largest;
+  }
+  /// Gives an impulse [N s] on a side to all that are welded to it, by their masses.
+  KOKKOS_INLINE_FUNCTION void push(Side* sides, int count, int m, const Vector<T, Dim>& impulse,
+                                   const Results& out) const {
+    const int group = sides[m].welded;
+    const T inverse = 1 / sides[m].moving;
+    for (int k = 0; k < count; ++k) {
+      Side& side = sides[k];
+      if (side.welded != group) continue;
+      const double part = double(side.mass) * inverse;
+      for (int d = 0; d < Dim; ++d) {
+        side.velocity[d] += impulse[d] * inverse;
+        side.force[d] += part * double(impulse[d]) * update.inv_dt;
+      }
+      if (k != m)
+        add_passed(sides[Kokkos::min(k, m)], sides[Kokkos::max(k, m)], impulse, k < m ? part : -part, out);
+    }
+  }
+  /// Adds what a weld passes on: a part of an impulse, on its first side.
+  KOKKOS_INLINE_FUNCTION void add_passed(const Side& a, const Side& b, const Vector<T, Dim>& impulse,
+                                         double part, const Results& out) const {
+    const InterfaceLaw& law = law_of(a, b);
+    if (law.row < 0 || !counts(a.i)) return;
+    InterfaceImpulse<T, Dim> passed;
+    for (int d = 0; d < Dim; ++d) passed.on_first[d] = static_cast<T>(part * double(impulse[d]));
+    add(law, a, b, passed, out);
   }
   /// Whether this rank reports a node.
   KOKKOS_INLINE_FUNCTION bool counts(int i) const {

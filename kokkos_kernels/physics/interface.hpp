@@ -6,16 +6,33 @@
 
 namespace mpm {
 
+/// How soil lies round a node: the centre of its volume there [cells from the node], and the covariance of
+/// its places [cells2].
+template <class T, int Dim>
+struct SoilCloud {
+  Vector<T, Dim> centre;
+  T spread[Dim][Dim];
+
+  /// How far the soil reaches along n, of length 1: that of a box with this covariance [cells].
+  KOKKOS_INLINE_FUNCTION T reach(const Vector<T, Dim>& n) const {
+    T square = 0;
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) square += n[i] * spread[i][j] * n[j];
+    return dot(centre, n) + Kokkos::sqrt(3 * Kokkos::fmax(T(0), square));
+  }
+};
+
 /// Soil of a velocity field at a node.
 template <class T, int Dim>
 struct InterfaceSide {
-  int field, i;               // i: the node
-  T mass;                     // kg
-  Vector<T, Dim> velocity;    // m/s, at the end of the step, as far as it is known
-  int welded;                 // the first side that it moves as one with; else its own number
-  Vector<T, Dim> area;        // m2, of its boundary, out of it
-  T volume;                   // m3
-  T strength;                 // Pa, where a law asks for it
+  int field, i;             // i: the node
+  T mass;                   // kg
+  Vector<T, Dim> velocity;  // m/s, at the end of the step, as far as it is known
+  int welded;               // the first side that it moves as one with; else its own number
+  Vector<T, Dim> area;      // m2, of its boundary, out of it
+  T volume;                 // m3
+  T strength;               // Pa, where a law asks for it
+  SoilCloud<T, Dim> cloud;
   Vector<double, Dim> force;  // N, of other fields
 };
 
@@ -26,25 +43,66 @@ struct Meeting {
   T gap, area;            // m, negative where they overlap; m2
 };
 
-/// Normal, gap and area between fields a and b at a node; false where neither has a boundary, as deep in
-/// soil. spacing [m], face [m2]: of a cell. The normal is that of the boundary which covers more of the
-/// node's cells: the corner of a block on flat ground takes the ground's.
+/// Area in which the faces of two bodies lie on each other at a node [m2], from the areas of the faces there
+/// and their depths [cells] (surface_depth). A face that is as wide as the node's cells has at the node the
+/// part 1 - |depth| of a cell's face. So the areas over their parts are how wide the faces are: the narrower
+/// one counts; and of faces that lie apart, or overlap, the mean of their parts counts, which over all nodes
+/// is the whole.
+template <class T>
+KOKKOS_INLINE_FUNCTION T shared_area(T of_a, T depth_a, T of_b, T depth_b) {
+  constexpr T k_least = T(0.1);  // less is hardly known
+  const T part_a = Kokkos::fmax(k_least, 1 - Kokkos::fabs(depth_a)),
+          part_b = Kokkos::fmax(k_least, 1 - Kokkos::fabs(depth_b));
+  return Kokkos::fmin(of_a / part_a, of_b / part_b) * (part_a + part_b) / 2;
+}
+
+/// Normal out of a where two fields meet at a node. Each field has one, of its own boundary, and the one
+/// along which the two overlap less counts (as by the separating axis of two convex bodies): the corner of a
+/// block on flat ground takes the ground's, wherever in a cell the ground ends. face [m2]: of a cell. False
+/// where no field has a boundary, as deep in soil.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool normal_between(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
+                                           T face, Vector<T, Dim>& normal) {
+  constexpr T k_bounds = T(1e-3);   // of a cell's face: less is round-off
+  constexpr T k_smaller = T(0.05);  // of the other's area: too little to have a normal
+  constexpr T k_even = T(0.02);     // cells, difference of overlaps at which one normal begins to rule
+  const T area_a = Kokkos::sqrt(dot(a.area, a.area)), area_b = Kokkos::sqrt(dot(b.area, b.area));
+  const T most = Kokkos::fmax(area_a, area_b);
+  if (!(most > k_bounds * face)) return false;
+  T overlap[2];
+  Vector<T, Dim> of[2];
+  for (int side = 0; side < 2; ++side) {
+    const InterfaceSide<T, Dim>& own = side == 0 ? a : b;
+    const T area = side == 0 ? area_a : area_b;
+    overlap[side] = Kokkos::Experimental::infinity<T>::value;
+    for (int d = 0; d < Dim; ++d) of[side][d] = 0;
+    if (!(area > k_smaller * most)) continue;
+    Vector<T, Dim> back;
+    for (int d = 0; d < Dim; ++d)
+      of[side][d] = (side == 0 ? 1 : -1) * own.area[d] / area, back[d] = -of[side][d];
+    overlap[side] = a.cloud.reach(of[side]) + b.cloud.reach(back);
+  }
+  const T more = Kokkos::fmin(T(50), Kokkos::fmax(T(-50), (overlap[1] - overlap[0]) / k_even));
+  const T weight = 1 / (1 + Kokkos::exp(-more));
+  for (int d = 0; d < Dim; ++d) normal[d] = weight * of[0][d] + (1 - weight) * of[1][d];
+  const T length = Kokkos::sqrt(dot(normal, normal));
+  if (!(length > k_bounds)) return false;
+  for (int d = 0; d < Dim; ++d) normal[d] /= length;
+  return true;
+}
+
+/// Normal, gap and area between fields a and b at a node; false where neither has a boundary.
+/// spacing [m], face [m2]: of a cell.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool meet(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b, T spacing,
                                  T face, Meeting<T, Dim>& at) {
-  constexpr T k_bounds = T(1e-3);  // of a cell's face: less is round-off
-  const T square_a = dot(a.area, a.area), square_b = dot(b.area, b.area);
-  const T most = Kokkos::fmax(square_a, square_b);
-  if (!(most > k_bounds * k_bounds * face * face)) return false;
-  const T weight_a = power(square_a / most, 4), weight_b = power(square_b / most, 4);
-  for (int d = 0; d < Dim; ++d) at.normal[d] = weight_a * a.area[d] - weight_b * b.area[d];
-  const T length = Kokkos::sqrt(dot(at.normal, at.normal));
-  if (!(length > k_bounds * face)) return false;
-  for (int d = 0; d < Dim; ++d) at.normal[d] /= length;
+  if (!normal_between(a, b, face, at.normal)) return false;
   const T of_a = Kokkos::fmax(T(0), dot(a.area, at.normal)),
           of_b = Kokkos::fmax(T(0), -dot(b.area, at.normal));
-  at.area = Kokkos::fmin(of_a, of_b);
-  at.gap = spacing * (surface_depth(a.volume / spacing, of_a) + surface_depth(b.volume / spacing, of_b));
+  const T depth_a = surface_depth(a.volume / spacing, of_a),
+          depth_b = surface_depth(b.volume / spacing, of_b);
+  at.area = shared_area(of_a, depth_a, of_b, depth_b);
+  at.gap = spacing * (depth_a + depth_b);
   return true;
 }
 
@@ -70,38 +128,46 @@ KOKKOS_INLINE_FUNCTION T shear_bound(const InterfaceLaw& law, const InterfaceSid
   return Kokkos::fmin(by_area, coulomb);
 }
 
-/// Impulses of a law between fields a and b in a step of dt [s]. Fields may approach by their gap. Contact is
-/// inelastic.
+/// What a pair of fields has had in a step, in rounds [N s]: normal impulse, and that along the face, against
+/// the slip of the first.
+template <class T, int Dim>
+struct PairImpulse {
+  T normal = 0;
+  Vector<T, Dim> along{};
+};
+
+/// Impulses of a law between fields a and b in a step of dt [s], and of what is welded to them, beyond those
+/// of the rounds before. Fields may approach by their gap. Contact is inelastic.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION InterfaceImpulse<T, Dim> impulse_between(const InterfaceLaw& law,
                                                                 const InterfaceSide<T, Dim>& a,
                                                                 const InterfaceSide<T, Dim>& b,
-                                                                const Meeting<T, Dim>& at, T spacing, T dt) {
+                                                                const Meeting<T, Dim>& at, T spacing, T dt,
+                                                                PairImpulse<T, Dim>& so_far) {
   constexpr T k_shears = T(0.15);  // cells, gap within which shear acts without a normal impulse
   InterfaceImpulse<T, Dim> out;
-  const T mass = a.mass * b.mass / (a.mass + b.mass);
+  const T mass = a.moving * b.moving / (a.moving + b.moving);
+  const bool began = so_far.normal > 0;
   Vector<T, Dim> slip;
   for (int d = 0; d < Dim; ++d) slip[d] = a.velocity[d] - b.velocity[d];
   const T approach = dot(slip, at.normal);
-  const T normal = mass * Kokkos::fmax(T(0), approach - Kokkos::fmax(T(0), at.gap) / dt);
-  if (!(normal > 0 || at.gap < k_shears * spacing)) return out;
-  for (int d = 0; d < Dim; ++d) slip[d] -= approach * at.normal[d];
-  const T speed = Kokkos::sqrt(dot(slip, slip));
-  const T shear = Kokkos::fmin(mass * speed, shear_bound(law, a, b, normal, at.area, dt));
-  const T along = speed > 0 ? shear / speed : T(0);
-  for (int d = 0; d < Dim; ++d) out.on_first[d] = -normal * at.normal[d] - along * slip[d];
-  if (normal > 0 || shear > 0) out.area = at.area;
-  out.work = shear * (speed - shear / (2 * mass));
-  return out;
-}
-
-/// Impulse that gives two fields one velocity.
-template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION InterfaceImpulse<T, Dim> weld(const InterfaceSide<T, Dim>& a,
-                                                     const InterfaceSide<T, Dim>& b) {
-  InterfaceImpulse<T, Dim> out;
-  const T mass = a.mass * b.mass / (a.mass + b.mass);
-  for (int d = 0; d < Dim; ++d) out.on_first[d] = mass * (b.velocity[d] - a.velocity[d]);
+  const T normal = Kokkos::fmax(T(0), so_far.normal + mass * (approach - Kokkos::fmax(T(0), at.gap) / dt));
+  Vector<T, Dim> along = filled<T, Dim>(0);
+  if (normal > 0 || at.gap < k_shears * spacing)
+    for (int d = 0; d < Dim; ++d) along[d] = so_far.along[d] + mass * (slip[d] - approach * at.normal[d]);
+  const T size = Kokkos::sqrt(dot(along, along)), most = shear_bound(law, a, b, normal, at.area, dt);
+  if (size > most)
+    for (int d = 0; d < Dim; ++d) along[d] *= most / size;
+  T work = 0;
+  for (int d = 0; d < Dim; ++d) {
+    const T more = along[d] - so_far.along[d];
+    out.on_first[d] = -(normal - so_far.normal) * at.normal[d] - more;
+    work += more * (slip[d] - approach * at.normal[d] - more / (2 * mass));
+  }
+  const bool touched = began || dot(so_far.along, so_far.along) > 0;
+  if (!touched && (normal > 0 || size > 0)) out.area = at.area;
+  out.work = work;
+  so_far = {normal, along};
   return out;
 }
 

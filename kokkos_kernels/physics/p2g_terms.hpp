@@ -223,6 +223,47 @@ struct CentreSource
   }
 };
 
+/// How the soil of a node lies round it, in the slots of contact: CloudTerms, with a particle's domain as a
+/// box.
+template <class Space_, class T, int Dim, ParticleDomain domain_ = ParticleDomain::stretch>
+struct CloudSource : SourceOfSoil<Space_, T, Dim, CloudTerms<Dim>::size, Kind::geometry, domain_> {
+  using Terms = CloudTerms<Dim>;
+  static constexpr bool takes_offset = true;
+  struct Point {
+    DomainOf<T, Dim, domain_> half_length;
+    T volume, spread[Dim];  // of the domain itself
+  };
+  Windows<Space_> windows;
+
+  KOKKOS_INLINE_FUNCTION bool skips(int slot) const { return windows.place(slot) == 0; }
+  KOKKOS_INLINE_FUNCTION Point load(int p) const {
+    const auto& points = this->points;
+    const BodyProperties<T>& body = points.bodies(points.body(p));
+    Point q{box_or_ring_of<domain_>(points, p, body), points.volume(p), {}};
+    for (int d = 0; d < Dim; ++d) {
+      const T half = points.has_domain ? T(points.half_length(p)[d]) : T(body.half_length);
+      q.spread[d] = q.volume * half * half / 3;
+    }
+    return q;
+  }
+  KOKKOS_INLINE_FUNCTION static constexpr int component(int value) {
+    return value < Terms::spread ? value - Terms::way : -1;
+  }
+  KOKKOS_INLINE_FUNCTION static T factor(const Point& q, int value) {
+    const int d = value - Terms::spread;
+    return d >= 0 && d < Dim ? q.spread[d] : T(0);
+  }
+  /// As AffineSource::give_more.
+  template <class W, class Add>
+  KOKKOS_INLINE_FUNCTION static void give_more(const Point& q, W w, const Vector<W, Dim>& offset, Add&& add) {
+    for (int i = 0; i < Dim; ++i) {
+      add(Terms::way + i, -w * (q.volume * offset[i]));
+      for (int j = i; j < Dim; ++j)
+        add(Terms::spread + Terms::place(i, j), w * (q.volume * offset[i] * offset[j]));
+    }
+  }
+};
+
 /// Rigid body to nodes: m_i^R = sum S m_p and the mass gradient n_i^R = sum grad S m_p (Eq. 3; it points out
 /// of the body). A strategy may move() a point before it gives.
 template <class Space_, class T, int Dim>
@@ -358,10 +399,12 @@ using VectorSource = ValueSource<Space, T, Dim, Dim, Kind::motion, domain>;
   MPM_SOIL_SOURCES(X, Space, T, Dim, stretch)      \
   MPM_IN_2D_##Dim(MPM_SOIL_SOURCES(X, Space, T, 2, ring))
 /// The others.
-#define MPM_FOR_EACH_OTHER_SOURCE(X, Space, T, Dim) \
-  MPM_VALUE_SOURCES(X, Space, T, Dim, stretch)      \
-  X(CentreSource<Space, T, Dim>)                    \
-  MPM_IN_2D_##Dim(MPM_VALUE_SOURCES(X, Space, T, 2, ring)) MPM_IN_3D_##Dim(X(TripleSource<Space, T, 3>))
+#define MPM_FOR_EACH_OTHER_SOURCE(X, Space, T, Dim)                  \
+  MPM_VALUE_SOURCES(X, Space, T, Dim, stretch)                       \
+  X(CentreSource<Space, T, Dim>)                                     \
+  X(CloudSource<Space, T, Dim>)                                      \
+  MPM_IN_2D_##Dim(X(CloudSource<Space, T, 2, ParticleDomain::ring>)) \
+      MPM_IN_2D_##Dim(MPM_VALUE_SOURCES(X, Space, T, 2, ring)) MPM_IN_3D_##Dim(X(TripleSource<Space, T, 3>))
 #define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
   MPM_FOR_EACH_STEP_SOURCE(X, Space, T, Dim)  \
   MPM_FOR_EACH_OTHER_SOURCE(X, Space, T, Dim)

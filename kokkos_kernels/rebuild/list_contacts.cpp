@@ -195,6 +195,9 @@ void make_room_for_contact(ContactCore<Space, T, Dim>& s) {
   s.contact.strength.place = s.contact.place;
   if (s.shear_fraction && has_windows(s.space))
     ensure(s.contact.strength.sums, window_bytes<PairSource<Space, T, Dim>> * s.contact.count);
+  s.contact.cloud.place = s.contact.place;
+  if (s.interfaces.in_use() && has_windows(s.space))
+    ensure(s.contact.cloud.sums, window_bytes<CloudSource<Space, T, Dim>> * s.contact.count);
   if (s.at_sites.in_use) {
     ensure(s.at_sites.sites, nodes * k_sites<Dim> * width);
     ensure(s.at_sites.gaps, nodes * k_sites<Dim> * width);

@@ -49,13 +49,15 @@ Soil<Space, T, Dim> soil_of(const Config& config) {
 /// The nodal fields that a run uses.
 NodeUses uses_of_nodes(const Config& config) {
   const auto by_strength = [](const auto& of) { return of.shear_fraction.has_value(); };
-  return {.boundary = !config.rigids.empty(),
+  const bool pairs = !config.contact_pairs.empty();
+  return {.boundary = pairs || !config.rigids.empty(),
           .strength = std::any_of(config.rigids.begin(), config.rigids.end(), by_strength),
           .water = config.water.level.has_value(),
           .loads = !config.loads.empty(),
           .residual = config.velocity_update == VelocityUpdate::xpic,
           .correction = bool(config.position_correction),
-          .domains = config.particle_domain != ParticleDomain::fixed};
+          .domains = config.particle_domain != ParticleDomain::fixed,
+          .cloud = pairs};
 }
 
 /// Bytes that a particle of the soil takes, with what sorts it and what some runs keep of it in a step.

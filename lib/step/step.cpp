@@ -163,6 +163,7 @@ struct Step {
   PetscErrorCode complete_nodes(const Space& stream) const {
     PetscFunctionBeginUser;
     if (s.shear_fraction) PetscCall(strength_to_nodes(s, ranks));
+    PetscCall(cloud_to_nodes(s, ranks));
     if (!s.strays.known) mark_strays(s, stream);
     if (wants_split(s) && s.split.parts.empty()) split_patches(s, stream);
     PetscFunctionReturn(PETSC_SUCCESS);

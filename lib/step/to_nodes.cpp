@@ -119,6 +119,21 @@ PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T
 }
 
 template <class Space, class T, int Dim>
+PetscErrorCode cloud_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
+  PetscFunctionBeginUser;
+  if (!s.interfaces.in_use()) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.cloud, T(0));
+  for_all_soil(s, [&](const auto& set) {
+    with_box_or_ring(set.points, [&](auto domain) {
+      interpolate<CloudSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, set.bins,
+                                                        {{set.points}, s.contact.cloud}, s.nodes.cloud);
+    });
+  });
+  if (ranks) PetscCall(ranks->add_field(s, s.nodes.cloud, When::in_step, s.contact.place.data()));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
 void sum_present_soil(State<Space, T, Dim>& s) {
   finish_sums(s);
   if (!s.summed.soil) reset_nodes(s);
@@ -134,6 +149,7 @@ PetscErrorCode sum_present_forces(State<Space, T, Dim>& s, Decomposition<Space, 
   loads_to_nodes(s);
   if (ranks) PetscCall(ranks->add_present_soil(s));
   if (s.shear_fraction) PetscCall(strength_to_nodes(s, ranks));
+  PetscCall(cloud_to_nodes(s, ranks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,6 +181,7 @@ PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T
   template PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>&, Rayleigh<Space, T, Dim>&,        \
                                             Decomposition<Space, T, Dim>*);                         \
   template PetscErrorCode strength_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);  \
+  template PetscErrorCode cloud_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);     \
   template PetscErrorCode sum_present_forces(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*); \
   template void sum_present_soil(State<Space, T, Dim>&);                                            \
   template PetscErrorCode update_velocities(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);

@@ -38,6 +38,10 @@ PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>& s, Rayleigh<Space, T, Dim
 template <class Space, class T, int Dim>
 PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks);
 
+/// How the soil lies round the nodes that several velocity fields share, where bodies have such.
+template <class Space, class T, int Dim>
+PetscErrorCode cloud_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks);
+
 /// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own.
 /// The lists hold, as they do for that step: s.control must not be paused.
 template <class Space, class T, int Dim>

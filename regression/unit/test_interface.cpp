@@ -1,5 +1,7 @@
 // Contact between two velocity fields at a node.
 
+#include <cmath>
+
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 
@@ -16,9 +18,10 @@ constexpr double k_spacing = 0.1, k_step = 1e-3;
 /// A field of so much mass, whose face through the node is normal to y and covers the node's cells.
 Side side_of(double mass, double out, Vector<double, 2> velocity) {
   Side side{};
-  side.mass = mass, side.velocity = velocity, side.strength = 1e3;
+  side.mass = side.moving = mass, side.velocity = velocity, side.strength = 1e3;
   side.area = {0, out * k_spacing};
   side.volume = k_spacing * k_spacing / 2;
+  side.cloud = {{0, -out / 3}, {{1. / 6, 0}, {0, 1. / 18}}};  // of half the hat function of the node
   return side;
 }
 
@@ -35,7 +38,8 @@ InterfaceLaw law_with(double friction) {
 }
 
 InterfaceImpulse<double, 2> impulse_of(const InterfaceLaw& law, const Side& a, const Side& b) {
-  return impulse_between(law, a, b, meeting_of(a, b), k_spacing, k_step);
+  PairImpulse<double, 2> so_far;
+  return impulse_between(law, a, b, meeting_of(a, b), k_spacing, k_step, so_far);
 }
 
 }  // namespace
@@ -63,6 +67,27 @@ TEST_CASE("fields that part feel nothing, and a gap closes before they feel each
   CHECK(impulse_of(law_with(0), low, high).on_first[1] == Approx(-mass * low.velocity[1] / 3));
 }
 
+TEST_CASE("the nodes beside two faces share their whole area, wherever the faces lie in a cell", "[interface]") {
+  for (const double low : {0.1, 0.3, 0.5, 0.85})  // cells, of the faces above the lower of two rows of nodes
+    for (const double high : {low, low + 0.1}) {
+      double sum = 0;
+      for (const int row : {0, 1}) {
+        Side a = side_of(2, 1, {0, 0}), b = side_of(6, -1, {0, 0});
+        const auto place = [&](Side& side, double up, double sign) {
+          const double inside = sign * (up - row), part = 1 - std::abs(inside);  // cells, of soil beyond the node
+          side.area[1] = sign * part * k_spacing;
+          side.volume = k_spacing * k_spacing * (inside > 0 ? 1 - part * part / 2 : part * part / 2);
+        };
+        place(a, low, 1), place(b, high, -1);
+        sum += meeting_of(a, b).area;
+      }
+      CHECK(sum == Approx(k_spacing).epsilon(1e-6));
+    }
+  Side ground = side_of(6, 1, {0, 0}), block = side_of(2, -1, {0, 0});
+  block.area[1] *= 0.3, block.volume *= 0.3;  // it reaches over 0.3 of the node's cells
+  CHECK(meeting_of(ground, block).area == Approx(0.3 * k_spacing));
+}
+
 TEST_CASE("shear is the least of what stops the slip, friction with adhesion, and the limit", "[interface]") {
   const Side a = side_of(2, 1, {3, 1}), b = side_of(6, -1, {0, -1});
   const double mass = 1.5, normal = mass * 2, stops = mass * 3;
@@ -87,17 +112,39 @@ TEST_CASE("friction takes the kinetic energy of the slip that it stops", "[inter
 TEST_CASE("the corner of a block on flat ground has the normal of the ground", "[interface]") {
   Side corner = side_of(2, -1, {0, -1}), ground = side_of(6, 1, {0, 0});
   corner.area = {0.5 * k_spacing, -0.5 * k_spacing}, corner.volume /= 2;
+  corner.cloud = {{-1. / 3, 1. / 3}, {{1. / 18, 0}, {0, 1. / 18}}};
   const Meeting<double, 2> at = meeting_of(corner, ground);
-  CHECK(at.normal[0] / at.normal[1] == Approx(0).margin(0.05));
+  CHECK(at.normal[0] / at.normal[1] == Approx(0).margin(0.01));
   CHECK(at.area < k_spacing);
 }
 
-TEST_CASE("welded fields leave with one velocity", "[interface]") {
-  const Side a = side_of(2, 1, {3, 1}), b = side_of(6, -1, {0, -1});
-  const auto impulse = weld(a, b);
-  for (int d = 0; d < 2; ++d)
-    CHECK(a.velocity[d] + impulse.on_first[d] / a.mass ==
-          Approx(b.velocity[d] - impulse.on_first[d] / b.mass));
+TEST_CASE("the side of a block has the normal of ground that ends below the node", "[interface]") {
+  constexpr double below = 0.6;  // cells, of the faces
+  Side block = side_of(2, -1, {1, 0}), ground = side_of(6, 1, {0, 0});
+  const double part = 1 - below, above = 0.5 + below - below * below / 2;
+  ground.area = {0, part * k_spacing}, ground.volume = k_spacing * k_spacing * part * part / 2;
+  ground.cloud = {{0, -below - part / 3}, {{1. / 6, 0}, {0, part * part / 18}}};
+  block.area = {above * k_spacing, -0.5 * part * k_spacing}, block.volume = k_spacing * k_spacing * above / 2;
+  block.cloud = {{-1. / 3, 0.06}, {{1. / 18, 0}, {0, 0.14}}};
+  CHECK(std::abs(meeting_of(ground, block).normal[0]) < 0.01);
+}
+
+TEST_CASE("the impulses of several rounds obey the limits of one", "[interface]") {
+  Side a = side_of(2, 1, {3, 1}), b = side_of(6, -1, {0, -1});
+  InterfaceLaw law = law_with(0.5);
+  law.shear_limit = 4000;
+  PairImpulse<double, 2> so_far;
+  double along = 0, area = 0;
+  for (int round = 0; round < 5; ++round) {
+    const auto impulse = impulse_between(law, a, b, meeting_of(a, b), k_spacing, k_step, so_far);
+    along += impulse.on_first[0], area += impulse.area;
+    for (int d = 0; d < 2; ++d)
+      a.velocity[d] += impulse.on_first[d] / a.mass, b.velocity[d] -= impulse.on_first[d] / b.mass;
+    b.velocity[1] -= 0.1;  // a third body pushes
+  }
+  CHECK(along == Approx(-4000 * k_spacing * k_step));
+  CHECK(area == Approx(k_spacing));
+  CHECK(a.velocity[1] == Approx(b.velocity[1] + 0.1));
 }
 
 }  // namespace mpm
