@@ -166,13 +166,13 @@ struct PressFields {
   /// Brings the fields of a node together, pair by pair, until impulses are a thousandth of the first ones.
   KOKKOS_INLINE_FUNCTION void solve(Side* sides, int count, const Results& out) const {
     if (count == 2) {
-      PairImpulse<T, Dim> so_far;
+      SharedImpulse<T, Dim> so_far;
       press(sides, count, 0, 1, so_far, out);
       return;
     }
     constexpr int k_rounds = 8;
     constexpr T k_small = T(1e-3);
-    PairImpulse<T, Dim> so_far[k_most_fields * (k_most_fields - 1) / 2];
+    SharedImpulse<T, Dim> so_far[k_most_fields * (k_most_fields - 1) / 2];
     T first = 0;
     for (int round = 0; round < k_rounds; ++round) {
       T largest = 0;
@@ -185,7 +185,7 @@ struct PressFields {
   }
   /// Takes contact of two fields, and of those that are welded to them, into their velocities and forces.
   /// so_far: what the two have had in this step. Returns the largest component of the impulse [N s].
-  KOKKOS_INLINE_FUNCTION T press(Side* sides, int count, int m, int n, PairImpulse<T, Dim>& so_far,
+  KOKKOS_INLINE_FUNCTION T press(Side* sides, int count, int m, int n, SharedImpulse<T, Dim>& so_far,
                                  const Results& out) const {
     const Side &a = sides[m], &b = sides[n];
     if (a.welded == b.welded) return 0;

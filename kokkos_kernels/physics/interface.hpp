@@ -56,35 +56,42 @@ KOKKOS_INLINE_FUNCTION T shared_area(T of_a, T depth_a, T of_b, T depth_b) {
   return Kokkos::fmin(of_a / part_a, of_b / part_b) * (part_a + part_b) / 2;
 }
 
-/// Normal out of a where two fields meet at a node. Each field has one, of its own boundary, and the one
-/// along which the two overlap less counts (as by the separating axis of two convex bodies): the corner of a
-/// block on flat ground takes the ground's, wherever in a cell the ground ends. face [m2]: of a cell. False
-/// where no field has a boundary, as deep in soil.
+/// Normal out of a where two fields meet at a node, of three: that of each field's own boundary, and that of
+/// the part of both boundaries which is no outer boundary of the two together. The one along which the fields
+/// overlap least counts, as by the separating axis of two convex bodies: the corner of a block on flat ground
+/// takes the ground's, wherever in a cell the ground ends, and beams with flush ends take that of the face
+/// between them. face [m2]: of a cell. False where no field has a boundary, as deep in soil.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool normal_between(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
                                            T face, Vector<T, Dim>& normal) {
   constexpr T k_bounds = T(1e-3);   // of a cell's face: less is round-off
-  constexpr T k_smaller = T(0.05);  // of the other's area: too little to have a normal
+  constexpr T k_smaller = T(0.05);  // of the larger area: too little to have a normal
   constexpr T k_even = T(0.02);     // cells, difference of overlaps at which one normal begins to rule
-  const T area_a = Kokkos::sqrt(dot(a.area, a.area)), area_b = Kokkos::sqrt(dot(b.area, b.area));
-  const T most = Kokkos::fmax(area_a, area_b);
-  if (!(most > k_bounds * face)) return false;
-  T overlap[2];
-  Vector<T, Dim> of[2];
-  for (int side = 0; side < 2; ++side) {
-    const InterfaceSide<T, Dim>& own = side == 0 ? a : b;
-    const T area = side == 0 ? area_a : area_b;
-    overlap[side] = Kokkos::Experimental::infinity<T>::value;
-    for (int d = 0; d < Dim; ++d) of[side][d] = 0;
-    if (!(area > k_smaller * most)) continue;
-    Vector<T, Dim> back;
-    for (int d = 0; d < Dim; ++d)
-      of[side][d] = (side == 0 ? 1 : -1) * own.area[d] / area, back[d] = -of[side][d];
-    overlap[side] = a.cloud.reach(of[side]) + b.cloud.reach(back);
+  Vector<T, Dim> of[3];
+  T outer_square = 0, along = 0, most = 0;
+  for (int d = 0; d < Dim; ++d) {
+    const T outer = a.area[d] + b.area[d];
+    of[0][d] = a.area[d], of[1][d] = -b.area[d], of[2][d] = a.area[d] - b.area[d];
+    outer_square += outer * outer, along += outer * of[2][d];
   }
-  const T more = Kokkos::fmin(T(50), Kokkos::fmax(T(-50), (overlap[1] - overlap[0]) / k_even));
-  const T weight = 1 / (1 + Kokkos::exp(-more));
-  for (int d = 0; d < Dim; ++d) normal[d] = weight * of[0][d] + (1 - weight) * of[1][d];
+  const T part = outer_square > k_bounds * k_bounds * face * face ? along / outer_square : T(0);
+  for (int d = 0; d < Dim; ++d) of[2][d] = (of[2][d] - part * (a.area[d] + b.area[d])) / 2;
+  T size[3], overlap[3], least = Kokkos::Experimental::infinity<T>::value;
+  for (int n = 0; n < 3; ++n) size[n] = Kokkos::sqrt(dot(of[n], of[n])), most = Kokkos::fmax(most, size[n]);
+  if (!(most > k_bounds * face)) return false;
+  for (int n = 0; n < 3; ++n) {
+    if (!(size[n] > k_smaller * most)) continue;
+    Vector<T, Dim> back;
+    for (int d = 0; d < Dim; ++d) of[n][d] /= size[n], back[d] = -of[n][d];
+    overlap[n] = a.cloud.reach(of[n]) + b.cloud.reach(back);
+    least = Kokkos::fmin(least, overlap[n]);
+  }
+  for (int d = 0; d < Dim; ++d) normal[d] = 0;
+  for (int n = 0; n < 3; ++n) {
+    if (!(size[n] > k_smaller * most)) continue;
+    const T weight = Kokkos::exp(Kokkos::fmax(T(-50), (least - overlap[n]) / k_even));
+    for (int d = 0; d < Dim; ++d) normal[d] += weight * of[n][d];
+  }
   const T length = Kokkos::sqrt(dot(normal, normal));
   if (!(length > k_bounds)) return false;
   for (int d = 0; d < Dim; ++d) normal[d] /= length;
@@ -131,7 +138,7 @@ KOKKOS_INLINE_FUNCTION T shear_bound(const InterfaceLaw& law, const InterfaceSid
 /// What a pair of fields has had in a step, in rounds [N s]: normal impulse, and that along the face, against
 /// the slip of the first.
 template <class T, int Dim>
-struct PairImpulse {
+struct SharedImpulse {
   T normal = 0;
   Vector<T, Dim> along{};
 };
@@ -143,7 +150,7 @@ KOKKOS_INLINE_FUNCTION InterfaceImpulse<T, Dim> impulse_between(const InterfaceL
                                                                 const InterfaceSide<T, Dim>& a,
                                                                 const InterfaceSide<T, Dim>& b,
                                                                 const Meeting<T, Dim>& at, T spacing, T dt,
-                                                                PairImpulse<T, Dim>& so_far) {
+                                                                SharedImpulse<T, Dim>& so_far) {
   constexpr T k_shears = T(0.15);  // cells, gap within which shear acts without a normal impulse
   InterfaceImpulse<T, Dim> out;
   const T mass = a.moving * b.moving / (a.moving + b.moving);

@@ -38,7 +38,7 @@ InterfaceLaw law_with(double friction) {
 }
 
 InterfaceImpulse<double, 2> impulse_of(const InterfaceLaw& law, const Side& a, const Side& b) {
-  PairImpulse<double, 2> so_far;
+  SharedImpulse<double, 2> so_far;
   return impulse_between(law, a, b, meeting_of(a, b), k_spacing, k_step, so_far);
 }
 
@@ -133,7 +133,7 @@ TEST_CASE("the impulses of several rounds obey the limits of one", "[interface]"
   Side a = side_of(2, 1, {3, 1}), b = side_of(6, -1, {0, -1});
   InterfaceLaw law = law_with(0.5);
   law.shear_limit = 4000;
-  PairImpulse<double, 2> so_far;
+  SharedImpulse<double, 2> so_far;
   double along = 0, area = 0;
   for (int round = 0; round < 5; ++round) {
     const auto impulse = impulse_between(law, a, b, meeting_of(a, b), k_spacing, k_step, so_far);

@@ -1,0 +1,66 @@
+"""Partial slip of two elastic balls
+
+Two equal balls in 3D are pressed together by 4 mm, so that the radius of the contact is 20 mm, 6 cells, and are then shifted along each other, with a friction
+of 0.3. The middle of the contact stays stuck, within a radius $c$ with $c/a = (1 - Q/(\\mu P))^{1/3}$ (Cattaneo, Mindlin). $c$ is fitted to the slip of the particles
+on both faces along the direction of the shift. The force is that of Hertz, and of the finite balls as in [pair_hertz](#elastic-balls-and-cylinders-pressed-together).
+"""
+
+import h5py
+import numpy as np
+
+from mpm_regression.row import Row
+
+RADIUS, YOUNG, POISSON, FRICTION = 0.2, 1e7, 0.3, 0.3
+LONG = True
+BACKENDS, PRECISIONS = ("cuda",), ("double",)
+RUNS = {"balls": ""}
+
+
+def positions(run, time, body):
+    with h5py.File(run.frame_near(time)) as frame:
+        return frame[body]["position"][:, :3]
+
+
+def slip_of_faces(run, time, width):
+    """Places x and slips [m] since 0.04 s of the particles on both faces at y = 0, up to `width` from the middle."""
+    spacing, faces = run.number("mesh_spacing"), []
+    for body, up in (("low", 1), ("high", -1)):
+        before, now = positions(run, 0.04, body), positions(run, time, body)
+        column = np.where(before[:, 1] < spacing / 2, np.floor(before[:, 0] / (spacing / 2)), np.nan)
+        faces.append([])
+        for k in range(-int(width / (spacing / 2)), int(width / (spacing / 2))):
+            there = np.flatnonzero(column == k)
+            at = there[np.argmax(up * before[there, 2])]
+            faces[-1].append((before[at, 0], now[at, 0] - before[at, 0]))
+    low, high = map(np.array, faces)
+    return (low[:, 0] + high[:, 0]) / 2, high[:, 1] - low[:, 1]
+
+
+def stuck_radius(x, slip, radius, largest):
+    """c / a that fits the slips best; largest [m]: the shift of balls that only just slide all over."""
+    x, inside = np.abs(x), np.abs(x) < radius
+
+    def misfit(c):
+        near = np.minimum(c / np.maximum(x, 1e-9), 1)
+        exact = (1 - 2 / np.pi * np.arcsin(near)) * (1 - 2 * near**2) + 2 / np.pi * near * np.sqrt(1 - near**2)
+        return np.var((slip - largest * np.where(x > c, exact, 0))[inside])
+    return min(np.linspace(0.05, 1, 400), key=lambda ratio: misfit(ratio * radius))
+
+
+def check(runs):
+    run, shear_modulus = runs["balls"], YOUNG / (2 + 2 * POISSON)
+    history, stiffness = run.history, YOUNG / (1 - POISSON**2) / 2
+
+    def forces(time):
+        """Normal and tangential force on whole balls."""
+        row = np.argmin(np.abs(history["time"] - time))
+        return [2 * abs(history[f"low_high_force_{axis}"][row - 2:row + 1].mean()) for axis in "zx"]
+    hertz = 1.055 * 4 / 3 * stiffness * np.sqrt(RADIUS / 2) * 0.004**1.5
+    yield Row("force of two balls (N)", forces(0.04)[0], hertz, 0.05 * hertz, "Hertz, finite elements")
+    for time in (0.06, 0.07, 0.08):
+        normal, shear = forces(time)
+        radius = (3 * normal * RADIUS / 2 / (4 * stiffness))**(1 / 3)
+        largest = 3 * FRICTION * normal * (2 - POISSON) / (8 * shear_modulus * radius)
+        exact = max(0, 1 - shear / (FRICTION * normal))**(1 / 3)
+        stuck = stuck_radius(*slip_of_faces(run, time, radius), radius, largest)
+        yield Row(f"stuck radius over that of the contact, c / a, at {time} s", stuck, exact, 0.06 * exact, "Cattaneo, Mindlin")
