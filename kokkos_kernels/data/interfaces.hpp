@@ -16,8 +16,9 @@ struct InterfaceLaw {
   double adhesion = 0;  // Pa, shear stress at no normal stress, beside friction
   double shear_limit = std::numeric_limits<double>::infinity();  // Pa
   double shear_fraction = -1;  // -, shear limit over the strength of the weaker soil; negative: none is given
-  int row = -1;                // of the pair of bodies that has this law; -1: no pair has it
-  int sign = 1;                // of forces on the lower field in the row: -1 where the pair lists it second
+  bool strong[2] = {true, true};  // whether each field, the lower one first, has a strength
+  int row = -1;                   // of the pair of bodies that has this law; -1: no pair has it
+  int sign = 1;  // of forces on the lower field in the row: -1 where the pair lists it second
 };
 
 /// Sums over the nodes of an interface: impulse on the first body [N s], area in touch times time [m2 s] and

@@ -13,12 +13,14 @@ struct SoilCloud {
   Vector<T, Dim> centre;
   T spread[Dim][Dim];
 
-  /// How far the soil reaches along n, of length 1: that of a box with this covariance [cells].
+  /// A measure of how far the soil reaches along n, of length 1 [cells]: five standard deviations beyond its
+  /// centre. Of boxes they would be 1.73; more of them tell better which body is long along a false normal.
   KOKKOS_INLINE_FUNCTION T reach(const Vector<T, Dim>& n) const {
+    constexpr T k_deviations = T(5);
     T square = 0;
     for (int i = 0; i < Dim; ++i)
       for (int j = 0; j < Dim; ++j) square += n[i] * spread[i][j] * n[j];
-    return dot(centre, n) + Kokkos::sqrt(3 * Kokkos::fmax(T(0), square));
+    return dot(centre, n) + k_deviations * Kokkos::sqrt(Kokkos::fmax(T(0), square));
   }
 };
 
@@ -26,7 +28,7 @@ struct SoilCloud {
 template <class T, int Dim>
 struct InterfaceSide {
   int field, i;             // i: the node
-  T mass;                   // kg
+  T mass, moving;           // kg; with that of the sides that it is welded to
   Vector<T, Dim> velocity;  // m/s, at the end of the step, as far as it is known
   int welded;               // the first side that it moves as one with; else its own number
   Vector<T, Dim> area;      // m2, of its boundary, out of it
@@ -56,14 +58,25 @@ KOKKOS_INLINE_FUNCTION T shared_area(T of_a, T depth_a, T of_b, T depth_b) {
   return Kokkos::fmin(of_a / part_a, of_b / part_b) * (part_a + part_b) / 2;
 }
 
+/// Part of a cell's face that a body's boundary at a node covers, 1 where it is a plane face across the
+/// node's cells, less at an edge. volume [m3], area [m2] of the body at the node; spacing [m], face [m2] of a
+/// cell.
+template <class T>
+KOKKOS_INLINE_FUNCTION T covered(T volume, T area, T spacing, T face) {
+  constexpr T k_least = T(0.05);  // less is hardly known
+  const T across = Kokkos::fmax(k_least, 1 - Kokkos::fabs(surface_depth(volume / spacing, area)));
+  return Kokkos::fmin(T(1), area / (face * across));
+}
+
 /// Normal out of a where two fields meet at a node, of three: that of each field's own boundary, and that of
 /// the part of both boundaries which is no outer boundary of the two together. The one along which the fields
-/// overlap least counts, as by the separating axis of two convex bodies: the corner of a block on flat ground
-/// takes the ground's, wherever in a cell the ground ends, and beams with flush ends take that of the face
-/// between them. face [m2]: of a cell. False where no field has a boundary, as deep in soil.
+/// overlap least counts, as by the separating axis of two convex bodies, less where the boundary is but an
+/// edge at the node: the corner of a block on flat ground takes the ground's, wherever in a cell the ground
+/// ends, and beams with flush ends take that of the face between them. face [m2]: of a cell. False where no
+/// field has a boundary, as deep in soil.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool normal_between(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
-                                           T face, Vector<T, Dim>& normal) {
+                                           T spacing, T face, Vector<T, Dim>& normal) {
   constexpr T k_bounds = T(1e-3);   // of a cell's face: less is round-off
   constexpr T k_smaller = T(0.05);  // of the larger area: too little to have a normal
   constexpr T k_even = T(0.02);     // cells, difference of overlaps at which one normal begins to rule
@@ -79,11 +92,14 @@ KOKKOS_INLINE_FUNCTION bool normal_between(const InterfaceSide<T, Dim>& a, const
   T size[3], overlap[3], least = Kokkos::Experimental::infinity<T>::value;
   for (int n = 0; n < 3; ++n) size[n] = Kokkos::sqrt(dot(of[n], of[n])), most = Kokkos::fmax(most, size[n]);
   if (!(most > k_bounds * face)) return false;
+  const T edge_a = 1 - covered(a.volume, size[0], spacing, face),
+          edge_b = 1 - covered(b.volume, size[1], spacing, face);
+  const T at_edge[3] = {edge_a, edge_b, Kokkos::fmax(edge_a, edge_b)};  // cells, as if they overlapped more
   for (int n = 0; n < 3; ++n) {
     if (!(size[n] > k_smaller * most)) continue;
     Vector<T, Dim> back;
     for (int d = 0; d < Dim; ++d) of[n][d] /= size[n], back[d] = -of[n][d];
-    overlap[n] = a.cloud.reach(of[n]) + b.cloud.reach(back);
+    overlap[n] = a.cloud.reach(of[n]) + b.cloud.reach(back) + at_edge[n];
     least = Kokkos::fmin(least, overlap[n]);
   }
   for (int d = 0; d < Dim; ++d) normal[d] = 0;
@@ -103,7 +119,7 @@ KOKKOS_INLINE_FUNCTION bool normal_between(const InterfaceSide<T, Dim>& a, const
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool meet(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b, T spacing,
                                  T face, Meeting<T, Dim>& at) {
-  if (!normal_between(a, b, face, at.normal)) return false;
+  if (!normal_between(a, b, spacing, face, at.normal)) return false;
   const T of_a = Kokkos::fmax(T(0), dot(a.area, at.normal)),
           of_b = Kokkos::fmax(T(0), -dot(b.area, at.normal));
   const T depth_a = surface_depth(a.volume / spacing, of_a),
@@ -127,7 +143,10 @@ KOKKOS_INLINE_FUNCTION T shear_bound(const InterfaceLaw& law, const InterfaceSid
                                      const InterfaceSide<T, Dim>& b, T normal, T area, T dt) {
   const T none = Kokkos::Experimental::infinity<T>::value;
   T limit = none;  // Pa
-  if (law.shear_fraction >= 0) limit = T(law.shear_fraction) * Kokkos::fmin(a.strength, b.strength);
+  if (law.shear_fraction >= 0) {
+    const T of_a = law.strong[0] ? a.strength : none, of_b = law.strong[1] ? b.strength : none;
+    limit = T(law.shear_fraction) * Kokkos::fmin(of_a, of_b);
+  }
   if (law.shear_limit < none) limit = Kokkos::fmin(limit, T(law.shear_limit));
   const T by_area = limit < none ? limit * area * dt : none;
   if (law.friction < 0) return by_area;

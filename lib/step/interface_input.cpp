@@ -31,6 +31,7 @@ InterfaceInput interface_input(const Config& config) {
     const int a = fields.of_body[pairs[n].bodies[0]], b = fields.of_body[pairs[n].bodies[1]];
     InterfaceLaw law = law_of(pairs[n], n);
     law.sign = a < b ? 1 : -1;
+    for (int side = 0; side < 2; ++side) law.strong[a < b ? side : 1 - side] = pairs[n].strong[side];
     in.laws[a * in.fields + b] = in.laws[b * in.fields + a] = law;
   }
   return in;

@@ -211,6 +211,7 @@ struct JointConfig {
 struct ContactPairConfig {
   std::string name;                                             // those of the bodies, with an underscore
   std::array<int, 2> bodies{};                                  // indices into Config::bodies
+  std::array<bool, 2> strong{true, true};                       // whether each has a strength
   bool welded = false;                                          // they move as one
   double adhesion = 0;                                          // Pa
   std::optional<double> friction, shear_limit, shear_fraction;  // -, Pa, - of the weaker soil's strength

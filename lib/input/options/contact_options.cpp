@@ -83,9 +83,13 @@ void read_shear_fraction(OptionReader& in, const Config& config, RigidConfig& ri
 /// The options of a rigid that contact at nodes alone has, without its name.
 constexpr const char* k_gap_keys[] = {"_contact_gap_scaling", "_contact_gap_reach", "_contact_gap_exponent"};
 
+/// Rigid bodies up to which contact at sites is the default: with many more each patch has sites of many.
+constexpr std::size_t k_few_for_sites = 8;
+
 /// Whether contact at sites is the better for a rigid by default: it moves by forces, so that the drag of
 /// contact at nodes would slow it down, and nothing of the run or of the body needs nodes.
 bool wants_sites(const OptionReader& in, const Config& config, const RigidConfig& rigid) {
+  if (config.rigids.size() > k_few_for_sites) return false;
   if (rigid.motion != Motion::dynamic || rigid.is_sprung() || is_jointed(config, rigid)) return false;
   if (rigid.contact_normal != ContactNormal::surface || config.device_memory_limit) return false;
   for (const char* key : k_gap_keys)

@@ -46,12 +46,6 @@ std::string pair_fault(const Config& config, const std::vector<std::string>& wor
   return name_clash(config, pair.name);
 }
 
-/// Whether both bodies of a pair have a strength, of which a fraction may limit the shear.
-bool has_strengths(const Config& config, const ContactPairConfig& pair) {
-  return std::all_of(pair.bodies.begin(), pair.bodies.end(),
-                     [&](int b) { return has_strength(config, config.bodies[b]); });
-}
-
 /// The shear of the interface.
 void read_shear(OptionReader& in, const Config& config, ContactPairConfig& pair) {
   const std::string fraction = pair.name + "_shear_fraction";
@@ -78,13 +72,15 @@ void read_shear(OptionReader& in, const Config& config, ContactPairConfig& pair)
   const bool found =
       in.number({.name = fraction,
                  .meaning = "slide: shear limit as a fraction of the strength of the weaker soil "
-                            "there (su)",
+                            "there (su); elastic bodies have none",
                  .unit = "-",
                  .range = {.lowest = 0, .highest = 1},
                  .change = k_by_choice},
                 pair.shear_fraction);
-  if (found && !has_strengths(config, pair))
-    in.reject(fraction, "nothing here: both bodies need materials with a strength");
+  for (int side = 0; side < 2; ++side)
+    pair.strong[side] = has_strength(config, config.bodies[pair.bodies[side]]);
+  if (found && !pair.strong[0] && !pair.strong[1])
+    in.reject(fraction, "nothing here: one of the bodies needs a material with a strength");
 }
 
 void read_pair(OptionReader& in, const Config& config, ContactPairConfig& pair) {
