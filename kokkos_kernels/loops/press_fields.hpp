@@ -23,10 +23,10 @@ struct PressFields {
       tractions;  // InterfaceTraction: [place][row][value][node];
                   // empty: none are wanted
 
-  /// Face of a node's cell [m2], and where its InterfaceTerms and InterfaceTraction of each row go, values
+  /// A node's cell, and where its InterfaceTerms and InterfaceTraction of each row go, values
   /// `cells` apart.
   struct Results {
-    T face;
+    NodeCell<T> cell;
     double *sums, *tractions;
   };
 
@@ -40,7 +40,7 @@ struct PressFields {
       for (int d = 0; d < Dim; ++d) of.force(force_at(place, f, d, k)) = 0;
     if (count < 2) return;
     const std::size_t first = std::size_t(place) * of.rows * Traction::size * cells + k;
-    const Results out{update.face(at, at_sides), sums,
+    const Results out{cell_of(at, at_sides), sums,
                       tractions.extent(0) > 0 ? tractions.data() + first : nullptr};
     join_welded(sides, count, out);
     solve(sides, count, out);
@@ -52,6 +52,10 @@ struct PressFields {
   }
 
  private:
+  KOKKOS_INLINE_FUNCTION NodeCell<T> cell_of(const Coord<Dim>& at, unsigned sides) const {
+    const T spacing = update.places.grid.spacing;
+    return {spacing, update.face(at, sides), update.rings ? T(at[0]) * spacing : T(0)};
+  }
   KOKKOS_INLINE_FUNCTION std::size_t force_at(int place, int field, int d, int k) const {
     return ((std::size_t(place) * of.fields + field) * Dim + d) * cells + k;
   }
@@ -192,7 +196,7 @@ struct PressFields {
     const InterfaceLaw& law = law_of(a, b);
     const T spacing = update.places.grid.spacing;
     Meeting<T, Dim> meeting;
-    if (!meet(a, b, spacing, out.face, meeting)) return 0;
+    if (!meet(a, b, out.cell, meeting)) return 0;
     const auto impulse = impulse_between(law, a, b, meeting, spacing, update.dt, so_far);
     T largest = 0;
     for (int d = 0; d < Dim; ++d) largest = Kokkos::fmax(largest, Kokkos::fabs(impulse.on_first[d]));
@@ -244,7 +248,7 @@ struct PressFields {
   KOKKOS_INLINE_FUNCTION void show(const InterfaceLaw& law, const Side& a, const Side& b,
                                    const InterfaceImpulse<T, Dim>& impulse, const Results& out) const {
     Meeting<T, Dim> meeting;
-    if (!meet(a, b, update.places.grid.spacing, out.face, meeting)) return;
+    if (!meet(a, b, out.cell, meeting)) return;
     double* const own = out.tractions + law.row * Traction::size * cells;
     for (int d = 0; d < Dim; ++d) {
       own[(Traction::force + d) * cells] += law.sign * double(impulse.on_first[d]) * update.inv_dt;

@@ -68,64 +68,107 @@ KOKKOS_INLINE_FUNCTION T covered(T volume, T area, T spacing, T face) {
   return Kokkos::fmin(T(1), area / (face * across));
 }
 
-/// Normal out of a where two fields meet at a node, of three: that of each field's own boundary, and that of
-/// the part of both boundaries which is no outer boundary of the two together. The one along which the fields
-/// overlap least counts, as by the separating axis of two convex bodies, less where the boundary is but an
-/// edge at the node: the corner of a block on flat ground takes the ground's, wherever in a cell the ground
-/// ends, and beams with flush ends take that of the face between them. face [m2]: of a cell. False where no
-/// field has a boundary, as deep in soil.
+/// Directions that may be the normal out of a where two fields meet at a node: those of the two boundaries,
+/// and that of the part of both which is no outer boundary of the two together.
+template <class T, int Dim>
+struct NormalChoice {
+  static constexpr int count = 3;
+  Vector<T, Dim> direction[count];
+  bool possible[count];
+  T at_edge[count];  // cells, as if the fields overlapped more along it: the boundary is but an edge there
+
+  KOKKOS_INLINE_FUNCTION NormalChoice(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
+                                      T spacing, T face) {
+    constexpr T k_bounds = T(1e-3);   // of a cell's face: less is round-off
+    constexpr T k_smaller = T(0.05);  // of the larger area: too little to have a normal
+    constexpr T k_opposed = T(0.1);   // cosine between boundaries that lie on each other, at least
+    Vector<T, Dim> outer;
+    for (int d = 0; d < Dim; ++d) {
+      outer[d] = a.area[d] + b.area[d];
+      direction[0][d] = a.area[d], direction[1][d] = -b.area[d];
+      direction[2][d] = (a.area[d] - b.area[d]) / 2;
+    }
+    const T outer_square = dot(outer, outer), bounds = k_bounds * face;
+    if (outer_square > bounds * bounds) {
+      const T part = dot(direction[2], outer) / outer_square;
+      for (int d = 0; d < Dim; ++d) direction[2][d] -= part * outer[d];
+    }
+    T size[count];
+    for (int n = 0; n < count; ++n) size[n] = Kokkos::sqrt(dot(direction[n], direction[n]));
+    const T most = Kokkos::fmax(size[0], size[1]), least = Kokkos::fmin(size[0], size[1]);
+    const bool opposed = least <= bounds || dot(direction[0], direction[1]) >= k_opposed * size[0] * size[1];
+    for (int n = 0; n < 2; ++n) possible[n] = opposed && size[n] > bounds && size[n] > k_smaller * most;
+    possible[2] = size[2] > bounds;
+    for (int n = 0; n < count; ++n)
+      for (int d = 0; d < Dim && possible[n]; ++d) direction[n][d] /= size[n];
+    at_edge[0] = 1 - covered(a.volume, size[0], spacing, face);
+    at_edge[1] = 1 - covered(b.volume, size[1], spacing, face);
+    at_edge[2] = Kokkos::fmax(at_edge[0], at_edge[1]);
+  }
+};
+
+/// Normal out of a where two fields meet at a node: the direction along which they overlap least, as by the
+/// separating axis of two convex bodies. So the corner of a block on flat ground takes the ground's normal,
+/// wherever in a cell the ground ends, and beams with flush ends take that of the face between them. face
+/// [m2]: of a cell. False where no boundaries lie on each other.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool normal_between(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
                                            T spacing, T face, Vector<T, Dim>& normal) {
-  constexpr T k_bounds = T(1e-3);   // of a cell's face: less is round-off
-  constexpr T k_smaller = T(0.05);  // of the larger area: too little to have a normal
-  constexpr T k_even = T(0.02);     // cells, difference of overlaps at which one normal begins to rule
-  Vector<T, Dim> of[3];
-  T outer_square = 0, along = 0, most = 0;
-  for (int d = 0; d < Dim; ++d) {
-    const T outer = a.area[d] + b.area[d];
-    of[0][d] = a.area[d], of[1][d] = -b.area[d], of[2][d] = a.area[d] - b.area[d];
-    outer_square += outer * outer, along += outer * of[2][d];
-  }
-  const T part = outer_square > k_bounds * k_bounds * face * face ? along / outer_square : T(0);
-  for (int d = 0; d < Dim; ++d) of[2][d] = (of[2][d] - part * (a.area[d] + b.area[d])) / 2;
-  T size[3], overlap[3], least = Kokkos::Experimental::infinity<T>::value;
-  for (int n = 0; n < 3; ++n) size[n] = Kokkos::sqrt(dot(of[n], of[n])), most = Kokkos::fmax(most, size[n]);
-  if (!(most > k_bounds * face)) return false;
-  const T edge_a = 1 - covered(a.volume, size[0], spacing, face),
-          edge_b = 1 - covered(b.volume, size[1], spacing, face);
-  const T at_edge[3] = {edge_a, edge_b, Kokkos::fmax(edge_a, edge_b)};  // cells, as if they overlapped more
-  for (int n = 0; n < 3; ++n) {
-    if (!(size[n] > k_smaller * most)) continue;
+  constexpr T k_even = T(0.02);  // cells, difference of overlaps at which one normal begins to rule
+  constexpr T k_most = T(50);    // as an exponent
+  const NormalChoice<T, Dim> of(a, b, spacing, face);
+  T overlap[of.count], least = Kokkos::Experimental::infinity<T>::value;
+  for (int n = 0; n < of.count; ++n) {
+    if (!of.possible[n]) continue;
     Vector<T, Dim> back;
-    for (int d = 0; d < Dim; ++d) of[n][d] /= size[n], back[d] = -of[n][d];
-    overlap[n] = a.cloud.reach(of[n]) + b.cloud.reach(back) + at_edge[n];
+    for (int d = 0; d < Dim; ++d) back[d] = -of.direction[n][d];
+    overlap[n] = a.cloud.reach(of.direction[n]) + b.cloud.reach(back) + of.at_edge[n];
     least = Kokkos::fmin(least, overlap[n]);
   }
-  for (int d = 0; d < Dim; ++d) normal[d] = 0;
-  for (int n = 0; n < 3; ++n) {
-    if (!(size[n] > k_smaller * most)) continue;
-    const T weight = Kokkos::exp(Kokkos::fmax(T(-50), (least - overlap[n]) / k_even));
-    for (int d = 0; d < Dim; ++d) normal[d] += weight * of[n][d];
+  normal = filled<T, Dim>(0);
+  for (int n = 0; n < of.count; ++n) {
+    if (!of.possible[n]) continue;
+    const T weight = Kokkos::exp(Kokkos::fmax(-k_most, (least - overlap[n]) / k_even));
+    for (int d = 0; d < Dim; ++d) normal[d] += weight * of.direction[n][d];
   }
   const T length = Kokkos::sqrt(dot(normal, normal));
-  if (!(length > k_bounds)) return false;
+  if (!(length > 0)) return false;
   for (int d = 0; d < Dim; ++d) normal[d] /= length;
   return true;
 }
 
+/// The cell of a node: its edge [m], its face [m2], and in bodies of revolution the radius of the node [m],
+/// else 0.
+template <class T>
+struct NodeCell {
+  T spacing, face, radius;
+};
+
+/// Depth [cells] of a body's face that has the normal component n_r along the radius. Beyond surface_depth,
+/// which is of a plane: soil of a ring lies on the long or the short side of its face, by the radius of its
+/// centre.
+template <class T>
+KOKKOS_INLINE_FUNCTION T depth_of(T volume, T area, T n_r, const NodeCell<T>& cell) {
+  T cells = volume / cell.spacing;
+  if (cell.radius > cell.spacing && area > 0) {
+    const T q = cells / area;
+    const T centre = q <= T(0.5) ? -2 * q / 3 : -q / (1 + q);  // cells along the normal, from the face's node
+    cells /= 1 + n_r * centre * cell.spacing / cell.radius;
+  }
+  return surface_depth(cells, area);
+}
+
 /// Normal, gap and area between fields a and b at a node; false where neither has a boundary.
-/// spacing [m], face [m2]: of a cell.
 template <class T, int Dim>
-KOKKOS_INLINE_FUNCTION bool meet(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b, T spacing,
-                                 T face, Meeting<T, Dim>& at) {
-  if (!normal_between(a, b, spacing, face, at.normal)) return false;
+KOKKOS_INLINE_FUNCTION bool meet(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
+                                 const NodeCell<T>& cell, Meeting<T, Dim>& at) {
+  if (!normal_between(a, b, cell.spacing, cell.face, at.normal)) return false;
   const T of_a = Kokkos::fmax(T(0), dot(a.area, at.normal)),
           of_b = Kokkos::fmax(T(0), -dot(b.area, at.normal));
-  const T depth_a = surface_depth(a.volume / spacing, of_a),
-          depth_b = surface_depth(b.volume / spacing, of_b);
+  const T depth_a = depth_of(a.volume, of_a, at.normal[0], cell),
+          depth_b = depth_of(b.volume, of_b, -at.normal[0], cell);
   at.area = shared_area(of_a, depth_a, of_b, depth_b);
-  at.gap = spacing * (depth_a + depth_b);
+  at.gap = cell.spacing * (depth_a + depth_b);
   return true;
 }
 

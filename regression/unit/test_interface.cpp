@@ -27,7 +27,7 @@ Side side_of(double mass, double out, Vector<double, 2> velocity) {
 
 Meeting<double, 2> meeting_of(const Side& a, const Side& b) {
   Meeting<double, 2> at{};
-  REQUIRE(meet(a, b, k_spacing, k_spacing, at));
+  REQUIRE(meet(a, b, NodeCell<double>{k_spacing, k_spacing, 0}, at));
   return at;
 }
 

@@ -273,18 +273,31 @@ bool read_parts(OptionReader& in, const std::string& name, const Config& config,
   return whole;
 }
 
-/// Which particles a shape has. Those of a rigid have one volume.
+/// Whether -contact_pairs names a body.
+bool is_in_pairs(const OptionReader& in, const std::string& name) {
+  std::string text = in.given_text("contact_pairs");
+  std::replace(text.begin(), text.end(), ':', ',');
+  const std::vector<std::string> names = split(text, ',');
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Which particles a shape has. Those of a rigid have one volume. A body that slides on another wants a face
+/// without stairs.
 void read_fill(OptionReader& in, const std::string& name, bool body, Shape& shape) {
   static const Words<Fill> fills = {{"centre", Fill::centre}, {"cell", Fill::cell}, {"cut", Fill::cut}};
   const bool ground =
       shape.kind == ShapeKind::stl || shape.kind == ShapeKind::layer || shape.kind == ShapeKind::parts;
-  if (body && ground) shape.fill = Fill::cut;
+  const bool slides = body && !in.listing() && has_facets(shape) && is_in_pairs(in, name);
+  if ((body && ground) || slides) shape.fill = Fill::cut;
   in.word(
       {.name = name + "_fill",
        .meaning =
            "particles whose centre is in the shape, those of cells that lie wholly in it, or the parts of "
            "the particles' cells that are in it, each with its own volume (bodies)",
-       .standard = in.listing() ? "centre; of a body that is an stl or a layer: cut" : ""},
+       .standard = in.listing()
+                       ? "centre; of a body that is an stl or a layer, or in -contact_pairs: cut where "
+                         "its shape can be"
+                       : ""},
       fills, shape.fill);
   const std::string of_kind = " where " + name + "_shape is ";
   if (shape.fill == Fill::cut && !body)

@@ -15,7 +15,7 @@ BARS = ("-materials soft -soft_model linear_elastic -soft_density 1000 -soft_you
 DISCS = ("-materials soft -soft_model linear_elastic -soft_density 1000 -soft_young 1000 -soft_poisson 0.3 -bodies a,b -a_material soft -a_shape disc"
          " -a_centre 0.2,0.2 -a_radius 0.2 -a_velocity 0.1,0.1 -b_material soft -b_shape disc -b_centre 0.8,0.8 -b_radius 0.2 -b_velocity -0.1,-0.1"
          " -contact_pairs a:b -gravity 0,0 -mesh_upper 1,1 -mesh_spacing 0.025 -mesh_ymin free -time_end 1.8")
-BALLS = ("-geometry axisymmetric -mesh_lower 0,-0.05 -mesh_upper 0.25,0.85 -mesh_spacing 0.005 -mesh_xmin roller -mesh_ymin free -gravity 0,0"
+BALLS = ("-geometry axisymmetric -mesh_lower 0,-0.048 -mesh_upper 0.248,0.852 -mesh_spacing 0.004 -mesh_xmin roller -mesh_ymin free -gravity 0,0"
          " -materials soft -soft_model linear_elastic -soft_density 1000 -soft_young 1e7 -soft_poisson 0.3 -f_bar_fraction 0 -bodies a,b"
          " -a_material soft -a_shape disc -a_centre 0,0.2 -a_radius 0.2 -a_fill cut -a_velocity 0,0.1"
          " -b_material soft -b_shape disc -b_centre 0,0.601 -b_radius 0.2 -b_fill cut -contact_pairs a:b -time_end 0.06 -history_interval 0.0005")
