@@ -12,8 +12,8 @@ from mpm_regression.row import Row
 
 STRENGTH, LENGTH, PERIMETER, GRAVITY = 0.5 * 5e4, 5, np.pi, 9.81
 RUNS = {"pull": "", "rest": "-damping 0.7 -time_end 0.2 -pull_traction_table 0:0.055,1:0.055 -concrete_young 1e9"}
-GAP = ("The gap is by volume and area as of plane bodies. In rings it comes out too large by up to 0.22 d^2 / R, here 4 mm, which is more than what releases the "
-       "stress of the clay. With cells half as large the force is 57 % of the exact one.")
+GAP = ("The clay comes to rest with three quarters of its stress on the shaft, with five cells over the radius of the pile. Why is not known: the gap of rings, which "
+       "took all of it as long as it was that of plane bodies, is corrected.")
 
 
 def check(runs):
@@ -31,4 +31,4 @@ def check(runs):
     rest = runs["rest"].history
     pressed = 0.45 / 0.55 * 1800 * GRAVITY * LENGTH**2 / 2 * PERIMETER
     yield Row("radial force on the shaft at rest over that of K0", rest["pile_ground_force_x"][-20:].mean() / -pressed, 1, 0.05, "K0",
-              shortfall=GAP, bound=1.0)
+              shortfall=GAP, bound=0.4)
