@@ -38,9 +38,10 @@ inline constexpr const char* k_nodes = "nodes";
 struct Snapshot {
   double time = 0;  // s
   long step = 0;
-  std::vector<ParticleSnapshot> bodies, rigids, nodes{}, contacts{};
+  std::vector<ParticleSnapshot> bodies, rigids, nodes{};
   int dim = 0;          // 0: the file has none
   std::string stage{};  // its name; empty: the run has none
+  std::vector<ParticleSnapshot> contacts{};
 };
 
 /// One row of the history for one body.
