@@ -67,14 +67,16 @@ TEST_CASE("fields that part feel nothing, and a gap closes before they feel each
   CHECK(impulse_of(law_with(0), low, high).on_first[1] == Approx(-mass * low.velocity[1] / 3));
 }
 
-TEST_CASE("the nodes beside two faces share their whole area, wherever the faces lie in a cell", "[interface]") {
+TEST_CASE("the nodes beside two faces share their whole area, wherever the faces lie in a cell",
+          "[interface]") {
   for (const double low : {0.1, 0.3, 0.5, 0.85})  // cells, of the faces above the lower of two rows of nodes
     for (const double high : {low, low + 0.1}) {
       double sum = 0;
       for (const int row : {0, 1}) {
         Side a = side_of(2, 1, {0, 0}), b = side_of(6, -1, {0, 0});
         const auto place = [&](Side& side, double up, double sign) {
-          const double inside = sign * (up - row), part = 1 - std::abs(inside);  // cells, of soil beyond the node
+          const double inside = sign * (up - row),
+                       part = 1 - std::abs(inside);  // cells, of soil beyond the node
           side.area[1] = sign * part * k_spacing;
           side.volume = k_spacing * k_spacing * (inside > 0 ? 1 - part * part / 2 : part * part / 2);
         };
