@@ -1,6 +1,7 @@
 #include "functions/interfaces.hpp"
 
 #include "base/copy.hpp"
+#include "functions/step_kernels.hpp"
 #include "loops/press_fields.hpp"
 
 namespace mpm {

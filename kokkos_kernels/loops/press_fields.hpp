@@ -1,7 +1,6 @@
 #pragma once
 // What the velocity fields that share a node do to each other in a step.
 
-#include "functions/step_kernels.hpp"
 #include "loops/node_update.hpp"
 #include "physics/interface.hpp"
 
