@@ -11,6 +11,7 @@ import numpy as np
 from mpm_regression.row import Row
 
 STRENGTH, LENGTH, PERIMETER, GRAVITY = 0.5 * 5e4, 5, np.pi, 9.81
+LONG = True
 RUNS = {"pull": "", "rest": "-damping 0.7 -time_end 0.2 -pull_traction_table 0:0.055,1:0.055 -concrete_young 1e9"}
 GAP = ("The clay comes to rest with three quarters of its stress on the shaft, with five cells over the radius of the pile. Why is not known: the gap of rings, which "
        "took all of it as long as it was that of plane bodies, is corrected.")
