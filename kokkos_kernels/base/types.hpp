@@ -41,13 +41,6 @@
 #define MPM_SAME_BITS_FUNCTION [[gnu::noipa]] KOKKOS_FUNCTION inline
 #endif
 
-/// Before a loop whose number of rounds is a constant: a GPU's compiler writes out the rounds.
-#ifdef __CUDA_ARCH__
-#define MPM_UNROLL_ON_DEVICE _Pragma("unroll")
-#else
-#define MPM_UNROLL_ON_DEVICE
-#endif
-
 namespace mpm {
 
 /// Alignment at which a group of n values is read at once: pairs, and fours up to 16 bytes.

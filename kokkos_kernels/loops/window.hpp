@@ -15,6 +15,14 @@ inline constexpr int teams_at_once = sizeof(T) == sizeof(float) ? (Dim == 2 ? 9 
 template <class Space, class T, int Dim>
 using PatchTeam = Kokkos::TeamPolicy<Space, Kokkos::LaunchBounds<team_threads<Space>, teams_at_once<T, Dim>>>;
 
+/// Place in the window of the node k steps from the first one that a particle reaches.
+template <class Weights, int Dim>
+KOKKOS_INLINE_FUNCTION int window_place(const Coord<Dim>& cell, const Weights& a, const Vector<int, Dim>& k) {
+  int n = 0;
+  for (int d = Dim - 1; d >= 0; --d) n = n * Patch<Dim>::window_edge + cell[d] + a[d].first + k[d] + 1;
+  return n;
+}
+
 /// The weights along every axis of a particle that is near the cell where it was binned.
 template <class T, int Dim, class Domain, class F>
 KOKKOS_INLINE_FUNCTION void with_weights_near(const Vector<T, Dim>& x, const Domain& domain, F&& f) {

@@ -90,8 +90,7 @@ KOKKOS_INLINE_FUNCTION void for_each_weight(const AxisWeights<T> (&a)[Dim], F&& 
 template <int N, int M, class T, int Dim, class At, class V>
 KOKKOS_INLINE_FUNCTION void interpolate_by_lines(const AxisWeights<T> (&a)[Dim], At&& at, V (&value)[N],
                                                  V (&gradient)[M][Dim]) {
-  constexpr int layers = Dim == 3 ? 3 : 1;
-  MPM_UNROLL_ON_DEVICE
+  const int layers = Dim == 3 ? 3 : 1;
   for (int k = 0; k < layers; ++k)
     for (int j = 0; j < 3; ++j) {
       V along[N] = {}, slope[M] = {};

@@ -3,24 +3,45 @@
 
 #include "data/contact_core.hpp"
 #include "device/warp.hpp"
-#include "loops/gpu/cell_lots.hpp"
-#include "loops/gpu/motion_window.hpp"
 #include "loops/gpu/tile.hpp"
 #include "physics/advance.hpp"
 
 namespace mpm {
+
+template <ParticleDomain domain, class T, int Dim, class Weights>
+KOKKOS_INLINE_FUNCTION GridSample<T, Dim, k_slopes<Dim, domain>> sample_nodes(
+    const KinematicValues<T, Dim>* window, const Coord<Dim>& cell, const Weights& a, T inv_spacing) {
+  GridSample<T, Dim, k_slopes<Dim, domain>> t{};
+  interpolate_by_lines(
+      a, [&](const Vector<int, Dim>& k) { return window[window_place(cell, a, k)]; }, t.kinematics,
+      t.gradient);
+  for (int d = 0; d < Dim; ++d)
+    for (int e = 0; e < k_slopes<Dim, domain>; ++e) t.gradient[d][e] *= inv_spacing;
+  return t;
+}
+
+/// The dilatation rate alone, sum v_i . grad S_ip [1/s], of rings with that of the hoop.
+template <ParticleDomain domain, class T, int Dim, class Weights>
+KOKKOS_INLINE_FUNCTION T dilatation_from_nodes(const KinematicValues<T, Dim>* window, const Coord<Dim>& cell,
+                                               const Weights& a, T inv_spacing) {
+  T sum = 0;
+  for_each_weight(a, [&](const Vector<int, Dim>& k, T, const auto& grad) {
+    const KinematicValues<T, Dim> node = window[window_place(cell, a, k)];
+    for (int d = 0; d < Dim; ++d) sum += node[NodeKinematics<Dim>::velocity + d] * grad[d];
+    if constexpr (domain == ParticleDomain::ring) sum += node[NodeKinematics<Dim>::velocity] * grad[Dim];
+  });
+  return sum * inv_spacing;
+}
 
 /// The patches that a kernel is for. A patch is common if its window holds no node at a wall or beyond it,
 /// and none of its particles is alone.
 enum class PatchKind { common, any };
 
 /// Teams that share a multiprocessor. Fewer of them leave a thread more registers, which a kernel for one
-/// heavy law needs, one in 3D, which writes out all nodes of a particle, and one for patches that are not
-/// common, which are few.
+/// heavy law needs, and one for patches that are not common, which are few.
 template <class T, int Dim>
 constexpr int teams_for(PatchKind kind, bool heavy) {
-  const bool light = !heavy && kind == PatchKind::common && Dim == 2;
-  const int fewer = heavy ? (sizeof(T) == sizeof(float) ? 2 : 1) : (light ? 0 : 1);
+  const int fewer = heavy ? (sizeof(T) == sizeof(float) ? 2 : 1) : (kind == PatchKind::common ? 0 : 1);
   return teams_at_once<T, Dim> - fewer;
 }
 
@@ -48,12 +69,6 @@ struct UpdateParticles {
     static constexpr std::size_t bytes() { return 0; }
   };
   using TileOrNothing = std::conditional_t<Sums, Tile_, Nothing>;
-  using Lots = CellLots<T, cells, threads>;
-  struct NoLots {
-    KOKKOS_INLINE_FUNCTION explicit NoLots(Scratch&) {}
-    static constexpr std::size_t bytes() { return 0; }
-  };
-  using LotsOrNothing = std::conditional_t<Sums, NoLots, Lots>;
   using Domain = DomainOf<T, Dim, domain>;
 
   Source source;
@@ -78,8 +93,8 @@ struct UpdateParticles {
   bool has_boundary;
 
   static constexpr std::size_t bytes() {
-    const std::size_t own = MotionWindow<T, Dim>::bytes() + scratch_bytes<T>(cells) + LotsOrNothing::bytes() +
-                            TileOrNothing::bytes();
+    const std::size_t own =
+        scratch_bytes<KinematicValues<T, Dim>>(window) + scratch_bytes<T>(cells) + TileOrNothing::bytes();
     return Sums && Tile<Boundary>::bytes() > own ? Tile<Boundary>::bytes() : own;
   }
 
@@ -117,9 +132,8 @@ struct UpdateParticles {
     const BodyProperties<T> body = source.points.bodies(0);  // of all particles if one_body
     const auto cell_begin = [&](int c) { return begin(slot * cells + c); };
     Scratch scratch = all;
-    const MotionWindow<T, Dim> nodes(scratch);
+    KinematicValues<T, Dim>* const nodes = scratch.take<KinematicValues<T, Dim>>(window);
     T* const mean = scratch.take<T>(cells);
-    const LotsOrNothing lots(scratch);
     const TileOrNothing tile(scratch);
     const std::uint64_t lone = kind == PatchKind::common ? 0 : alone(slot);
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window), [&](int n) {
@@ -127,7 +141,7 @@ struct UpdateParticles {
       tile.set_node(n, number);
       KinematicValues<T, Dim> motion = motion_of(n, number);
       turn_motion(images, n, motion);
-      nodes.set(n, motion);
+      nodes[n] = motion;
     });
     T moved = 0;
     const auto particle = [&](int p) {
@@ -136,7 +150,7 @@ struct UpdateParticles {
     if constexpr (Sums) {
       tile.clear(team, cell_begin);
       team.team_barrier();
-      if (by.f_bar > 0) average_dilatation(team, 0, cells, cell_begin, nodes, mean);
+      if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
       tile.add(team, particle);
       note_movement(team, noted, slot, moved);
       tile.give_window(team, out.soil, images);
@@ -146,52 +160,10 @@ struct UpdateParticles {
                   images, out.boundary);
       }
     } else {
-      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells + 1),
-                           [&](int c) { lots.begin[c] = cell_begin(c); });
       team.team_barrier();
-      if (by.f_bar > 0 && !averages_by_material()) {
-        step_lots(team, lots, nodes, mean, images, slot, lone, body, moved);
-      } else {
-        if (by.f_bar > 0) average_dilatation(team, 0, cells, cell_begin, nodes, mean);
-        Kokkos::parallel_for(Kokkos::TeamThreadRange(team, lots.begin[0], lots.begin[cells]), particle);
-      }
+      if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
+      Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), particle);
       note_movement(team, noted, slot, moved);
-    }
-  }
-
-  /// step_particle of all particles with F-bar, a lot at a time: what a particle takes from the nodes serves
-  /// the mean of its cell, and then the particle.
-  KOKKOS_INLINE_FUNCTION void step_lots(const Member& team, const Lots& lots,
-                                        const MotionWindow<T, Dim>& nodes, T* mean, const Images& images,
-                                        int slot, std::uint64_t lone, const BodyProperties<T>& common,
-                                        T& moved) const {
-    const int rank = team.team_rank();
-    T *now = lots.of_thread, *next = now + 2 * threads;
-    for (int c = 0, end = 0; c < cells; c = end) {
-      end = lots.end(c);
-      const int first = lots.begin[c], p = first + rank;
-      if (lots.begin[end] - first > threads) {  // one cell that holds more particles than a team has threads
-        average_dilatation(
-            team, c, end, [&](int n) { return lots.begin[n]; }, nodes, mean);
-        Kokkos::parallel_for(Kokkos::TeamThreadRange(team, first, lots.begin[end]), [&](int q) {
-          step_particle(nodes, mean, images, slot, lone, q, common, moved);
-        });
-        continue;
-      }
-      const bool has_one = p < lots.begin[end];
-      InFlight own;
-      if (has_one) {
-        own = sample_particle(nodes, slot, p, common);
-        now[rank] = own.q.volume, now[threads + rank] = own.q.volume * dilatation_of(own.sample);
-      }
-      team.team_barrier();
-      if (has_one) {
-        CellMean<T> of_cell;
-        for (int n = lots.begin[own.place] - first; n < lots.begin[own.place + 1] - first; ++n)
-          of_cell.add(now[n], now[threads + n]);
-        finish_particle(own, of_cell.value(), images, slot, lone, p, moved);
-      }
-      Kokkos::kokkos_swap(now, next);
     }
   }
 
@@ -219,14 +191,13 @@ struct UpdateParticles {
     if (team.team_rank() % k_warp == 0) noted.note(slot, most);
   }
 
-  /// Mean dilatation rate of each of the cells [from, to) [1/s], weighted by volume; where materials have
-  /// means of their own, the mean for each particle takes the place of its `dilatation`.
+  /// Mean dilatation rate of each cell [1/s], weighted by volume; where materials have means of their own,
+  /// the mean for each particle takes the place of its `dilatation`.
   template <class Begin>
-  KOKKOS_INLINE_FUNCTION void average_dilatation(const Member& team, int from, int to,
-                                                 const Begin& cell_begin, const MotionWindow<T, Dim>& nodes,
-                                                 T* mean) const {
+  KOKKOS_INLINE_FUNCTION void average_dilatation(const Member& team, const Begin& cell_begin,
+                                                 const KinematicValues<T, Dim>* nodes, T* mean) const {
     const auto& soil = source.points;
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(from), cell_begin(to)), [&](int p) {
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), [&](int p) {
       with_weights_near(
           soil.coordinate(p), domain_of<domain>(soil, p, soil.bodies(one_body ? 0 : soil.body(p))),
           [&](const auto& a) {
@@ -235,7 +206,7 @@ struct UpdateParticles {
           });
     });
     team.team_barrier();
-    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, from, to), [&](int c) {
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cells), [&](int c) {
       if (averages_by_material()) return average_cell(cell_begin(c), cell_begin(c + 1));
       CellMean<T> of_cell;
       for (int p = cell_begin(c); p < cell_begin(c + 1); ++p)
@@ -263,59 +234,40 @@ struct UpdateParticles {
     return averages_by_material() ? dilatation(p) : mean[place];
   }
 
-  /// A particle between its sample of the nodes and its step.
-  struct InFlight {
-    Particle<T, Dim> q;
-    GridSample<T, Dim, k_slopes<Dim, domain>> sample;
-    BodyProperties<T> body;
-    Domain half_length;
-    int place;  // of its cell in the patch
-  };
   /// Moves particle p; `moved` [cells] becomes the largest movement so far. lone: Strays::alone of the slot.
   /// Returns what the particle then gives.
-  KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const MotionWindow<T, Dim>& nodes, const T* mean,
-                                                             const Images& images, int slot,
+  KOKKOS_INLINE_FUNCTION typename Tile_::Entry step_particle(const KinematicValues<T, Dim>* nodes,
+                                                             const T* mean, const Images& images, int slot,
                                                              std::uint64_t lone, int p,
                                                              const BodyProperties<T>& common,
                                                              T& moved) const {
-    InFlight own = sample_particle(nodes, slot, p, common);
-    return finish_particle(own, by.f_bar > 0 ? mean_dilatation(mean, own.place, p) : T(0), images, slot, lone,
-                           p, moved);
-  }
-  KOKKOS_INLINE_FUNCTION InFlight sample_particle(const MotionWindow<T, Dim>& nodes, int slot, int p,
-                                                  const BodyProperties<T>& common) const {
     const auto& soil = source.points;
-    InFlight own{.body = one_body ? common : soil.bodies(soil.body(p)), .place = soil.cell(p) - slot * cells};
-    for_each_value([&](auto& value, const auto& field) { value = field(p); }, own.q, soil);
-    own.half_length = domain_of<domain>(soil, p, own.body);
-    with_weights_near(own.q.x, own.half_length, [&](const auto& a) {
-      own.sample = sample_nodes<domain, T, Dim>(nodes, coord_of<Dim>(own.place), a, by.inv_spacing);
+    const BodyProperties<T> body = one_body ? common : soil.bodies(soil.body(p));
+    const int place = soil.cell(p) - slot * cells;
+    const Coord<Dim> cell = coord_of<Dim>(place);
+    Particle<T, Dim> q;
+    for_each_value([&](auto& value, const auto& field) { value = field(p); }, q, soil);
+    const bool flies = kind != PatchKind::common && (lone >> place & 1) != 0;
+    T own = 0;
+    const Domain half_length = domain_of<domain>(soil, p, body);
+    with_weights_near(q.x, half_length, [&](const auto& a) {
+      const ParticleLaw<Space, T, Dim, Laws> of_particle{soil, p, body.material, law, flies};
+      own = advance(q, of_particle, sample_nodes<domain, T, Dim>(nodes, cell, a, by.inv_spacing),
+                    by.f_bar > 0 ? mean_dilatation(mean, place, p) : T(0), by, step_domain<domain>(soil, p));
     });
-    return own;
-  }
-  /// mean: dilatation rate of the particle's cell [1/s].
-  KOKKOS_INLINE_FUNCTION typename Tile_::Entry finish_particle(InFlight& at, T mean, const Images& images,
-                                                               int slot, std::uint64_t lone, int p,
-                                                               T& moved) const {
-    const auto& soil = source.points;
-    Particle<T, Dim>& q = at.q;
-    const bool flies = kind != PatchKind::common && (lone >> at.place & 1) != 0;
-    const ParticleLaw<Space, T, Dim, Laws> of_particle{soil, p, at.body.material, law, flies};
-    T own = advance(q, of_particle, at.sample, mean, by, step_domain<domain>(soil, p));
     if (flies) q.volume = soil.volume(p);
     for_each_value([&](auto& value, const auto& field) { field(p) = value; }, q, soil);
-    if constexpr (kind != PatchKind::common) put_back_particle(images, slot, at.place, p, q);
+    if constexpr (kind != PatchKind::common) put_back_particle(images, slot, place, p, q);
     FaultKind fault = fault_of(q, own, by, step_domain<domain>(soil, p));
     if (fault != FaultKind::none) {
       if (fault == FaultKind::not_finite) fault = cause_of<Laws>(soil, p);
-      const Coord<Dim> cell = coord_of<Dim>(at.place);
       double position[3] = {};
       for (int d = 0; d < Dim; ++d) position[d] = (double(origin(slot)[d]) + cell[d] + q.x[d]) * spacing;
       report(control, fault, soil.id(p), position, Dim);
       own = Kokkos::Experimental::infinity_v<T>;  // ends the steps
     }
     moved = Kokkos::fmax(moved, own);
-    return {q.x, source.point(at.half_length, soil.mass_of(p, at.body), q.v, q.stress, q.volume)};
+    return {q.x, source.point(half_length, soil.mass_of(p, body), q.v, q.stress, q.volume)};
   }
 
   /// Brings particle p, which may have passed a wall, back to it. In memory, where that takes few registers.
