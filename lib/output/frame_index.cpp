@@ -101,15 +101,16 @@ std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes) {
 }
 
 std::optional<FrameEntry> read_entry(const std::string& folder, const std::string& name,
-                                     const std::vector<std::string>& groups) {
+                                     const std::vector<std::string>& groups, std::size_t always) {
   const Quiet quiet;
   Handle file(H5Fopen((folder + "/" + name).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file.id < 0) return std::nullopt;
   FrameEntry entry{name, 0, {}};
   Handle time(H5Aopen(file.id, "time", H5P_DEFAULT), H5Aclose);
   if (time.id < 0 || H5Aread(time.id, H5T_NATIVE_DOUBLE, &entry.time) < 0) return std::nullopt;
+  std::size_t n = 0;
   for (const std::string& group : groups) {
-    if (group == k_nodes && H5Lexists(file.id, k_nodes, H5P_DEFAULT) <= 0) continue;
+    if (n++ >= always && H5Lexists(file.id, group.c_str(), H5P_DEFAULT) <= 0) continue;
     entry.groups.push_back({group});
     if (!read_group(file.id, entry.groups.back())) return std::nullopt;
     entry.groups.back().surface = surface_size(file.id, group);

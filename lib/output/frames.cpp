@@ -42,11 +42,14 @@ PetscErrorCode Frames::resume(const Config& config, long count, MPI_Comm comm) {
   std::vector<std::string> names;
   for (const BodyConfig& body : config.bodies) names.push_back(body.name);
   for (const RigidConfig& rigid : config.rigids) names.push_back(rigid.name);
+  const std::size_t always = names.size();
   names.push_back(k_nodes);
+  for (const ContactPairConfig& pair : config.contact_pairs) names.push_back(pair.name);
   count_ = static_cast<int>(count);
   if (rank_of(comm_) == 0)
     for (int n = 0; n < count_; ++n)
-      if (auto entry = read_entry(folder_, file_name(n), names)) entries_.push_back(std::move(*entry));
+      if (auto entry = read_entry(folder_, file_name(n), names, always))
+        entries_.push_back(std::move(*entry));
   PetscCall(agree(comm_, entries_.empty() ? PETSC_SUCCESS : write_index()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
