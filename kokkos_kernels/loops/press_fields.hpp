@@ -1,5 +1,5 @@
 #pragma once
-// What the velocity fields that share a node do to each other in a step.
+// Contact of the velocity fields that share a node, in a step.
 
 #include "loops/node_update.hpp"
 #include "physics/interface.hpp"
@@ -18,9 +18,8 @@ struct PressFields {
   UpdateNodes<Space, T, Dim> update;
   Interfaces<Space, Dim> of;
   bool has_strength, owns_all;
-  Kokkos::View<double*, typename Space::memory_space>
-      tractions;  // InterfaceTraction: [place][row][value][node];
-                  // empty: none are wanted
+  /// InterfaceTraction: [place][row][value][node]; empty where no frame wants them.
+  Kokkos::View<double*, typename Space::memory_space> tractions;
 
   /// A node's cell, and where its InterfaceTerms and InterfaceTraction of each row go, values
   /// `cells` apart.
@@ -88,7 +87,8 @@ struct PressFields {
     return count;
   }
 
-  /// At a plane of symmetry half of the soil is in the mesh.
+  /// SoilCloud of node i. A plane of symmetry leaves half of the soil in the mesh: the other half is its
+  /// image.
   KOKKOS_INLINE_FUNCTION SoilCloud<T, Dim> cloud_of(int i, T volume, unsigned at_sides) const {
     using C = CloudTerms<Dim>;
     SoilCloud<T, Dim> cloud;
@@ -193,10 +193,9 @@ struct PressFields {
     const Side &a = sides[m], &b = sides[n];
     if (a.welded == b.welded) return 0;
     const InterfaceLaw& law = law_of(a, b);
-    const T spacing = update.places.grid.spacing;
     Meeting<T, Dim> meeting;
     if (!meet(a, b, out.cell, meeting)) return 0;
-    const auto impulse = impulse_between(law, a, b, meeting, spacing, update.dt, so_far);
+    const auto impulse = impulse_between(law, a, b, meeting, out.cell.spacing, update.dt, so_far);
     T largest = 0;
     for (int d = 0; d < Dim; ++d) largest = Kokkos::fmax(largest, Kokkos::fabs(impulse.on_first[d]));
     if (law.row >= 0 && counts(a.i)) add(law, a, b, impulse, out);
@@ -244,6 +243,7 @@ struct PressFields {
     own[Terms::work * cells] += impulse.work;
     if (out.tractions != nullptr) show(law, a, b, impulse, out);
   }
+  /// Stores the traction of a pair at a node, for a frame.
   KOKKOS_INLINE_FUNCTION void show(const InterfaceLaw& law, const Side& a, const Side& b,
                                    const InterfaceImpulse<T, Dim>& impulse, const Results& out) const {
     Meeting<T, Dim> meeting;

@@ -14,7 +14,7 @@ struct SoilCloud {
   T spread[Dim][Dim];
 
   /// A measure of how far the soil reaches along n, of length 1 [cells]: five standard deviations beyond its
-  /// centre. Of boxes they would be 1.73; more of them tell better which body is long along a false normal.
+  /// centre. A box reaches 1.73 of them; five tell better which body is long along a false normal.
   KOKKOS_INLINE_FUNCTION T reach(const Vector<T, Dim>& n) const {
     constexpr T k_deviations = T(5);
     T square = 0;
@@ -197,8 +197,8 @@ KOKKOS_INLINE_FUNCTION T shear_bound(const InterfaceLaw& law, const InterfaceSid
   return Kokkos::fmin(by_area, coulomb);
 }
 
-/// What a pair of fields has had in a step, in rounds [N s]: normal impulse, and that along the face, against
-/// the slip of the first.
+/// Impulses of a pair of fields in the rounds of a step so far [N s]: along the normal, and along the face,
+/// against the slip of the first field.
 template <class T, int Dim>
 struct SharedImpulse {
   T normal = 0;

@@ -34,6 +34,9 @@ const std::vector<double>* values_of(const ParticleSnapshot& particles, const Fi
 
 inline bool is_position(const Field& field) { return field.values == &ParticleSnapshot::position; }
 
+/// Whether a group holds nodes of the mesh: it has all of its fields, whatever -output_fields names.
+constexpr bool is_of_mesh(Framed group) { return group == Framed::nodes || group == Framed::contacts; }
+
 /// Whether the groups of a kind (all: rigids) have a field.
 inline bool belongs_to(const Field& field, Framed group) {
   if (group == Framed::contacts) return is_position(field) || field.of == group;
@@ -46,11 +49,11 @@ inline bool is_exact(const Field& field) {
   return is_position(field) || field.values == &ParticleSnapshot::reference_height;
 }
 
-/// Whether a group of this kind is written with a field in this style. Nodes and contacts have all of theirs.
+/// Whether a group of this kind is written with a field in this style.
 inline bool is_written(const ParticleSnapshot& particles, const Field& field, Framed group,
                        const FrameStyle& style) {
   if (!belongs_to(field, group) || values_of(particles, field) == nullptr) return false;
-  return is_position(field) || group == Framed::nodes || group == Framed::contacts || style.fields.empty() ||
+  return is_position(field) || is_of_mesh(group) || style.fields.empty() ||
          std::find(style.fields.begin(), style.fields.end(), field.name) != style.fields.end();
 }
 
@@ -67,8 +70,7 @@ inline std::vector<std::string> written_fields(const ParticleSnapshot& particles
 inline std::vector<std::string> frame_field_names() {
   std::vector<std::string> names;
   for (const Field& field : frame_fields())
-    if (!is_position(field) && field.of != Framed::nodes && field.of != Framed::contacts)
-      names.push_back(field.name);
+    if (!is_position(field) && !is_of_mesh(field.of)) names.push_back(field.name);
   return names;
 }
 /// The list for a message, which names only the first and the last of numbered names: "state_1 to state_9".

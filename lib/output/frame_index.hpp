@@ -29,7 +29,7 @@ struct FrameEntry {
 std::string format_xdmf(const std::vector<FrameEntry>& frames, int real_bytes);
 
 /// Entry of the index for a frame of an earlier part of the run; nothing where the frame is no longer there.
-/// Of the groups the first `always` must be there.
+/// `groups`: those to look for, of which the first `always` must be there.
 std::optional<FrameEntry> read_entry(const std::string& folder, const std::string& name,
                                      const std::vector<std::string>& groups, std::size_t always);
 

@@ -1,7 +1,6 @@
 #include "step/interface_snapshot.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <tuple>
 
 #include "common/collectives.hpp"
@@ -12,21 +11,7 @@
 namespace mpm {
 namespace {
 
-/// Brings the nodes of all ranks to the first one. Collective.
-PetscErrorCode gather(MPI_Comm comm, std::vector<InterfaceNode>* nodes) {
-  constexpr std::size_t k_size = sizeof(InterfaceNode);
-  PetscFunctionBeginUser;
-  std::vector<std::vector<char>> out(size_of(comm));
-  const char* const bytes = reinterpret_cast<const char*>(nodes->data());
-  out[0].assign(bytes, bytes + nodes->size() * k_size);
-  std::vector<char> in;
-  PetscCall(exchange_records(comm, k_size, out, &in));
-  nodes->resize(in.size() / k_size);
-  if (!in.empty()) std::memcpy(nodes->data(), in.data(), in.size());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/// The group of a pair: lower [m] is the lower corner of the mesh.
+/// The group of a pair. lower [m]: the lower corner of the mesh.
 ParticleSnapshot group_of(const std::string& name, int row, const std::vector<InterfaceNode>& nodes,
                           const Vec3& lower) {
   ParticleSnapshot group;
@@ -62,7 +47,7 @@ PetscErrorCode add_interfaces(StepContext<Space, T, Dim>& run, double dt, Snapsh
   PetscCall(sum_present_forces(run.state, run.ranks.get()));
   std::vector<InterfaceNode> nodes;
   PetscCallCXX(nodes = interface_nodes(run.state, dt));
-  if (run.ranks) PetscCall(gather(run.comm, &nodes));
+  if (run.ranks) PetscCall(share_records(run.comm, &nodes));
   std::sort(nodes.begin(), nodes.end(), [](const InterfaceNode& a, const InterfaceNode& b) {
     return std::tie(a.row, a.position) < std::tie(b.row, b.position);
   });
