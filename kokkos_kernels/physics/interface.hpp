@@ -75,35 +75,46 @@ struct NormalChoice {
   static constexpr int count = 3;
   Vector<T, Dim> direction[count];
   bool possible[count];
-  T at_edge[count];  // cells, as if the fields overlapped more along it: the boundary is but an edge there
+  T penalty[count];  // cells, as if the fields overlapped more along it: where the boundary is but an edge
 
   KOKKOS_INLINE_FUNCTION NormalChoice(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
                                       T spacing, T face) {
     constexpr T k_bounds = T(1e-3);   // of a cell's face: less is round-off
     constexpr T k_smaller = T(0.05);  // of the larger area: too little to have a normal
-    constexpr T k_opposed = T(0.1);   // cosine between boundaries that lie on each other, at least
-    Vector<T, Dim> outer;
-    for (int d = 0; d < Dim; ++d) {
-      outer[d] = a.area[d] + b.area[d];
-      direction[0][d] = a.area[d], direction[1][d] = -b.area[d];
-      direction[2][d] = (a.area[d] - b.area[d]) / 2;
-    }
-    const T outer_square = dot(outer, outer), bounds = k_bounds * face;
-    if (outer_square > bounds * bounds) {
-      const T part = dot(direction[2], outer) / outer_square;
-      for (int d = 0; d < Dim; ++d) direction[2][d] -= part * outer[d];
-    }
+    for (int d = 0; d < Dim; ++d) direction[0][d] = a.area[d], direction[1][d] = -b.area[d];
+    direction[2] = inner(a, b, k_bounds * face);
     T size[count];
     for (int n = 0; n < count; ++n) size[n] = Kokkos::sqrt(dot(direction[n], direction[n]));
-    const T most = Kokkos::fmax(size[0], size[1]), least = Kokkos::fmin(size[0], size[1]);
-    const bool opposed = least <= bounds || dot(direction[0], direction[1]) >= k_opposed * size[0] * size[1];
-    for (int n = 0; n < 2; ++n) possible[n] = opposed && size[n] > bounds && size[n] > k_smaller * most;
-    possible[2] = size[2] > bounds;
+    for (int n = 0; n < count; ++n) possible[n] = size[n] > k_bounds * face;
+    for (int n = 0; n < 2; ++n) possible[n] = possible[n] && size[n] > k_smaller * size[1 - n];
+    const T of_a = 1 - covered(a.volume, size[0], spacing, face),
+            of_b = 1 - covered(b.volume, size[1], spacing, face);
+    const T apart = possible[0] && possible[1] ? across(size) : T(0);
+    penalty[0] = of_a + apart, penalty[1] = of_b + apart;
+    penalty[2] = Kokkos::fmax(of_a, of_b);
     for (int n = 0; n < count; ++n)
       for (int d = 0; d < Dim && possible[n]; ++d) direction[n][d] /= size[n];
-    at_edge[0] = 1 - covered(a.volume, size[0], spacing, face);
-    at_edge[1] = 1 - covered(b.volume, size[1], spacing, face);
-    at_edge[2] = Kokkos::fmax(at_edge[0], at_edge[1]);
+  }
+
+ private:
+  /// Half the difference of the two boundaries, across their sum, which is the outer one [m2].
+  KOKKOS_INLINE_FUNCTION static Vector<T, Dim> inner(const InterfaceSide<T, Dim>& a,
+                                                     const InterfaceSide<T, Dim>& b, T bounds) {
+    Vector<T, Dim> outer, half;
+    for (int d = 0; d < Dim; ++d) outer[d] = a.area[d] + b.area[d], half[d] = (a.area[d] - b.area[d]) / 2;
+    const T square = dot(outer, outer);
+    if (!(square > bounds * bounds)) return half;
+    const T part = dot(half, outer) / square;
+    for (int d = 0; d < Dim; ++d) half[d] -= part * outer[d];
+    return half;
+  }
+
+  /// One cell where the boundaries lie across each other, else 0: beams with flush ends have corners at their
+  /// face, and neither corner has its normal. No more than that, as gaps between the particles of a body that
+  /// fills the node's cells give it a small boundary in any direction.
+  KOKKOS_INLINE_FUNCTION T across(const T (&size)[count]) const {
+    constexpr T k_opposed = T(0.1);  // cosine between boundaries that lie on each other, at least
+    return dot(direction[0], direction[1]) >= k_opposed * size[0] * size[1] ? T(0) : T(1);
   }
 };
 
@@ -122,7 +133,7 @@ KOKKOS_INLINE_FUNCTION bool normal_between(const InterfaceSide<T, Dim>& a, const
     if (!of.possible[n]) continue;
     Vector<T, Dim> back;
     for (int d = 0; d < Dim; ++d) back[d] = -of.direction[n][d];
-    overlap[n] = a.cloud.reach(of.direction[n]) + b.cloud.reach(back) + of.at_edge[n];
+    overlap[n] = a.cloud.reach(of.direction[n]) + b.cloud.reach(back) + of.penalty[n];
     least = Kokkos::fmin(least, overlap[n]);
   }
   normal = filled<T, Dim>(0);

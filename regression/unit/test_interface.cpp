@@ -131,6 +131,18 @@ TEST_CASE("the side of a block has the normal of ground that ends below the node
   CHECK(std::abs(meeting_of(ground, block).normal[0]) < 0.01);
 }
 
+TEST_CASE(
+    "gaps between the particles of a body that fills the node's cells leave the normal of a sliver on it",
+    "[interface]") {
+  Side sliver = side_of(0.01, -1, {8, 0}), full = side_of(6, 0, {0, 0});
+  sliver.area = {0, -0.05 * k_spacing}, sliver.volume = 1.25e-3 * k_spacing * k_spacing;
+  sliver.cloud = {{0, 0.97}, {{1. / 6, 0}, {0, 1e-4}}};
+  full.area = {0.02 * k_spacing, 0}, full.volume = 0.999 * k_spacing * k_spacing;
+  full.cloud = {{0, 0}, {{1. / 6, 0}, {0, 1. / 6}}};
+  CHECK(meeting_of(sliver, full).normal[1] == Approx(-1));
+  CHECK(meeting_of(full, sliver).normal[1] == Approx(1));
+}
+
 TEST_CASE("the impulses of several rounds obey the limits of one", "[interface]") {
   Side a = side_of(2, 1, {3, 1}), b = side_of(6, -1, {0, -1});
   InterfaceLaw law = law_with(0.5);
