@@ -32,6 +32,8 @@ ANSWERS = {  # cases on the GPU
     "periodic": ["periodic", "periodic_flow", "periodic_slope", "oblique_wave"],
     "domains": ["clay_column", "large_deformation", "large_waves", "energy", "energy_collapse", "even_flow", "vortex"],
     "revolution": ["thick_cylinder", "cylinders", "circle", "deep_sphere_section", "circle_fine", "quarter", "cavity", "cavity_sphere"],
+    "pairs": ["contact_pairs", "pair_bars", "pair_bending", "pair_hertz", "pair_pullout"],
+    "balls": ["pair_balls"],
 }
 PROCESSOR_ANSWERS = {  # back ends, threads and runs at a time, cases: the longest first
     "limits": ("openmp", 2, 7, ["footing_surcharge", "footing_weight", "footing_cohesion", "cut_tresca", "cut_friction",
