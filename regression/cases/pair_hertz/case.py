@@ -4,8 +4,9 @@
 halves that end at their planes of symmetry. The radius of the contact is 15 mm, 6 cells. Hertz has the force at a given approach for balls that are large
 against the contact. Those here are a little stiffer: linear finite elements give an approach of 0.9745 of Hertz's at the same force, and so 1.0395 times the force at
 the same approach. The approach of cylinders is that of Johnson. *Slip*: two cylinders, whose contact is 30 mm wide to either side, 12 cells, are then shifted
-along each other, with a friction of 0.3. The middle of the contact stays stuck, from $-c$ to $c$, with $c/b = \\sqrt{1 - Q/(\\mu P)}$ (Cattaneo, Mindlin). $c$
-is fitted to the slip of the particles on both faces: $\\mu (x \\sqrt{x^2 - c^2} - c^2 \\mathrm{arcosh}(x/c)) / (2 R)$, $R$ that of both.
+along each other, with a friction of 0.3. The middle of the contact stays stuck, from $-c$ to $c$, with $c/b = \\sqrt{1 - Q/(\\mu P)}$ (Cattaneo, Mindlin). The bodies
+shear as they are shifted, so the contact turns by up to 0.013: $Q$ and $P$ are along and across the mean of the nodes' normals. $c$ is fitted to the slip
+of the particles on both faces: $\\mu (x \\sqrt{x^2 - c^2} - c^2 \\mathrm{arcosh}(x/c)) / (2 R)$, $R$ that of both.
 """
 
 import h5py
@@ -47,6 +48,18 @@ def positions(run, time, body):
         return frame[body]["position"][:, :2]
 
 
+def forces_at(run, time):
+    """Forces across and along the contact [N/m], means of three rows of the history, about the mean normal of a frame."""
+    row = np.argmin(np.abs(run.history["time"] - time))
+    force = np.array([run.history[f"low_high_force_{axis}"][row - 2:row + 1].mean() for axis in "xy"])
+    with h5py.File(run.frame_near(time)) as frame:
+        nodes = frame["low_high"]
+        normals = nodes["contact_normal"][:, :2]
+        normal = np.sum(normals * np.sum(normals * nodes["contact_force"][:, :2], axis=1)[:, None], axis=0)
+    normal /= np.linalg.norm(normal)
+    return abs(force @ normal), abs(force @ [normal[1], -normal[0]])
+
+
 def slip_of_faces(run, time, width):
     """Places x and slips [m] since 0.04 s of the particles on both faces, column by column of particles, up to `width` from the middle."""
     spacing, faces = run.number("mesh_spacing"), {}
@@ -81,9 +94,8 @@ def check(runs):
     load = cylinders(0.015)[0] / 2
     yield Row("force of two half cylinders, 6 cells (N/m)", force["cylinders"], load, 0.05 * load, "Hertz, Johnson")
     run = runs["slip"]
-    for time, name in ((0.055, "0.29"), (0.06, "0.50"), (0.065, "0.71"), (0.07, "0.87")):
-        row = np.argmin(np.abs(run.history["time"] - time))
-        normal, shear = (np.abs(run.history[f"low_high_force_{axis}"][row - 2:row + 1].mean()) for axis in "yx")
+    for time, name in ((0.055, "0.30"), (0.06, "0.52"), (0.065, "0.73"), (0.07, "0.90")):
+        normal, shear = forces_at(run, time)
         half_width = np.sqrt(4 * normal * RADIUS / (np.pi * STIFFNESS))
         exact = np.sqrt(1 - shear / (FRICTION * normal))
         stuck = stuck_width(*slip_of_faces(run, time, half_width), half_width)
