@@ -27,15 +27,16 @@ void add_totals(const State<Space, T, Dim>& s) {
       });
 }
 
-/// press_fields, with the tractions at all nodes where `tractions` has room for them.
-template <class Space, class T, int Dim>
+/// press_fields for at most Most fields at a node, with the tractions at all nodes where `tractions` has room
+/// for them.
+template <int Most, class Space, class T, int Dim>
 void press_places(State<Space, T, Dim>& s, double dt, const ControlView<Space>& control,
                   const Kokkos::View<double*, typename Space::memory_space>& tractions) {
   using Team = Kokkos::TeamPolicy<Space>;
   constexpr int cells = Patch<Dim>::cells;
   const auto of = s.interfaces;
-  const PressFields<Space, T, Dim> fields{node_update_of(s, dt), of, s.shear_fraction,
-                                          s.owned_nodes.extent(0) == 0, tractions};
+  const PressFields<Space, T, Dim, Most> fields{node_update_of(s, dt), of, s.shear_fraction,
+                                                s.owned_nodes.extent(0) == 0, tractions};
   const int values = of.rows * InterfaceTerms<Dim>::size, room = values * cells;
   const std::size_t bytes = scratch_bytes<double>(room) + k_scratch_slack;
   constexpr std::size_t k_fast = 32768;
@@ -60,13 +61,20 @@ void press_places(State<Space, T, Dim>& s, double dt, const ControlView<Space>& 
       });
 }
 
+template <class Space, class T, int Dim>
+void press(State<Space, T, Dim>& s, double dt, const ControlView<Space>& control,
+           const Kokkos::View<double*, typename Space::memory_space>& tractions = {}) {
+  s.interfaces.fields == 2 ? press_places<2>(s, dt, control, tractions)
+                           : press_places<k_most_fields>(s, dt, control, tractions);
+}
+
 }  // namespace
 
 template <class Space, class T, int Dim>
 void press_fields(State<Space, T, Dim>& s, double dt, bool keeps) {
   finish_sums(s);
   if (s.interfaces.count == 0) return;
-  press_places(s, dt, keeps ? s.control : s.never_paused, {});
+  press(s, dt, keeps ? s.control : s.never_paused);
   if (keeps && s.interfaces.rows > 0) add_totals(s);
 }
 
@@ -81,7 +89,7 @@ std::vector<InterfaceNode> interface_nodes(State<Space, T, Dim>& s, double dt) {
   if (pieces == 0) return nodes;
   const Kokkos::View<double*, typename Space::memory_space> tractions("mpm::tractions",
                                                                       pieces * Traction::size * cells);
-  press_places(s, dt, s.never_paused, tractions);
+  press(s, dt, s.never_paused, tractions);
   const auto values = mirror_of(tractions);
   const auto slots = mirror_of(of.slots);
   const auto origin = mirror_of(s.patches.origin);

@@ -14,8 +14,8 @@ Interpolation<Source> interpolation_of(const ContactCore<Space, T, Dim>& s, cons
   Interpolation<Source> it{stream, s.grid, s.patches, bins, source, out, s.control, s.p2g.mosaic_cells};
   it.windows = bins.windows;
   if constexpr (requires { source.windows; })
-    if (source.windows.place.extent(0) > 0) it.windows = source.windows;
-  if constexpr (requires { source.contact; }) it.windows = s.contact.boundary;
+    if (source.windows.place.extent(0) > 0) it.windows = source.windows, it.giving = s.contact.count;
+  if constexpr (requires { source.contact; }) it.windows = s.contact.boundary, it.giving = s.contact.count;
   if constexpr (requires { source.rigid; }) it.some_slots = s.contact.slots, it.some_count = s.contact.count;
   it.adds = !s.plan.writes_sums;
   return it;

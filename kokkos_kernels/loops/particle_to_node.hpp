@@ -27,6 +27,7 @@ struct Interpolation {
   /// The slots whose nodes matter, if some_count is not negative; else those of all do.
   Kokkos::View<int*, typename Space::memory_space> some_slots = {};
   int some_count = -1;
+  int giving = -1;  // number of slots whose points give, if it is not negative; else those of all do
 };
 
 /// The strategy for the points of rigids. They are few in many cells of a patch or many in few: where `tile`

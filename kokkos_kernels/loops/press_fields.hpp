@@ -6,8 +6,9 @@
 
 namespace mpm {
 
-/// The nodes of a place, a patch in which several velocity fields are active.
-template <class Space, class T, int Dim>
+/// The nodes of a place, a patch in which several velocity fields are active. Most: fields that a node may
+/// have; with two, what a thread holds of them fits in registers.
+template <class Space, class T, int Dim, int Most>
 struct PressFields {
   using S = SoilTerms<Dim>;
   using B = BoundaryTerms<Dim>;
@@ -30,13 +31,14 @@ struct PressFields {
 
   /// Node k of a place. sums: InterfaceTerms of each row, `cells` apart.
   KOKKOS_INLINE_FUNCTION void operator()(int place, int k, double* sums) const {
-    Side sides[k_most_fields];
+    Side sides[Most];
     unsigned at_sides = 0;
     Coord<Dim> at{};
-    const int count = find_sides(place, k, sides, at, at_sides);
+    const int found = find_sides(place, k, sides, at, at_sides);
     for (int f = 0; f < of.fields; ++f)
       for (int d = 0; d < Dim; ++d) of.force(force_at(place, f, d, k)) = 0;
-    if (count < 2) return;
+    if (found < 2) return;
+    const int count = Most == 2 ? 2 : found;
     const std::size_t first = std::size_t(place) * of.rows * Traction::size * cells + k;
     const Results out{cell_of(at, at_sides), sums,
                       tractions.extent(0) > 0 ? tractions.data() + first : nullptr};
@@ -70,8 +72,8 @@ struct PressFields {
       const auto node = update.node_of(update.nodes, slot * cells + k, at, true);
       if (!(node.soil[S::mass] > update.mass_cut)) continue;
       at_sides = node.sides;
-      Side& side = sides[count];
-      side.field = f, side.i = node.i, side.mass = side.moving = node.soil[S::mass], side.welded = count++;
+      Side side;
+      side.field = f, side.i = node.i, side.mass = side.moving = node.soil[S::mass], side.welded = count;
       Vector<T, Dim> v_old, a;
       update.accelerate(node.soil, node.inv_m, v_old, a);
       for (int d = 0; d < Dim; ++d) {
@@ -83,8 +85,20 @@ struct PressFields {
       side.volume = node.boundary[B::volume];
       side.cloud = cloud_of(side.i, side.volume, at_sides);
       side.strength = has_strength ? update.mean_strength(node.i) : T(0);
+      put(sides, count++, side);
     }
     return count;
+  }
+
+  /// Makes `side` number n of the sides, by a number that the compiler has where there are but two.
+  KOKKOS_INLINE_FUNCTION static void put(Side* sides, int n, const Side& side) {
+    if constexpr (Most > 2) {
+      sides[n] = side;
+    } else if (n == 0) {
+      sides[0] = side;
+    } else {
+      sides[1] = side;
+    }
   }
 
   /// SoilCloud of node i. A plane of symmetry leaves half of the soil in the mesh: the other half is its
@@ -168,14 +182,14 @@ struct PressFields {
 
   /// Brings the fields of a node together, pair by pair, until impulses are a thousandth of the first ones.
   KOKKOS_INLINE_FUNCTION void solve(Side* sides, int count, const Results& out) const {
-    if (count == 2) {
+    if (Most == 2 || count == 2) {
       SharedImpulse<T, Dim> so_far;
       press(sides, count, 0, 1, so_far, out);
       return;
     }
     constexpr int k_rounds = 8;
     constexpr T k_small = T(1e-3);
-    SharedImpulse<T, Dim> so_far[k_most_fields * (k_most_fields - 1) / 2];
+    SharedImpulse<T, Dim> so_far[Most * (Most - 1) / 2];
     T first = 0;
     for (int round = 0; round < k_rounds; ++round) {
       T largest = 0;

@@ -6,7 +6,8 @@
 
 namespace mpm {
 
-// On a device all patches at once, by atomic additions to the nodes.
+// On a device all patches at once, by atomic additions to the nodes. Where few patches give, each lot of a
+// patch has a team: one wave of teams takes as long as one of them.
 template <class Source>
 void sum_on_device(const Interpolation<Source>& it) {
   using Space = typename Source::Space;
@@ -23,16 +24,18 @@ void sum_on_device(const Interpolation<Source>& it) {
   const auto origin = it.patches.origin;
   const auto out = it.out;
   const auto control = it.control;
-  const int first = it.bins.first_active, teams = it.bins.last_active - first;
-  if (teams == 0) return;
+  const int first = it.bins.first_active, slots = it.bins.last_active - first;
+  if (slots == 0) return;
+  constexpr int k_few = 1024;  // slots that give
+  const int parts = it.giving >= 0 && it.giving < k_few ? Tile_::lots : 1, lots = Tile_::lots / parts;
 
   Kokkos::parallel_for(
       "mpm::reduce_by_tile",
-      light(Team(it.space, teams, team_threads<Space>)
+      light(Team(it.space, slots * parts, team_threads<Space>)
                 .set_scratch_size(0, Kokkos::PerTeam(Tile_::bytes() + k_scratch_slack))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (control().paused) return;
-        const int slot = active_slots(first + team.league_rank());
+        const int slot = active_slots(first + team.league_rank() / parts);
         if (source.skips(slot)) return;
         const WindowImages<T, Dim> images(grid, reach, origin(slot));
         sum_patch(
@@ -40,7 +43,8 @@ void sum_on_device(const Interpolation<Source>& it) {
             [&](int n) {
               return number_at<decltype(neighbours), Dim>(neighbours, slot, window_coord<Dim>(images(n)));
             },
-            [&](int c) { return begin(slot * cells + c); }, images, out);
+            [&](int c) { return begin(slot * cells + c); }, images, out,
+            Lots{team.league_rank() % parts * lots, lots});
       });
 }
 

@@ -12,6 +12,11 @@
 
 namespace mpm {
 
+/// Lots of a patch that follow each other.
+struct Lots {
+  int first, count;
+};
+
 /// teams: those that share a multiprocessor.
 template <class Source, int teams = teams_at_once<typename Source::real, Source::dim>>
 class Tile {
@@ -20,6 +25,10 @@ class Tile {
   using Space = typename Source::Space;
   using Point = typename Source::Point;
   static constexpr int Dim = Source::dim, size = Source::size, window = Patch<Dim>::window;
+
+  /// In 3D layer by layer of cells: a particle then reaches four layers of nodes, each with its own threads.
+  static constexpr int lots = Dim == 3 ? Patch<Dim>::edge : 1;
+  KOKKOS_INLINE_FUNCTION static constexpr Lots all_lots() { return {0, lots}; }
 
   /// A particle on its way to the nodes.
   struct Entry {
@@ -31,8 +40,6 @@ class Tile {
   static constexpr int edge = Patch<Dim>::edge, across = Patch<Dim>::window_edge, cells = Patch<Dim>::cells;
   static constexpr int k_reach = 4;  // nodes that the particles of a cell reach along an axis
   static constexpr int k_layers = Dim == 3 ? k_reach : 1;
-  // In 3D layer by layer of cells: a particle then reaches four layers of nodes, each with its own threads.
-  static constexpr int k_lots = Dim == 3 ? edge : 1;
   static constexpr bool k_offset = requires { Source::takes_offset; };
   static constexpr int k_half = k_domain_numbers<T, Point>, k_point = k_point_numbers<T, Point>;
   static constexpr bool k_rings = k_slopes_of<Source> > Dim;
@@ -92,13 +99,13 @@ class Tile {
     Kokkos::parallel_for(Kokkos::TeamThreadRange(team, window * size), [&](int n) { sums_[n] = 0; });
   }
 
-  /// Gives the particles of the patch to the window. load(p) makes the entry of particle p; it is called once
-  /// for each.
+  /// Gives the particles of some lots of the patch to the window. load(p) makes the entry of particle p; it
+  /// is called once for each.
   template <class Team, class Load>
-  KOKKOS_INLINE_FUNCTION void add(const Team& team, const Load& load) const {
-    for (int lot = 0; lot < k_lots; ++lot) {
-      const int end = begin_[(lot + 1) * (cells / k_lots)];
-      for (int first = begin_[lot * (cells / k_lots)]; first < end; first += capacity) {
+  KOKKOS_INLINE_FUNCTION void add(const Team& team, const Load& load, const Lots& some = all_lots()) const {
+    for (int lot = some.first; lot < some.first + some.count; ++lot) {
+      const int end = begin_[(lot + 1) * (cells / lots)];
+      for (int first = begin_[lot * (cells / lots)]; first < end; first += capacity) {
         const int last = Kokkos::min(first + capacity, end);
         Kokkos::parallel_for(Kokkos::TeamThreadRange(team, first, last),
                              [&](int p) { put(place(p - first), load(p)); });
@@ -259,19 +266,24 @@ class Tile {
   }
 };
 
-/// A team gives the points of a slot to the nodes. number_of(n): number of the image of node n of the window,
-/// by `images`; cell_begin(c): the first point of cell c of the patch.
+/// A team gives the points of a slot, or of some lots of it, to the nodes. number_of(n): number of the image
+/// of node n of the window, by `images`; cell_begin(c): the first point of cell c of the patch.
 template <class Source, class Team, class Number, class Begin, class Images, class Field>
 KOKKOS_INLINE_FUNCTION void sum_patch(const Team& team, Scratch scratch, const Source& source,
                                       const Number& number_of, const Begin& cell_begin, const Images& images,
-                                      const Field& out) {
+                                      const Field& out, const Lots& some = Tile<Source>::all_lots()) {
   using Tile_ = Tile<Source>;
   const Tile_ tile(scratch);
   Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Patch<Source::dim>::window),
                        [&](int n) { tile.set_node(n, number_of(n)); });
   tile.clear(team, cell_begin);
   team.team_barrier();
-  tile.add(team, [&](int p) { return typename Tile_::Entry{source.points.coordinate(p), source.load(p)}; });
+  tile.add(
+      team,
+      [&](int p) {
+        return typename Tile_::Entry{source.points.coordinate(p), source.load(p)};
+      },
+      some);
   tile.give_window(team, out, images);
 }
 
