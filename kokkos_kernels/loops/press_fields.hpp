@@ -63,6 +63,7 @@ struct PressFields {
   /// The fields with soil at node k of a place, with their velocities as walls and other forces leave them.
   KOKKOS_INLINE_FUNCTION int find_sides(int place, int k, Side* sides, Coord<Dim>& at,
                                         unsigned& at_sides) const {
+    constexpr T k_round_off = 64 * Kokkos::Experimental::epsilon<T>::value;
     int count = 0;
     for (int f = 0; f < of.fields; ++f) {
       const int slot = of.slots(place * of.fields + f);
@@ -80,6 +81,8 @@ struct PressFields {
         side.velocity[d] = v_old[d] + a[d] * update.dt;
         side.area[d] = node.boundary[B::area + d], side.force[d] = 0;
       }
+      const T change = update.dt * Kokkos::sqrt(dot(a, a));
+      side.round_off = k_round_off * side.mass * (Kokkos::sqrt(dot(v_old, v_old)) + change);
       apply_walls(update.places.grid, node.sides, side.velocity);
       cancel_at_rollers(update.places.grid, node.sides, side.area);
       side.volume = node.boundary[B::volume];

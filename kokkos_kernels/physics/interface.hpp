@@ -36,6 +36,7 @@ struct InterfaceSide {
   T strength;               // Pa, where a law asks for it
   SoilCloud<T, Dim> cloud;
   Vector<double, Dim> force;  // N, of other fields
+  T round_off;                // N s, of its momentum: an impulse below it is none
 };
 
 /// How two fields lie to each other at a node.
@@ -209,11 +210,12 @@ KOKKOS_INLINE_FUNCTION T shear_bound(const InterfaceLaw& law, const InterfaceSid
 }
 
 /// Impulses of a pair of fields in the rounds of a step so far [N s]: along the normal, and along the face,
-/// against the slip of the first field.
+/// against the slip of the first field. touched: one of them was more than round-off.
 template <class T, int Dim>
 struct SharedImpulse {
   T normal = 0;
   Vector<T, Dim> along{};
+  bool touched = false;
 };
 
 /// Impulses of a law between fields a and b in a step of dt [s], and of what is welded to them, beyond those
@@ -227,7 +229,6 @@ KOKKOS_INLINE_FUNCTION InterfaceImpulse<T, Dim> impulse_between(const InterfaceL
   constexpr T k_shears = T(0.15);  // cells, gap within which shear acts without a normal impulse
   InterfaceImpulse<T, Dim> out;
   const T mass = a.moving * b.moving / (a.moving + b.moving);
-  const bool began = so_far.normal > 0;
   Vector<T, Dim> slip;
   for (int d = 0; d < Dim; ++d) slip[d] = a.velocity[d] - b.velocity[d];
   const T approach = dot(slip, at.normal);
@@ -244,10 +245,11 @@ KOKKOS_INLINE_FUNCTION InterfaceImpulse<T, Dim> impulse_between(const InterfaceL
     out.on_first[d] = -(normal - so_far.normal) * at.normal[d] - more;
     work += more * (slip[d] - approach * at.normal[d] - more / (2 * mass));
   }
-  const bool touched = began || dot(so_far.along, so_far.along) > 0;
-  if (!touched && (normal > 0 || size > 0)) out.area = at.area;
+  const T least = Kokkos::fmax(a.round_off, b.round_off);
+  const bool touches = so_far.touched || normal > least || size > least;
+  if (touches && !so_far.touched) out.area = at.area;
   out.work = work;
-  so_far = {normal, along};
+  so_far = {normal, along, touches};
   return out;
 }
 

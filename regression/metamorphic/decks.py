@@ -25,7 +25,7 @@ SIDES = tuple(f"mesh_{axis}{end}" for axis in "xyz" for end in ("min", "max"))
 OFFSETS = (0.11, 0.2, 0.29, 0.37, 0.43, 0.61, 0.71, 0.87)  # cells; a cell owns particles on its lower faces, its mirror image does not
 FLUIDS = {"newtonian", "yield_stress_fluid"}  # without Poisson's ratio
 DIVIDED = STRENGTH | {"mohr_coulomb", "drucker_prager"}  # laws with a strength_factor
-FEATURES = ("rayleigh", "accelerations", "strength", "water", "smooth", "analysis")  # that a run can ask for in every deck
+FEATURES = ("rayleigh", "accelerations", "strength", "water", "smooth", "analysis", "pairs")  # that a run can ask for in every deck
 
 
 class Maker:
@@ -69,6 +69,8 @@ class Maker:
         self.materials(draw.choice([1, 2]))
         self.numerics()
         self.bodies()
+        if self.has["pairs"]:
+            self.pairs()
         if self.some(0.6):
             self.rigid()
         self.sides()
@@ -101,6 +103,8 @@ class Maker:
             d["second_rayleigh_ratio"] = 0.0
         if self.has["strength"] and self.some(0.6):
             d["second_strength_factor"] = 1.5
+        if self.has["pairs"] and "weld" not in d.values() and self.some(0.7):
+            d[f"second_{d['contact_pairs'].replace(':', '_')}_friction"] = self.draw.choice([0.0, 0.2, 1.0])
 
     def water_region(self):
         """A box whose water has a level of its own; no body that floats may be in it."""
@@ -221,7 +225,7 @@ class Maker:
                 d["ground_width"] = (0.0, wide[1])
         if shape != "box" and self.some(0.7):
             d["ground_fill"] = "centre"
-        if self.some(0.7):
+        if self.has["pairs"] or self.some(0.7):
             names.append("top")
             self.top_body(wide)
         for name in names:
@@ -235,6 +239,16 @@ class Maker:
                 normal = -round(draw.uniform(5e3, 2e4), 1)
                 d[f"{name}_stress"] = (normal, normal if self.some(0.5) else 0.8 * normal, normal) + (0.0,) * (1 if dim == 2 else 3)
         d["bodies"] = ",".join(names)
+
+    def pairs(self):
+        """The two bodies slide on each other, or are welded."""
+        d, draw = self.deck, self.draw
+        laws = [{}, {"friction": 0.4}, {"friction": 0.2, "adhesion": 500.0}, {"shear_limit": 800.0}, {"friction": 0.6, "shear_limit": 1e3}, {"contact": "weld"}]
+        if STRENGTH & {self.laws[d[f"{body}_material"]] for body in ("ground", "top")}:
+            laws.append({"shear_fraction": 0.5})
+        d["contact_pairs"] = draw.choice(["ground:top", "top:ground"])
+        name = d["contact_pairs"].replace(":", "_")
+        d.update({f"{name}_{key}": value for key, value in draw.choice(laws).items()})
 
     def top_body(self, wide):
         d, draw, dim, up = self.deck, self.draw, self.dim, self.up

@@ -15,7 +15,7 @@ WHOLE = {FORCE, ENERGY, MOMENTUM, AREA, VOLUME, MASS}  # of columns and fields
 WORDS = ("dim geometry materials bodies rigid_bodies loads probes stages backend precision p2g velocity_update particle_domain "
          "position_correction output_energy model material shape fill cut_out motion separation contact_normal contact_gap_scaling body "
          "bodies_of_probe kind match surface tension_word progress file tip end place remove analysis water_regions rayleigh_parts "
-         "acceleration_correction velocity_table_interpolation acceleration_table_interpolation")
+         "acceleration_correction velocity_table_interpolation acceleration_table_interpolation contact_pairs contact")
 NUMBERS = ("damping flip_fraction xpic_order position_correction_rate f_bar_fraction time_courant time_max_steps particles_per_cell poisson "
            "k0 friction_deg dilation_deg mu_static mu_dynamic inertial_number exponent critical_state_ratio lambda kappa specific_volume ocr "
            "rigidity remoulded_ratio xi95 rate_factor friction dashpot_factor shear_fraction contact_gap_reach contact_gap_exponent "
@@ -26,7 +26,7 @@ OPTIONS = {
     **{name: ("number", LENGTH) for name in "mesh_spacing radius height fillet xi95_cell grain_diameter spring_length".split()},
     **{name: ("number", STRESS) for name in ("young su cohesion tension bulk_modulus shear_modulus yield_stress pressure_reference "
                                              "pressure_offset pressure_min hardening_modulus preconsolidation pore_stiffness "
-                                             "shear_limit pressure").split()},
+                                             "shear_limit adhesion pressure").split()},
     **{name: ("number", GRADIENT) for name in "su_gradient young_gradient cohesion_gradient".split()},
     **{name: ("number", DENSITY) for name in "density grain_density water_density".split()},
     **{name: ("number", TIME) for name in "time_end time_step output_interval history_interval checkpoint_interval rate_time".split()},
@@ -47,7 +47,8 @@ COLUMNS = [(re.compile(pattern.replace("{n}", r"(?P<name>[a-z0-9]+)").replace("{
     ("wall_(?P<side>[xyz])(?P<end>min|max)_force_{a}", FORCE, "wall"),
     ("{n}_{a}(?P<end>min|max)", LENGTH, "extent"), ("{n}_{a}q999", LENGTH, "quantile"), ("{n}_centre_{a}", LENGTH, "place"),
     ("{n}_(?:lost_momentum|momentum)_{a}", MOMENTUM, "vector"), ("{n}_momentum_flux_{a}", FORCE, "flux"), ("{n}_(?:mean_)?velocity_{a}", SPEED, "vector"),
-    ("{n}_force_{a}", FORCE, "vector"), ("{n}_(?:displacement_)?{a}", LENGTH, "displacement"), ("{n}_stress_(?P<pair>[xyz]{2})", STRESS, "stress"),
+    ("(?P<name>[a-z0-9]+(?:_[a-z0-9]+)?)_force_{a}", FORCE, "vector"), ("(?P<name>[a-z0-9]+_[a-z0-9]+)_area", AREA, "number"),
+    ("(?P<name>[a-z0-9]+_[a-z0-9]+)_friction_work", ENERGY, "number"), ("{n}_(?:displacement_)?{a}", LENGTH, "displacement"), ("{n}_stress_(?P<pair>[xyz]{2})", STRESS, "stress"),
     ("{n}_(?:kinetic|lost|merged|corrected|raised)_energy", ENERGY, "number"), ("{n}_(?:mass|lost_mass)", MASS, "number"),
     ("{n}_(?:grid_velocity|speed)", SPEED, "number"), ("{n}_area", AREA, "number"), ("{n}_(?:pore_pressure|pressure|excess_pore_pressure)", STRESS, "number"),
     ("{n}_(?:strays|limited|put_back|stretched|particles|merged)", NONE, "count"), ("{n}_depth", LENGTH, "number"), ("{n}_(?:surface|base)", LENGTH, "level"),
@@ -69,6 +70,11 @@ def names_of(deck, what):
     return [name for name in str(deck.get(what, "")).split(",") if name]
 
 
+def pairs_of(deck):
+    """The names of the pairs of -contact_pairs, with which their options and columns begin."""
+    return [pair.replace(":", "_") for pair in names_of(deck, "contact_pairs")]
+
+
 def kind_of(option, deck):
     """Kind and units of an option of a deck."""
     key, value = option, deck[option]
@@ -81,7 +87,8 @@ def kind_of(option, deck):
             return "word", NONE
         key = side[3]
     elif key not in OPTIONS:
-        name, _, key = key.partition("_")
+        pair = next((name for name in pairs_of(deck) if key.startswith(f"{name}_")), "")
+        name, key = (pair, key[len(pair) + 1:]) if pair else key.split("_", 1)
         if name in names_of(deck, "probes"):
             key = {"width": "gauge_width", "bodies": "bodies_of_probe"}.get(key, key)
     if isinstance(value, str) and key in OPTIONS and key not in ("velocity_table", "acceleration_table", "axis"):

@@ -1,7 +1,7 @@
 """Images of a deck that must agree with it: `IMAGES` has a function each, (deck, draw) -> Image, or None where the deck has none."""
 import dataclasses
 
-from dimensions import SIDE, TIME, domain_of, factor, kind_of, names_of
+from dimensions import SIDE, TIME, domain_of, factor, kind_of, names_of, pairs_of
 
 EXACT, ROUND_OFF = "bits", "round-off"
 
@@ -222,6 +222,8 @@ def parts(deck, draw):
     body = "ground"
     if deck.get(f"{body}_shape") != "box" or deck.get("push_body") == body:
         return None
+    if pairs_of(deck) and ("weld" not in deck.values() or deck.get("f_bar_fraction") != 0):
+        return None  # where others slide on it, a part has a boundary at the cut; and F-bar acts within each body
     axis = draw.randrange(deck["dim"])
     low, high, h = deck[f"{body}_lower"], deck[f"{body}_upper"], deck["mesh_spacing"]
     at = low[axis] + h * max(1, int((high[axis] - low[axis]) / h / 2))
@@ -232,6 +234,9 @@ def parts(deck, draw):
     out["ground_upper"] = tuple(at if k == axis else x for k, x in enumerate(high))
     out["rest_lower"] = tuple(at if k == axis else x for k, x in enumerate(low))
     out["bodies"] = ",".join(["ground", "rest", *names_of(deck, "bodies")[1:]])
+    for pair in names_of(deck, "contact_pairs"):
+        other = pair.replace("ground", "rest")
+        out.update({"contact_pairs": f"{pair},{other}", f"{other.replace(':', '_')}_contact": "weld"})
     if any(f"{probe}_bodies" in deck for probe in names_of(deck, "probes")):
         return None
     return Image(out, joins={"ground": ("ground", "rest")})
@@ -330,7 +335,8 @@ def watched(deck, draw):
         return Image(out, EXACT, rows=False)
     out["history_interval"] = deck["history_interval"] / draw.choice([2, 1000])  # the host looks more often, or after each step
     rigids = "|".join(names_of(deck, "rigid_bodies")) or "wall_..."
-    return Image(out, EXACT, rows=False, skips=f"(wall_....|{rigids})_force_.")  # means since the last row
+    means = "|".join(f"{pair}_(force_.|area)" for pair in pairs_of(deck)) or "wall_..."
+    return Image(out, EXACT, rows=False, skips=f"(wall_....|{rigids})_force_.|{means}")  # means since the last row
 
 
 IMAGES = {f.__name__: f for f in (units, any_units, mirror, turn, shift, room, order, parts, outline, thin, ranks, strategy, restart, restart_ranks, watched)}

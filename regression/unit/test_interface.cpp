@@ -143,6 +143,14 @@ TEST_CASE(
   CHECK(meeting_of(full, sliver).normal[1] == Approx(1));
 }
 
+TEST_CASE("fields whose approach is round-off, as another one stops it, have no area in touch", "[interface]") {
+  Side a = side_of(2, 1, {0, 1e-17}), b = side_of(6, -1, {0, 0});
+  a.round_off = 1e-14;
+  CHECK(impulse_of(law_with(0), a, b).area == 0);
+  a.velocity[1] = 1e-10;
+  CHECK(impulse_of(law_with(0), a, b).area == Approx(k_spacing));
+}
+
 TEST_CASE("the impulses of several rounds obey the limits of one", "[interface]") {
   Side a = side_of(2, 1, {3, 1}), b = side_of(6, -1, {0, -1});
   InterfaceLaw law = law_with(0.5);
