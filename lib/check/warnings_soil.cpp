@@ -1,6 +1,7 @@
 #include "check/warnings_soil.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "common/text.hpp"
@@ -78,6 +79,26 @@ bool is_pair(const Config& config, const BodyConfig& one, const BodyConfig& othe
       });
 }
 
+/// A line for each upper face of a box beside which its particles end: their lattice begins at the lower
+/// corner, and holds those whose centre is in the box.
+void add_gaps(const Config& config, const BodyConfig& body, std::vector<std::string>& lines) {
+  constexpr double k_least = 0.05;  // cells
+  if (body.shape.kind != ShapeKind::box || body.shape.fill != Fill::centre) return;
+  const double spacing = config.mesh.spacing, edge = spacing / body.shape.particles_per_cell;
+  for (int d = 0; d < config.dim; ++d) {
+    if (body.shape.upper[d] >= config.mesh.upper[d]) continue;  // no other body is there
+    const double length = body.shape.upper[d] - std::max(body.shape.lower[d], config.mesh.lower[d]);
+    const double beyond = std::round(length / edge) * edge - length;
+    if (std::abs(beyond) < k_least * spacing) continue;
+    lines.push_back(
+        formatted("warning: body %s of -contact_pairs: along %c its particles end %.3g m %s its face, %.2g "
+                  "cells, so that others meet it %s; an edge of whole particles, of %g m, has its face where "
+                  "it is given",
+                  body.name.c_str(), "xyz"[d], std::abs(beyond), beyond < 0 ? "short of" : "beyond",
+                  std::abs(beyond) / spacing, beyond < 0 ? "late" : "early", edge));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of_pairs(const Config& config) {
@@ -98,6 +119,7 @@ std::vector<std::string> warnings_of_pairs(const Config& config) {
                     "share nodes, "
                     "and contact takes the wrong normals: take smaller cells",
                     body.name.c_str(), cells, k_least));
+    add_gaps(config, body, lines);
   }
   return lines;
 }

@@ -118,7 +118,7 @@ void read_contact_pairs(OptionReader& in, Config& config) {
       pair.bodies[side] = body_of(config, words[side]);
     const std::string fault = pair_fault(config, words, pair);
     if (!fault.empty()) {
-      in.ignore(pair.name + "_");
+      for (const std::string& each : given) in.ignore(join(split(each, ':'), "_") + "_");
       return in.reject(option.name, fault);
     }
     read_pair(in, config, pair);
