@@ -1,4 +1,4 @@
-"""Deformable bodies that meet in pairs: in a row, about a corner, one inside another, on the ground, under a rigid body, as bodies of revolution.
+"""Deformable bodies that meet in pairs: in a row, about a corner, up to eight about a point, one inside another, on the ground, under a rigid body, as bodies of revolution.
 
 Materials, laws of contact, pairs that are left out, and stages that change laws or remove a body are random. What all bodies have of momentum
 changes by weight, sides and rigid bodies alone, what each has by its pairs too; contact never adds energy but for round-off of the bodies'
@@ -10,7 +10,7 @@ import numpy as np
 
 from deck import Deck, rounded, vector
 from mpm_regression.folders import history, of_velocities
-from pair_scenes import Scene
+from pair_scenes import NAMES, Scene
 
 END = 0.16  # s; so many whole steps also in two stages: a shorter step at the end has the force of a rigid body over the mean of two steps
 LAWS = [[], ["_friction", "0.3"], ["_friction", "0.8", "_adhesion", "500"], ["_shear_limit", "800"], ["_friction", "0.5", "_shear_limit", "2e3"], ["_friction", "0", "_adhesion", "1e3"],
@@ -20,12 +20,12 @@ LAWS = [[], ["_friction", "0.3"], ["_friction", "0.8", "_adhesion", "500"], ["_s
 class ContactPairs(Deck):
     strategies = ("tile", "tile", "gather", "sequential", "mosaic")
     ranks = (1, 1, 2)
-    sums = ("energy_", "work_", "wall_", "tool_", *(f"{one}_{two}_" for one, two in itertools.permutations("abcd", 2)))
+    sums = ("energy_", "work_", "wall_", "tool_", *(f"{one}_{two}_" for one, two in itertools.permutations(NAMES, 2)))
     apart = {"double": 1e-6, "single": 0.2}  # bodies that slide amplify round-off
 
     def make(self):
         draw, dim = self.draw, self.dim
-        self.kind = draw.choice(["row", "row", "corner", "corner", "inside", "ground", "rigid_between", *(["rings"] if dim == 2 else [])])
+        self.kind = draw.choice(["row", "row", "corner", "corner", "inside", "ground", "wheel", "rigid_between", *(["rings"] if dim == 2 else [])])
         self.scene = scene = Scene(draw, dim, self.kind, self.folder)
         self.names = scene.names
         sides = {f"{axis}{end}": "free" for axis in self.axes for end in ("min", "max")}
@@ -97,7 +97,7 @@ class ContactPairs(Deck):
             off = np.abs(sum(part[1:] - part[0] for part in parts.values()) - gained).max() / scale
             self.note("change of all momentum", off)
             assert off < self.bound(1e-11, 1e-4), f"the momentum {axis} of all bodies changes by {off:.3g}"
-            if self.kind in ("row", "rings", "corner", "inside") and self.has_all_pairs():
+            if self.kind in ("row", "rings", "corner", "wheel", "inside") and self.has_all_pairs():
                 self.check_each(axis, parts, between, steps)
         self.check_energy(values)
         self.note("touched", not pairs or any(np.abs(values[f"{pair}_force_{self.axes[self.scene.along]}"]).max() > 0 for pair in pairs))

@@ -1,10 +1,11 @@
 """Scenes of deformable bodies in pairs: where the bodies of contact_pairs.py are, and their mirror images."""
 import itertools
+import math
 
 from deck import vector
 
 WIDTH, HEIGHT, DEPTH = 3.0, 1.6, 1.2  # m, of the mesh; DEPTH along y in 3D
-NAMES = "abcd"
+NAMES = "abcdrstu"  # as many as a run has velocity fields; other options begin with some other letters
 FACETS = [(0, 2, 1), (0, 1, 3), (0, 4, 2), (0, 3, 4), (5, 1, 2), (5, 3, 1), (5, 2, 4), (5, 4, 3)]  # of an octahedron
 
 
@@ -85,6 +86,17 @@ class Scene:
             if self.dim == 3:
                 low[1], high[1] = 0.2, 0.2 + self.length(0.6, 0.8)
             self.add(name, low, high, [-x, *[0.0] * (self.dim - 2), -z])
+
+    def wheel(self):
+        """Five to eight wedges about a point, into which they move."""
+        at, count, turned = [self.near(1.5), self.near(0.8)], self.draw.randint(5, 8), self.draw.uniform(0, 1)
+        for k, name in enumerate(NAMES[:count]):
+            a, b, middle = (2 * math.pi / count * (k + part) + turned for part in (0.03, 0.97, 0.5))
+            radius = self.draw.uniform(0.5, 0.7)
+            tip = [at[0] + 0.02 * math.cos(middle), at[1] + 0.02 * math.sin(middle)]
+            outline = [*tip, *(value for angle in (a, b) for value in (at[0] + radius * math.cos(angle), at[1] + radius * math.sin(angle)))]
+            self.velocity[name] = self.speed([-math.cos(middle), *[0.0] * (self.dim - 2), -math.sin(middle)])
+            self.words += [f"-{name}_shape", "polygon", f"-{name}_polygon", vector(outline), *(["-" + name + "_width", "0.2,1.0"] if self.dim == 3 else [])]
 
     def inside(self):
         """A body that is cut out of another one, and maybe of a third above it, and moves in it."""
