@@ -212,7 +212,8 @@ struct PressFields {
     const InterfaceLaw& law = law_of(a, b);
     Meeting<T, Dim> meeting;
     if (!meet(a, b, out.cell, meeting)) return 0;
-    const auto impulse = impulse_between(law, a, b, meeting, out.cell.spacing, update.dt, so_far);
+    const T part = part_of(sides, count, m, n, sharing_area(meeting, out.cell.spacing), out);
+    const auto impulse = impulse_between(law, a, b, meeting, out.cell.spacing, update.dt, so_far, part);
     T largest = 0;
     for (int d = 0; d < Dim; ++d) largest = Kokkos::fmax(largest, Kokkos::fabs(impulse.on_first[d]));
     if (law.row >= 0 && counts(a.i)) add(law, a, b, impulse, out);
@@ -221,6 +222,24 @@ struct PressFields {
     push(sides, count, m, impulse.on_first, out);
     push(sides, count, n, back, out);
     return largest;
+  }
+  /// Part that a pair takes of what two groups of welded sides do to each other and the pairs before it have
+  /// left: its area [m2] over that of itself and the pairs of the same groups after it. So all have parts by
+  /// their areas; one without an area has a part where no pair has one.
+  KOKKOS_INLINE_FUNCTION T part_of(const Side* sides, int count, int m, int n, T area,
+                                   const Results& out) const {
+    const int one = sides[m].welded, other = sides[n].welded;
+    T before = 0, after = 0;
+    for (int k = 0; k < count; ++k)
+      for (int l = k + 1; l < count; ++l) {
+        const int a = sides[k].welded, b = sides[l].welded;
+        const bool same = (a == one && b == other) || (a == other && b == one);
+        Meeting<T, Dim> meeting;
+        if (!same || (k == m && l == n) || !meet(sides[k], sides[l], out.cell, meeting)) continue;
+        (k < m || (k == m && l < n) ? before : after) += sharing_area(meeting, out.cell.spacing);
+      }
+    if (area > 0) return area / (area + after);
+    return before + after > 0 ? T(0) : T(1);
   }
   /// Gives an impulse [N s] on a side to all that are welded to it, by their masses.
   KOKKOS_INLINE_FUNCTION void push(Side* sides, int count, int m, const Vector<T, Dim>& impulse,

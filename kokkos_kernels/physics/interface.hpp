@@ -22,6 +22,26 @@ struct SoilCloud {
       for (int j = 0; j < Dim; ++j) square += n[i] * spread[i][j] * n[j];
     return dot(centre, n) + k_deviations * Kokkos::sqrt(Kokkos::fmax(T(0), square));
   }
+  /// How much of the node's cells the soil fills across n, of length 1: 1 where it goes through them, less
+  /// where it ends. By the deviations across n, of which a hat function has the square root of a sixth of a
+  /// cell each; so neither how dense the soil is counts, nor gaps between its particles.
+  KOKKOS_INLINE_FUNCTION T breadth(const Vector<T, Dim>& n) const {
+    T square = 0;  // product of the variances across n
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) square += n[i] * cofactor(i, j) * n[j];
+    for (int d = 1; d < Dim; ++d) square *= 6;
+    return Kokkos::fmin(T(1), Kokkos::sqrt(Kokkos::fmax(T(0), square)));
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION T cofactor(int i, int j) const {
+    if constexpr (Dim == 2) {
+      return i == j ? spread[1 - i][1 - j] : -spread[1 - i][1 - j];
+    } else {
+      const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+      return spread[a][c] * spread[b][d] - spread[a][d] * spread[b][c];
+    }
+  }
 };
 
 /// Soil of a velocity field at a node.
@@ -59,16 +79,6 @@ KOKKOS_INLINE_FUNCTION T shared_area(T of_a, T depth_a, T of_b, T depth_b) {
   return Kokkos::fmin(of_a / part_a, of_b / part_b) * (part_a + part_b) / 2;
 }
 
-/// Part of a cell's face that a body's boundary at a node covers, 1 where it is a plane face across the
-/// node's cells, less at an edge. volume [m3], area [m2] of the body at the node; spacing [m], face [m2] of a
-/// cell.
-template <class T>
-KOKKOS_INLINE_FUNCTION T covered(T volume, T area, T spacing, T face) {
-  constexpr T k_least = T(0.05);  // less is hardly known
-  const T across = Kokkos::fmax(k_least, 1 - Kokkos::fabs(surface_depth(volume / spacing, area)));
-  return Kokkos::fmin(T(1), area / (face * across));
-}
-
 /// Directions that may be the normal out of a where two fields meet at a node: those of the two boundaries,
 /// and that of the part of both which is no outer boundary of the two together.
 template <class T, int Dim>
@@ -79,7 +89,7 @@ struct NormalChoice {
   T penalty[count];  // cells, as if the fields overlapped more along it: where the boundary is but an edge
 
   KOKKOS_INLINE_FUNCTION NormalChoice(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
-                                      T spacing, T face) {
+                                      T face) {
     constexpr T k_bounds = T(1e-3);   // of a cell's face: less is round-off
     constexpr T k_smaller = T(0.05);  // of the larger area: too little to have a normal
     for (int d = 0; d < Dim; ++d) direction[0][d] = a.area[d], direction[1][d] = -b.area[d];
@@ -88,13 +98,13 @@ struct NormalChoice {
     for (int n = 0; n < count; ++n) size[n] = Kokkos::sqrt(dot(direction[n], direction[n]));
     for (int n = 0; n < count; ++n) possible[n] = size[n] > k_bounds * face;
     for (int n = 0; n < 2; ++n) possible[n] = possible[n] && size[n] > k_smaller * size[1 - n];
-    const T of_a = 1 - covered(a.volume, size[0], spacing, face),
-            of_b = 1 - covered(b.volume, size[1], spacing, face);
     const T apart = possible[0] && possible[1] ? across(size) : T(0);
-    penalty[0] = of_a + apart, penalty[1] = of_b + apart;
-    penalty[2] = Kokkos::fmax(of_a, of_b);
     for (int n = 0; n < count; ++n)
       for (int d = 0; d < Dim && possible[n]; ++d) direction[n][d] /= size[n];
+    const T of_a = possible[0] ? 1 - a.cloud.breadth(direction[0]) : T(1),
+            of_b = possible[1] ? 1 - b.cloud.breadth(direction[1]) : T(1);
+    penalty[0] = of_a + apart, penalty[1] = of_b + apart;
+    penalty[2] = Kokkos::fmax(of_a, of_b);
   }
 
  private:
@@ -125,10 +135,10 @@ struct NormalChoice {
 /// [m2]: of a cell. False where no boundaries lie on each other.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool normal_between(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
-                                           T spacing, T face, Vector<T, Dim>& normal) {
+                                           T face, Vector<T, Dim>& normal) {
   constexpr T k_even = T(0.02);  // cells, difference of overlaps at which one normal begins to rule
   constexpr T k_most = T(50);    // as an exponent
-  const NormalChoice<T, Dim> of(a, b, spacing, face);
+  const NormalChoice<T, Dim> of(a, b, face);
   T overlap[of.count], least = Kokkos::Experimental::infinity<T>::value;
   for (int n = 0; n < of.count; ++n) {
     if (!of.possible[n]) continue;
@@ -174,7 +184,7 @@ KOKKOS_INLINE_FUNCTION T depth_of(T volume, T area, T n_r, const NodeCell<T>& ce
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool meet(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
                                  const NodeCell<T>& cell, Meeting<T, Dim>& at) {
-  if (!normal_between(a, b, cell.spacing, cell.face, at.normal)) return false;
+  if (!normal_between(a, b, cell.face, at.normal)) return false;
   const T of_a = Kokkos::fmax(T(0), dot(a.area, at.normal)),
           of_b = Kokkos::fmax(T(0), -dot(b.area, at.normal));
   const T depth_a = depth_of(a.volume, of_a, at.normal[0], cell),
@@ -218,24 +228,35 @@ struct SharedImpulse {
   bool touched = false;
 };
 
+constexpr double k_shear_gap = 0.15;  // cells, within which shear acts without a normal impulse
+
+/// Area by which a pair shares the impulses between two groups of welded fields [m2]: 0 where the two do not
+/// touch.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION T sharing_area(const Meeting<T, Dim>& at, T spacing) {
+  return at.gap < T(k_shear_gap) * spacing ? at.area : T(0);
+}
+
 /// Impulses of a law between fields a and b in a step of dt [s], and of what is welded to them, beyond those
-/// of the rounds before. Fields may approach by their gap. Contact is inelastic.
+/// of the rounds before. Fields may approach by their gap. Contact is inelastic. part: of what stops the
+/// fields, less than 1 where other pairs stop them too.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION InterfaceImpulse<T, Dim> impulse_between(const InterfaceLaw& law,
                                                                 const InterfaceSide<T, Dim>& a,
                                                                 const InterfaceSide<T, Dim>& b,
                                                                 const Meeting<T, Dim>& at, T spacing, T dt,
-                                                                SharedImpulse<T, Dim>& so_far) {
-  constexpr T k_shears = T(0.15);  // cells, gap within which shear acts without a normal impulse
+                                                                SharedImpulse<T, Dim>& so_far, T part = 1) {
   InterfaceImpulse<T, Dim> out;
   const T mass = a.moving * b.moving / (a.moving + b.moving);
   Vector<T, Dim> slip;
   for (int d = 0; d < Dim; ++d) slip[d] = a.velocity[d] - b.velocity[d];
   const T approach = dot(slip, at.normal);
-  const T normal = Kokkos::fmax(T(0), so_far.normal + mass * (approach - Kokkos::fmax(T(0), at.gap) / dt));
+  const T normal =
+      Kokkos::fmax(T(0), so_far.normal + part * mass * (approach - Kokkos::fmax(T(0), at.gap) / dt));
   Vector<T, Dim> along = filled<T, Dim>(0);
-  if (normal > 0 || at.gap < k_shears * spacing)
-    for (int d = 0; d < Dim; ++d) along[d] = so_far.along[d] + mass * (slip[d] - approach * at.normal[d]);
+  if (normal > 0 || at.gap < T(k_shear_gap) * spacing)
+    for (int d = 0; d < Dim; ++d)
+      along[d] = so_far.along[d] + part * mass * (slip[d] - approach * at.normal[d]);
   const T size = Kokkos::sqrt(dot(along, along)), most = shear_bound(law, a, b, normal, at.area, dt);
   if (size > most)
     for (int d = 0; d < Dim; ++d) along[d] *= most / size;

@@ -143,12 +143,28 @@ TEST_CASE(
   CHECK(meeting_of(full, sliver).normal[1] == Approx(1));
 }
 
-TEST_CASE("fields whose approach is round-off, as another one stops it, have no area in touch", "[interface]") {
+TEST_CASE("fields whose approach is round-off, as another one stops it, have no area in touch",
+          "[interface]") {
   Side a = side_of(2, 1, {0, 1e-17}), b = side_of(6, -1, {0, 0});
   a.round_off = 1e-14;
   CHECK(impulse_of(law_with(0), a, b).area == 0);
   a.velocity[1] = 1e-10;
   CHECK(impulse_of(law_with(0), a, b).area == Approx(k_spacing));
+}
+
+TEST_CASE("a pair takes its part of the impulse that stops two fields, and another pair the rest",
+          "[interface]") {
+  Side a = side_of(2, 1, {0.3, 1}), b = side_of(6, -1, {0, -1});
+  SharedImpulse<double, 2> of_first, of_second;
+  const InterfaceLaw law = law_with(0.5);
+  const auto whole = impulse_of(law, a, b);
+  const auto first = impulse_between(law, a, b, meeting_of(a, b), k_spacing, k_step, of_first, 0.25);
+  CHECK(first.on_first[1] == Approx(0.25 * whole.on_first[1]));
+  for (int d = 0; d < 2; ++d)
+    a.velocity[d] += first.on_first[d] / a.mass, b.velocity[d] -= first.on_first[d] / b.mass;
+  const auto second = impulse_between(law, a, b, meeting_of(a, b), k_spacing, k_step, of_second);
+  for (int d = 0; d < 2; ++d) CHECK(first.on_first[d] + second.on_first[d] == Approx(whole.on_first[d]));
+  CHECK(first.work + second.work == Approx(whole.work));
 }
 
 TEST_CASE("the impulses of several rounds obey the limits of one", "[interface]") {

@@ -3,6 +3,7 @@
 *Block*: an elastic block slides down an elastic slope of 25 degrees, with friction, and with a limited shear stress, with its face on nodes and between them. *Bars*: a bar of 1 m
 hits one of 1 m, or of 2 m, along the axis. *Discs*: two discs meet on a diagonal of the mesh. *Balls*: two balls meet on the axis of a body of
 revolution. *Halves*: two welded halves of a block of clay against the whole, where they share a velocity field, and where a third body gives each one of its own.
+*Pressed*: a rigid plate presses two bodies side by side between smooth walls, against one body. *On two*: a body rests on two that stick to each other.
 """
 
 import numpy as np
@@ -25,12 +26,21 @@ WHOLE = CLAY + " -bodies all -all_material clay -all_shape box -all_lower 0.5,0 
 PART = " -{0}_material clay -{0}_shape box -{0}_lower {1} -{0}_upper {2}"
 CUT = CLAY + PART.format("low", "0.5,0", "1.5,0.35") + PART.format("high", "0.5,0.35", "1.5,0.8") + " -low_high_contact weld"
 THIRD = PART.format("stone", "1.75,0", "1.95,0.2")
+SIDES = " -mesh_xmin roller -mesh_xmax roller -mesh_upper 2,1.5"
+PLATE = (SIDES + " -gravity 0,0 -mesh_ymin roller -rigid_bodies plate -plate_shape box -plate_lower 0,1 -plate_upper 2,1.3 -plate_motion prescribed"
+         " -plate_velocity 0,-0.05 -damping 0.05 -time_end 0.1")
+BESIDE = PART.format("left", "0,0", "1,{0}") + PART.format("right", "1,0", "2,{0}")
+ON_TWO = (SIDES + " -gravity 0,-9.81 -damping 0.1 -time_end 1" + BESIDE.format(0.5) + PART.format("top", "0,0.5", "2,1")
+          + " -bodies left,right,top -contact_pairs left:top,right:top")
 RUNS = {"friction": "-block_base_friction 0.35", "limit": "-block_base_shear_limit 1500",
         "off_grid": "-block_base_shear_limit 1500 -base_upper 5,0.53 -block_lower 1,0.53 -block_upper 2,1.03",
         "bars": BARS + " -b_upper 2.3125,0.05 -time_end 0.25 -history_interval 0.001",
         "long_bar": BARS + " -b_upper 3.3125,0.05 -time_end 0.28 -history_interval 0.001",
         "discs": DISCS, "balls": BALLS, "whole": WHOLE,
         "halves": CUT + " -bodies low,high -contact_pairs low:high",
+        "pressed": (PLATE + BESIDE.format(1) + " -bodies left,right -contact_pairs left:right").replace("clay", "rock"),
+        "pressed_whole": (PLATE + PART.format("all", "0,0", "2,1") + " -bodies all -contact_pairs").replace("clay", "rock"),
+        "on_two": ON_TWO.replace("clay", "rock"),
         "own_fields": CUT + THIRD + " -bodies low,high,stone -contact_pairs low:high,stone:high"}
 
 
@@ -74,3 +84,9 @@ def check(runs):
         ours, exact = momentum(runs[name], ("low", "high"), "y"), whole["all_momentum_y"]
         yield Row(f"momentum of welded halves off that of the whole, over the largest, {name}", np.abs(ours - exact).max() / np.abs(exact).max(), 0,
                   1e-10, "the whole block", single=1e-4)
+    pressed, one = (runs[name].history["plate_force_y"] for name in ("pressed", "pressed_whole"))
+    yield Row("force of a plate on two bodies beside each other off that on one, over the largest", np.abs(pressed - one).max() / np.abs(one).max(), 0, 1e-10,
+              "no shear between them", single=1e-4)
+    rests = runs["on_two"].history
+    left, right = (rests[f"{side}_top_force_y"][rests["time"] > 0.8].mean() for side in ("left", "right"))
+    yield Row("force of a body on the left of two that stick, over that on the right", left / right, 1, 0.01, "symmetry")
