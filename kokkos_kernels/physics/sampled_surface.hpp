@@ -6,6 +6,14 @@
 
 namespace mpm {
 
+/// What a distance asks of SurfaceTables, passed by value: threads of a GPU that called a function with a
+/// reference to a part of their kernel would all copy the kernel's data to memory, some thousand bytes each.
+struct SampleTables {
+  const int* blocks;
+  const SurfaceSample* samples;
+  const unsigned char* edges;
+};
+
 /// The cell of a grid of samples that a point is in.
 struct SampleCell {
   int first, stride[3];  // number of the sample at its lower corner, and from one to the next
@@ -14,15 +22,14 @@ struct SampleCell {
   bool near;             // it is one of a block near the surface
 };
 
-template <class Tables>
-KOKKOS_INLINE_FUNCTION SampleCell cell_of(const Tables& tables, const SampleGrid& grid,
+KOKKOS_INLINE_FUNCTION SampleCell cell_of(const SampleTables& tables, const SampleGrid& grid,
                                           const Vector<double, 3>& in_cells) {
   constexpr int edge = SampleGrid::edge;
   int block[3];
   for (int d = 0; d < 3; ++d)
     block[d] = Kokkos::min(static_cast<int>(in_cells[d] / edge), grid.blocks[d] - 1);
   const int first =
-      tables.blocks(grid.first_block + (block[2] * grid.blocks[1] + block[1]) * grid.blocks[0] + block[0]);
+      tables.blocks[grid.first_block + (block[2] * grid.blocks[1] + block[1]) * grid.blocks[0] + block[0]];
   SampleCell cell;
   cell.near = first >= 0;
   cell.first = cell.near ? first : grid.first_corner;
@@ -41,8 +48,7 @@ KOKKOS_INLINE_FUNCTION SampleCell cell_of(const Tables& tables, const SampleGrid
 
 /// Mean of what the samples of a cell give, each with its distance and half of its slope: exact where the
 /// distance is of second order. The normal is the mean of theirs.
-template <class Tables>
-KOKKOS_INLINE_FUNCTION Distance<3> distance_in(const Tables& tables, const SampleCell& cell) {
+KOKKOS_INLINE_FUNCTION Distance<3> distance_in(const SampleTables& tables, const SampleCell& cell) {
   Distance<3> out{};
   for (int k = 0; k < 8; ++k) {
     double weight = 1;
@@ -52,7 +58,7 @@ KOKKOS_INLINE_FUNCTION Distance<3> distance_in(const Tables& tables, const Sampl
       weight *= upper ? cell.at[d] : 1 - cell.at[d];
       n += upper * cell.stride[d];
     }
-    const SurfaceSample sample = tables.samples(n);
+    const SurfaceSample sample = tables.samples[n];
     double value = sample.value;
     for (int d = 0; d < 3; ++d) {
       value += 0.5 * cell.spacing * (cell.at[d] - (k >> d & 1)) * sample.normal[d];
@@ -65,8 +71,7 @@ KOKKOS_INLINE_FUNCTION Distance<3> distance_in(const Tables& tables, const Sampl
 
 /// Distance to a sampled surface at x [m]. Far from it the distance is a lower bound of its size: beyond the
 /// grid that to the grid and from there on.
-template <class Tables>
-MPM_SAME_BITS_FUNCTION Distance<3> distance_to_samples(const Tables& tables, const SampleGrid& grid, double x,
+MPM_SAME_BITS_FUNCTION Distance<3> distance_to_samples(SampleTables tables, const SampleGrid& grid, double x,
                                                        double y, double z) {
   constexpr double k_off = 0.25;  // of a block's edge: by which the mean of its corners may be too large
   const double place[3] = {x, y, z};
@@ -83,9 +88,9 @@ MPM_SAME_BITS_FUNCTION Distance<3> distance_to_samples(const Tables& tables, con
   if (cell.near) {
     int nearest = cell.first;
     for (int d = 0; d < 3; ++d) nearest += cell.at[d] > 0.5 ? cell.stride[d] : 0;
-    out.at_edge = tables.edges(nearest) != 0;
+    out.at_edge = tables.edges[nearest] != 0;
   } else {
-    const double sign = tables.samples(cell.first).value < 0 ? -1 : 1;
+    const double sign = tables.samples[cell.first].value < 0 ? -1 : 1;
     out.value = sign * Kokkos::fmax(grid.band, sign * out.value - k_off * cell.spacing);
   }
   const double square = dot(beyond, beyond);

@@ -113,11 +113,17 @@ KOKKOS_INLINE_FUNCTION double height_at(const Surface<3>& body, const Vertices& 
          t * ((1 - s) * vertices(at + body.columns).z + s * vertices(at + body.columns + 1).z);
 }
 
+/// Vertices of SurfaceTables, passed by value (SampleTables).
+struct VertexTable {
+  const Vertex* of;
+  KOKKOS_INLINE_FUNCTION const Vertex& operator()(int v) const { return of[v]; }
+};
+
 /// Distance to the ground: that to the plane through the place below with the slope over two squares. All
 /// below the ground is inside.
 template <class Vertices>
-MPM_CALLED_FUNCTION Distance<3> distance_to_heights(const Surface<3>& body, const Vertices& vertices,
-                                                    double x, double y, double z) {
+MPM_CALLED_FUNCTION Distance<3> distance_to_heights(const Surface<3>& body, Vertices vertices, double x,
+                                                    double y, double z) {
   const double h = body.radius;
   const double a = (height_at(body, vertices, x + h, y) - height_at(body, vertices, x - h, y)) / (2 * h),
                b = (height_at(body, vertices, x, y + h) - height_at(body, vertices, x, y - h)) / (2 * h);
@@ -143,10 +149,15 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to_part(const Surface<Dim>& body, 
   } else if (body.kind == SurfaceKind::revolved) {
     if constexpr (Dim == 3) out = distance_to_revolved(body, vertices, r);
   } else if (body.kind == SurfaceKind::heights) {
-    if constexpr (Dim == 3) out = distance_to_heights(body, vertices, x[0], x[1], x[2]);
+    if constexpr (Dim == 3 && requires { vertices.vertices.data(); })
+      out = distance_to_heights(body, VertexTable{vertices.vertices.data()}, x[0], x[1], x[2]);
+    else if constexpr (Dim == 3)
+      out = distance_to_heights(body, vertices, x[0], x[1], x[2]);
   } else if (body.kind == SurfaceKind::sampled) {
     if constexpr (Dim == 3 && requires { vertices.samples; })
-      out = distance_to_samples(vertices, vertices.grids(body.first), x[0], x[1], x[2]);
+      out = distance_to_samples(
+          SampleTables{vertices.blocks.data(), vertices.samples.data(), vertices.edges.data()},
+          vertices.grids(body.first), x[0], x[1], x[2]);
   } else if (body.kind == SurfaceKind::box) {
     const double along = body.cosine * r[0] + body.sine * r[up];
     r[up] = body.cosine * r[up] - body.sine * r[0];
