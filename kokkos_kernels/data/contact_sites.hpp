@@ -6,6 +6,7 @@
 
 #include "base/spaces.hpp"
 #include "base/types.hpp"
+#include "data/site_list.hpp"
 #include "data/site_terms.hpp"
 
 namespace mpm {
@@ -33,14 +34,15 @@ struct SiteSums {
   static constexpr int momentum = 0, sites = Dim, given = Dim + 1, size = 2 * Dim + 1;
 };
 
-/// The sites of the slots where a contact may be (ContactSlots), rigid body by rigid body.
+/// The sites of the nodes in a list.
 template <class Space, class T, int Dim>
 struct ContactSites {
   using Memory = typename Space::memory_space;
   bool in_use = false;                               // some rigid body touches the soil at sites
   double mass = 0;                                   // kg, of the order of that of a full node
   int rank = 0;                                      // this one
-  Kokkos::View<ContactSite<T, Dim>*, Memory> sites;  // [rigid][contact slot][node of it][site of it]
+  SiteList<Space> list;                              // of nodes, from a rebuild to the next
+  Kokkos::View<ContactSite<T, Dim>*, Memory> sites;  // [node of the list][site of it]
   Kokkos::View<std::uint64_t*, Memory> gaps;         // of the sites, as GapKey
   Kokkos::View<std::int64_t * [SiteSums<Dim>::size], Kokkos::LayoutRight, Memory>
       sums;  // [contact slot][node of it]

@@ -23,6 +23,8 @@ std::size_t memory_of(const ContactCore<Space, T, Dim>& s, const NodeUses& uses)
   for_each_table(s.vertices, add);
   add(s.strays.alone), add(s.split.slots);
   add(s.at_sites.sites), add(s.at_sites.gaps), add(s.at_sites.sums);
+  const auto& list = s.at_sites.list;
+  add(list.marks), add(list.open), add(list.first), add(list.node), add(list.group), add(list.pair);
   add(s.contact.boundary.sums), add(s.contact.strength.sums), add(s.contact.cloud.sums);
   for (const auto* more : {&s.launch.next_sums, &s.launch.last_sums})
     add(more->soil), add(more->boundary), add(more->rigid);

@@ -25,7 +25,7 @@ int node_count(const State<Space, T, Dim>& s) {
 }
 template <class Space, class T, int Dim>
 int site_count(const State<Space, T, Dim>& s) {
-  return node_count(s) * k_sites<Dim> * s.contact.near.width;
+  return s.at_sites.list.nodes * k_sites<Dim>;
 }
 
 /// Calls f(what ranks share).
@@ -46,17 +46,37 @@ void with_shared(const SitePasses<Space, T, Dim>& of, SiteField field, F&& f) {
 template <class Space, class T, int Dim>
 void SitePasses<Space, T, Dim>::find() const {
   const FindSites<Space, T, Dim> of(s, dt);
+  const int nodes = node_count(s), groups = s.at_sites.list.groups;
   pass(
-      *this, "mpm::clear_sites", node_count(s), KOKKOS_LAMBDA(int k) {
+      *this, "mpm::clear_sites", nodes, KOKKOS_LAMBDA(int k) {
         for (int term = 0; term < SiteSums<Dim>::size; ++term) of.sums(k, term) = 0;
+        for (int n = k; n < groups; n += nodes) of.list.open(of.list.group(n)) = 0;
       });
-  pass(
-      *this, "mpm::find_sites", site_count(s), KOKKOS_LAMBDA(int n) { of.find(n); });
-  pass(
-      *this, "mpm::meet_sites", node_count(s), KOKKOS_LAMBDA(int k) {
-        constexpr int cells = Patch<Dim>::cells;
-        const int slot = of.contact_slots(k / cells), cell = slot * cells + k % cells;
-        for (int p = of.begin(cell); p < of.begin(cell + 1); ++p) of.meet(slot, p);
+  if constexpr (is_device<Space>)
+    pass(
+        *this, "mpm::find_sites", site_count(s), KOKKOS_LAMBDA(int n) { of.find(n); });
+  else
+    pass(
+        *this, "mpm::find_sites", s.at_sites.list.nodes, KOKKOS_LAMBDA(int n) { of.find_of_node(n); });
+  meet();
+}
+
+template <class Space, class T, int Dim>
+void SitePasses<Space, T, Dim>::meet() const {
+  using Find = FindSites<Space, T, Dim>;
+  using Team = Kokkos::TeamPolicy<Space>;
+  const int parts = (s.at_sites.list.pairs + Find::k_pairs - 1) / Find::k_pairs;
+  if (parts == 0) return;
+  const Find of(s, dt);
+  const std::size_t bytes = scratch_bytes<typename Find::Near>(Find::k_pairs) + k_scratch_slack;
+  const auto control = this->control;
+  Kokkos::parallel_for(
+      "mpm::meet_sites",
+      light(Team(s.space, parts, is_device<Space> ? Find::k_pairs : 1)
+                .set_scratch_size(0, Kokkos::PerTeam(bytes))),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (!control().paused)
+          of.meet(team, team.league_rank(), scratch<typename Find::Near>(team, Find::k_pairs));
       });
 }
 
@@ -100,20 +120,18 @@ void SitePasses<Space, T, Dim>::end() const {
   const EndSites<Space, T, Dim> of(s, dt);
   pass(
       *this, "mpm::end_nodes_at_sites", node_count(s), KOKKOS_LAMBDA(int k) { of.end_node(k); });
-  if (s.contact.count == 0) return;
+  const int groups = s.at_sites.list.groups;
+  if (groups == 0) return;
   using Team = Kokkos::TeamPolicy<Space>;
   constexpr int threads = node_threads<Space, Dim>;
   const int room = (1 + s.part_forces.count) * Wrench<Dim>::size * Patch<Dim>::cells;
-  const int bodies = s.contact.near.width;
   const std::size_t bytes = scratch_bytes<double>(room) + k_scratch_slack;
   const auto control = this->control;
   Kokkos::parallel_for(
-      "mpm::end_sites",
-      light(Team(s.space, s.contact.count * bodies, threads).set_scratch_size(0, Kokkos::PerTeam(bytes))),
+      "mpm::end_sites", light(Team(s.space, groups, threads).set_scratch_size(0, Kokkos::PerTeam(bytes))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (!control().paused)
-          of.end_body(team, team.league_rank() / of.count, team.league_rank() % of.count,
-                      scratch<double>(team, room));
+          of.end_group(team, of.list.group(team.league_rank()), scratch<double>(team, room));
       });
 }
 

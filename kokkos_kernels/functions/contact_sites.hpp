@@ -1,5 +1,6 @@
 #pragma once
-// Passes of contact at sites in a step: over sites, over the particles near them, and over nodes.
+// Passes of contact at sites in a step: over the sites of a list (list_sites) and the particles near them,
+// and over nodes.
 
 #include "data/state.hpp"
 #include "functions/halo.hpp"
@@ -19,6 +20,8 @@ struct SitePasses {
 
   /// Finds the sites, and the gaps to the soil there.
   void find() const;
+  /// Brings the gaps of the sites down to those to the particles near them.
+  void meet() const;
   /// Couples the sites that are in touch to the nodes round them.
   void couple() const;
   /// Begins their impulses with those of the step before.

@@ -8,9 +8,9 @@ namespace mpm {
 template <class Space, class T, int Dim>
 struct EndSites : Sites<Space, T, Dim> {
   using Base = Sites<Space, T, Dim>;
-  using Base::acts, Base::body, Base::kept, Base::place_of_site, Base::number_of, Base::node_at;
+  using Base::acts, Base::body, Base::kept, Base::place_of_site, Base::node_in_list, Base::node_at;
   using Base::Base;
-  using Base::update, Base::sites, Base::contact_slots, Base::fresh, Base::cells, Base::corners;
+  using Base::update, Base::sites, Base::list, Base::contact_slots, Base::fresh, Base::cells, Base::corners;
   using typename Base::Place, typename Base::Site, typename Base::Terms;
 
   /// Ends node number k of the contact slots: sides that act, and its acceleration.
@@ -29,22 +29,25 @@ struct EndSites : Sites<Space, T, Dim> {
     update.keep(node.i, kinematics);
   }
 
-  /// Ends the sites of the body that is number `near` of those near contact slot number n, and leaves the
-  /// force of this rank's soil on it and on its parts there. force: [body, then parts][Wrench::size][cells]
+  /// Ends the sites of a group, and leaves the force of this rank's soil on its body and the parts of it
+  /// there; update_nodes has left none. force: [body, then parts][Wrench::size][cells]
   template <class Team>
-  KOKKOS_INLINE_FUNCTION void end_body(const Team& team, int near, int n, double* force) const {
+  KOKKOS_INLINE_FUNCTION void end_group(const Team& team, int group, double* force) const {
+    const int near = group / this->count, n = group % this->count;
     const int r = update.near_bodies.body(contact_slots(n), near);
-    if (r < 0 || !body(r).law.at_sites) return;
     const int size = update.wrench(), all = (1 + parts_of(r)) * size;
     const int behind = (update.near_bodies.width + body(r).surface.first - 1) * size;  // place of part 1
+    const std::uint64_t marks = list.marks(group);
     for_team(team, cells, [&](int k) {
+      if ((marks >> k & 1) == 0) return;
       for (int v = 0; v < all; ++v) force[v * cells + k] = 0;
       end_sites(near, n + 1, k, force + k);
     });
     team.team_barrier();
     for_team(team, all, [&](int v) {
       double sum = 0;
-      for (int k = 0; k < cells; ++k) sum += force[v * cells + k];
+      for (std::uint64_t left = marks; left != 0; left &= left - 1)
+        sum += force[v * cells + Kokkos::Experimental::countr_zero_builtin(left)];
       update.forces(n * update.value_count + (v < size ? near * size : behind) + v) = sum;
     });
   }
@@ -57,10 +60,13 @@ struct EndSites : Sites<Space, T, Dim> {
   /// Keeps the impulses of a body's sites of a node for the next step, and adds those on it to force[0],
   /// force[cells] ... [N].
   KOKKOS_INLINE_FUNCTION void end_sites(int near, int place, int k, double* force) const {
+    const int first = node_in_list(near, place, k);
     for (int corner = 0; corner < corners; ++corner) {
-      const int n = number_of(near, place, k, corner);
+      const int n = first * corners + corner;
       const bool in_touch = acts(n);
       const Place of = place_of_site(n);
+      if (!in_touch && kept(of.near, of.slot * cells + of.k, corner, Terms::weight) == 0)
+        continue;  // it keeps nothing already
       keep(of, in_touch ? &sites(n) : nullptr);
       if (in_touch) add_force(of, sites(n), force);
     }

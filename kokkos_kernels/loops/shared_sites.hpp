@@ -5,6 +5,13 @@
 
 namespace mpm {
 
+/// Number in the list of sites of a node and body number `near` of those near its slot; -1: it is not there.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION int listed(const Sites<Space, T, Dim>& sites, int near, int node) {
+  const int place = sites.contact_place(node / Patch<Dim>::cells);
+  return place == 0 ? -1 : sites.node_in_list(near, place, node % Patch<Dim>::cells);
+}
+
 /// The least gaps of the sites.
 template <class Space, class T, int Dim>
 struct SharedGaps {
@@ -24,10 +31,9 @@ struct SharedGaps {
 
  private:
   KOKKOS_INLINE_FUNCTION int number(int node, int k) const {
-    const int cells = Patch<Dim>::cells, place = sites.contact_place(node / cells);
-    return place == 0 || k / k_sites<Dim> >= sites.update.near_bodies.width
-               ? -1
-               : sites.number_of(k / k_sites<Dim>, place, node % cells, k % k_sites<Dim>);
+    const int near = k / k_sites<Dim>;
+    const int first = near < sites.update.near_bodies.width ? listed(sites, near, node) : -1;
+    return first < 0 ? -1 : first * k_sites<Dim> + k % k_sites<Dim>;
   }
 };
 
@@ -52,7 +58,8 @@ struct SharedSums {
   }
 };
 
-/// Numbers that sites keep for the next step, which the rank that is responsible for a site has.
+/// Numbers that sites keep for the next step, which the rank that is responsible for a site has. Where a node
+/// is not in the list of this rank they are those of other ranks.
 template <class Space, class T, int Dim>
 struct SharedKept {
   using Value = T;
@@ -60,7 +67,8 @@ struct SharedKept {
   int size = sites.update.near_bodies.widest * sites.update.impulse_stride;
 
   KOKKOS_INLINE_FUNCTION Value load(int node, int k) const {
-    return is_there(node, k) ? sites.update.nodes.impulse(k, node) : T(0);
+    const bool own = is_there(node, k) && listed(sites, k / sites.update.impulse_stride, node) >= 0;
+    return own ? sites.update.nodes.impulse(k, node) : T(0);
   }
   KOKKOS_INLINE_FUNCTION void store(int node, int k, Value value) const {
     if (is_there(node, k)) sites.update.nodes.impulse(k, node) = value;

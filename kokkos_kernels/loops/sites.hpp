@@ -24,6 +24,7 @@ struct Sites {
   decltype(Bins<Space>::begin) begin;
   ContactPlaces<Space> contact_place;
   Kokkos::View<int*, typename Space::memory_space> contact_slots;
+  SiteList<Space> list;
   Kokkos::View<Site*, typename Space::memory_space> sites;
   Kokkos::View<std::uint64_t*, typename Space::memory_space> gaps;
   decltype(ContactSites<Space, T, Dim>::sums) sums;
@@ -38,6 +39,7 @@ struct Sites {
         begin(s.soil.bins.begin),
         contact_place(s.contact.place),
         contact_slots(s.contact.slots),
+        list(s.at_sites.list),
         sites(s.at_sites.sites),
         gaps(s.at_sites.gaps),
         sums(s.at_sites.sums),
@@ -46,20 +48,19 @@ struct Sites {
         unit(s.at_sites.mass * s.spacing / dt * 0x1p-52),
         fresh(static_cast<T>(-std::expm1(-k_faster * dt / s.friction_time))) {}
 
-  /// A site: its body, number `near` of those near the slot, and its node by slot and place. rigid: negative
-  /// where the slot has fewer bodies
+  /// A site: its body, number `near` of those near the slot, and its node by slot and place.
   struct Place {
     int rigid, near, slot, k, corner;  // corner: bit d, half a cell along d from the node
   };
-  KOKKOS_INLINE_FUNCTION int sites_of_body() const { return count * cells * corners; }
   KOKKOS_INLINE_FUNCTION Place place_of_site(int n) const {
-    const int at = n % sites_of_body(), near = n / sites_of_body();
-    const int slot = contact_slots(at / (cells * corners));
-    return {update.near_bodies.body(slot, near), near, slot, at / corners % cells, at % corners};
+    const int at = list.node(n / corners), group = at / cells, near = group / count;
+    const int slot = contact_slots(group % count);
+    return {update.near_bodies.body(slot, near), near, slot, at % cells, n % corners};
   }
-  /// Number of the site at a corner of a node of a contact slot, by the place of the slot from 1 on.
-  KOKKOS_INLINE_FUNCTION int number_of(int near, int place, int k, int corner) const {
-    return ((near * count + place - 1) * cells + k) * corners + corner;
+  /// Number in the list of a node of a contact slot, with the sites of a body near it, by the place of the
+  /// slot from 1 on; -1: it is not there.
+  KOKKOS_INLINE_FUNCTION int node_in_list(int near, int place, int k) const {
+    return list.number(near * count + place - 1, k);
   }
   /// Number of the sums of a node; negative where no contact may be.
   KOKKOS_INLINE_FUNCTION int sums_of(int node) const {

@@ -8,7 +8,7 @@ namespace mpm {
 template <class Space, class T, int Dim>
 struct SolveSites : Sites<Space, T, Dim> {
   using Base = Sites<Space, T, Dim>;
-  using Base::acts, Base::touches, Base::body, Base::kept, Base::place_of_site, Base::number_of,
+  using Base::acts, Base::touches, Base::body, Base::kept, Base::place_of_site, Base::node_in_list,
       Base::node_number, Base::sums_of;
   using Base::Base;
   using Base::cells, Base::corners, Base::momentum, Base::given, Base::k_whole;
@@ -139,7 +139,8 @@ struct SolveSites : Sites<Space, T, Dim> {
 
   KOKKOS_INLINE_FUNCTION bool is_in_touch(int rigid, int near, int node, int corner) const {
     const int place = contact_place(node / cells);
-    return place > 0 && touches(rigid, number_of(near, place, node % cells, corner));
+    const int n = place > 0 ? node_in_list(near, place, node % cells) : -1;
+    return n >= 0 && touches(rigid, n * corners + corner);
   }
   /// Loads what a site kept. One that had no contact takes what the next one along the normal had, where that
   /// has none now: the face has moved on.

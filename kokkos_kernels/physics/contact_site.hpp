@@ -19,6 +19,11 @@ struct SiteReach {
   static constexpr double round = 1;        // radius from which on a rounded edge is a face
   static constexpr double facing = 0.1;     // cosine between the face of a site and the one nearest to soil
   static constexpr double cling = 0.05;     // gap up to which soil that may not part is held
+
+  /// From the middle of a node's sites to the farthest of them.
+  template <int Dim>
+  static constexpr double of_node = Dim == 2 ? 0.36 : 0.44;
+  static constexpr double distance = 0.25;  // by which a distance to a face may be wrong, and round-off
 };
 
 /// Gap [cells] from a point of the face, `from` [cells, from the middle of a box], along the normal to the
@@ -41,6 +46,20 @@ KOKKOS_INLINE_FUNCTION T gap_to_box(const Vector<T, Dim>& from, const Vector<T, 
     end = Kokkos::fmin(end, Kokkos::fmax(low, high));
   }
   return begin <= end ? begin + inflation : none;
+}
+
+/// Whether gap_to_box may find the box so near that they touch: most sites near a particle miss it.
+template <class T, int Dim>
+KOKKOS_INLINE_FUNCTION bool may_meet_box(const Vector<T, Dim>& from, const Vector<T, Dim>& normal,
+                                         const Vector<T, Dim>& half) {
+  constexpr T k_round_off = T(1e-5), behind = SiteReach::behind, ahead = SiteReach::touch;
+  bool may = true;
+  for (int d = 0; d < Dim; ++d) {
+    const T one = from[d] + behind * normal[d], other = from[d] + ahead * normal[d];
+    const T reach = T(SiteReach::inflated) * half[d] + k_round_off;
+    may = may && Kokkos::fmin(one, other) <= reach && Kokkos::fmax(one, other) >= -reach;
+  }
+  return may;
 }
 
 /// Change of a site's impulse on the soil [N s] in a sweep.

@@ -198,11 +198,7 @@ void make_room_for_contact(ContactCore<Space, T, Dim>& s) {
   s.contact.cloud.place = s.contact.place;
   if (s.interfaces.in_use() && has_windows(s.space))
     ensure(s.contact.cloud.sums, window_bytes<CloudSource<Space, T, Dim>> * s.contact.count);
-  if (s.at_sites.in_use) {
-    ensure(s.at_sites.sites, nodes * k_sites<Dim> * width);
-    ensure(s.at_sites.gaps, nodes * k_sites<Dim> * width);
-    ensure(s.at_sites.sums, nodes);
-  }
+  if (s.at_sites.in_use) ensure(s.at_sites.sums, nodes);
   if (s.light_rigids.in_use)
     ensure(s.light_rigids.of_slots, std::size_t(s.contact.count) * LightTerms<Dim>::size * width);
   ensure(s.contact.forces, 2 * std::size_t(s.contact.count) * Wrench<Dim>::size * wrenches_of_slot(s));
@@ -233,6 +229,7 @@ void list_contacts(ContactCore<Space, T, Dim>& s) {
   s.contact.near.widest = s.contact.near.width;
   if (s.contact.near.listed) list_entries(s);
   make_room_for_contact(s);
+  s.at_sites.list.made = false;
 }
 
 #define MPM_INSTANTIATE(Space, T, Dim) template void list_contacts(ContactCore<Space, T, Dim>&);

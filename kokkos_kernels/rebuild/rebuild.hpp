@@ -61,6 +61,10 @@ void list_interfaces(ContactCore<Space, T, Dim>& s);
 /// Lists the slots where a contact may be: a node that soil and a rigid share is reached from no other slot.
 template <class Space, class T, int Dim>
 void list_contacts(ContactCore<Space, T, Dim>& s);
+/// Lists the sites that may act until the next rebuild, where that is not done yet: when the impulses at the
+/// nodes and the places of the rigids are those that the steps go on with.
+template <class Space, class T, int Dim>
+void list_sites(ContactCore<Space, T, Dim>& s);
 /// Brings the mean stress of each particle towards that of its cell by the fraction of F-bar: the particles
 /// of a cell dilate together until the next rebuild, so their pressures begin together.
 template <class Space, class T, int Dim>

@@ -1,6 +1,7 @@
 #include "step/contact_at_sites.hpp"
 
 #include "functions/contact_sites.hpp"
+#include "rebuild/rebuild.hpp"
 
 namespace mpm {
 namespace {
@@ -51,6 +52,7 @@ struct SitesOfRanks {
 template <class Space, class T, int Dim>
 PetscErrorCode contact_at_sites(State<Space, T, Dim>& s, double dt, Decomposition<Space, T, Dim>* ranks) {
   PetscFunctionBeginUser;
+  list_sites(s);
   const SitesOfRanks<Space, T, Dim> sites{{s, dt, s.control}, ranks, When::in_step};
   PetscCall(sites.begin());
   sites.passes.take();
@@ -65,9 +67,9 @@ PetscErrorCode contact_at_sites(State<Space, T, Dim>& s, double dt, Decompositio
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode sum_site_forces(const State<Space, T, Dim>& s, double dt,
-                               Decomposition<Space, T, Dim>* ranks) {
+PetscErrorCode sum_site_forces(State<Space, T, Dim>& s, double dt, Decomposition<Space, T, Dim>* ranks) {
   PetscFunctionBeginUser;
+  list_sites(s);
   const SitesOfRanks<Space, T, Dim> sites{{s, dt, s.never_paused}, ranks, When::between_steps};
   PetscCall(sites.begin());
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -75,7 +77,7 @@ PetscErrorCode sum_site_forces(const State<Space, T, Dim>& s, double dt,
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                                    \
   template PetscErrorCode contact_at_sites(State<Space, T, Dim>&, double, Decomposition<Space, T, Dim>*); \
-  template PetscErrorCode sum_site_forces(const State<Space, T, Dim>&, double, Decomposition<Space, T, Dim>*);
+  template PetscErrorCode sum_site_forces(State<Space, T, Dim>&, double, Decomposition<Space, T, Dim>*);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

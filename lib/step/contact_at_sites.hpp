@@ -13,6 +13,6 @@ PetscErrorCode contact_at_sites(State<Space, T, Dim>& s, double dt, Decompositio
 
 /// Sums the forces of the last step at the sites in s.at_sites.sums, between two steps.
 template <class Space, class T, int Dim>
-PetscErrorCode sum_site_forces(const State<Space, T, Dim>& s, double dt, Decomposition<Space, T, Dim>* ranks);
+PetscErrorCode sum_site_forces(State<Space, T, Dim>& s, double dt, Decomposition<Space, T, Dim>* ranks);
 
 }  // namespace mpm

@@ -57,6 +57,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
     PetscCallCXX(PetscCall(run_.ranks->start(run_.comm, config.partition, model.owners, s)));
   }
   s.f_bar.keeps_stress = false;
+  if (failure->what.empty()) PetscCallCXX(list_sites(s));
   if (config.output.energy && failure->what.empty()) PetscCallCXX(PetscCall(energy_.begin()));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -145,6 +146,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::sort_soil(double elapsed, Failure* f
     sort_and_list(s);
   PetscCall(resampling_.correct_positions(elapsed));
   begin_domains(s);
+  list_sites(s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

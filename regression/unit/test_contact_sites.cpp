@@ -1,10 +1,12 @@
-// Contact at sites: the gap along a line to a particle's box, and the impulse of a site.
+// Contact at sites: the gap along a line to a particle's box, the list of sites, and the impulse of a site.
 
 #include <catch2/catch_test_macros.hpp>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "physics/contact_site.hpp"
+#include "physics/face_distance.hpp"
 
 namespace {
 
@@ -43,6 +45,60 @@ TEST_CASE("the gap of a site is that to the near side of a particle's box, where
   CHECK(gap_to_box<double, 2>({0, -1.3}, up, half) == k_none);    // too far ahead
   const double c = std::sqrt(0.5);
   CHECK(std::fabs(gap_to_box<double, 2>({-0.5, -0.5}, {c, c}, {0.25, 0.25}) - 0.25 * std::sqrt(2.0)) < 1e-14);
+}
+
+TEST_CASE("no site in touch with a box is left out before its gap is computed", "[contact_sites]") {
+  std::mt19937_64 engine(7);
+  std::uniform_real_distribution<double> any(-1.5, 1.5), length(0.1, 0.5);
+  int touching = 0;
+  for (int n = 0; n < 100000; ++n) {
+    const Vector<double, 3> from{any(engine), any(engine), any(engine)};
+    const Vector<double, 3> half{length(engine), length(engine), length(engine)};
+    Vector<double, 3> normal{any(engine), any(engine), any(engine)};
+    const double size = std::sqrt(dot(normal, normal));
+    for (int d = 0; d < 3; ++d) normal[d] /= size;
+    if (!(gap_to_box(from, normal, half) < SiteReach::touch)) continue;
+    ++touching;
+    CHECK(may_meet_box(from, normal, half));
+  }
+  CHECK(touching > 10000);
+}
+
+TEST_CASE("the bits of nodes in a box are those of all patches that it lies in", "[contact_sites]") {
+  for (int low = -3; low <= 2; ++low)
+    for (int high = low - 1; high <= 6; ++high) {
+      const Coord<3> from{low, 0, -1}, to{high, 1, 5};
+      int found = 0;
+      for (int k = 0; k < Patch<3>::neighbours; ++k) {
+        const std::uint64_t bits = nodes_between(k, from, to);
+        for (int place = 0; place < Patch<3>::cells; ++place) {
+          if ((bits >> place & 1) == 0) continue;
+          ++found;
+          Coord<3> c = coord_of<3>(place);
+          for (int d = 0, rest = k; d < 3; rest /= 3, ++d) {
+            c[d] += (rest % 3 - 1) * Patch<3>::edge;
+            CHECK((from[d] <= c[d] && c[d] <= to[d]));
+          }
+        }
+      }
+      CHECK(found == (high - low + 1) * 2 * 7);
+    }
+}
+
+TEST_CASE("the distance to faces is that on either side, and of the nearest part", "[contact_sites]") {
+  Surface<2> disc{};
+  disc.kind = SurfaceKind::disc, disc.centre = {1, 1}, disc.radius = 0.5;
+  SurfaceTables<Kokkos::HostSpace, 2> tables;
+  tables.parts = decltype(tables.parts)("parts", 2);
+  tables.parts(0) = disc;
+  disc.centre = {3, 1};
+  tables.parts(1) = disc;
+  Surface<2> both{};
+  both.kind = SurfaceKind::parts, both.count = 2;
+  CHECK(std::fabs(distance_to_faces(disc, tables, {3, 1.2}) - 0.3) < 1e-14);
+  CHECK(std::fabs(distance_to_faces(disc, tables, {3, 2}) - 0.5) < 1e-14);
+  CHECK(std::fabs(distance_to_faces(both, tables, {1, 1.4}) - 0.1) < 1e-14);
+  CHECK(std::fabs(distance_to_faces(both, tables, {2.4, 1}) - 0.1) < 1e-14);
 }
 
 TEST_CASE("keys of gaps have the order of the gaps and then of the ranks, and give both back",
