@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/copy.hpp"
 #include "physics/ring_domain.hpp"
 #include "physics/walls.hpp"
 #include "rebuild/batches.hpp"
@@ -56,11 +57,11 @@ constexpr int k_soil = 1, k_rigid = 2;  // what a patch is marked to hold
 
 /// Patch of point p, -1 where it has none or the point before lies in the same patch: most do, for they are
 /// in the order of the last rebuild, and one of them is enough to mark it.
-template <int Dim, class Address>
-KOKKOS_INLINE_FUNCTION long patch_if_first(const Address& address, int p) {
-  if (address(p) < 0) return -1;
-  const long own = address(p) / Patch<Dim>::cells;
-  return p > 0 && address(p - 1) >= 0 && address(p - 1) / Patch<Dim>::cells == own ? -1 : own;
+template <int Dim>
+KOKKOS_INLINE_FUNCTION long patch_if_first(const long* address, int p) {
+  if (address[p] < 0) return -1;
+  const long own = address[p] / Patch<Dim>::cells;
+  return p > 0 && address[p - 1] >= 0 && address[p - 1] / Patch<Dim>::cells == own ? -1 : own;
 }
 
 /// Marks the patches that hold soil of this rank.
@@ -69,7 +70,7 @@ void mark_soil(const ContactCore<Space, T, Dim>& s, const Marks& marks) {
   const auto address = s.soil.address;
   Kokkos::parallel_for(
       "mpm::mark_soil", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.all), KOKKOS_LAMBDA(int p) {
-        const long own = patch_if_first<Dim>(address, p);
+        const long own = patch_if_first<Dim>(address.data(), p);
         if (own >= 0) Kokkos::atomic_store(&marks(own), k_soil);
       });
 }
@@ -83,17 +84,58 @@ void mark_borrowed(const ContactCore<Space, T, Dim>& s, const Marks& marks) {
       KOKKOS_LAMBDA(int n) { marks(borrowed(n)) = k_soil; });
 }
 
+/// Points of all rigid bodies in one row, so that one launch takes them: of many bodies each would wait
+/// longer for a launch of its own than for its work.
+template <class Space, class T, int Dim>
+struct AllRigidPoints {
+  struct Body {
+    const Vector<double, Dim>* reference_position;
+    Vector<T, Dim>* coordinate;
+    long *address, first;  // first: of its points in the row
+  };
+  struct Point {
+    int body, p;  // p: its number among those of the body
+  };
+  Kokkos::View<Body*, typename Space::memory_space> bodies;
+  int count;
+  long all = 0;
+
+  explicit AllRigidPoints(const ContactCore<Space, T, Dim>& s)
+      : bodies(Kokkos::view_alloc("mpm::all_rigid_points", Kokkos::WithoutInitializing),
+               s.rigid_points.size()),
+        count(static_cast<int>(s.rigid_points.size())) {
+    const auto host = Kokkos::create_mirror_view(bodies);
+    for (int r = 0; r < count; ++r) {
+      const auto& set = s.rigid_points[r];
+      host(r) = {set.points.reference_position.data(), set.points.coordinate.data(), set.address.data(), all};
+      all += set.points.all;
+    }
+    copy(bodies, host);
+  }
+  KOKKOS_INLINE_FUNCTION Point at(long n) const {
+    int low = 0, high = count;
+    while (high - low > 1) {
+      const int middle = (low + high) / 2;
+      (bodies(middle).first <= n ? low : high) = middle;
+    }
+    return {low, static_cast<int>(n - bodies(low).first)};
+  }
+  auto range(const Space& space) const {
+    return Kokkos::RangePolicy<Space, Kokkos::IndexType<long>>(space, 0, all);
+  }
+};
+
 /// Marks the patches of the first velocity field that hold points of a rigid and lie at those of the soil: no
 /// other point of it reaches a node that soil reaches before the next rebuild. Contact in the other fields
 /// asks the rigid's surface alone.
-template <class Space, class T, int Dim, class Points_, class Marks>
-void mark_rigid(const ContactCore<Space, T, Dim>& s, const ParticleSet<Space, Points_>& set,
-                const Marks& marks) {
-  const auto address = set.address;
+template <class Space, class T, int Dim, class Marks>
+void mark_rigids(const ContactCore<Space, T, Dim>& s, const Marks& marks) {
+  const AllRigidPoints<Space, T, Dim> points(s);
   const auto grid = s.grid;
   Kokkos::parallel_for(
-      "mpm::mark_rigid", Kokkos::RangePolicy<Space>(s.space, 0, set.points.all), KOKKOS_LAMBDA(int p) {
-        const long own = patch_if_first<Dim>(address, p);
+      "mpm::mark_rigids", points.range(s.space), KOKKOS_LAMBDA(long n) {
+        const auto [body, p] = points.at(n);
+        const long own = patch_if_first<Dim>(points.bodies(body).address, p);
         if (own < 0 || Kokkos::atomic_load(&marks(own)) != 0) return;
         const Coord<Dim> at = grid.origin_of(own);
         for (int k = 0; k < Patch<Dim>::neighbours; ++k) {
@@ -112,30 +154,25 @@ void locate_rigids(ContactCore<Space, T, Dim>& s) {
   const auto grid = s.grid;
   const auto control = s.control;
   const double spacing = s.spacing;
-  for (std::size_t r = 0; r < s.rigid_points.size(); ++r) {
-    const auto& points = s.rigid_points[r].points;
-    const auto reference_position = points.reference_position;
-    const auto x_p = points.coordinate;
-    const auto id = points.id;
-    const auto address = s.rigid_points[r].address;
-    const auto rigids = s.rigids;
-    Kokkos::parallel_for(
-        "mpm::locate_rigid", Kokkos::RangePolicy<Space>(s.space, 0, points.all), KOKKOS_LAMBDA(int p) {
-          Coord<Dim> c{};
-          double position[3] = {};
-          if (p == 0) rigids(r).binned = rigids(r).motion.pose;
-          const auto x = rigids(r).motion.pose.in_cells(spacing).to_world(reference_position(p));
-          for (int d = 0; d < Dim; ++d) {
-            c[d] = static_cast<int>(Kokkos::floor(x[d]));
-            x_p(p)[d] = static_cast<T>(x[d] - Kokkos::floor(x[d]));
-            position[d] = x[d] * spacing;
-            if (grid.period[d] > 0) c[d] = grid.in_period(d, c[d] % grid.period[d]);
-          }
-          if (!grid.holds(c))
-            return report(control, FaultKind::outside, -1 - static_cast<int>(r), position, Dim);
-          address(p) = grid.address_of(c);
-        });
-  }
+  const auto rigids = s.rigids;
+  const AllRigidPoints<Space, T, Dim> points(s);
+  Kokkos::parallel_for(
+      "mpm::locate_rigids", points.range(s.space), KOKKOS_LAMBDA(long n) {
+        const auto [r, p] = points.at(n);
+        const auto& body = points.bodies(r);
+        Coord<Dim> c{};
+        double position[3] = {};
+        if (p == 0) rigids(r).binned = rigids(r).motion.pose;
+        const auto x = rigids(r).motion.pose.in_cells(spacing).to_world(body.reference_position[p]);
+        for (int d = 0; d < Dim; ++d) {
+          c[d] = static_cast<int>(Kokkos::floor(x[d]));
+          body.coordinate[p][d] = static_cast<T>(x[d] - Kokkos::floor(x[d]));
+          position[d] = x[d] * spacing;
+          if (grid.period[d] > 0) c[d] = grid.in_period(d, c[d] % grid.period[d]);
+        }
+        if (!grid.holds(c)) return report(control, FaultKind::outside, -1 - r, position, Dim);
+        body.address[p] = grid.address_of(c);
+      });
 }
 
 template <class Space, class T, int Dim>
@@ -195,7 +232,7 @@ void activate_patches(ContactCore<Space, T, Dim>& s) {
   Kokkos::deep_copy(s.space, marks, 0);
   mark_soil(s, marks);
   if (s.interfaces.borrowed.extent(0) > 0) mark_borrowed(s, marks);
-  for (const auto& set : s.rigid_points) mark_rigid(s, set, marks);
+  mark_rigids(s, marks);
 
   const Coord<Dim> turn = patches.turn = shortest_first(grid);
   patches.wraps = grid.is_periodic();
