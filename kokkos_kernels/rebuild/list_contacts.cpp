@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/copy.hpp"
+#include "physics/contact_site.hpp"
 #include "physics/p2g_terms.hpp"
 #include "physics/surface.hpp"
 #include "rebuild/rebuild.hpp"
@@ -13,20 +14,23 @@
 namespace mpm {
 namespace {
 
-/// Half the window of the nodes that particles of a patch reach, with the reach of a contact, a cell along
-/// each axis; and what a point may move beyond the margin [cells].
-template <int Dim>
-inline constexpr double k_half_window = 0.5 * Patch<Dim>::edge + 2;
+/// What a point may move beyond the margin [cells].
 inline constexpr double k_step_beyond_margin = 0.5;
 
-/// Distance [cells] of a surface from the middle of a patch, beyond which it touches no node that particles
-/// of the patch reach, until the next rebuild: half the diagonal of their window, and the movement till then.
+/// Half the window of the nodes that particles of a patch reach, with the reach of a contact, a cell along
+/// each axis [cells].
 template <int Dim>
-double far_from_patch(double margin) {
-  return std::sqrt(static_cast<double>(Dim)) * k_half_window<Dim> + margin + k_step_beyond_margin;
+inline constexpr double k_half_window = 0.5 * Patch<Dim>::edge + 2;
+/// The same of the patch's own nodes, and where contact is at sites, of the particles that may be near a
+/// face.
+template <class Space, class T, int Dim>
+double half_of_own(const ContactCore<Space, T, Dim>& s) {
+  const double sites = s.at_sites.in_use ? s.p2g.margin + s.p2g.reserve + SiteReach::near : 0;
+  return 0.5 * Patch<Dim>::edge + std::max(1.0, sites);
 }
 
-/// Whether a rigid body may touch soil at the nodes of a slot.
+/// Whether a rigid body may touch soil in a window round the middle of a slot's patch, until the next
+/// rebuild.
 template <class Space, class T, int Dim>
 struct NearSlot {
   using Memory = typename Space::memory_space;
@@ -35,17 +39,20 @@ struct NearSlot {
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
   SurfaceTables<Memory, Dim> vertices;
   NearBodies<Space> near;
-  double spacing, far, moves;  // m; moves: till the next rebuild
+  double spacing, moves;  // m; moves: till the next rebuild
+  double half;            // cells, of the window
+  double far;             // m, of a surface from the middle: half the window's diagonal, and the movement
 
-  explicit NearSlot(const ContactCore<Space, T, Dim>& s)
+  NearSlot(const ContactCore<Space, T, Dim>& s, double half_window)
       : grid(s.grid),
         origin(s.patches.origin),
         rigids(s.rigids),
         vertices(s.vertices),
         near(s.contact.near),
         spacing(s.spacing),
-        far(far_from_patch<Dim>(s.p2g.margin + s.p2g.reserve) * s.spacing),
-        moves((s.p2g.margin + s.p2g.reserve + k_step_beyond_margin) * s.spacing) {}
+        moves((s.p2g.margin + s.p2g.reserve + k_step_beyond_margin) * s.spacing),
+        half(half_window),
+        far(std::sqrt(static_cast<double>(Dim)) * half * s.spacing + moves) {}
 
   /// A place of the slot's patch, so many cells from its origin [m], in the body as it was at the start.
   KOKKOS_INLINE_FUNCTION Vector<double, Dim> place(int slot, int r, const Coord<Dim>& from) const {
@@ -84,7 +91,7 @@ struct NearSlot {
       return middle.value <= far;
     const Vector<double, Dim> out = rigid.motion.pose.turn_to_world(middle.normal);
     double corner = 0;  // of the window, along the normal [cells]
-    for (int d = 0; d < Dim; ++d) corner += k_half_window<Dim> * Kokkos::fabs(out[d]);
+    for (int d = 0; d < Dim; ++d) corner += half * Kokkos::fabs(out[d]);
     return middle.value <= corner * spacing + moves;
   }
   /// Whether the ground is near at any column of nodes of the patch's window.
@@ -109,7 +116,7 @@ void mark_by_points(const ContactCore<Space, T, Dim>& s, int r) {
   const auto number = s.patches.number;
   const auto grid = s.grid;
   const auto begin = s.rigid_points[r].bins.begin;
-  const NearSlot<Space, T, Dim> near(s);
+  const NearSlot<Space, T, Dim> near(s, k_half_window<Dim>);
   Kokkos::parallel_for(
       "mpm::mark_contacts", Kokkos::RangePolicy<Space>(s.space, 0, s.patches.slots), KOKKOS_LAMBDA(int slot) {
         bool holds = grid.field_of(number(slot)) > 0;  // where no rigid has points
@@ -132,20 +139,25 @@ void mark_interfaces(const ContactCore<Space, T, Dim>& s) {
       });
 }
 
-/// Lists the bodies near each slot, and marks the slots that have some.
+/// Marks the slots whose particles reach nodes that a body may touch, and lists the bodies near the nodes of
+/// each of them, which are fewer.
 template <class Space, class T, int Dim>
 void list_bodies(ContactCore<Space, T, Dim>& s) {
   using Range = Kokkos::RangePolicy<Space>;
   NearBodies<Space>& list = s.contact.near;
   const auto marks = s.contact.place;
-  const NearSlot<Space, T, Dim> near(s);
+  const NearSlot<Space, T, Dim> near_window(s, k_half_window<Dim>), near(s, half_of_own(s));
   const int slots = s.patches.slots, bodies = static_cast<int>(s.rigid_points.size());
   Kokkos::parallel_reduce(
       "mpm::count_near_bodies", Range(s.space, 0, slots),
       KOKKOS_LAMBDA(int slot, int& most) {
         int count = 0;
-        for (int r = 0; r < bodies; ++r) count += near(slot, r) ? 1 : 0;
-        marks(slot) = count > 0 ? 1 : 0;
+        marks(slot) = 0;
+        for (int r = 0; r < bodies; ++r) {
+          if (!near_window(slot, r)) continue;
+          marks(slot) = 1;
+          count += near(slot, r) ? 1 : 0;
+        }
         most = Kokkos::max(most, count);
       },
       Kokkos::Max<int>(list.width));
