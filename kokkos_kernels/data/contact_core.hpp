@@ -35,6 +35,7 @@ struct ContactCore : Core<Space, T, Dim> {
                                               // move_rigids moves it: some are linked, or there are many
   bool forces_summed =
       false;  // `rigid_force` holds the forces of this step, of all ranks if a rigid moves by them
+  bool rigids_ahead = false;    // the rigids have moved in this step already, while particles were computed
   bool rigid_moves = false;     // some rigid is not fixed
   bool rigid_turns = false;     // some rigid may turn
   bool rigid_dynamic = false;   // some rigid moves by the forces on it

@@ -98,19 +98,39 @@ void sum_forces(ContactCore<Space, T, Dim>& s, const Space& stream) {
   s.forces_summed = true;
 }
 
+namespace {
+
+/// Whether a launch of its own moves the rigids: they are many, and no links move them.
+template <class Space, class T, int Dim>
+bool moves_many(const ContactCore<Space, T, Dim>& s) {
+  return is_device<Space> && s.contact.near.listed && !s.links.in_use();
+}
+
+template <class Space, class T, int Dim>
+EndStep<Space, T, Dim> end_of(const ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed,
+                              double dt) {
+  EndStep<Space, T, Dim> end(s, timed, dt);
+  if (!s.links.in_use() && s.pairs.in_use()) end.pairs = s.pairs.actions;
+  return end;
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void move_many_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed, double dt,
+                      const Space& stream) {
+  if (!moves_many(s)) return;
+  if (!s.forces_summed) sum_forces(s, stream);
+  ensure(s.rigid_moved, s.rigid_points.size());
+  move_by_threads(end_of(s, timed, dt), stream, s.rigid_moved);
+}
+
 template <class Space, class T, int Dim>
 void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed, double dt,
                  const Space& stream) {
-  EndStep<Space, T, Dim> end(s, timed, dt);
-  const bool linked = s.links.in_use(), by_threads = is_device<Space> && s.contact.near.listed && !linked;
-  if (!linked && s.pairs.in_use()) end.pairs = s.pairs.actions;
-  if (by_threads) {
-    if (!s.forces_summed) sum_forces(s, stream);
-    end.summed = true;
-    ensure(s.rigid_moved, s.rigid_points.size());
-    move_by_threads(end, stream, s.rigid_moved);
-  }
-  if (linked || by_threads) end.moved = s.rigid_moved.data();
+  if (!s.rigids_ahead) move_many_rigids(s, timed, dt, stream);
+  EndStep<Space, T, Dim> end = end_of(s, timed, dt);
+  if (s.links.in_use() || moves_many(s)) end.moved = s.rigid_moved.data();
   // Persistent steps, of few patches, sum each force in one share: a run gives the same bits by both.
   constexpr int k_many = 256, k_shares = is_device<Space> ? 16 : 1;
   const bool many = s.plan.form != StepForm::persistent && !s.contact.near.listed && s.contact.count > k_many;
@@ -121,7 +141,7 @@ void move_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>&
     launch_end(end, stream, 1, Move<false, k_shares>{});
   else
     launch_end(end, stream, 1, Move<false, 1>{});
-  s.forces_summed = false;
+  s.forces_summed = s.rigids_ahead = false;
   if (s.rigid_moves && !moves_points(strategy_of_rigids<Space>(s.p2g.strategy))) move_rigid_points(s, stream);
 }
 
@@ -155,14 +175,16 @@ void restart_count(const Core<Space, T, Dim>& s) {
       KOKKOS_LAMBDA(int) { control().steps = 0; });
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                             \
-  template void sum_forces(ContactCore<Space, T, Dim>&, const Space&);                             \
-  template void move_rigids(ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&, double, \
-                            const Space&);                                                         \
-  template void move_rigid_points(ContactCore<Space, T, Dim>&, const Space&);                      \
-  template void begin_loads(const ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&,   \
-                            const LoadClock&);                                                     \
-  template Control read_control(const Core<Space, T, Dim>&);                                       \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                  \
+  template void sum_forces(ContactCore<Space, T, Dim>&, const Space&);                                  \
+  template void move_many_rigids(ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&, double, \
+                                 const Space&);                                                         \
+  template void move_rigids(ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&, double,      \
+                            const Space&);                                                              \
+  template void move_rigid_points(ContactCore<Space, T, Dim>&, const Space&);                           \
+  template void begin_loads(const ContactCore<Space, T, Dim>&, const TimedLoads<Space, T, Dim>&,        \
+                            const LoadClock&);                                                          \
+  template Control read_control(const Core<Space, T, Dim>&);                                            \
   template void restart_count(const Core<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

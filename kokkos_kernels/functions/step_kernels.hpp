@@ -81,6 +81,12 @@ void update_particles(ContactCore<Space, T, Dim>& s, double dt, const Part<Space
 template <class Space, class T, int Dim>
 void sum_forces(ContactCore<Space, T, Dim>& s, const Space& stream);
 
+/// Moves the rigid bodies where they are many on a device, else move_rigids does it. Where s.rigids_ahead
+/// tells of it, move_rigids does not do it again.
+template <class Space, class T, int Dim>
+void move_many_rigids(ContactCore<Space, T, Dim>& s, const TimedLoads<Space, T, Dim>& timed, double dt,
+                      const Space& stream);
+
 /// 6. Moves the rigid bodies (Eq. 7), counts the step, sets what follows tables in time for the next, and
 /// adds what any point can have moved to the bound. dt [s]. Linked bodies have been moved by link_rigids.
 template <class Space, class T, int Dim>

@@ -77,7 +77,7 @@ struct Step {
     PetscCall(complete_nodes(stream));
     PetscCall(run(StepPhase::nodes, [&] { return update_nodes_on(stream); }));
     if (parted) overlap->join(s.space);
-    if (parted && !ranks) sum_forces(s, stream);
+    if (parted && !ranks) move_rigids_ahead(stream);
     PetscCall(run(StepPhase::particles, [&] { update_patches_and(ends); }));
     if (!ends) PetscCall(run(StepPhase::rigids, [&] { return update_rigids(parts && !ranks); }));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -233,14 +233,26 @@ struct Step {
     PetscFunctionBeginUser;
     if (ranks) PetscCall(ranks->add_forces(s));
     const Space& stream = on_stream ? overlap->fork(s.space) : s.space;
+    if (!s.rigids_ahead) push_rigids(stream);
+    move_rigids(s, s.timed, dt, stream);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// What rigid bodies do to each other, and the impulses on their parts.
+  void push_rigids(const Space& stream) const {
     if (s.part_forces.count > 0) add_part_impulses(s, dt, stream);
     if (s.pairs.in_use()) {
       if (!s.forces_summed) sum_forces(s, stream);
       contact_of_rigids(s, dt, stream);
     }
     if (s.links.in_use()) link_rigids(s, dt, stream);
-    move_rigids(s, s.timed, dt, stream);
-    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// The forces on the rigids, and what can be done of their movement beside function 5, which asks for none
+  /// of them.
+  void move_rigids_ahead(const Space& stream) const {
+    sum_forces(s, stream);
+    push_rigids(stream);
+    move_many_rigids(s, s.timed, dt, stream);
+    s.rigids_ahead = true;
   }
   /// Function 3, the border first, unless its sums have been sent already.
   PetscErrorCode send_soil() const {
