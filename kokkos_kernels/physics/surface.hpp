@@ -155,9 +155,8 @@ KOKKOS_INLINE_FUNCTION Distance<Dim> distance_to_part(const Surface<Dim>& body, 
       out = distance_to_heights(body, vertices, x[0], x[1], x[2]);
   } else if (body.kind == SurfaceKind::sampled) {
     if constexpr (Dim == 3 && requires { vertices.samples; })
-      out = distance_to_samples(
-          SampleTables{vertices.blocks.data(), vertices.samples.data(), vertices.edges.data()},
-          vertices.grids(body.first), x[0], x[1], x[2]);
+      out = distance_to_samples(SampleTables{&vertices.blocks(0), &vertices.samples(0), &vertices.edges(0)},
+                                vertices.grids(body.first), x[0], x[1], x[2]);
   } else if (body.kind == SurfaceKind::box) {
     const double along = body.cosine * r[0] + body.sine * r[up];
     r[up] = body.cosine * r[up] - body.sine * r[0];
