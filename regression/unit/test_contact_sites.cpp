@@ -61,7 +61,7 @@ TEST_CASE("no site in touch with a box is left out before its gap is computed", 
     ++touching;
     CHECK(may_meet_box(from, normal, half));
   }
-  CHECK(touching > 10000);
+  CHECK(touching > 1000);
 }
 
 TEST_CASE("the bits of nodes in a box are those of all patches that it lies in", "[contact_sites]") {
