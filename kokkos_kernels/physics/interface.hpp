@@ -3,46 +3,9 @@
 
 #include "data/interfaces.hpp"
 #include "physics/contact.hpp"
+#include "physics/soil_cloud.hpp"
 
 namespace mpm {
-
-/// How soil lies round a node: the centre of its volume there [cells from the node], and the covariance of
-/// its places [cells2].
-template <class T, int Dim>
-struct SoilCloud {
-  Vector<T, Dim> centre;
-  T spread[Dim][Dim];
-
-  /// A measure of how far the soil reaches along n, of length 1 [cells]: five standard deviations beyond its
-  /// centre. A box reaches 1.73 of them; five tell better which body is long along a false normal.
-  KOKKOS_INLINE_FUNCTION T reach(const Vector<T, Dim>& n) const {
-    constexpr T k_deviations = T(5);
-    T square = 0;
-    for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j) square += n[i] * spread[i][j] * n[j];
-    return dot(centre, n) + k_deviations * Kokkos::sqrt(Kokkos::fmax(T(0), square));
-  }
-  /// How much of the node's cells the soil fills across n, of length 1: 1 where it goes through them, less
-  /// where it ends. By the deviations across n, of which a hat function has the square root of a sixth of a
-  /// cell each; so neither how dense the soil is counts, nor gaps between its particles.
-  KOKKOS_INLINE_FUNCTION T breadth(const Vector<T, Dim>& n) const {
-    T square = 0;  // product of the variances across n
-    for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j) square += n[i] * cofactor(i, j) * n[j];
-    for (int d = 1; d < Dim; ++d) square *= 6;
-    return Kokkos::fmin(T(1), Kokkos::sqrt(Kokkos::fmax(T(0), square)));
-  }
-
- private:
-  KOKKOS_INLINE_FUNCTION T cofactor(int i, int j) const {
-    if constexpr (Dim == 2) {
-      return i == j ? spread[1 - i][1 - j] : -spread[1 - i][1 - j];
-    } else {
-      const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
-      return spread[a][c] * spread[b][d] - spread[a][d] * spread[b][c];
-    }
-  }
-};
 
 /// Soil of a velocity field at a node.
 template <class T, int Dim>
@@ -89,15 +52,17 @@ struct NormalChoice {
   T penalty[count];  // cells, as if the fields overlapped more along it: where the boundary is but an edge
 
   KOKKOS_INLINE_FUNCTION NormalChoice(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
-                                      T face) {
-    constexpr T k_bounds = T(1e-3);   // of a cell's face: less is round-off
-    constexpr T k_smaller = T(0.05);  // of the larger area: too little to have a normal
+                                      T spacing, T face) {
+    constexpr T k_bounds = T(1e-3);  // of a cell's face: less is round-off
+    constexpr T k_smaller =
+        T(0.05);  // of a cell's face, for soil that fills the cell: gaps between particles
     for (int d = 0; d < Dim; ++d) direction[0][d] = a.area[d], direction[1][d] = -b.area[d];
     direction[2] = inner(a, b, k_bounds * face);
     T size[count];
     for (int n = 0; n < count; ++n) size[n] = Kokkos::sqrt(dot(direction[n], direction[n]));
     for (int n = 0; n < count; ++n) possible[n] = size[n] > k_bounds * face;
-    for (int n = 0; n < 2; ++n) possible[n] = possible[n] && size[n] > k_smaller * size[1 - n];
+    possible[0] = possible[0] && size[0] > k_smaller * a.volume / spacing;
+    possible[1] = possible[1] && size[1] > k_smaller * b.volume / spacing;
     const T apart = possible[0] && possible[1] ? across(size) : T(0);
     for (int n = 0; n < count; ++n)
       for (int d = 0; d < Dim && possible[n]; ++d) direction[n][d] /= size[n];
@@ -135,10 +100,10 @@ struct NormalChoice {
 /// [m2]: of a cell. False where no boundaries lie on each other.
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool normal_between(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
-                                           T face, Vector<T, Dim>& normal) {
+                                           T spacing, T face, Vector<T, Dim>& normal) {
   constexpr T k_even = T(0.02);  // cells, difference of overlaps at which one normal begins to rule
   constexpr T k_most = T(50);    // as an exponent
-  const NormalChoice<T, Dim> of(a, b, face);
+  const NormalChoice<T, Dim> of(a, b, spacing, face);
   T overlap[of.count], least = Kokkos::Experimental::infinity<T>::value;
   for (int n = 0; n < of.count; ++n) {
     if (!of.possible[n]) continue;
@@ -184,7 +149,7 @@ KOKKOS_INLINE_FUNCTION T depth_of(T volume, T area, T n_r, const NodeCell<T>& ce
 template <class T, int Dim>
 KOKKOS_INLINE_FUNCTION bool meet(const InterfaceSide<T, Dim>& a, const InterfaceSide<T, Dim>& b,
                                  const NodeCell<T>& cell, Meeting<T, Dim>& at) {
-  if (!normal_between(a, b, cell.face, at.normal)) return false;
+  if (!normal_between(a, b, cell.spacing, cell.face, at.normal)) return false;
   const T of_a = Kokkos::fmax(T(0), dot(a.area, at.normal)),
           of_b = Kokkos::fmax(T(0), -dot(b.area, at.normal));
   const T depth_a = depth_of(a.volume, of_a, at.normal[0], cell),

@@ -167,6 +167,35 @@ TEST_CASE("a pair takes its part of the impulse that stops two fields, and anoth
   CHECK(first.work + second.work == Approx(whole.work));
 }
 
+TEST_CASE("soil that goes through a node's cells is broad, soil that ends at the node is not",
+          "[interface]") {
+  const SoilCloud<double, 2> half{{0, -1. / 3}, {{1. / 6, 0}, {0, 1. / 18}}};
+  CHECK(half.breadth({0, 1}) == Approx(1));
+  const SoilCloud<double, 2> end{{-1. / 3, -1. / 3}, {{1. / 18, 0}, {0, 1. / 18}}};
+  CHECK(end.breadth({0, 1}) == Approx(std::sqrt(1. / 3)));
+  const SoilCloud<double, 3> slab{{0, 0, -0.5}, {{1. / 6, 0, 0}, {0, 1. / 6, 0}, {0, 0, 0.01}}};
+  CHECK(slab.breadth({0, 0, 1}) == Approx(1));
+  const SoilCloud<double, 3> beam{{0, -1. / 3, -0.5}, {{1. / 6, 0, 0}, {0, 1. / 18, 0}, {0, 0, 0.01}}};
+  CHECK(beam.breadth({0, 0, 1}) == Approx(std::sqrt(1. / 3)));
+}
+
+TEST_CASE("a sliver in the corner of a node's cells has the normal, not the end of what it lies on",
+          "[interface]") {
+  const double edge = 0.3, across = std::sqrt(0.5);
+  Side ground = side_of(0.01, 1, {0, 0}), block = side_of(6, -1, {1, -1});
+  ground.volume = std::pow(edge, 4) / 24 * k_spacing * k_spacing;
+  ground.area = {std::pow(edge, 3) / 6 * k_spacing, std::pow(edge, 3) / 6 * k_spacing};
+  ground.cloud = {
+      {0.4 * edge - 1, 0.4 * edge - 1},
+      {{0.04 * edge * edge, -0.08 / 3 * edge * edge}, {-0.08 / 3 * edge * edge, 0.04 * edge * edge}}};
+  block.volume = 0.7 * k_spacing * k_spacing,
+  block.area = {0.6 * across * k_spacing, -0.6 * across * k_spacing};
+  block.cloud = {{-0.15, 0.15}, {{0.14, 0.02}, {0.02, 0.14}}};
+  const auto normal = meeting_of(ground, block).normal;
+  CHECK(normal[0] == Approx(across).margin(0.01));
+  CHECK(normal[1] == Approx(across).margin(0.01));
+}
+
 TEST_CASE("the impulses of several rounds obey the limits of one", "[interface]") {
   Side a = side_of(2, 1, {3, 1}), b = side_of(6, -1, {0, -1});
   InterfaceLaw law = law_with(0.5);
