@@ -96,7 +96,8 @@ class ContactPairs(Deck):
             gained = np.cumsum(weighs * gravity * mass[1:] - (force[1:] if np.ndim(force) else 0) * steps)
             off = np.abs(sum(part[1:] - part[0] for part in parts.values()) - gained).max() / scale
             self.note("change of all momentum", off)
-            assert off < self.bound(1e-11, 1e-4), f"the momentum {axis} of all bodies changes by {off:.3g}"
+            # A node below the least mass feels no force; where soil begins at nodes one may come to it: 1e-11, once.
+            assert off < self.bound(1e-10, 1e-4), f"the momentum {axis} of all bodies changes by {off:.3g}"
             if self.kind in ("row", "rings", "corner", "wheel", "inside") and self.has_all_pairs():
                 self.check_each(axis, parts, between, steps)
         self.check_energy(values)
