@@ -95,9 +95,10 @@ void end_of_exception() {
   std::_Exit(failure_status);
 }
 
-/// Prints a text that needs no run; the exit status.
-int print(const std::string& text) {
-  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return 0;
+/// Prints what needs no run; the exit status.
+int print(const mpm::AboutAnswer& about) {
+  std::FILE* file = about.status == 0 ? stdout : stderr;
+  if (std::fputs(about.text.c_str(), file) >= 0 && std::fflush(file) == 0) return about.status;
   std::perror("mpm: Cannot write to the terminal");
   return k_system_failure;
 }
@@ -118,8 +119,7 @@ void end_others() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const mpm::AboutAnswer about = mpm::answer_without_run(argc, argv); about.asked)
-    return print(about.text);
+  if (const mpm::AboutAnswer about = mpm::answer_without_run(argc, argv); about.asked) return print(about);
   mpm::flush_subnormals();
   std::set_terminate(end_of_exception);
   MPI_Init(&argc, &argv);

@@ -8,7 +8,9 @@
 
 #include "common/text.hpp"
 #include "git_commit.hpp"
+#include "input/options/groups.hpp"
 #include "input/options/options.hpp"
+#include "input/options/schema.hpp"
 #include "mpm/simulation.hpp"
 #include "step/stepper.hpp"
 
@@ -55,6 +57,31 @@ std::string version_text() {
          dimensions + "\n";
 }
 
+namespace {
+
+/// A reader that has listed every option.
+OptionReader listed_options() {
+  InputReport unused;
+  OptionReader in;
+  in.list(unused);
+  list_all(in);
+  return in;
+}
+
+/// The help of one option, or the nearest where there is none of that name.
+AboutAnswer help_answer(const std::string& name) {
+  const OptionReader listed = listed_options();
+  if (const auto help = help_of_name(listed, name)) return {true, *help};
+  return {true,
+          "mpm: -help: given \"" + printable(name) + "\", takes the name of an option; the nearest is -" +
+              nearest_option(listed, name) + "\n",
+          static_cast<int>(Outcome::bad_input)};
+}
+
+}  // namespace
+
+std::string schema_text() { return schema_of(listed_options(), k_version); }
+
 std::string help_text() {
   InputReport report;
   report.help = true;
@@ -65,10 +92,15 @@ std::string help_text() {
 AboutAnswer answer_without_run(int argc, char** argv) {
   for (int k = 1; k < argc; ++k) {
     const std::string word = lower_case(argv[k]);
-    const bool version = word == "--version" || word == "-version";
-    if (!version && word != "--help" && word != "-help" && word != "-h") continue;
+    const bool version = word == "--version" || word == "-version",
+               schema = word == "--schema" || word == "-schema";
+    if (!version && !schema && word != "--help" && word != "-help" && word != "-h") continue;
     if (is_later_process()) return {true, ""};
-    return {true, version ? version_text() : help_text()};
+    if (version) return {true, version_text()};
+    if (schema) return {true, schema_text()};
+    // A dash may belong to an option of a run that also has -help; as the last word it is asked for.
+    const bool named = k + 1 < argc && (argv[k + 1][0] != '-' || k + 2 == argc);
+    return named ? help_answer(argv[k + 1]) : AboutAnswer{true, help_text()};
   }
   return {};
 }

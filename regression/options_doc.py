@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""Writes docs/options.md from what `mpm -help` prints.
+"""Writes docs/options.md from what `mpm -schema` prints.
 
 Usage: regression/options_doc.py PATH_TO_mpm [--check]   (--check: only report whether the file is up to date)
 """
+import json
 import pathlib
-import re
 import subprocess
 import sys
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
 DOCUMENT = TREE / "docs" / "options.md"
-RENAMED = TREE / "lib" / "input" / "deck" / "renamed.cpp"
+CHANGES = {"restart": "at a restart", "restart_change": "by -restart_change", "stage": "at a stage"}
 HEAD = """# Options
 
-Made from `mpm -help` by `regression/options_doc.py`; edit the help, not this file.
+Made from `mpm -schema` by `regression/options_doc.py`; edit the tables of `lib/input/options`, not this file. `mpm -help NAME` prints one option.
 
     mpm -options_file DECK [-NAME VALUE] ...
 
@@ -33,48 +33,46 @@ Some options have new names. Their former names stay accepted, and the log has o
 """
 
 
-def former_names():
-    """[(former, name)] of lib/input/deck/renamed.cpp."""
-    table = RENAMED.read_text().partition("k_renamed = {{")[2].partition("}};")[0]
-    return re.findall(r'\{"(\w+)", "(\w+)"\}', table)
-
-
 def dashed(word):
     """An option with its dash; what follows the name of a rigid body with NAME before it."""
     return f"-NAME_{word}" if word.startswith(("contact_", "penalty_", "shear_")) else f"-{word}"
 
 
-def sections(text):
-    """[(title, [(option, meaning, takes, default, when it may change)])] of the help text: blocks of three or four lines under titles."""
-    result = []
-    lines = text.splitlines()
-    for number, line in enumerate(lines):
-        if line.startswith("  -"):
-            meaning, takes = lines[number + 1].strip(), lines[number + 2].strip()
-            takes, _, default = takes.removeprefix("takes ").rpartition("; ")
-            after = lines[number + 3].strip() if number + 3 < len(lines) else ""
-            changes = after.removeprefix("may change ") if after.startswith("may change ") else ""
-            result[-1][1].append((line.strip(), meaning, takes, default.removeprefix("default "), changes))
-        elif line and not line.startswith(" ") and number + 1 < len(lines) and lines[number + 1].startswith("  -"):
-            result.append((line, []))
-    return result
+def text_of(condition):
+    """A condition of the schema in words."""
+    words = condition["is"]
+    either = " or ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
+    return f"-{condition['option']} " + (f"is {either}" if words else "is given" if condition["given"] else "is not given")
 
 
-def document(text):
-    parts = [HEAD] + [f"| `{dashed(former)}` | `{dashed(name)}` |\n" for former, name in former_names()]
-    for title, options in sections(text):
-        parts.append(f"\n## {title}\n\n| option | meaning | takes | default | may change |\n| --- | --- | --- | --- | --- |\n")
-        parts += [f"| `{option}` | {meaning} | {takes} | {default} | {changes} |\n" for option, meaning, takes, default, changes in options]
+def row(option):
+    """A line of the table of an option. The group of a law says of which model its options are."""
+    where = [text_of(each) for each in option.get("where", []) if each["option"] != "NAME_model"]
+    default = "required" if option["required"] else "none" if option["default"] is None else option["default"]
+    changes = ", ".join(CHANGES[each] for each in option.get("changes", []))
+    takes = "; ".join([option["takes"], *option.get("restrictions", [])])
+    return f"| `-{option['name']}` | {option['meaning']} | {takes} | {default} | {' and '.join(where)} | {changes} |\n"
+
+
+def document(schema):
+    parts = [HEAD] + [f"| `{dashed(former)}` | `{dashed(name)}` |\n" for former, name in schema["former"]]
+    group = None
+    for option in schema["options"]:
+        if option["group"] != group:
+            group = option["group"]
+            parts.append(f"\n## {group}\n\n| option | meaning | takes | default | only where | may change |\n"
+                         "| --- | --- | --- | --- | --- | --- |\n")
+        parts.append(row(option))
     return "".join(parts)
 
 
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    help_text = subprocess.run([sys.argv[1], "-help"], capture_output=True, text=True, check=True).stdout
-    if not sections(help_text):
-        sys.exit(f"options_doc: {sys.argv[1]} -help lists no option")
-    text = document(help_text)
+    schema = json.loads(subprocess.run([sys.argv[1], "-schema"], capture_output=True, text=True, check=True).stdout)
+    if not schema["options"]:
+        sys.exit(f"options_doc: {sys.argv[1]} -schema lists no option")
+    text = document(schema)
     if "--check" in sys.argv[2:]:
         if not DOCUMENT.exists() or DOCUMENT.read_text() != text:
             sys.exit(f"options_doc: {DOCUMENT} is out of date; run regression/options_doc.py {sys.argv[1]}")

@@ -12,12 +12,16 @@ std::string version_text();
 /// How to begin, where the manual is, and every option by group.
 std::string help_text();
 
-/// The text that the command line asks for in place of a run: that of --version or --help, where one of them
-/// (or -version, -help, -h) is among the words; else empty. Only the first process of a job has a text to
-/// print.
+/// Every option as JSON: name, type, unit, default, range, conditions and meaning.
+std::string schema_text();
+
+/// The text that the command line asks for in place of a run: that of --version, --schema or --help, where
+/// one of them (or -version, -schema, -help, -h) is among the words; else empty. A name after -help asks for
+/// the help of this option alone. Only the first process of a job has a text to print.
 struct AboutAnswer {
-  bool asked = false;  // the program then ends with status 0
+  bool asked = false;  // the program then ends with the status
   std::string text;
+  int status = 0;  // 2 where -help names no option; the text is then that of the error
 };
 AboutAnswer answer_without_run(int argc, char** argv);
 

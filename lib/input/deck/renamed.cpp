@@ -22,6 +22,10 @@ constexpr std::array<std::pair<const char*, const char*>, 8> k_renamed = {{
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> renamed_options() {
+  return {k_renamed.begin(), k_renamed.end()};
+}
+
 std::string present_name(const std::string& name) {
   const std::string key = lower_case(name);
   for (const auto& [former, present] : k_renamed) {

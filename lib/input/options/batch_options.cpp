@@ -66,6 +66,7 @@ void choose_batches(Config& config) {
 }
 
 void check_batches(OptionReader& in, const Config& config) {
+  for (const Refusal& each : k_refusals) in.restricts(each.option, each.takes);
   if (in.listing() || !config.device_memory_limit) return;
   for (const char* name : {"particle_domain", "velocity_update", "position_correction"})
     if (set_by_flow(in, config, name))

@@ -35,6 +35,8 @@ void read_contact_points(OptionReader& in, RigidConfig& rigid) {
 void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
   const std::string name = rigid.name + "_contact_gap_scaling";
   rigid.contact_gap_scaling = rigid.scales_by_gap();
+  const auto nodes = in.where(rigid.name + "_contact", {"nodes"});
+  const auto parts = in.where(rigid.name + "_separation", {"free"});
   if ((rigid.separates && !rigid.contact_at_sites) || in.listing())
     in.word(
         {.name = name,
@@ -54,7 +56,7 @@ void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
                .unit = "-",
                .range = {.lowest = 0.1, .highest = 100},
                .change = k_by_choice};
-  if (rigid.contact_gap_scaling || in.listing()) {
+  if (const auto only = in.where(name, {"geo"}); rigid.contact_gap_scaling || in.listing()) {
     in.number(reach, rigid.contact_gap_reach);
     in.number(exponent, rigid.contact_gap_exponent);
   } else {
@@ -67,6 +69,7 @@ void read_gap_scaling(OptionReader& in, RigidConfig& rigid) {
 void read_shear_fraction(OptionReader& in, const Config& config, RigidConfig& rigid) {
   const std::string name = rigid.name + "_shear_fraction";
   if (rigid.has_shear_limit && !in.listing()) return in.not_taken(name, rigid.name + "_shear_limit is given");
+  const auto only = in.unless(rigid.name + "_shear_limit");
   const bool found =
       in.number({.name = name,
                  .meaning = "shear limit as a fraction of the soil's strength there (su), instead "

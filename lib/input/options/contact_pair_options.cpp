@@ -49,6 +49,7 @@ std::string pair_fault(const Config& config, const std::vector<std::string>& wor
 /// The shear of the interface.
 void read_shear(OptionReader& in, const Config& config, ContactPairConfig& pair) {
   const std::string fraction = pair.name + "_shear_fraction";
+  const auto only = in.where(pair.name + "_contact", {"slide"});
   in.number({.name = pair.name + "_friction",
              .meaning = "slide: Coulomb coefficient of the interface; 0, the default, is smooth",
              .unit = "-",
@@ -84,7 +85,7 @@ void read_shear(OptionReader& in, const Config& config, ContactPairConfig& pair)
 }
 
 void read_pair(OptionReader& in, const Config& config, ContactPairConfig& pair) {
-  in.section("Each contact pair NAME, the names of its bodies with an underscore");
+  in.section("Each contact pair NAME, the names of its bodies with an underscore", {"contact_pairs"});
   in.word({.name = pair.name + "_contact",
            .meaning = "slide: the bodies part, and shear as the options below say; weld: they move as one"},
           Words<bool>{{"slide", false}, {"weld", true}}, pair.welded);

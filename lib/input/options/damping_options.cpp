@@ -61,6 +61,7 @@ void read_rayleigh(OptionReader& in, Config& config) {
     for (const char* key : k_keys) in.not_taken(key, "there is no -rayleigh_ratio");
     return;
   }
+  const auto only = in.where("rayleigh_ratio");
   RayleighParts parts = RayleighParts::both;
   in.word(
       {.name = "rayleigh_parts",
@@ -79,8 +80,7 @@ void read_rayleigh(OptionReader& in, Config& config) {
                                "-rayleigh_parts is stiffness or mass",
                            .unit = "Hz",
                            .range = {.lowest = 0, .highest = 1e6, .open_lowest = true},
-                           .required = !in.listing(),
-                           .standard = "none",
+                           .required = true,
                            .change = k_by_choice};
   two ? in.numbers(frequencies, "f,f", "", frequency) : in.number(frequencies, frequency[0]);
   if (in.listing() || in.errors() > errors) return;

@@ -77,7 +77,7 @@ bool read_element_file(OptionReader& in, ElementConfig& element) {
                   "and writes element.csv: docs/elements.md",
        .standard = in.listing() ? "none" : ""},
       element.file);
-  if (in.listing() || in.given("element_path")) {
+  if (const auto only = in.where("element_path"); in.listing() || in.given("element_path")) {
     in.integer({.name = "element_parts",
                 .meaning = "equal parts in which each row of the path is done",
                 .unit = "-",

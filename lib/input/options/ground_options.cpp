@@ -93,6 +93,7 @@ void read_stl_shape(OptionReader& in, const std::string& name, Shape& shape) {
   const auto errors = in.errors();
   if (!in.listing())  // listed with the particles'
     in.text({.name = name + "_file", .meaning = "", .required = true}, shape.file);
+  const auto only = in.where(name + "_shape", {"stl"});
   double scale = 1;
   in.number({.name = name + "_scale",
              .meaning = "stl: what the file's lengths are multiplied by, as 0.001 where they are mm",
@@ -111,6 +112,7 @@ void read_stl_shape(OptionReader& in, const std::string& name, Shape& shape) {
 }
 
 bool read_layer(OptionReader& in, const std::string& name, const Config& config, Shape& shape) {
+  const auto only = in.where(name + "_shape", {"layer"});
   const SurfaceOption top{name + "_top", true, &shape}, base{name + "_base", false, &shape};
   const bool has_top = read_surface(in, top,
                                     {.name = top.name,

@@ -71,6 +71,7 @@ void read_axis(OptionReader& in, int dim, JointConfig& joint) {
   if (!slides && !turns && !in.listing())
     return in.not_taken(name, dim == 2 ? "-" + joint.name + "_kind is not slider"
                                        : "-" + joint.name + "_kind is neither hinge nor slider");
+  const auto only = in.where(joint.name + "_kind", {"hinge", "slider"});
   const bool found = in.vector({.name = name,
                                 .meaning = "hinge in 3D: the axis about which the bodies turn; slider: the "
                                            "direction along which they slide",
@@ -89,6 +90,7 @@ void read_length(OptionReader& in, int dim, JointConfig& joint) {
       in.not_taken(option, "-" + joint.name + "_kind is neither rod nor cable");
     return;
   }
+  const auto only = in.where(joint.name + "_kind", {"rod", "cable"});
   const bool found =
       in.vector({.name = other,
                  .meaning = "rod, cable: its end on the second body or the ground, at the start",
@@ -119,6 +121,7 @@ void read_stop(OptionReader& in, int dim, JointConfig& joint) {
   const std::string name = joint.name + "_stop_deg";
   const bool turns = joint.kind == JointKind::hinge || (dim == 2 && joint.kind == JointKind::ball);
   if (!turns && !in.listing()) return in.not_taken(name, "-" + joint.name + "_kind is not hinge");
+  const auto only = in.where(joint.name + "_kind", {"hinge", "ball"});
   std::array<double, 2> stop{};
   constexpr double k_most = 179;  // degrees: half a turn has two signs
   if (!in.numbers({.name = name,
@@ -147,6 +150,7 @@ void read_drive(OptionReader& in, int dim, double end, JointConfig& joint) {
       in.not_taken(joint.name + key, "-" + joint.name + "_bodies does not end with ground");
     return;
   }
+  const auto only = in.where(joint.name + "_bodies", {"ground"});
   in.vector(velocity, dim, joint.velocity);
   read_timed(in, velocity, true, dim, end, joint.velocity, joint.velocity_table);
   read_timed(in,
@@ -171,7 +175,7 @@ void check_run(OptionReader& in, const MeshConfig& mesh, const Config& config, c
 }  // namespace
 
 void read_joint(OptionReader& in, const MeshConfig* mesh, const Config& config, JointConfig& joint) {
-  in.section("Each joint NAME");
+  in.section("Each joint NAME", {"joints"});
   const int dim = config.dim;
   const bool known =
       in.word({.name = joint.name + "_kind",

@@ -136,7 +136,8 @@ void read_start(OptionReader& in, int dim, BodyConfig& body) {
                                  "with k0 above it",
                       .unit = "Pa",
                       .range = k_stress,
-                      .aside = ", or k0"};
+                      .aside = ", or k0",
+                      .words = {"k0"}};
   if (in.given_text(stress.name) != "k0") {
     body.stress_given = in.tensor(stress, dim, body.stress);
     return;

@@ -24,7 +24,8 @@ void read_body_of(OptionReader& in, const Config& config, LoadConfig& load) {
     in.word({.name = load.name + "_body",
              .meaning = "the body on whose surface it is",
              .required = true,
-             .aside = ", of -bodies"},
+             .aside = ", of -bodies",
+             .names_of = "bodies"},
             bodies, load.body);
 }
 
@@ -58,9 +59,11 @@ void read_stage_of(OptionReader& in, const Config& config, LoadConfig& load) {
                       .meaning =
                           "the stage at whose beginning the surface is found, where the soil is then, and "
                           "from which on the load acts: for faces that an excavation bares",
-                      .standard = "the one that the body is in the run from"};
+                      .standard = "the one that the body is in the run from",
+                      .names_of = "stages"};
   int index = 0;
   if (in.listing()) {
+    const auto only = in.where("stages");
     in.word(option, std::vector<std::string>{"STAGE"}, index);
     return;
   }
@@ -93,7 +96,7 @@ void read_facing(OptionReader& in, int dim, LoadConfig& load) {
 }  // namespace
 
 void read_load(OptionReader& in, const Config& config, LoadConfig& load) {
-  in.section("Each load NAME");
+  in.section("Each load NAME", {"loads"});
   const int dim = config.dim;
   read_body_of(in, config, load);
   read_stage_of(in, config, load);

@@ -81,6 +81,7 @@ void read_with_words(OptionReader& in, Option option, const std::vector<Paramete
     if (in.word(option, names, chosen)) value = words[chosen].value;
   } else {
     option.aside = ", or " + one_of(names) + option.aside;
+    option.words = names;
     in.number(option, value);
   }
 }
@@ -94,6 +95,7 @@ void read_parameters(OptionReader& in, const std::string& name, const ModelOptio
     option.name = name + "_" + option.name;
     if (!stand_in.empty()) option.aside = ", or -" + name + "_" + stand_in + " in its place";
     if (!model.instead_of[k].empty()) option.standard = "none";
+    const auto only = stand_in.empty() ? in.always() : in.unless(name + "_" + stand_in);
     if (!stand_in.empty() && in.given(name + "_" + stand_in)) {
       in.not_taken(option.name, "-" + name + "_" + stand_in + " is in its place");
       value = 0;
@@ -221,7 +223,7 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
   for (const ModelOptions& model : models) words.push_back(model.name);
 
   material.name = name;
-  in.section("Each material NAME");
+  in.section("Each material NAME", {"materials"});
   int chosen = 0;
   const bool known = in.word({.name = name + "_model", .meaning = "its constitutive model", .required = true},
                              words, chosen);
@@ -246,8 +248,14 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
             material.k0);
   read_f_bar(in, config, material);
   if (in.listing()) {
+    for (std::size_t k = 0; k < models.size(); ++k)
+      if (on_host_in_double(static_cast<int>(k)))
+        in.restricts(name + "_model", "another model than " + words[k] +
+                                          " with -backend cuda or -precision single: it runs on processors "
+                                          "in double precision");
     for (const ModelOptions& model : models) {
-      in.section("Material NAME of model " + model.name);
+      in.section("Material NAME of model " + model.name, {"materials"});
+      const auto only = in.where(name + "_model", {model.name});
       read_parameters(in, name, model, material.parameters);
       read_texts(in, name, model);
     }

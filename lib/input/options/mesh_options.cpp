@@ -27,6 +27,7 @@ void read_walls(OptionReader& in, int dim, MeshConfig& mesh) {
         in.not_taken(name, "a mesh in 2D has no such side");
         continue;
       }
+      const auto only = d == 2 ? in.where("dim", {"3"}) : in.always();
       in.word({.name = name,
                .meaning = meaning,
                .standard = d > 0 && side == 1 && in.listing() ? k_top_default : "",

@@ -31,7 +31,11 @@ void read_prescribed(OptionReader& in, int dim, double end, const Option& veloci
                       !in.given(rigid.name + "_angular_velocity") &&
                       !in.given(rigid.name + "_angular_velocity_table") &&
                       !in.given(rigid.name + "_angle_table");
-  in.vector(required, dim, rigid.velocity);
+  {
+    const auto only = in.where(rigid.name + "_motion", {"prescribed", "dynamic"});
+    in.vector(required, dim, rigid.velocity);
+  }
+  const auto only = in.where(rigid.name + "_motion", {"prescribed"});
   read_timed(in, velocity, true, dim, end, rigid.velocity, rigid.velocity_table);
   read_timed(in,
              {.name = rigid.name + "_displacement",
@@ -54,7 +58,9 @@ void read_dynamic(OptionReader& in, int dim, double end, RigidConfig& rigid) {
                        .range = k_density,
                        .required = !in.given(rigid.name + "_mass"),
                        .change = k_by_choice};
-  if (in.number(density, rigid.density) && !density.required)
+  const auto only = in.where(rigid.name + "_motion", {"dynamic"});
+  if (const auto alone = in.unless(rigid.name + "_mass");
+      in.number(density, rigid.density) && !density.required)
     in.reject(density.name, "nothing beside -" + rigid.name + "_mass");
   const Option force{.name = rigid.name + "_force",
                      .meaning = "dynamic: external force on it, beside gravity",

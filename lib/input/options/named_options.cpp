@@ -122,12 +122,12 @@ void read_cut_out(OptionReader& in, const Listed& listed, BodyConfig& body) {
 void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, const Listed& names,
                bool sound_materials, BodyConfig& body) {
   const auto errors = in.errors();
-  in.section("Each body or rigid NAME: its shape and particles");
+  in.section("Each body or rigid NAME: its shape and particles", {"bodies", "rigid_bodies"});
   const bool sound = read_shape(in, body.name, config, /*body*/ true, body.shape);
   const bool from_file = body.shape.kind == ShapeKind::particles;
   if (sound && mesh && !from_file) check_shape(in, body.name, body.shape, *mesh, config.dim);
 
-  in.section("Each body NAME");
+  in.section("Each body NAME", {"bodies"});
   std::vector<std::string> materials;
   for (const auto& material : config.materials) materials.push_back(material.name);
   if (materials.empty() && !in.listing())
@@ -137,7 +137,8 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
              .meaning = "its material",
              .required = true,
              .aside = ", of -materials",
-             .change = k_by_choice},
+             .change = k_by_choice,
+             .names_of = "materials"},
             materials, body.material);
   read_start(in, config.dim, body);
   read_body_field(in, body.name, from_file, body);
@@ -155,7 +156,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
 
 /// The names of the parts of a rigid body, where it has several.
 void read_part_names(OptionReader& in, Names& names, RigidConfig& rigid) {
-  if (in.listing()) in.section("Each rigid NAME");
+  if (in.listing()) in.section("Each rigid NAME", {"rigid_bodies"});
   const Option option{.name = rigid.name + "_parts",
                       .meaning =
                           "names of its parts, instead of a shape: each has the options of a shape, as "
@@ -170,6 +171,7 @@ void read_part_forces(OptionReader& in, RigidConfig& rigid) {
   const std::string name = rigid.name + "_part_forces";
   const bool one_shape = rigid.shape.part_names.empty() && !in.listing();
   if (one_shape && !in.given(name)) return;
+  const auto only = in.where(rigid.name + "_parts");
   in.word({.name = name, .meaning = "whether the history has the force of the soil on each of its parts"},
           Words<bool>{{"on", true}, {"off", false}}, rigid.part_forces);
   if (one_shape && rigid.part_forces)
@@ -182,7 +184,7 @@ void read_rigid(OptionReader& in, const MeshConfig* mesh, const Config& config, 
   // listed with the bodies'
   const bool sound = !in.listing() && read_shape(in, rigid.name, config, /*body*/ false, rigid.shape);
   if (sound && mesh) check_shape(in, rigid.name, rigid.shape, *mesh, dim);
-  in.section("Each rigid NAME");
+  in.section("Each rigid NAME", {"rigid_bodies"});
   read_motion(in, dim, config.time.end, rigid);
   if (sound && mesh) check_cut_motion(in, *mesh, dim, rigid);
   if (sound && mesh) check_in_water(in, config, rigid);

@@ -52,7 +52,8 @@ void read_p2g(OptionReader& in, P2GConfig& p2g) {
              .range = {.lowest = 0, .highest = 0.5, .open_lowest = true},
              .change = k_at_any_restart},
             p2g.margin);
-  if (p2g.strategy == P2G::mosaic || p2g.strategy == P2G::automatic || in.listing())
+  if (const auto only = in.where("p2g", {"mosaic", "auto"});
+      p2g.strategy == P2G::mosaic || p2g.strategy == P2G::automatic || in.listing())
     in.integer({.name = "p2g_mosaic_cells",
                 .meaning = "edge of the blocks of the mosaic",
                 .unit = "cells",
@@ -76,7 +77,8 @@ void read_partition(OptionReader& in, PartitionConfig& partition) {
        .meaning = "how patches are given to ranks: boxes of the mesh, or parts that METIS cuts by their load",
        .change = k_at_any_restart},
       Words<PartitionKind>{{"box", PartitionKind::box}, {"metis", PartitionKind::metis}}, partition.kind);
-  if (partition.kind == PartitionKind::metis || in.listing())
+  if (const auto only = in.where("partition", {"metis"});
+      partition.kind == PartitionKind::metis || in.listing())
     in.number({.name = "rebalance_threshold",
                .meaning = "largest over mean work of the ranks above which patches change hands, with metis",
                .unit = "-",
@@ -236,6 +238,8 @@ constexpr const char* k_usage =
     "nothing\n"
     "  mpm -options_file DECK -restart latest      goes on from the last checkpoint\n"
     "  mpirun -n 4 mpm -options_file DECK          runs on four processes\n"
+    "  mpm -help NAME                              the help of one option\n"
+    "  mpm -schema                                 every option as JSON\n"
     "  mpm --version                               version, commit, libraries, back ends\n\n"
     "A deck holds one option a line, -NAME VALUE; # begins a comment. Units are SI; a list has commas and "
     "no\n"

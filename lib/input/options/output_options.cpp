@@ -51,10 +51,11 @@ void read_restarts(OptionReader& in, OutputConfig& output) {
            .meaning = "checkpoint to go on from, or latest: the last sound one of the output folder",
            .change = k_at_any_restart},
           output.restart);
-  in.list_of({.name = "restart_change",
-              .meaning = "what may differ from the checkpoint's run, of the options that may change by it",
-              .change = k_at_any_restart},
-             "names of options, as gravity,damping", output.restart_change);
+  if (const auto only = in.where("restart"); true)
+    in.list_of({.name = "restart_change",
+                .meaning = "what may differ from the checkpoint's run, of the options that may change by it",
+                .change = k_at_any_restart},
+               "names of options, as gravity,damping", output.restart_change);
   in.number(
       {.name = "wall_time_limit",
        .meaning = "time on the clock after which the run writes a checkpoint and stops with exit status 75",

@@ -29,8 +29,9 @@ void read_rigid_contact(OptionReader& in, Config& config) {
     return;
   }
   config.rigid_contact_given = in.given(contact.name);
+  const auto bodies = in.where("rigid_bodies");
   in.word(contact, Words<bool>{{"on", true}, {"off", false}}, config.rigid_contact);
-  if (config.rigid_contact || in.listing())
+  if (const auto only = in.where(contact.name, {"on"}); config.rigid_contact || in.listing())
     in.number(friction, config.rigid_friction);
   else
     in.not_taken(friction.name, "-rigid_contact is off");

@@ -24,7 +24,7 @@ void read_velocity_update(OptionReader& in, Config& config) {
                                                            : in.given_text("velocity_update"));
   const bool xpic = update == VelocityUpdate::xpic;
   if (update != VelocityUpdate::flip) config.flip_fraction = 0;
-  if (update == VelocityUpdate::flip || xpic)
+  if (const auto only = in.where("velocity_update", {"flip", "xpic"}); update == VelocityUpdate::flip || xpic)
     in.number({.name = "flip_fraction",
                .meaning = "fraction of FLIP in the velocity update, the rest PIC, or XPIC with xpic",
                .unit = "-",
@@ -34,7 +34,7 @@ void read_velocity_update(OptionReader& in, Config& config) {
               config.flip_fraction);
   else
     in.not_taken("flip_fraction", chosen);
-  if (xpic || in.listing())
+  if (const auto only = in.where("velocity_update", {"xpic"}); xpic || in.listing())
     in.integer({.name = "xpic_order",
                 .meaning = "order m of XPIC(m): the higher, the less it damps",
                 .unit = "-",
@@ -51,7 +51,8 @@ void read_position_correction(OptionReader& in, Config& config) {
            .standard = in.listing() ? "none, or delta with -analysis flow" : "",
            .change = k_at_stages},
           Words<bool>{{"none", false}, {"delta", true}}, config.position_correction);
-  if (config.position_correction || in.listing())
+  if (const auto only = in.where("position_correction", {"delta"});
+      config.position_correction || in.listing())
     in.number(
         {.name = "position_correction_rate",
          .meaning = "how fast the density of particles diffuses: diffusion number, in cells, for a unit "
@@ -109,6 +110,7 @@ void read_time(OptionReader& in, TimeConfig& time) {
              .range = k_positive,
              .change = k_at_stages},
             time.step);
+  const auto only = in.unless("time_step");
   in.number(
       {.name = "time_courant",
        .meaning =

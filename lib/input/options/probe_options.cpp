@@ -10,8 +10,10 @@ namespace mpm {
 namespace {
 
 constexpr std::size_t k_most_sections = 64;
-const Option k_raster_bodies{
-    .name = "raster_bodies", .meaning = "bodies that count for the rasters", .standard = "all"};
+const Option k_raster_bodies{.name = "raster_bodies",
+                             .meaning = "bodies that count for the rasters",
+                             .standard = "all",
+                             .names_of = "bodies"};
 
 /// Indices of the bodies that an option names; empty where it is not given: all count.
 void read_bodies(OptionReader& in, const Option& option, const Config& config, std::vector<int>& bodies) {
@@ -55,15 +57,14 @@ void read_place(OptionReader& in, const MeshConfig* mesh, int first, int count, 
 void read_axis(OptionReader& in, int dim, ProbeConfig& probe) {
   const std::vector<std::string> axes = dim == 2 && !in.listing() ? std::vector<std::string>{"x", "y"}
                                                                   : std::vector<std::string>{"x", "y", "z"};
-  in.word({.name = probe.name + "_axis",
-           .meaning = "section: axis that it is normal to",
-           .required = !in.listing(),
-           .standard = in.listing() ? "required with section" : ""},
+  const auto only = in.where(probe.name + "_kind", {"section"});
+  in.word({.name = probe.name + "_axis", .meaning = "section: axis that it is normal to", .required = true},
           axes, probe.axis);
 }
 
 void read_width(OptionReader& in, const MeshConfig* mesh, ProbeConfig& probe) {
   if (mesh) probe.width = mesh->spacing;
+  const auto only = in.where(probe.name + "_kind", {"gauge"});
   in.number(
       {.name = probe.name + "_width",
        .meaning =
@@ -95,7 +96,7 @@ void check_columns(OptionReader& in, const MeshConfig& mesh, int dim, double spa
 }  // namespace
 
 void read_probe(OptionReader& in, const MeshConfig* mesh, const Config& config, ProbeConfig& probe) {
-  in.section("Each probe NAME");
+  in.section("Each probe NAME", {"probes"});
   const auto errors = in.errors();
   in.word({.name = probe.name + "_kind",
            .meaning = "point: velocity, stress and pressure at a place; particle: the same of the particle "
@@ -121,9 +122,12 @@ void read_probe(OptionReader& in, const MeshConfig* mesh, const Config& config, 
   if (gauge || in.listing()) read_width(in, mesh, probe);
   if (!section) in.not_taken(probe.name + "_axis", "-" + probe.name + "_kind is not section");
   if (!gauge) in.not_taken(probe.name + "_width", "-" + probe.name + "_kind is not gauge");
-  read_bodies(
-      in, {.name = probe.name + "_bodies", .meaning = "bodies that count for the probe", .standard = "all"},
-      config, probe.bodies);
+  read_bodies(in,
+              {.name = probe.name + "_bodies",
+               .meaning = "bodies that count for the probe",
+               .standard = "all",
+               .names_of = "bodies"},
+              config, probe.bodies);
 }
 
 void check_probes(OptionReader& in, const Config& config) {
@@ -149,6 +153,7 @@ void read_rasters(OptionReader& in, const MeshConfig* mesh, Config& config) {
       in.not_taken(std::string("raster_") + key, "-output_rasters is off");
     return;
   }
+  const auto only = in.where("output_rasters", {"on"});
   const double h = mesh ? mesh->spacing : 1;
   rasters.spacing = h, rasters.threshold_depth = h / 10;
   double interval = config.output.history_interval;

@@ -16,13 +16,6 @@ std::string takes_number(const Option& option) {
   return noun + unit + option.range.text() + option.aside;
 }
 
-/// An option's name in the help without that of its owner.
-std::string key_of(const std::string& name) {
-  for (const std::string owner : {"NAME_", "STAGE_"})
-    if (name.starts_with(owner)) return name.substr(owner.size());
-  return name;
-}
-
 std::string quoted(const std::string& text) { return "\"" + visible(text) + "\""; }
 
 }  // namespace
@@ -105,11 +98,6 @@ std::string OptionReader::dashed(const std::string& name) const {
   return "-" + (former == former_.end() ? prefix_ + name : former->second);
 }
 
-void OptionReader::list(InputReport& report) {
-  report_ = &report;
-  listing_ = true;
-}
-
 bool OptionReader::given(const std::string& name) const { return given_.count(lower_case(name)) > 0; }
 
 void OptionReader::ignore(const std::string& beginning) { ignored_.push_back(lower_case(beginning)); }
@@ -172,30 +160,11 @@ void OptionReader::warn_of_left_out() {
   }
 }
 
-void OptionReader::section(const std::string& title) {
-  owner_ = title.starts_with("Material") || title.starts_with("Each material") ? Owner::material
-           : title.starts_with("Each rigid")                                   ? Owner::rigid
-           : title.starts_with("Each body")                                    ? Owner::body
-           : title.starts_with("Each joint")                                   ? Owner::joint
-           : title.starts_with("Each contact pair")                            ? Owner::contact_pair
-           : title.starts_with("Each load")                                    ? Owner::load
-           : title.starts_with("Each water region")                            ? Owner::water_region
-                                                                               : Owner::run;
-  if (listing_) report_->help_text += "\n" + title + "\n";
-}
-
 const std::string* OptionReader::find(const Option& option, const std::string& takes,
-                                      const std::string& standard) {
+                                      const std::string& standard, const ValueForm& form) {
   known_.push_back(option.name);
   if (listing_) {
-    const std::string otherwise = !option.standard.empty() ? option.standard
-                                  : standard.empty()       ? "none"
-                                                           : standard;
-    report_->help_text += "  -" + option.name + "\n      " + option.meaning + "\n      takes " + takes +
-                          "; " + (option.required ? "required" : "default " + otherwise) + "\n";
-    rules_[{owner_, lower_case(key_of(option.name))}] = option.change;
-    const std::string changes = option.change.text();
-    if (!changes.empty()) report_->help_text += "      may change " + changes + "\n";
+    list_option(option, takes, standard, form);
     return nullptr;
   }
   read_.insert(lower_case(option.name));
@@ -276,7 +245,7 @@ bool OptionReader::number(const Option& option, double& value) {
 bool OptionReader::number(const Option& option, std::optional<double>& value) {
   const std::string takes = takes_number(option);
   const bool fixed = value && option.standard.empty();
-  const std::string* given = find(option, takes, fixed ? text_of(*value) : "");
+  const std::string* given = find(option, takes, fixed ? text_of(*value) : "", {"number", option.words});
   if (!given) return false;
   const auto read = parse_number(*given);
   if (!read || !option.range.holds(*read)) return fail(option, takes);
@@ -291,7 +260,7 @@ bool OptionReader::whole(const Option& option, const std::string& standard, Valu
   if (range.highest > std::numeric_limits<int>::max()) range.highest = std::numeric_limits<int>::max();
   const bool bounded = option.range.highest < std::numeric_limits<int>::max();
   const std::string takes = "a whole number" + (bounded ? range : option.range).text();
-  const std::string* given = find(option, takes, standard);
+  const std::string* given = find(option, takes, standard, {"integer"});
   if (!given) return false;
   const auto read = parse_integer(*given);
   if (!read || !range.holds(static_cast<double>(*read))) return fail(option, takes);
@@ -313,13 +282,14 @@ bool OptionReader::integer(const Option& option, std::optional<long>& value) {
 bool OptionReader::numbers(const Option& option, const std::string& form, const std::string& form_3d,
                            std::span<double> value) {
   const auto count = [](const std::string& list) { return std::to_string(split(list).size()); };
-  const std::string unit = option.unit.empty() || option.unit == "-" ? "" : " in " + option.unit;
+  const std::string noun = split(form).size() == 1 ? " number" : " numbers",
+                    unit = option.unit.empty() || option.unit == "-" ? "" : " in " + option.unit;
   std::string in_3d;
-  if (listing_ && !form_3d.empty())
+  if (listing_ && !form_3d.empty() && form_3d != form)
     in_3d.append(" (").append(count(form_3d)).append(" in 3D, as ").append(form_3d + ")");
   const std::string bounds = option.range.text().empty() ? "" : ", each" + option.range.text();
-  const std::string takes = count(form) + " numbers" + unit + ", as " + form + in_3d + bounds + option.aside;
-  const std::string* given = find(option, takes, text_of(value));
+  const std::string takes = count(form) + noun + unit + ", as " + form + in_3d + bounds + option.aside;
+  const std::string* given = find(option, takes, text_of(value), {"numbers", option.words, form, form_3d});
   if (!given) return false;
   const auto pieces = split(*given);
   if (pieces.size() != value.size()) return fail(option, takes);
@@ -345,7 +315,7 @@ bool OptionReader::tensor(const Option& option, int dim, Sym6& value) {
 
 bool OptionReader::text(const Option& option, std::string& value) {
   const std::string takes = "a text that is not empty";
-  const std::string* given = find(option, takes, option.standard.empty() || !listing_ ? value : "");
+  const std::string* given = find(option, takes, option.standard.empty() || !listing_ ? value : "", {"text"});
   if (!given) return false;
   if (given->empty()) return fail(option, takes);
   if (has_control(*given)) return fail(option, "a text without line ends, tabulators and the like");
@@ -356,7 +326,7 @@ bool OptionReader::text(const Option& option, std::string& value) {
 
 bool OptionReader::flag(const Option& option, bool& value) {
   const std::string takes = "on, off or no value";
-  const std::string* given = find(option, takes, value ? "on" : "off");
+  const std::string* given = find(option, takes, value ? "on" : "off", {"flag"});
   if (!given) return false;
   if (!given->empty() && *given != "on" && *given != "off") return fail(option, takes);
   value = *given != "off";
@@ -365,7 +335,7 @@ bool OptionReader::flag(const Option& option, bool& value) {
 }
 
 bool OptionReader::list_of(const Option& option, const std::string& takes, std::vector<std::string>& value) {
-  const std::string* given = find(option, takes, "");
+  const std::string* given = find(option, takes, "", {"list"});
   if (!given) return false;
   value = split(*given);
   if (std::any_of(value.begin(), value.end(), [](const std::string& piece) { return piece.empty(); }))
@@ -384,7 +354,7 @@ bool OptionReader::none(const Option& option) {
 
 bool OptionReader::word(const Option& option, const std::vector<std::string>& words, int& index) {
   const std::string takes = one_of(words) + option.aside;
-  const std::string* given = find(option, takes, option.required ? "" : words.at(index));
+  const std::string* given = find(option, takes, option.required ? "" : words.at(index), {"word", words});
   if (!given) return false;
   const auto found = std::find(words.begin(), words.end(), *given);
   if (found == words.end()) {

@@ -3,52 +3,17 @@
 
 #include <petscsys.h>
 
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "input/deck/report.hpp"
-#include "input/options/change_rules.hpp"
+#include "input/options/option.hpp"
 
 namespace mpm {
-
-/// Accepted values; an open end is itself not accepted.
-struct Range {
-  double lowest = -std::numeric_limits<double>::infinity();
-  double highest = std::numeric_limits<double>::infinity();
-  bool open_lowest = false, open_highest = false;
-
-  bool holds(double value) const;
-  std::string text() const;  // " greater than 0"; empty where everything is accepted
-};
-inline constexpr Range k_positive{.lowest = 0, .open_lowest = true};
-inline constexpr Range k_not_negative{.lowest = 0};
-// Ranges that leave room for arithmetic: products of such numbers are finite.
-inline constexpr Range k_coordinate{.lowest = -1e9, .highest = 1e9};                  // m
-inline constexpr Range k_speed{.lowest = -1e6, .highest = 1e6};                       // m/s, m/s2
-inline constexpr Range k_stress{.lowest = -1e15, .highest = 1e15};                    // Pa, N
-inline constexpr Range k_density{.lowest = 0, .highest = 1e10, .open_lowest = true};  // kg/m3
-
-/// The words of an option, each with what it stands for.
-template <class Enum>
-using Words = std::vector<std::pair<std::string, Enum>>;
-
-/// Description of an option without its value. The default is what the variable holds before it is read.
-struct Option {
-  std::string name;     // without its dash
-  std::string meaning;  // for -help
-  std::string unit{};   // SI, "-" for a pure number, empty for words
-  Range range{};
-  bool required = false;
-  std::string standard{};  // the default in words, where it is not a fixed value
-  std::string aside{};     // the end of "takes ...", beside what the type and the range say
-  ChangeRule change{};     // none: it stays for the whole run
-};
 
 /// Reads options from a copy of PETSc's database. Each reading function leaves the value as it was and
 /// returns false where the option was not given, or was wrong (which it reports).
@@ -131,8 +96,34 @@ class OptionReader {
   int count_of(const std::string& beginning) const;
   /// Reports every option that nobody asked for and that is not PETSc's.
   void report_unknown();
-  /// A heading of the help.
-  void section(const std::string& title);
+  /// A heading of the help. owners: options that list the names for which NAME stands in the options of the
+  /// section.
+  void section(const std::string& title, const std::vector<std::string>& owners = {});
+  /// A condition of the options that are listed while the result lives.
+  class [[nodiscard]] Scope {
+   public:
+    explicit Scope(std::vector<Condition>* conditions) : conditions_(conditions) {}
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+    ~Scope() {
+      if (conditions_ != nullptr) conditions_->pop_back();
+    }
+
+   private:
+    std::vector<Condition>* conditions_;
+  };
+  /// The options that follow have a place where another one is given, or is one of the words.
+  Scope where(const std::string& option, const std::vector<std::string>& words = {});
+  /// The options that follow have a place where another one is not given.
+  Scope unless(const std::string& option);
+  /// No condition.
+  Scope always() { return Scope(nullptr); }
+  /// Lists what an option takes beside its range, because of another option; nothing in reading.
+  void restricts(const std::string& name, const std::string& takes);
+  /// Pairs of an option and what it takes.
+  const std::vector<std::pair<std::string, std::string>>& restrictions() const { return restrictions_; }
+  /// All that was listed.
+  const std::vector<ListedOption>& listed() const { return listed_; }
 
   std::size_t errors() const { return report_->errors.size(); }
   /// The names asked for so far.
@@ -144,7 +135,10 @@ class OptionReader {
     bool unused;              // nobody (PETSc itself) had read it before
   };
   /// The text given, if any. Reports a required option that is missing, and writes the help.
-  const std::string* find(const Option& option, const std::string& takes, const std::string& standard);
+  const std::string* find(const Option& option, const std::string& takes, const std::string& standard,
+                          const ValueForm& form);
+  void list_option(const Option& option, const std::string& takes, const std::string& standard,
+                   const ValueForm& form);
   bool fail(const Option& option, const std::string& takes);
   /// "-NAME", by the name that the user gave.
   std::string dashed(const std::string& name) const;
@@ -156,6 +150,11 @@ class OptionReader {
   std::string prefix_;
   bool listing_ = false;
   Owner owner_ = Owner::run;  // of the options of this section of the help
+  std::string group_;         // title of this section
+  std::vector<std::string> owners_;
+  std::vector<Condition> conditions_;
+  std::vector<ListedOption> listed_;
+  std::vector<std::pair<std::string, std::string>> restrictions_;
   ChangeRules rules_;
   InputReport* report_ = nullptr;
   std::map<std::string, Given> given_;  // by lower-case name without prefix
@@ -168,6 +167,9 @@ class OptionReader {
   std::map<std::string, std::string> set_aside_;
   std::map<std::string, std::vector<std::string>> left_out_;  // names by their list
 };
+
+/// Lines of the help for an option.
+std::string help_of(const ListedOption& listed);
 
 template <class Enum>
 bool OptionReader::word(const Option& option, const Words<Enum>& words, Enum& value) {

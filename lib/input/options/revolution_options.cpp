@@ -9,6 +9,7 @@ namespace mpm {
 
 void read_geometry_of(OptionReader& in, Config& config) {
   if (config.dim == 3 && !in.listing()) return in.not_taken("geometry", "-dim is 3");
+  const auto only = in.where("dim", {"2"});
   in.word({.name = "geometry",
            .meaning = "of what the 2D mesh is a section: plane_strain: of a body without end along z; "
                       "axisymmetric: of a body of revolution, x its radius and y its axis. Forces, masses, "

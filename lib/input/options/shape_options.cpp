@@ -12,159 +12,6 @@
 namespace mpm {
 namespace {
 
-void read_box(OptionReader& in, const std::string& name, int dim, Shape& shape) {
-  const auto errors = in.errors();
-  in.vector({.name = name + "_lower", .meaning = "box: its lower corner", .unit = "m", .required = true}, dim,
-            shape.lower);
-  in.vector({.name = name + "_upper", .meaning = "box: its upper corner", .unit = "m", .required = true}, dim,
-            shape.upper);
-  in.number({.name = name + "_fillet",
-             .meaning = "box: radius of all its corners (in 3D of its edges and corners)",
-             .unit = "m",
-             .range = k_not_negative},
-            shape.fillet);
-  double degrees = 0;
-  in.number(
-      {.name = name + "_angle_deg",
-       .meaning = "box: turned about its lower corner, anticlockwise; in 3D about the y axis, from x to z",
-       .unit = "deg",
-       .range = {.lowest = -360, .highest = 360}},
-      degrees);
-  shape.angle = degrees / 180 * std::numbers::pi;
-  if (in.listing() || in.errors() != errors) return;
-  double shortest = shape.upper[0] - shape.lower[0];
-  for (int d = 1; d < dim; ++d) shortest = std::min(shortest, shape.upper[d] - shape.lower[d]);
-  if (!(shortest > 0))
-    in.reject(name + "_upper", std::to_string(dim) + " numbers in m, each greater than that of -" + name +
-                                   "_lower, " + text_of(shape.lower, dim));
-  else if (shape.fillet > shortest / 2 * (1 + 1e-9))
-    in.reject(name + "_fillet", "a length in m at most half of the shortest edge, " + text_of(shortest / 2));
-}
-
-void read_polygon(OptionReader& in, const std::string& name, int dim, Shape& shape) {
-  const std::string option = name + "_polygon";
-  const std::string takes = in.listing() ? "x0,y0,x1,y1,... (x0,z0,... in 3D) in m, 3 vertices or more"
-                            : dim == 2   ? "x0,y0,x1,y1,... in m, 3 vertices or more"
-                                         : "x0,z0,x1,z1,... in m, 3 vertices or more";
-  std::vector<std::string> pieces;
-  if (!in.list_of({.name = option,
-                   .meaning = "polygon: its vertices in order; in 3D those of a prism along y",
-                   .unit = "m",
-                   .required = true},
-                  takes, pieces))
-    return;
-  std::vector<double> numbers;
-  for (const auto& piece : pieces)
-    if (const auto number = parse_number(piece)) numbers.push_back(*number);
-  if (numbers.size() != pieces.size() || numbers.size() % 2 == 1 || numbers.size() < 6)
-    return in.reject(option, takes);
-  for (std::size_t k = 0; k < numbers.size(); k += 2) shape.polygon.push_back({numbers[k], numbers[k + 1]});
-  if (const auto crossing = first_crossing(shape.polygon))
-    in.reject(option, "a polygon whose edges neither cross nor touch; edges " +
-                          std::to_string(crossing->first + 1) + " and " +
-                          std::to_string(crossing->second + 1) + " do");
-}
-
-void read_width(OptionReader& in, const std::string& name, int dim, Shape& shape) {
-  const std::string option = name + "_width";
-  if (dim == 2 && !in.listing()) return in.not_taken(option, "a polygon in 2D has none");
-  const bool found = in.numbers({.name = option,
-                                 .meaning = "polygon in 3D: lower and upper y of the prism",
-                                 .unit = "m",
-                                 .required = true},
-                                "lower,upper", "", shape.width);
-  if (found && !(shape.width[0] < shape.width[1]))
-    in.reject(option, "2 numbers in m, as lower,upper, the second greater than the first");
-}
-
-void read_half_plane(OptionReader& in, const std::string& name, int dim, Shape& shape) {
-  in.vector(
-      {.name = name + "_point", .meaning = "half_plane: a point on its face", .unit = "m", .required = true},
-      dim, shape.point);
-  const bool found =
-      in.vector({.name = name + "_normal",
-                 .meaning = "half_plane: normal of its face, outward, of any length; the shape is "
-                            "the part of the mesh behind the face",
-                 .unit = "-",
-                 .required = true},
-                dim, shape.normal);
-  const double length = std::hypot(shape.normal[0], shape.normal[1], shape.normal[2]);
-  if (found && length == 0) in.reject(name + "_normal", std::to_string(dim) + " numbers that are not all 0");
-  if (length > 0)
-    for (double& component : shape.normal) component /= length;
-}
-
-void read_disc(OptionReader& in, const std::string& name, int dim, Shape& shape) {
-  in.vector({.name = name + "_centre",
-             .meaning = "disc: its centre; cylinder: the lower end of its vertical axis; cone: its tip",
-             .unit = "m",
-             .required = true},
-            dim, shape.centre);
-  in.number({.name = name + "_radius",
-             .meaning = "disc, cylinder: its radius; cone: that of its base",
-             .unit = "m",
-             .range = k_positive,
-             .required = true},
-            shape.radius);
-}
-
-/// A cone's height or apex angle: either gives the other.
-void read_height(OptionReader& in, const std::string& name, Shape& shape) {
-  const bool cone = shape.kind == ShapeKind::cone && !in.listing();
-  const std::string height = name + "_height", angle = name + "_tip_angle_deg";
-  const bool by_angle = cone && in.given(angle);
-  if (by_angle && in.given(height)) {
-    in.ignore(height);
-    return in.not_taken(angle, name + "_height is given");
-  }
-  if (!by_angle)
-    in.number({.name = height,
-               .meaning = "cylinder: its height, with its tip; cone: its height, or give its tip angle",
-               .unit = "m",
-               .range = k_positive,
-               .required = true},
-              shape.height);
-  double degrees = 180;
-  const Range range = cone ? Range{.lowest = 1, .highest = 179} : Range{.lowest = 1, .highest = 180};
-  if (by_angle || !cone)
-    in.number({.name = angle,
-               .meaning = "cylinder: apex angle of the cone that its lower end is, 180 for a flat end; cone: "
-                          "its apex angle, instead of its height",
-               .unit = "deg",
-               .range = range},
-              degrees);
-  const double of_tip = degrees == 180 ? 0 : shape.radius / std::tan(degrees / 360 * std::numbers::pi);
-  (cone ? (by_angle ? shape.height : shape.tip_height) : shape.tip_height) = of_tip;
-}
-
-void read_cylinder(OptionReader& in, const std::string& name, Shape& shape) {
-  const auto errors = in.errors();
-  read_height(in, name, shape);
-  if (in.listing() || in.errors() != errors || shape.tip_height <= shape.height * (1 + 1e-9)) return;
-  const double least = 360 / std::numbers::pi * std::atan(shape.radius / shape.height);
-  in.reject(name + "_tip_angle_deg", "an angle in deg of " + text_of(least) +
-                                         " or more, so that the tip is not longer than -" + name + "_height");
-}
-
-void read_cone(OptionReader& in, const std::string& name, Shape& shape) {
-  if (!in.listing()) read_height(in, name, shape);  // listed with the cylinder's
-  in.word({.name = name + "_tip", .meaning = "cone: where its tip points"},
-          Words<bool>{{"down", false}, {"up", true}}, shape.tip_up);
-}
-
-void read_file(OptionReader& in, const std::string& name, Shape& shape) {
-  in.text({.name = name + "_file",
-           .meaning = "particles: a frame or checkpoint of another run, or an HDF5 file laid out as a frame; "
-                      "stl: a closed surface of triangles, STL (ASCII or binary) or OBJ",
-           .required = true},
-          shape.file);
-  shape.file_body = name;
-  in.text({.name = name + "_file_body",
-           .meaning = "particles: the body of the file",
-           .standard = in.listing() ? "NAME" : ""},
-          shape.file_body);
-}
-
 /// A word of -NAME_shape. Those that rigids do not take are the last.
 struct Kind {
   const char* word;
@@ -195,6 +42,183 @@ const std::vector<std::pair<ShapeKind, std::vector<std::string>>> k_keys = {
     {ShapeKind::stl, {"file", "scale", "offset"}},
     {ShapeKind::layer, {"top", "base"}},
     {ShapeKind::particles, {"file", "file_body"}}};
+
+/// The shapes that have an option, by its key.
+std::vector<std::string> shapes_with(const std::string& key) {
+  std::vector<std::string> words;
+  for (const Kind& k : k_kinds)
+    for (const auto& [kind, keys] : k_keys)
+      if (kind == k.kind && std::find(keys.begin(), keys.end(), key) != keys.end())
+        words.emplace_back(k.word);
+  return words;
+}
+
+void read_box(OptionReader& in, const std::string& name, int dim, Shape& shape) {
+  const auto only = in.where(name + "_shape", shapes_with("lower"));
+  const auto errors = in.errors();
+  in.vector({.name = name + "_lower", .meaning = "box: its lower corner", .unit = "m", .required = true}, dim,
+            shape.lower);
+  in.vector({.name = name + "_upper", .meaning = "box: its upper corner", .unit = "m", .required = true}, dim,
+            shape.upper);
+  in.number({.name = name + "_fillet",
+             .meaning = "box: radius of all its corners (in 3D of its edges and corners)",
+             .unit = "m",
+             .range = k_not_negative},
+            shape.fillet);
+  double degrees = 0;
+  in.number(
+      {.name = name + "_angle_deg",
+       .meaning = "box: turned about its lower corner, anticlockwise; in 3D about the y axis, from x to z",
+       .unit = "deg",
+       .range = {.lowest = -360, .highest = 360}},
+      degrees);
+  shape.angle = degrees / 180 * std::numbers::pi;
+  if (in.listing() || in.errors() != errors) return;
+  double shortest = shape.upper[0] - shape.lower[0];
+  for (int d = 1; d < dim; ++d) shortest = std::min(shortest, shape.upper[d] - shape.lower[d]);
+  if (!(shortest > 0))
+    in.reject(name + "_upper", std::to_string(dim) + " numbers in m, each greater than that of -" + name +
+                                   "_lower, " + text_of(shape.lower, dim));
+  else if (shape.fillet > shortest / 2 * (1 + 1e-9))
+    in.reject(name + "_fillet", "a length in m at most half of the shortest edge, " + text_of(shortest / 2));
+}
+
+void read_polygon(OptionReader& in, const std::string& name, int dim, Shape& shape) {
+  const auto only = in.where(name + "_shape", shapes_with("polygon"));
+  const std::string option = name + "_polygon";
+  const std::string takes = in.listing() ? "x0,y0,x1,y1,... (x0,z0,... in 3D) in m, 3 vertices or more"
+                            : dim == 2   ? "x0,y0,x1,y1,... in m, 3 vertices or more"
+                                         : "x0,z0,x1,z1,... in m, 3 vertices or more";
+  std::vector<std::string> pieces;
+  if (!in.list_of({.name = option,
+                   .meaning = "polygon: its vertices in order; in 3D those of a prism along y",
+                   .unit = "m",
+                   .required = true},
+                  takes, pieces))
+    return;
+  std::vector<double> numbers;
+  for (const auto& piece : pieces)
+    if (const auto number = parse_number(piece)) numbers.push_back(*number);
+  if (numbers.size() != pieces.size() || numbers.size() % 2 == 1 || numbers.size() < 6)
+    return in.reject(option, takes);
+  for (std::size_t k = 0; k < numbers.size(); k += 2) shape.polygon.push_back({numbers[k], numbers[k + 1]});
+  if (const auto crossing = first_crossing(shape.polygon))
+    in.reject(option, "a polygon whose edges neither cross nor touch; edges " +
+                          std::to_string(crossing->first + 1) + " and " +
+                          std::to_string(crossing->second + 1) + " do");
+}
+
+void read_width(OptionReader& in, const std::string& name, int dim, Shape& shape) {
+  const std::string option = name + "_width";
+  if (dim == 2 && !in.listing()) return in.not_taken(option, "a polygon in 2D has none");
+  const auto polygon = in.where(name + "_shape", shapes_with("width"));
+  const auto in_3d = in.where("dim", {"3"});
+  const bool found = in.numbers({.name = option,
+                                 .meaning = "polygon in 3D: lower and upper y of the prism",
+                                 .unit = "m",
+                                 .required = true},
+                                "lower,upper", "", shape.width);
+  if (found && !(shape.width[0] < shape.width[1]))
+    in.reject(option, "2 numbers in m, as lower,upper, the second greater than the first");
+}
+
+void read_half_plane(OptionReader& in, const std::string& name, int dim, Shape& shape) {
+  const auto only = in.where(name + "_shape", shapes_with("point"));
+  in.vector(
+      {.name = name + "_point", .meaning = "half_plane: a point on its face", .unit = "m", .required = true},
+      dim, shape.point);
+  const bool found =
+      in.vector({.name = name + "_normal",
+                 .meaning = "half_plane: normal of its face, outward, of any length; the shape is "
+                            "the part of the mesh behind the face",
+                 .unit = "-",
+                 .required = true},
+                dim, shape.normal);
+  const double length = std::hypot(shape.normal[0], shape.normal[1], shape.normal[2]);
+  if (found && length == 0) in.reject(name + "_normal", std::to_string(dim) + " numbers that are not all 0");
+  if (length > 0)
+    for (double& component : shape.normal) component /= length;
+}
+
+void read_disc(OptionReader& in, const std::string& name, int dim, Shape& shape) {
+  const auto only = in.where(name + "_shape", shapes_with("centre"));
+  in.vector({.name = name + "_centre",
+             .meaning = "disc: its centre; cylinder: the lower end of its vertical axis; cone: its tip",
+             .unit = "m",
+             .required = true},
+            dim, shape.centre);
+  in.number({.name = name + "_radius",
+             .meaning = "disc, cylinder: its radius; cone: that of its base",
+             .unit = "m",
+             .range = k_positive,
+             .required = true},
+            shape.radius);
+}
+
+/// A cone's height or apex angle: either gives the other.
+void read_height(OptionReader& in, const std::string& name, Shape& shape) {
+  const auto only = in.where(name + "_shape", shapes_with("height"));
+  const bool cone = shape.kind == ShapeKind::cone && !in.listing();
+  const std::string height = name + "_height", angle = name + "_tip_angle_deg";
+  const bool by_angle = cone && in.given(angle);
+  if (by_angle && in.given(height)) {
+    in.ignore(height);
+    return in.not_taken(angle, name + "_height is given");
+  }
+  if (!by_angle)
+    in.number({.name = height,
+               .meaning = "cylinder: its height, with its tip; cone: its height, or give its tip angle",
+               .unit = "m",
+               .range = k_positive,
+               .required = !in.listing(),
+               .standard = in.listing() ? "required, of a cone where its tip_angle_deg is not given" : ""},
+              shape.height);
+  double degrees = 180;
+  const Range range = cone ? Range{.lowest = 1, .highest = 179} : Range{.lowest = 1, .highest = 180};
+  if (by_angle || !cone)
+    in.number({.name = angle,
+               .meaning = "cylinder: apex angle of the cone that its lower end is, 180 for a flat end; cone: "
+                          "its apex angle, instead of its height",
+               .unit = "deg",
+               .range = range},
+              degrees);
+  const double of_tip = degrees == 180 ? 0 : shape.radius / std::tan(degrees / 360 * std::numbers::pi);
+  (cone ? (by_angle ? shape.height : shape.tip_height) : shape.tip_height) = of_tip;
+}
+
+void read_cylinder(OptionReader& in, const std::string& name, Shape& shape) {
+  const auto errors = in.errors();
+  read_height(in, name, shape);
+  if (in.listing() || in.errors() != errors || shape.tip_height <= shape.height * (1 + 1e-9)) return;
+  const double least = 360 / std::numbers::pi * std::atan(shape.radius / shape.height);
+  in.reject(name + "_tip_angle_deg", "an angle in deg of " + text_of(least) +
+                                         " or more, so that the tip is not longer than -" + name + "_height");
+}
+
+void read_cone(OptionReader& in, const std::string& name, Shape& shape) {
+  if (!in.listing()) read_height(in, name, shape);  // listed with the cylinder's
+  const auto only = in.where(name + "_shape", shapes_with("tip"));
+  in.word({.name = name + "_tip", .meaning = "cone: where its tip points"},
+          Words<bool>{{"down", false}, {"up", true}}, shape.tip_up);
+}
+
+void read_file(OptionReader& in, const std::string& name, Shape& shape) {
+  {
+    const auto only = in.where(name + "_shape", shapes_with("file"));
+    in.text(
+        {.name = name + "_file",
+         .meaning = "particles: a frame or checkpoint of another run, or an HDF5 file laid out as a frame; "
+                    "stl: a closed surface of triangles, STL (ASCII or binary) or OBJ",
+         .required = true},
+        shape.file);
+  }
+  shape.file_body = name;
+  const auto only = in.where(name + "_shape", shapes_with("file_body"));
+  in.text({.name = name + "_file_body",
+           .meaning = "particles: the body of the file",
+           .standard = in.listing() ? "NAME" : ""},
+          shape.file_body);
+}
 
 /// Reads what belongs to the kind of shape and rejects what belongs to another. False where the shape lacks a
 /// part that another body's mistake keeps from it.
@@ -289,6 +313,10 @@ void read_fill(OptionReader& in, const std::string& name, bool body, Shape& shap
       shape.kind == ShapeKind::stl || shape.kind == ShapeKind::layer || shape.kind == ShapeKind::parts;
   const bool slides = body && !in.listing() && has_facets(shape) && is_in_pairs(in, name);
   if ((body && ground) || slides) shape.fill = Fill::cut;
+  std::vector<std::string> shapes;
+  for (const Kind& k : k_kinds)
+    if (k.for_rigids) shapes.emplace_back(k.word);
+  const auto only = in.where(name + "_shape", shapes);
   in.word(
       {.name = name + "_fill",
        .meaning =

@@ -33,9 +33,21 @@ bool is_smooth(const OptionReader& in, const std::string& name) {
   return lower_case(in.given_text(name)) == "smooth";
 }
 
+/// Words of the kinds of side for which f holds.
+template <class F>
+std::vector<std::string> words_where(F&& f) {
+  std::vector<std::string> words;
+  for (const SideWord& side : k_side_words)
+    if (f(side)) words.emplace_back(side.word);
+  return words;
+}
+
 void read_numbers(OptionReader& in, const std::string& name, Wall kind, SideNumbers& numbers) {
   for (const SideNumber& number : k_side_numbers)
-    if (in.listing() || (number.of(kind) && !is_smooth(in, name)))
+    if (const auto only = in.where(name, words_where([&](const SideWord& side) {
+                                     return number.of(side.kind) && std::string(side.word) != "smooth";
+                                   }));
+        in.listing() || (number.of(kind) && !is_smooth(in, name)))
       in.number({.name = name + "_" + number.key,
                  .meaning = number.meaning,
                  .unit = number.unit,
@@ -86,7 +98,7 @@ void read_acceleration(OptionReader& in, const std::string& name, int dim, doubl
   const std::string table = name + "_acceleration_table", word = name + "_acceleration_correction";
   Vec3 size{};
   BaselineCorrection correction = BaselineCorrection::linear;
-  if (in.given(table) || in.listing()) {
+  if (const auto only = in.where(table); in.given(table) || in.listing()) {
     in.vector(acceleration("what the factors of -" + table + " multiply"), dim, size);
     in.word(
         {.name = word,
@@ -128,7 +140,9 @@ void read_side(OptionReader& in, const Config& config, int d, int side, SideConf
   const auto known = in.known().size();
   read_numbers(in, name, kind, to.numbers);
   const bool moves = may_move(kind);
-  if (in.listing() || (moves && !in.given(name + "_acceleration_table")))
+  const auto only = in.where(name, words_where([](const SideWord& side) { return may_move(side.kind); }));
+  if (const auto alone = in.unless(name + "_acceleration_table");
+      in.listing() || (moves && !in.given(name + "_acceleration_table")))
     read_velocity(in, name, config.dim, config.time.end, to);
   if (in.listing() || moves) read_acceleration(in, name, config.dim, config.time.end, to);
   if (in.listing()) return;
@@ -181,7 +195,7 @@ void read_sides(OptionReader& in, Config& config) {
   in.section("Sides of the mesh");
   for (int d = 0; d < 3; ++d)
     for (int side = 0; side < 2; ++side)
-      if (d < config.dim || in.listing()) {
+      if (const auto only = d == 2 ? in.where("dim", {"3"}) : in.always(); d < config.dim || in.listing()) {
         read_side(in, config, d, side, config.mesh.sides[d][side]);
       } else {
         for_each_key([&](const std::string& key) {

@@ -21,10 +21,11 @@ std::string name_of(const OptionReader& in, const char* key) {
 void read_end_by_displacement(OptionReader& in, const Config& config, StageConfig& stage) {
   const Option rigid{.name = name_of(in, "end_rigid"),
                      .meaning = "displacement: the rigid body whose displacement ends the stage",
-                     .required = !in.listing(),
-                     .standard = in.listing() ? "required with displacement" : "",
+                     .required = true,
                      .aside = ", of -rigid_bodies",
-                     .change = k_at_any_restart};
+                     .change = k_at_any_restart,
+                     .names_of = "rigid_bodies"};
+  const auto only = in.where(name_of(in, "end"), {"displacement"});
   std::vector<std::string> rigids;
   for (const RigidConfig& each : config.rigids) rigids.push_back(each.name);
   if (rigids.empty() && !in.listing())
@@ -37,8 +38,7 @@ void read_end_by_displacement(OptionReader& in, const Config& config, StageConfi
              .meaning = "displacement: its size since the stage began, at which the stage ends",
              .unit = "m",
              .range = k_positive,
-             .required = !in.listing(),
-             .standard = in.listing() ? "required with displacement" : "",
+             .required = true,
              .change = k_at_any_restart},
             stage.end_displacement);
 }
@@ -110,7 +110,7 @@ std::vector<std::string> read_stage_names(OptionReader& in) {
 
 void read_stage(OptionReader& in, Config& config) {
   StageConfig& stage = config.stage;
-  in.section("Each stage STAGE");
+  in.section("Each stage STAGE", {"stages"});
   in.word(
       {.name = name_of(in, "end"),
        .meaning = "what ends the stage: its time_end; equilibrium under gravity; or a displacement. Where "
@@ -120,7 +120,8 @@ void read_stage(OptionReader& in, Config& config) {
                       {"equilibrium", StageEnd::equilibrium},
                       {"displacement", StageEnd::displacement}},
       stage.end);
-  if (stage.end == StageEnd::equilibrium || in.listing())
+  if (const auto only = in.where(name_of(in, "end"), {"equilibrium"});
+      stage.end == StageEnd::equilibrium || in.listing())
     in.number({.name = name_of(in, "unbalanced_ratio"),
                .meaning = "equilibrium: mean unbalanced force over mean weight of the nodes, below which the "
                           "soil is in equilibrium",

@@ -12,7 +12,7 @@ constexpr const char* k_degrees[] = {"x", "y", "z", "rx", "ry", "rz"};
 void read_by_degrees(OptionReader& in, int dim, const Option& option, const RigidConfig& rigid,
                      std::array<double, 6>& value) {
   std::array<double, 6> given{};
-  const bool plane = dim == 2 && !in.listing();
+  const bool plane = dim == 2;
   if (!in.numbers(option, "x,y,rz", "x,y,z,rx,ry,rz", std::span<double>(given.data(), plane ? 3 : 6))) return;
   if (plane) given = {given[0], given[1], 0, 0, 0, given[2]};
   for (int k = 0; k < 6; ++k)
@@ -30,6 +30,7 @@ const std::vector<std::string>& support_keys() {
 }
 
 void read_support(OptionReader& in, int dim, RigidConfig& rigid) {
+  const auto only = in.where(rigid.name + "_motion", {"dynamic"});
   read_by_degrees(
       in, dim,
       {.name = rigid.name + "_stiffness",

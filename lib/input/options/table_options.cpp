@@ -48,7 +48,7 @@ bool read_timed(OptionReader& in, const Option& of, bool has_constant, int dim, 
   std::string text;
   const bool given = in.text(points, text);
   bool smooth = false;
-  if (given || in.listing())
+  if (const auto only = in.where(name); given || in.listing())
     in.word({.name = name + "_interpolation",
              .meaning = "between the points of the table: straight, or smooth by 3 x^2 - 2 x^3",
              .change = of.change},

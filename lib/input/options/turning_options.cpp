@@ -45,8 +45,8 @@ void read_free(OptionReader& in, int dim, RigidConfig& rigid) {
 
 /// Numbers of a rotation: one in 2D.
 bool read_spin(OptionReader& in, int dim, const Option& option, Vec3& value) {
-  if (dim == 3 || in.listing()) return in.vector(option, 3, value);
-  return in.number(option, value[0]);
+  if (in.listing()) return in.numbers(option, "z", "x,y,z", std::span(value).first(1));
+  return dim == 3 ? in.vector(option, 3, value) : in.number(option, value[0]);
 }
 
 /// Numbers of a rotation.
@@ -112,9 +112,11 @@ void read_inertia(OptionReader& in, int dim, RigidConfig& rigid) {
                       .unit = "kg m2",
                       .range = {.lowest = dim == 2 ? 0 : -1e18, .highest = 1e18, .open_lowest = true},
                       .standard = "that of its shape"};
-  const bool found = dim == 3 || in.listing()
-                         ? in.numbers(option, "I", "xx,yy,zz,xy,yz,zx", std::span<double>(inertia))
-                         : in.number(option, inertia[0]);
+  const std::string tensor = "xx,yy,zz,xy,yz,zx";
+  const std::span<double> all(inertia);
+  const bool found = in.listing() ? in.numbers(option, "I", tensor, all.first(1))
+                     : dim == 3   ? in.numbers(option, tensor, "", all)
+                                  : in.number(option, inertia[0]);
   if (!found) return;
   const auto& [xx, yy, zz, xy, yz, zx] = inertia;
   const double minor = xx * yy - xy * xy;
@@ -179,7 +181,9 @@ const std::vector<std::string>& turning_keys() {
 
 void read_turning(OptionReader& in, int dim, double end, RigidConfig& rigid) {
   const bool dynamic = rigid.motion == Motion::dynamic || in.listing();
-  if (dynamic) read_free(in, dim, rigid);
+  const std::string motion = rigid.name + "_motion";
+  if (const auto only = in.where(motion, {"dynamic"}); dynamic) read_free(in, dim, rigid);
+  const auto moves = in.where(motion, {"prescribed", "dynamic"});
   const Option spin{
       .name = rigid.name + "_angular_velocity",
       .meaning =
@@ -189,7 +193,8 @@ void read_turning(OptionReader& in, int dim, double end, RigidConfig& rigid) {
       .range = k_spin,
       .change = k_by_choice};
   read_spin(in, dim, spin, rigid.angular_velocity);
-  if (rigid.motion == Motion::prescribed || in.listing()) read_turning_tables(in, dim, end, spin, rigid);
+  if (const auto only = in.where(motion, {"prescribed"}); rigid.motion == Motion::prescribed || in.listing())
+    read_turning_tables(in, dim, end, spin, rigid);
   read_moment_point(in, dim, rigid);
   Vec3 centre{};
   const bool has_centre = in.given(rigid.name + "_centre_of_mass");
@@ -201,6 +206,7 @@ void read_turning(OptionReader& in, int dim, double end, RigidConfig& rigid) {
                                                 dim, centre))
     rigid.centre_of_mass = centre;
   if (!dynamic) return;
+  const auto only = in.where(motion, {"dynamic"});
   const Option moment{.name = rigid.name + "_moment",
                       .meaning = "dynamic: external moment on it about the centre of mass; in 2D one number",
                       .unit = "N m",

@@ -29,7 +29,7 @@ void read_water(OptionReader& in, Config& config) {
     in.reject("water_level", "a -gravity other than 0, which gives water its pressure");
   if (!in.listing() && config.water.level && in.given("gravity_table"))
     in.reject("water_level", "no -gravity_table: water at rest needs a constant -gravity");
-  if (config.water.level || in.listing())
+  if (const auto only = in.where("water_level"); config.water.level || in.listing())
     in.number({.name = "water_density", .meaning = "its density", .unit = "kg/m3", .range = k_density},
               config.water.density);
   else
@@ -37,7 +37,7 @@ void read_water(OptionReader& in, Config& config) {
 }
 
 void read_water_region(OptionReader& in, const Config& config, WaterRegionConfig& region) {
-  in.section("Each water region NAME");
+  in.section("Each water region NAME", {"water_regions"});
   const int dim = config.dim;
   const auto errors = in.errors();
   in.vector({.name = region.name + "_lower",
@@ -62,7 +62,8 @@ void read_water_region(OptionReader& in, const Config& config, WaterRegionConfig
                      .range = k_coordinate,
                      .standard = "-water_level",
                      .aside = ", or dry",
-                     .change = k_at_stages};
+                     .change = k_at_stages,
+                     .words = {"dry"}};
   if (in.given_text(level.name) == "dry") {
     std::string word;
     region.dry = in.text(level, word);
