@@ -20,8 +20,8 @@ sys.dont_write_bytecode = True
 
 from mpm_regression import cases, differences  # noqa: E402
 from mpm_regression.compare import BOUNDS  # noqa: E402
-from mpm_tools.bench.runs import performance  # noqa: E402
-from mpm_tools.results import Run, read_frame  # noqa: E402
+from soil_mpm.bench.runs import performance  # noqa: E402
+from soil_mpm.results import Run, read_frame  # noqa: E402
 
 STRATEGIES = ("tile", "gather", "auto")
 COMMON = ("-materials soft -soft_model linear_elastic -soft_density 1000 -soft_young 1e6 -soft_poisson 0.3"

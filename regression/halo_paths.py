@@ -20,9 +20,9 @@ sys.dont_write_bytecode = True
 
 from mpm_regression import cases, differences  # noqa: E402
 from mpm_regression.compare import BOUNDS  # noqa: E402
-from mpm_tools.bench.runs import HISTORY, Setting, performance  # noqa: E402
-from mpm_tools.results import Run  # noqa: E402
-from mpm_tools.tree import default_program  # noqa: E402
+from soil_mpm.bench.runs import HISTORY, Setting, performance  # noqa: E402
+from soil_mpm.results import Run  # noqa: E402
+from soil_mpm.tree import default_program  # noqa: E402
 
 # deck, options, steps. Stresses of the footing grow to what is compared only with time; margins of 0.02 cells make rebuilds.
 CHECKS = [("inputs/landslide_coarse.opts", "", 1), ("inputs/landslide_coarse.opts", "", 100),

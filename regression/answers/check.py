@@ -15,7 +15,7 @@ An expression is of Python, with numpy as np, of these:
   column(name)            all rows of a column
   frame(time)             {body: {field: array}} of the frame nearest to a time
   uneven(body, time)      standard deviation of the depth of a column of cells from the mean of both neighbours, over the mean
-                          depth, in 2D (unevenness of scripts/mpm_tools/flow.py)
+                          depth, in 2D (unevenness of scripts/soil_mpm/flow.py)
   near(value, exact, by)  |value - exact| <= by |exact|
 Each takes `run=NAME` where the deck has several runs; the first one is the default.
 """
@@ -29,8 +29,8 @@ import tempfile
 
 import numpy as np
 
-from mpm_tools.flow import depths, unevenness
-from mpm_tools.results import Run, read_frame
+from soil_mpm.flow import depths, unevenness
+from soil_mpm.results import Run, read_frame
 
 HERE = pathlib.Path(__file__).resolve().parent
 

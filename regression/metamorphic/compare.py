@@ -3,7 +3,7 @@ import os
 import re
 import shlex
 
-from mpm_tools.python_modules import need  # noqa: E402
+from soil_mpm.python_modules import need  # noqa: E402
 
 need("numpy", "h5py")
 
@@ -15,7 +15,7 @@ from dimensions import (ACCELERATION, AREA, ENERGY, FORCE, LENGTH, MASS, MOMENTU
 from images import EXACT  # noqa: E402
 from mpm_regression.differences import Scales  # noqa: E402
 from mpm_regression.folders import checkpoints, fresh, run as run_program  # noqa: E402
-from mpm_tools.results import Run, read_frame  # noqa: E402
+from soil_mpm.results import Run, read_frame  # noqa: E402
 
 BOUNDS = {"double": 1e-9, "single": 0.05}  # of a field's largest value, as mpm_regression.compare has them
 DOMAINS = 1e-4  # the same where half lengths follow the soil, which are numbers of single precision in every run

@@ -3,4 +3,4 @@
 import sys
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))  # mpm_tools lies there
+sys.path.append(str(Path(__file__).resolve().parents[2] / "python"))  # soil_mpm lies there

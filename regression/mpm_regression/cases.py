@@ -24,8 +24,8 @@ import tempfile
 import time
 
 from mpm_regression.size import with_size
-from mpm_tools.results import Run
-from mpm_tools.tree import ROOT
+from soil_mpm.results import Run
+from soil_mpm.tree import ROOT
 
 SESSIONS = tempfile.TemporaryDirectory(prefix="mpm_")
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mpm_tools.results import read_frame
+from soil_mpm.results import read_frame
 
 trapezoid = np.trapezoid if hasattr(np, "trapezoid") else np.trapz  # NumPy 2 has renamed it
 

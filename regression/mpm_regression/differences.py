@@ -10,7 +10,7 @@ centre of mass that symmetry puts at the origin) or displacement a cell.
 
 import numpy as np
 
-from mpm_tools.results import read_frame
+from soil_mpm.results import read_frame
 
 
 def stiffness(run, material, pressure, own_young=0):

@@ -18,7 +18,7 @@ import unittest
 sys.dont_write_bytecode = True
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 
-from mpm_tools.bench import laws, runs, tables, threads  # noqa: E402
+from soil_mpm.bench import laws, runs, tables, threads  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 

@@ -13,7 +13,7 @@ import numpy as np
 sys.dont_write_bytecode = True
 
 from mpm_regression import differences  # noqa: E402
-from mpm_tools.results import Run  # noqa: E402
+from soil_mpm.results import Run  # noqa: E402
 
 OPTIONS = {"dim": "2", "mesh_spacing": "0.1", "materials": "clay", "clay_density": "100", "clay_young": "1e4",
            "clay_poisson": "0", "bodies": "soil", "soil_material": "clay", "rigid_bodies": "plate"}

@@ -19,7 +19,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 
-from mpm_tools.ground import fields, raster  # noqa: E402
+from soil_mpm.ground import fields, raster  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""mpm_tools.results, factor and runout, and the pictures of scripts/plot, on a made-up footing, pipe and slide.
+"""soil_mpm.results, factor and runout, and the pictures of scripts/plot, on a made-up footing, pipe and slide.
 Needs numpy, h5py and matplotlib."""
 
 import json
@@ -13,8 +13,8 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 
-from mpm_tools import factor, results, runout  # noqa: E402
-from mpm_tools.plot import curves as plot_curves, fields as plot_fields  # noqa: E402
+from soil_mpm import factor, results, runout  # noqa: E402
+from soil_mpm.plot import curves as plot_curves, fields as plot_fields  # noqa: E402
 
 OPTIONS = {"dim": "2", "mesh_lower": "0,0", "mesh_upper": "3,4.5", "mesh_spacing": "0.05", "mesh_xmin": "roller",
            "materials": "clay", "clay_model": "von_mises", "clay_su": "3000", "clay_young": "1.5e6", "clay_poisson": "0.49",

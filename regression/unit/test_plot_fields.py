@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fields, slices and films of mpm_tools.plot.fields and film, on a made-up cube of soil with a pile.
+"""Fields, slices and films of soil_mpm.plot.fields and film, on a made-up cube of soil with a pile.
 Needs numpy, h5py, matplotlib and Pillow."""
 
 import contextlib
@@ -18,8 +18,8 @@ from PIL import Image
 
 sys.dont_write_bytecode = True
 
-from mpm_tools import results  # noqa: E402
-from mpm_tools.plot import curves as plot_curves, fields as plot_fields, film as plot_film  # noqa: E402
+from soil_mpm import results  # noqa: E402
+from soil_mpm.plot import curves as plot_curves, fields as plot_fields, film as plot_film  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 

@@ -13,9 +13,9 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 
-from mpm_tools import results  # noqa: E402
-from mpm_tools.ground import raster  # noqa: E402
-from mpm_tools.plot import fields as plot_fields, probes as plot_probes, profiles as plot_profiles  # noqa: E402
+from soil_mpm import results  # noqa: E402
+from soil_mpm.ground import raster  # noqa: E402
+from soil_mpm.plot import fields as plot_fields, probes as plot_probes, profiles as plot_profiles  # noqa: E402
 
 OPTIONS = {"dim": "2", "mesh_lower": "0,0", "mesh_upper": "4,2", "mesh_spacing": "0.25", "bodies": "soil", "probes": "toe,gate",
            "toe_kind": "gauge", "gate_kind": "section"}

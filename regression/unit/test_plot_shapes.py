@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""mpm_tools.plot.outlines, units and runout: outlines of rigid bodies against points inside them, units of axes,
+"""soil_mpm.plot.outlines, units and runout: outlines of rigid bodies against points inside them, units of axes,
 and the run-out of slides in any direction. Needs numpy, h5py and matplotlib."""
 
 import json
@@ -14,10 +14,10 @@ from matplotlib.path import Path as Polygon
 
 sys.dont_write_bytecode = True
 
-from mpm_tools import results, runout, units  # noqa: E402
-from mpm_tools.ground import raster  # noqa: E402
-from mpm_tools.plot import fields as plot_fields, outlines  # noqa: E402
-from mpm_tools.plot.surfaces import section_of_triangles  # noqa: E402
+from soil_mpm import results, runout, units  # noqa: E402
+from soil_mpm.ground import raster  # noqa: E402
+from soil_mpm.plot import fields as plot_fields, outlines  # noqa: E402
+from soil_mpm.plot.surfaces import section_of_triangles  # noqa: E402
 
 PLANE = {"dim": "2", "mesh_lower": "0,0", "mesh_upper": "8,6", "mesh_spacing": "0.25", "bodies": "soil", "rigid_bodies": "body"}
 SPACE = {**PLANE, "dim": "3", "mesh_lower": "0,0,0", "mesh_upper": "8,5,6"}

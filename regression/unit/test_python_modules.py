@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""mpm_tools.python_modules: a script finds a Python that has its modules, or ends with one line."""
+"""soil_mpm.python_modules: a script finds a Python that has its modules, or ends with one line."""
 
 import os
 import pathlib
@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-THIRD_PARTY = ("import numpy", "import h5py", "import matplotlib", "from mpm_tools")
+THIRD_PARTY = ("import numpy", "import h5py", "import matplotlib", "from soil_mpm")
 
 
 def wrapper(folder, lines):
@@ -26,8 +26,8 @@ class PythonModules(unittest.TestCase):
         self.addCleanup(kept.cleanup)
         self.folder = pathlib.Path(kept.name)
         self.script = self.folder / "script"
-        (self.folder / "mpm_tools").symlink_to(SCRIPTS / "mpm_tools")
-        self.script.write_text("from mpm_tools.python_modules import need\n"
+        (self.folder / "soil_mpm").symlink_to(SCRIPTS / "soil_mpm")
+        self.script.write_text("from soil_mpm.python_modules import need\n"
                                "need('made_up_module')\nimport sys\nimport made_up_module\nprint(made_up_module.WORD, *sys.argv[1:])\n")
 
     def run_script(self, *words, **variables):

@@ -12,8 +12,8 @@ import numpy as np
 
 from mpm_regression.curves import last_frame
 from mpm_regression.row import Row
-from mpm_tools.flow import depths, measures, unevenness
-from mpm_tools.results import read_frame
+from soil_mpm.flow import depths, measures, unevenness
+from soil_mpm.results import read_frame
 
 LONG = True
 LOWER, SPACING, COUNT = (0.0, 0.0), 0.1, 40

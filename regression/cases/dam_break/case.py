@@ -11,7 +11,7 @@ import numpy as np
 
 from mpm_regression import particles
 from mpm_regression.row import Row
-from mpm_tools.results import read_frame
+from soil_mpm.results import read_frame
 
 DENSITY, G, DEPTH, LENGTH = 1000.0, 9.81, 1.0, 3.6
 SPACING = 0.05

@@ -11,8 +11,8 @@ import numpy as np
 from mpm_regression import cases
 from mpm_regression.curves import last_frame
 from mpm_regression.row import Row
-from mpm_tools.flow import depths, filling, unevenness
-from mpm_tools.results import read_frame
+from soil_mpm.flow import depths, filling, unevenness
+from soil_mpm.results import read_frame
 
 DAM = cases.Case("dam_break").module
 DECK = "regression/cases/dam_break/case.opts"

@@ -14,7 +14,7 @@ import numpy as np
 from mpm_regression import particles
 from mpm_regression.curves import first_frame, trapezoid
 from mpm_regression.row import Row
-from mpm_tools.results import read_frame
+from soil_mpm.results import read_frame
 
 PERIODIC, FREE = " -mesh_xmin periodic -mesh_xmax periodic", " -mesh_xmin free_field -mesh_xmax free_field"
 

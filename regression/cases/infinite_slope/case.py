@@ -20,7 +20,7 @@ import numpy as np
 from mpm_regression import particles
 from mpm_regression.curves import mesh_options
 from mpm_regression.row import Row
-from mpm_tools.results import read_frame
+from soil_mpm.results import read_frame
 
 G, DENSITY, DEPTH = 10.0, 1800.0, 3.0  # m/s2, kg/m3, m
 CELLS = 20  # over the thickness

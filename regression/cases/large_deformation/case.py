@@ -12,7 +12,7 @@ import numpy as np
 from mpm_regression import particles
 from mpm_regression.curves import last_frame
 from mpm_regression.row import Row
-from mpm_tools.results import read_frame
+from soil_mpm.results import read_frame
 
 CENTRE = np.array([-1.3, -0.1])
 SIZES = {"stretched": (12.0, 12.0), "sheared": (32.0, 8.0)}

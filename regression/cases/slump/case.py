@@ -17,8 +17,8 @@ import numpy as np
 from mpm_regression import particles
 from mpm_regression.curves import last_frame
 from mpm_regression.row import Row
-from mpm_tools.flow import depths, unevenness
-from mpm_tools.results import read_frame
+from soil_mpm.flow import depths, unevenness
+from soil_mpm.results import read_frame
 
 G = 9.81
 SYRUP = "-heap_material syrup -mesh_upper 0.6,0.075 -mesh_spacing {:g} -time_end 10 -output_interval 1 -heap_file {{start}}"

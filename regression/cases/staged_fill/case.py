@@ -14,7 +14,7 @@ the ground is higher than the foot of the second lift, `-upper_cut_out` leaves o
 import numpy as np
 
 from mpm_regression.row import Row
-from mpm_tools.results import read_frame, stage_of
+from soil_mpm.results import read_frame, stage_of
 
 GRAVITY, HEIGHT, DENSITY, PLATE, FORCE, WATER = 10.0, 2.0, 2000.0, 3000.0, 20e3, 4e8
 POISSON = 0.2

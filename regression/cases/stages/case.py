@@ -11,7 +11,7 @@ A run of three stages with the same options must give the same positions and str
 import numpy as np
 
 from mpm_regression.row import Row
-from mpm_tools.results import read_frame, stage_of
+from soil_mpm.results import read_frame, stage_of
 
 POISSON, DENSITY, GRAVITY, CELL = 0.3, 2000.0, 9.81, 0.25
 # Steps whose multiple is the time of a stage, so that no stage ends with a shorter one. `gather` has the same bits on a GPU too.

@@ -10,7 +10,7 @@ rough strip (1.5 $B$). The case `strip_fine` continues to $d = B/80$ and $d = 0$
 from mpm_regression.checks.footing import EXACT
 from mpm_regression.row import Row
 from mpm_regression.size import Size
-from mpm_tools.results import bearing_curve, mean_over, window_means
+from soil_mpm.results import bearing_curve, mean_over, window_means
 
 SPACINGS, FINER = (0.1, 0.05, 0.025), (0.025, 0.0125)
 ROUGH = " -plate_shear_limit 3000"

@@ -10,7 +10,7 @@ penetration 0.01 $B$, over which $q$ is a straight line: its value at zero penet
 import numpy as np
 
 from mpm_regression.row import Row
-from mpm_tools.results import bearing_curve
+from soil_mpm.results import bearing_curve
 
 EXACT = {("smooth", 2): 6.661, ("smooth", 6): 8.839, ("smooth", 20): 14.678,
          ("rough", 2): 7.597, ("rough", 6): 10.421, ("rough", 20): 17.402}

@@ -11,7 +11,7 @@ therefore carries about $N \\mu \\log_{10} 4$ more. The walls are 3 D from the b
 import numpy as np
 
 from mpm_regression.row import Row
-from mpm_tools.results import read_frame
+from soil_mpm.results import read_frame
 
 STRENGTH, EXACT = 3000.0, 4 * np.sqrt(2) + 2 * np.pi
 REMOULDED, FACTOR, REFERENCE = 0.3, 0.1, 0.01

@@ -11,7 +11,7 @@ import numpy as np
 from mpm_regression import particles
 from mpm_regression.curves import last_frame
 from mpm_regression.row import Row
-from mpm_tools.flow import filling
+from soil_mpm.flow import filling
 
 SPEED, NU, DENSITY, SPACING = 1.0, 0.01, 1000.0, 0.05
 PRESSURE = 5000.0  # Pa, everywhere at the start

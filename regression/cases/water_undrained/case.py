@@ -20,7 +20,7 @@ import numpy as np
 from mpm_regression import particles
 from mpm_regression.curves import last_frame
 from mpm_regression.row import Row
-from mpm_tools.results import read_frame
+from soil_mpm.results import read_frame
 
 P0, PHI, COHESION = 100e3, 30.0, 5e3  # Pa, deg, Pa
 M, LAMBDA, KAPPA = 1.0, 0.2, 0.04

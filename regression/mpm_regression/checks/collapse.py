@@ -5,7 +5,7 @@ import numpy as np
 from mpm_regression import particles
 from mpm_regression.curves import last_frame
 from mpm_regression.row import Row
-from mpm_tools.results import read_frame
+from soil_mpm.results import read_frame
 
 DENSITY, G, K0 = 1600.0, 9.81, 0.485  # K0 of sand of 31 degrees, 1 - sin (Jaky 1944)
 LENGTH = 1.0  # m, of the column at the start: half of a symmetric one

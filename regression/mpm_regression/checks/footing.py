@@ -3,7 +3,7 @@
 import numpy as np
 
 from mpm_regression.row import Row
-from mpm_tools.results import bearing_curve, mean_over, reference_curve, window_means
+from soil_mpm.results import bearing_curve, mean_over, reference_curve, window_means
 
 EXACT = 2 + np.pi  # Nc of a strip footing at small strain (Prandtl)
 

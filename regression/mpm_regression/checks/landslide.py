@@ -3,8 +3,8 @@
 import numpy as np
 
 from mpm_regression.row import Row
-from mpm_tools.results import read_frame
-from mpm_tools.runout import NORMALS, run_out, at_time, grid_velocity, reference_runout
+from soil_mpm.results import read_frame
+from soil_mpm.runout import NORMALS, run_out, at_time, grid_velocity, reference_runout
 
 PUBLISHED = "Dong, Wang & Randolph (2015): run-out 20 to 25 m, and the independent solver"
 SOLVER = "independent sequential solver"

@@ -6,7 +6,7 @@ import numpy as np
 
 from mpm_regression.differences import largest
 from mpm_regression.folders import checkpoints, differences, frames, fresh, launcher, rows, run
-from mpm_tools.results import Run
+from soil_mpm.results import Run
 
 
 def vector(values):

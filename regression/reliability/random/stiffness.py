@@ -12,8 +12,8 @@ import numpy as np
 from deck import Deck, vector
 from mpm_regression.differences import largest
 from mpm_regression.folders import frames, rows
-from mpm_tools.ground.fields import write_field
-from mpm_tools.results import Run
+from soil_mpm.ground.fields import write_field
+from soil_mpm.results import Run
 
 H = 0.5  # m, edge of a cell
 LAWS = ["linear_elastic", "von_mises -soil_su {su}", "tresca -soil_su {su}",

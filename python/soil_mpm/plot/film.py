@@ -7,8 +7,8 @@ import sys
 import numpy as np
 from PIL import Image
 
-from mpm_tools.plot.fields import NothingToDraw, Scene, default_fields, panels, size_markers
-from mpm_tools.results import time_of
+from soil_mpm.plot.fields import NothingToDraw, Scene, default_fields, panels, size_markers
+from soil_mpm.results import time_of
 
 SECONDS = 6.0          # that a film takes
 SLOWEST, FASTEST = 4, 25  # pictures a second

@@ -5,9 +5,9 @@ import csv
 import matplotlib
 import numpy as np
 
-from mpm_tools.ground.raster import Raster, read_ascii
-from mpm_tools.plot.curves import COLOURS, STYLES, mark_stages, mark_time, run_label, save
-from mpm_tools.units import axis_unit
+from soil_mpm.ground.raster import Raster, read_ascii
+from soil_mpm.plot.curves import COLOURS, STYLES, mark_stages, mark_time, run_label, save
+from soil_mpm.units import axis_unit
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import matplotlib
 import numpy as np
 
-from mpm_tools.plot.curves import COLOURS, save
-from mpm_tools.plot.outlines import outline
-from mpm_tools.plot.surfaces import section_of_triangles
-from mpm_tools.results import read_frame, stage_of, units_of
-from mpm_tools.runout import grid_velocity, profile, slides, time_of_frame
+from soil_mpm.plot.curves import COLOURS, save
+from soil_mpm.plot.outlines import outline
+from soil_mpm.plot.surfaces import section_of_triangles
+from soil_mpm.results import read_frame, stage_of, units_of
+from soil_mpm.runout import grid_velocity, profile, slides, time_of_frame
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

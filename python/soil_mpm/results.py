@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from mpm_tools.tree import CASES
+from soil_mpm.tree import CASES
 
 WINDOW = 0.01  # B, width of the windows over which Nc is averaged
 MEAN_FROM, MEAN_TO = 0.03, 0.20  # B, range of the mean that is reported

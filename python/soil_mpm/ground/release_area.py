@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mpm_tools.ground.raster import WrongRaster
+from soil_mpm.ground.raster import WrongRaster
 
 
 def polygons_of(geometry):

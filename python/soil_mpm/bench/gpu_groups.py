@@ -12,8 +12,8 @@ import sys
 import tarfile
 import time
 
-from mpm_tools.bench.runs import environment
-from mpm_tools.tree import ROOT
+from soil_mpm.bench.runs import environment
+from soil_mpm.tree import ROOT
 
 ANSWERS = {  # cases on the GPU
     "limits": ["footing_surcharge", "footing_weight", "cut_friction", "cut_tresca", "retaining_wall_fine", "footing_square",

@@ -5,10 +5,10 @@ import sys
 import matplotlib
 import numpy as np
 
-from mpm_tools.factor import factor, has_reference
-from mpm_tools.results import MEAN_FROM, MEAN_TO, WINDOW, mean_over, reference_curve, window_means
-from mpm_tools.runout import NORMALS, direction_text, reference_runout, slides, toes
-from mpm_tools.units import axis_unit, is_plane
+from soil_mpm.factor import factor, has_reference
+from soil_mpm.results import MEAN_FROM, MEAN_TO, WINDOW, mean_over, reference_curve, window_means
+from soil_mpm.runout import NORMALS, direction_text, reference_runout, slides, toes
+from soil_mpm.units import axis_unit, is_plane
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

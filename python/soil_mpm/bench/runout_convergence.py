@@ -14,9 +14,9 @@ import numpy as np
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from mpm_tools.markdown_table import print_table
-from mpm_tools.runout import run_out
-from mpm_tools.tree import ROOT
+from soil_mpm.markdown_table import print_table
+from soil_mpm.runout import run_out
+from soil_mpm.tree import ROOT
 
 BACKEND = "cuda"
 DECK = ROOT / "inputs" / "landslide.opts"

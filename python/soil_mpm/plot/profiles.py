@@ -3,9 +3,9 @@
 import matplotlib
 import numpy as np
 
-from mpm_tools.plot.curves import COLOURS, save
-from mpm_tools.plot.fields import NothingToDraw, known_fields
-from mpm_tools.results import read_frame
+from soil_mpm.plot.curves import COLOURS, save
+from soil_mpm.plot.fields import NothingToDraw, known_fields
+from soil_mpm.results import read_frame
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

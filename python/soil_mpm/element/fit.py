@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mpm_tools.element.tests import MEASURED, WrongTest, at_measured
+from soil_mpm.element.tests import MEASURED, WrongTest, at_measured
 
 PENALTY = 10.0  # residual where the law cannot do a test with the parameters tried, in ranges of what was measured
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import h5py
 import numpy as np
 
-from mpm_tools.tree import CASES
+from soil_mpm.tree import CASES
 
 ALIGNED = np.cos(np.radians(1))  # a direction that an axis has
 MOST_PARTICLES = 2e8             # of all frames that are read for a curve

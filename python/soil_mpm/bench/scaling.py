@@ -11,8 +11,8 @@ import subprocess
 from dataclasses import dataclass
 from datetime import date
 
-from mpm_tools.bench.runs import HISTORY, Setting, commit, environment, performance, speed_of
-from mpm_tools.tree import ROOT
+from soil_mpm.bench.runs import HISTORY, Setting, commit, environment, performance, speed_of
+from soil_mpm.tree import ROOT
 
 WEAK, STRONG, SLIDE = 5898240, (23592960, 94371840), 4423680
 SMALLER = 64  # on processors

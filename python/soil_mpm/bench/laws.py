@@ -9,9 +9,9 @@ import operator
 import re
 from datetime import date
 
-from mpm_tools.bench.runs import HISTORY, commit, run, speed_of
-from mpm_tools.bench.tables import digits, number, table
-from mpm_tools.tree import ROOT
+from soil_mpm.bench.runs import HISTORY, commit, run, speed_of
+from soil_mpm.bench.tables import digits, number, table
+from soil_mpm.tree import ROOT
 
 try:
     import h5py

@@ -6,10 +6,10 @@ Of the paper's own curves only what its tables and text say is drawn: Figs 5 and
 
 import numpy as np
 
-from mpm_tools.bench.runs import commit, run, speed_of
-from mpm_tools.bench.tables import MOSAIC_SPEEDUP, PAPER, Measured
-from mpm_tools.results import Run, bearing_curve, reference_curve, window_means
-from mpm_tools.runout import reference_runout, run_out
+from soil_mpm.bench.runs import commit, run, speed_of
+from soil_mpm.bench.tables import MOSAIC_SPEEDUP, PAPER, Measured
+from soil_mpm.results import Run, bearing_curve, reference_curve, window_means
+from soil_mpm.runout import reference_runout, run_out
 
 EXACT = 2 + np.pi
 COLOURS = {"auto": "#0072b2", "gather": "#d55e00", "mosaic": "#009e73"}

@@ -15,7 +15,7 @@ import subprocess
 from dataclasses import asdict, dataclass
 from datetime import date
 
-from mpm_tools.tree import ROOT
+from soil_mpm.tree import ROOT
 
 # Particles of the paper's Tables 1 and 3: strips of L/B = 3 to 230.4, 25,600 particles for each B, and slabs of
 # L/H = 7.5 to 480, 9,216 particles for each H, which is 48 cells.

@@ -13,8 +13,8 @@ import statistics
 import subprocess
 from datetime import date
 
-from mpm_tools.bench.runs import HISTORY, Setting, commit, environment, performance, speed_of
-from mpm_tools.tree import ROOT
+from soil_mpm.bench.runs import HISTORY, Setting, commit, environment, performance, speed_of
+from soil_mpm.tree import ROOT
 
 SIZES = (737280, 5898240)  # particles of all threads: strips of L/B = 28.8 and 230.4
 LEAST = 25600              # of a thread: a shorter strip has no room for the plate

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mpm_tools.ground.raster import WrongRaster, read_ascii
+from soil_mpm.ground.raster import WrongRaster, read_ascii
 
 CIRCLE = 180  # corners of a circle
 LINE = 400    # corners of a layer along the plane

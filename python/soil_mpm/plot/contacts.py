@@ -3,9 +3,9 @@
 import matplotlib
 import numpy as np
 
-from mpm_tools.plot.curves import save
-from mpm_tools.results import read_frame
-from mpm_tools.units import axis_unit
+from soil_mpm.plot.curves import save
+from soil_mpm.results import read_frame
+from soil_mpm.units import axis_unit
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

@@ -12,10 +12,10 @@ import numpy as np
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from mpm_tools.flow import depths, measures, unevenness
-from mpm_tools.markdown_table import print_table
-from mpm_tools.results import read_frame
-from mpm_tools.tree import CASES
+from soil_mpm.flow import depths, measures, unevenness
+from soil_mpm.markdown_table import print_table
+from soil_mpm.results import read_frame
+from soil_mpm.tree import CASES
 
 BACKEND = "serial"
 DECK = CASES / "clay_column" / "case.opts"

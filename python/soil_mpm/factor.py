@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mpm_tools.results import extent, is_half_model
+from soil_mpm.results import extent, is_half_model
 
 CLAYS = ("von_mises", "tresca")  # models with an undrained strength that only depth changes
 REFERENCE_RIGIDITY, REFERENCE_POISSON = 500, 0.49  # E/su and nu of the stored curves
