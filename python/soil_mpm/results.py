@@ -1,15 +1,23 @@
 """Results of a run as arrays, and values that follow from them: the bearing capacity of a footing. Needs numpy and h5py."""
 
+from __future__ import annotations
+
 import csv
+import difflib
 import json
 import re
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, Sequence
 
 import h5py
 import numpy as np
 
+from soil_mpm.problems import NoSuchResult
 from soil_mpm.tree import CASES
+
+if TYPE_CHECKING:
+    from soil_mpm.frames import Frame
 
 WINDOW = 0.01  # B, width of the windows over which Nc is averaged
 MEAN_FROM, MEAN_TO = 0.03, 0.20  # B, range of the mean that is reported
@@ -17,14 +25,62 @@ MEAN_FROM, MEAN_TO = 0.03, 0.20  # B, range of the mean that is reported
 
 class Run:
     """A run's output: options {name: text}, history {column: array [rows]}, and the paths of its frames and the last of
-    them or None."""
+    them or None. Units are SI; docs/results.md has the columns and the fields."""
 
-    def __init__(self, folder):
+    def __init__(self, folder: Path | str):
         self.folder = Path(folder)
         self.options = read_options(self.folder)
         self.history = read_history(self.folder / "history.csv")
         self.frames = sorted(self.folder.glob("frames/frame_*.h5"))
         self.frame = self.frames[-1] if self.frames else None
+
+    def __repr__(self) -> str:
+        rows = len(next(iter(self.history.values()), ()))
+        return f"<Run {self.folder}: {self.outcome or 'no outcome'}, {rows} rows, {len(self.frames)} frames>"
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        """A column of the history [rows]."""
+        if column not in self.history:
+            near = difflib.get_close_matches(column, self.history, 1, 0)
+            raise NoSuchResult(f"{self.folder}: no column {column}" + (f", the nearest is {near[0]}" if near else ""))
+        return self.history[column]
+
+    @property
+    def dim(self) -> int:
+        """2 or 3."""
+        return int(self.text("dim", "2"))
+
+    @property
+    def outcome(self) -> str:
+        """finished, stopped or failed; empty where the run did not get to say."""
+        path = self.folder / "performance.json"
+        return json.loads(path.read_text())["outcome"] if path.exists() else ""
+
+    def table(self) -> Any:
+        """The history as a data frame of pandas where pandas is there, else as a structured array of numpy; a column each."""
+        try:
+            import pandas
+        except ImportError:
+            return np.rec.fromarrays(list(self.history.values()), names=list(self.history)) if self.history else np.empty(0)
+        return pandas.DataFrame(self.history)
+
+    def frame_at(self, time: float | None = None, number: int | None = None) -> Frame:
+        """The frame nearest to a time [s], or by its number (-1: the last, which it is by default)."""
+        from soil_mpm.frames import Frame
+        if not self.frames:
+            raise NoSuchResult(f"{self.folder}: no frames; -output_frames off leaves them out")
+        if time is not None:
+            return Frame(self, self.frame_near(time))
+        try:
+            return Frame(self, self.frames[-1 if number is None else number])
+        except IndexError:
+            raise NoSuchResult(f"{self.folder}: no frame {number}; there are {len(self.frames)}") from None
+
+    def plot(self, others: Sequence[Run] = (), **how: Any) -> list[Path]:
+        """Draws the pictures that the results have data for, as scripts/plot does, into the output folder; returns their paths. how:
+        soil_mpm.plot.pictures.Wishes."""
+        from soil_mpm.plot.pictures import Wishes, draw_all
+        return draw_all(self, list(others), Wishes(**how))[0]
 
     def text(self, name, default=""):
         return self.options.get(name, default)

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/text.hpp"
+#include "input/deck/petsc_names.hpp"
 #include "input/deck/renamed.hpp"
 #include "input/deck/suggest.hpp"
 #include "output/json.hpp"
@@ -107,7 +108,7 @@ std::string schema_of(const OptionReader& listed, const std::string& version) {
     options.push_back("    " + json_option(option, restrictions));
   }
   return "{\n  \"version\": " + json_text(version) + ",\n  \"format\": " + std::to_string(k_format) +
-         ",\n  \"former\": [\n" + join(former, ",\n") + "\n  ],\n  \"options\": [\n" + join(options, ",\n") +
+         ",\n  \"petsc\": " + json_list(passed_on_names()) + ",\n  \"former\": [\n" + join(former, ",\n") + "\n  ],\n  \"options\": [\n" + join(options, ",\n") +
          "\n  ]\n}\n";
 }
 

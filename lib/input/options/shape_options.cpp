@@ -266,7 +266,8 @@ bool read_kind(OptionReader& in, const std::string& name, const Config& config, 
           "(bodies)",
       .required = true};
   int index = 0;
-  const bool known = in.word(option, words, index);
+  bool known = false;
+  if (const auto only = in.unless(name + "_parts"); true) known = in.word(option, words, index);
   const Kind& kind = k_kinds[index];
   shape.kind = kind.kind;
   const bool fits = dim == 2 ? kind.in_2d : kind.in_3d;

@@ -1,14 +1,11 @@
 """Contact of deformable bodies in pairs, from frames: contact.png, and contact_PAIR.csv with the numbers. Needs matplotlib."""
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 
 from soil_mpm.plot.curves import save
 from soil_mpm.results import read_frame
 from soil_mpm.units import axis_unit
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 
 AXES = "xyz"
 SIDES = [("tab:blue", "o"), ("tab:red", "^")]  # of nodes whose normal has a positive and a negative sign along an axis

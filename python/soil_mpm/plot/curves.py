@@ -2,16 +2,13 @@
 
 import sys
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 
 from soil_mpm.factor import factor, has_reference
 from soil_mpm.results import MEAN_FROM, MEAN_TO, WINDOW, mean_over, reference_curve, window_means
 from soil_mpm.runout import NORMALS, direction_text, reference_runout, slides, toes
 from soil_mpm.units import axis_unit, is_plane
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
 STYLES = ["-", "--", ":", "-."]

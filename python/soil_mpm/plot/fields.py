@@ -3,20 +3,16 @@
 import sys
 from dataclasses import dataclass
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 
+from soil_mpm.fields import known_fields
 from soil_mpm.plot.curves import COLOURS, save
 from soil_mpm.plot.outlines import outline
 from soil_mpm.plot.surfaces import section_of_triangles
 from soil_mpm.results import read_frame, stage_of, units_of
-from soil_mpm.runout import grid_velocity, profile, slides, time_of_frame
+from soil_mpm.runout import profile, slides, time_of_frame
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-
-STRESSES = ["xx", "yy", "zz", "xy", "yz", "zx"]
-PORE_PRESSURES = ["pore_pressure", "excess_pore_pressure"]
 DEFAULT_FIELDS = ["grid_velocity", "plastic_strain"]
 
 
@@ -24,60 +20,7 @@ class NothingToDraw(Exception):
     """Raised where the data of a picture are not there; its text is the line for the user."""
 
 
-# ---------------------------------------------------------------------------------------------- fields
-
-
-@dataclass
-class Field:
-    """A number at each particle: how it is titled, and where its colours begin."""
-    title: str
-    of: object     # of a group's datasets, values [N]
-    signed: bool   # about 0, else from 0 on
-
-
-def speed_of(name):
-    return lambda fields: np.linalg.norm(grid_velocity(fields) if name == "grid_velocity" else fields[name], axis=1)
-
-
-def mises_of(fields):
-    normal, shear = fields["stress"][:, :3], fields["stress"][:, 3:]
-    deviator = normal - normal.mean(axis=1, keepdims=True)
-    return np.sqrt(1.5 * ((deviator ** 2).sum(axis=1) + 2 * (shear ** 2).sum(axis=1))) / 1e3
-
-
-def effective_pressure_of(fields):
-    return (-fields["stress"][:, :3].mean(axis=1) - fields["pore_pressure"]) / 1e3
-
-
-def known_fields(datasets, units=None):
-    """{name: Field} of all datasets {name: array [N] or [N, 3 or 6]} of a body, with their units {name: unit}."""
-    known = {}
-    if {"velocity", "grid_velocity"} & datasets.keys():  # older frames hold the particles' own only
-        known["grid_velocity"] = Field("velocity of the nodes (m/s)", speed_of("grid_velocity"), False)
-    if "velocity" in datasets:
-        known["velocity"] = Field("velocity of the particles (m/s)", speed_of("velocity"), False)
-        for k, axis in enumerate("xyz"):
-            known[f"velocity_{axis}"] = Field(f"velocity in {axis} (m/s)", lambda f, k=k: grid_velocity(f)[:, k], True)
-    if "stress" in datasets:
-        known["pressure"] = Field("mean pressure (kPa)", lambda f: -f["stress"][:, :3].mean(axis=1) / 1e3, True)
-        if "pore_pressure" in datasets:
-            known["effective_pressure"] = Field("mean effective pressure (kPa)", effective_pressure_of, True)
-        known["mises"] = Field("von Mises stress (kPa)", mises_of, False)
-        for k, name in enumerate(STRESSES):
-            known[f"stress_{name}"] = Field(f"stress {name} (kPa)", lambda f, k=k: f["stress"][:, k] / 1e3, True)
-    for name, values in datasets.items():
-        if name not in known and values.ndim == 1:
-            known[name] = scalar_field(name, values, (units or {}).get(name, ""))
-    return known
-
-
-def scalar_field(name, values, unit):
-    """The Field of a dataset with one number a particle: pressures and strengths in kPa."""
-    size = 1e3 if unit == "Pa" or name in PORE_PRESSURES else 1.0
-    text = "kPa" if size > 1 else unit
-    title = "plastic shear strain" if name == "plastic_strain" else name.replace("_", " ")
-    return Field(f"{title} ({text})" if text else title, lambda f, name=name: f[name] / size,
-                 bool(name != "plastic_strain" and (values < 0).any()))
+# ---------------------------------------------------------------------------------------------- colours
 
 
 def colours_of(name, field):

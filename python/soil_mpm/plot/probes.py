@@ -2,16 +2,14 @@
 
 import csv
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.colors import LightSource
 
 from soil_mpm.ground.raster import Raster, read_ascii
 from soil_mpm.plot.curves import COLOURS, STYLES, mark_stages, mark_time, run_label, save
 from soil_mpm.units import axis_unit
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-from matplotlib.colors import LightSource
 
 # Panels of a probe: quantity, columns behind NAME_, and SI unit. {axis} stands for each axis of the run.
 PANELS = {

@@ -1,0 +1,96 @@
+"""The command soil-mpm, or python -m soil_mpm: runs, checks, draws and certifies decks."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import Any, Sequence
+
+from soil_mpm.python_modules import need
+from soil_mpm.problems import Problem, RunFailed, UnknownOption, WrongDeck, WrongValue
+
+BAD_INPUT, FAILED = 2, 3
+
+
+def options_of(words: Sequence[str]) -> dict[str, str]:
+    """Options of the program among the words of a command line: -NAME VALUE, or -NAME alone."""
+    found: dict[str, str] = {}
+    rest = list(words)
+    while rest:
+        name = rest.pop(0)
+        if not name.startswith("-") or len(name) < 2 or not name[1].isalpha():
+            raise WrongDeck(f"{name}: belongs to no option; takes -NAME VALUE, and lists without spaces")
+        takes = bool(rest) and not (rest[0].startswith("-") and rest[0][1:2].isalpha())
+        found[name[1:]] = rest.pop(0) if takes else ""
+    return found
+
+
+def deck_of(arguments: argparse.Namespace, words: Sequence[str]) -> Any:
+    from soil_mpm.deck import Deck
+    deck = Deck.read(arguments.deck, arguments.program)
+    deck.update(options_of(words))
+    return deck
+
+
+def run(arguments: argparse.Namespace, words: Sequence[str]) -> int:
+    deck = deck_of(arguments, words)
+    done = deck.run(arguments.out, ranks=arguments.ranks, threads=arguments.threads, restart=arguments.restart)
+    print(done.folder)
+    return 0
+
+
+def check(arguments: argparse.Namespace, words: Sequence[str]) -> int:
+    deck = deck_of(arguments, words)
+    faults = deck.check()
+    for line in faults:
+        print(line, file=sys.stderr)
+    if not faults:
+        print(deck.dry_run(), end="")
+    return BAD_INPUT if faults else 0
+
+
+def plot(arguments: argparse.Namespace, words: Sequence[str]) -> int:
+    if words:
+        raise WrongDeck(f"{words[0]}: is no option of soil-mpm plot")
+    from soil_mpm.plot.command import draw
+    return draw(arguments)
+
+
+def parser_of(with_plot: bool) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="soil-mpm", description=__doc__)
+    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+
+    def add(name: str, does: Any, help: str, deck: bool = True) -> argparse.ArgumentParser:
+        of = commands.add_parser(name, help=help, description=help)
+        of.set_defaults(does=does)
+        if deck:
+            of.add_argument("deck", metavar="DECK")
+            of.add_argument("--program", metavar="MPM", help="the program, by default that of the checkout or installation")
+        return of
+    of_run = add("run", run, "run a deck; options of mpm may follow, as -mesh_spacing 0.1")
+    of_run.add_argument("--out", metavar="FOLDER", help="of the results")
+    of_run.add_argument("--ranks", type=int, default=1, metavar="N", help="processes, by mpirun")
+    of_run.add_argument("--threads", type=int, metavar="N", help="of each process")
+    of_run.add_argument("--restart", action="store_true", help="go on from the last checkpoint, where there is one")
+    add("check", check, "report all mistakes of a deck, or what its run would take; nothing is written")
+    of_plot = add("plot", plot, "draw the results of a run", deck=False)
+    if with_plot:
+        from soil_mpm.plot.command import add_arguments
+        add_arguments(of_plot)
+    return parser
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    words = list(sys.argv[1:] if words is None else words)
+    with_plot = words[:1] == ["plot"]
+    arguments, rest = parser_of(with_plot).parse_known_args(words)
+    try:
+        return arguments.does(arguments, rest)
+    except (RunFailed, UnknownOption, WrongDeck, WrongValue, Problem) as problem:
+        print(problem if str(problem).startswith("mpm: ") else f"soil-mpm: {problem}", file=sys.stderr)
+        return problem.status if isinstance(problem, RunFailed) else BAD_INPUT
+
+
+if __name__ == "__main__":
+    need("h5py", "matplotlib", "numpy")
+    sys.exit(main())

@@ -1,0 +1,178 @@
+"""Frames of a run, read as far as is asked: the particles of each body, and fields at points, lines, grids and sections."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, Sequence
+
+import h5py
+import numpy as np
+
+from soil_mpm.fields import DERIVED
+from soil_mpm.problems import NoSuchResult
+
+if TYPE_CHECKING:
+    from soil_mpm.results import Run
+
+UNITS = {"position": "m", "velocity": "m/s", "grid_velocity": "m/s", "stress": "Pa", "volume": "m3"}  # of frames that name none
+
+
+class Body(Mapping[str, Any]):
+    """Particles of a body or rigid body in a frame. body["stress"] is a dataset of the file, of which an index reads the part alone:
+    body["stress"][:100, 0]. body.values("mises") reads a field whole. Attributes are datasets: body.stress[:]."""
+
+    def __init__(self, name: str, group: h5py.Group):
+        self.name, self._group = name, group
+
+    def __getitem__(self, key: str) -> h5py.Dataset:
+        if key not in self._group:
+            raise NoSuchResult(f"{self.name} has no {key} in this frame; it has {', '.join(self._group)}")
+        return self._group[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._group)
+
+    def __len__(self) -> int:
+        return len(self._group)
+
+    def __getattr__(self, name: str) -> h5py.Dataset:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self[name]
+        except NoSuchResult as error:
+            raise AttributeError(str(error)) from None
+
+    def __dir__(self) -> list[str]:
+        return sorted({*object.__dir__(self), *self})
+
+    def __repr__(self) -> str:
+        return f"<Body {self.name}: {self.count} particles; {', '.join(self)}>"
+
+    @property
+    def count(self) -> int:
+        """Number of particles."""
+        return len(self["position"])
+
+    def fields(self) -> list[str]:
+        """Names that values() takes: datasets, and what follows from them."""
+        return list(dict.fromkeys([*self, *(name for name, derived in DERIVED.items() if derived.is_in(self))]))
+
+    def values(self, name: str) -> np.ndarray:
+        """A field of all particles, in SI units: a dataset of the frame [N] or [N, 3 or 6], or what follows from them [N]: pressure,
+        effective_pressure, mises [Pa], stress_xx ... stress_zx [Pa], velocity_x ... velocity_z [m/s], speed [m/s]."""
+        if name == "speed":
+            return DERIVED["grid_velocity"].of(self)
+        if name in self:
+            return self[name][()]
+        if name in DERIVED and DERIVED[name].is_in(self):
+            return DERIVED[name].of(self)
+        raise NoSuchResult(f"{self.name} has no field {name}; it has {', '.join(self.fields())}")
+
+    def unit(self, name: str) -> str:
+        """SI unit of a field; empty where it is not known."""
+        if name in self:
+            unit = self[name].attrs.get("unit", UNITS.get(name, ""))
+            return unit.decode() if isinstance(unit, bytes) else str(unit)
+        return "m/s" if name == "speed" else DERIVED[name].unit if name in DERIVED else ""
+
+
+class Frame:
+    """A frame of a run: frame["soil"] is a Body, frame.time its time [s]. The file is open until close(), or the end of `with`."""
+
+    def __init__(self, run: Run, path: Path):
+        self.run, self.path = run, path
+        self._file = h5py.File(path)
+        self.time = float(self._file.attrs["time"])
+        self.step = int(self._file.attrs["step"])
+
+    def __enter__(self) -> Frame:
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+    def close(self) -> None:
+        self._file.close()
+
+    def __repr__(self) -> str:
+        return f"<Frame {self.path.name}: t = {self.time:.6g} s; {', '.join(self.names())}>"
+
+    def names(self) -> list[str]:
+        """Bodies and rigid bodies of the frame."""
+        return [name for name, group in self._file.items() if "position" in group and name != "nodes"]
+
+    def bodies(self) -> list[str]:
+        """Deformable bodies of the frame."""
+        return [name for name in self.names() if "volume" in self._file[name]]
+
+    def __getitem__(self, name: str) -> Body:
+        if name not in self._file:
+            raise NoSuchResult(f"{self.path}: no body {name}; there are {', '.join(self.names())}")
+        return Body(name, self._file[name])
+
+    # ------------------------------------------------------------------------------------------ fields at places
+
+    def at(self, points: Any, fields: Sequence[str] | str, bodies: Sequence[str] | None = None) -> dict[str, np.ndarray]:
+        """Fields at points [n, dim] in m, {name: [n] or [n, 3 or 6]}, NaN where there is no soil within half a cell: weighted fits of
+        linear functions to the particles near a point (soil_mpm.sample). bodies: those that count, by default all."""
+        from soil_mpm.sample import sample
+        names = [fields] if isinstance(fields, str) else list(fields)
+        bodies = list(bodies) if bodies is not None else self.bodies()
+        points = np.atleast_2d(np.asarray(points, dtype=float))
+        if points.shape[1] != self.run.dim:
+            raise NoSuchResult(f"points have {points.shape[1]} coordinates; the run is in {self.run.dim}D")
+        near = {body: self.near(body, points) for body in bodies}
+        position, volume = (np.concatenate([self[body][key][()][near[body]] for body in bodies]) for key in ("position", "volume"))
+        found: dict[str, np.ndarray] = {}
+        for name in names:
+            values = np.concatenate([self[body].values(name)[near[body]] for body in bodies])
+            flat = values.reshape(len(values), -1)
+            found[name] = sample(position, volume, flat, points, self.run.number("mesh_spacing")).reshape(len(points), *values.shape[1:])
+        return found
+
+    def near(self, body: str, points: np.ndarray) -> np.ndarray:
+        """Particles of a body [N], true in the box of some points and two cells round it."""
+        position, room = self[body]["position"][()][:, :self.run.dim], 2 * self.run.number("mesh_spacing")
+        return np.all((position >= points.min(axis=0) - room) & (position <= points.max(axis=0) + room), axis=1)
+
+    def on_line(self, begin: Any, end: Any, fields: Sequence[str] | str, points: int = 201, **more: Any) -> dict[str, np.ndarray]:
+        """Fields along a line from one point to another [m]; "way" is the distance from its beginning [m]."""
+        begin, end = np.asarray(begin, dtype=float), np.asarray(end, dtype=float)
+        share = np.linspace(0, 1, points)
+        return {"way": share * np.linalg.norm(end - begin), **self.at(begin + share[:, None] * (end - begin), fields, **more)}
+
+    def on_grid(self, fields: Sequence[str] | str, lower: Any = None, upper: Any = None, spacing: float | None = None,
+                **more: Any) -> dict[str, np.ndarray]:
+        """Fields on a grid [nx, ny, ...]; "x", "y" and "z" are its coordinates along the axes [m]. By default it has the points at the
+        middles of the mesh's cells in the box of the bodies."""
+        step = spacing or self.run.number("mesh_spacing")
+        low, high = self.corners() if lower is None or upper is None else (None, None)
+        lower = np.asarray(lower if lower is not None else low, dtype=float)
+        upper = np.asarray(upper if upper is not None else high, dtype=float)
+        axes = [np.arange(a + step / 2, b, step) for a, b in zip(lower, upper)]
+        grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+        values = self.at(grid.reshape(-1, len(axes)), fields, **more)
+        shaped = {name: each.reshape(*grid.shape[:-1], *each.shape[1:]) for name, each in values.items()}
+        return {**dict(zip("xyz", axes)), **shaped}
+
+    def on_section(self, axis: str, place: float, fields: Sequence[str] | str, spacing: float | None = None,
+                   **more: Any) -> dict[str, np.ndarray]:
+        """Fields on a section of a 3D run, the plane axis = place [m], as on_grid; the coordinates are those of the other two axes."""
+        if self.run.dim != 3 or axis not in ("x", "y", "z"):
+            raise NoSuchResult("on_section takes an axis x, y or z of a run in 3D; in 2D see on_grid and on_line")
+        k, step = "xyz".index(axis), spacing or self.run.number("mesh_spacing")
+        lower, upper = self.corners()
+        lower[k], upper[k] = place - step / 2, place + step / 4
+        found = self.on_grid(fields, lower, upper, step, **more)
+        return {name: values if name in "xyz" else values.take(0, axis=k) for name, values in found.items() if name != axis}
+
+    def corners(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner [dim] of the cells that the bodies reach, m."""
+        step, origin = self.run.number("mesh_spacing"), np.array(self.run.numbers("mesh_lower"))
+        positions = [self[body]["position"][()][:, :self.run.dim] for body in self.bodies()]
+        low = np.min([each.min(axis=0) for each in positions], axis=0)
+        high = np.max([each.max(axis=0) for each in positions], axis=0)
+        return origin + np.floor((low - origin) / step) * step, origin + np.ceil((high - origin) / step) * step
+
+
