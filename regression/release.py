@@ -15,6 +15,7 @@ PLACES = {  # file: the text round the version, and how often it is there
     "CMakeLists.txt": ("project(mpm VERSION {} ", 1),
     "lib/include/mpm/simulation.hpp": ('k_version = "{}"', 1),
     "CITATION.cff": ("version: {}\n", 1),
+    "python/soil_mpm/__init__.py": ('__version__ = "{}"', 1),
     "docs/running.md": ("mpm-{}-x86_64", 2),
 }
 

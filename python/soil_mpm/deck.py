@@ -71,9 +71,10 @@ class Deck:
         return self._schema
 
     def given(self) -> dict[str, str]:
-        """{option: text} of all that is given, by names of today in lower case; the last of an option given twice."""
+        """{option: text} of all that is given, by names of today in lower case; the last of an option given twice. Cells of
+        -rigid_bodies_file count where no line gives the option."""
         if "given" not in self._known:
-            self._known["given"] = {self._schema.present_name(each.name): each.text or "" for each in self._text.options()}
+            self._known["given"] = {**table_options(self._text), **{self._schema.present_name(each.name): each.text or "" for each in self._text.options()}}
         return dict(self._known["given"])
 
     def names(self) -> dict[str, list[str]]:
@@ -88,20 +89,26 @@ class Deck:
         names = {each: [word.strip().replace(":", "_") for word in given.get(each, "").split(",") if word.strip()] for each in LISTS}
         if names["rigid_bodies"] == ["none"]:
             names["rigid_bodies"] = []
-        names["rigid_bodies"] += names_of_table(given.get("rigid_bodies_file", ""))
+        names["rigid_bodies"] += [name for name in table_of(given.get("rigid_bodies_file", "")) if name not in names["rigid_bodies"]]
         for rigid in list(names["rigid_bodies"]):
             names["rigid_bodies"] += [word for word in given.get(f"{rigid.lower()}_parts", "").split(",") if word]
         return names
 
     def option(self, name: str) -> Option:
         """What an option is: unit, range, default, meaning. Where several have the name, the one that has a place in this deck."""
-        found = self._schema.find(name, self.names())
+        found = self.found(name)
         fitting = [option for option in found if self.unmet(option) is None]
         return (fitting or found)[0]
 
+    def found(self, name: str) -> list[Option]:
+        """The options of a name."""
+        if "table" not in self._known:
+            self._known["table"] = self._schema.table(self.names())
+        return self._schema.find(name, self.names(), self._known["table"])
+
     def why_no_place(self, name: str) -> str:
         """Where an option that has no place in this deck would have one, in words; empty where it has a place."""
-        found = self._schema.find(name, self.names())
+        found = self.found(name)
         unmet = [self.unmet(option) for option in found]
         if None in unmet:
             return ""
@@ -112,21 +119,25 @@ class Deck:
 
     def unmet(self, option: Option) -> Condition | None:
         """The first condition of an option that the deck does not fulfil; None where it has a place."""
-        return next((each for each in option.where if not self.holds(each)), None)
+        stages = [option.stage] if option.stage else ["", *self.names()["stages"]]
+        unmet = [next((each for each in option.where if self.holds(each, stage) is False), None) for stage in stages]
+        return None if None in unmet else unmet[0]
 
-    def holds(self, condition: Condition) -> bool:
-        """Whether a condition holds; a default in words counts as if it did."""
+    def holds(self, condition: Condition, stage: str = "") -> bool | None:
+        """Whether a condition holds, in a stage; None where that depends on a default which others decide."""
         given = self._known.get("given") or self.given()
         key = condition.option.lower()
+        if f"{stage.lower()}_{key}" in given:
+            key = f"{stage.lower()}_{key}"
         if not condition.words:
             return (key in given and given[key] != "none") == condition.given
         if key in given:
             return given[key].split(",")[-1] in condition.words
         try:
-            option = self._schema.find(key, self.names())[0]
+            option = self.found(key)[0]
         except UnknownOption:
-            return True
-        return option.default is None or option.default not in (option.choices or option.default) or option.default in condition.words
+            return None
+        return option.default in condition.words if option.default in option.choices else None
 
     def __getitem__(self, name: str) -> Any:
         option, given = self.option(name), self.given()
@@ -219,7 +230,9 @@ class Deck:
         lines = []
         for name, text in self.given().items():
             try:
-                self.option(name).text(text, self.dim)
+                option = self.option(name)
+                option.text(text, self.dim)
+                lines += self.strangers(option, name, text)
                 where = self.why_no_place(name)
                 if where:
                     lines.append(f'-{name}: given "{text}", has a place only where {where}')
@@ -229,10 +242,19 @@ class Deck:
                 if name not in self._schema.petsc:
                     lines.append(str(error))
         given = self.given()
+        stages = ["", *(stage.lower() + "_" for stage in self.names()["stages"])]
         for option in self._schema.instances(self.names()):
-            if option.required and option.name.lower() not in given and "element_path" not in given and self.unmet(option) is None:
+            missing = option.required and "element_path" not in given and not any(stage + option.name.lower() in given for stage in stages)
+            if missing and all(self.holds(each) for each in option.where):
                 lines.append(f"-{option.name}: not given, takes {option.takes}")
         return list(dict.fromkeys(lines))[:MOST_FAULTS]
+
+    def strangers(self, option: Option, name: str, text: str) -> list[str]:
+        """A line where a value that is to be a name of a list is none."""
+        listed = [word.lower() for word in self.names().get(option.names_of, [])]
+        if not option.names_of or all(word.lower() in listed for word in text.split(",")):
+            return []
+        return [f'-{name}: given "{text}", takes names of -{option.names_of}: {", ".join(listed)}']
 
     def check(self) -> list[str]:
         """All mistakes of the deck, a line each; empty where the program takes it. What the table shows comes first; where it shows
@@ -252,12 +274,18 @@ class Deck:
         return launch.submit(self, script, out, **how)
 
 
-def names_of_table(path: str) -> list[str]:
-    """Names of the rigid bodies of a CSV file (-rigid_bodies_file); none where it cannot be read, which the program reports."""
+def table_of(path: str) -> dict[str, dict[str, str]]:
+    """{name: {key: cell}} of a CSV file of rigid bodies (-rigid_bodies_file), with commas for the blanks in a cell; empty where it cannot
+    be read, which the program reports."""
     try:
         with open(path, newline="", encoding="utf-8") as file:
-            header, *rows = [row for row in csv.reader(file) if row and not row[0].startswith("#")]
+            header, *rows = [[cell.strip() for cell in row] for row in csv.reader(file) if row and not row[0].startswith("#")]
     except (OSError, ValueError):
-        return []
-    return [row[0].strip() for row in rows] if header and header[0].strip() == "name" else []
+        return {}
+    return {row[0]: {key: ",".join(cell.split()) for key, cell in zip(header[1:], row[1:]) if cell} for row in rows}
 
+
+def table_options(text: DeckText) -> dict[str, str]:
+    """Options that the table of rigid bodies of a deck gives."""
+    path = next((each.text or "" for each in reversed(list(text.options())) if each.name.lower() == "rigid_bodies_file"), "")
+    return {f"{name}_{key}".lower(): cell for name, cells in table_of(path).items() for key, cell in cells.items()}

@@ -127,7 +127,7 @@ class Frame:
         found: dict[str, np.ndarray] = {}
         for name in names:
             values = np.concatenate([self[body].values(name)[near[body]] for body in bodies])
-            flat = values.reshape(len(values), -1)
+            flat = values.reshape(len(values), int(np.prod(values.shape[1:])))
             found[name] = sample(position, volume, flat, points, self.run.number("mesh_spacing")).reshape(len(points), *values.shape[1:])
         return found
 

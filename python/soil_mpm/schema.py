@@ -7,7 +7,7 @@ import functools
 import json
 import math
 import subprocess
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Iterable, Iterator
 
@@ -37,7 +37,8 @@ class Option:
     kind: number, integer, numbers, text, flag, word or list. unit: SI, "-" for a pure number, empty for words. lowest and highest:
     None where there is no bound; open_lowest and open_highest say whether the bound itself is not taken. choices: words that it
     takes. names_of: the option that lists its values. forms: how numbers are written in 2D and 3D, as ("x,y", "x,y,z"). default: as a
-    deck would hold it, or in words; None where there is none. changes: where it may change (restart, restart_change, stage)."""
+    deck would hold it, or in words; None where there is none. changes: where it may change (restart, restart_change, stage). stage: in which it holds;
+    empty: in the whole run."""
     name: str
     group: str
     kind: str
@@ -57,6 +58,7 @@ class Option:
     where: tuple[Condition, ...] = ()
     changes: tuple[str, ...] = ()
     restrictions: tuple[str, ...] = ()
+    stage: str = ""
 
     @property
     def owned(self) -> bool:
@@ -72,7 +74,7 @@ class Option:
         def named(text: str) -> str:
             return f"{owner}_{text.partition('_')[2]}" if text.startswith(OWNED) else text
         where = tuple(Condition(named(each.option), each.words, each.given) for each in self.where)
-        return Option(**{**self.__dict__, "name": named(self.name), "where": where})
+        return replace(self, name=named(self.name), where=where)
 
     def value(self, text: str) -> Any:
         """The value that a text of a deck stands for: float, int, bool, tuple or str; the text itself where it is none of these."""
@@ -115,7 +117,7 @@ class Option:
 
     def short(self, words: list[str]) -> bool:
         """Numbers of which other options of the deck decide how many there are."""
-        return self.name == "rayleigh_frequencies" or (self.key == "at" and len(words) < 3)
+        return self.name == "rayleigh_frequencies" or (self.name.endswith("_at") and len(words) < 3)
 
     def check_number(self, word: str, text: str, dim: int) -> None:
         try:
@@ -191,15 +193,24 @@ class Schema:
                 return key[:len(key) - len(former)] + present
         return key
 
-    def find(self, name: str, names: dict[str, list[str]]) -> list[Option]:
-        """The options of a name, in the deck of some names {list: [names]}: several where other options decide which of them it
-        is. UnknownOption where there is none."""
+    def table(self, names: dict[str, list[str]]) -> dict[str, list[Option]]:
+        """{name in lower case: options} of every option that a deck of some names {list: [names]} may give."""
+        made: dict[str, list[Option]] = {}
+        for option in self.instances(names):
+            made.setdefault(option.name.lower(), []).append(option)
+        return made
+
+    def find(self, name: str, names: dict[str, list[str]], table: dict[str, list[Option]] | None = None) -> list[Option]:
+        """The options of a name, in the deck of some names: several where other options decide which of them it is. UnknownOption
+        where there is none. table: that of these names, where it is there already."""
         key = self.present_name(name)
-        found = [option for option in self.instances(names) if option.name.lower() == key]
+        table = self.table(names) if table is None else table
+        found = table.get(key, [])
         if not found:
             for stage in names.get("stages", []):
                 if key.startswith(stage.lower() + "_"):
-                    found = [option for option in self.find(key[len(stage) + 1:], names) if "stage" in option.changes]
+                    found = [replace(option, name=f"{stage}_{option.name}", stage=stage)
+                             for option in self.find(key[len(stage) + 1:], names, table) if "stage" in option.changes]
         if not found:
             raise UnknownOption(self.why_unknown(key, names))
         return found

@@ -1,0 +1,244 @@
+#!/usr/bin/env python3
+"""soil_mpm: decks by the schema of the program, runs, results, sweeps.
+
+usage: test_soil_mpm.py PATH_TO_mpm
+"""
+
+import contextlib
+import io
+import os
+import pathlib
+import re
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
+os.environ["MPM_PROGRAM"] = str(PROGRAM)
+
+from soil_mpm import Deck, NoProgram, NoSuchResult, Run, RunFailed, UnknownOption, WrongDeck, WrongValue, __main__, launch, sweep
+from soil_mpm.deck_text import DeckText
+from soil_mpm.schema import Schema
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BLOCK = dict(dim=2, mesh_lower=(0, 0), mesh_upper=(4, 4), mesh_spacing=0.5, time_end=0.1, gravity=(0, -10), backend="serial",
+             materials="rock", rock_model="linear_elastic", rock_density=2000, rock_young=1e6, rock_poisson=0.25,
+             bodies="block", block_material="rock", block_shape="box", block_lower=(0, 0), block_upper=(4, 2), output_interval=0.05)
+
+
+class Options(unittest.TestCase):
+    def setUp(self):
+        self.deck = Deck(BLOCK)
+
+    def test_values_have_their_kinds(self):
+        self.assertEqual(self.deck.mesh_spacing, 0.5)
+        self.assertEqual(self.deck.gravity, (0.0, -10.0))
+        self.assertEqual(self.deck["block_shape"], "box")
+        self.assertIs(self.deck.output_energy, False)  # a default
+        self.assertEqual(self.deck.output_compression, Schema.of_program().find("output_compression", {})[0].value(
+            Schema.of_program().find("output_compression", {})[0].default))
+        self.assertIsNone(self.deck.time_step)
+        self.deck.output_energy = True
+        self.assertEqual(self.deck.given()["output_energy"], "on")
+
+    def test_unknown_names_have_the_nearest(self):
+        for name, nearest in (("rock_youngs", "rock_young"), ("mesh_spacin", "mesh_spacing"), ("blok_lower", "block_lower")):
+            with self.assertRaisesRegex(UnknownOption, f"nearest is -{nearest}"):
+                self.deck[name] = 1
+        with self.assertRaisesRegex(UnknownOption, "sand is in none of -materials"):
+            self.deck.sand_young = 1
+        with self.assertRaises(AttributeError):
+            self.deck.no_such_thing
+
+    def test_values_out_of_range_are_refused_in_the_words_of_the_program(self):
+        for name, value, takes in (("mesh_spacing", 0, "greater than 0"), ("rock_poisson", 0.5, "from -0.99 to 0.4999"),
+                                   ("dim", 4, "from 2 to 3"), ("mesh_lower", (0, 0, 0), "2 numbers"), ("mesh_xmin", "rollr", "nearest is roller"),
+                                   ("time_end", "soon", "a time in s"), ("output_dir", "a # b", "without #")):
+            with self.assertRaisesRegex(WrongValue, takes):
+                self.deck[name] = value
+        self.assertEqual(self.deck.mesh_spacing, 0.5)
+
+    def test_former_names_are_those_of_today(self):
+        self.deck.flip_share = 0.5
+        self.assertEqual(self.deck.flip_fraction, 0.5)
+        self.assertIn("-flip_fraction 0.5", str(self.deck))
+
+    def test_dir_has_the_options_that_have_a_place(self):
+        names = dir(self.deck)
+        self.assertIn("rock_young", names)
+        self.assertIn("block_fillet", names)
+        self.assertNotIn("rock_su", names)
+        self.assertNotIn("block_radius", names)
+
+    def test_faults_without_the_program(self):
+        self.assertEqual(self.deck.faults(), [])
+        del self.deck.rock_young
+        self.assertRegex(self.deck.faults()[0], "-rock_young: not given, takes a number in Pa")
+        self.deck.update(rock_model="von_mises", rock_rigidity=500, rock_su=1000, block_material="clay")
+        self.assertRegex(self.deck.faults()[0], '-block_material: given "clay", takes names of -materials: rock')
+        self.deck.update(block_material="rock", block_radius=1)
+        self.assertRegex(self.deck.faults()[0], "-block_radius: .* only where -block_shape is disc, ball, cylinder or cone")
+
+    def test_the_program_finds_what_the_table_cannot(self):
+        self.deck.block_upper = (4, -1)
+        self.assertEqual(self.deck.faults(), [])
+        self.assertRegex(self.deck.check()[0], "block_upper")
+        with self.assertRaisesRegex(WrongDeck, "block_upper"):
+            self.deck.dry_run()
+
+    def test_stages_and_parts(self):
+        deck = self.deck.copy(stages="rest,push", push_gravity=(0, -5), rest_end="equilibrium")
+        self.assertEqual(deck.push_gravity, (0.0, -5.0))
+        with self.assertRaises(UnknownOption):
+            deck.push_dim = 3
+        deck.update(rigid_bodies="anchor", anchor_parts="shank,fluke", fluke_shape="box", fluke_lower=(1, 3), fluke_upper=(2, 3.5))
+        self.assertNotIn("-anchor_shape: not given", "\n".join(deck.faults()))
+        self.assertIn("-shank_shape: not given", "\n".join(deck.faults()))
+
+    def test_every_deck_of_the_tree_is_known(self):
+        for path in sorted((ROOT / "inputs").glob("*.opts")):
+            deck = Deck.read(path)
+            self.assertEqual(str(deck), path.read_text(), path)
+            with contextlib.chdir(ROOT):
+                self.assertEqual(deck.faults(), [], path)
+
+    def test_without_a_program(self):
+        with self.assertRaisesRegex(NoProgram, "MPM_PROGRAM"):
+            Deck(program="/no/such/mpm")
+
+
+class Texts(unittest.TestCase):
+    TEXT = "# a deck\n-dim 2  # plane\n\n-materials rock\n-output_dir \"a b\"\n"
+
+    def test_comments_stay(self):
+        deck = Deck()
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "a.opts"
+            path.write_text(self.TEXT)
+            deck = Deck.read(path)
+            self.assertEqual(str(deck), self.TEXT)
+            deck.dim, deck.output_dir = 3, "c d"
+            deck.mesh_spacing = 0.1
+            self.assertEqual(str(deck), self.TEXT.replace("dim 2", "dim 3").replace("a b", "c d") + "-mesh_spacing 0.1\n")
+            del deck.mesh_spacing
+            del deck.materials
+            deck.write(path)
+            self.assertEqual(path.read_text(), "# a deck\n-dim 3  # plane\n\n-output_dir \"c d\"\n")
+
+    def test_included_decks(self):
+        with tempfile.TemporaryDirectory() as folder:
+            inner, outer = pathlib.Path(folder) / "inner.opts", pathlib.Path(folder) / "outer.opts"
+            inner.write_text("-dim 3\n-mesh_spacing 1\n")
+            outer.write_text(f"-options_file {inner}\n-mesh_spacing 0.5\n")
+            deck = Deck.read(outer)
+            self.assertEqual((deck.dim, deck.mesh_spacing), (3, 0.5))
+            with self.assertRaisesRegex(WrongDeck, "included"):
+                del deck["dim"]
+
+    def test_what_is_no_deck(self):
+        for text in ("-a 1 2\n", "word\n", "-a 1 -b 2\n"):
+            with self.assertRaisesRegex(WrongDeck, "deck:1"):
+                DeckText.of(text)
+        with self.assertRaises(WrongDeck):
+            Deck.read("/no/such.opts")
+
+
+class Runs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        kept = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(kept.cleanup)
+        cls.folder = pathlib.Path(kept.name)
+        cls.fractions = []
+        cls.deck = Deck(BLOCK)
+        cls.run_ = cls.deck.run(cls.folder / "block", progress=lambda fraction, time: cls.fractions.append(fraction))
+
+    def test_a_run_and_its_progress(self):
+        self.assertEqual((self.run_.outcome, self.run_.dim), ("finished", 2))
+        self.assertEqual(self.fractions[-1], 1.0)
+        self.assertEqual(self.fractions, sorted(self.fractions))
+
+    def test_history(self):
+        table, time = self.run_.table(), self.run_["time"]
+        self.assertEqual(time[-1], 0.1)
+        self.assertEqual(len(table), len(time))
+        self.assertTrue(np.array_equal(table["block_mass"], self.run_["block_mass"]))
+        with self.assertRaisesRegex(NoSuchResult, "nearest is block_mass"):
+            self.run_["block_mas"]
+
+    def test_frames_are_read_as_far_as_asked(self):
+        with self.run_.frame_at(time=0.051) as frame:
+            self.assertAlmostEqual(frame.time, 0.05, places=2)
+            body = frame["block"]
+            self.assertIsInstance(body["stress"], h5py.Dataset)
+            self.assertEqual(body["stress"][:3, 1].shape, (3,))
+            self.assertEqual(body.count, len(body.position))
+            np.testing.assert_allclose(body.values("pressure"), -body.stress[:, :3].mean(axis=1))
+            self.assertEqual((body.unit("mises"), body.unit("velocity_y"), body.unit("stress")), ("Pa", "m/s", "Pa"))
+            with self.assertRaisesRegex(NoSuchResult, "no field heat"):
+                body.values("heat")
+            with self.assertRaisesRegex(NoSuchResult, "there are block"):
+                frame["blok"]
+
+    def test_fields_at_places(self):
+        with self.run_.frame_at() as frame:
+            line = frame.on_line((2, 0.2), (2, 1.8), ["position", "stress"], points=5)
+            self.assertEqual((line["way"][-1], line["stress"].shape), (1.6, (5, 6)))
+            np.testing.assert_allclose(line["position"][:, 1], np.linspace(0.2, 1.8, 5), atol=1e-9)  # linear functions are exact
+            grid = frame.on_grid("velocity_y")
+            self.assertEqual(grid["velocity_y"].shape, (8, 4))
+            self.assertEqual(grid["x"][0], 0.25)
+            self.assertTrue(np.isnan(frame.at((2, 3.5), "velocity_y")["velocity_y"][0]))
+            with self.assertRaises(NoSuchResult):
+                frame.on_section("y", 0, "velocity_y")
+
+    def test_what_fails_has_the_words_of_the_program(self):
+        deck = self.deck.copy(block_upper=(4, -1))
+        with self.assertRaisesRegex(RunFailed, "block_upper") as caught:
+            deck.run(self.folder / "wrong", progress=False)
+        self.assertEqual(caught.exception.status, launch.BAD_INPUT)
+        self.assertFalse((self.folder / "wrong").exists())
+
+    def test_sweeps(self):
+        out = self.folder / "sweep"
+        swept = sweep(self.deck, {"rock_young": [1e6, 2e6], "rock_density": [1000]}, out, progress=False, jobs=2)
+        table = swept.table("block_mass", "time:max", ("top", lambda run: run["block_ymax"][0]))
+        np.testing.assert_allclose(table["block_mass"], 8000)
+        np.testing.assert_allclose(table["rock_young"], [1e6, 2e6])
+        np.testing.assert_allclose(table["time:max"], 0.1)
+        stamp = (out / "run_0000" / "history.csv").stat().st_mtime_ns
+        again = sweep(self.deck, {"rock_young": [1e6, 2e6], "rock_density": [1000]}, out, progress=False)
+        self.assertEqual((again.finished(), stamp), ([0, 1], (out / "run_0000" / "history.csv").stat().st_mtime_ns))
+        with self.assertRaises(WrongValue):  # before any run
+            sweep(self.deck, [{"rock_young": 1e6}, {"rock_young": -1}], self.folder / "none", progress=False)
+        self.assertFalse((self.folder / "none").exists())
+
+    def test_commands(self):
+        path = self.deck.write(self.folder / "command.opts")
+        for words, status, said in ((["check", str(path)], 0, "particles"), (["check", str(path), "-block_upper", "4,-1"], 2, "block_upper"),
+                                    (["run", str(path), "--out", str(self.folder / "by_command"), "-time_end", "0.05"], 0, "by_command"),
+                                    (["run", str(path), "-no_such", "1"], 2, "no such option")):
+            out = io.StringIO()
+            with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
+                self.assertEqual(__main__.main(words), status, out.getvalue())
+            self.assertRegex(out.getvalue(), re.escape(said))
+        self.assertEqual(Run(self.folder / "by_command")["time"][-1], 0.05)
+
+    def test_slurm(self):
+        script = self.folder / "sbatch"
+        script.write_text("#!/bin/sh\nshift\n\"$MPM\" -options_file \"$@\" -output_dir \"$MPM_OUTPUT\" -progress off >/dev/null "
+                          "&& echo Submitted batch job 17\n")
+        script.chmod(0o755)
+        path = os.environ["PATH"]
+        self.addCleanup(os.environ.__setitem__, "PATH", path)
+        os.environ["PATH"] = f"{self.folder}:{path}"
+        job = self.deck.submit("job.sbatch", self.folder / "queued")
+        self.assertEqual((job.number, job.state()), ("17", "FINISHED"))
+        self.assertEqual(job.wait()["time"][-1], 0.1)
+
+
+if __name__ == "__main__":
+    unittest.main()
