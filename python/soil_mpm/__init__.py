@@ -15,7 +15,7 @@ __version__ = "0.2.0"
 
 PLACES = {
     "Deck": "deck", "Schema": "schema", "Option": "schema", "Run": "results", "Frame": "frames", "Ensemble": "ensemble",
-    "sweep": "ensemble", "random_fields": "ensemble", "Job": "launch", "certify": "certify", "Problem": "problems",
+    "sweep": "ensemble", "random_fields": "ensemble", "Job": "launch", "certify": "certificate", "Certificate": "certificate", "Answer": "answer", "Problem": "problems",
     "UnknownOption": "problems", "WrongValue": "problems", "WrongDeck": "problems", "RunFailed": "problems", "NoProgram": "problems",
     "NoSuchResult": "problems",
 }
@@ -25,7 +25,7 @@ def __getattr__(name: str) -> Any:
     if name not in PLACES:
         raise AttributeError(f"module soil_mpm has no {name}")
     module = importlib.import_module(f"soil_mpm.{PLACES[name]}")
-    return getattr(module, name) if name != PLACES[name] else module
+    return getattr(module, name)
 
 
 def __dir__() -> list[str]:

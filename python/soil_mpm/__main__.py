@@ -9,7 +9,8 @@ from typing import Any, Sequence
 from soil_mpm.python_modules import need
 from soil_mpm.problems import Problem, RunFailed, UnknownOption, WrongDeck, WrongValue
 
-BAD_INPUT, FAILED = 2, 3
+BAD_INPUT = 2
+NOT_CERTIFIED, UNDECIDED = 1, 4  # exit statuses of certify
 
 
 def options_of(words: Sequence[str]) -> dict[str, str]:
@@ -56,6 +57,14 @@ def plot(arguments: argparse.Namespace, words: Sequence[str]) -> int:
     return draw(arguments)
 
 
+def certify(arguments: argparse.Namespace, words: Sequence[str]) -> int:
+    from soil_mpm.certificate import CONVERGED, NOT_CONVERGED, certify as certificate_of
+    found = certificate_of(deck_of(arguments, words), arguments.answer, arguments.out, tolerance=arguments.tolerance, ranks=arguments.ranks,
+                           threads=arguments.threads)
+    print(found)
+    return {CONVERGED: 0, NOT_CONVERGED: NOT_CERTIFIED}.get(found.verdict, UNDECIDED)
+
+
 def parser_of(with_plot: bool) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="soil-mpm", description=__doc__)
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
@@ -73,6 +82,14 @@ def parser_of(with_plot: bool) -> argparse.ArgumentParser:
     of_run.add_argument("--threads", type=int, metavar="N", help="of each process")
     of_run.add_argument("--restart", action="store_true", help="go on from the last checkpoint, where there is one")
     add("check", check, "report all mistakes of a deck, or what its run would take; nothing is written")
+    of_certify = add("certify", certify, "run a deck on its mesh and on two coarser ones, and say what an answer is worth; exit status 0: "
+                     "converged, 1: not converged, 4: cannot say")
+    of_certify.add_argument("--answer", required=True, metavar="TEXT", help="COLUMN at OTHER=VALUE, COLUMN over OTHER=FROM:TO (its mean), "
+                            "COLUMN at end, max or min, of the history")
+    of_certify.add_argument("--tolerance", type=float, default=0.05, metavar="FRACTION", help="of the answer that the bar may be")
+    of_certify.add_argument("--out", metavar="FOLDER", help="of the runs")
+    of_certify.add_argument("--ranks", type=int, default=1, metavar="N")
+    of_certify.add_argument("--threads", type=int, metavar="N")
     of_plot = add("plot", plot, "draw the results of a run", deck=False)
     if with_plot:
         from soil_mpm.plot.command import add_arguments

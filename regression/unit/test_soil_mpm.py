@@ -19,7 +19,9 @@ import numpy as np
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 os.environ["MPM_PROGRAM"] = str(PROGRAM)
 
-from soil_mpm import Deck, NoProgram, NoSuchResult, Run, RunFailed, UnknownOption, WrongDeck, WrongValue, __main__, launch, sweep
+from soil_mpm import (Answer, Deck, NoProgram, NoSuchResult, Run, RunFailed, UnknownOption, WrongDeck, WrongValue, __main__, certify, launch,
+                      sweep)
+from soil_mpm.certificate import bar_of, judge, meshes
 from soil_mpm.deck_text import DeckText
 from soil_mpm.schema import Schema
 
@@ -238,6 +240,56 @@ class Runs(unittest.TestCase):
         job = self.deck.submit("job.sbatch", self.folder / "queued")
         self.assertEqual((job.number, job.state()), ("17", "FINISHED"))
         self.assertEqual(job.wait()["time"][-1], 0.1)
+
+
+class Certificates(unittest.TestCase):
+    def test_answers(self):
+        for text in ("a_x at end", "a_x at max", "a_x at b_y=-0.5", "a_x over time=0.1:0.2"):
+            self.assertEqual(str(Answer.of(text)), text)
+        for text in ("a_x", "a_x at b_y", "a_x over b_y=1", "a_x at b_y=1:2", "a_x at b=c"):
+            with self.assertRaisesRegex(WrongValue, "--answer"):
+                Answer.of(text)
+
+    def test_orders_and_bars(self):
+        for order in (1, 2):
+            values = [1 + h ** order for h in (0.1, 0.2, 0.4)]
+            found, extrapolated, bar = bar_of(values, 0.0)
+            self.assertAlmostEqual(found, order)
+            self.assertAlmostEqual(extrapolated, 1.0)
+            self.assertGreater(bar, abs(values[0] - 1))
+        order, extrapolated, bar = bar_of([1.0, 1.1, 0.9], 0.0)  # to and fro
+        self.assertEqual((order, extrapolated), (None, None))
+        self.assertGreaterEqual(bar, 0.2)
+        self.assertIsNone(bar_of([1.0, 1.1, 1.15], 0.0)[2])  # further and further apart
+        self.assertEqual(bar_of([2.0, 2.0, 2.0], 0.1)[2], 0.2)  # the ripple alone
+
+    def test_verdicts(self):
+        sound = {"mass": 0.0, "momentum": "not told", "energy": 0.01}
+        self.assertEqual(judge(1.0, [1.0, 1.1, 1.3], 0.04, 1.0, sound, 0.05)[0], "converged")
+        self.assertEqual(judge(1.0, [1.0, 1.1, 1.3], 0.1, 1.0, sound, 0.05)[0], "not converged")
+        self.assertEqual(judge(None, [1.0, 1.1, 0.9], 0.3, 1.0, sound, 0.05)[0], "cannot say")
+        self.assertEqual(judge(-1.0, [1.0, 1.1, 1.15], None, 1.0, sound, 0.05)[0], "not converged")
+        self.assertEqual(judge(1.0, [1.0, 1.1, 1.3], 0.04, 1.0, {**sound, "mass": 0.1}, 0.05)[0], "cannot say")
+
+    def test_meshes(self):
+        deck = Deck(BLOCK)
+        self.assertEqual([each.mesh_spacing for each in meshes(deck)], [0.5, 1.0, 2.0])
+        grown = meshes(deck.copy(mesh_upper=(4, 4.5), mesh_ymax="free"))
+        self.assertEqual(grown[0].mesh_upper, (4.0, 6.0))
+        for changes, why in (({"mesh_upper": (4.5, 4)}, "no free side"), ({"block_shape": "particles", "block_file": "a.h5"}, "particles of a file"),
+                             ({"restart": "latest"}, "checkpoint"),
+                             ({"rock_model": "softening_clay", "rock_su": 1e3, "rock_remoulded_ratio": 0.2, "rock_xi95": 1}, "no limit")):
+            with self.assertRaisesRegex(WrongDeck, why):
+                meshes(deck.copy(**changes))
+
+    def test_a_weight(self):
+        deck = Deck(BLOCK).copy(damping=0.7, time_end=2, rock_young=1e7, mesh_spacing=0.25, output_frames=False, history_interval=0.02)
+        with tempfile.TemporaryDirectory() as folder:
+            found = certify(deck, "wall_ymin_force_y over time=1.5:2", folder)
+            self.assertTrue(found.holds(-2000 * 8 * 10), str(found))
+            self.assertEqual(found.verdict, "converged", str(found))
+            self.assertIn("not told with damping", str(found))
+            self.assertEqual(certify(deck, "block_mass at end", folder).value, 16000)  # by the same runs
 
 
 if __name__ == "__main__":
