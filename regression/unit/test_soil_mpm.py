@@ -9,6 +9,7 @@ import io
 import os
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -110,6 +111,33 @@ class Options(unittest.TestCase):
     def test_without_a_program(self):
         with self.assertRaisesRegex(NoProgram, "MPM_PROGRAM"):
             Deck(program="/no/such/mpm")
+
+
+class Schemas(unittest.TestCase):
+    def said(self, *words):
+        return subprocess.run([PROGRAM, *words], capture_output=True, text=True)
+
+    def test_the_schema_has_what_help_prints(self):
+        schema, listed = Schema.of_program(), self.said("-help").stdout
+        self.assertEqual([option.name for option in schema.options], re.findall(r"^  -(\w+)$", listed, re.MULTILINE))
+        for option in schema.options:
+            self.assertIn(f"takes {option.takes}; ", listed)
+            self.assertEqual(option.owned, bool(option.owners), option.name)
+            self.assertIn(option.kind, ("number", "integer", "numbers", "text", "flag", "word", "list"))
+            if option.default is not None and option.kind == "word" and option.default in option.choices:
+                self.assertEqual(option.text(option.default, 2), option.default)
+
+    def test_help_of_one_option(self):
+        for name in ("rock_young", "-NAME_young", "--mesh_spacing", "p2g_margin"):
+            done = self.said("-help", name)
+            self.assertEqual((done.returncode, done.stderr), (0, ""), name)
+        self.assertIn("only where -NAME_model is mohr_coulomb", self.said("-help", "sand_friction_deg").stdout)
+        self.assertNotIn("NAME_young_gradient", self.said("-help", "rock_young").stdout)
+        self.assertIn("-rebuild_margin", self.said("-help", "p2g_margin").stdout)
+        wrong = self.said("-help", "mesh_spacin")
+        self.assertEqual((wrong.returncode, wrong.stdout), (2, ""))
+        self.assertEqual(wrong.stderr, 'mpm: -help: given "mesh_spacin", takes the name of an option; the nearest is -mesh_spacing\n')
+        self.assertGreater(len(self.said("-help", "-options_file", "none.opts").stdout), 10000)
 
 
 class Texts(unittest.TestCase):

@@ -61,7 +61,9 @@ void OptionReader::list_option(const Option& option, const std::string& takes, c
   const std::string otherwise = !option.standard.empty() ? option.standard
                                 : standard.empty()       ? "none"
                                                          : standard;
-  listed_.push_back({group_, owners_, option, form, takes, option.required ? "" : otherwise, conditions_});
+  const bool owned = key_of(option.name) != option.name;
+  listed_.push_back({group_, owned ? owners_ : std::vector<std::string>(), option, form, takes,
+                     option.required ? "" : otherwise, conditions_});
   rules_[{owner_, lower_case(key_of(option.name))}] = option.change;
   report_->help_text += help_of(listed_.back());
 }

@@ -108,8 +108,8 @@ std::string schema_of(const OptionReader& listed, const std::string& version) {
     options.push_back("    " + json_option(option, restrictions));
   }
   return "{\n  \"version\": " + json_text(version) + ",\n  \"format\": " + std::to_string(k_format) +
-         ",\n  \"petsc\": " + json_list(passed_on_names()) + ",\n  \"former\": [\n" + join(former, ",\n") + "\n  ],\n  \"options\": [\n" + join(options, ",\n") +
-         "\n  ]\n}\n";
+         ",\n  \"petsc\": " + json_list(passed_on_names()) + ",\n  \"former\": [\n" + join(former, ",\n") +
+         "\n  ],\n  \"options\": [\n" + join(options, ",\n") + "\n  ]\n}\n";
 }
 
 std::optional<std::string> help_of_name(const OptionReader& listed, const std::string& name) {

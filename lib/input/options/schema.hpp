@@ -8,8 +8,9 @@
 
 namespace mpm {
 
-/// JSON of all options that a reader has listed: "version" of the program, "format" of this text, "petsc", the
-/// options that a run passes on to PETSc, "former" names of options by pairs, and "options", a list of objects:
+/// JSON of all options that a reader has listed: "version" of the program, "format" of this text, "petsc",
+/// the options that a run passes on to PETSc, "former" names of options by pairs, and "options", a list of
+/// objects:
 ///   name          without dash; NAME or STAGE in it stands for a name that one of "owners" lists
 ///   group, meaning, takes   as in the help
 ///   type          number, integer, numbers, text, flag, word, list
