@@ -15,7 +15,8 @@ __version__ = "0.2.0"
 
 PLACES = {
     "Deck": "deck", "Schema": "schema", "Option": "schema", "Run": "results", "Frame": "frames", "Ensemble": "ensemble",
-    "sweep": "ensemble", "random_fields": "ensemble", "Job": "launch", "certify": "certificate", "Certificate": "certificate", "Answer": "answer", "Problem": "problems",
+    "sweep": "ensemble", "random_fields": "ensemble", "Job": "launch", "certify": "certificate", "Certificate": "certificate", "Answer": "answer",
+    "Problem": "problems",
     "UnknownOption": "problems", "WrongValue": "problems", "WrongDeck": "problems", "RunFailed": "problems", "NoProgram": "problems",
     "NoSuchResult": "problems",
 }

@@ -1,8 +1,9 @@
 """How far an answer of a deck depends on its mesh: three meshes, the observed order, an error bar, balances, and a verdict.
 
-The bar follows Roache's grid convergence index (Roache 1994, J. Fluids Eng. 116, 405) with the factors of safety of Oberkampf & Roy (2010, Verification
-and Validation in Scientific Computing, sec. 8.6.3). No order above one is relied on, and the ripple of the history is added. The bar is of the mesh and of
-the time step that follows it: the law, the size of the domain and the speed of loading are not refined.
+The bar follows Roache's grid convergence index (Roache 1994, J. Fluids Eng. 116, 405) with the factors of safety of Oberkampf & Roy
+(2010, Verification and Validation in Scientific Computing, sec. 8.6.3). No order above one or below a half is relied on, and the
+ripple of the history is added. The bar is of the mesh and of the time step that follows it: the law, the size of the domain and the
+speed of loading are not refined.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
 FACTORS = (1, 2, 4)
 SAFETY, DOUBT = 1.25, 3.0     # factors of safety: where the observed order is as expected, and elsewhere
 EXPECTED = (0.9, 2.2)  # orders
-LEAST_ORDER = 0.1      # below it the remaining error has no bound
+FLOOR = 1e-3           # of the answer: what no mesh shows, as finite displacements, the time step, and vibrations that are left
+LEAST, MOST = 0.5, 1.0 # orders that are relied on
 MOST_GAP = {"mass": 1e-6, "momentum": 0.1, "energy": 0.1}
 TOLERANCE = 0.05
 CONVERGED, NOT_CONVERGED, CANNOT_SAY = "converged", "not converged", "cannot say"
@@ -34,7 +36,8 @@ CONVERGED, NOT_CONVERGED, CANNOT_SAY = "converged", "not converged", "cannot say
 @dataclass
 class Certificate:
     """answer: as text. spacings [m], values: of the three meshes, the finest first. ripple: of the finest. order: observed, None where the
-    values do not go one way. extrapolated: to spacing 0, None likewise. bar: of the value of the finest mesh, None where there is none.
+    values do not go one way. extrapolated: to spacing 0, None likewise and below an order of a half. bar: of the value of the finest
+    mesh, None where a run has no value.
     balances: {mass, momentum, energy} of the finest run. verdict, why: in words."""
     answer: str
     spacings: list[float]
@@ -42,7 +45,7 @@ class Certificate:
     ripple: float
     order: float | None
     extrapolated: float | None
-    bar: float | None
+    bar: float
     balances: dict[str, Any]
     verdict: str
     why: str
@@ -153,10 +156,8 @@ def bar_of(values: list[float], ripple: float) -> tuple[float | None, float | No
     if near * far <= 0 or abs(near) <= rounding:  # the values do not go one way
         return None, None, 1.5 * most + 2 * ripple
     order = math.log2(abs(far) / abs(near))
-    if order < LEAST_ORDER:
-        return order, None, None
-    relied, safety = min(order, 1.0), SAFETY if EXPECTED[0] <= order <= EXPECTED[1] else DOUBT
-    extrapolated = values[0] - near / (2 ** min(order, 2.0) - 1)
+    relied, safety = min(max(order, LEAST), MOST), SAFETY if EXPECTED[0] <= order <= EXPECTED[1] else DOUBT
+    extrapolated = values[0] - near / (2 ** min(order, 2.0) - 1) if order >= LEAST else None
     size = max(abs(near), abs(far) / 4)  # an order above two is chance
     return order, extrapolated, safety * size / (2 ** relied - 1) + 2 * ripple
 
@@ -167,13 +168,15 @@ def judge(order: float | None, values: list[float], bar: float | None, size: flo
         if isinstance(gaps.get(name), float) and gaps[name] > most:
             return CANNOT_SAY, f"{gaps[name]:.2g} of the {name} is missing, more than {most:g}: the run itself is not sound"
     if bar is None:
-        return NOT_CONVERGED, f"the values differ more and more, or hardly less, as the cells become smaller (order {order:.2f}): there is no bar"
+        return CANNOT_SAY, "there are no values to compare"
     share = bar / size if size > 0 else 0.0 if bar == 0 else math.inf
     if share <= tolerance:
         return CONVERGED, f"the bar is {share:.2%} of the answer, at most {tolerance:.2%}"
     if order is None:
         return CANNOT_SAY, f"the values do not go one way, and the bar is {share:.2%} of the answer, more than {tolerance:.2%}; takes a finer mesh"
-    return NOT_CONVERGED, f"the bar is {share:.2%} of the answer, more than {tolerance:.2%}; takes a finer mesh"
+    slow = "" if order >= LEAST else ("; the values differ more and more, or hardly less, as the cells become smaller: an order of "
+                                      f"{LEAST:g} is assumed")
+    return NOT_CONVERGED, f"the bar is {share:.2%} of the answer, more than {tolerance:.2%}{slow}; takes a finer mesh"
 
 
 def masses_differ(runs: list[Run]) -> str:
@@ -219,5 +222,6 @@ def judged(answer: Answer, runs: list[Run], tolerance: float) -> Certificate:
     values, ripple = [value for value, _ in pairs], pairs[0][1]
     order, extrapolated, bar = bar_of(values, ripple)
     size = max(map(abs, values)) if abs(values[0]) > 1e-3 * abs(runs[0][answer.column]).max() else float(abs(runs[0][answer.column]).max())
+    bar = None if bar is None else max(bar, FLOOR * abs(values[0]))
     verdict, why = judge(order, values, bar, size, gaps, tolerance)
     return Certificate(str(answer), spacings, values, ripple, order, extrapolated, bar, gaps, verdict, why, notes)

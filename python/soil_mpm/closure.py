@@ -22,10 +22,12 @@ def mass_gap(run: Run) -> float:
 
 def why_no_momentum(run: Run) -> str:
     """What acts on the soil beside gravity, rigid bodies and sides of the mesh, so that the history does not tell all forces."""
-    acting = {"damping": run.number("damping"), "Rayleigh damping": run.number("rayleigh_ratio"), "a table of gravity": "gravity_table" in run.options,
+    sides = [run.text(f"mesh_{axis}{end}") for axis in "xyz" for end in ("min", "max")]
+    acting = {"damping": run.number("damping"), "Rayleigh damping": run.number("rayleigh_ratio"),
+              "a table of gravity": "gravity_table" in run.options,
               "water": "water_level" in run.options, "loads": run.words("loads"), "stages": run.words("stages"),
               "an axis of revolution": run.text("geometry") == "axisymmetric", "position correction": run.text("position_correction") == "delta",
-              "periodic sides": any(run.text(f"mesh_{side}") in ("periodic", "free_field") for side in ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax"))}
+              "periodic sides": "periodic" in sides, "a free field": "free_field" in sides}
     return ", ".join(name for name, there in acting.items() if there)
 
 

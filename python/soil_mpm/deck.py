@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import copy
-import csv
 from pathlib import Path
 from typing import Any, Iterator, Mapping, TYPE_CHECKING
 
 from soil_mpm import launch
-from soil_mpm.deck_text import DeckText, Given
+from soil_mpm.deck_text import DeckText, Given, table_of, table_options
 from soil_mpm.problems import UnknownOption, WrongDeck
 from soil_mpm.schema import Condition, Option, Schema
 
@@ -21,13 +20,14 @@ MOST_FAULTS = 20  # lines of a report
 
 class Deck:
     """The options of a run. An option is an attribute and an item: deck.mesh_spacing = 0.05, deck["clay_su"] = 3000; SI units, those
-    of docs/options.md. A value that the option does not take, and a name that is none, raise at once. An option that is not given reads as its default.
+    of docs/options.md. A value that the option does not take, and a name that is none, raise at once. An option that is not given
+    reads as its default.
 
         deck = Deck.read("inputs/footing.opts")
         deck = Deck(dim=2, mesh_lower=(0, 0), mesh_upper=(4, 4), mesh_spacing=0.1, time_end=1)
 
-    The options of a material, a body and so on can be set once its name is in the list: materials before clay_su. In the arguments of
-    Deck and of update the order does not matter. Names that begin with an underscore are not options.
+    The options of a material, a body and so on can be set once its name is in the list, materials before clay_su, and go with the name.
+    In the arguments of Deck and of update the order does not matter. Names that begin with an underscore are not options.
     """
 
     def __init__(self, options: Mapping[str, Any] | None = None, *, program: Path | str | None = None, **more: Any):
@@ -74,7 +74,8 @@ class Deck:
         """{option: text} of all that is given, by names of today in lower case; the last of an option given twice. Cells of
         -rigid_bodies_file count where no line gives the option."""
         if "given" not in self._known:
-            self._known["given"] = {**table_options(self._text), **{self._schema.present_name(each.name): each.text or "" for each in self._text.options()}}
+            own = {self._schema.present_name(each.name): each.text or "" for each in self._text.options()}
+            self._known["given"] = {**table_options(self._text), **own}
         return dict(self._known["given"])
 
     def names(self) -> dict[str, list[str]]:
@@ -152,11 +153,25 @@ class Deck:
             return
         key, option = self._schema.present_name(name), self.option(name)
         text = option.text(value, self.dim)
+        before = self.names()
         own = self._text.own(key) or self._text.own(name.lower())
         if own is not None:
             own.name, own.text = key if own.name.lower() != key else own.name, text
         else:
             self._text.append(Given(key, text or None))
+        self._known.clear()
+        if key in LISTS:
+            self.forget(before)
+
+    def forget(self, before: dict[str, list[str]]) -> None:
+        """Takes out the options of names that were in a list before and are in none any more."""
+        now = {name.lower() for names in self.names().values() for name in names}
+        gone = {name.lower() for names in before.values() for name in names} - now
+        for key in [key for key in self.given() if any(key.startswith(name + "_") for name in gone)]:
+            try:
+                self.found(key)
+            except UnknownOption:
+                self._text.remove(key)
         self._known.clear()
 
     def __delitem__(self, name: str) -> None:
@@ -272,20 +287,3 @@ class Deck:
     def submit(self, script: Path | str, out: Path | str | None = None, **how: Any) -> launch.Job:
         """Hands the deck to Slurm: see launch.submit."""
         return launch.submit(self, script, out, **how)
-
-
-def table_of(path: str) -> dict[str, dict[str, str]]:
-    """{name: {key: cell}} of a CSV file of rigid bodies (-rigid_bodies_file), with commas for the blanks in a cell; empty where it cannot
-    be read, which the program reports."""
-    try:
-        with open(path, newline="", encoding="utf-8") as file:
-            header, *rows = [[cell.strip() for cell in row] for row in csv.reader(file) if row and not row[0].startswith("#")]
-    except (OSError, ValueError):
-        return {}
-    return {row[0]: {key: ",".join(cell.split()) for key, cell in zip(header[1:], row[1:]) if cell} for row in rows}
-
-
-def table_options(text: DeckText) -> dict[str, str]:
-    """Options that the table of rigid bodies of a deck gives."""
-    path = next((each.text or "" for each in reversed(list(text.options())) if each.name.lower() == "rigid_bodies_file"), "")
-    return {f"{name}_{key}".lower(): cell for name, cells in table_of(path).items() for key, cell in cells.items()}

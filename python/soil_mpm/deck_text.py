@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from pathlib import Path
 from typing import Iterator
@@ -107,3 +108,20 @@ class DeckText:
 
     def __str__(self) -> str:
         return "".join(map(str, self.pieces))
+
+
+def table_of(path: str) -> dict[str, dict[str, str]]:
+    """{name: {key: cell}} of a CSV file of rigid bodies (-rigid_bodies_file), with commas for the blanks in a cell; empty where it cannot
+    be read, which the program reports."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            header, *rows = [[cell.strip() for cell in row] for row in csv.reader(file) if row and not row[0].startswith("#")]
+    except (OSError, ValueError):
+        return {}
+    return {row[0]: {key: ",".join(cell.split()) for key, cell in zip(header[1:], row[1:]) if cell} for row in rows}
+
+
+def table_options(text: DeckText) -> dict[str, str]:
+    """Options that the table of rigid bodies of a deck gives."""
+    path = next((each.text or "" for each in reversed(list(text.options())) if each.name.lower() == "rigid_bodies_file"), "")
+    return {f"{name}_{key}".lower(): cell for name, cells in table_of(path).items() for key, cell in cells.items()}
