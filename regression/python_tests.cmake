@@ -28,6 +28,7 @@ foreach(name plot ground_scripts python_modules plot_fields plot_probes plot_sha
 endforeach()
 mpm_python_test(unit.soil_mpm "${threads}" unit/test_soil_mpm.py ${mpm})
 mpm_python_test(docs.python "TIMEOUT 600 ${threads}" unit/test_python_page.py ${mpm})
+mpm_python_test(regression.certificates "LONG TIMEOUT 14400 ${threads}" certificates.py ${mpm} --out ${CMAKE_CURRENT_BINARY_DIR}/certificates)
 mpm_python_test(docs.schema "TIMEOUT 1200 PROCESSORS 2" schema.py ${mpm})
 mpm_python_test(unit.factor_of_safety "" unit/test_factor_of_safety.py ${mpm})
 mpm_python_test(unit.benchmark "" unit/test_benchmark.py ${mpm})

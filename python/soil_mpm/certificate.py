@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 FACTORS = (1, 2, 4)
 SAFETY, DOUBT = 1.25, 3.0     # factors of safety: where the observed order is as expected, and elsewhere
-EXPECTED = (0.9, 2.2)  # orders
+EXPECTED, NEAR = (1, 2), 0.1  # orders, and how near to one of them the observed order is to be
 FLOOR = 1e-3           # of the answer: what no mesh shows, as finite displacements, the time step, and vibrations that are left
 LEAST, MOST = 0.5, 1.0 # orders that are relied on
 MOST_GAP = {"mass": 1e-6, "momentum": 0.1, "energy": 0.1}
@@ -156,7 +156,7 @@ def bar_of(values: list[float], ripple: float) -> tuple[float | None, float | No
     if near * far <= 0 or abs(near) <= rounding:  # the values do not go one way
         return None, None, 1.5 * most + 2 * ripple
     order = math.log2(abs(far) / abs(near))
-    relied, safety = min(max(order, LEAST), MOST), SAFETY if EXPECTED[0] <= order <= EXPECTED[1] else DOUBT
+    relied, safety = min(max(order, LEAST), MOST), SAFETY if any(abs(order / each - 1) <= NEAR for each in EXPECTED) else DOUBT
     extrapolated = values[0] - near / (2 ** min(order, 2.0) - 1) if order >= LEAST else None
     size = max(abs(near), abs(far) / 4)  # an order above two is chance
     return order, extrapolated, safety * size / (2 ** relied - 1) + 2 * ripple
