@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-from mpm_regression import cases  # puts the package on the path
+import mpm_regression  # noqa: F401, puts the package on the path
 from soil_mpm.deck import Deck
 from soil_mpm.deck_text import DeckText
 from soil_mpm.problems import UnknownOption

@@ -45,7 +45,7 @@ class Certificate:
     ripple: float
     order: float | None
     extrapolated: float | None
-    bar: float
+    bar: float | None
     balances: dict[str, Any]
     verdict: str
     why: str

@@ -16,7 +16,7 @@ def mass_gap(run: Run) -> float:
     bodies = [body for body in run.words("bodies") if f"{body}_mass" in run.history]
     if not bodies or run.words("stages"):
         return float("nan")
-    total = sum(run[f"{body}_mass"] + run.history.get(f"{body}_lost_mass", 0) for body in bodies)
+    total: np.ndarray = sum(run[f"{body}_mass"] + run.history.get(f"{body}_lost_mass", 0) for body in bodies)
     return float(np.abs(total - total[0]).max() / max(abs(total[0]), TINY))
 
 

@@ -154,10 +154,11 @@ class Deck:
         key, option = self._schema.present_name(name), self.option(name)
         text = option.text(value, self.dim)
         before = self.names()
-        own = self._text.own(key) or self._text.own(name.lower())
+        own = self._text.own(key) or self._text.own(name.lower().lstrip("-"))
         if own is not None:
             own.name, own.text = key if own.name.lower() != key else own.name, text
-        else:
+        self._known.clear()
+        if own is None or self.given().get(key) != text:  # a deck that is included further on may give another value
             self._text.append(Given(key, text or None))
         self._known.clear()
         if key in LISTS:

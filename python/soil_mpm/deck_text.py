@@ -27,8 +27,8 @@ class Given:
 
 
 class DeckText:
-    """Pieces of text and options in turn. A deck that others include (-options_file) keeps the line; the options of the included
-    file are in `included`, and those of the deck come before them where both give one."""
+    """Pieces of text and options in turn. The line of an included deck (-options_file) stays; `included` has these decks in turn, whose
+    options count at the place of the line."""
 
     def __init__(self) -> None:
         self.pieces: list[str | Given] = []
@@ -76,10 +76,11 @@ class DeckText:
 
     def options(self) -> Iterator[Given]:
         """Options in the order in which they take precedence, the last one most."""
-        for deck in self.included:
-            yield from deck.options()
+        included = iter(self.included)
         for piece in self.pieces:
-            if isinstance(piece, Given) and piece.name.lower() != "options_file":
+            if isinstance(piece, Given) and piece.name.lower() == "options_file":
+                yield from next(included).options()
+            elif isinstance(piece, Given):
                 yield piece
 
     def own(self, name: str) -> Given | None:

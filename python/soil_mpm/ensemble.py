@@ -102,7 +102,7 @@ class Ensemble:
         column, _, which = wanted.partition(":")
         if which and which not in REDUCE:
             raise NoSuchResult(f'given "{wanted}", takes COLUMN:last, COLUMN:max or COLUMN:min')
-        return float(REDUCE[which or "last"](self[number][column]))
+        return float(REDUCE[which or "last"](self[number][column].tolist()))
 
     def table(self, *wanted: str | tuple[str, Callable[[Run], float]]) -> Any:
         """A row for each run that has finished: run, its options, and of its history columns (value()) or (name, f) with f(run). A

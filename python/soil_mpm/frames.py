@@ -19,7 +19,7 @@ UNITS = {"position": "m", "velocity": "m/s", "grid_velocity": "m/s", "stress": "
 
 class Body(Mapping[str, Any]):
     """Particles of a body or rigid body in a frame. body["stress"] is a dataset of the file, of which an index reads the part alone:
-    body["stress"][:100, 0]. body.values("mises") reads a field whole. Attributes are datasets: body.stress[:]."""
+    body["stress"][:100, 0]. body.field("mises") reads a field whole. Attributes are datasets: body.stress[:]."""
 
     def __init__(self, name: str, group: h5py.Group):
         self.name, self._group = name, group
@@ -55,10 +55,10 @@ class Body(Mapping[str, Any]):
         return len(self["position"])
 
     def fields(self) -> list[str]:
-        """Names that values() takes: datasets, and what follows from them."""
+        """Names that field() takes: datasets, and what follows from them."""
         return list(dict.fromkeys([*self, *(name for name, derived in DERIVED.items() if derived.is_in(self))]))
 
-    def values(self, name: str) -> np.ndarray:
+    def field(self, name: str) -> np.ndarray:
         """A field of all particles, in SI units: a dataset of the frame [N] or [N, 3 or 6], or what follows from them [N]: pressure,
         effective_pressure, mises [Pa], stress_xx ... stress_zx [Pa], velocity_x ... velocity_z [m/s], speed [m/s]."""
         if name == "speed":
@@ -126,7 +126,7 @@ class Frame:
         position, volume = (np.concatenate([self[body][key][()][near[body]] for body in bodies]) for key in ("position", "volume"))
         found: dict[str, np.ndarray] = {}
         for name in names:
-            values = np.concatenate([self[body].values(name)[near[body]] for body in bodies])
+            values = np.concatenate([self[body].field(name)[near[body]] for body in bodies])
             flat = values.reshape(len(values), int(np.prod(values.shape[1:])))
             found[name] = sample(position, volume, flat, points, self.run.number("mesh_spacing")).reshape(len(points), *values.shape[1:])
         return found

@@ -168,10 +168,11 @@ class Job:
         return done.stdout.strip() or "GONE"
 
     def wait(self, every: float = 30.0) -> Run:
-        """Waits for the end, asks each `every` seconds, and returns the results; RunFailed where the job ends without them."""
+        """Waits for the end, asks each `every` seconds, and returns the results; RunFailed where the job ends without them. A job that
+        has stopped at its limit goes on in another one (scripts/site/slurm), and is waited for."""
         from soil_mpm.results import Run
         while (state := self.state()) != "FINISHED":
-            if state == "GONE" and not is_finished(self.folder):
+            if state == "GONE" and Run(self.folder).outcome != "stopped":
                 raise RunFailed(f"job {self.number} has ended, and {self.folder} holds no run that has finished", FAILED)
             time.sleep(every)
         return Run(self.folder)

@@ -170,6 +170,11 @@ class Texts(unittest.TestCase):
             outer.write_text(f"-options_file {inner}\n-mesh_spacing 0.5\n")
             deck = Deck.read(outer)
             self.assertEqual((deck.dim, deck.mesh_spacing), (3, 0.5))
+            outer.write_text(f"-mesh_spacing 0.5\n-options_file {inner}\n")
+            deck = Deck.read(outer)
+            self.assertEqual(deck.mesh_spacing, 1.0)  # the last one counts
+            deck.mesh_spacing = 2
+            self.assertEqual((deck.mesh_spacing, str(deck).splitlines()[-1]), (2.0, "-mesh_spacing 2"))
             with self.assertRaisesRegex(WrongDeck, "included"):
                 del deck["dim"]
 
@@ -211,10 +216,10 @@ class Runs(unittest.TestCase):
             self.assertIsInstance(body["stress"], h5py.Dataset)
             self.assertEqual(body["stress"][:3, 1].shape, (3,))
             self.assertEqual(body.count, len(body.position))
-            np.testing.assert_allclose(body.values("pressure"), -body.stress[:, :3].mean(axis=1))
+            np.testing.assert_allclose(body.field("pressure"), -body.stress[:, :3].mean(axis=1))
             self.assertEqual((body.unit("mises"), body.unit("velocity_y"), body.unit("stress")), ("Pa", "m/s", "Pa"))
             with self.assertRaisesRegex(NoSuchResult, "no field heat"):
-                body.values("heat")
+                body.field("heat")
             with self.assertRaisesRegex(NoSuchResult, "there are block"):
                 frame["blok"]
 
