@@ -1,5 +1,7 @@
 // The reader as it lists options, for help and schema, in lieu of reading them.
 
+#include <algorithm>
+
 #include "common/text.hpp"
 #include "input/options/reader.hpp"
 
@@ -40,7 +42,9 @@ OptionReader::Scope OptionReader::unless(const std::string& option) {
 }
 
 void OptionReader::restricts(const std::string& name, const std::string& takes) {
-  if (listing_) restrictions_.emplace_back(name, takes);
+  const std::pair restriction(name, takes);
+  const auto known = std::find(restrictions_.begin(), restrictions_.end(), restriction);
+  if (listing_ && known == restrictions_.end()) restrictions_.push_back(restriction);
 }
 
 void OptionReader::section(const std::string& title, const std::vector<std::string>& owners) {
