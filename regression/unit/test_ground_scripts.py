@@ -19,7 +19,9 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 
+from soil_mpm.ensemble import Ensemble  # noqa: E402
 from soil_mpm.ground import fields, raster  # noqa: E402
+from soil_mpm.plot.ensembles import draw_curves  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 
@@ -330,10 +332,9 @@ class Fields(Folder):
             folder.mkdir(parents=True, exist_ok=True)
             (folder / "history.csv").write_text("\n".join([header, *rows]) + "\n")
             (folder / "options.json").write_text(json.dumps({"version": "0", "options": {"dim": "2"}}))
-        sweep = load("sweep")
-        runs = sweep.gather(self.folder / "out", ["su"], [["1"], ["2"]])
+        swept = Ensemble(self.folder / "out", ["su"], [["1"], ["2"]])
         with unittest.mock.patch.object(plt, "close"):
-            sweep.draw(self.folder / "out", ["su"], runs, x, y)
+            draw_curves(swept, x, y)
         axes = plt.gcf().axes[0]
         plt.close("all")
         return axes

@@ -107,11 +107,12 @@ class Options(unittest.TestCase):
         self.assertIn("-shank_shape: not given", "\n".join(deck.faults()))
 
     def test_every_deck_of_the_tree_is_known(self):
-        for path in sorted((ROOT / "inputs").glob("*.opts")):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(ROOT)  # from which decks name files
+        for path in sorted(pathlib.Path("inputs").glob("*.opts")):
             deck = Deck.read(path)
             self.assertEqual(str(deck), path.read_text(), path)
-            with contextlib.chdir(ROOT):
-                self.assertEqual(deck.faults(), [], path)
+            self.assertEqual(deck.faults(), [], path)
 
     def test_without_a_program(self):
         with self.assertRaisesRegex(NoProgram, "MPM_PROGRAM"):

@@ -16,13 +16,21 @@ from soil_mpm.units import axis_unit, unit_of
 FEW = 12  # runs; the names of more fill the picture
 
 
-def chosen_columns(runs: list[Run], x: str | None, y: str | None) -> tuple[str, str]:
+def history_of(run: Run) -> dict[str, np.ndarray]:
+    """The history of a run; columns without rows where none is written yet."""
+    if run.history:
+        return run.history
+    with open(run.folder / "history.csv", newline="") as file:
+        return {name: np.empty(0) for name in next(csv.reader(file))}
+
+
+def chosen_columns(runs: list[dict[str, np.ndarray]], x: str | None, y: str | None) -> tuple[str, str]:
     """The columns of the picture: those asked for, else the force on the first rigid body that moves, along the axis on which it moves
     most, over its displacement; else the first force, or the last column, over time."""
-    columns = list(runs[0].history)
+    columns = list(runs[0])
     forces = [name for name in columns if "_force_" in name]
     ways = {name: name.replace("_force_", "_") for name in forces if name.replace("_force_", "_") in columns}
-    moved = {name: max((np.abs(run.history[way]).max() for run in runs if way in run.history), default=0) for name, way in ways.items()}
+    moved = {name: max((np.abs(run[way]).max(initial=0) for run in runs if way in run), default=0) for name, way in ways.items()}
     if y is None:
         first = next((name.rpartition("_force_")[0] for name in moved if moved[name] > 0), None)
         own = [name for name in moved if name.rpartition("_force_")[0] == first]
@@ -38,15 +46,16 @@ def chosen_columns(runs: list[Run], x: str | None, y: str | None) -> tuple[str, 
 def draw_curves(ensemble: Ensemble, x: str | None = None, y: str | None = None) -> Path:
     """sweep.png: column y over x of every run that has a history; its path."""
     numbers = ensemble.written()
-    runs = [ensemble[number] for number in numbers]
+    first = ensemble[numbers[0]]
+    runs = [history_of(ensemble[number]) for number in numbers]
     x, y = chosen_columns(runs, x, y)
-    drawn = {name: [run.history[name] for run in runs] for name in (x, y)}
+    drawn = {name: [run[name] for run in runs] for name in (x, y)}
     # a body that goes down or to the left goes to the right in the picture, and the force against it is up
-    flip = x == y.replace("_force_", "_") and sum(values[-1] for values in drawn[x]) < 0
+    flip = x == y.replace("_force_", "_") and sum(values[-1] for values in drawn[x] if len(values)) < 0
     figure, axes = plt.subplots(figsize=(7, 5))
     several, sizes = len(runs) <= FEW, {}
     for name in (x, y):
-        text, size = axis_unit(runs[0], np.concatenate(drawn[name]), unit_of(name))
+        text, size = axis_unit(first, np.concatenate(drawn[name]), unit_of(name))
         sizes[name] = -size if flip and name == x else size
         label = name if name == "time" else ("-" if flip and name == x else "") + name
         (axes.set_xlabel if name == x else axes.set_ylabel)(f"{label} ({text})" if text else label)
