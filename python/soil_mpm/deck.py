@@ -56,13 +56,13 @@ class Deck:
 
     def copy(self, **changes: Any) -> Deck:
         """Another deck with the same options, and some changes."""
-        other = copy.copy(self)
-        object.__setattr__(other, "_text", copy.deepcopy(self._text))
-        object.__setattr__(other, "_known", {})
+        other = object.__new__(Deck)
+        other.__dict__.update(self.__dict__, _text=copy.deepcopy(self._text), _known={})
         other.update(changes)
         return other
 
-    __copy__ = None  # type: ignore[assignment]
+    def __copy__(self) -> Deck:
+        return self.copy()
 
     # ------------------------------------------------------------------------------------------ options
 

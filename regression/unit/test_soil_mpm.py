@@ -5,9 +5,11 @@ usage: test_soil_mpm.py PATH_TO_mpm
 """
 
 import contextlib
+import copy
 import io
 import os
 import pathlib
+import pickle
 import re
 import subprocess
 import sys
@@ -91,6 +93,11 @@ class Options(unittest.TestCase):
         self.assertRegex(self.deck.check()[0], "block_upper")
         with self.assertRaisesRegex(WrongDeck, "block_upper"):
             self.deck.dry_run()
+
+    def test_copies_are_apart(self):
+        for other in (copy.copy(self.deck), copy.deepcopy(self.deck), pickle.loads(pickle.dumps(self.deck)), self.deck.copy()):
+            other.mesh_spacing = 0.25
+            self.assertEqual((self.deck.mesh_spacing, other.mesh_spacing, other.rock_young), (0.5, 0.25, 1e6))
 
     def test_options_go_with_their_name(self):
         self.deck.update(materials="clay", clay_model="linear_elastic", clay_density=1, clay_young=1e6, clay_poisson=0, block_material="clay")
