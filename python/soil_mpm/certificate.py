@@ -191,8 +191,9 @@ def masses_differ(runs: list[Run]) -> str:
 
 def certify(deck: Deck, answer: Answer | str, out: Path | str | None = None, *, tolerance: float = TOLERANCE, **how: Any) -> Certificate:
     """Runs a deck on its mesh and on those of two and four times the spacing, and judges an answer ("plate_force_y at plate_y=-0.05").
-    WrongDeck where the deck has no such meshes. out: folder of the runs, by default out/certify and the deck's name. tolerance: largest
-    bar over the answer that counts as converged. how: of launch.run."""
+    WrongDeck where the deck has no such meshes, NoSuchResult where the history has no such column. out: folder of the runs, by default
+    out/certify and the deck's name; it gets certificate.json. tolerance: largest bar over the answer that counts as converged. how: of
+    launch.run."""
     answer = Answer.of(answer) if isinstance(answer, str) else answer
     decks = meshes(deck)
     folder = Path(out) if out is not None else Path("out/certify") / launch.output_folder(deck, None).name
@@ -200,12 +201,17 @@ def certify(deck: Deck, answer: Answer | str, out: Path | str | None = None, *, 
         faults = each.check()
         if faults:
             raise WrongDeck("\n".join(f"on cells of {each.mesh_spacing:g} m: {line}" for line in faults))
+    runs: list[Run] = []
     try:
-        runs = [run_of(each, folder / f"cells_{factor}h", **how) for factor, each in reversed(list(zip(FACTORS, decks)))][::-1]
+        for factor, each in reversed(list(zip(FACTORS, decks))):  # the coarsest first: what is wrong shows soon
+            runs.insert(0, run_of(each, folder / f"cells_{factor}h", **how))
+            answer.curve(runs[0])
     except RunFailed as failed:
         raise RunFailed(f"a run of the certificate failed, so there is none: {failed}", failed.status) from None
     found = judged(answer, runs, tolerance)
-    (folder / "certificate.json").write_text(json.dumps(asdict(found), indent=1) + "\n")
+    told = {**asdict(found), "values": [None if math.isnan(value) else value for value in found.values],
+            "ripple": None if math.isnan(found.ripple) else found.ripple}
+    (folder / "certificate.json").write_text(json.dumps(told, indent=1) + "\n")
     return found
 
 

@@ -339,6 +339,11 @@ class Certificates(unittest.TestCase):
             self.assertEqual(found.verdict, "converged", str(found))
             self.assertIn("not told with damping", str(found))
             self.assertEqual(certify(deck, "block_mass at end", folder).value, 16000)  # by the same runs
+            with self.assertRaisesRegex(NoSuchResult, "nearest is block_mass"):
+                certify(deck, "block_mas at end", folder)
+            late = certify(deck, "block_mass at time=9", folder)
+            self.assertEqual((late.verdict, late.bar), ("cannot say", None))
+            self.assertIn("does not come to 9", str(late))
 
 
 if __name__ == "__main__":
