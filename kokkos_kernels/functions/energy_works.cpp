@@ -49,7 +49,7 @@ struct WorkAtNodes {
 
   /// Force of other velocity fields on node i [N], which is in the sums.
   KOKKOS_INLINE_FUNCTION double of_other_fields(int i, int d) const {
-    if (!interfaces.in_use()) return 0;
+    if (interfaces.fields < 2 || interfaces.laws.extent(0) == 0) return 0;
     const int entry = interfaces.entry(i / cells);
     return entry == 0 ? 0 : interfaces.force((std::size_t(entry - 1) * Dim + d) * cells + i % cells);
   }
