@@ -198,7 +198,11 @@ def scales_of(run, deck):
     last = next((read_frame(f)[1] for f in reversed(run.frames)), None)
     s = Scales(run, last)
     energy = max([s.momentum * s.velocity / 2, *(np.abs(v).max() for n, v in run.history.items() if n.startswith(("energy_", "work_")))])
-    out = {STRESS: s.stress, SPEED: s.velocity, MOMENTUM: s.momentum, ENERGY: energy, FORCE: s.force, LENGTH: s.spacing, AREA: s.spacing**2}
+    # Round-off of sums of masses and volumes is that of particles, however little has passed a section.
+    mass, volume = (min((fields[name].min() for fields in (last or {}).values() if len(fields.get(name, ()))), default=0.0)
+                    for name in ("mass", "volume"))
+    out = {MASS: mass, VOLUME: volume, STRESS: s.stress, SPEED: s.velocity, MOMENTUM: s.momentum, ENERGY: energy, FORCE: s.force,
+           LENGTH: s.spacing, AREA: s.spacing**2}
     return {per_width(u) if is_plane(deck) and u in WHOLE else u: x for u, x in out.items()}, s
 
 
