@@ -6,8 +6,9 @@
 
 namespace mpm {
 
-/// What a distance asks of SurfaceTables, passed by value: threads of a GPU that called a function with a
-/// reference to a part of their kernel would all copy the kernel's data to memory, some thousand bytes each.
+/// Tables of SurfaceTables that a distance reads, passed by value. A thread of a GPU that called a function
+/// with a reference to a member of its kernel would copy the kernel's data to its own memory, some thousand
+/// bytes.
 struct SampleTables {
   const int* blocks;
   const SurfaceSample* samples;

@@ -14,7 +14,7 @@
 namespace mpm {
 namespace {
 
-/// What a point may move beyond the margin [cells].
+/// Largest movement of a point beyond the margin [cells].
 inline constexpr double k_step_beyond_margin = 0.5;
 
 /// Half the window of the nodes that particles of a patch reach, with the reach of a contact, a cell along
