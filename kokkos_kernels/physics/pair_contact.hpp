@@ -155,18 +155,27 @@ KOKKOS_INLINE_FUNCTION Vector<double, Dim> parting_before(const PairContact<Dim>
   return v;
 }
 
-/// Adds an impulse [N s] at the end of an arm to a body.
+/// Adds an impulse [N s] at the end of an arm to a body. Several threads may push a body that nothing moves,
+/// as pairs of one colour share such bodies: its impulse is added at once.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION void push_body(PairMotion<Dim>& body, const Vector<double, Dim>& arm,
                                       const Vector<double, Dim>& impulse, double sign) {
   const AngularVector<Dim> moment = moment_of(arm, impulse), more = turned_by(body, moment);
+  bool moves = false;
+  for (int d = 0; d < Dim; ++d) moves = moves || body.lightness[d] != 0;
+  const auto add = [&](int value, double part) {
+    if (moves)
+      body.impulse[value] += part;
+    else
+      Kokkos::atomic_add(&body.impulse[value], part);
+  };
   for (int d = 0; d < Dim; ++d) {
-    body.velocity[d] += sign * body.lightness[d] * impulse[d];
-    body.impulse[Wrench<Dim>::force + d] += sign * impulse[d];
+    if (moves) body.velocity[d] += sign * body.lightness[d] * impulse[d];
+    add(Wrench<Dim>::force + d, sign * impulse[d]);
   }
   for (int k = 0; k < k_turning_axes<Dim>; ++k) {
-    body.spin[k] += sign * more[k];
-    body.impulse[Wrench<Dim>::moment + k] += sign * moment[k];
+    if (more[k] != 0) body.spin[k] += sign * more[k];
+    add(Wrench<Dim>::moment + k, sign * moment[k]);
   }
 }
 

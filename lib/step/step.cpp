@@ -237,7 +237,7 @@ struct Step {
     move_rigids(s, s.timed, dt, stream);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  /// What rigid bodies do to each other, and the impulses on their parts.
+  /// Adds the contact of rigid bodies with each other, and the impulses on their parts.
   void push_rigids(const Space& stream) const {
     if (s.part_forces.count > 0) add_part_impulses(s, dt, stream);
     if (s.pairs.in_use()) {
@@ -246,8 +246,8 @@ struct Step {
     }
     if (s.links.in_use()) link_rigids(s, dt, stream);
   }
-  /// The forces on the rigids, and what can be done of their movement beside function 5, which asks for none
-  /// of them.
+  /// Sums the forces on the rigids and moves them while function 5 updates the particles: function 5 reads no
+  /// rigid.
   void move_rigids_ahead(const Space& stream) const {
     sum_forces(s, stream);
     push_rigids(stream);
