@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <vector>
 
 #include "base/copy.hpp"
 #include "physics/ring_domain.hpp"
@@ -85,7 +86,8 @@ void mark_borrowed(const ContactCore<Space, T, Dim>& s, const Marks& marks) {
 }
 
 /// Points of all rigid bodies in one row, so that one launch takes them: of many bodies each would wait
-/// longer for a launch of its own than for its work.
+/// longer for a launch of its own than for its work. Few bodies go with the kernel, so that rebuilds allocate
+/// no memory for them.
 template <class Space, class T, int Dim>
 struct AllRigidPoints {
   struct Body {
@@ -96,29 +98,35 @@ struct AllRigidPoints {
   struct Point {
     int body, p;  // p: its number among those of the body
   };
-  Kokkos::View<Body*, typename Space::memory_space> bodies;
+  static constexpr int k_few = 16;
+  Body few[k_few] = {};
+  Kokkos::View<Body*, typename Space::memory_space> many;  // empty where they are few
   int count;
   long all = 0;
 
   explicit AllRigidPoints(const ContactCore<Space, T, Dim>& s)
-      : bodies(Kokkos::view_alloc("mpm::all_rigid_points", Kokkos::WithoutInitializing),
-               s.rigid_points.size()),
-        count(static_cast<int>(s.rigid_points.size())) {
-    const auto host = Kokkos::create_mirror_view(bodies);
-    for (int r = 0; r < count; ++r) {
-      const auto& set = s.rigid_points[r];
-      host(r) = {set.points.reference_position.data(), set.points.coordinate.data(), set.address.data(), all};
+      : count(static_cast<int>(s.rigid_points.size())) {
+    std::vector<Body> bodies;
+    for (const auto& set : s.rigid_points) {
+      bodies.push_back(
+          {set.points.reference_position.data(), set.points.coordinate.data(), set.address.data(), all});
       all += set.points.all;
     }
-    copy(bodies, host);
+    std::copy_n(bodies.begin(), std::min(count, k_few), few);
+    if (count <= k_few) return;
+    many = decltype(many)(Kokkos::view_alloc("mpm::all_rigid_points", Kokkos::WithoutInitializing), count);
+    const auto host = Kokkos::create_mirror_view(many);
+    std::copy(bodies.begin(), bodies.end(), host.data());
+    copy(many, host);
   }
+  KOKKOS_INLINE_FUNCTION const Body& body(int r) const { return count <= k_few ? few[r] : many(r); }
   KOKKOS_INLINE_FUNCTION Point at(long n) const {
     int low = 0, high = count;
     while (high - low > 1) {
       const int middle = (low + high) / 2;
-      (bodies(middle).first <= n ? low : high) = middle;
+      (body(middle).first <= n ? low : high) = middle;
     }
-    return {low, static_cast<int>(n - bodies(low).first)};
+    return {low, static_cast<int>(n - body(low).first)};
   }
   auto range(const Space& space) const {
     return Kokkos::RangePolicy<Space, Kokkos::IndexType<long>>(space, 0, all);
@@ -134,8 +142,8 @@ void mark_rigids(const ContactCore<Space, T, Dim>& s, const Marks& marks) {
   const auto grid = s.grid;
   Kokkos::parallel_for(
       "mpm::mark_rigids", points.range(s.space), KOKKOS_LAMBDA(long n) {
-        const auto [body, p] = points.at(n);
-        const long own = patch_if_first<Dim>(points.bodies(body).address, p);
+        const auto [r, p] = points.at(n);
+        const long own = patch_if_first<Dim>(points.body(r).address, p);
         if (own < 0 || Kokkos::atomic_load(&marks(own)) != 0) return;
         const Coord<Dim> at = grid.origin_of(own);
         for (int k = 0; k < Patch<Dim>::neighbours; ++k) {
@@ -159,7 +167,7 @@ void locate_rigids(ContactCore<Space, T, Dim>& s) {
   Kokkos::parallel_for(
       "mpm::locate_rigids", points.range(s.space), KOKKOS_LAMBDA(long n) {
         const auto [r, p] = points.at(n);
-        const auto& body = points.bodies(r);
+        const auto& body = points.body(r);
         Coord<Dim> c{};
         double position[3] = {};
         if (p == 0) rigids(r).binned = rigids(r).motion.pose;
