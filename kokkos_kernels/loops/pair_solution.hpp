@@ -47,9 +47,12 @@ struct PairSolution {
     pairs.motions(n) = motion;
   }
 
-  /// Finds the contacts of pair number m.
+  /// Finds the contacts of pair number m: the places farthest along some ways, of those that touch in the
+  /// step. A place that stays away from the other body counts as less far, since it would hide one that
+  /// touches.
   template <class Team>
   KOKKOS_INLINE_FUNCTION void find(const Team& team, int m) const {
+    constexpr double k_steep = 100;  // way that a gap is worth at the end of the step, over the gap
     const RigidPair pair = pairs.list(m);
     const PairPlaces<Dim> places{pairs.bodies(pair.a), pairs.bodies(pair.b),
                                  pose_of(rigids.data(), count, pair.a),
@@ -62,8 +65,10 @@ struct PairSolution {
     for (int n = places.begin() + team.team_rank(); n < places.end(); n += team.team_size()) {
       const Nearness<Dim> at = places(n, pairs.points, pairs.vertices);
       if (!(at.gap < most)) continue;
+      const double spread =
+          2 * room - Kokkos::fmin(room, k_steep * Kokkos::fmax(0.0, ahead(pair, places, at)));
       for (int k = 0; k < k_most; ++k) {
-        double score = k < k_ways ? 2 * room : most - at.gap;
+        double score = k < k_ways ? spread : most - at.gap;
         for (int d = 0; d < Dim && k < k_ways; ++d) score += pair_way<Dim>(k, d) * at.place[d];
         if (score > best[k]) best[k] = score, which[k] = n;
       }
@@ -125,6 +130,16 @@ struct PairSolution {
     return k_touch * spacing + 2 * dt * (Kokkos::sqrt(linear) + turn);
   }
 
+  /// Gap [m] of a place at the end of the step without impulses.
+  KOKKOS_INLINE_FUNCTION double ahead(const RigidPair& pair, const PairPlaces<Dim>& places,
+                                      const Nearness<Dim>& found) const {
+    const PairMotion<Dim>&a = pairs.motions(pair.a), &b = pairs.motions(pair.b);
+    PairContact<Dim> at{};
+    places.set(at, found);
+    at.before = dot(parting_before(at, a, b), at.normal);
+    return gap_after(at, a, b, dt);
+  }
+
   /// The number of the contact with the largest score of all lanes; of several, the first.
   KOKKOS_INLINE_FUNCTION static int farthest(double score, int which) {
     const double most = largest_of_warp(score);
@@ -148,10 +163,8 @@ struct PairSolution {
       if (!is_new) continue;
       PairContact<Dim>& contact = at[kept++];
       const Nearness<Dim> found = places(which[k], pairs.points, pairs.vertices);
-      contact.point = which[k], contact.normal = found.normal, contact.gap = found.gap;
-      contact.arms[0] = places.pose_a.arm_to([&](int d) { return found.place[d]; });
-      contact.arms[1] = places.pose_b.arm_to([&](int d) { return found.place[d]; });
-      contact.impulse = {};
+      contact.point = which[k], contact.impulse = {};
+      places.set(contact, found);
       for (int n = 0; n < before; ++n)
         if (point[n] == which[k]) contact.impulse = impulse[n];
       set_bounds(contact, pairs.motions(pair.a), pairs.motions(pair.b), pair.restitution, dt);

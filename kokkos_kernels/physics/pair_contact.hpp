@@ -61,6 +61,12 @@ struct PairPlaces {
     for (int d = 0; d < Dim; ++d) out.normal[d] = -out.normal[d];
     return out;
   }
+  /// Sets the place, normal and gap of a contact.
+  KOKKOS_INLINE_FUNCTION void set(PairContact<Dim>& at, const Nearness<Dim>& found) const {
+    at.normal = found.normal, at.gap = found.gap;
+    at.arms[0] = pose_a.arm_to([&](int d) { return found.place[d]; });
+    at.arms[1] = pose_b.arm_to([&](int d) { return found.place[d]; });
+  }
 };
 
 /// Component d of way k along which the farthest contact of a pair is kept: the axes, and the diagonals.

@@ -34,6 +34,7 @@ ANSWERS = {  # cases on the GPU
     "revolution": ["thick_cylinder", "cylinders", "circle", "deep_sphere_section", "circle_fine", "quarter", "cavity", "cavity_sphere"],
     "pairs": ["contact_pairs", "pair_bars", "pair_bending", "pair_hertz", "pair_pullout"],
     "balls": ["pair_balls"],
+    "bodies": ["rigid_contact", "rolling", "cad", "joints", "parts", "masses", "turning", "light_body"],
 }
 PROCESSOR_ANSWERS = {  # back ends, threads and runs at a time, cases: the longest first
     "limits": ("openmp", 2, 7, ["footing_surcharge", "footing_weight", "footing_cohesion", "cut_tresca", "cut_friction",
