@@ -14,6 +14,7 @@ namespace mpm {
 template <class Space, class T, int Dim>
 struct PairSolution {
   using Memory = typename Space::memory_space;
+  using Motion = PairMotion<Dim>;
   static constexpr int k_ways = k_pair_ways<Dim>, k_most = k_pair_contacts<Dim>;
   ControlView<Space> control;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
@@ -86,9 +87,8 @@ struct PairSolution {
     relax(team, part, speed);
     MPM_ROLLED
     for (int n = 1; n <= k_softer; ++n) {
-      if (!(sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at) {
-              return soften_impact(at, pairs.motions(pair.a), pairs.motions(pair.b), pair.friction,
-                                   n == k_softer);
+      if (!(sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at, Motion& a, Motion& b) {
+              return soften_impact(at, a, b, pair.friction, n == k_softer);
             }) > 0))
         break;
       relax(team, part, speed);
@@ -96,13 +96,13 @@ struct PairSolution {
     double change = 0, first = 0;
     MPM_ROLLED
     for (int n = 0; n < k_shifts; ++n) {
-      change = sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at) {
-        return part_bodies(at, pairs.motions(pair.a), pairs.motions(pair.b), most, dt);
+      change = sweep(team, part, [&](const RigidPair&, PairContact<Dim>& at, Motion& a, Motion& b) {
+        return part_bodies(at, a, b, most, dt);
       });
       if (n == 0) first = change;
       if (!(change > k_share * first)) break;
     }
-    for_team(team, count, [&](int n) { act(n); });
+    act(team);
   }
 
  private:
@@ -113,8 +113,8 @@ struct PairSolution {
     constexpr double k_small = 1e-8;  // of the speed
     MPM_ROLLED
     for (int n = 0; n < k_sweeps; ++n)
-      if (!(sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at) {
-              return relax_contact(at, pairs.motions(pair.a), pairs.motions(pair.b), pair.friction);
+      if (!(sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at, Motion& a, Motion& b) {
+              return relax_contact(at, a, b, pair.friction);
             }) > k_small * speed))
         break;
   }
@@ -173,7 +173,8 @@ struct PairSolution {
   }
 
   /// Begins a solution with an impulse of the step before: what of it presses.
-  KOKKOS_INLINE_FUNCTION void resume(const RigidPair& pair, PairContact<Dim>& at) const {
+  KOKKOS_INLINE_FUNCTION static void resume(const RigidPair& pair, PairContact<Dim>& at, Motion& a,
+                                            Motion& b) {
     const double normal = Kokkos::fmax(0.0, dot(at.impulse, at.normal)), was = dot(at.impulse, at.normal);
     Vector<double, Dim> along;
     double square = 0;
@@ -184,8 +185,8 @@ struct PairSolution {
     const double most = pair.friction * normal, length = Kokkos::sqrt(square);
     const double share = length > most ? most / length : 1;
     for (int d = 0; d < Dim; ++d) at.impulse[d] = normal * at.normal[d] + share * along[d];
-    push_body(pairs.motions(pair.a), at.arms[0], at.impulse, 1);
-    push_body(pairs.motions(pair.b), at.arms[1], at.impulse, -1);
+    push_body(a, at.arms[0], at.impulse, 1);
+    push_body(b, at.arms[1], at.impulse, -1);
   }
 
   /// The largest speed and change of speed of the bodies that a thread looks after, before contact [m/s].
@@ -201,14 +202,15 @@ struct PairSolution {
       }
     }
     team.team_barrier();  // before impulses change the velocities
-    sweep_pairs(team, [&](const RigidPair& pair, PairContact<Dim>& at) {
-      resume(pair, at);
+    sweep_pairs(team, [&](const RigidPair& pair, PairContact<Dim>& at, Motion& a, Motion& b) {
+      resume(pair, at, a, b);
       return 0.0;
     });
     return most;
   }
 
-  /// Calls f for the contacts of all pairs, colour by colour; returns the largest value of this thread.
+  /// Calls f for the contacts of all pairs, colour by colour; returns the largest value of this thread. The
+  /// motions of a pair's bodies are a copy meanwhile: pairs of one colour share bodies that nothing moves.
   template <class Team, class F>
   KOKKOS_INLINE_FUNCTION double sweep_pairs(const Team& team, const F& f) const {
     double most = 0;
@@ -220,9 +222,12 @@ struct PairSolution {
         const int held = pairs.held(m);
         if (held == 0) continue;
         const RigidPair pair = pairs.list(m);
+        Motion a = pairs.motions(pair.a), b = pairs.motions(pair.b);
         MPM_ROLLED
         for (int k = 0; k < held; ++k)
-          most = Kokkos::fmax(most, f(pair, pairs.contacts(std::size_t(m) * k_most + k)));
+          most = Kokkos::fmax(most, f(pair, pairs.contacts(std::size_t(m) * k_most + k), a, b));
+        if (pairs.bodies(pair.a).dynamic) pairs.motions(pair.a) = a;
+        if (pairs.bodies(pair.b).dynamic) pairs.motions(pair.b) = b;
       }
       team.team_barrier();
     }
@@ -246,15 +251,44 @@ struct PairSolution {
     return most;
   }
 
-  /// Leaves what the contacts do to rigid body n.
-  KOKKOS_INLINE_FUNCTION void act(int n) const {
-    const PairMotion<Dim>& motion = pairs.motions(n);
-    PairAction<Dim>& action = pairs.actions(n);
-    for (int k = 0; k < Wrench<Dim>::size; ++k) {
-      action.wrench[k] = motion.impulse[k] / dt;
-      action.shift[k] = motion.shift[k];
-      action.impulse[k] += motion.impulse[k];
+  /// Leaves what the contacts do to the rigid bodies: a warp a body.
+  template <class Team>
+  KOKKOS_INLINE_FUNCTION void act(const Team& team) const {
+    const int size = team.team_size(), lanes = size < k_warp ? size : k_warp;
+    MPM_ROLLED
+    for (int n = team.team_rank() / lanes; n < count; n += size / lanes) {
+      const Motion& motion = pairs.motions(n);
+      const Wrench<Dim> impulse =
+          pairs.bodies(n).dynamic ? motion.impulse : impulse_on(n, team.team_rank() % lanes, lanes);
+      if (team.team_rank() % lanes != 0) continue;
+      PairAction<Dim>& action = pairs.actions(n);
+      for (int k = 0; k < Wrench<Dim>::size; ++k) {
+        action.wrench[k] = impulse[k] / dt;
+        action.shift[k] = motion.shift[k];
+        action.impulse[k] += impulse[k];
+      }
     }
+  }
+
+  /// Impulses of all contacts of a body that nothing moves, summed in an order that is always the same.
+  KOKKOS_INLINE_FUNCTION Wrench<Dim> impulse_on(int n, int lane, int lanes) const {
+    Wrench<Dim> sum{};
+    MPM_ROLLED
+    for (int m = lane; m < pairs.count; m += lanes) {
+      const RigidPair pair = pairs.list(m);
+      if (pair.a != n && pair.b != n) continue;
+      const int own = pair.a == n ? 0 : 1;
+      MPM_ROLLED
+      for (int k = 0; k < pairs.held(m); ++k) {
+        const PairContact<Dim>& at = pairs.contacts(std::size_t(m) * k_most + k);
+        const AngularVector<Dim> moment = moment_of(at.arms[own], at.impulse);
+        for (int d = 0; d < Dim; ++d) sum[Wrench<Dim>::force + d] += (own == 0 ? 1 : -1) * at.impulse[d];
+        for (int d = 0; d < k_turning_axes<Dim>; ++d)
+          sum[Wrench<Dim>::moment + d] += (own == 0 ? 1 : -1) * moment[d];
+      }
+    }
+    for (int k = 0; k < Wrench<Dim>::size; ++k) sum[k] = sum_of_warp(sum[k]);
+    return sum;
   }
 };
 

@@ -161,27 +161,18 @@ KOKKOS_INLINE_FUNCTION Vector<double, Dim> parting_before(const PairContact<Dim>
   return v;
 }
 
-/// Adds an impulse [N s] at the end of an arm to a body. Several threads may push a body that nothing moves,
-/// as pairs of one colour share such bodies: its impulse is added at once.
+/// Adds an impulse [N s] at the end of an arm to a body.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION void push_body(PairMotion<Dim>& body, const Vector<double, Dim>& arm,
                                       const Vector<double, Dim>& impulse, double sign) {
   const AngularVector<Dim> moment = moment_of(arm, impulse), more = turned_by(body, moment);
-  bool moves = false;
-  for (int d = 0; d < Dim; ++d) moves = moves || body.lightness[d] != 0;
-  const auto add = [&](int value, double part) {
-    if (moves)
-      body.impulse[value] += part;
-    else
-      Kokkos::atomic_add(&body.impulse[value], part);
-  };
   for (int d = 0; d < Dim; ++d) {
-    if (moves) body.velocity[d] += sign * body.lightness[d] * impulse[d];
-    add(Wrench<Dim>::force + d, sign * impulse[d]);
+    body.velocity[d] += sign * body.lightness[d] * impulse[d];
+    body.impulse[Wrench<Dim>::force + d] += sign * impulse[d];
   }
   for (int k = 0; k < k_turning_axes<Dim>; ++k) {
-    if (more[k] != 0) body.spin[k] += sign * more[k];
-    add(Wrench<Dim>::moment + k, sign * moment[k]);
+    body.spin[k] += sign * more[k];
+    body.impulse[Wrench<Dim>::moment + k] += sign * moment[k];
   }
 }
 
@@ -248,6 +239,7 @@ KOKKOS_INLINE_FUNCTION double relax_contact(PairContact<Dim>& at, PairMotion<Dim
   const Vector<double, Dim> v = parting(at, a, b);
   const double v_n = dot(v, n), was = dot(at.impulse, n);
   const double normal = Kokkos::fmax(0.0, was + (at.least - v_n) / at.yield);
+  if (normal == 0 && was == 0) return 0;
   Vector<double, Dim> along;
   double square = 0;
   for (int d = 0; d < Dim; ++d) {
@@ -317,6 +309,7 @@ KOKKOS_INLINE_FUNCTION double part_bodies(PairContact<Dim>& at, PairMotion<Dim>&
   const double gap = gap_after(at, a, b, dt), least = gap < 0 ? Kokkos::fmin(-k_share * gap, most) : -gap;
   const double now = shifted(a, at.arms[0]) - shifted(b, at.arms[1]);
   const double lift = Kokkos::fmax(0.0, at.lift + (least - now) / at.yield), more = lift - at.lift;
+  if (more == 0) return 0;
   at.lift = lift;
   Vector<double, Dim> by;
   for (int d = 0; d < Dim; ++d) by[d] = more * n[d];

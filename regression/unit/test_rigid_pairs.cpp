@@ -77,19 +77,6 @@ TEST_CASE("impulses of contact are opposite, press, and stay below the friction"
   }
 }
 
-TEST_CASE("a fixed body has the impulses of all bodies that touch it at once", "[rigid_pairs]") {
-  constexpr int k_bodies = 2000000;
-  const Kokkos::View<PairMotion<2>*, Kokkos::HostSpace> fixed("fixed", 1);
-  Kokkos::parallel_for(
-      Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace>(0, k_bodies), KOKKOS_LAMBDA(int) {
-        push_body(fixed(0), {0.5, 0}, {0, -1}, 1);
-      });
-  Kokkos::fence();
-  CHECK(fixed(0).impulse[Wrench<2>::force + 1] == -k_bodies);
-  CHECK(fixed(0).impulse[Wrench<2>::moment] == -k_bodies / 2);
-  CHECK(fixed(0).velocity[1] == 0);
-}
-
 TEST_CASE("a table of rigid bodies gives options", "[rigid_pairs]") {
   std::string fault;
   const auto rows = rows_of_bodies("name, centre ,radius\n# two balls\na, 1 2  3 ,0.5\n\nb,4 5 6,\n", &fault);
