@@ -6,27 +6,31 @@
 namespace mpm {
 namespace {
 
-/// Calls f(p) for the particles of the slots of some bins where `chosen` is not 0; without it, of all.
+/// Calls f(p) for the particles of some slots of bins, or of all.
 template <class Space, int Dim, class F>
 struct ForEachInSlots {
+  static constexpr int cells = Patch<Dim>::cells;
   decltype(Bins<Space>::begin) begin;
-  Kokkos::View<int*, typename Space::memory_space> chosen;  // by slot
+  int first_slot, last_slot;                              // of the bins
+  Kokkos::View<int*, typename Space::memory_space> some;  // slots; empty: all
   ControlView<Space> control;
   F f;
 
-  KOKKOS_INLINE_FUNCTION void operator()(int cell) const {
+  KOKKOS_INLINE_FUNCTION void operator()(int n) const {
     if (control().paused) return;
-    if (chosen.extent(0) > 0 && chosen(cell / Patch<Dim>::cells) == 0) return;
+    int slot = n / cells;
+    if (some.extent(0) > 0) slot = some(slot);
+    if (slot < first_slot || slot >= last_slot) return;
+    const int cell = slot * cells + n % cells;
     for (int p = begin(cell); p < begin(cell + 1); ++p) f(p);
   }
 };
 template <class F, class Space, class T, int Dim>
-void for_each_in_slots(const char* label, const Core<Space, T, Dim>& s, const Bins<Space>& bins,
-                       const Kokkos::View<int*, typename Space::memory_space>& chosen, const F& f) {
+void for_each_in_slots(const char* label, const Core<Space, T, Dim>& s, const Bins<Space>& bins, const F& f) {
   constexpr int cells = Patch<Dim>::cells;
   Kokkos::parallel_for(
       label, light(Kokkos::RangePolicy<Space>(s.space, bins.first_slot * cells, bins.last_slot * cells)),
-      ForEachInSlots<Space, Dim, F>{bins.begin, chosen, s.control, f});
+      ForEachInSlots<Space, Dim, F>{bins.begin, bins.first_slot, bins.last_slot, {}, s.control, f});
 }
 
 template <class Space, class T, int Dim>
@@ -59,17 +63,23 @@ ParticleValues<Space, T, DisplacedTerms::size> find_displaced(
     const Core<Space, T, Dim>& s, const ParticleSet<Space, Soil<Space, T, Dim>>& set) {
   const auto values = values_in_scratch<DisplacedTerms::size>(s);
   for_each_in_slots(
-      "mpm::find_displaced", s, set.bins, {},
+      "mpm::find_displaced", s, set.bins,
       FindDisplaced<Space, T, Dim>{{set.points, s.water, s.density, s.patches.origin, s.spacing}, values});
   return values;
 }
 
 template <class Space, class T, int Dim>
 ParticleValues<Space, T, StrengthTerms::size> find_strengths(
-    const ContactCore<Space, T, Dim>& s, const ParticleSet<Space, Soil<Space, T, Dim>>& set) {
+    const ContactCore<Space, T, Dim>& s, const ParticleSet<Space, Soil<Space, T, Dim>>& set,
+    const Space& stream) {
+  using Find = FindStrength<Space, T, Dim>;
   const auto values = values_in_scratch<StrengthTerms::size>(s);
-  for_each_in_slots("mpm::find_strengths", s, set.bins, s.contact.place,
-                    FindStrength<Space, T, Dim>{set.points, values});
+  const Bins<Space>& bins = set.bins;
+  Kokkos::parallel_for(
+      "mpm::find_strengths",
+      light(Kokkos::RangePolicy<Space>(stream, 0, s.contact.count * Patch<Dim>::cells)),
+      ForEachInSlots<Space, Dim, Find>{
+          bins.begin, bins.first_slot, bins.last_slot, s.contact.slots, s.control, {set.points, values}});
   return values;
 }
 
@@ -77,7 +87,7 @@ ParticleValues<Space, T, StrengthTerms::size> find_strengths(
   template ParticleValues<Space, T, DisplacedTerms::size> find_displaced(          \
       const Core<Space, T, Dim>&, const ParticleSet<Space, Soil<Space, T, Dim>>&); \
   template ParticleValues<Space, T, StrengthTerms::size> find_strengths(           \
-      const ContactCore<Space, T, Dim>&, const ParticleSet<Space, Soil<Space, T, Dim>>&);
+      const ContactCore<Space, T, Dim>&, const ParticleSet<Space, Soil<Space, T, Dim>>&, const Space&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 
 }  // namespace mpm

@@ -12,9 +12,11 @@ template <class Space, class T, int Dim>
 ParticleValues<Space, T, DisplacedTerms::size> find_displaced(
     const Core<Space, T, Dim>& s, const ParticleSet<Space, Soil<Space, T, Dim>>& set);
 
-/// The strengths of the particles of a set that may reach a rigid, by StrengthTerms. The others have none.
+/// The strengths of the particles of a set in the slots of contact, by StrengthTerms, on a stream. The others
+/// have none.
 template <class Space, class T, int Dim>
 ParticleValues<Space, T, StrengthTerms::size> find_strengths(
-    const ContactCore<Space, T, Dim>& s, const ParticleSet<Space, Soil<Space, T, Dim>>& set);
+    const ContactCore<Space, T, Dim>& s, const ParticleSet<Space, Soil<Space, T, Dim>>& set,
+    const Space& stream);
 
 }  // namespace mpm

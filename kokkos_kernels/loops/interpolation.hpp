@@ -13,9 +13,15 @@ Interpolation<Source> interpolation_of(const ContactCore<Space, T, Dim>& s, cons
                                        const Space& stream) {
   Interpolation<Source> it{stream, s.grid, s.patches, bins, source, out, s.control, s.p2g.mosaic_cells};
   it.windows = bins.windows;
+  bool near_contact = false;  // points elsewhere give nothing
   if constexpr (requires { source.windows; })
-    if (source.windows.place.extent(0) > 0) it.windows = source.windows, it.giving = s.contact.count;
-  if constexpr (requires { source.contact; }) it.windows = s.contact.boundary, it.giving = s.contact.count;
+    if (source.windows.place.extent(0) > 0) it.windows = source.windows, near_contact = true;
+  if constexpr (requires { source.contact; }) it.windows = s.contact.boundary, near_contact = true;
+  const Bins<Space>& soil = s.soil.bins;
+  const bool whole = bins.active_slots.data() == soil.active_slots.data() &&
+                     bins.first_active == soil.first_active && bins.last_active == soil.last_active;
+  if (near_contact) it.giving = s.contact.count;
+  if (near_contact && whole) it.giving_slots = s.contact.slots;
   if constexpr (requires { source.rigid; }) it.some_slots = s.contact.slots, it.some_count = s.contact.count;
   it.adds = !s.plan.writes_sums;
   return it;

@@ -204,13 +204,14 @@ struct PairSolution {
     team.team_barrier();  // before impulses change the velocities
     sweep_pairs(team, [&](const RigidPair& pair, PairContact<Dim>& at, Motion& a, Motion& b) {
       resume(pair, at, a, b);
-      return 0.0;
+      return 1.0;
     });
     return most;
   }
 
   /// Calls f for the contacts of all pairs, colour by colour; returns the largest value of this thread. The
-  /// motions of a pair's bodies are a copy meanwhile: pairs of one colour share bodies that nothing moves.
+  /// motions of a pair's bodies are a copy meanwhile, since pairs of one colour share bodies that nothing
+  /// moves; f returns another number than 0 where it changes them.
   template <class Team, class F>
   KOKKOS_INLINE_FUNCTION double sweep_pairs(const Team& team, const F& f) const {
     double most = 0;
@@ -223,15 +224,24 @@ struct PairSolution {
         if (held == 0) continue;
         const RigidPair pair = pairs.list(m);
         Motion a = pairs.motions(pair.a), b = pairs.motions(pair.b);
+        double all = 0;
         MPM_ROLLED
-        for (int k = 0; k < held; ++k)
-          most = Kokkos::fmax(most, f(pair, pairs.contacts(std::size_t(m) * k_most + k), a, b));
-        if (pairs.bodies(pair.a).dynamic) pairs.motions(pair.a) = a;
-        if (pairs.bodies(pair.b).dynamic) pairs.motions(pair.b) = b;
+        for (int k = 0; k < held; ++k) {
+          const double change = f(pair, pairs.contacts(std::size_t(m) * k_most + k), a, b);
+          all += change, most = Kokkos::fmax(most, change);
+        }
+        if (all != 0) store(pair.a, a), store(pair.b, b);
       }
       team.team_barrier();
     }
     return most;
+  }
+  /// Stores what a sweep may change of the motion of a body that forces move.
+  KOKKOS_INLINE_FUNCTION void store(int n, const Motion& motion) const {
+    if (!pairs.bodies(n).dynamic) return;
+    Motion& to = pairs.motions(n);
+    to.velocity = motion.velocity, to.spin = motion.spin;
+    to.impulse = motion.impulse, to.shift = motion.shift;
   }
   template <class Team, class F>
   KOKKOS_INLINE_FUNCTION double sweep(const Team& team, double* part, const F& f) const {

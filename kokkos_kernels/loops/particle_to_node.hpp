@@ -28,6 +28,8 @@ struct Interpolation {
   Kokkos::View<int*, typename Space::memory_space> some_slots = {};
   int some_count = -1;
   int giving = -1;  // number of slots whose points give, if it is not negative; else those of all do
+  /// These slots, where the bins are those of the whole soil.
+  Kokkos::View<int*, typename Space::memory_space> giving_slots = {};
 };
 
 /// The strategy for the points of rigids. They are few in many cells of a patch or many in few: where `tile`

@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-// On a device all patches at once, by atomic additions to the nodes. Where few patches give, each lot of a
-// patch has a team: one wave of teams takes as long as one of them.
+// On a device all patches at once, by atomic additions to the nodes; where some patches alone give, these. Of
+// few, each lot of a patch has a team: one wave of teams takes as long as one of them.
 template <class Source>
 void sum_on_device(const Interpolation<Source>& it) {
   using Space = typename Source::Space;
@@ -18,16 +18,18 @@ void sum_on_device(const Interpolation<Source>& it) {
   const auto source = it.source;
   const auto neighbours = it.patches.neighbours;
   const auto begin = it.bins.begin;
-  const auto active_slots = it.bins.active_slots;
   const auto grid = it.grid;
   const WallReach<Dim> reach(grid);
   const auto origin = it.patches.origin;
   const auto out = it.out;
   const auto control = it.control;
-  const int first = it.bins.first_active, slots = it.bins.last_active - first;
-  if (slots == 0) return;
   constexpr int k_few = 1024;  // slots that give
-  const int parts = it.giving >= 0 && it.giving < k_few ? Tile_::lots : 1, lots = Tile_::lots / parts;
+  const bool few = it.giving >= 0 && it.giving<k_few, listed = it.giving_slots.extent(0)> 0;
+  const auto list = listed ? it.giving_slots : it.bins.active_slots;
+  const int first = listed ? 0 : it.bins.first_active;
+  const int slots = listed ? it.giving : it.bins.last_active - first;
+  if (slots == 0) return;
+  const int parts = few ? Tile_::lots : 1, lots = Tile_::lots / parts;
 
   Kokkos::parallel_for(
       "mpm::reduce_by_tile",
@@ -35,7 +37,7 @@ void sum_on_device(const Interpolation<Source>& it) {
                 .set_scratch_size(0, Kokkos::PerTeam(Tile_::bytes() + k_scratch_slack))),
       KOKKOS_LAMBDA(const typename Team::member_type& team) {
         if (control().paused) return;
-        const int slot = active_slots(first + team.league_rank() / parts);
+        const int slot = list(first + team.league_rank() / parts);
         if (source.skips(slot)) return;
         const WindowImages<T, Dim> images(grid, reach, origin(slot));
         sum_patch(

@@ -38,13 +38,17 @@ struct Step {
     PetscCall(run(StepPhase::reset, [&] { reset(); }));  // 1 initialise nodal variables
     PetscCall(
         run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, s.space); }));  // 2 rigid bodies to nodes
+    const bool beside = contacts_beside();
+    if (beside) PetscCall(sum_at_contacts(overlap->fork(s.space), true));
     PetscCall(run(StepPhase::soil_to_nodes, [&] {
-      sum_soil(s.space);     // 3 soil to nodes
-      buoyancy_to_nodes(s);  //   and what water carries of it
-      loads_to_nodes(s);     //   and the loads on its surface
+      sum_soil(s.space, !beside);  // 3 soil to nodes
+      buoyancy_to_nodes(s);        //   and what water carries of it
+      loads_to_nodes(s);           //   and the loads on its surface
     }));
-    if (ranks) PetscCall(ranks->add_soil(s));  //   the sum over ranks
-    PetscCall(complete_nodes(s.space));        //   strength, particles that are alone
+    if (ranks) PetscCall(ranks->add_soil(s));                 //   the sum over ranks
+    if (!beside) PetscCall(sum_at_contacts(s.space, false));  //   strength, how the soil of a field lies
+    complete_nodes(s.space);                                  //   particles that are alone
+    if (beside) overlap->join(s.space);
     if (rayleigh)
       PetscCall(run(StepPhase::soil_to_nodes, [&] { return rayleigh_to_nodes(s, *rayleigh, ranks); }));
     PetscCall(run(StepPhase::nodes, [&] { return update_all_nodes(); }));  // 4 velocities, walls, contact
@@ -74,7 +78,8 @@ struct Step {
     PetscCall(run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
     PetscCall(run(StepPhase::soil_to_nodes, [&] { sum_soil(stream); }));
     if (ranks) PetscCall(ranks->add_soil(s, stream));
-    PetscCall(complete_nodes(stream));
+    PetscCall(sum_at_contacts(stream, false));
+    complete_nodes(stream);
     PetscCall(run(StepPhase::nodes, [&] { return update_nodes_on(stream); }));
     if (parted) overlap->join(s.space);
     if (parted && !ranks) move_rigids_ahead(stream);
@@ -93,7 +98,8 @@ struct Step {
     PetscCall(run(StepPhase::rigid_to_nodes, [&] { rigids_to_nodes(s, stream); }));
     PetscCall(run(StepPhase::soil_to_nodes, [&] { return send_soil(); }));
     PetscCall(ranks->add_soil(s, stream));
-    PetscCall(complete_nodes(stream));
+    PetscCall(sum_at_contacts(s.space, false));
+    complete_nodes(stream);
     PetscCall(run(StepPhase::nodes, [&] { return update_nodes_on(stream); }));
     if (parted) overlap->join(s.space);
     if (parted && moves && !ranks->forces_shared()) sum_forces(s, stream);
@@ -154,19 +160,30 @@ struct Step {
   void reset() const {
     if (!s.summed.soil) reset_nodes(s);
   }
-  void sum_soil(const Space& stream) const {
-    if (ranks) finish_sums(s);
-    soil_to_nodes(s, stream);
+  /// Whether the overlap stream makes the sums of contact between deformable bodies, which take few
+  /// particles, while the main stream sums the soil. What water carries needs the memory of the strengths.
+  bool contacts_beside() const {
+    return is_device<Space> && overlap && !ranks && s.interfaces.in_use() && !s.water.is_there() &&
+           !timers.sampling();
   }
-  /// Completes the nodes in runs that need it: the soil's strength, the particles that are alone until a
-  /// rebuild, and the patches that go to the overlap stream.
-  PetscErrorCode complete_nodes(const Space& stream) const {
+  void sum_soil(const Space& stream, bool boundary = true) const {
+    if (ranks) finish_sums(s);
+    soil_to_nodes(s, stream, boundary);
+  }
+  /// What contact needs in some runs: the soil's strength, how the soil of a field lies round a node, and the
+  /// soil's boundary where it is not summed with the soil.
+  PetscErrorCode sum_at_contacts(const Space& stream, bool boundary) const {
     PetscFunctionBeginUser;
-    if (s.shear_fraction) PetscCall(strength_to_nodes(s, ranks));
-    PetscCall(cloud_to_nodes(s, ranks));
+    if (boundary) boundary_to_nodes(s, stream);
+    PetscCall(strength_to_nodes(s, ranks, stream));
+    PetscCall(cloud_to_nodes(s, ranks, stream));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  /// Marks, in runs that need it, the particles that are alone until a rebuild, and the patches that go to
+  /// the overlap stream.
+  void complete_nodes(const Space& stream) const {
     if (!s.strays.known) mark_strays(s, stream);
     if (wants_split(s) && s.split.parts.empty()) split_patches(s, stream);
-    PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// The velocity at the end of the step of light rigid bodies. All ranks do the same rounds, also where the
   /// steps of one are paused.

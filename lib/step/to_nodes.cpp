@@ -27,11 +27,21 @@ void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& stream) {
   }
 }
 
-/// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
-/// needs it. Both may be there already.
+namespace {
+
 template <class Space, class T, int Dim>
-void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& points, const Bins<Space>& bins,
-                   const Space& space) {
+void boundary_of(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& points, const Bins<Space>& bins,
+                 const Space& stream) {
+  if (!s.soil_boundary || s.summed.boundary) return;
+  with_domain(points, [&](auto domain) {
+    interpolate<BoundarySource<Space, T, Dim, domain()>>(
+        s, s.p2g.strategy, bins, {points, s.grid.inv_spacing, s.contact.place}, s.nodes.boundary, stream);
+  });
+}
+
+template <class Space, class T, int Dim>
+void mass_and_force_of(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& points,
+                       const Bins<Space>& bins, const Space& space) {
   const P2G how = s.p2g.strategy;
   with_domain(points, [&](auto domain) {
     if (s.soil.points.has_affine)
@@ -40,18 +50,28 @@ void soil_to_nodes(const State<Space, T, Dim>& s, const Soil<Space, T, Dim>& poi
     else if (!s.summed.soil)
       interpolate<SoilSource<Space, T, Dim, domain()>>(s, how, bins, {points, s.grid.inv_spacing},
                                                        s.nodes.soil, space);
-    if (s.soil_boundary && !s.summed.boundary)
-      interpolate<BoundarySource<Space, T, Dim, domain()>>(
-          s, how, bins, {points, s.grid.inv_spacing, s.contact.place}, s.nodes.boundary, space);
+  });
+}
+
+}  // namespace
+
+template <class Space, class T, int Dim>
+void soil_to_nodes(const State<Space, T, Dim>& s, const Space& stream, bool boundary) {
+  for_all_soil(s, [&](const auto& set) {
+    mass_and_force_of(s, set.points, set.bins, stream);
+    if (boundary) boundary_of(s, set.points, set.bins, stream);
   });
 }
 template <class Space, class T, int Dim>
-void soil_to_nodes(const State<Space, T, Dim>& s, const Space& stream) {
-  for_all_soil(s, [&](const auto& set) { soil_to_nodes(s, set.points, set.bins, stream); });
-}
-template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part) {
-  soil_to_nodes(s, s.soil.points, bins_of(s.soil.bins, part), part.space);
+  const Bins<Space> bins = bins_of(s.soil.bins, part);
+  mass_and_force_of(s, s.soil.points, bins, part.space);
+  boundary_of(s, s.soil.points, bins, part.space);
+}
+
+template <class Space, class T, int Dim>
+void boundary_to_nodes(const State<Space, T, Dim>& s, const Space& stream) {
+  for_all_soil(s, [&](const auto& set) { boundary_of(s, set.points, set.bins, stream); });
 }
 
 template <class Space, class T, int Dim>
@@ -104,14 +124,16 @@ PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>& s, Rayleigh<Space, T, Dim
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
+PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
+                                 const Space& stream) {
   PetscFunctionBeginUser;
-  if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.strength, T(0));
+  if (!s.shear_fraction) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s.plan.writes_sums) Kokkos::deep_copy(stream, s.nodes.strength, T(0));
   for_all_soil(s, [&](const auto& set) {
-    const auto strengths = find_strengths(s, set);
+    const auto strengths = find_strengths(s, set, stream);
     with_box_or_ring(set.points, [&](auto domain) {
       interpolate<PairSource<Space, T, Dim, domain()>>(
-          s, s.p2g.strategy, set.bins, {set.points, strengths, s.contact.strength}, s.nodes.strength);
+          s, s.p2g.strategy, set.bins, {set.points, strengths, s.contact.strength}, s.nodes.strength, stream);
     });
   });
   if (ranks) PetscCall(ranks->add_field(s, s.nodes.strength, When::in_step, s.contact.place.data()));
@@ -119,14 +141,15 @@ PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T
 }
 
 template <class Space, class T, int Dim>
-PetscErrorCode cloud_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
+PetscErrorCode cloud_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
+                              const Space& stream) {
   PetscFunctionBeginUser;
   if (!s.interfaces.in_use()) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.cloud, T(0));
+  if (!s.plan.writes_sums) Kokkos::deep_copy(stream, s.nodes.cloud, T(0));
   for_all_soil(s, [&](const auto& set) {
     with_box_or_ring(set.points, [&](auto domain) {
-      interpolate<CloudSource<Space, T, Dim, domain()>>(s, s.p2g.strategy, set.bins,
-                                                        {{set.points}, s.contact.cloud}, s.nodes.cloud);
+      interpolate<CloudSource<Space, T, Dim, domain()>>(
+          s, s.p2g.strategy, set.bins, {{set.points}, s.contact.cloud}, s.nodes.cloud, stream);
     });
   });
   if (ranks) PetscCall(ranks->add_field(s, s.nodes.cloud, When::in_step, s.contact.place.data()));
@@ -148,8 +171,8 @@ PetscErrorCode sum_present_forces(State<Space, T, Dim>& s, Decomposition<Space, 
   buoyancy_to_nodes(s);
   loads_to_nodes(s);
   if (ranks) PetscCall(ranks->add_present_soil(s));
-  if (s.shear_fraction) PetscCall(strength_to_nodes(s, ranks));
-  PetscCall(cloud_to_nodes(s, ranks));
+  PetscCall(strength_to_nodes(s, ranks, s.space));
+  PetscCall(cloud_to_nodes(s, ranks, s.space));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,14 +197,17 @@ PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T
 
 #define MPM_INSTANTIATE(Space, T, Dim)                                                              \
   template void rigids_to_nodes(const State<Space, T, Dim>&, const Space&);                         \
-  template void soil_to_nodes(const State<Space, T, Dim>&, const Space&);                           \
+  template void soil_to_nodes(const State<Space, T, Dim>&, const Space&, bool);                     \
   template void soil_to_nodes(const State<Space, T, Dim>&, const Part<Space>&);                     \
+  template void boundary_to_nodes(const State<Space, T, Dim>&, const Space&);                       \
   template void buoyancy_to_nodes(State<Space, T, Dim>&);                                           \
   template void loads_to_nodes(State<Space, T, Dim>&);                                              \
   template PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>&, Rayleigh<Space, T, Dim>&,        \
                                             Decomposition<Space, T, Dim>*);                         \
-  template PetscErrorCode strength_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);  \
-  template PetscErrorCode cloud_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);     \
+  template PetscErrorCode strength_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*,   \
+                                            const Space&);                                          \
+  template PetscErrorCode cloud_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*,      \
+                                         const Space&);                                             \
   template PetscErrorCode sum_present_forces(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*); \
   template void sum_present_soil(State<Space, T, Dim>&);                                            \
   template PetscErrorCode update_velocities(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);

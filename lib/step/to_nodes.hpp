@@ -13,9 +13,10 @@ template <class Space, class T, int Dim>
 void rigids_to_nodes(const State<Space, T, Dim>& s, const Space& stream);
 
 /// Function 3: the soil's mass, momentum and internal force to the nodes, and its boundary where a contact
-/// needs it. Both may be there already. Of all the soil, or of a part of it.
+/// needs it, unless the caller sums the boundary. Both may be there already. Of all the soil, or of a part of
+/// it.
 template <class Space, class T, int Dim>
-void soil_to_nodes(const State<Space, T, Dim>& s, const Space& stream);
+void soil_to_nodes(const State<Space, T, Dim>& s, const Space& stream, bool boundary = true);
 template <class Space, class T, int Dim>
 void soil_to_nodes(const State<Space, T, Dim>& s, const Part<Space>& part);
 
@@ -34,13 +35,20 @@ template <class Space, class T, int Dim>
 PetscErrorCode rayleigh_to_nodes(State<Space, T, Dim>& s, Rayleigh<Space, T, Dim>& by,
                                  Decomposition<Space, T, Dim>* ranks);
 
-/// The soil's strength at the nodes near rigids, where a contact asks for it.
+/// The soil's boundary where a contact needs it; it may be there already.
 template <class Space, class T, int Dim>
-PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks);
+void boundary_to_nodes(const State<Space, T, Dim>& s, const Space& stream);
 
-/// How the soil lies round the nodes that several velocity fields share, where bodies have such.
+/// The soil's strength at the nodes of contact, where a contact asks for it. ranks: null where this is the
+/// only one; else `stream` is the state's own.
 template <class Space, class T, int Dim>
-PetscErrorCode cloud_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks);
+PetscErrorCode strength_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
+                                 const Space& stream);
+
+/// How the soil lies round the nodes that several velocity fields share, where bodies have such, likewise.
+template <class Space, class T, int Dim>
+PetscErrorCode cloud_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
+                              const Space& stream);
 
 /// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own.
 /// The lists hold, as they do for that step: s.control must not be paused.

@@ -2,7 +2,7 @@
 
 Two equal balls in 3D are pressed together by 4 mm, so that the radius of the contact is 20 mm, 6 cells, and are then shifted along each other, with a friction
 of 0.3. The middle of the contact stays stuck, within a radius $c$ with $c/a = (1 - Q/(\\mu P))^{1/3}$ (Cattaneo, Mindlin). $c$ is fitted to the slip of the particles
-on both faces along the direction of the shift. The force is that of Hertz, and of the finite balls as in [pair_hertz](#elastic-balls-and-cylinders-pressed-together).
+on both faces along the direction of the shift; as in [pair_hertz](#elastic-balls-and-cylinders-pressed-together) $Q$ and $P$ are along and across the mean of the nodes' normals. The force is that of Hertz, and of the finite balls as in [pair_hertz](#elastic-balls-and-cylinders-pressed-together).
 """
 
 import h5py
@@ -36,6 +36,18 @@ def slip_of_faces(run, time, width):
     return (low[:, 0] + high[:, 0]) / 2, high[:, 1] - low[:, 1]
 
 
+def forces_at(run, time):
+    """Forces on whole balls across and along the contact [N], means of three rows of the history, about the mean normal of a frame."""
+    row = np.argmin(np.abs(run.history["time"] - time))
+    force = 2 * np.array([run.history[f"low_high_force_{axis}"][row - 2:row + 1].mean() for axis in "xz"])
+    with h5py.File(run.frame_near(time)) as frame:
+        nodes = frame["low_high"]
+        normals = nodes["contact_normal"][:, [0, 2]]
+        normal = np.sum(normals * np.sum(normals * nodes["contact_force"][:, [0, 2]], axis=1)[:, None], axis=0)
+    normal /= np.linalg.norm(normal)
+    return abs(force @ normal), abs(force @ [normal[1], -normal[0]])
+
+
 def stuck_radius(x, slip, radius, largest):
     """c / a that fits the slips best; largest [m]: the shift of balls that only just slide all over."""
     x, inside = np.abs(x), np.abs(x) < radius
@@ -48,17 +60,12 @@ def stuck_radius(x, slip, radius, largest):
 
 
 def check(runs):
-    run, shear_modulus = runs["balls"], YOUNG / (2 + 2 * POISSON)
-    history, stiffness = run.history, YOUNG / (1 - POISSON**2) / 2
+    run, shear_modulus, stiffness = runs["balls"], YOUNG / (2 + 2 * POISSON), YOUNG / (1 - POISSON**2) / 2
 
-    def forces(time):
-        """Normal and tangential force on whole balls."""
-        row = np.argmin(np.abs(history["time"] - time))
-        return [2 * abs(history[f"low_high_force_{axis}"][row - 2:row + 1].mean()) for axis in "zx"]
     hertz = 1.055 * 4 / 3 * stiffness * np.sqrt(RADIUS / 2) * 0.004**1.5
-    yield Row("force of two balls (N)", forces(0.04)[0], hertz, 0.05 * hertz, "Hertz, finite elements")
+    yield Row("force of two balls (N)", forces_at(run, 0.04)[0], hertz, 0.05 * hertz, "Hertz, finite elements")
     for time in (0.06, 0.07, 0.08):
-        normal, shear = forces(time)
+        normal, shear = forces_at(run, time)
         radius = (3 * normal * RADIUS / 2 / (4 * stiffness))**(1 / 3)
         largest = 3 * FRICTION * normal * (2 - POISSON) / (8 * shear_modulus * radius)
         exact = max(0, 1 - shear / (FRICTION * normal))**(1 / 3)
