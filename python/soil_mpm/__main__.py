@@ -1,4 +1,4 @@
-"""The command soil-mpm, or python -m soil_mpm: runs, checks, draws and certifies decks."""
+"""The command soil-mpm, or python -m soil_mpm: lists, runs, checks, draws and certifies decks."""
 
 from __future__ import annotations
 
@@ -37,6 +37,30 @@ def run(arguments: argparse.Namespace, words: Sequence[str]) -> int:
     deck = deck_of(arguments, words)
     done = deck.run(arguments.out, ranks=arguments.ranks, threads=arguments.threads, restart=arguments.restart)
     print(done.folder)
+    if arguments.pictures:
+        draw_pictures(done)
+    return 0
+
+
+def draw_pictures(done: Any) -> None:
+    """Draws the pictures of a run, and prints their paths. The results are whole without them, so that their lack is no failure."""
+    from soil_mpm.plot.pictures import Wishes, draw_all, draw_element, is_element
+    paths, missing = (draw_element(done.folder), []) if is_element(done.folder) else draw_all(done, [], Wishes())
+    for path in paths:
+        print(path)
+    for line in missing:
+        print(f"soil-mpm: {line}", file=sys.stderr)
+
+
+def decks(arguments: argparse.Namespace, words: Sequence[str]) -> int:
+    from soil_mpm import shipped
+    if words:
+        raise WrongDeck(f"{words[0]}: is no option of soil-mpm decks")
+    for name in arguments.names:
+        print(shipped.copy(name))
+    if not arguments.names:
+        for name in shipped.names():
+            print(f"{name:24} {shipped.title(name)}")
     return 0
 
 
@@ -73,7 +97,7 @@ def parser_of(with_plot: bool) -> argparse.ArgumentParser:
         of = commands.add_parser(name, help=help, description=help)
         of.set_defaults(does=does)
         if deck:
-            of.add_argument("deck", metavar="DECK")
+            of.add_argument("deck", metavar="DECK", help="a file, or the name of a deck that comes with the program (soil-mpm decks)")
             of.add_argument("--program", metavar="MPM", help="the program, by default that of the checkout or installation")
         return of
     of_run = add("run", run, "run a deck; options of mpm may follow, as -mesh_spacing 0.1")
@@ -81,7 +105,10 @@ def parser_of(with_plot: bool) -> argparse.ArgumentParser:
     of_run.add_argument("--ranks", type=int, default=1, metavar="N", help="processes, by mpirun")
     of_run.add_argument("--threads", type=int, metavar="N", help="of each process")
     of_run.add_argument("--restart", action="store_true", help="go on from the last checkpoint, where there is one")
+    of_run.add_argument("--no-pictures", dest="pictures", action="store_false", help="leave out the pictures at the end")
     add("check", check, "report all mistakes of a deck, or what its run would take; nothing is written")
+    of_decks = add("decks", decks, "list the decks that come with the program, or copy some, with their files, into inputs/", deck=False)
+    of_decks.add_argument("names", nargs="*", metavar="NAME", help="of the decks to copy")
     of_certify = add("certify", certify, "run a deck on its mesh and on two coarser ones, and say what an answer is worth; exit status 0: "
                      "converged, 1: not converged, 4: cannot say")
     of_certify.add_argument("--answer", required=True, metavar="TEXT", help="COLUMN at OTHER=VALUE, COLUMN over OTHER=FROM:TO (its mean), "

@@ -6,7 +6,7 @@ import copy
 from pathlib import Path
 from typing import Any, Iterator, Mapping, TYPE_CHECKING
 
-from soil_mpm import launch
+from soil_mpm import launch, shipped
 from soil_mpm.deck_text import DeckText, Given, table_of, table_options
 from soil_mpm.problems import UnknownOption, WrongDeck
 from soil_mpm.schema import Condition, Option, Schema
@@ -40,9 +40,12 @@ class Deck:
 
     @staticmethod
     def read(path: Path | str, program: Path | str | None = None) -> Deck:
-        """The deck of a file (.opts). Comments stay where they are when it is written again."""
+        """The deck of a file (.opts), or of the name of a deck that comes with the program (soil_mpm.shipped) where there is no such
+        file. Comments stay where they are when it is written again."""
         deck = Deck(program=program)
-        object.__setattr__(deck, "_text", DeckText.read(path))
+        named = None if Path(path).is_file() else shipped.path_of(str(path))
+        object.__setattr__(deck, "_text", DeckText.of(shipped.text_of(named), str(named)) if named else DeckText.read(path))
+        path = named or path
         deck._known.clear()
         object.__setattr__(deck, "_path", Path(path))
         return deck

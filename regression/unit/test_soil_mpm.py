@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import h5py
 import numpy as np
@@ -23,7 +24,7 @@ PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 os.environ["MPM_PROGRAM"] = str(PROGRAM)
 
 from soil_mpm import (Answer, Deck, NoProgram, NoSuchResult, Run, RunFailed, UnknownOption, WrongDeck, WrongValue, __main__, certify, launch,
-                      sweep)
+                      shipped, sweep)
 from soil_mpm.certificate import bar_of, judge, meshes
 from soil_mpm.deck_text import DeckText
 from soil_mpm.schema import Schema
@@ -286,6 +287,65 @@ class Runs(unittest.TestCase):
         job = self.deck.submit("job.sbatch", self.folder / "queued")
         self.assertEqual((job.number, job.state()), ("17", "FINISHED"))
         self.assertEqual(job.wait()["time"][-1], 0.1)
+
+
+class Shipped(unittest.TestCase):
+    """Decks that come with the program, by name."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+
+    def test_every_deck_has_a_title(self):
+        self.assertEqual(shipped.names(), sorted(path.stem for path in (ROOT / "inputs").glob("*.opts")))
+        for name in shipped.names():
+            self.assertRegex(shipped.title(name), r"^\w.{15,}[^.:;]$", name)
+
+    def test_a_name_stands_for_its_deck(self):
+        deck = Deck.read("footing_coarse")
+        self.assertEqual(deck.given(), Deck.read(ROOT / "inputs" / "footing_coarse.opts").given())
+        self.assertEqual(launch.output_folder(deck, None), pathlib.Path("out/footing_coarse"))
+        for name in ("boulders", "rolling_boulder"):  # whose files lie beside them
+            self.assertEqual(Deck.read(name).faults(), [], name)
+        self.assertTrue(pathlib.Path(Deck.read("boulders").given()["rigid_bodies_file"]).is_file())
+        with self.assertRaisesRegex(WrongDeck, "cannot be read"):
+            Deck.read("no_such_deck")
+
+    def test_a_file_goes_before_a_name(self):
+        Deck(BLOCK).write("footing_coarse")
+        self.assertEqual(Deck.read("footing_coarse").given()["bodies"], "block")
+
+    def test_paths_with_blanks(self):
+        place = pathlib.Path("a b")
+        (place / "inputs").mkdir(parents=True)
+        for path in shipped.files_of("boulders"):
+            (place / "inputs" / path.name).write_bytes(path.read_bytes())
+        with unittest.mock.patch.object(shipped, "decks_folder", lambda: place.resolve() / "inputs"):
+            self.assertTrue(pathlib.Path(Deck.read("boulders").given()["rigid_bodies_file"]).is_file())
+
+    def test_copies(self):
+        self.assertEqual(shipped.copy("terrain_slide_fine"), pathlib.Path("inputs/terrain_slide_fine.opts"))
+        self.assertEqual(sorted(os.listdir("inputs")), ["terrain_slide.opts", "terrain_slide_fine.opts"])
+        shipped.copy("terrain_slide")  # is there already
+        pathlib.Path("inputs/terrain_slide.opts").write_text("-dim 3\n")
+        with self.assertRaisesRegex(WrongDeck, "not written over"):
+            shipped.copy("terrain_slide_fine")
+        with self.assertRaisesRegex(WrongDeck, "no deck of this name"):
+            shipped.copy("../README")
+
+    def test_commands(self):
+        with contextlib.redirect_stdout(io.StringIO()) as out:
+            self.assertEqual(__main__.main(["decks"]), 0)
+            self.assertEqual(__main__.main(["decks", "boulders"]), 0)
+            words = ["run", "footing_coarse", "--threads", "1", "-time_end", "0.02", "-mesh_spacing", "0.25", "-mesh_upper", "3,4.5"]
+            self.assertEqual(__main__.main([*words, "--no-pictures"]), 0)
+            self.assertNotIn(".png", out.getvalue())
+            self.assertEqual(__main__.main(words), 0)
+        self.assertIn("footing_coarse           Strip footing", out.getvalue())
+        self.assertIn("inputs/boulders.opts", out.getvalue())
+        self.assertIn("out/footing_coarse/field.png", out.getvalue())
 
 
 class Certificates(unittest.TestCase):
