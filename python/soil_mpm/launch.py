@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shlex
+import signal
 import subprocess
 import tempfile
 import threading
@@ -130,6 +131,8 @@ def run(deck: Deck, out: Path | str | None = None, *, ranks: int = 1, threads: i
         words = [*begin, program_of(deck), "-options_file", str(path), *words_of(options or {}, deck), "-output_dir", str(folder),
                  "-progress", "auto" if progress else "off", *(goes_on(folder) if restart else [])]
         status, message = follow(words, environment(ranks, threads), report)
+    if status in (-signal.SIGILL, 128 + signal.SIGILL):
+        message = f"{program_of(deck)}: was built for another processor than this machine's; take a build of the preset ci"
     if status:
         raise RunFailed(message or f"{shlex.join(words)}: exit status {status}", status)
     return Run(folder)

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""A wheel of scripts/wheel stands on its own: pip installs it, without a network, into an environment of its own; with the build, the
+dependencies and Open MPI hidden (where this user may mount) it lists its decks, runs them and draws their pictures.
+
+usage: test_wheel.py BUILD_FOLDER
+
+Exit status 77 where there is no patchelf.
+"""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import zipfile
+
+import test_bundle
+
+MOST_MEGABYTES, MOST_SECONDS = 100, 120
+
+
+class Wheel(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        work = pathlib.Path(cls.folder.name)
+        subprocess.run([test_bundle.SOURCE / "scripts" / "wheel", "--build", test_bundle.BUILD, work / "made"], check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        (cls.wheel,) = (work / "made").iterdir()
+        cls.root = work / "else where"
+        subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", cls.root], check=True)
+        subprocess.run([cls.root / "bin" / "pip", "install", "--quiet", "--no-index", "--no-deps", cls.wheel], check=True)
+        (cls.package,) = cls.root.glob("lib/python3*/site-packages/soil_mpm")
+        (work / "empty").mkdir()
+        cls.hide = test_bundle.Bundle.hiding(work / "empty")
+
+    def command(self, *words, **more):
+        """What soil-mpm prints, in an empty environment."""
+        environment = {"PATH": "/usr/bin:/bin", "HOME": str(self.root), "OMP_NUM_THREADS": "1", "MPLCONFIGDIR": str(self.root), **more}
+        done = subprocess.run([*self.hide, self.root / "bin" / "soil-mpm", *map(str, words)], cwd=self.root, env=environment,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout[-3000:])
+        return done.stdout
+
+    def test_archive(self):
+        self.assertLess(self.wheel.stat().st_size, MOST_MEGABYTES * 1e6)
+        with zipfile.ZipFile(self.wheel) as archive:
+            names = archive.namelist()
+        self.assertEqual([name for name in names if test_bundle.GLIBC.search(name) and "resolv" not in name], [])
+        self.assertTrue(any("libmpi.so" in name for name in names) and any("libmetis.so" in name for name in names))
+        self.assertFalse(any("/bench/" in name or "__pycache__" in name for name in names))
+        glibc = [int(number) for number in re.search(r"manylinux_(\d+)_(\d+)_", self.wheel.name).groups()]
+        self.assertLessEqual(glibc, [int(number) for number in os.confstr("CS_GNU_LIBC_VERSION").split()[1].split(".")])
+
+    def test_first_deck(self):
+        begin = time.monotonic()
+        text = self.command("run", "footing_coarse")
+        self.assertLess(time.monotonic() - begin, MOST_SECONDS)
+        out = self.root / "out" / "footing_coarse"
+        for picture in ("curve.png", "field.png"):
+            self.assertIn(f"out/footing_coarse/{picture}", text)
+            self.assertTrue((out / picture).read_bytes().startswith(b"\x89PNG"))
+        self.assertEqual(json.loads((out / "performance.json").read_text())["outcome"], "finished")
+
+    def test_ranks(self):
+        self.command("run", "footing_coarse", "--ranks", 2, "--no-pictures", "--out", "out/ranks", "-time_end", 0.01, "-output_frames", "off")
+        self.assertEqual(json.loads((self.root / "out" / "ranks" / "performance.json").read_text())["ranks"], 2)
+
+    def test_decks(self):
+        names = [line.split()[0] for line in self.command("decks").splitlines()]
+        self.assertEqual(names, sorted(path.stem for path in (test_bundle.SOURCE / "inputs").glob("*.opts")))
+        self.assertEqual(self.command("decks", "boulders").split(), ["inputs/boulders.opts"])
+        self.assertTrue((self.root / "inputs" / "boulders.csv").exists())
+        shutil.rmtree(self.root / "inputs")
+        self.command("check", "boulders")  # its table lies in the package
+
+    def test_libraries(self):
+        trace = self.root / "trace"
+        self.command("check", "footing_coarse", LD_DEBUG="libs", LD_DEBUG_OUTPUT=str(trace))
+        texts = [path.read_text() for path in self.root.glob("trace.*")]
+        texts = [text for text in texts if re.search(r"transferring control: .*/libexec/.*/mpm", text)]
+        loaded = {path for text in texts for path in re.findall(r"calling init: (.*)", text)}
+        self.assertTrue(any("libmpi.so" in path for path in loaded), loaded)
+        strange = [path for path in loaded if not path.startswith(str(self.package)) and not test_bundle.GLIBC.search(path)]
+        self.assertEqual(strange, [])
+
+
+if __name__ == "__main__":
+    if shutil.which("patchelf") is None:
+        print("test_wheel.py: there is no patchelf", file=sys.stderr)
+        sys.exit(77)
+    unittest.main()
