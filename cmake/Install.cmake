@@ -16,6 +16,7 @@ install(DIRECTORY inputs DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING
 install(FILES kokkos_kernels/physics/materials/umat_symbols.txt DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
 # The Python package without the measurements of releases, and its command.
 install(DIRECTORY python/soil_mpm DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm/python FILES_MATCHING PATTERN "*.py" PATTERN "py.typed"
+  PATTERN "page.css" PATTERN "page.js"
   PATTERN "bench" EXCLUDE PATTERN "__pycache__" EXCLUDE)
 install(PROGRAMS scripts/soil-mpm TYPE BIN)
 install(FILES README.md LICENSE CHANGELOG.md CITATION.cff TYPE DOC)

@@ -1,4 +1,4 @@
-"""The command soil-mpm, or python -m soil_mpm: lists, runs, checks, draws and certifies decks."""
+"""The command soil-mpm, or python -m soil_mpm: lists, runs, checks, draws, reports and certifies decks."""
 
 from __future__ import annotations
 
@@ -81,6 +81,14 @@ def plot(arguments: argparse.Namespace, words: Sequence[str]) -> int:
     return draw(arguments)
 
 
+def report(arguments: argparse.Namespace, words: Sequence[str]) -> int:
+    if words:
+        raise WrongDeck(f"{words[0]}: is no option of soil-mpm report")
+    from soil_mpm.report import write
+    print(write(arguments.folder, arguments.out, arguments.pictures))
+    return 0
+
+
 def certify(arguments: argparse.Namespace, words: Sequence[str]) -> int:
     from soil_mpm.certificate import CONVERGED, NOT_CONVERGED, certify as certificate_of
     found = certificate_of(deck_of(arguments, words), arguments.answer, arguments.out, tolerance=arguments.tolerance, ranks=arguments.ranks,
@@ -117,6 +125,10 @@ def parser_of(with_plot: bool) -> argparse.ArgumentParser:
     of_certify.add_argument("--out", metavar="FOLDER", help="of the runs")
     of_certify.add_argument("--ranks", type=int, default=1, metavar="N")
     of_certify.add_argument("--threads", type=int, metavar="N")
+    of_report = add("report", report, "write one HTML file of a run: what was run, checks of trust, warnings, pictures, curves", deck=False)
+    of_report.add_argument("folder", metavar="OUTPUT_DIR", help="of a run, or of a certificate")
+    of_report.add_argument("--out", metavar="FILE", help="the file, by default report.html in the folder")
+    of_report.add_argument("--no-pictures", dest="pictures", action="store_false", help="take the pictures that are there, and draw none")
     of_plot = add("plot", plot, "draw the results of a run", deck=False)
     if with_plot:
         from soil_mpm.plot.command import add_arguments

@@ -82,6 +82,11 @@ class Run:
         from soil_mpm.plot.pictures import Wishes, draw_all
         return draw_all(self, list(others), Wishes(**how))[0]
 
+    def report(self, to: Path | str | None = None, pictures: bool = True) -> Path:
+        """Writes one HTML file of the run (docs/report.md), by default report.html in the output folder; returns its path."""
+        from soil_mpm.report import write
+        return write(self.folder, to, pictures)
+
     def text(self, name, default=""):
         return self.options.get(name, default)
 
