@@ -7,26 +7,6 @@
 namespace mpm {
 namespace {
 
-/// Adds the sums of a step to the totals, in an order that is always the same.
-template <class Space, class T, int Dim>
-void add_totals(const State<Space, T, Dim>& s) {
-  const auto of = s.interfaces;
-  const auto control = s.control;
-  const int values = of.rows * InterfaceTerms<Dim>::size, count = of.count;
-  using Team = Kokkos::TeamPolicy<Space>;
-  Kokkos::parallel_for(
-      "mpm::add_interfaces", Team(s.space, values, is_device<Space> ? 128 : 1),
-      KOKKOS_LAMBDA(const typename Team::member_type& team) {
-        if (control().paused) return;
-        const int v = team.league_rank();
-        double sum = 0;
-        Kokkos::parallel_reduce(
-            Kokkos::TeamThreadRange(team, count),
-            [&](int place, double& part) { part += of.sums(std::size_t(place) * values + v); }, sum);
-        Kokkos::single(Kokkos::PerTeam(team), [&] { of.totals(v) += sum; });
-      });
-}
-
 /// press_fields for at most Most fields at a node, with the tractions at all nodes where `tractions` has room
 /// for them.
 template <int Most, class Space, class T, int Dim>
@@ -71,11 +51,30 @@ void press(State<Space, T, Dim>& s, double dt, const ControlView<Space>& control
 }  // namespace
 
 template <class Space, class T, int Dim>
-void press_fields(State<Space, T, Dim>& s, double dt, bool keeps) {
+void press_fields(State<Space, T, Dim>& s, double dt, bool in_step) {
   finish_sums(s);
   if (s.interfaces.count == 0) return;
-  press(s, dt, keeps ? s.control : s.never_paused);
-  if (keeps && s.interfaces.rows > 0) add_totals(s);
+  press(s, dt, in_step ? s.control : s.never_paused);
+}
+
+template <class Space, class T, int Dim>
+void add_interface_totals(const State<Space, T, Dim>& s, const Space& stream) {
+  const auto of = s.interfaces;
+  if (of.count == 0 || of.rows == 0) return;
+  const auto control = s.control;
+  const int values = of.rows * InterfaceTerms<Dim>::size, count = of.count;
+  using Team = Kokkos::TeamPolicy<Space>;
+  Kokkos::parallel_for(
+      "mpm::add_interfaces", Team(stream, values, is_device<Space> ? 128 : 1),
+      KOKKOS_LAMBDA(const typename Team::member_type& team) {
+        if (control().paused) return;
+        const int v = team.league_rank();
+        double sum = 0;
+        Kokkos::parallel_reduce(
+            Kokkos::TeamThreadRange(team, count),
+            [&](int place, double& part) { part += of.sums(std::size_t(place) * values + v); }, sum);
+        Kokkos::single(Kokkos::PerTeam(team), [&] { of.totals(v) += sum; });
+      });
 }
 
 template <class Space, class T, int Dim>
@@ -112,8 +111,9 @@ std::vector<InterfaceNode> interface_nodes(State<Space, T, Dim>& s, double dt) {
   return nodes;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                             \
-  template void press_fields(State<Space, T, Dim>&, double, bool); \
+#define MPM_INSTANTIATE(Space, T, Dim)                                           \
+  template void press_fields(State<Space, T, Dim>&, double, bool);               \
+  template void add_interface_totals(const State<Space, T, Dim>&, const Space&); \
   template std::vector<InterfaceNode> interface_nodes(State<Space, T, Dim>&, double);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -10,9 +10,14 @@ namespace mpm {
 
 /// Part of 4, before update_nodes, where s.interfaces is in use: adds to the forces at the nodes that several
 /// velocity fields share what the fields do to each other in a step of dt [s]. The sums at nodes are
-/// complete. keeps: the totals of the interfaces grow.
+/// complete. in_step: not while the steps are paused.
 template <class Space, class T, int Dim>
-void press_fields(State<Space, T, Dim>& s, double dt, bool keeps);
+void press_fields(State<Space, T, Dim>& s, double dt, bool in_step);
+
+/// Adds what press_fields summed in a step to the totals of the interfaces, in an order that is always the
+/// same, on a stream.
+template <class Space, class T, int Dim>
+void add_interface_totals(const State<Space, T, Dim>& s, const Space& stream);
 
 /// Contact of a pair of bodies at a node of the mesh.
 struct InterfaceNode {

@@ -14,7 +14,6 @@ namespace mpm {
 template <class Space, class T, int Dim>
 struct PairSolution {
   using Memory = typename Space::memory_space;
-  using Motion = PairMotion<Dim>;
   static constexpr int k_ways = k_pair_ways<Dim>, k_most = k_pair_contacts<Dim>;
   ControlView<Space> control;
   Kokkos::View<Rigid<Dim>*, Memory> rigids;
@@ -87,8 +86,9 @@ struct PairSolution {
     relax(team, part, speed);
     MPM_ROLLED
     for (int n = 1; n <= k_softer; ++n) {
-      if (!(sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at, Motion& a, Motion& b) {
-              return soften_impact(at, a, b, pair.friction, n == k_softer);
+      if (!(sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at) {
+              return soften_impact(at, pairs.motions(pair.a), pairs.motions(pair.b), pair.friction,
+                                   n == k_softer);
             }) > 0))
         break;
       relax(team, part, speed);
@@ -96,8 +96,8 @@ struct PairSolution {
     double change = 0, first = 0;
     MPM_ROLLED
     for (int n = 0; n < k_shifts; ++n) {
-      change = sweep(team, part, [&](const RigidPair&, PairContact<Dim>& at, Motion& a, Motion& b) {
-        return part_bodies(at, a, b, most, dt);
+      change = sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at) {
+        return part_bodies(at, pairs.motions(pair.a), pairs.motions(pair.b), most, dt);
       });
       if (n == 0) first = change;
       if (!(change > k_share * first)) break;
@@ -113,8 +113,8 @@ struct PairSolution {
     constexpr double k_small = 1e-8;  // of the speed
     MPM_ROLLED
     for (int n = 0; n < k_sweeps; ++n)
-      if (!(sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at, Motion& a, Motion& b) {
-              return relax_contact(at, a, b, pair.friction);
+      if (!(sweep(team, part, [&](const RigidPair& pair, PairContact<Dim>& at) {
+              return relax_contact(at, pairs.motions(pair.a), pairs.motions(pair.b), pair.friction);
             }) > k_small * speed))
         break;
   }
@@ -173,8 +173,7 @@ struct PairSolution {
   }
 
   /// Begins a solution with an impulse of the step before: what of it presses.
-  KOKKOS_INLINE_FUNCTION static void resume(const RigidPair& pair, PairContact<Dim>& at, Motion& a,
-                                            Motion& b) {
+  KOKKOS_INLINE_FUNCTION void resume(const RigidPair& pair, PairContact<Dim>& at) const {
     const double normal = Kokkos::fmax(0.0, dot(at.impulse, at.normal)), was = dot(at.impulse, at.normal);
     Vector<double, Dim> along;
     double square = 0;
@@ -185,8 +184,8 @@ struct PairSolution {
     const double most = pair.friction * normal, length = Kokkos::sqrt(square);
     const double share = length > most ? most / length : 1;
     for (int d = 0; d < Dim; ++d) at.impulse[d] = normal * at.normal[d] + share * along[d];
-    push_body(a, at.arms[0], at.impulse, 1);
-    push_body(b, at.arms[1], at.impulse, -1);
+    push_body(pairs.motions(pair.a), at.arms[0], at.impulse, 1);
+    push_body(pairs.motions(pair.b), at.arms[1], at.impulse, -1);
   }
 
   /// The largest speed and change of speed of the bodies that a thread looks after, before contact [m/s].
@@ -202,16 +201,14 @@ struct PairSolution {
       }
     }
     team.team_barrier();  // before impulses change the velocities
-    sweep_pairs(team, [&](const RigidPair& pair, PairContact<Dim>& at, Motion& a, Motion& b) {
-      resume(pair, at, a, b);
-      return 1.0;
+    sweep_pairs(team, [&](const RigidPair& pair, PairContact<Dim>& at) {
+      resume(pair, at);
+      return 0.0;
     });
     return most;
   }
 
-  /// Calls f for the contacts of all pairs, colour by colour; returns the largest value of this thread. The
-  /// motions of a pair's bodies are a copy meanwhile, since pairs of one colour share bodies that nothing
-  /// moves; f returns another number than 0 where it changes them.
+  /// Calls f for the contacts of all pairs, colour by colour; returns the largest value of this thread.
   template <class Team, class F>
   KOKKOS_INLINE_FUNCTION double sweep_pairs(const Team& team, const F& f) const {
     double most = 0;
@@ -223,25 +220,13 @@ struct PairSolution {
         const int held = pairs.held(m);
         if (held == 0) continue;
         const RigidPair pair = pairs.list(m);
-        Motion a = pairs.motions(pair.a), b = pairs.motions(pair.b);
-        double all = 0;
         MPM_ROLLED
-        for (int k = 0; k < held; ++k) {
-          const double change = f(pair, pairs.contacts(std::size_t(m) * k_most + k), a, b);
-          all += change, most = Kokkos::fmax(most, change);
-        }
-        if (all != 0) store(pair.a, a), store(pair.b, b);
+        for (int k = 0; k < held; ++k)
+          most = Kokkos::fmax(most, f(pair, pairs.contacts(std::size_t(m) * k_most + k)));
       }
       team.team_barrier();
     }
     return most;
-  }
-  /// Stores what a sweep may change of the motion of a body that forces move.
-  KOKKOS_INLINE_FUNCTION void store(int n, const Motion& motion) const {
-    if (!pairs.bodies(n).dynamic) return;
-    Motion& to = pairs.motions(n);
-    to.velocity = motion.velocity, to.spin = motion.spin;
-    to.impulse = motion.impulse, to.shift = motion.shift;
   }
   template <class Team, class F>
   KOKKOS_INLINE_FUNCTION double sweep(const Team& team, double* part, const F& f) const {
@@ -261,22 +246,35 @@ struct PairSolution {
     return most;
   }
 
-  /// Leaves what the contacts do to the rigid bodies: a warp a body.
+  /// Leaves what the contacts do to the rigid bodies: a thread a body that moves, a warp a body that does
+  /// not.
   template <class Team>
   KOKKOS_INLINE_FUNCTION void act(const Team& team) const {
-    const int size = team.team_size(), lanes = size < k_warp ? size : k_warp;
+    for_team(team, count, [&](int n) {
+      if (moves(pairs.motions(n))) leave(n, pairs.motions(n).impulse);
+    });
+    const int rank = team.team_rank(), size = team.team_size(), lanes = size < k_warp ? size : k_warp;
+    const int lane = rank % lanes;
     MPM_ROLLED
-    for (int n = team.team_rank() / lanes; n < count; n += size / lanes) {
-      const Motion& motion = pairs.motions(n);
-      const Wrench<Dim> impulse =
-          pairs.bodies(n).dynamic ? motion.impulse : impulse_on(n, team.team_rank() % lanes, lanes);
-      if (team.team_rank() % lanes != 0) continue;
-      PairAction<Dim>& action = pairs.actions(n);
-      for (int k = 0; k < Wrench<Dim>::size; ++k) {
-        action.wrench[k] = impulse[k] / dt;
-        action.shift[k] = motion.shift[k];
-        action.impulse[k] += impulse[k];
+    for (int first = rank - lane; first < count; first += size) {
+      const int own = first + lane;
+      double still = own < count && !moves(pairs.motions(own)) ? own + 1 : 0;
+      MPM_ROLLED
+      for (double most = largest_of_warp(still); most > 0; most = largest_of_warp(still)) {
+        const int n = static_cast<int>(most) - 1;
+        const Wrench<Dim> impulse = impulse_on(n, lane, lanes);
+        if (lane == 0) leave(n, impulse);
+        if (n == own) still = 0;
       }
+    }
+  }
+  /// Leaves the impulse on rigid body n.
+  KOKKOS_INLINE_FUNCTION void leave(int n, const Wrench<Dim>& impulse) const {
+    PairAction<Dim>& action = pairs.actions(n);
+    for (int k = 0; k < Wrench<Dim>::size; ++k) {
+      action.wrench[k] = impulse[k] / dt;
+      action.shift[k] = pairs.motions(n).shift[k];
+      action.impulse[k] += impulse[k];
     }
   }
 

@@ -161,10 +161,21 @@ KOKKOS_INLINE_FUNCTION Vector<double, Dim> parting_before(const PairContact<Dim>
   return v;
 }
 
-/// Adds an impulse [N s] at the end of an arm to a body.
+/// Whether impulses move a body. Several threads may push one that they do not move, as pairs of one colour
+/// share such bodies: it stays as it is.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION bool moves(const PairMotion<Dim>& body) {
+  bool any = false;
+  for (int d = 0; d < Dim; ++d) any = any || body.lightness[d] != 0;
+  for (double each : body.ease) any = any || each != 0;
+  return any;
+}
+
+/// Adds an impulse [N s] at the end of an arm to a body that moves.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION void push_body(PairMotion<Dim>& body, const Vector<double, Dim>& arm,
                                       const Vector<double, Dim>& impulse, double sign) {
+  if (!moves(body)) return;
   const AngularVector<Dim> moment = moment_of(arm, impulse), more = turned_by(body, moment);
   for (int d = 0; d < Dim; ++d) {
     body.velocity[d] += sign * body.lightness[d] * impulse[d];
@@ -279,6 +290,7 @@ KOKKOS_INLINE_FUNCTION double soften_impact(PairContact<Dim>& at, const PairMoti
 template <int Dim>
 KOKKOS_INLINE_FUNCTION void shift_body(PairMotion<Dim>& body, const Vector<double, Dim>& arm,
                                        const Vector<double, Dim>& by, double sign) {
+  if (!moves(body)) return;
   const AngularVector<Dim> more = turned_by(body, moment_of(arm, by));
   for (int d = 0; d < Dim; ++d) body.shift[Wrench<Dim>::force + d] += sign * body.lightness[d] * by[d];
   for (int k = 0; k < k_turning_axes<Dim>; ++k) body.shift[Wrench<Dim>::moment + k] += sign * more[k];

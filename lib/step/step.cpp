@@ -206,12 +206,16 @@ struct Step {
   /// that are light.
   PetscErrorCode update_nodes_on(const Space& stream) const {
     PetscFunctionBeginUser;
-    if (s.interfaces.in_use()) press_fields(s, dt, true);
+    if (s.interfaces.in_use()) {
+      press_fields(s, dt, true);
+      add_interface_totals(s, contacts_beside() ? overlap->fork(s.space) : s.space);
+    }
     if (s.light_rigids.in_use) {
       PetscCall(solve_for_light(false, stream));
       if (s.scheme.damping > 0) PetscCall(solve_for_light(true, stream));
     }
     update_nodes(s, dt, stream);
+    if (contacts_beside()) joined();
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 4, contact at sites, and the work of loads and their areas.
