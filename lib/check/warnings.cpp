@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "check/alike.hpp"
+#include "check/warnings_choices.hpp"
 #include "check/warnings_rigids.hpp"
 #include "check/warnings_soil.hpp"
 #include "common/f_bar.hpp"
@@ -270,6 +271,7 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
     warn_of_walls(config, rigid, bounds, lines);
   }
   for (const std::string& line : warnings_of_rigids(config)) lines.push_back(line);
+  for (const std::string& line : warnings_of_choices(config)) lines.push_back(line);
   return without_alike(lines);
 }
 

@@ -9,10 +9,7 @@
 #include "input/options/groups.hpp"
 
 namespace mpm {
-namespace {
 
-/// Whether two bodies have nodes in common at the start: less than a cell is between their bounds. The places
-/// of a file's particles are unknown here.
 bool touch(const Config& config, const BodyConfig& a, const BodyConfig& b) {
   if (a.shape.kind == ShapeKind::particles || b.shape.kind == ShapeKind::particles) return true;
   const Bounds one = bounds_of(a.shape, config.mesh, config.dim),
@@ -23,6 +20,8 @@ bool touch(const Config& config, const BodyConfig& a, const BodyConfig& b) {
       return false;
   return true;
 }
+
+namespace {
 
 /// Level [m] of the water half a cell below the middle of a body.
 double water_level_under(const Config& config, const BodyConfig& body) {

@@ -6,6 +6,10 @@
 
 namespace mpm {
 
+/// Whether two bodies have nodes in common at the start: less than a cell is between their bounds. The places
+/// of a file's particles are unknown here.
+bool touch(const Config& config, const BodyConfig& a, const BodyConfig& b);
+
 /// Excavations of a stage that fill with water: a line for each ("warning: ...").
 std::vector<std::string> warnings_of_excavations(const Config& config);
 

@@ -10,6 +10,7 @@
 #include "check/alike.hpp"
 #include "check/overlap.hpp"
 #include "check/warnings.hpp"
+#include "common/text.hpp"
 #include "input/files/particle_file.hpp"
 #include "input/geometry/shapes.hpp"
 #include "input/options/groups.hpp"
@@ -233,7 +234,7 @@ TEST_CASE("each mistake that is likely has a warning of its own", "[warnings]") 
     Config config = sound;
     spoil(config);
     const auto lines = warnings_of(config);
-    INFO(text);
+    INFO(text << " among: " << join(lines, "; "));
     CHECK(lines.size() == 1);
     CHECK(any_has(lines, text));
   };
@@ -251,12 +252,36 @@ TEST_CASE("each mistake that is likely has a warning of its own", "[warnings]") 
   warns("rises", [](Config& c) { c.water.level = 1, c.materials[0].density = 999; });
   warns("-halo_path", [](Config& c) { c.partition.halo_path = HaloPath::host; });
 
+  // Choices of cells, particles, precision and output.
+  warns("-f_bar_fraction: given \"0\", lets clay lock", [](Config& c) { c.f_bar_fraction = 0; });
+  warns("-clay_f_bar_fraction", [](Config& c) { c.materials[0].f_bar_fraction = 0.1; });
+  warns("-clay_poisson: 0.3 lets", [](Config& c) { c.materials[0].parameters = {4e7, 0.3, 40000, 0, 0, 0}; });
+  warns("-soil_particles_per_cell", [](Config& c) { c.bodies[0].shape.particles_per_cell = 1; });
+  warns("body soil is 2 cells across along x", [](Config& c) { c.bodies[0].shape.upper[0] = 0.2; });
+  warns("fall out", [](Config& c) { c.mesh.walls[1][0] = Wall::free; });
+  warns("begins without stress", [](Config& c) { c.materials[0].parameters[0] = 3e5; });
+  warns("frames of all particles", [](Config& c) { c.output.interval = 1e-3; });
+  warns("-precision: given \"single\"",
+        [](Config& c) { c.precision = Precision::single, c.rigids[0].velocity[1] = -1e-4; });
+  warns("-time_end: 0.01 s are over", [](Config& c) { c.time.end = 0.01; });
+  warns("-mesh_ymin_friction: 30 looks like an angle",
+        [](Config& c) { c.mesh.walls[1][0] = Wall::friction, c.mesh.sides[1][0].numbers.friction = 30; });
+
   const auto silent = [&](auto&& change) {
     Config config = sound;
     change(config);
     CHECK(warnings_of(config) == std::vector<std::string>{});
   };
   silent([](Config& c) { c.water.level = 1, c.materials[0].density = 1800; });
+  silent([](Config& c) {
+    c.f_bar_fraction = 0, c.bodies[0].shape.upper[0] = 4, c.materials[0].f_bar_fraction = 0.98;
+  });
+  silent([](Config& c) { c.materials[0].parameters[1] = 0.3, c.materials[0].pore_stiffness = 1e8; });
+  silent([](Config& c) { c.mesh.walls[1][0] = Wall::free, c.bodies[0].shape.lower[1] = 0.5; });
+  silent([](Config& c) { c.materials[0].parameters[0] = 3e5, c.bodies[0].k0 = true; });
+  silent([](Config& c) { c.output.interval = 1e-3, c.output.frames = false; });
+  silent([](Config& c) { c.precision = Precision::single; });
+  silent([](Config& c) { c.bodies.push_back(c.bodies[0]), c.bodies[1].shape = box({0, 2, 0}, {1, 2.1, 0}); });
   silent([](Config& c) {
     c.mesh.walls[0] = {Wall::free, Wall::free}, c.rigids[0].shape.lower[0] = 2.6,
     c.rigids[0].shape.upper[0] = 3.1;
