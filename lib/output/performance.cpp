@@ -49,6 +49,8 @@ double moved_per_second(const Performance& p) {
   return bytes / p.stepping;
 }
 
+double real_time_factor(const Performance& p) { return p.wall > 0 ? p.simulated / p.wall : 0; }
+
 double updates_per_second(const Performance& p) { return double(p.steps) * p.particles / p.stepping; }
 
 std::string format_performance(const Performance& p) {
@@ -63,8 +65,13 @@ std::string format_performance(const Performance& p) {
     text += formatted("%s: a copy reads and writes %.1f GB/s; the steps move %.1f GB/s, %.1f %% of it\n",
                       p.device.c_str(), p.bandwidth / 1e9, moved_per_second(p) / 1e9,
                       100 * moved_per_second(p) / p.bandwidth);
-  return text + formatted("%.4g us a step without output; %s particle updates", 1e6 * p.stepping / p.steps,
-                          format_rate(updates_per_second(p)).c_str());
+  text += formatted("%.4g us a step without output; %s particle updates", 1e6 * p.stepping / p.steps,
+                    format_rate(updates_per_second(p)).c_str());
+  if (real_time_factor(p) > 0)
+    text += formatted("\n%.3g s of motion in a second of wall time", real_time_factor(p));
+  if (p.energy)
+    text += formatted("\n%.3g kWh taken by the processors, with all that ran on them", *p.energy / 3.6e6);
+  return text;
 }
 
 std::string format_ranks(const RankFigures& r) {

@@ -1,5 +1,7 @@
 #include "run/effort.hpp"
 
+#include <optional>
+
 #include "output/performance_json.hpp"
 
 namespace mpm {
@@ -8,7 +10,26 @@ const char* word_of(Outcome outcome) {
   return outcome == Outcome::finished ? "finished" : outcome == Outcome::stopped ? "stopped" : "failed";
 }
 
-Performance performance_of(const Job& job, const Clock& clock, const Effort& effort, const Stepper& stepper) {
+namespace {
+
+/// Energy [J] of the processors of all machines since the part began: one rank of each machine counts it.
+/// None where one of them has no counters. Collective.
+std::optional<double> energy_of(MPI_Comm comm, Effort& effort) {
+  MPI_Comm machine;
+  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  int rank = 0;
+  MPI_Comm_rank(machine, &rank);
+  MPI_Comm_free(&machine);
+  effort.energy.read();
+  double sums[2] = {rank == 0 ? effort.energy.joules() - effort.part.joules : 0,
+                    rank == 0 && !effort.energy.found() ? 1.0 : 0.0};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm);
+  return sums[1] > 0 ? std::nullopt : std::optional(sums[0]);
+}
+
+}  // namespace
+
+Performance performance_of(const Job& job, const Clock& clock, Effort& effort, const Stepper& stepper) {
   const Config& config = job.config;
   const auto& [since, rebuilds, longest, shortest] = effort.rebuilds;
   Performance p{.stepping = effort.stepping - effort.part.stepping,
@@ -32,7 +53,9 @@ Performance performance_of(const Job& job, const Clock& clock, const Effort& eff
                 .threads = thread_count(config.backend),
                 .cores = usable_cores(),
                 .first_step = effort.part.step,
-                .time = clock.time()};
+                .time = clock.time(),
+                .simulated = clock.time() - effort.part.time,
+                .energy = energy_of(job.comm, effort)};
   if (p.steps == 0) return p;
   p.functions = stepper.times();
   p.wall = effort.wall() - effort.part.wall;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "common/energy_meter.hpp"
 #include "run/clock.hpp"
 #include "step/stepper.hpp"
 
@@ -18,6 +19,7 @@ struct Effort {
   struct Part {
     long step = 0;
     double wall = 0, stepping = 0;  // s
+    double time = 0, joules = 0;    // s, simulated; J, of the energy
   };
 
   double before = 0, begin = 0;  // s: wall time before a restart; wall clock at the first step since then
@@ -26,13 +28,22 @@ struct Effort {
   RebuildCount rebuilds;
   Part part;
   double bandwidth = 0;  // bytes/s of the device's copy
+  EnergyMeter energy;    // of this machine's processors
+  double counted = 0;    // s, wall clock at which it was read last
 
   double wall() const { return before + seconds_now() - begin; }
+  /// Reads the counters of energy before they can begin anew twice.
+  void count_energy() {
+    constexpr double k_every = 30;  // s
+    if (!energy.found() || seconds_now() - counted < k_every) return;
+    energy.read();
+    counted = seconds_now();
+  }
 };
 
 /// Performance of this part of the run, or of its stage. Where it did no step the stepper may not be set up,
 /// and is not asked. Collective.
-Performance performance_of(const Job& job, const Clock& clock, const Effort& effort, const Stepper& stepper);
+Performance performance_of(const Job& job, const Clock& clock, Effort& effort, const Stepper& stepper);
 
 /// The report at the end of the log, and performance.json, which scripts read. The file is written even where
 /// no step was done: its outcome then says that the run has ended.

@@ -117,6 +117,7 @@ PetscErrorCode Run::take_steps(long count, Batch* batch) {
   if (batch->steps > 0) clock_.last_dt = range.dt;
   ++effort_.looks;
   effort_.stepping += batch->seconds;
+  effort_.count_energy();
   clock_.step += batch->steps;
   effort_.rebuilds.since += batch->steps;
   PetscFunctionReturn(PETSC_SUCCESS);

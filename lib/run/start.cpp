@@ -126,7 +126,7 @@ PetscErrorCode Run::resume() {
   Checkpoint& c = *restarts_.checkpoint();
   clock_.step = c.run.step, clock_.last_dt = c.run.last_dt;
   effort_.before = c.run.wall, effort_.stepping = c.run.stepping, effort_.rebuilds = c.run.rebuilds;
-  effort_.part = {c.run.step, c.run.wall, c.run.stepping};
+  effort_.part = {c.run.step, c.run.wall, c.run.stepping, c.run.time, effort_.energy.joules()};
   time_step_.go_on(c.run.waves);
   outputs_.take(c);
   PetscCall(adapt_state(job_, clock_, *stepper_, {restarts_.laws_changed(), {}, true}, c.state));
@@ -184,7 +184,10 @@ PetscErrorCode Run::enter_stage(SavedState&& state, const Present& present, NewB
   PetscCall(load_model(job_, &model));
   PetscCall(leave_out(job_, clock_, &present, &model));
   stepper_ = make_stepper(job_.config, job_.comm);
-  effort_.part = {.step = clock_.step, .stepping = effort_.stepping};
+  effort_.part = {.step = clock_.step,
+                  .stepping = effort_.stepping,
+                  .time = clock_.time(),
+                  .joules = effort_.energy.joules()};
   if (!job_.goes_well()) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(set_up(std::move(model)));
   if (!job_.goes_well()) PetscFunctionReturn(PETSC_SUCCESS);

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <catch2/catch_approx.hpp>
 #include <catch2/catch_test_macros.hpp>
 #include <catch2/generators/catch_generators.hpp>
 #include <catch2/matchers/catch_matchers_string.hpp>
@@ -18,6 +19,7 @@
 #include <sstream>
 
 #include "common/collectives.hpp"
+#include "common/energy_meter.hpp"
 #include "input/deck/run_options.hpp"
 #include "output/files.hpp"
 #include "output/folder_lock.hpp"
@@ -533,6 +535,38 @@ TEST_CASE("the closing table adds up", "[output]") {
     CHECK_THAT(report, ContainsSubstring(part));
 }
 
+TEST_CASE("the report ends with the motion in a second and the energy", "[output]") {
+  Performance p;
+  p.wall = 10, p.stepping = 9.5, p.steps = 100, p.particles = 190000;
+  CHECK(format_performance(p).ends_with("particle updates"));
+  p.simulated = 0.5, p.energy = 7.2e6;
+  CHECK(
+      format_performance(p).ends_with("\n0.05 s of motion in a second of wall time\n2 kWh taken by the "
+                                      "processors, with all that ran on them"));
+  CHECK_THAT(performance_json(p), ContainsSubstring("\"real_time_factor\": 0.05"));
+  CHECK_THAT(performance_json(p), ContainsSubstring("\"energy_joules\": 7200000"));
+}
+
+TEST_CASE("energy is counted over the counters' beginning anew", "[output]") {
+  const Folder folder;
+  const auto zone = [&](const std::string& name, const char* what, double energy) {
+    const fs::path place = fs::path(folder.path) / name;
+    fs::create_directories(place);
+    std::ofstream(place / "name") << what << "\n";
+    std::ofstream(place / "energy_uj") << std::fixed << energy << "\n";
+    std::ofstream(place / "max_energy_range_uj") << "262143328850\n";
+  };
+  zone("intel-rapl:0", "package-0", 262143000000), zone("intel-rapl:0:0", "core", 5),
+      zone("intel-rapl:0:1", "dram", 1e6);
+  EnergyMeter meter(folder.path);
+  CHECK(meter.found());
+  zone("intel-rapl:0", "package-0", 1000000), zone("intel-rapl:0:0", "core", 9e9),
+      zone("intel-rapl:0:1", "dram", 3e6);
+  meter.read();
+  CHECK(meter.joules() == Catch::Approx(0.32885 + 1 + 2));
+  CHECK_FALSE(EnergyMeter(folder.path + "/none").found());
+}
+
 TEST_CASE("times that the waiting has made longer than the steps are scaled", "[output]") {
   Performance p;
   p.functions = {{"interpolate", 100, 6.0, 3e9}, {"move", 100, 3.0, 0}};
@@ -577,6 +611,8 @@ TEST_CASE("performance.json has the figures of the report, with units in the nam
   "wall_seconds": 4.5,
   "stepping_seconds": 4,
   "particle_updates_per_second": 25000,
+  "real_time_factor": null,
+  "energy_joules": null,
   "memory_bytes": 1.9e+07,
   "copy_bandwidth_bytes_per_second": null,
   "moved_bytes_per_second": 7.5e+08,

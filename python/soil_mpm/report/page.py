@@ -86,13 +86,14 @@ def facts(run: Run, log: Log) -> str:
     if run.text("mesh_spacing"):
         rows.append(("cells", f"{run.text('mesh_spacing')} m"))
     if told:
+        factor = f", {told['real_time_factor']:.3g} s a second" if told.get("real_time_factor") else ""
         ranks, threads = told["ranks"], told["threads_per_rank"]
         rows += [("particles", f"{told['particles']:,}"), ("steps", f"{told['steps']:,} in {told['precision']} precision, back end {told['backend']}"),
                  ("processes", f"{ranks} rank{'s' * (ranks > 1)} of {threads} thread{'s' * (threads > 1)}, {told['device']}"),
-                 ("time", f"{told['end_time_seconds']:.6g} s of motion in {span(told['wall_seconds'])}"),
+                 ("time", f"{told['end_time_seconds']:.6g} s of motion in {span(told['wall_seconds'])}" + factor),
                  ("speed", f"{told['particle_updates_per_second'] / 1e6:.3g} million particle updates a second")]
         if told.get("energy_joules") is not None:
-            rows.append(("energy", f"{told['energy_joules'] / 3.6e6:.3g} kWh, {told.get('energy_source', '')}"))
+            rows.append(("energy", f"{told['energy_joules'] / 3.6e6:.3g} kWh by the processors, with all that ran on them"))
     return table([(name, str(text)) for name, text in rows])
 
 
