@@ -89,6 +89,16 @@ def report(arguments: argparse.Namespace, words: Sequence[str]) -> int:
     return 0
 
 
+def export(arguments: argparse.Namespace, words: Sequence[str]) -> int:
+    if words:
+        raise WrongDeck(f"{words[0]}: is no option of soil-mpm export")
+    from soil_mpm.export import write
+    from soil_mpm.results import Run
+    with Run(arguments.folder).frame_at(arguments.time) as frame:
+        print(write(frame, arguments.file, arguments.body))
+    return 0
+
+
 def certify(arguments: argparse.Namespace, words: Sequence[str]) -> int:
     from soil_mpm.certificate import CONVERGED, NOT_CONVERGED, certify as certificate_of
     found = certificate_of(deck_of(arguments, words), arguments.answer, arguments.out, tolerance=arguments.tolerance, ranks=arguments.ranks,
@@ -125,6 +135,11 @@ def parser_of(with_plot: bool) -> argparse.ArgumentParser:
     of_certify.add_argument("--out", metavar="FOLDER", help="of the runs")
     of_certify.add_argument("--ranks", type=int, default=1, metavar="N")
     of_certify.add_argument("--threads", type=int, metavar="N")
+    of_export = add("export", export, "write a frame as VTU, XDMF or what else meshio writes", deck=False)
+    of_export.add_argument("folder", metavar="OUTPUT_DIR")
+    of_export.add_argument("file", metavar="FILE", help="its ending chooses the format")
+    of_export.add_argument("--time", type=float, metavar="SECONDS", help="of the frame, by default the last one")
+    of_export.add_argument("--body", action="append", metavar="NAME", help="a body to write; may be given again; by default all")
     of_report = add("report", report, "write one HTML file of a run: what was run, checks of trust, warnings, pictures, curves", deck=False)
     of_report.add_argument("folder", metavar="OUTPUT_DIR", help="of a run, or of a certificate")
     of_report.add_argument("--out", metavar="FILE", help="the file, by default report.html in the folder")

@@ -111,6 +111,11 @@ class Frame:
             raise NoSuchResult(f"{self.path}: no body {name}; there are {', '.join(self.names())}")
         return Body(name, self._file[name])
 
+    def mesh(self, bodies: Sequence[str] | None = None) -> Any:
+        """The particles as a meshio.Mesh of points with their fields: soil_mpm.export."""
+        from soil_mpm.export import mesh_of
+        return mesh_of(self, bodies)
+
     # ------------------------------------------------------------------------------------------ fields at places
 
     def at(self, points: Any, fields: Sequence[str] | str, bodies: Sequence[str] | None = None) -> dict[str, np.ndarray]:
