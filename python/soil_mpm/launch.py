@@ -24,12 +24,17 @@ if TYPE_CHECKING:
     from soil_mpm.results import Run
 
 BAD_INPUT, FAILED, STOPPED = 2, 3, 75  # exit statuses: docs/running.md
+BUSY = 0.5  # processes that run or wait to run, as a mean over the last minute
 PERCENT = re.compile(r"^step (\d+)\s+t = (\S+) s\s+([\d.]+) %")
 
 
 def environment(ranks: int = 1, threads: int | None = None, more: Mapping[str, str] | None = None) -> dict[str, str]:
-    """The environment of a run. One process starts in half the time without a daemon of Open MPI beside it."""
+    """The environment of a run. One process starts in half the time without a daemon of Open MPI beside it. Threads that wait give way
+    where the machine has other work: they would keep the cores from the threads that they wait for, and a step would take many times as
+    long."""
     made = {**os.environ}
+    if os.getloadavg()[0] > BUSY:
+        made.setdefault("OMP_WAIT_POLICY", "passive")
     if ranks == 1:
         made.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
     else:

@@ -289,6 +289,16 @@ class Runs(unittest.TestCase):
         self.assertEqual(job.wait()["time"][-1], 0.1)
 
 
+class Environment(unittest.TestCase):
+    def test_threads_give_way_on_a_busy_machine(self):
+        with unittest.mock.patch.dict(os.environ):
+            os.environ.pop("OMP_WAIT_POLICY", None)
+            for load, policy in ((0.1, None), (3.0, "passive")):
+                with unittest.mock.patch.object(os, "getloadavg", lambda load=load: (load, load, load)):
+                    self.assertEqual(launch.environment().get("OMP_WAIT_POLICY"), policy)
+                    self.assertEqual(launch.environment(more={"OMP_WAIT_POLICY": "active"})["OMP_WAIT_POLICY"], "active")
+
+
 class Shipped(unittest.TestCase):
     """Decks that come with the program, by name."""
 
