@@ -74,6 +74,21 @@ class Wheel(unittest.TestCase):
         self.command("run", "footing_coarse", "--ranks", 2, "--no-pictures", "--out", "out/ranks", "-time_end", 0.01, "-output_frames", "off")
         self.assertEqual(json.loads((self.root / "out" / "ranks" / "performance.json").read_text())["ranks"], 2)
 
+    def test_processor(self):
+        """A build for a level of processor that is not here does not start, and says so."""
+        (file,) = self.package.glob("program/libexec/*/processor")
+        before = file.read_text()
+        self.addCleanup(file.write_text, before)
+        file.write_text("x86-64-v9\n")
+        done = subprocess.run([self.package / "program" / "bin" / "mpm", "-version"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("takes a processor of level x86-64-v9", done.stderr)
+
+    def test_report(self):
+        self.command("run", "footing_coarse", "--no-pictures", "--out", "out/short", "-time_end", 0.02)
+        text = self.command("report", "out/short")
+        self.assertIn("Checks of trust", (self.root / text.splitlines()[-1]).read_text())
+
     def test_decks(self):
         names = [line.split()[0] for line in self.command("decks").splitlines()]
         self.assertEqual(names, sorted(path.stem for path in (test_bundle.SOURCE / "inputs").glob("*.opts")))
