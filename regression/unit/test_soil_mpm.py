@@ -11,6 +11,7 @@ import os
 import pathlib
 import pickle
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -297,6 +298,11 @@ class Environment(unittest.TestCase):
                 with unittest.mock.patch.object(os, "getloadavg", lambda load=load: (load, load, load)):
                     self.assertEqual(launch.environment().get("OMP_WAIT_POLICY"), policy)
                     self.assertEqual(launch.environment(more={"OMP_WAIT_POLICY": "active"})["OMP_WAIT_POLICY"], "active")
+
+    def test_a_program_for_another_processor(self):
+        with unittest.mock.patch.object(launch, "follow", lambda *_: (-signal.SIGILL, "")), tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(RunFailed, "was built for another processor"):
+                Deck(BLOCK).run(folder, progress=False)
 
 
 class Shipped(unittest.TestCase):
