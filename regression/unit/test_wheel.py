@@ -11,11 +11,11 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 import zipfile
 
@@ -61,9 +61,10 @@ class Wheel(unittest.TestCase):
         self.assertLessEqual(glibc, [int(number) for number in os.confstr("CS_GNU_LIBC_VERSION").split()[1].split(".")])
 
     def test_first_deck(self):
-        begin = time.monotonic()
+        begin = resource.getrusage(resource.RUSAGE_CHILDREN)
         text = self.command("run", "footing_coarse")
-        self.assertLess(time.monotonic() - begin, MOST_SECONDS)
+        end = resource.getrusage(resource.RUSAGE_CHILDREN)  # of one thread: the wall time of a machine without other work
+        self.assertLess(end.ru_utime + end.ru_stime - begin.ru_utime - begin.ru_stime, MOST_SECONDS)
         out = self.root / "out" / "footing_coarse"
         for picture in ("curve.png", "field.png"):
             self.assertIn(f"out/footing_coarse/{picture}", text)
