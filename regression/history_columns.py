@@ -28,6 +28,7 @@ RUNS = {
     "a wheel in parts": "-pipe_free x,y,rz -pipe_parts rim,hub -pipe_part_forces on -rim_shape disc -rim_centre 5,4 -rim_radius 0.4 -hub_shape box "
     "-hub_lower 4.7,3.9 -hub_upper 5.8,4.1",
     "bodies that touch": "-contact_pairs boulder:bank",
+    "water that flows": "-rock_water saturated -rock_porosity 0.4 -rock_grain_density 2650 -rock_permeability 1e-4",
     "particles that split": "-particle_domain split -position_correction delta",
     "stages under water with loads": "-gravity 0,-9.81 -water_level 5.2 -output_energy on -stages rest,push -rest_end equilibrium "
     + PROBES.format(at="2,1", line="2") + " " + LOAD.format(lower="0,0", upper="8,6"),
@@ -64,6 +65,7 @@ def header(binary, options):
         given = re.findall(r"(?:^|\s)-([a-z]\w*)", options)
         left_out = {"bank_polygon"} if "bank_shape" in given else set()
         left_out |= {"pipe_shape", "pipe_centre", "pipe_radius"} if "pipe_parts" in given else set()
+        left_out |= {"rock_density"} if "rock_water" in given else set()
         copy = pathlib.Path(folder) / "deck.opts"
         copy.write_text("\n".join(" ".join(words) for words in lines if words[0].lstrip("-") not in left_out) + "\n")
         command = [binary, "-options_file", str(copy), *options.split(), "-backend", "serial", "-p2g", "sequential",

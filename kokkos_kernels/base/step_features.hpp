@@ -14,6 +14,7 @@ enum class Feature {
   apic,                 // APIC, which has sums of its own
   splits,               // particles that are split where their domains are long
   correction,           // correction of the particles' positions
+  saturated,            // water that flows in pores, with sums and fluxes of its own at the nodes
   submerged,            // soil that displaces water, whose weight goes to the nodes
   energy,               // energy balance, which reads nodal sums between functions 4 and 5
   loads,                // loads on surfaces, which read nodal sums between functions 4 and 5
@@ -74,16 +75,17 @@ constexpr Features excluding(StepWay way) {
   using F = Feature;
   switch (way) {
     case StepWay::sums_ahead:
-      return {F::other_strategy, F::xpic,     F::apic,          F::submerged, F::energy,
-              F::loads,          F::rayleigh, F::contact_sites, F::interfaces};
-    case StepWay::nodes_apart: return {F::gravity_table, F::side_table, F::columns, F::rayleigh};
+      return {F::other_strategy, F::xpic,  F::apic,     F::saturated,     F::submerged,
+              F::energy,         F::loads, F::rayleigh, F::contact_sites, F::interfaces};
+    case StepWay::nodes_apart:
+      return {F::gravity_table, F::side_table, F::columns, F::rayleigh, F::saturated};
     case StepWay::nodes_aside: return excluding(StepWay::nodes_apart) | Features{F::shear_fraction};
     case StepWay::overlapped:
-      return {F::other_strategy, F::submerged,     F::energy,    F::loads,
-              F::rayleigh,       F::contact_sites, F::interfaces};
+      return {F::other_strategy, F::saturated, F::submerged,     F::energy,
+              F::loads,          F::rayleigh,  F::contact_sites, F::interfaces};
     case StepWay::in_batches:
-      return {F::other_strategy, F::xpic,  F::apic,     F::splits,        F::correction, F::submerged,
-              F::energy,         F::loads, F::rayleigh, F::contact_sites, F::interfaces};
+      return {F::other_strategy, F::xpic,   F::apic,  F::splits,   F::correction,    F::saturated,
+              F::submerged,      F::energy, F::loads, F::rayleigh, F::contact_sites, F::interfaces};
     case StepWay::one_launch:
       return excluding(StepWay::sums_ahead) | Features{F::turning_rigids, F::many_rigids,  F::rigid_pairs,
                                                        F::linked_rigids,  F::light_rigids, F::united_rigids,

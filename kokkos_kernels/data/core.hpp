@@ -5,6 +5,7 @@
 
 #include "data/floors.hpp"
 #include "data/nodes.hpp"
+#include "data/pore_flow.hpp"
 #include "data/position_correction.hpp"
 #include "data/soil_batches.hpp"
 #include "data/split_patches.hpp"
@@ -83,6 +84,7 @@ struct Core {
   double spacing = 0;                     // m, edge of a cell, whatever T is
   Vector<double, Dim> gravity{};          // m/s2; where it follows a table, what measurements take
   Water<Dim> water{};                     // hydrostatic, in which the soil is submerged
+  PoreFlow<Space, Dim> flow;              // of water in the pores of soil
   Kokkos::View<double*, Memory> density;  // kg/m3, that the soil of each body begins with
   TimeScheme scheme;
   FBar f_bar;

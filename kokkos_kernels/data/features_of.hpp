@@ -18,6 +18,7 @@ Features features_of(const State<Space, T, Dim>& s) {
                                     {F::apic, s.soil.points.has_affine},
                                     {F::splits, s.soil.points.splits},
                                     {F::correction, s.correction.on},
+                                    {F::saturated, s.flow.in_use()},
                                     {F::submerged, s.water.is_there()},
                                     {F::energy, s.energy.on},
                                     {F::loads, s.loads.in_use()},

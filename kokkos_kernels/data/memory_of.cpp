@@ -29,7 +29,7 @@ std::size_t memory_of(const ContactCore<Space, T, Dim>& s, const NodeUses& uses)
   for (const auto* more : {&s.launch.next_sums, &s.launch.last_sums})
     add(more->soil), add(more->boundary), add(more->rigid);
   add(s.interfaces.slots), add(s.interfaces.force), add(s.interfaces.sums);
-  add(s.batches.room), add(s.batches.slots);
+  add(s.batches.room), add(s.batches.slots), add(s.flow.windows.sums);
   return bytes;
 }
 

@@ -54,6 +54,19 @@ struct CloudTerms {
     return i == j ? i : Dim == 2 ? 2 : 2 + i + j;
   }
 };
+/// Terms that soil gives a node where water flows in its pores, over such particles: sums of S rho_w V, S
+/// rho_w V / n [kg] and S V / kappa [kg/s], with kappa = k / (rho_w g); mass of the water whose weight no
+/// hydrostatic pressure carries [kg]; S rho_w V w [kg m/s]; and V p grad S [N], p in excess of hydrostatic.
+template <int Dim>
+struct FlowTerms {
+  static constexpr int water = 0, inertia = 1, drag = 2, weight = 3, momentum = 4, force = 4 + Dim,
+                       size = 4 + 2 * Dim;
+};
+/// Values that a node gives such soil: Darcy flux at the end of the step [m/s], its rate of change [m/s2].
+template <int Dim>
+struct FluxTerms {
+  static constexpr int flux = 0, rate = Dim, size = 2 * Dim;
+};
 /// Values that a node gives the soil: velocity at the end of the step [m/s], acceleration [m/s2].
 template <int Dim>
 struct NodeKinematics {
@@ -86,6 +99,8 @@ struct Nodes : NodeSums<Space, T, Dim> {
   NodeField<Space, T, Dim> shares;    // of the position correction (shares_of); allocated for it
   NodeField<Space, T, CentreTerms<Dim>::size> centre;  // of the soil, where domains stretch
   NodeField<Space, T, CloudTerms<Dim>::size> cloud;    // of the soil, where bodies have velocity fields
+  NodeField<Space, T, FlowTerms<Dim>::size> flow;      // of water that flows in pores
+  NodeField<Space, T, FluxTerms<Dim>::size> flux;      // likewise
   NodeField<Space, T, Dim> drift;  // kg cells, mass times the way since domains changed last; likewise
   Kokkos::View<T**, Kokkos::LayoutRight, typename Space::memory_space>
       impulse;  // N s, [ImpulseTerms::size a rigid][node], kept from step to step
@@ -101,6 +116,7 @@ struct NodeUses {
   bool correction = false;  // correction of the particles' positions
   bool domains = false;     // domains stretch
   bool cloud = false;       // contact of deformable bodies
+  bool flow = false;        // water flows in pores
 };
 
 /// Calls f(name, in_use, field) for every nodal field with one entry a node. The one table of nodal fields: a
@@ -115,11 +131,12 @@ void for_each_nodal_field(F&& f, Nodes_& nodes, const NodeUses& uses) {
   f("residual", uses.residual, nodes.residual);
   f("shares", uses.correction, nodes.shares);
   f("cloud", uses.cloud, nodes.cloud);
+  f("flow", uses.flow, nodes.flow), f("flux", uses.flow, nodes.flux);
   f("centre", uses.domains, nodes.centre), f("drift", uses.domains, nodes.drift);
 }
 
 /// Why a run cannot go on.
-enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone, law, state };
+enum class FaultKind : int { none, not_finite, volume, too_fast, outside, alone, law, state, porosity };
 
 /// The first fault that a kernel met.
 struct Fault {

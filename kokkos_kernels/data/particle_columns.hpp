@@ -26,8 +26,10 @@ struct ParticleColumns {
   std::vector<double> reference_height{};   // m, absolute, of a particle's creation [N]
   std::vector<double> velocity_gradient{};  // m/s a cell of the mesh, C_p of APIC [dim^2 N]
   std::vector<double> domain{};  // cells2 of the mesh, moments of domains that stretch [dim (dim + 1) / 2 N]
-  std::vector<double> faces{};   // surfaces of loads [FaceTerms::size for each face of a particle, N]
-  std::vector<StateField> state{};           // state variables of the law
+  std::vector<double> darcy_flux{};    // m/s, of water that flows in the pores [dim N]
+  std::vector<double> solid_volume{};  // m3, of the grains of such soil [N]
+  std::vector<double> faces{};         // surfaces of loads [FaceTerms::size for each face of a particle, N]
+  std::vector<StateField> state{};     // state variables of the law
   std::vector<StateField> own_parameters{};  // parameters of which each particle has its own value
 };
 
@@ -50,6 +52,7 @@ constexpr int width_of(Width width, int dim, int faces) {
 enum class Carried {
   always,       // frames, checkpoints and the user's files have it
   where_kept,   // frames and checkpoints of a run have it, the user's files may
+  if_needed,    // frames and checkpoints of a run that needed it have it, the user's files may
   checkpoints,  // checkpoints of a run that needed it alone
   never         // the run makes it anew
 };
@@ -106,6 +109,10 @@ inline constexpr ParticleColumn k_particle_columns[] = {
      Carried::checkpoints, GivenBy::velocity, Common::zero, Framed::no, 1, Bound::speed},
     {"domain", "domain", "-", &ParticleColumns::domain, Width::moments, Carried::checkpoints, GivenBy::none,
      Common::zero, Framed::no, -2, Bound::domain},
+    {"darcy_flux", "darcy_flux", "m/s", &ParticleColumns::darcy_flux, Width::vector, Carried::if_needed,
+     GivenBy::none, Common::zero, Framed::bodies, 0, Bound::speed},
+    {"solid_volume", "solid_volume", "m3", &ParticleColumns::solid_volume, Width::scalar, Carried::if_needed,
+     GivenBy::none, Common::zero, Framed::bodies, 0, Bound::volume},
     {"faces", "", "", &ParticleColumns::faces, Width::faces, Carried::never, GivenBy::none, Common::zero,
      Framed::no, 0, Bound::none},
 };

@@ -72,6 +72,11 @@ struct Soil : Points<Space, T, Dim> {
   Kokkos::View<Vector<T, Dim>*, Memory> periods;
   /// The surfaces of loads that a particle is on; as many are in use as some particle needs.
   Kokkos::Array<Kokkos::View<Face<Dim>*, Memory>, k_most_faces> faces;
+  /// In use where water flows in pores (physics/pore_flow.hpp): Darcy flux w = n (v_water - v) [m/s], volume
+  /// of the grains [m3], and volume of water that has left [m3].
+  Kokkos::View<Vector<T, Dim>*, Memory> flux;
+  Kokkos::View<T*, Memory> solid_volume;
+  Kokkos::View<double*, Memory> outflow;
 
   Kokkos::View<BodyProperties<T>*, Memory> bodies;
   Kokkos::View<StoredMaterial<T>*, Memory> materials;
@@ -82,6 +87,7 @@ struct Soil : Points<Space, T, Dim> {
   bool splits = false;        // particles with a domain that is too long are split; they have own masses
   bool has_periods = false;   // the mesh is periodic along some direction
   int face_count = 0;         // of `faces` in use; the same on all ranks
+  bool has_flow = false;      // water flows in the pores of some body, whose particles have own masses
   bool rings = false;         // the particles are rings about the axis of revolution, as their masses
   const Coord<Dim>* patch_origin = nullptr;  // of them: lower cell of each slot (Patches::origin)
 
@@ -104,7 +110,7 @@ struct Soil : Points<Space, T, Dim> {
   /// less this pressure.
   template <class Material>
   KOKKOS_INLINE_FUNCTION T excess_pore_pressure(const Material& of, int p) const {
-    return history.pore >= 0 && of.pore_stiffness > 0 ? history.column[history.pore](p) : T(0);
+    return history.pore >= 0 && of.has_pore_pressure() ? history.column[history.pore](p) : T(0);
   }
   /// Properties of the body of particle p, with the particle's own mass.
   KOKKOS_INLINE_FUNCTION BodyProperties<T> properties(int p) const {
@@ -176,6 +182,11 @@ KOKKOS_INLINE_FUNCTION void for_each_field_of(F&& f, Soil_& s, Others&... others
   constexpr const char* face_names[k_most_faces] = {"face_0", "face_1", "face_2"};
   for (int k = 0; k < s.face_count; ++k)
     f(ParticleField{face_names[k], none, kept, own}, s.faces[k], others.faces[k]...);
+  if (s.has_flow) {
+    f(ParticleField{"darcy_flux", none, volume_mean}, s.flux, others.flux...);
+    f(ParticleField{"solid_volume", none, sum, own}, s.solid_volume, others.solid_volume...);
+    f(ParticleField{"outflow", none, sum}, s.outflow, others.outflow...);
+  }
 }
 template <class F, class RigidPoints_>
 requires requires(RigidPoints_& s) { s.reference_position; }

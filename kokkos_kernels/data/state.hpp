@@ -27,7 +27,8 @@ NodeUses uses_of_nodes(const State<Space, T, Dim>& s) {
           .residual = s.scheme.xpic_order > 0,
           .correction = s.correction.on,
           .domains = s.soil.points.has_domain,
-          .cloud = s.interfaces.in_use()};
+          .cloud = s.interfaces.in_use(),
+          .flow = s.flow.in_use()};
 }
 
 }  // namespace mpm

@@ -90,6 +90,7 @@ struct PlaceFaces {
   LoadedParticles<Space, T, Dim> particles;
   SurfaceLoads<Space, T, Dim> loads;
   int axis;
+  LoadsOn on;
 
   KOKKOS_INLINE_FUNCTION void operator()(int p) const {
     if (!particles.in_loaded_slot(p)) return;
@@ -111,6 +112,10 @@ struct PlaceFaces {
     if (load < 0) return;
     const Face<Dim> face = particles.soil.faces[k](p);
     const SurfaceLoad<Dim>& now = loads.now(load);
+    if (on == LoadsOn::pores) {
+      if (now.on_pores != 0) force[axis] -= now.pressure * face[F::area + axis];
+      return;
+    }
     double size = 0;
     for (int d = 0; d < Dim; ++d) size += Kokkos::fabs(face[F::area + d]);
     const double share = size > 0 ? Kokkos::fabs(face[F::area + axis]) / size : axis == 0 ? 1.0 : 0.0;
@@ -276,13 +281,14 @@ void list_loaded(const Core<Space, T, Dim>& s, SurfaceLoads<Space, T, Dim>& load
     ensure(loads.windows.sums, window_bytes<VectorSource<Space, T, Dim>> * loads.loaded_count);
   const int count = s.soil.points.count;
   ensure(loads.coordinate, count), ensure(loads.force, count), ensure(loads.half_length, count);
+  if (loads.on_pores) ensure(loads.pore_load, s.patches.node_count());
 }
 
 template <class Space, class T, int Dim>
 VectorSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>& s,
-                                        const SurfaceLoads<Space, T, Dim>& loads, int axis) {
+                                        const SurfaceLoads<Space, T, Dim>& loads, int axis, LoadsOn on) {
   Kokkos::parallel_for("mpm::place_faces", Kokkos::RangePolicy<Space>(s.space, 0, s.soil.points.count),
-                       PlaceFaces<Space, T, Dim>{LoadedParticles<Space, T, Dim>(s, loads), loads, axis});
+                       PlaceFaces<Space, T, Dim>{LoadedParticles<Space, T, Dim>(s, loads), loads, axis, on});
   VectorSource<Space, T, Dim> source{s.soil.points, loads.force, loads.windows};
   source.points.coordinate = loads.coordinate, source.points.half_length = loads.half_length;
   source.points.has_domain = true;
@@ -343,14 +349,14 @@ std::vector<SurfaceSum> sum_surfaces(const Core<Space, T, Dim>& s, const Surface
   return sums;
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                          \
-  template void list_loaded(const Core<Space, T, Dim>&, SurfaceLoads<Space, T, Dim>&);          \
-  template VectorSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>&,                  \
-                                                   const SurfaceLoads<Space, T, Dim>&, int);    \
-  template void add_loads(const Core<Space, T, Dim>&);                                          \
-  template void follow_surfaces(const Core<Space, T, Dim>&, const SurfaceLoads<Space, T, Dim>&, \
-                                const EnergyWorks<Space, T, Dim>&, double);                     \
-  template std::vector<SurfaceSum> sum_surfaces(const Core<Space, T, Dim>&,                     \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                \
+  template void list_loaded(const Core<Space, T, Dim>&, SurfaceLoads<Space, T, Dim>&);                \
+  template VectorSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>&,                        \
+                                                   const SurfaceLoads<Space, T, Dim>&, int, LoadsOn); \
+  template void add_loads(const Core<Space, T, Dim>&);                                                \
+  template void follow_surfaces(const Core<Space, T, Dim>&, const SurfaceLoads<Space, T, Dim>&,       \
+                                const EnergyWorks<Space, T, Dim>&, double);                           \
+  template std::vector<SurfaceSum> sum_surfaces(const Core<Space, T, Dim>&,                           \
                                                 const SurfaceLoads<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

@@ -14,12 +14,16 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void list_loaded(const Core<Space, T, Dim>& s, SurfaceLoads<Space, T, Dim>& loads);
 
+/// Forces of loads: on the soil as a whole, or those on the water in its pores alone.
+enum class LoadsOn { soil, pores };
+
 /// The source of the forces on faces that lie along an axis, of particles in the slots with loads: sum N f_p,
 /// N the mean of the linear hat of a node over the face. A face is a box without thickness. The source takes
 /// places, boxes and forces of the faces from `loads`, where this puts them, and is summed in its windows.
 template <class Space, class T, int Dim>
 VectorSource<Space, T, Dim> place_faces(const Core<Space, T, Dim>& s,
-                                        const SurfaceLoads<Space, T, Dim>& loads, int axis);
+                                        const SurfaceLoads<Space, T, Dim>& loads, int axis,
+                                        LoadsOn on = LoadsOn::soil);
 
 /// Adds s.nodes.load to the forces at the nodes.
 template <class Space, class T, int Dim>

@@ -3,6 +3,7 @@
 
 #include "base/choices.hpp"
 #include "base/spaces.hpp"
+#include "physics/flow_source.hpp"
 #include "physics/p2g_terms.hpp"
 
 namespace mpm {

@@ -92,7 +92,7 @@ struct ParticleLaw {
     const AnyMaterial<T>& of = material_in(soil.materials(material));
     // Kernels of light laws alone are for soil that drains (State::light_laws).
     const bool undrained =
-        !std::is_same_v<Laws, LightMaterials> && soil.history.pore >= 0 && of.pore_stiffness > 0;
+        !std::is_same_v<Laws, LightMaterials> && soil.history.pore >= 0 && of.has_pore_pressure();
     if (flies) {
       for (int k = 0; k < sym_size<Dim>; ++k) stress[k] = 0;
       if (undrained) soil.history.column[soil.history.pore](p) = 0;

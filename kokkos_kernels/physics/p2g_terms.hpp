@@ -399,12 +399,15 @@ using VectorSource = ValueSource<Space, T, Dim, Dim, Kind::motion, domain>;
   MPM_SOIL_SOURCES(X, Space, T, Dim, stretch)      \
   MPM_IN_2D_##Dim(MPM_SOIL_SOURCES(X, Space, T, 2, ring))
 /// The others.
-#define MPM_FOR_EACH_OTHER_SOURCE(X, Space, T, Dim)                  \
-  MPM_VALUE_SOURCES(X, Space, T, Dim, stretch)                       \
-  X(CentreSource<Space, T, Dim>)                                     \
-  X(CloudSource<Space, T, Dim>)                                      \
-  MPM_IN_2D_##Dim(X(CloudSource<Space, T, 2, ParticleDomain::ring>)) \
-      MPM_IN_2D_##Dim(MPM_VALUE_SOURCES(X, Space, T, 2, ring)) MPM_IN_3D_##Dim(X(TripleSource<Space, T, 3>))
+#define MPM_FOR_EACH_OTHER_SOURCE(X, Space, T, Dim)                      \
+  MPM_VALUE_SOURCES(X, Space, T, Dim, stretch)                           \
+  X(CentreSource<Space, T, Dim>)                                         \
+  X(CloudSource<Space, T, Dim>)                                          \
+  X(FlowSource<Space, T, Dim>)                                           \
+  MPM_IN_2D_##Dim(X(FlowSource<Space, T, 2, ParticleDomain::ring>))      \
+      MPM_IN_2D_##Dim(X(CloudSource<Space, T, 2, ParticleDomain::ring>)) \
+          MPM_IN_2D_##Dim(MPM_VALUE_SOURCES(X, Space, T, 2, ring))       \
+              MPM_IN_3D_##Dim(X(TripleSource<Space, T, 3>))
 #define MPM_FOR_EACH_SOURCE(X, Space, T, Dim) \
   MPM_FOR_EACH_STEP_SOURCE(X, Space, T, Dim)  \
   MPM_FOR_EACH_OTHER_SOURCE(X, Space, T, Dim)

@@ -141,6 +141,10 @@ void build_for(const ContactCore<Space, T, Dim>& s, const Source& source, Bins<S
 template <class Space, class T, int Dim>
 void build_lists(ContactCore<Space, T, Dim>& s) {
   build_for(s, SoilSource<Space, T, Dim>{s.soil.points, s.grid.inv_spacing}, s.soil.bins);
+  if (s.flow.in_use() && chosen(s.p2g.strategy) == P2G::tile && has_windows(s.space)) {
+    s.flow.windows.place = s.soil.bins.windows.place;
+    ensure(s.flow.windows.sums, window_bytes<FlowSource<Space, T, Dim>> * s.soil.bins.last_active);
+  }
   for (int r = 0; r < static_cast<int>(s.rigid_points.size()) && !s.contact.near.listed; ++r) {
     auto& set = s.rigid_points[r];
     const RigidSource<Space, T, Dim> source{set.points, s.rigids, r, s.patches.origin, s.spacing};

@@ -204,7 +204,9 @@ template <class Space, class T, int Dim>
 KOKKOS_INLINE_FUNCTION void average_pore_pressure_of(const Soil<Space, T, Dim>& soil, int first, int last,
                                                      T fraction) {
   const auto& excess = soil.history.column[soil.history.pore];
-  const auto has = [&](int p) { return material_in(soil.materials(soil.material_of(p))).pore_stiffness > 0; };
+  const auto has = [&](int p) {
+    return material_in(soil.materials(soil.material_of(p))).has_pore_pressure();
+  };
   T volume = 0, sum = 0;
   for (int p = first; p < last; ++p)
     if (has(p)) volume += soil.volume(p), sum += soil.volume(p) * excess(p);

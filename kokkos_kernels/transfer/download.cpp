@@ -65,6 +65,7 @@ SoilFields download_soil(const ContactCore<Space, T, Dim>& s) {
   const auto half_length = [&](const auto& cells, int d) { return double(cells[d]) * spacing; };
   if (soil.has_domain) spread(soil.half_length, Dim, fields.half_length, half_length);
   if (soil.splits) spread(soil.ancestor, 1, fields.ancestor, part);
+  if (soil.has_flow) spread(soil.solid_volume, 1, fields.solid_volume, part);
 
   for (int k = 0; k < soil.face_count; ++k) {
     std::vector<double> area;

@@ -3,6 +3,7 @@
 #include "base/copy.hpp"
 #include "physics/materials/any.hpp"
 #include "physics/p2g_terms.hpp"
+#include "physics/pore_flow.hpp"
 #include "physics/pore_water.hpp"
 #include "rebuild/limit_volumes.hpp"
 #include "transfer/positions.hpp"
@@ -29,6 +30,7 @@ struct Sum {
     }
     m.kinetic_energy += other.m.kinetic_energy;
     m.stored_energy += other.m.stored_energy;
+    m.pore_water += other.m.pore_water, m.outflow += other.m.outflow;
     m.mass += other.m.mass, m.weight += other.m.weight, m.water_energy += other.m.water_energy;
     m.count += other.m.count, m.alone += other.m.alone, m.limited += other.m.limited;
     m.stretched += other.m.stretched;
@@ -36,14 +38,33 @@ struct Sum {
   }
 };
 
-/// Energy [J/m3] that particle p can give back, its pore water's among it.
+/// Porosity of particle p, in whose pores water flows.
 template <class Space, class T, int Dim>
-KOKKOS_INLINE_FUNCTION double stored_energy(const Soil<Space, T, Dim>& soil, int material, int p) {
+KOKKOS_INLINE_FUNCTION double porosity_of(const Soil<Space, T, Dim>& soil, int p) {
+  return 1 - double(soil.solid_volume(p)) / double(soil.volume(p));
+}
+
+/// Adds the water in the pores of particle p, and that which has left: its volumes without pressure [m3].
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION void add_pore_water(const Soil<Space, T, Dim>& soil, const WaterInPores& water, int p,
+                                           BodyMeasure& m) {
+  const double pressure = soil.history.column[soil.history.pore](p);
+  m.pore_water +=
+      (double(soil.volume(p)) - double(soil.solid_volume(p))) * water_compression(pressure, water);
+  m.outflow += soil.outflow(p);
+}
+
+/// Energy [J/m3] that particle p can give back, its pore water's among it. bulk_modulus [Pa]: of water that
+/// flows.
+template <class Space, class T, int Dim>
+KOKKOS_INLINE_FUNCTION double stored_energy(const Soil<Space, T, Dim>& soil, int material,
+                                            double bulk_modulus, int p) {
   const AnyMaterial<T>& of = material_in(soil.materials(material));
+  const double stiffness = of.saturated ? bulk_modulus / porosity_of(soil, p) : double(of.pore_stiffness);
   const double excess = soil.excess_pore_pressure(of, p);
   SymTensor<T, Dim> stress = soil.stress(p);
   add_isotropic(stress, static_cast<T>(excess));
-  double energy = excess == 0 ? 0 : excess * excess / (2 * double(of.pore_stiffness));
+  double energy = excess == 0 ? 0 : excess * excess / (2 * stiffness);
   of.visit([&](const auto& law) { energy += law.stored_energy(stress, soil.state_of(law, p)); });
   return energy;
 }
@@ -63,7 +84,9 @@ KOKKOS_INLINE_FUNCTION double water_energy(const Soil<Space, T, Dim>& soil, cons
   const double reach = water.reach(half);
   const double depth = water.depth(x), in = Kokkos::fmax(0.0, Kokkos::fmin(2 * reach, depth + reach));
   const double sunk = in * in / (4 * reach) + Kokkos::fmax(0.0, depth - reach);  // m
-  return water.density * water.gravity * sunk * double(body.mass) / density(soil.body(p));
+  const double volume = soil.has_flow && soil.solid_volume(p) > 0 ? double(soil.volume(p))
+                                                                  : double(body.mass) / density(soil.body(p));
+  return water.density * water.gravity * sunk * volume;
 }
 
 /// A coordinate as a whole number of steps from the lower end of an extent. It never falls where x grows, so
@@ -104,6 +127,7 @@ BodyMeasure measure(const Core<Space, T, Dim>& s, int body) {
   const auto start_volume = s.strays.start_volume;
   const auto water = s.water;
   const auto density = s.density;
+  const WaterInPores in_pores = s.flow.water;
   Sum<Dim> total;
   Kokkos::parallel_reduce(
       "mpm::measure", Kokkos::RangePolicy<Space>(s.space, 0, (count + together - 1) / together),
@@ -123,7 +147,10 @@ BodyMeasure measure(const Core<Space, T, Dim>& s, int body) {
             own.m.kinetic_energy += mass * v * v / 2;
           }
           own.m.mass += mass, own.m.weight += weight;
-          own.m.stored_energy += double(soil.volume(p)) * stored_energy(soil, common.material, p);
+          own.m.stored_energy +=
+              double(soil.volume(p)) * stored_energy(soil, common.material, in_pores.bulk_modulus, p);
+          if (material_in(soil.materials(common.material)).saturated)
+            add_pore_water(soil, in_pores, p, own.m);
           if (water.is_there()) own.m.water_energy += water_energy(soil, water, density, position, p);
           own.m.alone += is_alone(alone, soil.cell(p));
           own.m.limited += is_volume_at_bound({least, most}, own_volume_bounds(start_volume, soil, p), soil,
@@ -168,6 +195,7 @@ template <class Space, class T, int Dim>
 double fastest_wave(const Core<Space, T, Dim>& s, double compression) {
   const auto soil = s.soil.points;
   const double rim_scale = s.scheme.rim_scale;
+  const auto flow = s.flow;
   double fastest = 0;  // m2/s2
   Kokkos::parallel_reduce(
       "mpm::fastest_wave", Kokkos::RangePolicy<Space>(s.space, 0, soil.count),
@@ -180,7 +208,12 @@ double fastest_wave(const Core<Space, T, Dim>& s, double compression) {
           const double modulus = modulus_after(law, stress, soil.state_of(law, p), compression) +
                                  double(material.pore_stiffness);
           const double volume = soil.volume(p) / gap_room(soil, p);  // as it is once it takes pressure
-          largest = Kokkos::fmax(largest, modulus * volume / of.mass * rim_factor(soil, p, rim_scale));
+          const double square =
+              material.saturated
+                  ? fast_wave_square(modulus, porosity_of(soil, p), flow.pores(of.material).solid_density,
+                                     flow.water.density, flow.water.bulk_modulus)
+                  : modulus * volume / of.mass;
+          largest = Kokkos::fmax(largest, square * rim_factor(soil, p, rim_scale));
         });
       },
       Kokkos::Max<double>(fastest));

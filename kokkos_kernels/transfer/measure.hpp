@@ -16,6 +16,7 @@ namespace mpm {
 struct BodyMeasure {
   double lower[3], upper[3], kinetic_energy, stored_energy, momentum[3], centre[3], mass, weight;
   double water_energy;
+  double pore_water, outflow;  // m3, without pressure: of water that flows, in the pores and out of them
   long count, alone, limited;
   long stretched;  // particles whose domain is at its upper bound along some axis
 };

@@ -23,8 +23,11 @@ struct MaterialInput {
   int model = 0;                         // index into Materials
   std::vector<double> parameters;        // in the order of the model's table
   std::shared_ptr<const void> object{};  // of make_object, where the model has one
-  double pore_stiffness = 0;             // Pa, of the water in its pores; 0: the pores drain
+  double pore_stiffness = 0;             // Pa, of water in its pores that does not flow; 0: there is none
   double f_bar_share = 1;                // -, of FBar::fraction
+  bool saturated = false;                // water flows in its pores
+
+  bool has_pore_pressure() const { return saturated || pore_stiffness > 0; }
 };
 
 /// Particles of one deformable body: columns, and where a column is empty the values that all particles have

@@ -66,6 +66,7 @@ void upload_surface_loads(State<Space, T, Dim>& s, const std::vector<SurfaceLoad
     return copy(s.loads.now, host);
   }
   fill_view(s.loads.now, "mpm::surface_loads", loads);
+  for (const SurfaceLoad<Dim>& load : loads) s.loads.on_pores = s.loads.on_pores || load.on_pores != 0;
   s.loads.work = decltype(s.loads.work)("mpm::loads.work");
   s.loads.of_step = decltype(s.loads.of_step)("mpm::loads.of_step");
 }

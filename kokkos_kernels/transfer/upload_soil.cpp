@@ -98,7 +98,7 @@ void name_columns(LawHistory<Space, T>& history, const std::vector<MaterialInput
     history.columns = std::max(history.columns, static_cast<int>(variables.size()));
   }
   const bool undrained = std::any_of(bodies.begin(), bodies.end(), [&](const BodyInput& body) {
-    return materials[body.material].pore_stiffness > 0;
+    return materials[body.material].has_pore_pressure();
   });
   history.pore = undrained ? history.columns++ : -1;
   if (undrained) history.name[history.pore] = k_excess_pore_pressure, history.changes[history.pore] = true;
@@ -191,6 +191,7 @@ void fill_soil(Core<Space, T, Dim>& s, const Rows& rows) {
   if (soil.has_domain) fill_domains(soil, rows);
   if (soil.splits)
     fill_view(soil.ancestor, "mpm::ancestor", soil.count, [&](int p) { return double(rows.id(p)); });
+  if (soil.has_flow) fill_column<Dim>(soil.solid_volume, "solid_volume", rows);
   fill_faces(soil, rows);
 }
 
@@ -207,7 +208,7 @@ void fill_properties(Core<Space, T, Dim>& s, const std::vector<MaterialInput>& m
             [&](int b) { return bodies[b].density; });
   fill_view(soil.materials, "mpm::materials", static_cast<int>(materials.size()), [&](int m) {
     auto stored = store_material<T>(materials[m].model, materials[m].parameters, materials[m].object.get(),
-                                    materials[m].pore_stiffness);
+                                    materials[m].pore_stiffness, materials[m].saturated);
     stored.f_bar_share = static_cast<T>(materials[m].f_bar_share);
     return stored;
   });
@@ -231,8 +232,10 @@ void upload_soil(Core<Space, T, Dim>& s, const std::vector<MaterialInput>& mater
   auto& soil = s.soil.points;
   const Rows rows(bodies, Dim);
   soil.count = rows.count();
-  soil.has_own_mass = soil.splits || std::any_of(bodies.begin(), bodies.end(),
-                                                 [](const BodyInput& body) { return body.least_mass > 0; });
+  const auto is_any = [&](auto&& has) { return std::any_of(bodies.begin(), bodies.end(), has); };
+  soil.has_flow = is_any([&](const BodyInput& body) { return materials[body.material].saturated; });
+  soil.has_own_mass =
+      soil.splits || soil.has_flow || is_any([](const BodyInput& body) { return body.least_mass > 0; });
   name_columns(soil.history, materials, bodies);
   if (s.batches.in_use()) store_soil(s, soil.count, scratch);
   s.grid.fields = 1;

@@ -33,14 +33,15 @@ Soil<Space, T, Dim> soil_of(const Config& config) {
   for (const BodyConfig& body : config.bodies) {
     const MaterialConfig& material = config.materials[body.material];
     soil.history.columns = std::max(soil.history.columns, static_cast<int>(state_variables(material).size()));
-    undrained = undrained || material.pore_stiffness > 0;
+    undrained = undrained || material.has_pore_pressure();
+    soil.has_flow = soil.has_flow || material.saturated();
     own_mass = own_mass || body.shape.kind == ShapeKind::particles || body.shape.fill == Fill::cut;
   }
   soil.history.columns += undrained;  // the excess pore pressure
   soil.has_affine = config.velocity_update == VelocityUpdate::apic;
   soil.has_domain = config.particle_domain != ParticleDomain::fixed;
   soil.splits = config.particle_domain == ParticleDomain::split;
-  soil.has_own_mass = own_mass || soil.splits;
+  soil.has_own_mass = own_mass || soil.splits || soil.has_flow;
   soil.has_periods = is_periodic(config.mesh);
   soil.face_count = config.loads.empty() ? 0 : 1;
   return soil;
@@ -57,7 +58,8 @@ NodeUses uses_of_nodes(const Config& config) {
           .residual = config.velocity_update == VelocityUpdate::xpic,
           .correction = bool(config.position_correction),
           .domains = config.particle_domain != ParticleDomain::fixed,
-          .cloud = pairs};
+          .cloud = pairs,
+          .flow = water_flows(config)};
 }
 
 /// Bytes that a particle of the soil takes, with what sorts it and what some runs keep of it in a step.
@@ -84,7 +86,8 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   const double soil = need.particles * bytes_of_particle<Space, T, Dim>(config);
   need.nodes = k_ring * cells * bytes_of_node(Nodes<Space, T, Dim>{}, uses_of_nodes(config));
   if (config.backend == Backend::openmp && chosen(config.p2g.strategy) == P2G::tile)
-    need.nodes += cells * k_window_bytes<T, Dim>;
+    need.nodes += cells * k_window_bytes<T, Dim> *
+                  (1 + (water_flows(config) ? double(FlowTerms<Dim>::size) / SoilTerms<Dim>::size : 0));
   const RigidPoints<Space, T, Dim> point;
   need.all_ranks = need.rigids * (bytes_of_point(point) + bytes_to_sort(point)) +
                    need.patches * k_patch_bytes + need.samples;

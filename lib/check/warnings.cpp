@@ -157,7 +157,10 @@ void warn_of_speed(const Config& config, const RigidConfig& rigid, Lines& lines)
   double slowest = std::numeric_limits<double>::infinity(), shear = slowest;
   for (const BodyConfig& body : config.bodies) {
     const MaterialConfig& material = config.materials[body.material];
-    const double wave = wave_speed(config, body), pore = material.pore_stiffness / density_of(config, body);
+    const double wave = wave_speed(config, body),
+                 water = material.saturated() ? config.water.bulk_modulus / material.pores.porosity
+                                              : material.pore_stiffness,
+                 pore = water / density_of(config, body);
     slowest = std::min(slowest, wave);
     if (const auto ratio = shear_wave_ratio(material); ratio && *ratio > 0)
       shear = std::min(shear, *ratio * std::sqrt(std::max(0.0, wave * wave - pore)));
@@ -250,6 +253,7 @@ std::vector<std::string> warnings_of(const Config& config, int ranks) {
   warn_of_water(config, lines);
   for (const std::string& line : warnings_of_excavations(config)) lines.push_back(line);
   for (const std::string& line : warnings_of_pairs(config)) lines.push_back(line);
+  for (const std::string& line : warnings_of_pores(config)) lines.push_back(line);
   std::vector<char> warned(config.materials.size());
   for (const BodyConfig& body : config.bodies) {
     warn_of_tension(body, config.dim, lines);

@@ -51,6 +51,40 @@ bool moves(const Config& config) {
 
 }  // namespace
 
+std::vector<std::string> warnings_of_pores(const Config& config) {
+  constexpr double k_soft = 20, k_stiff = 400, k_darcy = 0.1, k_loose = 0.8;
+  std::vector<std::string> lines;
+  for (const MaterialConfig& material : config.materials) {
+    if (!material.saturated()) continue;
+    const PoreConfig& pores = material.pores;
+    const double young = parameter_of(material, "young"), poisson = parameter_of(material, "poisson"),
+                 modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson)),
+                 ratio = config.water.bulk_modulus / pores.porosity / modulus;
+    if (ratio < k_soft)
+      lines.push_back(
+          formatted("warning: -water_bulk_modulus: over the porosity it is %.3g times the wave modulus "
+                    "of %s; below %g its consolidation is slower by 5 %% and more",
+                    ratio, material.name.c_str(), k_soft));
+    if (ratio > k_stiff)
+      lines.push_back(
+          formatted("warning: -water_bulk_modulus: over the porosity it is %.3g times the wave modulus "
+                    "of %s; 50 times costs 2 %% in the rate of consolidation, and the step is %.2g "
+                    "times as long",
+                    ratio, material.name.c_str(), std::sqrt(ratio / 50)));
+    if (pores.permeability * config.water.permeability_scale > k_darcy)
+      lines.push_back(
+          formatted("warning: -%s_permeability: %.3g m/s with -permeability_scale; above %g m/s flow "
+                    "does not follow Darcy's law",
+                    material.name.c_str(), pores.permeability * config.water.permeability_scale, k_darcy));
+    if (pores.porosity > k_loose)
+      lines.push_back(
+          formatted("warning: -%s_porosity: %g; above %g grains and water part, which one set of "
+                    "particles cannot do",
+                    material.name.c_str(), pores.porosity, k_loose));
+  }
+  return lines;
+}
+
 std::vector<std::string> warnings_of_excavations(const Config& config) {
   std::vector<std::string> lines;
   if (!config.water.level) return lines;

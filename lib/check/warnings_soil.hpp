@@ -16,6 +16,10 @@ std::vector<std::string> warnings_of_excavations(const Config& config);
 /// Warnings of bodies of -contact_pairs that are too thin for their cells.
 std::vector<std::string> warnings_of_pairs(const Config& config);
 
+/// Warnings of water that flows in pores: a stiffness that costs answers or time, flow beyond Darcy's law,
+/// soil from which grains and water may part.
+std::vector<std::string> warnings_of_pores(const Config& config);
+
 /// Line of the log for deformable bodies that touch or may meet; empty where none do.
 std::string note_of_touching(const Config& config);
 

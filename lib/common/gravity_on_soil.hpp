@@ -13,7 +13,7 @@ namespace mpm {
 /// at least a cell above all of the mesh, since a particle reaches half a width beyond its place, and what
 /// has left through a free side stays until the next rebuild.
 inline bool carries_alike(const Config& config) {
-  if (!config.water.level || config.bodies.empty()) return false;
+  if (!config.water.level || config.bodies.empty() || water_flows(config)) return false;
   for (const WaterRegionConfig& region : config.water.regions)
     if (region.dry || region.level) return false;
   const Vec3& g = config.gravity;

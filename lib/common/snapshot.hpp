@@ -23,6 +23,7 @@ struct ParticleSnapshot : ParticleColumns {
   std::vector<double> number{};          // - [N], of nodes: in the whole mesh, x fastest
   std::vector<double> vertices{};  // m [3 V], of a rigid with a surface of triangles: where they are now
   std::vector<int> triangles{};    // [3 M], numbers of their vertices
+  bool has_flow = false;           // of a body in a run in which water flows in pores
 };
 
 /// The attribute of a body's group in a frame that names the parameters of which each particle has its own,
@@ -65,6 +66,8 @@ struct BodyRow {
   double merged_energy = 0;           // J, kinetic, that merging has taken since the start
   double corrected = 0, raised = 0;   // J, kinetic and of height, that the position correction has added
   long put_back = 0, lost_count = 0;  // particles put back at walls, and lost, since the start
+  double pore_water = 0,
+         outflow = 0;  // m3, water without pressure: in its pores, and out of them since the start
 };
 
 /// One row of the history for one part of a rigid.

@@ -13,7 +13,8 @@ const std::vector<Field>& frame_fields() {
     std::vector<Field> all;
     for (const ParticleColumn& column : k_particle_columns)
       if (column.framed != Framed::no)
-        all.push_back({column.name, column.unit, framed_width(column.width), column.framed, column.values});
+        all.push_back({column.name, column.unit, framed_width(column.width), column.framed, column.values,
+                       column.carried == Carried::if_needed});
     all.push_back({"grid_velocity", "m/s", 3, Framed::bodies, &ParticleSnapshot::grid_velocity});
     const auto is_new = [&](const char* name) {
       return std::none_of(all.begin(), all.end(),
@@ -29,6 +30,7 @@ const std::vector<Field>& frame_fields() {
           all.push_back({variable.parameter, variable.unit, 1, Framed::bodies, nullptr});
     const Field last[] = {{"pore_pressure", "Pa", 1, Framed::bodies, nullptr},
                           {k_excess_pore_pressure, "Pa", 1, Framed::bodies, nullptr},
+                          {"porosity", "-", 1, Framed::bodies, nullptr},
                           {"half_length_x", "m", 1, Framed::bodies, nullptr},
                           {"half_length_y", "m", 1, Framed::bodies, nullptr},
                           {"half_length_z", "m", 1, Framed::bodies, nullptr},
@@ -66,6 +68,7 @@ std::string frame_field_list() {
 }
 
 const std::vector<double>* values_of(const ParticleSnapshot& particles, const Field& field) {
+  if (field.of_flow && !particles.has_flow) return nullptr;
   if (field.values != nullptr) return &(particles.*field.values);
   for (const StateField& state : particles.state)
     if (state.name == field.name) return &state.values;

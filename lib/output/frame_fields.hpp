@@ -24,6 +24,7 @@ struct Field {
   int components;
   Framed of;
   std::vector<double> ParticleSnapshot::*values;  // [components N]; null: a state variable, by its name
+  bool of_flow = false;                           // runs in which water flows in pores alone have it
 };
 
 /// All fields that a group of any run may have; the position, which is the geometry, is the first.

@@ -43,6 +43,7 @@ std::string format_history_row(const HistoryRow& row, const Config& config) {
       text += "," + text_of(value);
     append(text, body.lost_momentum, dim);
     for (const long number : {body.strays, body.limited, body.put_back}) text += "," + std::to_string(number);
+    if (water_flows(config)) text += "," + text_of(body.pore_water) + "," + text_of(body.outflow);
     if (config.particle_domain != ParticleDomain::fixed) text += "," + std::to_string(body.stretched);
     if (config.particle_domain == ParticleDomain::split)
       text += "," + std::to_string(body.particles) + "," + std::to_string(body.merged) + "," +

@@ -53,6 +53,8 @@ void add_body(Columns& to, const std::string& name, const Config& config) {
   for (const char* quantity : {"_mass", "_lost_mass", "_lost_energy"}) to.add(name + quantity);
   to.add_vector(name + "_lost_momentum_");
   for (const char* number : {"_strays", "_limited", "_put_back"}) to.add(name + number);
+  if (water_flows(config))
+    for (const char* volume : {"_water", "_outflow"}) to.add(name + volume);
   if (config.particle_domain != ParticleDomain::fixed) to.add(name + "_stretched");
   if (config.particle_domain == ParticleDomain::split)
     for (const char* quantity : {"_particles", "_merged", "_merged_energy"}) to.add(name + quantity);

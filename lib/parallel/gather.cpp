@@ -13,7 +13,8 @@ namespace {
 std::vector<std::pair<std::vector<double>*, int>> fields_of(ParticleSnapshot& body) {
   std::vector<std::pair<std::vector<double>*, int>> fields{{&body.grid_velocity, 3}};
   for (const ParticleColumn& column : k_particle_columns)
-    if (column.framed != Framed::no) fields.emplace_back(&(body.*column.values), framed_width(column.width));
+    if (column.framed != Framed::no && (column.carried != Carried::if_needed || body.has_flow))
+      fields.emplace_back(&(body.*column.values), framed_width(column.width));
   for (StateField& state : body.state) fields.emplace_back(&state.values, 1);
   return fields;
 }

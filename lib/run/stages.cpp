@@ -16,7 +16,7 @@ constexpr double k_energy_share = 0.01;  // of the unbalanced ratio: largest kin
 /// Soil at rest that has never moved: velocities and plastic strains become zero.
 void reset_state(const Config& config, SavedState& state) {
   for (SavedField& field : state.soil.fields)
-    for (const char* name : {"velocity", "affine", "plastic_strain"})
+    for (const char* name : {"velocity", "affine", "plastic_strain", "darcy_flux"})
       if (field.name == name) std::fill(field.values.begin(), field.values.end(), 0.0);
   for (std::size_t r = 0; r < state.rigids.size(); ++r)
     if (config.rigids[r].motion == Motion::dynamic)

@@ -12,7 +12,7 @@ template <int Dim>
 std::vector<SurfaceLoad<Dim>> loads_at(const Config& config, double time) {
   std::vector<SurfaceLoad<Dim>> loads;
   for (const LoadConfig& load : config.loads) {
-    SurfaceLoad<Dim> now{pressure_at(load, time), {}};
+    SurfaceLoad<Dim> now{pressure_at(load, time), {}, load.on_pores ? 1 : 0};
     for (int d = 0; d < Dim; ++d) now.traction[d] = traction_at(load, d, time);
     loads.push_back(now);
   }

@@ -63,6 +63,30 @@ void add_excess_pressure(ParticleColumns& in) {
     for (int k = 0; k < 3; ++k) in.stress[p * sym_size<Dim> + k] -= excess[p];
 }
 
+/// Pore pressure that the options give a body, in excess of the hydrostatic one, and the volumes of its
+/// grains, where nothing has given them.
+template <int Dim>
+void begin_pores(const Config& config, const BodyConfig& body, BodyInput& in) {
+  const MaterialConfig& material = config.materials[body.material];
+  const std::size_t count = in.position.size() / Dim;
+  const bool given = !in.state.empty() && in.state.back().name == k_excess_pore_pressure;
+  if (material.has_pore_pressure() && !given && body.pore_pressure) {
+    const Water<Dim> water = water_of<Dim>(config);
+    StateField excess{k_excess_pore_pressure, std::vector<double>(count, *body.pore_pressure)};
+    for (std::size_t p = 0; p < count && water.is_there(); ++p) {
+      Vector<double, Dim> x;
+      for (int d = 0; d < Dim; ++d) x[d] = in.position[p * Dim + d];
+      excess.values[p] -= water.pressure(x);
+    }
+    in.state.push_back(std::move(excess));
+  }
+  if (!material.saturated()) in.solid_volume.clear(), in.darcy_flux.clear();
+  if (!material.saturated() || !in.solid_volume.empty()) return;
+  for (std::size_t p = 0; p < count; ++p)
+    in.solid_volume.push_back((1 - material.pores.porosity) *
+                              (in.volume.empty() ? in.particle_volume : in.volume[p]));
+}
+
 template <int Dim>
 BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles&& particles) {
   const MaterialConfig& material = config.materials[body.material];
@@ -81,6 +105,7 @@ BodyInput body_input(const Config& config, const BodyConfig& body, BodyParticles
     for (std::size_t p = 0; p < in.position.size() / Dim; ++p)
       in.stress.insert(in.stress.end(), body.stress.begin(), body.stress.begin() + sym_size<Dim>);
   in.state = start_state<Dim>(config, law, in);
+  begin_pores<Dim>(config, body, in);
   add_excess_pressure<Dim>(in);
   return in;
 }
@@ -158,7 +183,7 @@ std::vector<MaterialInput> material_input(const Config& config) {
   std::vector<MaterialInput> materials;
   for (const auto& m : config.materials)
     materials.push_back({model_index(m.model), m.parameters, m.object, m.pore_stiffness,
-                         f_bar > 0 ? f_bar_fraction(config, m) / f_bar : 1.0});
+                         f_bar > 0 ? f_bar_fraction(config, m) / f_bar : 1.0, m.saturated()});
   return materials;
 }
 

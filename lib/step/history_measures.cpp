@@ -41,6 +41,7 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::measure_body(int b, BodyRow* body
   PetscCall(run_.largest(&speed));
   PetscCall(measure_strays(b, body));
   body->mass = m.mass, body->water_energy = m.water_energy, body->strays = m.alone, body->limited = m.limited;
+  body->pore_water = m.pore_water, body->outflow = m.outflow;
   body->particles = m.count, body->stretched = m.stretched;
   if (m.count == 0) PetscFunctionReturn(PETSC_SUCCESS);
   const long rank = m.count - m.count / 1000;  // of the 99.9th percentile, the nearest one above
@@ -71,7 +72,8 @@ PetscErrorCode HistoryMeasures<Space, T, Dim>::sum_measure(BodyMeasure* m) const
   PetscCall(run_.sum(&m->stored_energy));
   PetscCall(run_.sum(m->momentum, 3));
   PetscCall(run_.sum(m->centre, 3));
-  for (double* value : {&m->mass, &m->water_energy, &m->weight}) PetscCall(run_.sum(value));
+  for (double* value : {&m->mass, &m->water_energy, &m->weight, &m->pore_water, &m->outflow})
+    PetscCall(run_.sum(value));
   for (long* count : {&m->count, &m->alone, &m->limited, &m->stretched}) PetscCall(run_.sum(count));
   for (int d = 0; d < 3 && m->weight > 0; ++d) m->centre[d] /= m->weight;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -18,6 +18,8 @@ const char* words_of(FaultKind kind, const char* of_law) {
     case FaultKind::outside: return "is outside the mesh";
     case FaultKind::not_finite: return "has a position, velocity, stress or volume that is not finite";
     case FaultKind::volume: return "has left 0.2 to 2 times its volume at the start (-stray_particles stop)";
+    case FaultKind::porosity:
+      return "has a porosity beyond 0.02 to 0.98, where soil is no porous medium: it has strained too much";
     case FaultKind::law: return of_law;
     case FaultKind::state: return "has a state variable of its law that is not finite";
     case FaultKind::alone: return "is alone, with no other soil in reach (-stray_particles stop)";

@@ -80,6 +80,15 @@ void add_pore_pressures(const Config& config, const Rows& rows, int pore, Partic
   if (pore >= 0) body->state.push_back({k_excess_pore_pressure, std::move(excess)});
 }
 
+/// Adds the porosity of a body's soil, 0 where no water flows in its pores.
+void add_porosity(const Rows& rows, ParticleSnapshot* body) {
+  StateField porosity{"porosity", std::vector<double>(rows.count())};
+  for (std::size_t n = 0; n < rows.count(); ++n)
+    if (const double solid = rows.soil.solid_volume[rows.from + n]; solid > 0)
+      porosity.values[n] = 1 - solid / rows.soil.volume[rows.from + n];
+  body->state.push_back(std::move(porosity));
+}
+
 /// Adds component d of a vector of the soil [Dim N] to a body's fields.
 template <int Dim>
 void add_component(const std::string& name, int d, const std::vector<double>& values, const Rows& rows,
@@ -169,6 +178,8 @@ ParticleSnapshot Snapshots<Space, T, Dim>::body_of(std::size_t b, const SoilFiel
   body.state = state_fields(variables, body.own_names, rows);
   if (has_pore_pressure(config))  // of all bodies, so that pictures may show them
     add_pore_pressures<Dim>(config, rows, points.history.pore, &body);
+  body.has_flow = points.has_flow;
+  if (points.has_flow) add_porosity(rows, &body);
   for (int d = 0; d < Dim; ++d)
     if (is_periodic(config.mesh, d)) add_component<Dim>("periods", d, soil.periods, rows, &body);
   for (int d = 0; d < Dim && points.face_count > 0; ++d)

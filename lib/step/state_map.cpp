@@ -26,7 +26,7 @@ class BodyLaw {
                                    config.materials[body.material].parameters,
                                    config.materials[body.material].object.get())),
         variables_(state_variables(law_)),
-        undrained_(config.materials[body.material].pore_stiffness > 0) {
+        has_pressure_(config.materials[body.material].has_pore_pressure()) {
     const std::vector<std::string> before = names.empty() ? std::vector<std::string>{} : split(names);
     std::size_t of_own = 0;  // number among OwnValues
     for (const StateVariable& variable : variables_) {
@@ -45,7 +45,7 @@ class BodyLaw {
     }
   }
 
-  bool undrained() const { return undrained_; }
+  bool has_pore_pressure() const { return has_pressure_; }
   std::size_t count() const { return variables_.size(); }
 
   /// The variables of particle p, which starts from `start`. fault: the reason where it cannot start.
@@ -63,7 +63,7 @@ class BodyLaw {
  private:
   AnyMaterial<double> law_;
   std::vector<StateVariable> variables_;
-  bool undrained_;
+  bool has_pressure_;
   std::vector<const SavedField*> kept_;  // of each variable, whose values go on; null: it begins anew
   std::array<const SavedField*, k_most_own> own_{};  // those of them that are each particle's own values
 };
@@ -125,7 +125,7 @@ std::vector<char> changed_laws(const Config& before, const Config& now) {
     const MaterialConfig &then = before.materials[before.bodies[b].material],
                          &is = now.materials[now.bodies[b].material];
     changed[b] = then.name != is.name || then.model != is.model || then.parameters != is.parameters ||
-                 then.texts != is.texts || then.pore_stiffness != is.pore_stiffness;
+                 then.texts != is.texts || then.pore_stiffness != is.pore_stiffness || then.pores != is.pores;
   }
   return changed;
 }
@@ -148,12 +148,12 @@ std::string map_state(const Config& now, const std::vector<char>& changed, const
   for (std::size_t p = 0; p < count; ++p) {
     const auto b = static_cast<std::size_t>(body->values[p]);
     const double excess = pore != nullptr ? pore->values[p] : 0;
-    if (has_pore && laws[b].undrained()) columns.back()[p] = excess;
+    if (has_pore && laws[b].has_pore_pressure()) columns.back()[p] = excess;
     if (changed[b] == 0) {
       for (std::size_t k = 0; k < laws[b].count(); ++k) columns[k][p] = former[k]->values[p];
       continue;
     }
-    if (excess != 0 && !laws[b].undrained()) drained.emplace_back(p, excess);
+    if (excess != 0 && !laws[b].has_pore_pressure()) drained.emplace_back(p, excess);
     std::string why;
     const std::vector<double> values = laws[b].values(p, starts.at(p, excess), why);
     for (std::size_t k = 0; k < values.size(); ++k) columns[k][p] = values[k];

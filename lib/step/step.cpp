@@ -8,6 +8,7 @@
 #include "functions/light_rigids.hpp"
 #include "functions/link_rigids.hpp"
 #include "functions/part_forces.hpp"
+#include "functions/pore_flow.hpp"
 #include "functions/rigid_pairs.hpp"
 #include "functions/split_patches.hpp"
 #include "functions/step_kernels.hpp"
@@ -47,6 +48,7 @@ struct Step {
     }));
     if (ranks) PetscCall(ranks->add_soil(s));                 //   the sum over ranks
     if (!beside) PetscCall(sum_at_contacts(s.space, false));  //   strength, how the soil of a field lies
+    PetscCall(flow_to_nodes(s, ranks));                       //   water in the pores
     complete_nodes(s.space);                                  //   particles that are alone
     if (beside) overlap->join(s.space);
     if (rayleigh)
@@ -203,9 +205,10 @@ struct Step {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 4, after contact of deformable bodies, with the velocity at the end of the step of rigid bodies
-  /// that are light.
+  /// that are light, and with the flux of the water in the pores.
   PetscErrorCode update_nodes_on(const Space& stream) const {
     PetscFunctionBeginUser;
+    if (s.flow.in_use()) couple_flow(s, dt);
     if (s.interfaces.in_use()) {
       press_fields(s, dt, true);
       add_interface_totals(s, contacts_beside() ? overlap->fork(s.space) : s.space);
@@ -216,6 +219,7 @@ struct Step {
     }
     update_nodes(s, dt, stream);
     if (contacts_beside()) joined();
+    if (s.flow.in_use()) update_flux(s, dt);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Function 4, contact at sites, and the work of loads and their areas.
@@ -243,10 +247,12 @@ struct Step {
   PetscErrorCode update_soil() const {
     PetscFunctionBeginUser;
     PetscCall(update_velocities(s, ranks));
+    if (s.flow.in_use()) update_pores(s, dt);
     if (s.batches.in_use())
       update_by_batches(s, dt);
     else
       update_patches();
+    if (s.flow.in_use()) weigh_saturated(s, s.control);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   /// Under the forces of all ranks.

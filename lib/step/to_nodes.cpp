@@ -88,15 +88,21 @@ void buoyancy_to_nodes(State<Space, T, Dim>& s) {
   add_buoyancy(s);
 }
 
+/// Sums the forces of loads at the nodes.
 template <class Space, class T, int Dim>
-void loads_to_nodes(State<Space, T, Dim>& s) {
-  if (!s.loads.in_use()) return;
-  Kokkos::deep_copy(s.space, s.nodes.load, T(0));
+void sum_loads(const State<Space, T, Dim>& s, const NodeField<Space, T, Dim>& out, LoadsOn on) {
+  Kokkos::deep_copy(s.space, out, T(0));
   for (int axis = 0; axis < Dim; ++axis) {
-    auto it = interpolation_of(s, s.soil.bins, place_faces(s, s.loads, axis), s.nodes.load, s.space);
+    auto it = interpolation_of(s, s.soil.bins, place_faces(s, s.loads, axis, on), out, s.space);
     it.adds = true;  // one axis to the other
     particle_to_node(s.p2g.strategy, it);
   }
+}
+
+template <class Space, class T, int Dim>
+void loads_to_nodes(State<Space, T, Dim>& s) {
+  if (!s.loads.in_use()) return;
+  sum_loads(s, s.nodes.load, LoadsOn::soil);
   add_loads(s);
 }
 
@@ -157,6 +163,28 @@ PetscErrorCode cloud_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, D
 }
 
 template <class Space, class T, int Dim>
+PetscErrorCode flow_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks) {
+  PetscFunctionBeginUser;
+  if (!s.flow.in_use()) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s.plan.writes_sums) Kokkos::deep_copy(s.space, s.nodes.flow, T(0));
+  for_all_soil(s, [&](const auto& set) {
+    with_box_or_ring(set.points, [&](auto domain) {
+      const FlowSource<Space, T, Dim, domain()> source{
+          {set.points}, s.grid.inv_spacing, s.flow.pores, s.flow.water,
+          s.water,      s.patches.origin,   s.spacing,    s.flow.windows};
+      auto it = interpolation_of(s, set.bins, source, s.nodes.flow, s.space);
+      it.grid = grid_of_flow(s.grid, s.flow);
+      particle_to_node(s.p2g.strategy, it);
+    });
+  });
+  if (ranks) PetscCall(ranks->add_field(s, s.nodes.flow, When::in_step));
+  if (!s.loads.on_pores) PetscFunctionReturn(PETSC_SUCCESS);
+  sum_loads(s, s.loads.pore_load, LoadsOn::pores);
+  if (ranks) PetscCall(ranks->add_field(s, s.loads.pore_load, When::in_step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+template <class Space, class T, int Dim>
 void sum_present_soil(State<Space, T, Dim>& s) {
   finish_sums(s);
   if (!s.summed.soil) reset_nodes(s);
@@ -208,6 +236,7 @@ PetscErrorCode update_velocities(State<Space, T, Dim>& s, Decomposition<Space, T
                                             const Space&);                                          \
   template PetscErrorCode cloud_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*,      \
                                          const Space&);                                             \
+  template PetscErrorCode flow_to_nodes(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);      \
   template PetscErrorCode sum_present_forces(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*); \
   template void sum_present_soil(State<Space, T, Dim>&);                                            \
   template PetscErrorCode update_velocities(State<Space, T, Dim>&, Decomposition<Space, T, Dim>*);

@@ -50,6 +50,10 @@ template <class Space, class T, int Dim>
 PetscErrorCode cloud_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks,
                               const Space& stream);
 
+/// Sums FlowTerms at the nodes, of all ranks, where water flows in pores.
+template <class Space, class T, int Dim>
+PetscErrorCode flow_to_nodes(State<Space, T, Dim>& s, Decomposition<Space, T, Dim>* ranks);
+
 /// The soil's nodal sums as it is now, for what is measured between two steps; the next step makes its own.
 /// The lists hold, as they do for that step: s.control must not be paused.
 template <class Space, class T, int Dim>

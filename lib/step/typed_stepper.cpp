@@ -9,10 +9,12 @@
 #include "functions/find_strays.hpp"
 #include "functions/interfaces.hpp"
 #include "functions/part_forces.hpp"
+#include "functions/pore_flow.hpp"
 #include "functions/step_kernels.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/limit_volumes.hpp"
 #include "step/body_input.hpp"
+#include "step/flow_input.hpp"
 #include "step/follow_soil.hpp"
 #include "step/interface_input.hpp"
 #include "step/interface_snapshot.hpp"
@@ -48,6 +50,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   Fault fault{};
   PetscCallCXX(fault = upload(s, grid, materials, bodies, rigids));
   PetscCallCXX(upload_interfaces(s, interface_input(config)));
+  PetscCallCXX(upload_flow(s, flow_input(config)));
+  if (s.flow.in_use()) weigh_saturated(s, s.never_paused);
   if (fault.kind == FaultKind::none) PetscCallCXX((sort_and_list(s), begin_domains(s)));
   *failure = fault.kind == FaultKind::none ? reports_.failure_of_limit() : reports_.failure_of(fault);
   PetscCall(run_.share(failure));

@@ -7,6 +7,7 @@
 #include "common/material_table.hpp"
 #include "input/geometry/shapes.hpp"
 #include "physics/materials/any.hpp"
+#include "physics/pore_flow.hpp"
 #include "step/stepper.hpp"
 
 namespace mpm {
@@ -19,13 +20,17 @@ double wave_speed(const Config& config, const BodyConfig& body) {
   Sym6 stress = body.stress;
   const bool of_file = body.shape.kind == ShapeKind::particles && !body.stress_given;
   if (of_file) stress = {-body.largest_pressure, -body.largest_pressure, -body.largest_pressure};
-  return std::sqrt((wave_modulus(law, lowest, stress, body.largest_own) + material.pore_stiffness) /
-                   density_of(config, body));
+  const double modulus = wave_modulus(law, lowest, stress, body.largest_own);
+  if (material.saturated())
+    return std::sqrt(fast_wave_square(modulus, material.pores.porosity, material.pores.grain_density,
+                                      config.water.density, config.water.bulk_modulus));
+  return std::sqrt((modulus + material.pore_stiffness) / density_of(config, body));
 }
 
 bool stiffness_changes(const Config& config) {
   return std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& body) {
-    return !body.absent && stiffness_changes(model_index(config.materials[body.material].model));
+    const MaterialConfig& material = config.materials[body.material];
+    return !body.absent && (material.saturated() || stiffness_changes(model_index(material.model)));
   });
 }
 

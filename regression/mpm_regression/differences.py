@@ -19,9 +19,11 @@ def stiffness(run, material, pressure, own_young=0):
     def value(key):
         return run.number(f"{material}_{key}")
 
+    porosity = value("porosity")
+    water = run.number("water_bulk_modulus", 2.2e9) / porosity if porosity else value("pore_stiffness")
     nu, young = value("poisson"), own_young or value("young") or value("rigidity") * value("su")
     if young:
-        return young * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) + value("pore_stiffness"), young
+        return young * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) + water, young
     bulk = value("bulk_modulus")
     if value("kappa"):  # cam_clay
         bulk = value("specific_volume") / value("kappa") * max(pressure, 1e3)  # pressure_min is at most 1 kPa by default
@@ -29,12 +31,19 @@ def stiffness(run, material, pressure, own_young=0):
     wave = value("wave_modulus") or bulk + 4 / 3 * shear  # the first is a umat's
     if not wave > 0:
         raise ValueError(f"{material}: its stiffness is not known here, and without one there is no scale of stress and speed")
-    return wave + value("pore_stiffness"), bulk or wave
+    return wave + water, bulk or wave
+
+
+def density(run, material):
+    """Density of a material, kg/m3."""
+    given = run.number(f"{material}_density", 0)
+    porosity, water = run.number(f"{material}_porosity", 0), run.number("water_density", 1000)
+    return given or (1 - porosity) * run.number(f"{material}_grain_density") + porosity * water
 
 
 def mass(run, groups):
     """Mass of all bodies, kg."""
-    return sum(groups[body]["volume"].sum() * run.number(f"{run.text(f'{body}_material')}_density")
+    return sum(groups[body]["volume"].sum() * density(run, run.text(f"{body}_material"))
                for body in run.words("bodies"))
 
 
@@ -48,7 +57,7 @@ class Scales:
         own = {name: max((groups[body]["young"].max() for body in run.words("bodies") if "young" in groups[body]
                           and run.text(f"{body}_material") == name), default=0) for name in materials}
         known = {name: stiffness(run, name, pressure, own[name]) for name in materials}
-        z = max(np.sqrt(run.number(f"{name}_density") * wave) for name, (wave, _) in known.items())  # Pa s/m
+        z = max(np.sqrt(density(run, name) * wave) for name, (wave, _) in known.items())  # Pa s/m
         speed = max(np.abs(each["velocity"]).max() for each in fields)
         self.stress = max(z * speed, *(np.abs(each["stress"]).max() for each in fields))
         self.velocity = self.stress / z

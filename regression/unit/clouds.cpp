@@ -49,6 +49,7 @@ HeldState<Space, T, Dim> state_on(const Space& space, const Cloud& cloud, P2G ho
   upload_surface_loads(s, loads);
   if (upload(s, cloud.grid, cloud.materials, cloud.bodies, cloud.rigids).kind != FaultKind::none)
     throw std::runtime_error("a particle of the test lies outside the mesh");
+  upload_flow(s, cloud.flow);
   sort_and_list(s);
   begin_domains(s);
   if (cloud.energy) begin_works(s);

@@ -18,6 +18,7 @@
 #include "rebuild/rebuild_state.hpp"
 #include "transfer/download.hpp"
 #include "transfer/upload.hpp"
+#include "transfer/upload_flow.hpp"
 #include "transfer/upload_loads.hpp"
 
 namespace mpm::test {
@@ -135,6 +136,7 @@ struct Cloud {
   int face_count = 0;                                // loads that a particle is on at most
   std::vector<std::array<double, 4>> surface_loads;  // Pa: pressure and traction of each
   double memory_limit = 0;                           // bytes, for batches of the soil
+  FlowInput flow;                                    // of water in pores
 };
 
 /// The cloud uploaded, sorted into bins, with its loads; throws where a particle lies outside the mesh.

@@ -23,6 +23,7 @@ void put(State_& s, Feature f) {
     case Feature::apic: s.soil.points.has_affine = true; break;
     case Feature::splits: s.soil.points.splits = true; break;
     case Feature::correction: s.correction.on = true; break;
+    case Feature::saturated: s.flow.pores = decltype(s.flow.pores)("pores", 1); break;
     case Feature::submerged: s.water.density = 1000; break;
     case Feature::energy: s.energy.on = true; break;
     case Feature::loads: s.loads.now = decltype(s.loads.now)("loads", 1); break;

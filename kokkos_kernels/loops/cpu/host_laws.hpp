@@ -99,7 +99,7 @@ struct LawLanes {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(SymTensor<R, Dim>& stress,
                                               const Increment<R, T, Dim>& by) const {
     const AnyMaterial<T>& of = material_in(soil.materials.data()[material[0]]);
-    const bool drains = soil.history.pore < 0 || !(of.pore_stiffness > 0);
+    const bool drains = soil.history.pore < 0 || !of.has_pore_pressure();
     if (one_law && !some_fly && drains && update_light(LightMaterials{}, of, stress, by)) return;
     stress = updated(*this, stress, by);
   }
@@ -181,7 +181,7 @@ struct LawLanes {
                                           const Active& active, const Kept& kept,
                                           const KeptPressure& kept_pressure) const {
     const AnyMaterial<T>& of = material_in(soil.materials.data()[m]);
-    const bool undrained = soil.history.pore >= 0 && of.pore_stiffness > 0;
+    const bool undrained = soil.history.pore >= 0 && of.has_pore_pressure();
     R excess = 0;
     if (undrained) {
       load_field(soil.history.column[soil.history.pore], p, count, excess);

@@ -94,14 +94,17 @@ std::shared_ptr<const void> make_object(int which, const LawSetup& setup, Parame
 
 template <class T>
 StoredMaterial<T> store_material(int which, const std::vector<double>& parameters, const void* object,
-                                 double pore_stiffness) {
+                                 double pore_stiffness, bool saturated) {
   StoredMaterial<T> stored{};
   auto* const material = new (stored.bytes) AnyMaterial<T>(make_material<T>(which, parameters, object));
   material->pore_stiffness = static_cast<T>(pore_stiffness);
+  material->saturated = saturated;
   return stored;
 }
-template StoredMaterial<float> store_material<float>(int, const std::vector<double>&, const void*, double);
-template StoredMaterial<double> store_material<double>(int, const std::vector<double>&, const void*, double);
+template StoredMaterial<float> store_material<float>(int, const std::vector<double>&, const void*, double,
+                                                     bool);
+template StoredMaterial<double> store_material<double>(int, const std::vector<double>&, const void*, double,
+                                                       bool);
 
 std::vector<const char*> material_models() { return names(Materials{}); }
 

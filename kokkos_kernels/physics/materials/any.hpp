@@ -22,9 +22,12 @@ template <class T, template <class> class... Models>
 struct OneOf<T, ModelList<Models...>> {
   static constexpr std::size_t k_bytes = Kokkos::max({sizeof(Models<T>)...});
   int which = -1;
-  T pore_stiffness = 0;  // Pa, of the water in the pores (physics/pore_water.hpp); 0: the pores drain
+  T pore_stiffness = 0;    // Pa, of water that does not flow (physics/pore_water.hpp); 0: there is none
+  bool saturated = false;  // water flows in the pores (physics/pore_flow.hpp)
   alignas(16) unsigned char bytes[k_bytes];
 
+  /// Whether the stress of its soil is total, by an excess pore pressure that the particles have.
+  KOKKOS_FORCEINLINE_FUNCTION bool has_pore_pressure() const { return saturated || pore_stiffness > 0; }
   /// The model, where the caller has found it to be this one.
   template <template <class> class Model>
   KOKKOS_FORCEINLINE_FUNCTION const Model<T>& as() const {

@@ -23,9 +23,10 @@ struct StoredMaterial {
   T f_bar_share = 1;  // of the run's fraction of F-bar, FBar::fraction
 };
 
-/// make_material() of any.hpp, for a table of a device. pore_stiffness [Pa]: of the water in its pores.
+/// make_material() of any.hpp, for a table of a device. pore_stiffness [Pa]: of water in its pores that does
+/// not flow; saturated: water flows there.
 template <class T>
 StoredMaterial<T> store_material(int which, const std::vector<double>& parameters, const void* object,
-                                 double pore_stiffness);
+                                 double pore_stiffness, bool saturated = false);
 
 }  // namespace mpm

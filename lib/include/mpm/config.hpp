@@ -37,6 +37,7 @@ struct SideConfig {
   std::optional<TimeTable> velocity_table;  // m/s
   bool of_accelerations = false;            // that table is the integral of a record of accelerations
   bool moves = false;
+  bool open_to_water = false;  // the water in the pores leaves through it, and has no pressure there
 };
 
 /// The background mesh of square (cubic) cells.
@@ -88,6 +89,20 @@ struct Shape {
   Fill fill = Fill::centre;
 };
 
+/// Water in the pores of a material: it drains at once, does not flow, or flows.
+enum class PoreWater { drained, undrained, saturated };
+
+/// Pores of a material and the water that flows in them.
+struct PoreConfig {
+  PoreWater water = PoreWater::drained;
+  double porosity = 0;       // -, at the start
+  double grain_density = 0;  // kg/m3
+  double permeability = 0;   // m/s, at the porosity of the start and under WaterConfig::gravity
+  bool kozeny = false;       // it changes with the porosity n as n^3 / (1 - n)^2; else it is constant
+
+  bool operator==(const PoreConfig&) const = default;
+};
+
 /// A material: its model's name, density, and the model's parameters in the order of the model's own table.
 struct MaterialConfig {
   std::string name, model;
@@ -95,9 +110,15 @@ struct MaterialConfig {
   std::vector<double> parameters;        // as Model::parameters() lists them
   std::vector<std::string> texts{};      // values of the model's options that are texts, as it lists them
   std::shared_ptr<const void> object{};  // what the model made of its texts; most need none
-  double pore_stiffness = 0;             // Pa, of the water in its pores, which does not flow; 0: they drain
-  std::optional<double> k0{};            // -, horizontal over vertical effective stress of level ground
+  double pore_stiffness = 0;   // Pa, of the water in its pores, which does not flow; 0: there is none
+  PoreConfig pores{};          // where its water is told by them
+  std::optional<double> k0{};  // -, horizontal over vertical effective stress of level ground
   std::optional<double> f_bar_fraction{};  // -, as Config::f_bar_fraction, which holds where there is none
+
+  /// Whether water flows in its pores.
+  bool saturated() const { return pores.water == PoreWater::saturated; }
+  /// Whether its water has a pressure in excess of the hydrostatic one.
+  bool has_pore_pressure() const { return saturated() || pore_stiffness > 0; }
 };
 
 /// A deformable body.
@@ -126,6 +147,8 @@ struct BodyConfig {
   bool keeps_strength = true;
   /// kg/m3, with which its soil was created, where that is not the density of its present material.
   std::optional<double> density;
+  /// Pa, of the water in its pores at the start; none: hydrostatic, or 0 without -water_level.
+  std::optional<double> pore_pressure;
 };
 
 /// Where the normals of a contact come from: the body's own surface, or its nodal mass gradient (Eq. 3).
@@ -299,6 +322,7 @@ struct LoadConfig {
   Vec3 lower{}, upper{};       // m, box in which the surface is then
   std::optional<Vec3> facing;  // direction that its normals have, to 60 degrees
   double pressure = 0;         // Pa, along the normal, into the soil
+  bool on_pores = false;       // the pressure acts on the water in the pores too
   Vec3 traction{};             // Pa, of the area at the start
   std::optional<TimeTable> pressure_table, traction_table;  // Pa, instead of them
 };
@@ -338,14 +362,20 @@ struct WaterRegionConfig {
   }
 };
 
-/// Water at rest, in which the soil is submerged.
+/// Water at rest, in which the soil is submerged, and properties of water in pores.
 struct WaterConfig {
-  std::optional<double> level;  // m, of its surface: height against gravity; none: there is no water
-  double density = 1000;        // kg/m3
+  std::optional<double> level;    // m, of its surface: height against gravity; none: there is no water
+  double density = 1000;          // kg/m3
+  double bulk_modulus = 2.2e9;    // Pa, of water in pores
+  double gravity = 9.81;          // m/s2, for which permeabilities are given
+  double tension = 100e3;         // Pa, largest tension that water in pores takes
+  double permeability_scale = 1;  // -, by which all permeabilities are multiplied
   std::vector<WaterRegionConfig> regions;  // where they overlap, the last one that has a level counts
 
   bool operator==(const WaterConfig& other) const {
-    return level == other.level && density == other.density && regions == other.regions;
+    return level == other.level && density == other.density && bulk_modulus == other.bulk_modulus &&
+           gravity == other.gravity && tension == other.tension &&
+           permeability_scale == other.permeability_scale && regions == other.regions;
   }
 };
 
@@ -433,6 +463,15 @@ struct Config {
 /// changes its material.
 inline double density_of(const Config& config, const BodyConfig& body) {
   return body.density.value_or(config.materials[body.material].density);
+}
+
+/// Whether water flows in the pores of some body.
+inline bool water_flows(const Config& config) {
+  for (const BodyConfig& body : config.bodies)
+    if (body.material < static_cast<int>(config.materials.size()) &&
+        config.materials[body.material].saturated())
+      return true;
+  return false;
 }
 
 }  // namespace mpm

@@ -71,7 +71,7 @@ std::string why_none(const std::string& name, const std::vector<std::string>& bo
   static const std::vector<std::string> rotation = {"rotat",  "angular",        "inertia", "moment",
                                                     "torque", "centre_of_mass", "hinge"};
   if (has_one_of(name, flow) || name.ends_with("_water"))
-    return "there is no flow of water, see docs/water.md";
+    return "docs/water.md has the options of water in soil";
   if (!beginning_of(name, bodies).empty() && has_one_of(name, contact))
     return "contact of deformable bodies is that of pairs: -contact_pairs, see docs/contact.md";
   if (!beginning_of(name, rigids).empty() && has_one_of(name, rotation))

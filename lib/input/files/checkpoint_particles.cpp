@@ -142,7 +142,8 @@ std::string column_of_own(const Checkpoint& c, const std::string& body, const st
 /// Reads a column of a body. scale: the cell's edge of the checkpoint's run over that of this one.
 void read_column(BodyRows& body, const ParticleColumn& column, int dim, double scale, ParticleTable& table) {
   const int width = width_of(column.width, dim, 0);
-  if (column.carried == Carried::checkpoints && !body.has(column.saved, width)) return;
+  const bool optional = column.carried == Carried::checkpoints || column.carried == Carried::if_needed;
+  if (optional && !body.has(column.saved, width)) return;
   std::vector<double>& values = table.*column.values;
   values = body.read(column.saved, width);
   if (column.per_cell == 0) return;

@@ -181,7 +181,7 @@ std::string read_group(hid_t file, const ParticleSource& source, int dim, Partic
     if (column.carried == Carried::always)
       values = in.read(column.name, width, kept);
     else
-      in.read_if_there(column.name, width, kept, frame, values);
+      in.read_if_there(column.name, width, kept, frame && column.carried != Carried::if_needed, values);
   }
   std::vector<double> pore_pressure;
   if (!table.stress.empty()) in.read_if_there("pore_pressure", 1, 1, false, pore_pressure);

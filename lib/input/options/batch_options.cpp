@@ -34,6 +34,8 @@ constexpr Refusal k_refusals[] = {
      "-position_correction none: batches are not corrected"},
     {Feature::energy, [](const Config& c) { return c.output.energy; }, "output_energy",
      "off where -device_memory_limit sends the soil in batches"},
+    {Feature::saturated, water_flows, "device_memory_limit",
+     "nothing where the water of a material flows (-NAME_water saturated)"},
     {Feature::submerged, [](const Config& c) { return c.water.level.has_value(); }, "water_level",
      "no -device_memory_limit: submerged soil does not go in batches"},
     {Feature::loads, [](const Config& c) { return !c.loads.empty(); }, "loads",

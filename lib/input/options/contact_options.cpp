@@ -92,7 +92,7 @@ constexpr std::size_t k_few_for_sites = 8;
 /// Whether contact at sites is the better for a rigid by default: it moves by forces, so that the drag of
 /// contact at nodes would slow it down, and nothing of the run or of the body needs nodes.
 bool wants_sites(const OptionReader& in, const Config& config, const RigidConfig& rigid) {
-  if (config.rigids.size() > k_few_for_sites) return false;
+  if (config.rigids.size() > k_few_for_sites || water_flows(config)) return false;
   if (rigid.motion != Motion::dynamic || rigid.is_sprung() || is_jointed(config, rigid)) return false;
   if (rigid.contact_normal != ContactNormal::surface || config.device_memory_limit) return false;
   for (const char* key : k_gap_keys)

@@ -153,6 +153,19 @@ void check_cut_motion(OptionReader& in, const MeshConfig& mesh, int dim, const R
 /// -water_*. Gravity must have been read.
 void read_water(OptionReader& in, Config& config);
 
+/// Reads -NAME_water of a material and what goes with it, before its density. -water_* must have been read.
+void read_pores(OptionReader& in, const Config& config, MaterialConfig& material);
+/// Reads the properties of water in pores; some: a material may have such water.
+void read_water_in_pores(OptionReader& in, bool some, WaterConfig& water);
+/// Reads the pore pressure of a body at the start. Its material must have been read.
+void read_pore_pressure(OptionReader& in, const Config& config, BodyConfig& body);
+/// Reads whether water in pores passes a side of the mesh.
+void read_side_water(OptionReader& in, const std::string& name, Wall kind, SideConfig& side);
+/// Rejects input that excludes water which flows in pores. After all bodies and sides.
+void check_pores(OptionReader& in, const Config& config);
+/// Checks that the pores of bodies are those that they have in the first stage.
+void check_pores_kept(OptionReader& in, const Config& first, const Config& now);
+
 /// The options of one region with a level of its own.
 void read_water_region(OptionReader& in, const Config& config, WaterRegionConfig& region);
 /// Rejects more regions than a step can have, and regions where there is no water.

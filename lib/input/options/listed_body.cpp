@@ -85,7 +85,7 @@ ParticleSource source_of(const BodyConfig& body, const Config& config) {
   for (const StateVariable& variable : variables)
     if (variable.changes && variable.output) source.state.push_back(variable.name);
   source.parameters = own_parameters(variables);
-  if (config.materials[body.material].pore_stiffness > 0) source.state.push_back(k_excess_pore_pressure);
+  if (config.materials[body.material].has_pore_pressure()) source.state.push_back(k_excess_pore_pressure);
   return source;
 }
 

@@ -116,6 +116,17 @@ void read_load(OptionReader& in, const Config& config, LoadConfig& load) {
   read_timed(in, pressure, true, 1, config.time.end, {load.pressure, 0, 0}, load.pressure_table);
   in.vector(traction, dim, load.traction);
   read_timed(in, traction, true, dim, config.time.end, load.traction, load.traction_table);
+  const bool found =
+      in.word({.name = load.name + "_on_pores",
+               .meaning = "on: the pressure is that of water, which acts on the water in the pores "
+                          "too; off: it passes no water, and the pores are drained there"},
+              Words<bool>{{"on", true}, {"off", false}}, load.on_pores);
+  if (found && load.on_pores && !in.listing() && load.body < static_cast<int>(config.bodies.size())) {
+    const int material = config.bodies[load.body].material;
+    if (material < static_cast<int>(config.materials.size()) && !config.materials[material].saturated())
+      in.reject(load.name + "_on_pores", "off, for the water of body " + config.bodies[load.body].name +
+                                             " does not flow (-NAME_water saturated of its material)");
+  }
   const bool none = !in.given(pressure.name) && !in.given(pressure.name + "_table") &&
                     !in.given(traction.name) && !in.given(traction.name + "_table");
   if (none && !in.listing())

@@ -148,10 +148,12 @@ std::vector<std::string> read_texts(OptionReader& in, const std::string& name, c
   return texts;
 }
 
-/// Rejects the parameters that only other models have, each once.
+/// Rejects the parameters that only other models have, each once. has_grains: the density of the grains is
+/// given.
 void reject_others(OptionReader& in, const std::string& name, const ModelOptions& model,
-                   const std::vector<ModelOptions>& models) {
+                   const std::vector<ModelOptions>& models, bool has_grains) {
   std::set<std::string> known;
+  if (has_grains) known.insert("grain_density");  // of read_pores
   for (const auto& option : model.options) known.insert(option.name);
   for (const TextOption& text : model.texts) known.insert(text.key);
   const auto reject = [&](const std::string& key) {
@@ -227,19 +229,24 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
   int chosen = 0;
   const bool known = in.word({.name = name + "_model", .meaning = "its constitutive model", .required = true},
                              words, chosen);
-  in.number({.name = name + "_density",
-             .meaning = "initial density",
-             .unit = "kg/m3",
-             .range = k_density,
-             .required = true},
-            material.density);
-  in.number({.name = name + "_pore_stiffness",
-             .meaning = "undrained loading: stiffness of the pore water, its bulk modulus over the porosity, "
-                        "which gives an excess pore pressure; 0: drained",
-             .unit = "Pa",
-             .range = {.lowest = 0, .highest = 1e12},
-             .change = k_by_choice},
-            material.pore_stiffness);
+  read_pores(in, config, material);
+  if (const auto only = in.where(name + "_water", {"off"});
+      in.listing() || material.pores.water == PoreWater::drained) {
+    in.number({.name = name + "_density",
+               .meaning = "initial density",
+               .unit = "kg/m3",
+               .range = k_density,
+               .required = true},
+              material.density);
+    in.number(
+        {.name = name + "_pore_stiffness",
+         .meaning = "undrained loading: stiffness of the pore water, its bulk modulus over the porosity, "
+                    "which gives an excess pore pressure; 0: drained",
+         .unit = "Pa",
+         .range = {.lowest = 0, .highest = 1e12},
+         .change = k_by_choice},
+        material.pore_stiffness);
+  }
   in.number({.name = name + "_k0",
              .meaning = "horizontal over vertical effective stress of bodies with the stress k0",
              .unit = "-",
@@ -270,7 +277,7 @@ void read_material(OptionReader& in, const std::string& name, const MeshConfig* 
       check_together(in, chosen, material);
     else if (sound)
       make_law_object(in, mesh ? *mesh : MeshConfig{}, config.dim, material);
-    reject_others(in, name, models[chosen], models);
+    reject_others(in, name, models[chosen], models, material.pores.water != PoreWater::drained);
   } else {
     in.ignore(name + "_");
   }

@@ -141,6 +141,7 @@ void read_body(OptionReader& in, const MeshConfig* mesh, const Config& config, c
              .names_of = "materials"},
             materials, body.material);
   read_start(in, config.dim, body);
+  read_pore_pressure(in, config, body);
   read_body_field(in, body.name, from_file, body);
   read_cut_out(in, names, body);
   if (!sound || !mesh) return;

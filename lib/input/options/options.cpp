@@ -148,6 +148,7 @@ void read_all(OptionReader& in, const std::vector<Backend>& backends, const std:
   if (sound && in.errors() == errors) choose_contact(in, before, config);
   if (sound) check_absorbing(in, config);
   check_rayleigh(in, config);
+  if (sound && in.errors() == errors) check_pores(in, config);
   check_batches(in, config);
   if (sound && in.errors() == errors) check_periodic(in, config);
   check_revolution(in, config);
@@ -202,6 +203,7 @@ void read_stages(OptionReader& in, const std::vector<Backend>& backends,
              first ? nullptr : &report.stages.end()[-2].config);
     check_cut_kept(reader, report.stages.front().config, input.config);
     check_water_kept(reader, report.stages.front().config, input.config);
+    check_pores_kept(reader, report.stages.front().config, input.config);
     check_periodic_kept(reader, input.config.dim, report.stages.front().config.mesh, input.config.mesh);
     input.options = std::move(of_stage.options);
     aside.push_back(reader.set_aside());

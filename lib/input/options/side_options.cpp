@@ -139,6 +139,10 @@ void read_side(OptionReader& in, const Config& config, int d, int side, SideConf
   const Wall kind = config.mesh.walls[d][side];
   const auto known = in.known().size();
   read_numbers(in, name, kind, to.numbers);
+  if (const auto only =
+          in.where(name, words_where([](const SideWord& side) { return side.kind != Wall::periodic; }));
+      true)
+    read_side_water(in, name, kind, to);
   const bool moves = may_move(kind);
   const auto only = in.where(name, words_where([](const SideWord& side) { return may_move(side.kind); }));
   if (const auto alone = in.unless(name + "_acceleration_table");
@@ -201,6 +205,7 @@ void read_sides(OptionReader& in, Config& config) {
         for_each_key([&](const std::string& key) {
           in.not_taken(side_option(d, side) + key, "a mesh in 2D has no such side");
         });
+        in.not_taken(side_option(d, side) + "_water", "a mesh in 2D has no such side");
       }
 }
 

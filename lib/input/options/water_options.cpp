@@ -29,11 +29,13 @@ void read_water(OptionReader& in, Config& config) {
     in.reject("water_level", "a -gravity other than 0, which gives water its pressure");
   if (!in.listing() && config.water.level && in.given("gravity_table"))
     in.reject("water_level", "no -gravity_table: water at rest needs a constant -gravity");
-  if (const auto only = in.where("water_level"); config.water.level || in.listing())
-    in.number({.name = "water_density", .meaning = "its density", .unit = "kg/m3", .range = k_density},
+  const bool in_pores = in.listing() || !in.owners_of("water").empty();
+  if (config.water.level || in_pores)
+    in.number({.name = "water_density", .meaning = "density of water", .unit = "kg/m3", .range = k_density},
               config.water.density);
   else
-    in.not_taken("water_density", "there is no -water_level");
+    in.not_taken("water_density", "there is no -water_level, and no material has -NAME_water");
+  read_water_in_pores(in, in_pores, config.water);
 }
 
 void read_water_region(OptionReader& in, const Config& config, WaterRegionConfig& region) {
