@@ -1,6 +1,8 @@
 """Random decks: a deck is {option without dash: number, word or tuple}, small enough for a run of a fraction of a second."""
 import math
 
+from flow import add_flow
+
 E, NU, RHO = 5e5, 0.3, 1800.0  # Pa, -, kg/m3: what soils are near to
 LAWS = {
     "linear_elastic": {"young": E, "poisson": NU}, "von_mises": {"young": E, "poisson": NU, "su": 3e3},
@@ -25,7 +27,9 @@ SIDES = tuple(f"mesh_{axis}{end}" for axis in "xyz" for end in ("min", "max"))
 OFFSETS = (0.11, 0.2, 0.29, 0.37, 0.43, 0.61, 0.71, 0.87)  # cells; a cell owns particles on its lower faces, its mirror image does not
 FLUIDS = {"newtonian", "yield_stress_fluid"}  # without Poisson's ratio
 DIVIDED = STRENGTH | {"mohr_coulomb", "drucker_prager"}  # laws with a strength_factor
-FEATURES = ("rayleigh", "accelerations", "strength", "water", "smooth", "analysis", "pairs")  # that a run can ask for in every deck
+FEATURES = ("rayleigh", "accelerations", "strength", "water", "smooth", "analysis", "pairs", "flow")  # that a run can ask for in every deck
+ASKED = {"flow"}  # of them those that a deck has only then
+EFFECTIVE = {"linear_elastic", "mohr_coulomb", "drucker_prager", "cam_clay", "power_elastic"}  # laws in whose pores water may flow
 
 
 class Maker:
@@ -33,7 +37,9 @@ class Maker:
 
     def __init__(self, draw, dim, precision, wanted=()):
         self.draw, self.dim, self.up = draw, dim, dim - 1
-        self.has = {name: name in wanted or draw.random() < 0.15 for name in FEATURES}
+        self.has = {name: name in wanted or name not in ASKED and draw.random() < 0.15 for name in FEATURES}
+        if self.has["flow"]:
+            self.has.update(rayleigh=False, strength=False, pairs=False, accelerations=False)
         self.axisymmetric = dim == 2 and draw.random() < 0.2 and "accelerations" not in wanted  # whose sides do not move
         self.deck = {"dim": dim, "precision": precision, "backend": "serial", "progress": "off"}
         self.h = draw.choice([0.25, 0.25, 0.1, 0.3])
@@ -78,7 +84,9 @@ class Maker:
             self.load()
         if self.some(0.3):
             self.probes()
-        if self.water and self.some(0.5):
+        if self.has["flow"]:
+            add_flow(self, SIDES, E)
+        elif self.water and self.some(0.5):
             self.water_region()
         self.timing()
         if self.has["rayleigh"]:
@@ -95,7 +103,7 @@ class Maker:
         d.update(stages="first,second", time_end=d["time_end"] / 2, second_damping=0.2)
         if "gravity" in d and not self.water:
             d["second_gravity"] = tuple(0.5 * x for x in d["gravity"])
-        if self.water and self.some(0.7):
+        if self.water and not self.has["flow"] and self.some(0.7):
             d["second_water_level"] = self.near(1.5)
         if "water_regions" in d and self.some(0.5):
             d["second_pit_water_level"] = self.draw.choice(["dry", self.near(1.0)])
@@ -155,7 +163,8 @@ class Maker:
         self.laws = {}
         for name in names:
             law = self.draw.choice([law for law in LAWS if not (self.has["rayleigh"] and law in FLUIDS)
-                                    and (law in DIVIDED or not self.has["strength"])])
+                                    and (law in DIVIDED or not self.has["strength"])
+                                    and (law in EFFECTIVE or not self.has["flow"])])
             values = dict(LAWS[law])
             for key, value in MORE.get(law, {}).items():
                 if self.some(0.3):
@@ -373,6 +382,7 @@ class Maker:
         """A time step of its own, or a Courant number, and times that end the run after about `steps`."""
         d = self.deck
         stiff = 2.5 * E + max((v for k, v in d.items() if k.endswith("pore_stiffness")), default=0) + (1e7 if "cam_clay" in self.laws.values() else 0)
+        stiff += 2 * d.get("water_bulk_modulus", 0) / 0.3
         step = 0.2 * self.h / math.sqrt(stiff / (0.8 * RHO))
         self.step = step = float(f"{step:.4g}")
         if self.some(0.5):

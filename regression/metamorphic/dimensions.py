@@ -15,25 +15,26 @@ WHOLE = {FORCE, ENERGY, MOMENTUM, AREA, VOLUME, MASS}  # of columns and fields
 WORDS = ("dim geometry materials bodies rigid_bodies loads probes stages backend precision p2g velocity_update particle_domain "
          "position_correction output_energy model material shape fill cut_out motion separation contact_normal contact_gap_scaling body "
          "bodies_of_probe kind match surface tension_word progress file tip end place remove analysis water_regions rayleigh_parts "
-         "acceleration_correction velocity_table_interpolation acceleration_table_interpolation contact_pairs contact")
+         "acceleration_correction velocity_table_interpolation acceleration_table_interpolation contact_pairs contact water permeability_law "
+         "on_pores")
 NUMBERS = ("damping flip_fraction xpic_order position_correction_rate f_bar_fraction time_courant time_max_steps particles_per_cell poisson "
            "k0 friction_deg dilation_deg mu_static mu_dynamic inertial_number exponent critical_state_ratio lambda kappa specific_volume ocr "
            "rigidity remoulded_ratio xi95 rate_factor friction dashpot_factor shear_fraction contact_gap_reach contact_gap_exponent "
-           "tip_angle_deg p2g_rebuild_interval rebuild_margin rayleigh_ratio strength_factor su_ratio")
+           "tip_angle_deg p2g_rebuild_interval rebuild_margin rayleigh_ratio strength_factor su_ratio porosity permeability_scale")
 OPTIONS = {
     **{name: ("word", NONE) for name in WORDS.split()}, **{name: ("number", NONE) for name in NUMBERS.split()},
     **{name: ("place", LENGTH) for name in "lower upper centre point mesh_lower mesh_upper".split()},
     **{name: ("number", LENGTH) for name in "mesh_spacing radius height fillet xi95_cell grain_diameter spring_length".split()},
     **{name: ("number", STRESS) for name in ("young su cohesion tension bulk_modulus shear_modulus yield_stress pressure_reference "
                                              "pressure_offset pressure_min hardening_modulus preconsolidation pore_stiffness "
-                                             "shear_limit adhesion pressure").split()},
+                                             "shear_limit adhesion pressure water_bulk_modulus water_tension pore_pressure").split()},
     **{name: ("number", GRADIENT) for name in "su_gradient young_gradient cohesion_gradient".split()},
     **{name: ("number", DENSITY) for name in "density grain_density water_density".split()},
     **{name: ("number", TIME) for name in "time_end time_step output_interval history_interval checkpoint_interval rate_time".split()},
     **{name: ("level", LENGTH) for name in "su_datum young_datum cohesion_datum water_level".split()},
     **{name: ("levels", LENGTH) for name in "top base".split()},
     "rate_reference": ("number", RATE), "rayleigh_frequencies": ("numbers", RATE), "viscosity": ("number", VISCOSITY), "consistency": ("number", None), "gauge_width": ("number", LENGTH),
-    "gravity": ("vector", ACCELERATION), "velocity": ("vector", SPEED), "traction": ("vector", STRESS), "force": ("vector", FORCE),
+    "permeability": ("number", SPEED), "water_gravity": ("number", ACCELERATION), "gravity": ("vector", ACCELERATION), "velocity": ("vector", SPEED), "traction": ("vector", STRESS), "force": ("vector", FORCE),
     "facing": ("vector", NONE), "normal": ("vector", NONE), "velocity_table": ("table", SPEED),
     "acceleration_table": ("table", ACCELERATION), "acceleration": ("vector", ACCELERATION),
     "stress": ("stress", STRESS),
@@ -52,14 +53,14 @@ COLUMNS = [(re.compile(pattern.replace("{n}", r"(?P<name>[a-z0-9]+)").replace("{
     ("{n}_(?:kinetic|lost|merged|corrected|raised)_energy", ENERGY, "number"), ("{n}_(?:mass|lost_mass)", MASS, "number"),
     ("{n}_(?:grid_velocity|speed)", SPEED, "number"), ("{n}_area", AREA, "number"), ("{n}_(?:pore_pressure|pressure|excess_pore_pressure)", STRESS, "number"),
     ("{n}_(?:strays|limited|put_back|stretched|particles|merged)", NONE, "count"), ("{n}_depth", LENGTH, "number"), ("{n}_(?:surface|base)", LENGTH, "level"),
-    ("{n}_mass_flux", (0, -1, 1), "flux"), ("{n}_volume_flux", (3, -1, 0), "flux"), ("{n}_volume", VOLUME, "number"),
+    ("{n}_(?:water|outflow)", VOLUME, "number"), ("{n}_mass_flux", (0, -1, 1), "flux"), ("{n}_volume_flux", (3, -1, 0), "flux"), ("{n}_volume", VOLUME, "number"),
 ]]
 
 # Fields of frames: units and kind.
 FIELDS = {
     "position": (LENGTH, "place"), "velocity": (SPEED, "vector"), "grid_velocity": (SPEED, "vector"), "stress": (STRESS, "stress"),
     "volume": (VOLUME, "number"), "mass": (MASS, "number"), "reference_height": (LENGTH, "level"), "half_length": (LENGTH, "axes"),
-    "load_area": (AREA, "vector"), "periods": (NONE, "periods"),
+    "load_area": (AREA, "vector"), "darcy_flux": (SPEED, "vector"), "solid_volume": (VOLUME, "number"), "porosity": (NONE, "number"), "periods": (NONE, "periods"),
     **{name: (STRESS, "number") for name in "pore_pressure excess_pore_pressure preconsolidation young su cohesion wave_modulus yield_stress pressure".split()},
     **{name: (NONE, "number") for name in "plastic_strain specific_volume parted_volume".split()}, "shear_rate": (RATE, "number"),
 }

@@ -3,7 +3,7 @@ import importlib
 
 KINDS = {"axisymmetric": "Axisymmetric", "collapses": "Collapses", "compression": "Compression", "correction": "Correction",
          "contact_pairs": "ContactPairs", "courant": "Courant", "energy": "Energy", "free_field": "FreeField", "ground": "Ground", "joints": "Joints", "level": "Level", "lights": "Lights", "loads": "Loads",
-         "periodic": "Periodic", "probes": "Probes", "sides": "Sides", "sites": "Sites", "soils": "Soils", "stage_bodies": "StageBodies",
+         "periodic": "Periodic", "pore_flow": "PoreFlow", "probes": "Probes", "sides": "Sides", "sites": "Sites", "soils": "Soils", "stage_bodies": "StageBodies",
          "stages": "Stages", "starts": "Starts", "stiffness": "Stiffness", "symmetry": "Symmetry", "tractions": "Tractions", "rigid_pairs": "RigidPairs", "turning": "Turning",
          "water": "Water"}
 
