@@ -67,6 +67,7 @@ enum class StepWay {
   in_batches,   // the soil passes through the device's memory in batches
   one_launch,   // the end of a step goes with function 5
   many_steps,   // a launch does many steps
+  about_nodes,  // bins about nodes in place of cells (P2GPlan::about_nodes)
   count
 };
 
@@ -93,6 +94,10 @@ constexpr Features excluding(StepWay way) {
     case StepWay::many_steps:
       return excluding(StepWay::one_launch) |
              Features{F::damping, F::shear_fraction, F::friction, F::acting_sides, F::pushed_mass_normals};
+    case StepWay::about_nodes:
+      return excluding(StepWay::sums_ahead) | Features{F::splits,  F::correction, F::acting_sides,
+                                                       F::columns, F::revolved,   F::ranks,
+                                                       F::batches};
     case StepWay::count: break;
   }
   return {};

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "data/cell_means.hpp"
 #include "data/floors.hpp"
 #include "data/nodes.hpp"
 #include "data/pore_flow.hpp"
@@ -21,6 +22,9 @@ struct P2GPlan {
   double margin = 0.5;  // cells
   int mosaic_cells = 3;
   double reserve = 0;  // cells, that the position correction may move particles beyond the margin
+  /// Bins hold the particles nearest to a node, and not those of a cell (rebuild/about_nodes.hpp). Such a
+  /// particle reaches no node but this one and those next to it, as long as it keeps to the margin.
+  bool about_nodes = false;
 };
 
 /// Which nodal fields hold the sums of what they are of, as it is now.
@@ -88,6 +92,7 @@ struct Core {
   Kokkos::View<double*, Memory> density;  // kg/m3, that the soil of each body begins with
   TimeScheme scheme;
   FBar f_bar;
+  CellMeans<Space, T> cell_means;  // of F-bar, where bins are about nodes
   PositionCorrection<Space> correction;
   int rebuild_late = 0;  // steps from the sign that a rebuild is due to it; 0: the host counts them
   StepPlan plan;         // of the steps until the next rebuild

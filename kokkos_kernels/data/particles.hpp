@@ -1,6 +1,7 @@
 #pragma once
-// Material points, as plain structs of views. A position is a cell and a coordinate in that cell: [0, 1) when
-// the particles are binned, and up to the margin beyond while they drift between two rebuilds.
+// Material points, as plain structs of views. A position is a cell and a coordinate from its lower corner:
+// [0, 1) when the particles are binned by cell, [-1/2, 1/2) when they are binned by the nearest node
+// (P2GPlan::about_nodes), and up to the margin beyond while they drift between two rebuilds.
 
 #include <cstdint>
 

@@ -24,7 +24,7 @@ StepPlan plan_step(const ContactCore<Space, T, Dim>& s, const Features& features
   else if (plan.sums_ahead)
     plan.form = StepForm::fused;
   if constexpr (is_device<Space>)
-    if (plan.form == StepForm::fused && few && s.soil.points.count > 0 &&
+    if (plan.form == StepForm::fused && few && s.soil.points.count > 0 && !s.p2g.about_nodes &&
         can(StepWay::one_launch, features) && launch_has_room)
       plan.form = StepForm::persistent;
   return plan;

@@ -1,7 +1,7 @@
 #pragma once
 // Which patches function 5 updates with which kernel of a device.
 
-#include "data/core.hpp"
+#include "data/contact_core.hpp"
 
 namespace mpm {
 
@@ -15,6 +15,6 @@ bool wants_split(const Core<Space, T, Dim>& s) {
 /// Makes State::split from the present lists, after the search for particles that are alone. On `stream`, for
 /// which the host waits.
 template <class Space, class T, int Dim>
-void split_patches(Core<Space, T, Dim>& s, const Space& stream);
+void split_patches(ContactCore<Space, T, Dim>& s, const Space& stream);
 
 }  // namespace mpm

@@ -1,3 +1,4 @@
+#include "functions/update_about_nodes.hpp"
 #include "loops/cpu/host_update.hpp"
 #include "loops/gpu/patch_update.hpp"
 
@@ -30,6 +31,10 @@ template <bool Sums, PatchKind kind, class Space, class T, int Dim>
 void launch(ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots, const Part<Space>& part) {
   with_domain(s.soil.points, [&](auto domain) {
     // Rings have one kernel, for all patches and laws.
+    constexpr bool may_be_about_nodes = is_device<Space> && Dim == 3 && domain() == ParticleDomain::fixed;
+    if constexpr (Sums && kind == PatchKind::common && may_be_about_nodes) {
+      if (s.p2g.about_nodes) return update_about_nodes(s, dt, slots, part);
+    }
     if constexpr (domain() == ParticleDomain::ring) {
       launch_for<Sums, PatchKind::any, Materials, domain()>(s, dt, slots, part);
     } else {

@@ -1,5 +1,6 @@
 // A rebuild of the two lower floors: patches, order, lists and the room for nodal fields.
 
+#include "rebuild/about_nodes.hpp"
 #include "rebuild/list_pairs.hpp"
 #include "rebuild/rebuild.hpp"
 
@@ -8,6 +9,7 @@ namespace mpm {
 template <class Space, class T, int Dim>
 void sort_points_and_list(ContactCore<Space, T, Dim>& s) {
   const auto kept = keep_impulse(s);
+  if (s.p2g.about_nodes) bring_to_nodes(s);
   activate_patches(s);
   sort_points(s);
   build_lists(s);
@@ -15,7 +17,9 @@ void sort_points_and_list(ContactCore<Space, T, Dim>& s) {
   if (!s.rigid_points.empty() || s.interfaces.in_use()) list_contacts(s);
   if (impulse_rows(s) > 0) restore_impulse(s, kept);
   list_pairs(s);
-  if (s.f_bar.fraction > 0 && !s.f_bar.keeps_stress) average_pressure(s);
+  if (s.f_bar.fraction > 0 && s.p2g.about_nodes) note_cells(s);
+  if (s.f_bar.fraction > 0 && !s.f_bar.keeps_stress)
+    s.p2g.about_nodes ? average_pressure_of_cells(s) : average_pressure(s);
 }
 
 template <class Space, class T, int Dim>

@@ -13,6 +13,7 @@
 #include "functions/split_patches.hpp"
 #include "functions/step_kernels.hpp"
 #include "functions/surface_loads.hpp"
+#include "functions/update_about_nodes.hpp"
 #include "functions/velocity_update.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
@@ -234,6 +235,7 @@ struct Step {
   /// common.
   template <class... Some>
   void update_patches(const Some&... part) const {
+    if (s.p2g.about_nodes && s.f_bar.fraction > 0) sum_dilatations(s);
     const bool aside = overlap && s.split.has_others() && !timers.sampling();
     update_particles(s, dt, part..., aside ? overlap->fork(s.space) : s.space);
     if (aside) overlap->join(s.space);

@@ -11,6 +11,7 @@
 #include "functions/part_forces.hpp"
 #include "functions/pore_flow.hpp"
 #include "functions/step_kernels.hpp"
+#include "rebuild/about_nodes.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/limit_volumes.hpp"
 #include "step/body_input.hpp"
@@ -52,6 +53,7 @@ PetscErrorCode TypedStepper<Space, T, Dim>::set_up(Model&& model, Failure* failu
   PetscCallCXX(upload_interfaces(s, interface_input(config)));
   PetscCallCXX(upload_flow(s, flow_input(config)));
   if (s.flow.in_use()) weigh_saturated(s, s.never_paused);
+  if (model.owners.empty()) choose_bins(bodies);
   if (fault.kind == FaultKind::none) PetscCallCXX((sort_and_list(s), begin_domains(s)));
   *failure = fault.kind == FaultKind::none ? reports_.failure_of_limit() : reports_.failure_of(fault);
   PetscCall(run_.share(failure));
@@ -95,6 +97,18 @@ void TypedStepper<Space, T, Dim>::set_options(const Model& model) {
   s.f_bar.fraction = together ? 0 : f_bar_range(config).largest;
   s.f_bar.keeps_stress = model.from_run;
   s.energy.on = config.output.energy;
+}
+
+/// The forced interval between rebuilds is that of the margin which the user knows.
+template <class Space, class T, int Dim>
+void TypedStepper<Space, T, Dim>::choose_bins(const std::vector<BodyInput>& bodies) {
+  auto& s = run_.state;
+  auto& config = run_.config.p2g;
+  double half_length = 0;
+  for (const BodyInput& body : bodies) half_length = std::max(half_length, body.half_length);
+  if (config.rebuild_interval || !wants_bins_about_nodes(s, half_length)) return;
+  s.p2g.about_nodes = true;
+  s.p2g.margin = config.margin = std::min(config.margin, margin_about_nodes(half_length));
 }
 
 template <class Space, class T, int Dim>
@@ -248,7 +262,8 @@ PetscErrorCode TypedStepper<Space, T, Dim>::restore(SavedState&& saved, long sin
   // By another rule the rebuild may be due already.
   const bool unforeseen = saved.due_in == 0 && saved.bound > 0 &&
                           rebuild_due(saved.bound, saved.increment, margin, GlobalBound::k_late);
-  const bool near = !forced && (saved.margin > margin || unforeseen);
+  // A larger margin may be that of bins of cells, where the checkpoint's bins are about nodes.
+  const bool near = forced ? saved.margin < margin : saved.margin != margin || unforeseen;
   *rebuilt = saved.bound > margin || near || (forced && since_rebuild >= *forced);
   if (!run_.is_first()) std::fill(saved.lost.begin(), saved.lost.end(), 0);  // rank 0 has them
   Failure unfit;

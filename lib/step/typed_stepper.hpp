@@ -53,6 +53,8 @@ class TypedStepper final : public Stepper {
   double present_step() const;
   /// Copies options from the configuration to the state.
   void set_options(const Model& model);
+  /// Decides, once for the run, between bins of cells and bins about nodes.
+  void choose_bins(const std::vector<BodyInput>& bodies);
   /// Brings particles to new places and cells, merges and splits them, and makes the lists.
   PetscErrorCode sort_soil(double elapsed, Failure* failure);
   /// Checks that the state has taken a saved state of what the options describe. unfit: where it has not.

@@ -91,6 +91,8 @@ struct UpdateParticles {
   int law;        // index in Materials of that of all bodies; -1: they differ
   bool one_body;  // no particle needs to be asked which its body is
   bool has_boundary;
+  bool has_means = false;  // `dilatation` holds the mean of each particle's cell (sum_dilatations)
+  static constexpr bool may_have_means = Dim == 3 && domain == ParticleDomain::fixed;
 
   static constexpr std::size_t bytes() {
     const std::size_t own =
@@ -150,7 +152,7 @@ struct UpdateParticles {
     if constexpr (Sums) {
       tile.clear(team, cell_begin);
       team.team_barrier();
-      if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
+      if (by.f_bar > 0 && !(may_have_means && has_means)) average_dilatation(team, cell_begin, nodes, mean);
       tile.add(team, particle);
       note_movement(team, noted, slot, moved);
       tile.give_window(team, out.soil, images);
@@ -161,7 +163,7 @@ struct UpdateParticles {
       }
     } else {
       team.team_barrier();
-      if (by.f_bar > 0) average_dilatation(team, cell_begin, nodes, mean);
+      if (by.f_bar > 0 && !(may_have_means && has_means)) average_dilatation(team, cell_begin, nodes, mean);
       Kokkos::parallel_for(Kokkos::TeamThreadRange(team, cell_begin(0), cell_begin(cells)), particle);
       note_movement(team, noted, slot, moved);
     }
@@ -231,7 +233,7 @@ struct UpdateParticles {
   }
   /// Result of average_dilatation for particle p in this cell of the patch [1/s].
   KOKKOS_INLINE_FUNCTION T mean_dilatation(const T* mean, int place, int p) const {
-    return averages_by_material() ? dilatation(p) : mean[place];
+    return averages_by_material() || (may_have_means && has_means) ? dilatation(p) : mean[place];
   }
 
   /// Moves particle p; `moved` [cells] becomes the largest movement so far. lone: Strays::alone of the slot.
@@ -336,7 +338,8 @@ Update update_of(const ContactCore<Space, T, Dim>& s, double dt,
           .first = first,
           .law = s.law,
           .one_body = set.points.bodies.extent(0) == 1,
-          .has_boundary = s.soil_boundary};
+          .has_boundary = s.soil_boundary,
+          .has_means = s.p2g.about_nodes && s.f_bar.fraction > 0};
 }
 
 }  // namespace mpm

@@ -1,0 +1,44 @@
+#pragma once
+// What F-bar needs where bins are about nodes (P2GPlan::about_nodes): the particles of a cell are then in the
+// bins of its eight nodes, of up to eight patches.
+
+#include <cstdint>
+
+#include "data/patches.hpp"
+
+namespace mpm {
+
+/// Sums over the particles that were in a cell at the last rebuild, and which particles these are.
+template <class Space, class T>
+struct CellMeans {
+  using Memory = typename Space::memory_space;
+  /// Of each particle: bit d is set where its cell is that before its node along direction d, else behind it.
+  Kokkos::View<std::uint8_t*, Memory> corner;
+  /// By the number of the cell: volume [m3], and volume times dilatation rate [m3/s].
+  Kokkos::View<Vector<T, 2>*, Memory> sums;
+};
+
+/// Number of the cell of the particle that `corner` is of: its bin has number `bin`.
+template <class Neighbours>
+KOKKOS_INLINE_FUNCTION int cell_of_corner(const Neighbours& neighbours, int bin, int corner) {
+  Coord<3> c = coord_of<3>(bin);
+  for (int d = 0; d < 3; ++d) c[d] -= corner >> d & 1;
+  return number_at<Neighbours, 3>(neighbours, bin / Patch<3>::cells, c);
+}
+
+/// The cells that particles in the bins of a patch may be in: -1 to edge - 1 along each axis.
+struct CellWindow {
+  static constexpr int edge = Patch<3>::edge + 1, cells = power(edge, 3);
+  KOKKOS_INLINE_FUNCTION static Coord<3> coord(int n) {
+    return {n % edge - 1, n / edge % edge - 1, n / (edge * edge) - 1};
+  }
+  /// Number here of the cell of a particle in bin `place` of the patch.
+  KOKKOS_INLINE_FUNCTION static int cell_of(int place, int corner) {
+    const Coord<3> c = coord_of<3>(place);
+    int n = 0;
+    for (int d = 2; d >= 0; --d) n = n * edge + c[d] + 1 - (corner >> d & 1);
+    return n;
+  }
+};
+
+}  // namespace mpm
