@@ -2,6 +2,7 @@
 
 #include "base/ensure.hpp"
 #include "physics/walls.hpp"
+#include "rebuild/about_nodes.hpp"
 
 namespace mpm {
 namespace {
@@ -14,7 +15,7 @@ struct FitsNodeBins {
   ContactPlaces<Space> contact;
   Kokkos::View<int*, typename Space::memory_space> begin;
   Kokkos::View<Coord<Dim>*, typename Space::memory_space> origin;
-  Coord<Dim> cells;
+  Coord<Dim> cells, at_walls;  // at_walls: the nodes at the upper side have bins
   bool has_boundary;
 
   template <class T>
@@ -23,10 +24,13 @@ struct FitsNodeBins {
         begin(s.soil.bins.begin),
         origin(s.patches.origin),
         cells(s.grid.cells),
-        has_boundary(s.soil_boundary) {}
+        has_boundary(s.soil_boundary) {
+    const Coord<Dim> last = last_bins(s.grid);
+    for (int d = 0; d < Dim; ++d) at_walls[d] = last[d] == cells[d];
+  }
   KOKKOS_INLINE_FUNCTION bool operator()(int slot) const {
     bool fits = !(has_boundary && contact(slot) != 0);
-    for (int d = 0; d < Dim; ++d) fits = fits && origin(slot)[d] + Patch<Dim>::edge < cells[d];
+    for (int d = 0; d < Dim; ++d) fits = fits && (at_walls[d] || origin(slot)[d] + Patch<Dim>::edge < cells[d]);
     for (int b = slot * Patch<Dim>::cells; fits && b < (slot + 1) * Patch<Dim>::cells; ++b)
       fits = begin(b + 1) - begin(b) <= k_most_in_bin;
     return fits;
@@ -47,7 +51,7 @@ void split_patches(ContactCore<Space, T, Dim>& s, const Space& stream) {
   const auto alone = s.strays.alone;
   const WallReach<Dim> reach(s.grid);
   const FitsNodeBins<Space, Dim> fits(s);
-  const bool about_nodes = s.p2g.about_nodes;
+  const bool about_nodes = s.p2g.about_nodes && s.plan.sums_ahead;  // else kernels for bins of cells do it
   const auto split_part = [&](int first, int last) {
     int common = 0;  // they keep their order; the others are last, in reverse order
     Kokkos::parallel_scan(

@@ -3,6 +3,7 @@
 #include "base/copy.hpp"
 #include "loops/gpu/cell_dilatation.hpp"
 #include "loops/gpu/update_about_nodes.hpp"
+#include "loops/interpolation.hpp"
 
 namespace mpm {
 namespace {
@@ -42,30 +43,47 @@ void for_each_particle_of(const ContactCore<Space, T, 3>& s, const char* name, c
         });
 }
 
-/// Adds volume, and volume times dilatation rate, of a particle anywhere to its cell's.
+/// A team adds volume, and volume times dilatation rate, of the particles of a patch anywhere to those of their cells.
 template <class Space, class T>
-struct AddToCell {
-  Soil<Space, T, 3> soil;
-  NodePlaces<Space, T, 3> places;
-  NodeField<Space, T, NodeKinematics<3>::size> kinematics;
+struct AddToCells {
+  using Update = UpdateParticles<Space, T, 3, false, PatchKind::any, LightMaterials>;
+  using Member = typename Update::Member;
+  using Motion = KinematicValues<T, 3>;
+  Update all;
   CellMeans<Space, T> means;
-  T inv_spacing;
 
-  KOKKOS_INLINE_FUNCTION void operator()(int p) const {
-    T rate = 0;
-    with_weights(soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const auto& a) {
-      const Stencil<Kind::motion, T, 3> stencil(places, soil.cell(p), a);
-      for_each_weight(a, [&](const Vector<int, 3>& k, T w, const auto& grad) {
-        if (!(w > 0)) return;  // such a node may lie where there is no patch
-        const int i = stencil.node(places.neighbours, k);
-        for (int d = 0; d < 3; ++d)
-          rate += grad[d] * stencil.sign(k, d) * kinematics(i, NodeKinematics<3>::velocity + d);
-      });
+  static constexpr std::size_t bytes() { return scratch_bytes<Motion>(Update::window); }
+
+  KOKKOS_FUNCTION void operator()(const Member& team) const {
+    const int paused = all.control().paused, slot = all.slots(all.first + team.league_rank());
+    if (paused) return;
+    Scratch scratch(team, bytes());
+    Motion* const nodes = scratch.take<Motion>(Update::window);
+    const auto images = all.images_at(slot);
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, Update::window), [&](int n) {
+      const int number =
+          number_at<decltype(all.neighbours), 3>(all.neighbours, slot, window_coord<3>(images(n)));
+      Motion motion{};
+      if (number >= 0) motion = *reinterpret_cast<const Motion*>(&all.kinematics(number, 0));
+      turn_motion(images, n, motion);
+      nodes[n] = motion;
     });
+    team.team_barrier();
+    constexpr int bins = Patch<3>::cells;
+    Kokkos::parallel_for(Kokkos::TeamThreadRange(team, all.begin(slot * bins), all.begin((slot + 1) * bins)),
+                         [&](int p) { add(nodes, p); });
+  }
+  KOKKOS_INLINE_FUNCTION void add(const Motion* nodes, int p) const {
+    const auto& soil = all.source.points;
     const T volume = soil.volume(p);
-    Vector<T, 2>& sum = means.sums(cell_of_corner(places.neighbours, soil.cell(p), means.corner(p)));
+    T rate = 0;
+    with_weights_near(soil.coordinate(p), soil.bodies(soil.body(p)).half_length, [&](const auto& a) {
+      rate = dilatation_from_nodes<ParticleDomain::fixed, T, 3>(nodes, coord_of<3>(soil.cell(p)), a,
+                                                                all.by.inv_spacing);
+    });
+    Vector<T, 2>& sum = means.sums(cell_of_corner(all.neighbours, soil.cell(p), means.corner(p)));
     Kokkos::atomic_add(&sum[0], volume);
-    Kokkos::atomic_add(&sum[1], volume * rate * inv_spacing);
+    Kokkos::atomic_add(&sum[1], volume * rate);
   }
 };
 
@@ -100,21 +118,38 @@ void update_about_nodes([[maybe_unused]] const ContactCore<Space, T, Dim>& s, [[
 }
 
 template <class Space, class T, int Dim>
+void sum_others([[maybe_unused]] const ContactCore<Space, T, Dim>& s,
+                [[maybe_unused]] const Kokkos::View<int*, typename Space::memory_space>& slots,
+                [[maybe_unused]] const Part<Space>& part) {
+  if constexpr (is_device<Space> && Dim == 3) {
+    using Source = SoilSource<Space, T, Dim>;
+    auto bins = bins_of(s.soil.bins, part);
+    bins.active_slots = slots;
+    interpolate<Source>(s, P2G::tile, bins, {s.soil.points, s.grid.inv_spacing}, s.nodes.soil, part.space);
+  }
+}
+
+template <class Space, class T, int Dim>
 void sum_dilatations([[maybe_unused]] const ContactCore<Space, T, Dim>& s) {
   if constexpr (is_device<Space> && Dim == 3) {
     const auto& means = s.cell_means;
-    const AddToCell<Space, T> add{
-        s.soil.points, {s.grid, s.patches}, s.nodes.kinematics, means, s.grid.inv_spacing};
     Kokkos::deep_copy(s.space, bytes_of<char>(means.sums), char(0));
     for_each_part(s, [&](const auto& slots, int first, int middle, int last) {
       using Sum = CellDilatations<Space, T, LightMaterials>;
       if (first < middle)
         launch_large_teams(s.space, middle - first, Sum{update_of_common<true>(s, 0, slots, first)});
-      for_each_particle_of(s, "mpm::sum_dilatations", slots, middle, last, add);
+      using Add = AddToCells<Space, T>;
+      using Team = typename Add::Update::Team;
+      if (middle < last)
+        Kokkos::parallel_for("mpm::sum_dilatations",
+                             light(Team(s.space, last - middle, Add::Update::threads)
+                                       .set_scratch_size(0, Kokkos::PerTeam(Add::bytes() + k_scratch_slack))),
+                             Add{update_of<typename Add::Update>(s, 0, slots, middle), means});
     });
     const TakeMean<Space, T> take{s.soil.points.cell, s.patches.neighbours, means, dilatations_of(s)};
-    for_each_part(s, [&](const auto& slots, int, int middle, int last) {
-      for_each_particle_of(s, "mpm::mean_dilatations", slots, middle, last, take);
+    for_each_part(s, [&](const auto& slots, int first, int middle, int last) {
+      const int from = s.plan.sums_ahead ? middle : first;  // a kernel of common patches takes the sums
+      for_each_particle_of(s, "mpm::mean_dilatations", slots, from, last, take);
     });
   }
 }
@@ -123,6 +158,8 @@ void sum_dilatations([[maybe_unused]] const ContactCore<Space, T, Dim>& s) {
   template void update_about_nodes(const ContactCore<Space, T, Dim>&, double,               \
                                    const Kokkos::View<int*, typename Space::memory_space>&, \
                                    const Part<Space>&);                                     \
+  template void sum_others(const ContactCore<Space, T, Dim>&,                                                   \
+                           const Kokkos::View<int*, typename Space::memory_space>&, const Part<Space>&);          \
   template void sum_dilatations(const ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

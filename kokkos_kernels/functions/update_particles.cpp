@@ -32,8 +32,8 @@ void launch(ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
   with_domain(s.soil.points, [&](auto domain) {
     // Rings have one kernel, for all patches and laws.
     constexpr bool may_be_about_nodes = is_device<Space> && Dim == 3 && domain() == ParticleDomain::fixed;
-    if constexpr (Sums && kind == PatchKind::common && may_be_about_nodes) {
-      if (s.p2g.about_nodes) return update_about_nodes(s, dt, slots, part);
+    if constexpr (kind == PatchKind::common && may_be_about_nodes) {
+      if (s.p2g.about_nodes && s.plan.sums_ahead) return update_about_nodes(s, dt, slots, part);
     }
     if constexpr (domain() == ParticleDomain::ring) {
       launch_for<Sums, PatchKind::any, Materials, domain()>(s, dt, slots, part);
@@ -52,11 +52,16 @@ void launch(ContactCore<Space, T, Dim>& s, double dt, const Slots<Space>& slots,
 /// their own, so that common patches fill the device beside them.
 template <bool Sums, class Space, class T, int Dim>
 void update_on_device(ContactCore<Space, T, Dim>& s, double dt, const Part<Space>& part, const Space& aside) {
-  if (!s.split.holds(part))
-    return launch<Sums, PatchKind::any>(s, dt, Slots<Space>(s.soil.bins.active_slots), part);
+  const bool about_nodes = s.p2g.about_nodes && s.plan.sums_ahead;
+  if (!s.split.holds(part)) {
+    launch<Sums, PatchKind::any>(s, dt, Slots<Space>(s.soil.bins.active_slots), part);
+    if (about_nodes) sum_others(s, s.soil.bins.active_slots, part);
+    return;
+  }
   for (const auto& of : s.split.parts) {
     if (of.first < part.first || of.last > part.last) continue;
     launch<Sums, PatchKind::any>(s, dt, s.split.slots, {aside, of.middle, of.last});
+    if (about_nodes) sum_others(s, s.split.slots, {aside, of.middle, of.last});
     launch<Sums, PatchKind::common>(s, dt, s.split.slots, {part.space, of.first, of.middle});
   }
 }
@@ -67,7 +72,7 @@ template <class Space, class T, int Dim>
 void update_particles(ContactCore<Space, T, Dim>& s, double dt, [[maybe_unused]] const Part<Space>& part,
                       [[maybe_unused]] const Space& aside) {
   const bool sums = s.plan.sums_ahead;
-  s.summed = {sums, sums && s.soil_boundary, false, sums && s.plan.writes_sums};
+  s.summed = {sums, sums && s.soil_boundary && !s.p2g.about_nodes, false, sums && s.plan.writes_sums};
   if constexpr (is_device<Space>) {
     if constexpr (sums_fit<Space, T, Dim>)
       if (sums) return update_on_device<true>(s, dt, part, aside);

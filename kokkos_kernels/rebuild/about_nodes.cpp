@@ -21,6 +21,7 @@ bool wants_bins_about_nodes(const State<Space, T, Dim>& s, double half_length) {
 template <class Space, class T, int Dim>
 void bring_to_nodes(Core<Space, T, Dim>& s) {
   const auto grid = s.grid;
+  const Coord<Dim> last = last_bins(grid);
   const auto coordinate = s.soil.points.coordinate;
   const auto address = s.soil.address;
   Kokkos::parallel_for(
@@ -30,7 +31,7 @@ void bring_to_nodes(Core<Space, T, Dim>& s) {
         Vector<T, Dim> x = coordinate(p);
         bool moves = false;
         for (int d = 0; d < Dim; ++d) {
-          if (x[d] < T(0.5) || cell[d] + 1 >= grid.cells[d]) continue;
+          if (x[d] < T(0.5) || cell[d] + 1 > last[d]) continue;
           x[d] -= 1, ++cell[d], moves = true;
         }
         if (!moves) return;

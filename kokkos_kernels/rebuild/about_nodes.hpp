@@ -20,9 +20,18 @@ constexpr double margin_about_nodes(double half_length) { return 0.5 - half_leng
 template <class Space, class T, int Dim>
 bool wants_bins_about_nodes(const State<Space, T, Dim>& s, double half_length);
 
-/// Brings each particle that has an address (ParticleSet::address) from its cell to the bin of the nearest
-/// node, before the sort. At the upper sides of the mesh, whose nodes lie outside of it, particles stay in
-/// the cell before: their coordinate is up to 1.
+/// The last node along each direction that has a bin. The nodes at an upper wall, which belong to no cell, have bins
+/// too: the grid has a ring of patches outside. At other upper sides particles stay in the last cell, with a
+/// coordinate of up to 1.
+template <class T, int Dim>
+Coord<Dim> last_bins(const Grid<T, Dim>& grid) {
+  Coord<Dim> last;
+  for (int d = 0; d < Dim; ++d) last[d] = grid.cells[d] - (is_mirror(grid.wall[d][1]) ? 0 : 1);
+  return last;
+}
+
+/// Brings each particle that has an address (ParticleSet::address) from its cell to the bin of the nearest node,
+/// before the sort.
 template <class Space, class T, int Dim>
 void bring_to_nodes(Core<Space, T, Dim>& s);
 

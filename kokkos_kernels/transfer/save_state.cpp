@@ -8,6 +8,7 @@
 #include "physics/rigid_motion.hpp"
 #include "rebuild/batches.hpp"
 #include "rebuild/rebuild.hpp"
+#include "rebuild/shift_particle.hpp"
 #include "transfer/fill_view.hpp"
 
 namespace mpm {
@@ -46,6 +47,21 @@ SavedPoints save_points(const Patches_& patches, Points_ points) {
   };
   for_each_field_of(save, points);
   return saved;
+}
+
+/// Gives particles in bins about nodes at upper walls (last_bins) the cell before, as addresses in a file are those of
+/// cells in the mesh. A rebuild brings them back.
+template <class T, int Dim>
+void keep_in_mesh(const Grid<T, Dim>& grid, SavedPoints& saved) {
+  const auto coordinate = std::find_if(saved.fields.begin(), saved.fields.end(),
+                                       [](const SavedField& field) { return field.name == "coordinate"; });
+  for (std::size_t p = 0; p < saved.address.size(); ++p) {
+    Coord<Dim> cell = cell_of(grid, saved.address[p]);
+    if (grid.holds(cell)) continue;
+    for (int d = 0; d < Dim; ++d)
+      if (cell[d] == grid.cells[d]) --cell[d], ++coordinate->values[p * Dim + d];
+    saved.address[p] = grid.address_of(cell, grid.field_of(saved.address[p] / Patch<Dim>::cells));
+  }
 }
 
 /// The lists of bodies near slots, on the host.
@@ -110,6 +126,10 @@ void save_strays(const ContactCore<Space, T, Dim>& s, SavedState& saved) {
   const auto number = mirror_of(s.patches.number);
   for (int c = 0; c < s.patches.node_count(); ++c)
     if (is_alone(alone, c)) saved.alone.push_back(address_of_node<Dim>(number, c));
+  // Bins of nodes at upper walls have no address in a file; the next step then looks for such particles again.
+  const bool in_mesh = std::all_of(saved.alone.begin(), saved.alone.end(),
+                                   [&](long address) { return s.grid.holds(cell_of(s.grid, address)); });
+  if (!in_mesh) saved.alone.clear(), saved.alone_known = 0;
 }
 
 template <class Space, class T, int Dim>
@@ -290,6 +310,7 @@ SavedState save_state(const ContactCore<Space, T, Dim>& s) {
   saved.bound = control().bound, saved.increment = control().increment;
   saved.margin = s.p2g.margin, saved.due_in = control().due_in;
   saved.soil = save_points(s.patches, s.soil.points);
+  if (s.p2g.about_nodes) keep_in_mesh(s.grid, saved.soil);
   const auto rigids = mirror_of(s.rigids);
   for (std::size_t r = 0; r < s.rigid_points.size(); ++r) saved.rigids.push_back(save_rigid(rigids(r)));
   saved.impulse = save_impulse(s);

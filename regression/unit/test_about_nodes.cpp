@@ -175,20 +175,24 @@ TEST_CASE("in bins about nodes a particle is where it was, by its nearest node",
   for_each_build([](auto build) {
     using B = decltype(build);
     if constexpr (B::dim == 3) {
-      Cloud cloud = random_cloud<3>(4);
-      const auto by_cell = soil_fields(state_of<B>(cloud, P2G::tile));
-      cloud.p2g.about_nodes = true;
-      const auto s = state_of<B>(cloud, P2G::tile);
-      CHECK(largest_difference(soil_fields(s), by_cell) < B::of(1e-14, 1e-6));
-      const auto x = on_host(s.soil.points.coordinate);
-      const auto cell = on_host(s.soil.points.cell);
-      const auto origin = on_host(s.patches.origin);
-      for (int p = 0; p < s.soil.points.count; ++p)
-        for (int d = 0; d < 3; ++d) {
-          const int at = origin(cell(p) / Patch<3>::cells)[d] + coord_of<3>(cell(p))[d];
-          CHECK(x(p)[d] >= -0.5);
-          CHECK(x(p)[d] < (at + 1 < s.grid.cells[d] ? 0.5 : 1));
-        }
+      for (Wall wall : {Wall::free, Wall::roller}) {
+        Cloud cloud = random_cloud<3>(4, wall);
+        const auto by_cell = soil_fields(state_of<B>(cloud, P2G::tile));
+        cloud.p2g.about_nodes = true;
+        const auto s = state_of<B>(cloud, P2G::tile);
+        CHECK(largest_difference(soil_fields(s), by_cell) < B::of(1e-14, 1e-6));
+        const auto x = on_host(s.soil.points.coordinate);
+        const auto cell = on_host(s.soil.points.cell);
+        const auto origin = on_host(s.patches.origin);
+        const Coord<3> last = last_bins(s.grid);
+        bool nearest = true;
+        for (int p = 0; p < s.soil.points.count; ++p)
+          for (int d = 0; d < 3; ++d) {
+            const int at = origin(cell(p) / Patch<3>::cells)[d] + coord_of<3>(cell(p))[d];
+            nearest = nearest && at <= last[d] && x(p)[d] >= -0.5 && x(p)[d] < (at < last[d] ? 0.5 : 1);
+          }
+        CHECK(nearest);
+      }
     }
   });
 }

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// Images in walls of the nodes of a NodeWindow, as WindowImages, for a patch that no upper side is near.
+/// Images in walls of the nodes of a NodeWindow, as WindowImages.
 template <class T>
 struct NodeImages {
   using Window = NodeWindow<T>;
@@ -16,24 +16,30 @@ struct NodeImages {
   Coord<3> origin;
   bool at_wall;
 
-  /// Place in the window of the image of node n; n itself, but beyond a wall.
+  /// Place in the window of the image of node n; n itself, but beyond a wall. Nodes more than one beyond an upper wall,
+  /// which no particle reaches, have none.
   KOKKOS_INLINE_FUNCTION int operator()(int n) const {
     const Coord<3> c = Window::coord(n);
     int place = 0;
-    for (int d = 2; d >= 0; --d)
-      place = place * Window::edge + image_along(grid, d, origin[d] + c[d]) - origin[d] + 1;
-    return place;
+    bool outside = false;
+    for (int d = 2; d >= 0; --d) {
+      const int to = image_along(grid, d, origin[d] + c[d]) - origin[d] + 1;
+      outside |= to < 0;
+      place = place * Window::edge + to;
+    }
+    return outside ? n : place;
   }
-  /// Factor from what a node at a wall, or beyond it, has of component k to what its image gets of it
-  /// (`keeps`, 0 or 1: of the component that turns at a node on the wall), and from the image's motion to the
-  /// node's.
+  /// Factor from what a node at a wall, or beyond it, has of component k to what its image gets of it (`keeps`, 0 or
+  /// 1: of the component that turns at a node on the wall), and from the image's motion to the node's.
   KOKKOS_INLINE_FUNCTION T factor(int n, int k, T keeps) const {
     const Coord<3> c = Window::coord(n);
     T factor = 1;
     for (int d = 0; d < 3; ++d) {
       const int at = origin[d] + c[d];
-      const Wall wall = grid.wall[d][0];
-      if (at <= 0 && is_mirror(wall) && (k == d || wall == Wall::fixed)) factor *= at < 0 ? T(-1) : keeps;
+      if (at > 0 && at < grid.cells[d]) continue;
+      const Wall wall = grid.wall[d][at > 0];
+      const bool beyond = at < 0 || at > grid.cells[d];
+      if (is_mirror(wall) && (k == d || wall == Wall::fixed)) factor *= beyond ? T(-1) : keeps;
     }
     return factor;
   }
@@ -113,7 +119,8 @@ struct UpdateAboutNodes {
     using Motion = typename Window::Motion;
     for (int n = team.rank; n < Window::nodes; n += size) {
       const int number = number_of(slot, images.at_wall ? images(n) : n);
-      Motion motion = *reinterpret_cast<const Motion*>(&all.kinematics(number, 0));
+      Motion motion{};  // of nodes outside the grid, which no particle reaches
+      if (number >= 0) motion = *reinterpret_cast<const Motion*>(&all.kinematics(number, 0));
       if (images.at_wall)
         for (int k = 0; k < Window::values; ++k) motion.c[k] *= images.factor(n, k % 3, T(1));
       Window::store(window.motion, n, motion);
@@ -143,7 +150,7 @@ struct UpdateAboutNodes {
   KOKKOS_INLINE_FUNCTION void step_particle(const Tile_& tile, const Window& window, const T* mean, int slot,
                                             bool at_wall, int p, int n, T& moved) const {
     const auto& soil = all.source.points;
-    const BodyProperties<T> body = soil.bodies(all.one_body ? 0 : soil.body(p));
+    const BodyProperties<T>& body = soil.bodies(all.one_body ? 0 : soil.body(p));  // read again in place of kept
     const int bin = soil.cell(p) - slot * bins;
     Particle<T, 3> q;
     for_each_value([&](auto& value, const auto& field) { value = field(p); }, q, soil);
@@ -167,11 +174,9 @@ struct UpdateAboutNodes {
     tile.put(n, a, all.source.point(body.half_length, soil.mass_of(p, body), q.v, q.stress, q.volume));
   }
 
-  /// Brings a particle that has passed a lower wall back to it, in memory; whether it has. x: its coordinate.
+  /// Brings a particle that has passed a wall back to it, in memory; whether it has. x: its coordinate.
   KOKKOS_INLINE_FUNCTION bool put_back(int slot, int bin, int p, const Vector<T, 3>& x) const {
-    const Coord<3> cell = in_mesh(all.origin(slot), coord_of<3>(bin));
-    bool beyond = false;
-    for (int d = 0; d < 3; ++d) beyond |= all.grid.wall[d][0] != Wall::free && T(-cell[d]) > x[d];
+    const bool beyond = is_beyond_walls(all.grid, in_mesh(all.origin(slot), coord_of<3>(bin)), x);
     if (beyond) put_on_wall(slot, p);
     return beyond;
   }
