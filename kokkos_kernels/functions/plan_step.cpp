@@ -11,8 +11,7 @@ StepPlan plan_step(const ContactCore<Space, T, Dim>& s, const Features& features
   const bool few = s.patches.slots < k_few, batches = s.batches.in_use();
   // One thread gains nothing by sums ahead, and the log has a line for each of its functions. On a GPU the
   // scratch memory must hold the update and the sums.
-  const bool fit =
-      is_device<Space> ? sums_fit<Space, T, Dim> || s.p2g.about_nodes : has_windows(s.space);
+  const bool fit = is_device<Space> ? sums_fit<Space, T, Dim> || s.p2g.about_nodes : has_windows(s.space);
   StepPlan plan;
   plan.sums_ahead = fit && can(StepWay::sums_ahead, features);
   plan.writes_sums = has_windows(s.space) && !features.has(Feature::other_strategy) && !batches;

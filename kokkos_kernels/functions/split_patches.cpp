@@ -30,7 +30,8 @@ struct FitsNodeBins {
   }
   KOKKOS_INLINE_FUNCTION bool operator()(int slot) const {
     bool fits = !(has_boundary && contact(slot) != 0);
-    for (int d = 0; d < Dim; ++d) fits = fits && (at_walls[d] || origin(slot)[d] + Patch<Dim>::edge < cells[d]);
+    for (int d = 0; d < Dim; ++d)
+      fits = fits && (at_walls[d] || origin(slot)[d] + Patch<Dim>::edge < cells[d]);
     for (int b = slot * Patch<Dim>::cells; fits && b < (slot + 1) * Patch<Dim>::cells; ++b)
       fits = begin(b + 1) - begin(b) <= k_most_in_bin;
     return fits;

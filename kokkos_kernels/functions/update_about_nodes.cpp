@@ -43,7 +43,8 @@ void for_each_particle_of(const ContactCore<Space, T, 3>& s, const char* name, c
         });
 }
 
-/// A team adds volume, and volume times dilatation rate, of the particles of a patch anywhere to those of their cells.
+/// A team adds volume, and volume times dilatation rate, of the particles of a patch anywhere to those of
+/// their cells.
 template <class Space, class T>
 struct AddToCells {
   using Update = UpdateParticles<Space, T, 3, false, PatchKind::any, LightMaterials>;
@@ -154,12 +155,12 @@ void sum_dilatations([[maybe_unused]] const ContactCore<Space, T, Dim>& s) {
   }
 }
 
-#define MPM_INSTANTIATE(Space, T, Dim)                                                      \
-  template void update_about_nodes(const ContactCore<Space, T, Dim>&, double,               \
-                                   const Kokkos::View<int*, typename Space::memory_space>&, \
-                                   const Part<Space>&);                                     \
-  template void sum_others(const ContactCore<Space, T, Dim>&,                                                   \
-                           const Kokkos::View<int*, typename Space::memory_space>&, const Part<Space>&);          \
+#define MPM_INSTANTIATE(Space, T, Dim)                                                                   \
+  template void update_about_nodes(const ContactCore<Space, T, Dim>&, double,                            \
+                                   const Kokkos::View<int*, typename Space::memory_space>&,              \
+                                   const Part<Space>&);                                                  \
+  template void sum_others(const ContactCore<Space, T, Dim>&,                                            \
+                           const Kokkos::View<int*, typename Space::memory_space>&, const Part<Space>&); \
   template void sum_dilatations(const ContactCore<Space, T, Dim>&);
 MPM_FOR_EACH(MPM_INSTANTIATE)
 

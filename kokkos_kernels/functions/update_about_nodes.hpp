@@ -14,8 +14,8 @@ void update_about_nodes(const ContactCore<Space, T, Dim>& s, double dt,
 
 /// Function 3 of the next step for the other slots, after their particles have moved.
 template <class Space, class T, int Dim>
-void sum_others(const ContactCore<Space, T, Dim>& s, const Kokkos::View<int*, typename Space::memory_space>& slots,
-                const Part<Space>& part);
+void sum_others(const ContactCore<Space, T, Dim>& s,
+                const Kokkos::View<int*, typename Space::memory_space>& slots, const Part<Space>& part);
 
 /// The mean dilatation rate of each cell [1/s], of the particles that were in it at the last rebuild: their
 /// sums in Core::cell_means, and the mean for each particle of the patches that are not common in

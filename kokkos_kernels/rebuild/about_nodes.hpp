@@ -20,9 +20,9 @@ constexpr double margin_about_nodes(double half_length) { return 0.5 - half_leng
 template <class Space, class T, int Dim>
 bool wants_bins_about_nodes(const State<Space, T, Dim>& s, double half_length);
 
-/// The last node along each direction that has a bin. The nodes at an upper wall, which belong to no cell, have bins
-/// too: the grid has a ring of patches outside. At other upper sides particles stay in the last cell, with a
-/// coordinate of up to 1.
+/// The last node along each direction that has a bin. The nodes at an upper wall, which belong to no cell,
+/// have bins too: the grid has a ring of patches outside. At other upper sides particles stay in the last
+/// cell, with a coordinate of up to 1.
 template <class T, int Dim>
 Coord<Dim> last_bins(const Grid<T, Dim>& grid) {
   Coord<Dim> last;
@@ -30,8 +30,8 @@ Coord<Dim> last_bins(const Grid<T, Dim>& grid) {
   return last;
 }
 
-/// Brings each particle that has an address (ParticleSet::address) from its cell to the bin of the nearest node,
-/// before the sort.
+/// Brings each particle that has an address (ParticleSet::address) from its cell to the bin of the nearest
+/// node, before the sort.
 template <class Space, class T, int Dim>
 void bring_to_nodes(Core<Space, T, Dim>& s);
 

@@ -49,8 +49,8 @@ SavedPoints save_points(const Patches_& patches, Points_ points) {
   return saved;
 }
 
-/// Gives particles in bins about nodes at upper walls (last_bins) the cell before, as addresses in a file are those of
-/// cells in the mesh. A rebuild brings them back.
+/// Gives particles in bins about nodes at upper walls (last_bins) the cell before, as addresses in a file are
+/// those of cells in the mesh. A rebuild brings them back.
 template <class T, int Dim>
 void keep_in_mesh(const Grid<T, Dim>& grid, SavedPoints& saved) {
   const auto coordinate = std::find_if(saved.fields.begin(), saved.fields.end(),
@@ -126,7 +126,8 @@ void save_strays(const ContactCore<Space, T, Dim>& s, SavedState& saved) {
   const auto number = mirror_of(s.patches.number);
   for (int c = 0; c < s.patches.node_count(); ++c)
     if (is_alone(alone, c)) saved.alone.push_back(address_of_node<Dim>(number, c));
-  // Bins of nodes at upper walls have no address in a file; the next step then looks for such particles again.
+  // Bins of nodes at upper walls have no address in a file; the next step then looks for such particles
+  // again.
   const bool in_mesh = std::all_of(saved.alone.begin(), saved.alone.end(),
                                    [&](long address) { return s.grid.holds(cell_of(s.grid, address)); });
   if (!in_mesh) saved.alone.clear(), saved.alone_known = 0;

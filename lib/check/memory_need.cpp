@@ -5,6 +5,7 @@
 #include <fstream>
 #include <type_traits>
 
+#include "common/f_bar.hpp"
 #include "common/host_memory.hpp"
 #include "common/material_table.hpp"
 #include "common/text.hpp"
@@ -62,6 +63,13 @@ NodeUses uses_of_nodes(const Config& config) {
           .flow = water_flows(config)};
 }
 
+/// Whether F-bar may need sums over cells beside those of bins (CellMeans).
+template <class Space, int Dim>
+bool may_have_cell_means(const Config& config) {
+  return is_device<Space> && Dim == 3 && config.particle_domain == ParticleDomain::fixed &&
+         f_bar_range(config).largest > 0;
+}
+
 /// Bytes that a particle of the soil takes, with what sorts it and what some runs keep of it in a step.
 template <class Space, class T, int Dim>
 double bytes_of_particle(const Config& config) {
@@ -70,6 +78,7 @@ double bytes_of_particle(const Config& config) {
   if (!config.loads.empty()) bytes += k_grown * 3 * sizeof(Vector<T, Dim>);  // SurfaceLoads
   if (config.output.energy) bytes += k_grown * (2 * sizeof(SymTensor<T, Dim>) + sizeof(T));
   if (config.velocity_update == VelocityUpdate::xpic) bytes += k_grown * sizeof(Vector<T, Dim>);
+  if (may_have_cell_means<Space, Dim>(config)) bytes += k_grown * sizeof(std::uint8_t);
   if (config.p2g.strategy == P2G::gather) {
     // a particle is in the lists of the nodes that it may reach before the margin is used up
     const double reach = 2 * (1.25 + config.p2g.margin);
@@ -85,6 +94,7 @@ void add_bytes(const Config& config, double cells, MemoryNeed& need) {
   constexpr double k_ring = 1.1;  // the patches round the soil
   const double soil = need.particles * bytes_of_particle<Space, T, Dim>(config);
   need.nodes = k_ring * cells * bytes_of_node(Nodes<Space, T, Dim>{}, uses_of_nodes(config));
+  if (may_have_cell_means<Space, Dim>(config)) need.nodes += k_ring * cells * k_grown * 2 * sizeof(T);
   if (config.backend == Backend::openmp && chosen(config.p2g.strategy) == P2G::tile)
     need.nodes += cells * k_window_bytes<T, Dim> *
                   (1 + (water_flows(config) ? double(FlowTerms<Dim>::size) / SoilTerms<Dim>::size : 0));

@@ -35,7 +35,8 @@ Cloud block(Wall wall, int per_cell) {
   BodyInput& body = cloud.bodies[0];
   for (double& x : body.position) x += dice.uniform(-0.1, 0.1) * k_spacing / per_cell;
   for (std::size_t p = 0; p < strength_of(body).size(); ++p) {
-    for (int d = 0; d < 3; ++d) body.velocity.push_back(dice.uniform(-3, 3));
+    for (int d = 0; d < 3; ++d)  // m/s, a hundredth of a cell a step
+      body.velocity.push_back(12 * std::sin(2 * std::numbers::pi * body.position[3 * p + (d + 1) % 3] + d));
     for (int k = 0; k < sym_size<3>; ++k) body.stress.push_back(dice.uniform(-1000, 1000));
   }
   return cloud;
@@ -201,13 +202,13 @@ TEST_CASE("steps with bins about nodes are those with bins of cells", "[step]") 
   for (Wall wall : {Wall::roller, Wall::fixed, Wall::free})
     for (int per_cell : {2, 3}) {
       const Cloud cloud = block(wall, per_cell);
-      const auto expected = fields_after<Reference<3>>(cloud, false, P2G::sequential, 20);
+      const auto expected = fields_after<Reference<3>>(cloud, false, P2G::sequential, 40);
       for_each_build([&](auto build) {
         using B = decltype(build);
         if constexpr (B::dim == 3)
-          for (P2G how : {P2G::gather, P2G::mosaic, P2G::tile}) {
+          for (P2G how : {P2G::gather, P2G::tile}) {
             INFO(build.name() << ' ' << word_of(how) << ' ' << per_cell << " a cell");
-            CHECK(largest_difference(fields_after<B>(cloud, true, how, 20), expected) < B::of(1e-10, 1e-3));
+            CHECK(largest_difference(fields_after<B>(cloud, true, how, 40), expected) < B::of(1e-10, 1e-3));
           }
       });
     }
@@ -218,12 +219,12 @@ TEST_CASE("F-bar has the means of cells where bins are about nodes", "[step]") {
   for (Wall wall : {Wall::roller, Wall::fixed, Wall::free}) {
     Cloud cloud = block(wall, 2);
     cloud.f_bar_fraction = 0.9;
-    const auto expected = fields_after<Reference<3>>(cloud, false, P2G::sequential, 20);
+    const auto expected = fields_after<Reference<3>>(cloud, false, P2G::sequential, 40);
     for_each_build([&](auto build) {
       using B = decltype(build);
       if constexpr (B::dim == 3 && is_device<typename B::Space>) {
         INFO(build.name());
-        CHECK(largest_difference(fields_after<B>(cloud, true, P2G::tile, 20), expected) < B::of(1e-10, 1e-3));
+        CHECK(largest_difference(fields_after<B>(cloud, true, P2G::tile, 40), expected) < B::of(1e-10, 1e-3));
       }
     });
   }

@@ -10,7 +10,8 @@
 
 namespace mpm {
 
-template <class T>
+/// beside: bytes of scratch memory that a team has for something else.
+template <class T, std::size_t beside = 0>
 struct NodeTile {
   using S = SoilTerms<3>;
   using Window = NodeWindow<T>;
@@ -24,12 +25,6 @@ struct NodeTile {
   // sigma / d, and the shares t along x, y, z, in units that are read at once and lie apart.
   static constexpr int k_mass = 6, k_stress = 10, k_share = 16, k_values = 20;
   static constexpr int k_unit = Window::k_unit, k_units = k_values / k_unit;
-  /// Particles that the stage has room for: over a tenth more than eight a bin, and as many as leave the
-  /// memory for four teams (single precision) or two on a multiprocessor of 227 KiB.
-  static constexpr int room = is_single ? 576 : 544;
-  /// Bins that hold more are no part of a patch that takes this way.
-  static constexpr int k_most_in_bin = 256;
-
   // Sums of a warp: planes, each of two layers of six rows of nodes. With these lengths of rows and layers no
   // two lanes meet in a bank.
   static constexpr int k_row = is_single ? 8 : 12, k_layer = is_single ? 52 : 72;
@@ -42,9 +37,17 @@ struct NodeTile {
   static constexpr std::size_t window_bytes() {
     return rounded(Window::bytes() > sums_bytes(k_motion) ? Window::bytes() : sums_bytes(k_motion));
   }
+  /// Teams that share a multiprocessor, with its 227 KiB, of which 1 KiB a team is the driver's.
+  static constexpr int teams = is_single ? 4 : 2;
+  /// Particles that the stage has room for in what the teams leave each other: a tenth more than eight a bin.
+  static constexpr int room = [] {
+    const std::size_t own =
+        227 * 1024 / teams - 1024 - window_bytes() - rounded(sizeof(int) * (bins + 1)) - rounded(beside);
+    return static_cast<int>(own / (sizeof(Unit) * k_units) / 8 * 8);
+  }();
   static constexpr std::size_t stage_bytes() { return sizeof(Unit) * k_units * room; }
   static constexpr std::size_t bytes() {
-    return window_bytes() + stage_bytes() + rounded(sizeof(int) * (bins + 1));
+    return window_bytes() + stage_bytes() + rounded(sizeof(int) * (bins + 1)) + rounded(beside);
   }
   static_assert(sums_bytes(k_force) + nodes * (S::size * sizeof(T) + sizeof(int)) <= stage_bytes());
 

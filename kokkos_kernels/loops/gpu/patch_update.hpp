@@ -119,7 +119,8 @@ struct UpdateParticles {
       return number_at<decltype(neighbours), Dim>(neighbours, slot, window_coord<Dim>(images(n)));
     };
     update(team, all, slot, sums, movements.of(0), images, number_of, [&](int, int number) {
-      if constexpr (may_have_means)  // about nodes at an upper wall some lie outside the grid, where no particle reaches
+      if constexpr (may_have_means)  // about nodes at an upper wall some lie outside the grid, where no
+                                     // particle reaches
         if (number < 0) return KinematicValues<T, Dim>{};
       return *reinterpret_cast<const KinematicValues<T, Dim>*>(&kinematics(number, 0));
     });

@@ -16,8 +16,8 @@ struct NodeImages {
   Coord<3> origin;
   bool at_wall;
 
-  /// Place in the window of the image of node n; n itself, but beyond a wall. Nodes more than one beyond an upper wall,
-  /// which no particle reaches, have none.
+  /// Place in the window of the image of node n; n itself, but beyond a wall. Nodes more than one beyond an
+  /// upper wall, which no particle reaches, have none.
   KOKKOS_INLINE_FUNCTION int operator()(int n) const {
     const Coord<3> c = Window::coord(n);
     int place = 0;
@@ -29,8 +29,9 @@ struct NodeImages {
     }
     return outside ? n : place;
   }
-  /// Factor from what a node at a wall, or beyond it, has of component k to what its image gets of it (`keeps`, 0 or
-  /// 1: of the component that turns at a node on the wall), and from the image's motion to the node's.
+  /// Factor from what a node at a wall, or beyond it, has of component k to what its image gets of it
+  /// (`keeps`, 0 or 1: of the component that turns at a node on the wall), and from the image's motion to the
+  /// node's.
   KOKKOS_INLINE_FUNCTION T factor(int n, int k, T keeps) const {
     const Coord<3> c = Window::coord(n);
     T factor = 1;
@@ -52,17 +53,16 @@ struct NodeImages {
 template <class Space, class T, class Laws, bool HasMeans>
 struct UpdateAboutNodes {
   using Update = UpdateParticles<Space, T, 3, true, PatchKind::common, Laws>;
-  using Tile_ = NodeTile<T>;
+  static constexpr std::size_t mean_bytes = HasMeans ? CellWindow::cells * sizeof(T) : 0;
+  using Tile_ = NodeTile<T, mean_bytes>;
   using Window = NodeWindow<T>;
   using S = SoilTerms<3>;
-  static constexpr int threads = Tile_::threads, teams = Tile_::is_single ? 4 : 2, bins = Tile_::bins;
+  static constexpr int threads = Tile_::threads, teams = Tile_::teams, bins = Tile_::bins;
 
   Update all;
   CellMeans<Space, T> means;  // in use with F-bar
 
-  static constexpr std::size_t bytes() {
-    return Tile_::bytes() + (HasMeans ? CellWindow::cells * sizeof(T) : 0);
-  }
+  static constexpr std::size_t bytes() { return Tile_::bytes(); }
 
   KOKKOS_INLINE_FUNCTION void operator()(const LargeTeam& team, unsigned char* scratch, int index) const {
     const int paused = all.control().paused, slot = all.slots(all.first + index);  // both asked for at once
@@ -71,7 +71,7 @@ struct UpdateAboutNodes {
     for (int b = team.rank; b <= bins; b += threads) tile.begin[b] = all.begin(slot * bins + b);
     prefetch_particles(team, slot);
     const Window window(tile.window);
-    T* const mean = reinterpret_cast<T*>(scratch + Tile_::bytes());
+    T* const mean = reinterpret_cast<T*>(scratch + Tile_::bytes() - Tile_::rounded(mean_bytes));
     if constexpr (HasMeans)
       for (int c = team.rank; c < CellWindow::cells; c += threads) mean[c] = mean_of_cell(slot, c);
     const NodeImages<T> images{all.grid, all.origin(slot), all.reach(all.origin(slot))};
@@ -150,7 +150,8 @@ struct UpdateAboutNodes {
   KOKKOS_INLINE_FUNCTION void step_particle(const Tile_& tile, const Window& window, const T* mean, int slot,
                                             bool at_wall, int p, int n, T& moved) const {
     const auto& soil = all.source.points;
-    const BodyProperties<T>& body = soil.bodies(all.one_body ? 0 : soil.body(p));  // read again in place of kept
+    const BodyProperties<T>& body =
+        soil.bodies(all.one_body ? 0 : soil.body(p));  // read again in place of kept
     const int bin = soil.cell(p) - slot * bins;
     Particle<T, 3> q;
     for_each_value([&](auto& value, const auto& field) { value = field(p); }, q, soil);
